@@ -1,5 +1,8 @@
 //! The whole search, on models that are linear in all but a threshold, with known truth.
 
+use std::cell::RefCell;
+use std::collections::BTreeMap;
+
 use discovery::{
     Candidate, Conclusion, DETECTED, DiscoverySearch, EvidenceMethod, LawCandidate, ProposedRuns,
     QueriedModel, Query, Reduction, SearchSettings, SearchTask, SearchVerdict,
@@ -308,6 +311,23 @@ fn a_law_that_fails_the_cross_validation_is_not_claimed() {
     let found = found(|x, _| 0.3 + 0.5 * x + if (x - 1.0 / 7.0).abs() < 0.01 { 1.2 } else { 0.0 });
     assert_eq!(found.verdict, SearchVerdict::Undecided);
     assert!(found.outside.is_none() && found.not_in_library.is_some());
+}
+
+#[test]
+fn the_base_is_fitted_without_each_level_once() {
+    let asked = RefCell::new(BTreeMap::<Vec<u64>, usize>::new());
+    // The laws of all ranks fail the cross-validation, each beside the base.
+    let truth = |x: f64, _: f64| 0.3 + 0.5 * x + if (x - 1.0 / 7.0).abs() < 0.01 { 1.2 } else { 0.0 };
+    search(task(&measured(truth)), false, |query| {
+        if query.model == QueriedModel::With(Vec::new()) && !query.is_proposed {
+            let theta = query.theta.iter().map(|x| x.to_bits()).collect();
+            *asked.borrow_mut().entry(theta).or_default() += 1;
+        }
+        answer(query)
+    });
+    // The first steps of the refits are those of the fit to all data.
+    let most = asked.into_inner().into_values().max();
+    assert_eq!(most, Some(LEVELS + 1));
 }
 
 /// Searches the data on x >= 0 alone.

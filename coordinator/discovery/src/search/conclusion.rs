@@ -108,11 +108,11 @@ impl Conclusion {
             hypotheses,
             evaluations,
             numerical_noise_sds,
+            ..
         } = state;
         let weighing = Weighing::new(task, hypotheses);
         let chi_square = |fit: &LaplaceFit| FitChiSquare::of(fit, &task.likelihood);
-        let of_library = hypotheses.best_of_library(task.library.len());
-        let of_library = of_library.filter(|best| best.log_bayes_factor > DETECTED);
+        let of_library = hypotheses.detected_of_library(task.library.len());
         let of_library = of_library.map(|best| &best.fit).or(hypotheses.base_fit());
         let law = hypotheses.confirmed_law();
         let law = law.filter(|law| explains(task, of_library.and_then(chi_square), law));

@@ -1,12 +1,17 @@
 //! Cross-validation: models fitted without some of the data, and their prediction of these.
 
+use std::collections::BTreeMap;
+
 use crate::laplace::fit::{FitStep, LaplaceFit};
 use crate::laplace::point::FitPoint;
 use crate::search::query::{QueriedModel, Query};
+use crate::settings::Roughness;
 use statistics::likelihood::Likelihood;
 
 /// Refits begin at the fit to all data, so a few steps suffice.
 const PLAN: [FitStep; 2] = [FitStep::Differences, FitStep::Trials(6)];
+/// Those of a rough model begin with its derivatives, too: new ones would scatter as much as the old.
+const PLAN_OF_ROUGH: [FitStep; 1] = [FitStep::Trials(6)];
 
 /// A model to compare: its effects, the number of parameters of its last one, and its fit to all data.
 pub(super) type ComparedModel<'a> = (Vec<usize>, usize, &'a LaplaceFit);
@@ -14,8 +19,6 @@ pub(super) type ComparedModel<'a> = (Vec<usize>, usize, &'a LaplaceFit);
 /// One model fitted without one level.
 #[derive(Debug, Clone)]
 struct Refit {
-    model: usize,
-    effects: Vec<usize>,
     part: Likelihood,
     /// Index of each of the part's values among all.
     places: Vec<usize>,
@@ -26,81 +29,145 @@ struct Refit {
     waiting: Vec<Vec<f64>>,
 }
 
+/// What the refits of a model follow from.
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) struct ModelKey {
+    effects: Vec<usize>,
+    /// Number of parameters of its last effect.
+    own: usize,
+    /// The bits of the coordinates of the fit to all data.
+    position: Vec<u64>,
+}
+
+impl ModelKey {
+    fn of((effects, own, fit): &ComparedModel) -> Self {
+        ModelKey {
+            effects: effects.clone(),
+            own: *own,
+            position: fit.point.position.iter().map(|x| x.to_bits()).collect(),
+        }
+    }
+}
+
+/// One model fitted without each level.
+#[derive(Debug, Clone)]
+pub(super) struct RefittedModel {
+    key: ModelKey,
+    /// Of each level; `None` where it cannot be fitted without the level.
+    refits: Vec<Option<Refit>>,
+}
+
+impl RefittedModel {
+    fn new(levels: &[LeftOutLevel], model: &ComparedModel) -> Self {
+        let (_, own, fit) = model;
+        let refit = |level: &LeftOutLevel| {
+            let LeftOutLevel { part, kept, .. } = level;
+            let taken = |values: &[f64]| kept.iter().map(|&i| values[i]).collect::<Vec<f64>>();
+            let position = fit.point.position.clone();
+            let point = FitPoint::new(&fit.frame, part, position, taken(&fit.point.values))?;
+            let columns = fit.columns.iter().map(|column| taken(column)).collect();
+            let plan: &[FitStep] = match fit.frame.roughness {
+                Roughness::Smooth => &PLAN,
+                Roughness::Rough | Roughness::Unknown => &PLAN_OF_ROUGH,
+            };
+            let mut refit = LaplaceFit::new(fit.frame.clone(), point, columns, plan);
+            // Shapes are held: a threshold that moves with every left-out level does not generalise.
+            let first = fit.frame.dimension() - own;
+            refit.hold((first..fit.frame.dimension()).filter(|k| !fit.frame.is_strength(*k)));
+            Some(Refit {
+                fit: refit,
+                part: part.clone(),
+                places: kept.clone(),
+                all_values: fit.point.values.clone(),
+                waiting: Vec::new(),
+            })
+        };
+        RefittedModel {
+            key: ModelKey::of(model),
+            refits: levels.iter().map(refit).collect(),
+        }
+    }
+}
+
 /// The data of one level of the design.
 #[derive(Debug, Clone)]
 struct LeftOutLevel {
     left: Likelihood,
+    /// Index of each of its values among all.
     places: Vec<usize>,
-    /// Of each model; `None` where it cannot be fitted without the level.
-    refits: Vec<Option<Refit>>,
+    /// The other data, and the index of each of their values.
+    part: Likelihood,
+    kept: Vec<usize>,
+}
+
+impl LeftOutLevel {
+    /// `None` of no data and of all.
+    fn new(likelihood: &Likelihood, left: &[usize]) -> Option<Self> {
+        let count = likelihood.data().len();
+        let kept: Vec<usize> = (0..count).filter(|i| !left.contains(i)).collect();
+        if kept.is_empty() || left.is_empty() {
+            return None;
+        }
+        let (part, kept) = likelihood.subset(&kept).ok()?;
+        let (left, places) = likelihood.subset(left).ok()?;
+        Some(LeftOutLevel {
+            left,
+            places,
+            part,
+            kept,
+        })
+    }
 }
 
 /// The cross-validation over all levels.
 #[derive(Debug, Clone)]
 pub(super) struct CrossValidation {
     levels: Vec<LeftOutLevel>,
-    models: usize,
+    models: Vec<RefittedModel>,
 }
 
 impl CrossValidation {
     /// Empty levels and those with all data are left out.
-    pub(super) fn new(likelihood: &Likelihood, levels: &[Vec<usize>], models: &[ComparedModel]) -> Self {
-        let count = likelihood.data().len();
-        let level = |left: &Vec<usize>| {
-            let kept: Vec<usize> = (0..count).filter(|i| !left.contains(i)).collect();
-            if kept.is_empty() || left.is_empty() {
-                return None;
-            }
-            let (part, places) = likelihood.subset(&kept).ok()?;
-            let refit = |(model, (effects, own, fit)): (usize, &ComparedModel)| {
-                let taken = |values: &[f64]| places.iter().map(|&i| values[i]).collect::<Vec<f64>>();
-                let point = FitPoint::new(
-                    &fit.frame,
-                    &part,
-                    fit.point.position.clone(),
-                    taken(&fit.point.values),
-                )?;
-                let columns = fit.columns.iter().map(|column| taken(column)).collect();
-                let mut refit = LaplaceFit::new(fit.frame.clone(), point, columns, &PLAN);
-                // Shapes are held: a threshold that moves with every left-out level does not generalise.
-                let first = fit.frame.dimension() - own;
-                refit.hold((first..fit.frame.dimension()).filter(|k| !fit.frame.is_strength(*k)));
-                Some(Refit {
-                    model,
-                    effects: effects.clone(),
-                    fit: refit,
-                    part: part.clone(),
-                    places: places.clone(),
-                    all_values: fit.point.values.clone(),
-                    waiting: Vec::new(),
-                })
-            };
-            let refits = models.iter().enumerate().map(refit).collect();
-            let (left, places) = likelihood.subset(left).ok()?;
-            Some(LeftOutLevel { left, places, refits })
+    ///
+    /// # Arguments
+    /// - `known`: models that were refitted before, of the same likelihood and levels, and are not fitted again.
+    pub(super) fn new(
+        likelihood: &Likelihood,
+        levels: &[Vec<usize>],
+        models: &[ComparedModel],
+        known: &BTreeMap<ModelKey, RefittedModel>,
+    ) -> Self {
+        let levels = levels
+            .iter()
+            .filter_map(|left| LeftOutLevel::new(likelihood, left));
+        let levels: Vec<LeftOutLevel> = levels.collect();
+        let refitted = |model: &ComparedModel| {
+            let known = known.get(&ModelKey::of(model)).cloned();
+            known.unwrap_or_else(|| RefittedModel::new(&levels, model))
         };
         Self {
-            levels: levels.iter().filter_map(level).collect(),
-            models: models.len(),
+            models: models.iter().map(refitted).collect(),
+            levels,
         }
     }
 
-    fn refits(&mut self) -> impl Iterator<Item = &mut Refit> {
-        self.levels
-            .iter_mut()
-            .flat_map(|level| level.refits.iter_mut().flatten())
+    /// Its models, which another cross-validation need not fit again.
+    pub(super) fn refitted(&self) -> impl Iterator<Item = (ModelKey, RefittedModel)> {
+        self.models.iter().map(|model| (model.key.clone(), model.clone()))
     }
 
     /// The queries of the next round; none once all fits are complete.
     pub(super) fn queries(&mut self) -> Vec<Query> {
         let mut queries = Vec::new();
-        for refit in self.refits() {
-            refit.waiting = refit.fit.ask(&refit.part);
-            queries.extend(refit.waiting.iter().map(|position| Query {
-                model: QueriedModel::With(refit.effects.clone()),
-                is_proposed: false,
-                theta: refit.fit.frame.theta(position),
-            }));
+        for model in &mut self.models {
+            for refit in model.refits.iter_mut().flatten() {
+                refit.waiting = refit.fit.ask(&refit.part);
+                queries.extend(refit.waiting.iter().map(|position| Query {
+                    model: QueriedModel::With(model.key.effects.clone()),
+                    is_proposed: false,
+                    theta: refit.fit.frame.theta(position),
+                }));
+            }
         }
         queries
     }
@@ -108,7 +175,11 @@ impl CrossValidation {
     /// Takes the answers of a round.
     pub(super) fn take(&mut self, answers: Vec<Option<Vec<f64>>>) {
         let mut answers = answers.into_iter();
-        for refit in self.refits() {
+        let refits = self
+            .models
+            .iter_mut()
+            .flat_map(|model| model.refits.iter_mut().flatten());
+        for refit in refits {
             let waiting = std::mem::take(&mut refit.waiting);
             if waiting.is_empty() {
                 continue;
@@ -127,25 +198,29 @@ impl CrossValidation {
     /// Log predictive density of each model over that of the first, summed over the levels that all of them predict; `None` without
     /// such a level.
     pub(super) fn gains(&self) -> Option<Vec<f64>> {
-        let mut sums = vec![0.0; self.models];
-        let mut levels = 0;
-        for level in &self.levels {
-            let density = |refit: &Option<Refit>| {
-                let refit = refit.as_ref()?;
+        let mut sums = vec![0.0; self.models.len()];
+        let mut predicted = 0;
+        for (i, level) in self.levels.iter().enumerate() {
+            let density = |model: &RefittedModel| {
+                let refit = model.refits[i].as_ref()?;
                 let theta = refit.fit.theta();
-                let values: Vec<f64> = level.places.iter().map(|&i| refit.all_values[i]).collect();
+                let values: Vec<f64> = level
+                    .places
+                    .iter()
+                    .map(|&place| refit.all_values[place])
+                    .collect();
                 let scored = level.left.log_likelihood(&values, &theta).ok()?.value();
-                scored.is_finite().then_some((refit.model, scored))
+                scored.is_finite().then_some(scored)
             };
-            let densities: Option<Vec<(usize, f64)>> = level.refits.iter().map(density).collect();
+            let densities: Option<Vec<f64>> = self.models.iter().map(density).collect();
             if let Some(densities) = densities {
-                levels += 1;
-                for (model, scored) in densities {
-                    sums[model] += scored;
+                predicted += 1;
+                for (sum, scored) in sums.iter_mut().zip(densities) {
+                    *sum += scored;
                 }
             }
         }
         let first = *sums.first()?;
-        (levels > 0).then(|| sums.iter().map(|sum| sum - first).collect())
+        (predicted > 0).then(|| sums.iter().map(|sum| sum - first).collect())
     }
 }

@@ -1,10 +1,9 @@
 //! The interface of the whole search.
 
-use crate::candidate::CandidateError;
+use crate::candidate::{Candidate, CandidateError};
 use crate::effect_search::state::EffectSearch;
 use crate::search::branch::SearchBranch;
 use crate::search::conclusion::Conclusion;
-use crate::search::hypotheses::Hypotheses;
 use crate::search::query::Query;
 use crate::search::stage::Stage;
 use crate::search::state::SearchState;
@@ -29,8 +28,7 @@ impl DiscoverySearch {
     /// # Errors
     /// [`CandidateError`].
     pub fn new(task: SearchTask) -> Result<Self, CandidateError> {
-        let candidates = task.candidates();
-        candidates.iter().try_for_each(|candidate| candidate.check())?;
+        task.candidates().iter().try_for_each(Candidate::check)?;
         let search = EffectSearch::new(
             &task.prior,
             task.likelihood.clone(),
@@ -40,12 +38,7 @@ impl DiscoverySearch {
         let library = (0..task.library.len()).collect();
         let mut discovery = Self {
             stage: Stage::SingleEffects(SearchBranch::new(Vec::new(), library, search)),
-            state: SearchState {
-                task,
-                hypotheses: Hypotheses::new(candidates),
-                evaluations: 0,
-                numerical_noise_sds: Vec::new(),
-            },
+            state: SearchState::new(task),
             round: ProposalRound::default(),
             queries: Vec::new(),
         };

@@ -138,6 +138,12 @@ impl Hypotheses {
         self.best_of(|combination| combination.effects.iter().all(|k| *k < library))
     }
 
+    /// The best combination of the library's effects alone, if it is a detection.
+    pub(super) fn detected_of_library(&self, library: usize) -> Option<&EffectCombination> {
+        self.best_of_library(library)
+            .filter(|best| best.log_bayes_factor > DETECTED)
+    }
+
     fn best_of(&self, is_meant: impl Fn(&EffectCombination) -> bool) -> Option<&EffectCombination> {
         let score =
             |c: &EffectCombination| c.log_bayes_factor - COST_OF_CHOICE * (c.effects.len() as f64 - 1.0);

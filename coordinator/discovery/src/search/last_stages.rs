@@ -24,7 +24,7 @@ impl SearchState {
             let own = last.map_or(0, |&k| self.hypotheses.candidates[k].parameters.len());
             models.push((set.effects.clone(), own, &set.fit));
         }
-        let validation = CrossValidation::new(&self.task.likelihood, &self.task.levels, &models);
+        let validation = self.validated(&models);
         let sets = leading.iter().map(|set| set.effects.clone()).collect();
         Stage::Predictions(sets, validation)
     }

@@ -175,11 +175,11 @@ impl SearchState {
         effects.push(law.candidate);
         let of_law = (effects, parameters(law.candidate), &law.fit);
         let fits = [(Vec::new(), 0, base), library, of_law];
-        let validation = CrossValidation::new(&self.task.likelihood, &self.task.levels, &fits);
-        Stage::CrossValidation(rank, validation)
+        Stage::CrossValidation(rank, self.validated(&fits))
     }
 
     pub(super) fn after_cross_validation(&mut self, rank: usize, validation: &CrossValidation) -> Stage {
+        self.keep_refits(validation);
         // Over the base, and over the library's best.
         let gains = validation.gains().and_then(|gains| match gains.as_slice() {
             &[base, library, law] => Some([law - base, law - library]),

@@ -1,6 +1,9 @@
 //! The task and the results of a search.
 
+use std::collections::BTreeMap;
+
 use crate::effect_search::state::EffectSearch;
+use crate::search::cross_validation::{ComparedModel, CrossValidation, ModelKey, RefittedModel};
 use crate::search::hypotheses::Hypotheses;
 use crate::task::SearchTask;
 
@@ -12,9 +15,31 @@ pub(super) struct SearchState {
     pub(super) evaluations: usize,
     /// Numerical noise sd of each channel by its index, in its unit; empty where it is negligible.
     pub(super) numerical_noise_sds: Vec<f64>,
+    /// The models that were fitted without each level.
+    refitted: BTreeMap<ModelKey, RefittedModel>,
 }
 
 impl SearchState {
+    pub(super) fn new(task: SearchTask) -> Self {
+        SearchState {
+            hypotheses: Hypotheses::new(task.candidates()),
+            task,
+            evaluations: 0,
+            numerical_noise_sds: Vec::new(),
+            refitted: BTreeMap::new(),
+        }
+    }
+
+    /// The cross-validation of some models, which goes on from what is known of them.
+    pub(super) fn validated(&self, models: &[ComparedModel]) -> CrossValidation {
+        CrossValidation::new(&self.task.likelihood, &self.task.levels, models, &self.refitted)
+    }
+
+    /// Keeps the models of a cross-validation that is over.
+    pub(super) fn keep_refits(&mut self, validation: &CrossValidation) {
+        self.refitted.extend(validation.refitted());
+    }
+
     /// Counts the numerical noise that the search for one effect has found as noise of all data, measured or proposed, and keeps whether
     /// the model is rough.
     pub(super) fn take_numerical_noise(&mut self, search: &EffectSearch) {
