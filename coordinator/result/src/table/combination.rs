@@ -3,7 +3,6 @@
 use std::collections::BTreeMap;
 
 use shared::channel::Channel;
-use shared::experiment::RunUse;
 use statistics::ErrorLaw;
 
 use super::comparison::Comparison;
@@ -15,15 +14,12 @@ use crate::study::Study;
 
 /// Standard deviations from the mean of a normal law to its 95 % quantile.
 const TO_Q95: f64 = 1.644_853_626_951_472_7;
-/// Share of new measurements that an interval is to hold.
-const HELD: f64 = 0.9;
 
 /// The corrected predictions of the models of a ledger, on average.
 ///
 /// `p(y) = sum_k w_k N(y; m_k, s_k)`: `m_k` the corrected prediction of model k, `s_k` from its 90 % interval, `w_k` as 1 over the
 /// mean square error of the channel's fitted runs, each corrected by the other conditions. Sharper weights, which the best model would
-/// take, rest on differences that so few conditions as a rig has do not bear out. The quantiles are then moved by one factor of their
-/// distance from the mean for each channel, [`calibrated_width`].
+/// take, rest on differences that so few conditions as a rig has do not bear out.
 ///
 /// # Source
 /// Bates & Granger 1969, doi:10.1057/jors.1969.103. Checked by `models_that_err_to_both_sides_are_better_together` and others below.
@@ -70,24 +66,6 @@ impl CombinedRow {
         let [q05, q95] = self.interval?;
         Some((q05..=q95).contains(&self.row.measured))
     }
-
-    /// How far the measurement lies off the mean, over the half of the interval to that side.
-    fn off(&self) -> Option<f64> {
-        let (mean, [q05, q95]) = (self.mean?, self.interval?);
-        let off = self.row.measured - mean;
-        Some(if off > 0.0 {
-            off / (q95 - mean)
-        } else {
-            off / (q05 - mean)
-        })
-    }
-
-    /// Moves both ends of the interval by a factor of their distance from the mean.
-    fn scale_interval(&mut self, factor: f64) {
-        if let Some((mean, ends)) = self.mean.zip(self.interval) {
-            self.interval = Some(ends.map(|end| mean + factor * (end - mean)));
-        }
-    }
 }
 
 impl Study {
@@ -117,33 +95,8 @@ impl Study {
                 .map(|own| own.rows.get(i).and_then(ComparisonRow::corrected_prediction));
             CombinedRow::of(row, of_models.zip(weights[&row.channel].iter().copied()))
         };
-        let mut rows: Vec<CombinedRow> = rows.map(combined).collect();
-        for channel in Channel::ALL {
-            let of_channel = |own: &&CombinedRow| own.row.channel == channel;
-            let factor = calibrated_width(rows.iter().filter(of_channel));
-            for own in rows.iter_mut().filter(|own| own.row.channel == channel) {
-                own.scale_interval(factor);
-            }
-        }
-        rows
+        rows.map(combined).collect()
     }
-}
-
-/// The factor on the intervals of a channel with which they hold nine tenths of the fitted measurements, each predicted by the other
-/// conditions; 1 where there are too few to tell.
-///
-/// # Source
-/// Lei et al. 2018, doi:10.1080/01621459.2017.1307116, section 5.2 (residuals over a local spread); Barber et al. 2021,
-/// doi:10.1214/20-AOS1965 (with each left out in place of a split). Checked by `intervals_hold_nine_tenths_of_the_fitted_measurements`.
-fn calibrated_width<'a>(rows: impl Iterator<Item = &'a CombinedRow>) -> f64 {
-    let fitted = rows.filter(|own| own.row.usage == RunUse::Fit);
-    let mut ratios: Vec<f64> = fitted.filter_map(CombinedRow::off).collect();
-    ratios.sort_by(f64::total_cmp);
-    let place = (HELD * (ratios.len() + 1) as f64).ceil() as usize;
-    place
-        .checked_sub(1)
-        .and_then(|place| ratios.get(place).copied())
-        .unwrap_or(1.0)
 }
 
 /// How much each model counts for a channel, over the one that counts most; 0 without an error.
@@ -239,54 +192,6 @@ mod tests {
             (q05 + outer).abs() < 1e-6 && (q95 - outer).abs() < 1e-6,
             "{q05} {q95}"
         );
-    }
-
-    #[test]
-    fn intervals_hold_nine_tenths_of_the_fitted_measurements() {
-        let fitted = |count: usize, usage| -> Vec<CombinedRow> {
-            let row = |i: usize| {
-                let mut own = combined(&[Some(0.0)]);
-                // Up to a tenth of the half-width, and beyond it for each tenth measurement.
-                own.row.measured = TO_Q95
-                    * if i % 10 == 9 {
-                        -3.0
-                    } else {
-                        0.1 * (i % 10) as f64 / 8.0
-                    };
-                own.row.usage = usage;
-                own
-            };
-            (0..count).map(row).collect()
-        };
-        let width = |count, usage| calibrated_width(fitted(count, usage).iter());
-        // The 37th of 40 is the first beyond.
-        assert!((width(40, RunUse::Fit) - 3.0).abs() < 1e-12);
-        assert!((width(39, RunUse::Fit) - 0.1).abs() < 1e-12);
-        for (count, usage) in [(40, RunUse::Holdout), (8, RunUse::Fit), (0, RunUse::Fit)] {
-            assert!((width(count, usage) - 1.0).abs() < 1e-15, "{count} {usage:?}");
-        }
-        let mut own = combined(&[Some(2.0)]);
-        own.scale_interval(0.5);
-        let [q05, q95] = own.interval.unwrap();
-        assert!((q05 - 2.0 + 0.5 * TO_Q95).abs() < 1e-9 && (q95 - 2.0 - 0.5 * TO_Q95).abs() < 1e-9);
-    }
-
-    #[test]
-    fn a_study_holds_nine_tenths_of_its_fitted_measurements() {
-        let study = grown();
-        let fitted = |channel| {
-            let rows = study.combined().iter();
-            rows.filter(move |own| own.row.usage == RunUse::Fit && own.row.channel == channel)
-        };
-        for channel in [Channel::DrawbarPull, Channel::Sinkage] {
-            let covered: Vec<bool> = fitted(channel).filter_map(|own| own.covered()).collect();
-            let inside = covered.iter().filter(|own| **own).count();
-            let least = HELD * covered.len() as f64;
-            assert!(
-                covered.len() >= 9 && (inside as f64) >= least && (inside as f64) < least + 2.0,
-                "{channel:?} {covered:?}"
-            );
-        }
     }
 
     #[test]

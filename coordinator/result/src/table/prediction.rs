@@ -148,7 +148,6 @@ mod tests {
     #[test]
     fn a_file_has_a_line_for_each_run_and_channel_of_the_current_model() {
         let study = Study::from(fixture::with_smooth_misfit());
-        let rows = study.combined();
         let csv = to_csv(&study.predictions());
         let lines: Vec<&str> = csv.lines().collect();
         assert_eq!(lines.len(), 1 + study.lead.comparison().rows.len());
