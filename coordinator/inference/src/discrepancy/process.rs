@@ -5,6 +5,7 @@ use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 use super::covariance::Covariance;
 use super::misfit::Misfit;
 use super::posterior::posterior;
+use crate::gaussian_process::UnitRange;
 
 /// The discrepancy of a model as a Gaussian process through its misfits.
 ///
@@ -21,8 +22,7 @@ use super::posterior::posterior;
 /// `a_smooth_misfit_is_found_between_the_conditions` and others below.
 #[derive(Debug, Clone)]
 pub struct DiscrepancyProcess {
-    origin: Vec<f64>,
-    range: Vec<f64>,
+    unit: UnitRange,
     misfits: Vec<Misfit>,
     parts: Vec<Part>,
 }
@@ -75,7 +75,8 @@ impl DiscrepancyProcess {
     pub const MOST_MISFITS: usize = 500;
 
     /// The process through misfits whose points have the same coordinates, each of which must vary, and whose noise is above 0; `None`
-    /// with fewer than [`DiscrepancyProcess::least_misfits`] or more than [`DiscrepancyProcess::MOST_MISFITS`], where all are 0, or where no covariance is regular to rounding.
+    /// with fewer than [`DiscrepancyProcess::least_misfits`] or more than [`DiscrepancyProcess::MOST_MISFITS`], where all are 0, or
+    /// where no covariance is regular to rounding.
     #[must_use]
     pub fn through(misfits: &[Misfit]) -> Option<Self> {
         let dimension = misfits.first()?.point.len();
@@ -84,20 +85,10 @@ impl DiscrepancyProcess {
         if dimension == 0 || !numbers.contains(&misfits.len()) || !is_usable {
             return None;
         }
-        let extreme = |k: usize, pick: fn(f64, f64) -> f64| {
-            let values = misfits.iter().map(|own| own.point[k]);
-            values.reduce(pick).unwrap_or_default()
-        };
-        let origin: Vec<f64> = (0..dimension).map(|k| extreme(k, f64::min)).collect();
-        let range: Vec<f64> = (0..dimension).map(|k| extreme(k, f64::max) - origin[k]).collect();
-        let mut process = DiscrepancyProcess {
-            origin,
-            range,
-            misfits: Vec::new(),
-            parts: Vec::new(),
-        };
+        let points: Vec<&[f64]> = misfits.iter().map(|own| own.point.as_slice()).collect();
+        let unit = UnitRange::of(&points);
         let scaled = |own: &Misfit| Misfit {
-            point: process.scaled(&own.point),
+            point: unit.scaled(&own.point),
             ..own.clone()
         };
         let misfits: Vec<Misfit> = misfits.iter().map(scaled).collect();
@@ -110,15 +101,14 @@ impl DiscrepancyProcess {
                 factor,
             })
         };
-        process.parts = posterior(&misfits).into_iter().filter_map(part).collect();
-        process.misfits = misfits;
-        (!process.parts.is_empty()).then_some(process)
+        let parts: Vec<Part> = posterior(&misfits).into_iter().filter_map(part).collect();
+        (!parts.is_empty()).then_some(DiscrepancyProcess { unit, misfits, parts })
     }
 
     /// The discrepancy of a group in a condition. A group without a misfit has what it shares with the others.
     #[must_use]
     pub fn at(&self, point: &[f64], group: usize) -> Discrepancy {
-        let point = self.scaled(point);
+        let point = self.unit.scaled(point);
         self.mixture(|part| {
             let own = (point.as_slice(), group);
             let shared = self
@@ -169,13 +159,6 @@ impl DiscrepancyProcess {
             weights: sum.iter().copied().collect(),
             components,
         }
-    }
-
-    fn scaled(&self, point: &[f64]) -> Vec<f64> {
-        let of_range = point.iter().zip(&self.origin).zip(&self.range);
-        of_range
-            .map(|((x, origin), range)| (x - origin) / range)
-            .collect()
     }
 }
 

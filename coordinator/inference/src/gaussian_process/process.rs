@@ -5,6 +5,7 @@ use nalgebra::{Cholesky, DVector};
 use super::kernel::Kernel;
 use super::observation::Observation;
 use super::smoothness::smoothest;
+use super::unit_range::UnitRange;
 
 /// A Gaussian process through observations: a plane and a smooth process about it.
 ///
@@ -12,16 +13,14 @@ use super::smoothness::smoothest;
 /// (Matérn, 5/2), coordinates over their range, and noise `e` of the variance `s^2 q / repeats`. Between observations the mean
 /// interpolates; beyond them it returns to the plane. The `l_k`, from 0.1 to 3.2 of the range, and `q`, from 1e-4 to 1, are those with
 /// the least squared error of the observations when each is left out; of more than 150, of so many that represent every
-/// level of every coordinate. A coordinate of two
-/// levels has the longest `l_k`: between them the process is nearly straight.
+/// level of every coordinate. A coordinate of two levels has the longest `l_k`: between them the process is nearly straight.
 ///
 /// # Source
 /// Rasmussen & Williams 2006, Gaussian Processes for Machine Learning, Eqs. 2.25, 4.17 (covariance) and 5.12 (leaving one out),
 /// <https://doi.org/10.7551/mitpress/3206.001.0001>. Checked by `the_process_interpolates_a_smooth_surface` and others below.
 #[derive(Debug, Clone)]
 pub struct GaussianProcess {
-    origin: Vec<f64>,
-    range: Vec<f64>,
+    unit: UnitRange,
     mean: f64,
     observations: Vec<Observation>,
     kernel: Kernel,
@@ -43,15 +42,11 @@ impl GaussianProcess {
         if observations.len() < Self::least_observations(dimension) {
             return None;
         }
-        let extreme = |k: usize, pick: fn(f64, f64) -> f64| {
-            let values = observations.iter().map(|o| o.point[k]);
-            values.reduce(pick).unwrap_or_default()
-        };
-        let origin: Vec<f64> = (0..dimension).map(|k| extreme(k, f64::min)).collect();
-        let range: Vec<f64> = (0..dimension).map(|k| extreme(k, f64::max) - origin[k]).collect();
+        let points: Vec<&[f64]> = observations.iter().map(|o| o.point.as_slice()).collect();
+        let unit = UnitRange::of(&points);
         let mean = observations.iter().map(|o| o.value).sum::<f64>() / observations.len() as f64;
         let scaled = |o: &Observation| Observation {
-            point: scaled(&o.point, &origin, &range),
+            point: unit.scaled(&o.point),
             value: o.value - mean,
             repeats: o.repeats,
         };
@@ -61,8 +56,7 @@ impl GaussianProcess {
         let values = DVector::from_iterator(observations.len(), observations.iter().map(|o| o.value));
         let weights = factor.solve(&values);
         Some(GaussianProcess {
-            origin,
-            range,
+            unit,
             mean,
             observations,
             kernel,
@@ -73,7 +67,7 @@ impl GaussianProcess {
     /// The mean of the process at a point [unit of the values].
     #[must_use]
     pub fn mean(&self, point: &[f64]) -> f64 {
-        let point = scaled(point, &self.origin, &self.range);
+        let point = self.unit.scaled(point);
         let terms = self.observations.iter().zip(self.weights.iter());
         let sum: f64 = terms
             .map(|(o, weight)| weight * self.kernel.covariance(&o.point, &point))
@@ -84,16 +78,9 @@ impl GaussianProcess {
     /// Whether a point lies within the range of the observations in every coordinate, up to 2 % of it.
     #[must_use]
     pub fn reaches(&self, point: &[f64]) -> bool {
-        let point = scaled(point, &self.origin, &self.range);
+        let point = self.unit.scaled(point);
         point.iter().all(|x| (-0.02..=1.02).contains(x))
     }
-}
-
-fn scaled(point: &[f64], origin: &[f64], range: &[f64]) -> Vec<f64> {
-    let of_range = point.iter().zip(origin).zip(range);
-    of_range
-        .map(|((x, origin), range)| (x - origin) / range)
-        .collect()
 }
 
 #[cfg(test)]
