@@ -199,7 +199,7 @@ fn a_run_stopped_by_interrupt_or_kill_goes_on_to_the_same_bytes() {
     whole.finish();
     for signal in [Signal::Interrupt, Signal::Terminate, Signal::Kill] {
         let run = Run::of(&slow);
-        // The first stop is in stage 2, the second where the run goes on: well before its end.
+        // The first stop is in stage 2, the second as soon as the run shows where it goes on, mostly in the next: well before its end.
         for (stop, stages) in [(1, 2), (2, 1)] {
             let mut process = run.start();
             let shown = Run::stages_begun(&process);

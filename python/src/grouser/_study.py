@@ -104,9 +104,10 @@ class Study:
         """Every run and channel as the models predict it, the content of ``predictions.csv``.
 
         ``unit`` is the SI unit of ``measured``, ``model`` (the current one), ``corrected`` (that with what it misses in the fitted
-        conditions), ``combined`` (all models of the ledger) and ``interpolated`` (none); with 5 % and 95 % quantiles of a new measurement.
+        conditions), ``combined`` (all models of the ledger) and ``interpolated`` (without a model), and of the 5 % and 95 % quantiles
+        of a new measurement.
         """
-        return Table.from_rows(self._place.get(f"calibrations/{self.current.id}/predictions"), units=CONDITIONS)
+        return Table.from_rows(self._place.get(f"calibrations/{self._lead}/predictions"), units=CONDITIONS)
 
     def calibration(self, id: int) -> Calibration:
         """One of the calibrations.

@@ -159,6 +159,7 @@ fn what_is_not_there_is_404_and_what_does_not_fit_is_409() {
         "/samples",
         "/posterior",
         "/comparison",
+        "/predictions",
         "/diagnostics",
         "/flags",
         "/summary",
@@ -177,6 +178,7 @@ fn what_is_not_there_is_404_and_what_does_not_fit_is_409() {
     for path in [
         "posterior",
         "comparison",
+        "predictions",
         "diagnostics",
         "flags",
         "summary",

@@ -5,13 +5,10 @@ use std::collections::BTreeMap;
 use crate::laplace::fit::{FitStep, LaplaceFit};
 use crate::laplace::point::FitPoint;
 use crate::search::query::{QueriedModel, Query};
-use crate::settings::Roughness;
 use statistics::likelihood::Likelihood;
 
 /// Refits begin at the fit to all data, so a few steps suffice.
 const PLAN: [FitStep; 2] = [FitStep::Differences, FitStep::Trials(6)];
-/// Those of a rough model begin with its derivatives, too: new ones would scatter as much as the old.
-const PLAN_OF_ROUGH: [FitStep; 1] = [FitStep::Trials(6)];
 
 /// A model to compare: its effects, the number of parameters of its last one, and its fit to all data.
 pub(super) type ComparedModel<'a> = (Vec<usize>, usize, &'a LaplaceFit);
@@ -29,7 +26,12 @@ struct Refit {
     waiting: Vec<Vec<f64>>,
 }
 
-/// What the refits of a model follow from.
+fn bits(values: &[f64]) -> Vec<u64> {
+    values.iter().map(|x| x.to_bits()).collect()
+}
+
+/// What the refits of a model follow from: likelihood and levels are those of the search, and of one model two fits to all data that
+/// end at the same point are the same fit.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct ModelKey {
     effects: Vec<usize>,
@@ -44,7 +46,7 @@ impl ModelKey {
         ModelKey {
             effects: effects.clone(),
             own: *own,
-            position: fit.point.position.iter().map(|x| x.to_bits()).collect(),
+            position: bits(&fit.point.position),
         }
     }
 }
@@ -66,11 +68,7 @@ impl RefittedModel {
             let position = fit.point.position.clone();
             let point = FitPoint::new(&fit.frame, part, position, taken(&fit.point.values))?;
             let columns = fit.columns.iter().map(|column| taken(column)).collect();
-            let plan: &[FitStep] = match fit.frame.roughness {
-                Roughness::Smooth => &PLAN,
-                Roughness::Rough | Roughness::Unknown => &PLAN_OF_ROUGH,
-            };
-            let mut refit = LaplaceFit::new(fit.frame.clone(), point, columns, plan);
+            let mut refit = LaplaceFit::new(fit.frame.clone(), point, columns, &PLAN);
             // Shapes are held: a threshold that moves with every left-out level does not generalise.
             let first = fit.frame.dimension() - own;
             refit.hold((first..fit.frame.dimension()).filter(|k| !fit.frame.is_strength(*k)));
@@ -124,6 +122,8 @@ impl LeftOutLevel {
 pub(super) struct CrossValidation {
     levels: Vec<LeftOutLevel>,
     models: Vec<RefittedModel>,
+    /// Of each position that a refit waits for, in their order, the number of the query that answers it.
+    answered_by: Vec<usize>,
 }
 
 impl CrossValidation {
@@ -148,6 +148,7 @@ impl CrossValidation {
         Self {
             models: models.iter().map(refitted).collect(),
             levels,
+            answered_by: Vec::new(),
         }
     }
 
@@ -156,25 +157,37 @@ impl CrossValidation {
         self.models.iter().map(|model| (model.key.clone(), model.clone()))
     }
 
-    /// The queries of the next round; none once all fits are complete.
+    /// The queries of the next round; none once all fits are complete. What several refits of a model ask, as where they begin at the
+    /// fit to all data with the same differences, is asked once.
     pub(super) fn queries(&mut self) -> Vec<Query> {
         let mut queries = Vec::new();
+        self.answered_by.clear();
+        let mut asked: BTreeMap<(Vec<usize>, Vec<u64>), usize> = BTreeMap::new();
         for model in &mut self.models {
+            let effects = &model.key.effects;
             for refit in model.refits.iter_mut().flatten() {
                 refit.waiting = refit.fit.ask(&refit.part);
-                queries.extend(refit.waiting.iter().map(|position| Query {
-                    model: QueriedModel::With(model.key.effects.clone()),
-                    is_proposed: false,
-                    theta: refit.fit.frame.theta(position),
-                }));
+                for position in &refit.waiting {
+                    let theta = refit.fit.frame.theta(position);
+                    let key = (effects.clone(), bits(&theta));
+                    let number = *asked.entry(key).or_insert(queries.len());
+                    self.answered_by.push(number);
+                    if number == queries.len() {
+                        queries.push(Query {
+                            model: QueriedModel::With(effects.clone()),
+                            is_proposed: false,
+                            theta,
+                        });
+                    }
+                }
             }
         }
         queries
     }
 
     /// Takes the answers of a round.
-    pub(super) fn take(&mut self, answers: Vec<Option<Vec<f64>>>) {
-        let mut answers = answers.into_iter();
+    pub(super) fn take(&mut self, answers: &[Option<Vec<f64>>]) {
+        let mut answered_by = std::mem::take(&mut self.answered_by).into_iter();
         let refits = self
             .models
             .iter_mut()
@@ -184,12 +197,13 @@ impl CrossValidation {
             if waiting.is_empty() {
                 continue;
             }
-            let all: Vec<Option<Vec<f64>>> = answers.by_ref().take(waiting.len()).collect();
+            let numbers = answered_by.by_ref().take(waiting.len());
+            let all: Vec<Option<&Vec<f64>>> = numbers.map(|number| answers[number].as_ref()).collect();
             let taken = |values: &Vec<f64>| refit.places.iter().map(|&i| values[i]).collect::<Vec<f64>>();
-            let parts = all.iter().map(|values| values.as_ref().map(taken)).collect();
+            let parts = all.iter().map(|values| values.map(taken)).collect();
             refit.fit.tell(&refit.part, parts);
             let at = waiting.iter().position(|w| *w == refit.fit.point.position);
-            if let Some(Some(values)) = at.map(|i| &all[i]) {
+            if let Some(Some(values)) = at.map(|i| all[i]) {
                 refit.all_values.clone_from(values);
             }
         }

@@ -59,7 +59,7 @@ impl Stage {
                 }
             }
             Self::CrossValidation(_, validation) | Self::Predictions(_, validation) => {
-                validation.take(answers);
+                validation.take(&answers);
             }
             Self::NextRuns(runs) => runs.take(answers),
             Self::Done(_) | Self::Failed(_) => {}

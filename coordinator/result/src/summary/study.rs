@@ -79,7 +79,7 @@ impl Study {
 
     /// What the models of the ledger predict together; `None` where nothing is corrected.
     pub(crate) fn combined_summary(&self, sigmas: &FixedSigmas) -> Option<CombinedSummary> {
-        CombinedSummary::of(&self.combined(), sigmas)
+        CombinedSummary::of(self.combined(), sigmas)
     }
 
     /// `summary.json`.

@@ -39,7 +39,7 @@ pub struct PredictionRow {
     pub model_q05: Option<f64>,
     /// 95 % quantile.
     pub model_q95: Option<f64>,
-    /// The same with what the model misses, as the fitted conditions say it; of a fitted run, the others.
+    /// The same with what the model misses, estimated from the fitted conditions; of a fitted run, from the others.
     pub corrected: Option<f64>,
     /// 5 % quantile of a new measurement.
     pub corrected_q05: Option<f64>,

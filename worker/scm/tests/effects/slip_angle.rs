@@ -87,8 +87,8 @@ fn exponents_follow_skid_and_slip_angle() {
         (
             "lateral_slip_sinkage",
             "lateral_exponent",
-            at(0.2, 30.0),
-            0.4 * 0.25,
+            at(0.2, 60.0),
+            0.4 * 0.5,
         ),
         // a skid of 0.6 is above the turning skid of 0.5, one of 0.2 below it, and driving is none
         ("skid_sinkage", "exponent_per_skid", at(-0.6, 0.0), 0.4 * 0.06),
