@@ -7,7 +7,7 @@ use shared::api::CalibrationState;
 use crate::discovery::DiscoveryRound;
 use crate::finished_calibration::FinishedCalibration;
 use crate::study_member::StudyMember;
-use crate::table::combination::CombinedRow;
+use crate::table::combined_row::CombinedRow;
 
 /// The finished calibrations of a study, oldest first. There is at least one.
 #[derive(Debug)]

@@ -3,7 +3,7 @@
 use shared::experiment::RunUse;
 
 use super::coverage::CoverageSummary;
-use crate::table::combination::CombinedRow;
+use crate::table::combined_row::CombinedRow;
 use crate::table::comparison::Comparison;
 use crate::table::coverage::Coverage;
 use crate::table::errors::ErrorTable;

@@ -3,70 +3,12 @@
 use std::collections::BTreeMap;
 
 use shared::channel::Channel;
-use statistics::ErrorLaw;
 
+use super::combined_row::CombinedRow;
 use super::comparison::Comparison;
-use super::correction::Corrected;
-use super::mixture::{Component, quantile};
 use super::row::ComparisonRow;
 use crate::finished_calibration::FinishedCalibration;
 use crate::study::Study;
-
-/// Standard deviations from the mean of a normal law to its 95 % quantile.
-const TO_Q95: f64 = 1.644_853_626_951_472_7;
-
-/// The corrected predictions of the models of a ledger, on average.
-///
-/// `p(y) = sum_k w_k N(y; m_k, s_k)`: `m_k` the corrected prediction of model k, `s_k` from its 90 % interval, `w_k` as 1 over the
-/// mean square error of the channel's fitted runs, each corrected by the other conditions. Sharper weights, which the best model would
-/// take, rest on differences that so few conditions as a rig has do not bear out.
-///
-/// # Source
-/// Bates & Granger 1969, doi:10.1057/jors.1969.103. Checked by `models_that_err_to_both_sides_are_better_together` and others below.
-#[derive(Debug, Clone)]
-pub struct CombinedRow {
-    /// The run and channel, with the prediction of the current model.
-    pub(crate) row: ComparisonRow,
-    /// Weighted mean of the corrected predictions [channel's unit]; `None` where no model has one.
-    pub(crate) mean: Option<f64>,
-    /// 5 % and 95 % quantile of a new measurement; `None` without intervals of all.
-    pub(crate) interval: Option<[f64; 2]>,
-    /// How many models it averages.
-    pub(crate) models: usize,
-}
-
-impl CombinedRow {
-    /// Of what each model predicts, with its weight.
-    fn of(row: &ComparisonRow, of_models: impl Iterator<Item = (Option<Corrected>, f64)>) -> Self {
-        let counted = of_models.filter(|(_, weight)| *weight > 0.0);
-        let counted: Vec<(Corrected, f64)> =
-            counted.filter_map(|(own, weight)| Some((own?, weight))).collect();
-        let total: f64 = counted.iter().map(|(_, weight)| weight).sum();
-        let shares = counted.iter().map(|(own, weight)| own.mean * weight / total);
-        let component = |&(own, weight): &(Corrected, f64)| {
-            let [q05, q95] = own.interval?;
-            Some(Component {
-                mean: own.mean,
-                scale: Some((q95 - q05) / (2.0 * TO_Q95)),
-                weight,
-            })
-        };
-        let components: Option<Vec<Component>> = counted.iter().map(component).collect();
-        let components = components.filter(|all| !all.is_empty());
-        CombinedRow {
-            row: row.clone(),
-            mean: (!counted.is_empty()).then_some(shares.sum()),
-            interval: components.map(|all| [0.05, 0.95].map(|p| quantile(&all, ErrorLaw::Gaussian, p))),
-            models: counted.len(),
-        }
-    }
-
-    /// Whether the measurement lies in its 90 % interval.
-    pub(crate) fn covered(&self) -> Option<bool> {
-        let [q05, q95] = self.interval?;
-        Some((q05..=q95).contains(&self.row.measured))
-    }
-}
 
 impl Study {
     /// The measurements that the current model is compared with, as the ledger's models of the same measurements predict them
@@ -117,28 +59,6 @@ mod tests {
     use super::*;
     use crate::fixture;
 
-    /// A row of the pull, measured as 0 N, that models of these weights correct to these values with a sd of 1 N.
-    fn weighted(corrected: &[(Option<f64>, f64)]) -> CombinedRow {
-        let rows = fixture::calibration().comparison().rows.clone();
-        let row = ComparisonRow {
-            measured: 0.0,
-            ..rows[0].clone()
-        };
-        let of_model = |&(corrected, weight): &(Option<f64>, f64)| {
-            let own = corrected.map(|mean| Corrected {
-                mean,
-                interval: Some([mean - TO_Q95, mean + TO_Q95]),
-            });
-            (own, weight)
-        };
-        CombinedRow::of(&row, corrected.iter().map(of_model))
-    }
-
-    /// The same of models that count alike.
-    fn combined(corrected: &[Option<f64>]) -> CombinedRow {
-        weighted(&corrected.iter().map(|own| (*own, 1.0)).collect::<Vec<_>>())
-    }
-
     #[test]
     fn a_model_counts_by_its_mean_square_error_in_the_other_conditions() {
         let good = fixture::with_smooth_misfit();
@@ -162,42 +82,6 @@ mod tests {
             "{own:?}"
         );
         assert_eq!(weights(&models, Channel::Torque), [0.0, 0.0]);
-    }
-
-    #[test]
-    fn the_mean_is_weighted() {
-        let own = weighted(&[(Some(1.0), 1.0), (Some(5.0), 0.25), (Some(1e6), 0.0)]);
-        assert!(
-            (own.mean.unwrap() - 1.8).abs() < 1e-12 && own.models == 2,
-            "{own:?}"
-        );
-    }
-
-    #[test]
-    fn models_that_err_to_both_sides_are_better_together() {
-        let own = combined(&[Some(2.0), None, Some(-2.0)]);
-        assert_eq!((own.mean, own.models), (Some(0.0), 2));
-        assert_eq!(combined(&[Some(2.0)]).covered(), Some(false));
-        assert_eq!(own.covered(), Some(true));
-    }
-
-    #[test]
-    fn an_interval_holds_the_models_spread_too() {
-        let [q05, q95] = combined(&[Some(0.3)]).interval.unwrap();
-        assert!((q05 - 0.3 + TO_Q95).abs() < 1e-9 && (q95 - 0.3 - TO_Q95).abs() < 1e-9);
-        // Half of the mixture lies below 0: a tenth of a half of each component lies beyond the outer quantile.
-        let [q05, q95] = combined(&[Some(10.0), Some(-10.0)]).interval.unwrap();
-        let outer = 10.0 + 1.281_551_565_544_600_5;
-        assert!(
-            (q05 + outer).abs() < 1e-6 && (q95 - outer).abs() < 1e-6,
-            "{q05} {q95}"
-        );
-    }
-
-    #[test]
-    fn without_a_correction_there_is_nothing_to_combine() {
-        let own = combined(&[None]);
-        assert_eq!((own.mean, own.interval, own.models), (None, None, 0));
     }
 
     /// The base misses by a wave; a second model by that and another number in each channel and run.

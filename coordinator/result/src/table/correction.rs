@@ -9,20 +9,12 @@ use shared::experiment::TestRun;
 use shared::outcome::Observables;
 
 use super::conditions::{Conditions, repeated};
+use super::corrected::Corrected;
 use super::fixed_sigma::FixedSigmas;
 use super::mixture::{Component, quantile};
 use super::predictive::{Predictive, RunPosition, accepted, soil_scatter};
 use crate::finished_calibration::FinishedCalibration;
 use crate::words::number;
-
-/// A prediction with the discrepancy that the fitted conditions show.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Corrected {
-    /// Mean of the model, and of the discrepancy [channel's unit].
-    pub(crate) mean: f64,
-    /// 5 % and 95 % quantile of a new measurement; `None` of a fit, which has no distribution.
-    pub(crate) interval: Option<[f64; 2]>,
-}
 
 /// The corrections of a calibration by channel: each, or why there is none.
 pub(crate) struct Corrections<'a> {

@@ -6,15 +6,17 @@
 //! - `ledger`: errors of the calibrations of a study; `fixed_sigma`: the noise that they are measured by.
 //! - `errors`: root mean square errors by channel. `group`: by level of a condition; `level`: those levels.
 //! - `interpolation`: interpolation without physics. `predictive`: the posterior predictive distribution; `mixture`: its
-//!   quantiles. `correction`: predictions corrected by what the model misses; `combination`: those of all models together;
-//!   `prediction`: all of them, run by run. `conditions`: those of the rig as coordinates.
+//!   quantiles. `correction`: predictions corrected by what the model misses (`corrected`); `combination`: those of
+//!   all models together (`combined_row`); `prediction`: all of them, run by run. `conditions`: those of the rig as coordinates.
 //! - `coverage`: measurements inside their intervals. `readings`: errors of plates and rings.
 //! - `refusal`: draws at which the model refuses a run. `error_model`: the error model in words. `posterior`: the draws.
 
-pub(crate) mod combination;
+mod combination;
+pub(crate) mod combined_row;
 mod compared;
 pub(crate) mod comparison;
 mod conditions;
+mod corrected;
 mod correction;
 pub(crate) mod coverage;
 pub(crate) mod error_model;

@@ -3,7 +3,7 @@
 use shared::channel::Channel;
 use shared::experiment::RunUse;
 
-use super::combination::CombinedRow;
+use super::combined_row::CombinedRow;
 use crate::study::Study;
 
 /// A run and channel: measured, by the current model, by that model corrected, by all models together, and interpolated. Values are in

@@ -3,7 +3,7 @@
 use shared::channel::Channel;
 use shared::experiment::RunUse;
 
-use super::correction::Corrected;
+use super::corrected::Corrected;
 use super::interpolation::InterpolatedOver;
 use super::refusal::Refusal;
 
