@@ -2,8 +2,9 @@
 
 use std::time::{Duration, Instant};
 
-/// Patience for whatever should happen soon, on a machine that has other things to do.
-pub const PATIENCE: Duration = Duration::from_secs(60);
+/// Patience for whatever should happen soon, on a machine that has other things to do: the longest wait, for a program that is held to
+/// its limits, takes half a minute on two idle cores.
+pub const PATIENCE: Duration = Duration::from_secs(300);
 
 /// Asks again and again until there is an answer.
 ///

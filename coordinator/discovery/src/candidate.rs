@@ -18,6 +18,8 @@ pub struct Candidate {
     pub excludes: Vec<String>,
     /// Candidates of one family are laws of one quantity, each for other conditions: they may explain together what none does alone.
     pub family: Option<String>,
+    /// Whether the model's companion has a form of it.
+    pub has_companion: bool,
 }
 
 impl Candidate {

@@ -65,6 +65,8 @@ pub struct SearchSettings {
     pub roughness: Roughness,
     /// Whether the scatter of the model's predictions is measured, and counted as noise.
     pub has_numerical_noise: bool,
+    /// Whether a rough model has a companion: a cheap, smooth one of the same parameters, whose differences stand for the model's.
+    pub has_companion: bool,
 }
 
 impl Default for SearchSettings {
@@ -75,6 +77,7 @@ impl Default for SearchSettings {
             seed: 1,
             roughness: Roughness::Smooth,
             has_numerical_noise: false,
+            has_companion: false,
         }
     }
 }

@@ -1,6 +1,7 @@
 //! The task of a search: a model, its data and the candidates.
 
 use crate::candidate::Candidate;
+use crate::laplace::coordinate::NormalFrame;
 use crate::settings::SearchSettings;
 use statistics::likelihood::Likelihood;
 use statistics::prior::Prior;
@@ -75,6 +76,11 @@ impl SearchTask {
             .iter()
             .flat_map(|law| std::iter::once(&law.curve).chain(&law.forms));
         self.library.iter().chain(outside).cloned().collect()
+    }
+
+    /// The coordinates of the base.
+    pub(crate) fn frame(&self) -> NormalFrame {
+        NormalFrame::base(&self.prior, self.settings.roughness).beside(self.settings.has_companion)
     }
 
     /// The index of a law's curve among the candidates.

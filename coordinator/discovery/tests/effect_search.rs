@@ -23,6 +23,7 @@ fn effect(name: &str, prior: Marginal) -> Candidate {
         neutral: 0.0,
         excludes: Vec::new(),
         family: None,
+        has_companion: false,
     }
 }
 

@@ -44,6 +44,7 @@ fn library(steps: usize) -> Vec<Candidate> {
         neutral: 0.0,
         excludes: Vec::new(),
         family: None,
+        has_companion: false,
     };
     (0..2 + steps).map(candidate).collect()
 }

@@ -25,6 +25,7 @@ fn candidate(k: usize) -> Candidate {
         neutral: 0.0,
         excludes: Vec::new(),
         family: None,
+        has_companion: false,
     }
 }
 

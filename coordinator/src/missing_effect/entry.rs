@@ -6,6 +6,8 @@ use job::{FreeParameter, ModelSwitch, PlainParameter, Spec};
 use record::{Extension, NotTried};
 
 use shared::file::FileSet;
+use shared::model::ModelKind;
+use shared::parameters::SPATIAL;
 
 use super::candidate::{CandidateEffect, JOB, extended, spec};
 use super::law::dependence::Dependence;
@@ -43,6 +45,7 @@ impl CandidateEntry {
                 neutral,
                 excludes: Vec::new(),
                 family: None,
+                has_companion: !SPATIAL.iter().any(|own| own.name == plain.name),
             },
             names: vec![name.clone()],
             not_tried: None,
@@ -92,6 +95,8 @@ impl CandidateEntry {
                 neutral: 0.0,
                 excludes: Vec::new(),
                 family: None,
+                // Of another kind of model, or of a setting, the corrections of the base are not those.
+                has_companion: false,
             },
             names: Vec::new(),
             not_tried: None,
@@ -127,6 +132,7 @@ impl CandidateEntry {
                 neutral,
                 excludes: Vec::new(),
                 family: None,
+                has_companion: ModelKind::QuasiStatic.has_form(effect),
             },
             names: free.into_iter().map(|p| p.name).collect(),
             not_tried: None,

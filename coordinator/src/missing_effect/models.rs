@@ -35,11 +35,11 @@ const LAST_IN_SERIES: f64 = 0.5;
 /// Starts of the base's fit.
 const STARTS: usize = 32;
 
-/// A model, and whether on the proposed runs.
-type VariantKey = (QueriedModel, bool);
+/// A model, whether on the proposed runs, and whether its companion.
+type VariantKey = (QueriedModel, bool, bool);
 
 fn key(query: &Query) -> VariantKey {
-    (sorted(&query.model), query.is_proposed)
+    (sorted(&query.model), query.is_proposed, query.is_companion)
 }
 
 /// The models of a search.
@@ -210,6 +210,7 @@ impl SearchModels {
                     ModelKind::Command | ModelKind::Umbridge => Roughness::Unknown,
                 },
                 has_numerical_noise: base.model.kind != ModelKind::QuasiStatic,
+                has_companion: base.model.kind == ModelKind::Scm && base.fit_variant.coarse().is_ok(),
             },
         }
     }
@@ -237,13 +238,15 @@ impl SearchModels {
         let keys: BTreeSet<VariantKey> = queries.map(key).collect();
         let unknown = keys.into_iter().filter(|key| !self.variants.contains_key(key));
         let unknown: Vec<VariantKey> = unknown.collect();
-        let one = |(model, is_proposed): &VariantKey| {
-            let fitted = self.of_fitted_runs(model)?;
-            let variant = if *is_proposed {
-                self.of_proposed_runs(fitted)
-            } else {
-                fitted
-            };
+        let one = |(model, is_proposed, is_companion): &VariantKey| {
+            let mut variant = self.of_fitted_runs(model)?;
+            if *is_proposed {
+                variant = self.of_proposed_runs(variant);
+            }
+            if *is_companion {
+                let coarse = variant.coarse();
+                variant = coarse.map_err(|e| FileError::whole(JOB, e.to_string()))?;
+            }
             Ok((variant.hash(), variant))
         };
         let made: Vec<Result<(String, ModelVariant), FileError>> = unknown.par_iter().map(one).collect();

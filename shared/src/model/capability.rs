@@ -12,6 +12,18 @@ use super::spatial::DisplacementFrame;
 use super::variant::ModelVariant;
 use crate::parameters;
 
+impl ModelKind {
+    /// Whether the model has a form of an effect.
+    pub fn has_form(self, effect: &Effect) -> bool {
+        match self {
+            ModelKind::QuasiStatic => effect.mechanism != Some(Mechanism::SideWall),
+            ModelKind::Scm | ModelKind::Command | ModelKind::Umbridge => true,
+            ModelKind::WongReece => effect.hooks().next().is_some(),
+            ModelKind::Rft => effect.hooks().next().is_some() && !effect.needs_soil_laws(),
+        }
+    }
+}
+
 impl ModelVariant {
     /// Checks that the forward model can express the variant and its effects. Without conditions no wheel rolls, and there is
     /// nothing to check.
@@ -63,13 +75,7 @@ impl ModelVariant {
 
     /// Checks that the model has a form of every effect.
     fn check_effects(&self, effects: &EffectSet) -> Result<(), ModelError> {
-        let has_form = |effect: &Effect| match self.kind {
-            ModelKind::QuasiStatic => effect.mechanism != Some(Mechanism::SideWall),
-            ModelKind::Scm | ModelKind::Command | ModelKind::Umbridge => true,
-            ModelKind::WongReece => effect.hooks().next().is_some(),
-            ModelKind::Rft => effect.hooks().next().is_some() && !effect.needs_soil_laws(),
-        };
-        match effects.iter().find(|effect| !has_form(effect)) {
+        match effects.iter().find(|effect| !self.kind.has_form(effect)) {
             None => Ok(()),
             Some(effect) => Err(ModelError::Inexpressible(format!(
                 "effect {} has no form in {}",

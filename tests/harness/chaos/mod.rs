@@ -38,7 +38,7 @@ const BLOCK: u64 = 100;
 /// The user looks again after.
 const LOOK: Duration = Duration::from_millis(30);
 /// Without progress for so long a farm stands still.
-const PATIENCE: Duration = Duration::from_secs(90);
+const PATIENCE: Duration = Duration::from_secs(300);
 /// So many events before a broken promise are told with it.
 const LAST: usize = 12;
 /// Most memory of a program `[kB]`.

@@ -59,6 +59,7 @@ impl Campaign {
         let proposed = Query {
             model: QueriedModel::With(Vec::new()),
             is_proposed: true,
+            is_companion: false,
             theta: Vec::new(),
         };
         let task = local.models.task();

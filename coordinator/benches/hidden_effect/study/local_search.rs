@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use coordinator::embedded::Evaluate;
 use coordinator::missing_effect::SearchModels;
-use discovery::{Conclusion, DiscoverySearch, EffectRanking, EffectSearch, QueriedModel, Query};
+use discovery::{Conclusion, DiscoverySearch, EffectRanking, EffectRequest, EffectSearch, QueriedModel, Query};
 use shared::file::FileSet;
 use shared::model::RunCondition;
 use shared::outcome::{Observables, Outcome};
@@ -51,6 +51,7 @@ impl LocalSearch {
         let query = |theta: &Vec<f64>| Query {
             model: QueriedModel::With(effects.to_vec()),
             is_proposed: false,
+            is_companion: false,
             theta: theta.clone(),
         };
         let Some(first) = thetas.first() else {
@@ -98,11 +99,12 @@ impl LocalSearch {
     pub(crate) fn library(&mut self, likelihood: Likelihood) -> Result<EffectRanking, StudyError> {
         let task = self.models.task();
         let search = EffectSearch::new(&task.prior, likelihood, &task.library, &task.settings)?;
-        run(search, |candidate, theta| {
+        run(search, |request| {
             self.ask(&Query {
-                model: QueriedModel::With(candidate.into_iter().collect()),
+                model: QueriedModel::With(request.candidate.into_iter().collect()),
                 is_proposed: false,
-                theta: theta.to_vec(),
+                is_companion: request.is_companion,
+                theta: request.theta.clone(),
             })
         })
     }
@@ -114,7 +116,7 @@ impl LocalSearch {
 /// - `ask`: the values of the base, or of the base with a candidate, at a parameter vector.
 pub(crate) fn run(
     mut search: EffectSearch,
-    mut ask: impl FnMut(Option<usize>, &[f64]) -> Result<Option<Vec<f64>>, StudyError>,
+    mut ask: impl FnMut(&EffectRequest) -> Result<Option<Vec<f64>>, StudyError>,
 ) -> Result<EffectRanking, StudyError> {
     loop {
         if let Some(ranking) = search.ranking() {
@@ -125,7 +127,7 @@ pub(crate) fn run(
             return Err("the search neither ends nor has pending requests".into());
         }
         for (index, request) in pending.iter().enumerate() {
-            let values = ask(request.candidate, &request.theta)?;
+            let values = ask(request)?;
             search.tell(index, values.as_deref())?;
         }
     }

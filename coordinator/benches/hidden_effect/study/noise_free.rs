@@ -44,8 +44,8 @@ pub(crate) fn shortfall_of(job: &FileSet, noise_free: &FileSet, start: Vec<f64>)
     let prior = spec.prior();
     let search = EffectSearch::new(&prior, spec.likelihood.clone(), &[], &settings)?;
     let evaluate = Evaluate::new(&spec.fit_variant)?;
-    let ranking = run(search, |_, theta| {
-        Ok(match evaluate.evaluate(theta) {
+    let ranking = run(search, |request| {
+        Ok(match evaluate.evaluate(&request.theta) {
             Outcome::Evaluated(observables) => Some(spec.predicted_values(&observables)),
             Outcome::Rejected(_) | Outcome::Fault(_) => None,
         })

@@ -39,7 +39,8 @@ pub(crate) fn fit(
         }
     }
     let point = if is_present { present } else { absent };
-    let mut fit = LaplaceFit::new(frame.clone(), point, columns, depth.extension);
+    let fit = LaplaceFit::new(frame.clone(), point, columns, depth.extension);
+    let mut fit = fit.corrected(&base.corrections);
     if depth.holds_shapes {
         fit.hold(shapes());
     }

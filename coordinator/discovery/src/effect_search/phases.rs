@@ -4,9 +4,9 @@ use std::collections::BTreeMap;
 
 use crate::effect_search::ranking::EvidenceMethod;
 use crate::effect_search::screen::{self, Evaluated, LEVELS};
-use crate::effect_search::state::{EffectSearch, EvidenceEstimate, Phase};
+use crate::effect_search::state::{EffectSearch, Phase};
 use crate::effect_search::{base, confirmation, extension, numerical_noise};
-use crate::laplace::batch::FitBatch;
+use crate::laplace::batch::{Asked, FitBatch};
 use crate::laplace::fit::{FitStep, FittedModel, LaplaceFit};
 use crate::laplace::importance::ImportanceSampler;
 use crate::laplace::point::FitPoint;
@@ -36,6 +36,7 @@ impl EffectSearch {
                 self.fit_base(batch);
             }
             Phase::NumericalNoise(batch, spacing) => self.after_numerical_noise(batch, spacing, &answers),
+            Phase::CompanionScreen => self.after_companion_screen(answers),
             Phase::Screen(level) => self.after_screen(level, answers),
             Phase::Tightened(tightened, mut batch) => {
                 batch.tell(&tightened, answers);
@@ -66,7 +67,7 @@ impl EffectSearch {
     fn after_starts(&mut self, answers: Vec<Option<Vec<f64>>>) {
         let positions = std::mem::take(&mut self.asked)
             .into_iter()
-            .map(|(_, position)| position);
+            .map(|asked| asked.position);
         let draws = answers.len();
         self.evaluations.base += draws;
         let evaluated = positions.zip(answers).collect();
@@ -97,14 +98,14 @@ impl EffectSearch {
                 fit,
             })
         });
-        self.screen(0, (0..self.candidates.len()).collect());
+        self.begin_screen();
     }
 
     /// Evaluates the base along a line through its best fit.
     fn measure_noise(&mut self, batch: FitBatch, spacing: f64) {
         let Some(best) = batch.best() else { return };
         let asked = numerical_noise::positions(&best.point.position, spacing);
-        self.ask(asked.into_iter().map(|position| (None, position)).collect());
+        self.ask(asked.into_iter().map(|position| Asked::of_model(None, position)).collect());
         self.phase = Phase::NumericalNoise(batch, spacing);
     }
 
@@ -158,8 +159,8 @@ impl EffectSearch {
         for &k in &wanted {
             let frame = &self.candidates[k].frame;
             let base = &base.fit.point.position;
-            let at = screen::positions(frame, base, self.depth, level);
-            asked.extend(at.into_iter().map(|position| (Some(k), position)));
+            let at = screen::positions(frame, base, self.depth, self.best_shape(k), level);
+            asked.extend(at.into_iter().map(|position| Asked::of_model(Some(k), position)));
         }
         if asked.is_empty() && level + 1 < LEVELS.len() {
             return self.screen(level + 1, wanted);
@@ -175,9 +176,9 @@ impl EffectSearch {
         let Some(base) = &self.base else { return };
         self.evaluations.screen += answers.len();
         let mut evaluated: Vec<Vec<Evaluated>> = vec![Vec::new(); self.candidates.len()];
-        for ((candidate, position), values) in std::mem::take(&mut self.asked).into_iter().zip(answers) {
-            if let Some(k) = candidate {
-                evaluated[k].push((position, values));
+        for (asked, values) in std::mem::take(&mut self.asked).into_iter().zip(answers) {
+            if let Some(k) = asked.candidate {
+                evaluated[k].push((asked.position, values));
             }
         }
         let mut refused = Vec::new();
@@ -185,17 +186,10 @@ impl EffectSearch {
             if evaluated.is_empty() {
                 continue;
             }
-            state.screened = screen::screened(&state.frame, base, &self.likelihood, &evaluated);
-            match &state.screened {
-                Some(screened) => {
-                    state.estimate = Some(EvidenceEstimate {
-                        log_bayes_factor: screened.log_bayes_factor,
-                        stated_log_bayes_factor: screened.log_bayes_factor,
-                        method: EvidenceMethod::Screen,
-                        fit: None,
-                    });
-                }
-                None => refused.push(k),
+            let screened = screen::screened(&state.frame, base, &self.likelihood, &evaluated);
+            state.take_screened(screened, base.fit.point.position.len());
+            if state.screened.is_none() {
+                refused.push(k);
             }
         }
         if level + 1 < LEVELS.len() && !refused.is_empty() {
@@ -206,7 +200,13 @@ impl EffectSearch {
     }
 
     fn extend(&mut self) {
-        let candidates = self.best(self.depth.most_extended);
+        let best = self.best(self.depth.most_extended).into_iter();
+        let (awaiting, candidates): (Vec<usize>, Vec<usize>) = best
+            .filter(|k| self.fit_of(*k).is_none())
+            .partition(|k| self.awaits_model(*k));
+        if !awaiting.is_empty() {
+            return self.screen(0, awaiting);
+        }
         // The evaluations of a rough model are too dear for fitting twice.
         let is_smooth = self.base_frame.roughness == Roughness::Smooth;
         let base = self.base.as_ref().filter(|_| is_smooth);
@@ -263,7 +263,12 @@ impl EffectSearch {
         };
         self.evaluations.extension += batch.evaluations();
         self.take(batch, EvidenceMethod::RankOne);
-        let further = self.extensions(self.within_reach(), &self.likelihood);
+        let near = self.within_reach();
+        let awaiting: Vec<usize> = near.iter().copied().filter(|k| self.awaits_model(*k)).collect();
+        if !awaiting.is_empty() {
+            return self.screen(0, awaiting);
+        }
+        let further = self.extensions(near, &self.likelihood);
         self.fit_further(FitBatch::new(further));
     }
 
@@ -302,15 +307,15 @@ impl EffectSearch {
         let mut asked = Vec::new();
         for &k in &candidates {
             let starts = confirmation::starts(&self.candidates[k].frame, &base.fit).into_iter();
-            asked.extend(starts.map(|position| (Some(k), position)));
+            asked.extend(starts.map(|position| Asked::of_model(Some(k), position)));
             if is_wrong {
                 let anywhere = base::starts(&self.candidates[k].frame, confirmation::ANYWHERE);
-                asked.extend(anywhere.into_iter().map(|position| (Some(k), position)));
+                asked.extend(anywhere.into_iter().map(|position| Asked::of_model(Some(k), position)));
             }
             // The base may also improve from the extension's mode: a Bayes factor compares their best fits.
             if let Some(fit) = self.fit_of(k) {
                 let own = fit.point.position[..self.base_frame.dimension()].to_vec();
-                asked.push((None, own));
+                asked.push(Asked::of_model(None, own));
             }
         }
         if asked.is_empty() {
@@ -324,10 +329,10 @@ impl EffectSearch {
         let Some(base) = &self.base else { return };
         self.evaluations.confirmation += answers.len();
         let mut points: BTreeMap<Option<usize>, Vec<FitPoint>> = BTreeMap::new();
-        for ((candidate, position), values) in std::mem::take(&mut self.asked).into_iter().zip(answers) {
-            let frame = self.frame(candidate);
-            let point = values.and_then(|v| FitPoint::new(frame, &self.likelihood, position, v));
-            points.entry(candidate).or_default().extend(point);
+        for (asked, values) in std::mem::take(&mut self.asked).into_iter().zip(answers) {
+            let frame = self.frame(asked.candidate);
+            let point = values.and_then(|v| FitPoint::new(frame, &self.likelihood, asked.position, v));
+            points.entry(asked.candidate).or_default().extend(point);
         }
         let confirmation = if self.is_wrong() {
             &self.depth.confirmation_if_wrong
@@ -341,13 +346,13 @@ impl EffectSearch {
             points.truncate(confirmation.most_starts);
             let frame = self.frame(candidate);
             let known = candidate.map_or(Some(&base.fit), |k| self.fit_of(k));
-            let columns = match known.filter(|_| confirmation.keeps_jacobian) {
-                Some(known) => known.columns.clone(),
-                None => vec![vec![0.0; base.fit.point.values.len()]; frame.dimension()],
-            };
+            let none = || vec![vec![0.0; base.fit.point.values.len()]; frame.dimension()];
+            let known = known.filter(|_| confirmation.keeps_jacobian);
+            let columns = known.map_or_else(none, |known| known.columns.clone());
+            let corrections = known.map_or(&[][..], |known| &known.corrections);
             for point in points {
                 let fit = LaplaceFit::new(frame.clone(), point, columns.clone(), plan);
-                fits.push((candidate, fit));
+                fits.push((candidate, fit.corrected(corrections)));
             }
         }
         for k in candidates {
@@ -380,7 +385,8 @@ impl EffectSearch {
             let number = candidate.map_or(0, |k| k as u64 + 1);
             let positions = model.ask(self.seed, number);
             waiting.push(positions.len());
-            asked.extend(positions.into_iter().map(|position| (*candidate, position)));
+            let positions = positions.into_iter();
+            asked.extend(positions.map(|position| Asked::of_model(*candidate, position)));
         }
         if asked.is_empty() {
             self.take_sampled(&models);

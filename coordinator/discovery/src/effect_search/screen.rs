@@ -27,11 +27,22 @@ pub(super) struct Screened {
     pub(super) columns: Vec<Vec<f64>>,
     /// Mean over the shapes of the best among the strengths.
     pub(super) log_bayes_factor: f64,
+    /// That of the best shape.
+    pub(super) of_best_shape: f64,
 }
 
 /// The positions to evaluate: every strength at the first shape and the usual strength at the others, a step along each of several
 /// strengths, or the base's fit with a switch turned.
-pub(super) fn positions(frame: &NormalFrame, base: &[f64], depth: &Depth, level: usize) -> Vec<Vec<f64>> {
+///
+/// # Arguments
+/// - `shape`: the only coordinate of the shapes, where the best one is known.
+pub(super) fn positions(
+    frame: &NormalFrame,
+    base: &[f64],
+    depth: &Depth,
+    shape: Option<f64>,
+    level: usize,
+) -> Vec<Vec<f64>> {
     if frame.is_switch() {
         return if level == 0 {
             vec![base.to_vec()]
@@ -50,10 +61,10 @@ pub(super) fn positions(frame: &NormalFrame, base: &[f64], depth: &Depth, level:
         };
         return frame.strengths.iter().map(along).collect();
     };
-    let shapes = if frame.dimension() > base.len() + 1 {
-        depth.shapes
-    } else {
-        &depth.shapes[..1]
+    let shapes = match &shape {
+        Some(known) => std::slice::from_ref(known),
+        None if frame.dimension() > base.len() + 1 => depth.shapes,
+        None => &depth.shapes[..1],
     };
     let at = |shape: f64, strength: f64| {
         let mut position = base.to_vec();
@@ -193,6 +204,7 @@ fn of_one(
         change: usual.change.clone(),
         columns,
         log_bayes_factor: mean,
+        of_best_shape: best.log_bayes_factor,
     })
 }
 
@@ -231,6 +243,7 @@ fn of_switch(
         change: difference(&point.values, fit, 1.0),
         columns: fit.columns.clone(),
         log_bayes_factor: evidence - base.log_evidence,
+        of_best_shape: evidence - base.log_evidence,
         point,
     })
 }
@@ -265,5 +278,6 @@ fn of_several(
         change,
         columns,
         log_bayes_factor: evidence - base.log_evidence,
+        of_best_shape: evidence - base.log_evidence,
     })
 }

@@ -5,6 +5,7 @@ use crate::effect_search::base;
 use crate::effect_search::depth::Depth;
 use crate::effect_search::ranking::EffectRanking;
 use crate::effect_search::state::{EffectSearch, Phase};
+use crate::laplace::batch::Asked;
 use crate::laplace::coordinate::NormalFrame;
 use crate::laplace::fit::FittedModel;
 use crate::settings::{SearchSettings, Starts};
@@ -17,6 +18,8 @@ use statistics::prior::Prior;
 pub struct EffectRequest {
     /// The candidate that is switched on; `None`: the base model.
     pub candidate: Option<usize>,
+    /// Of the model's companion.
+    pub is_companion: bool,
     /// The base's parameters, then the candidate's.
     pub theta: Vec<f64>,
 }
@@ -39,7 +42,7 @@ impl EffectSearch {
             return Err(CandidateError::NoBase);
         }
         candidates.iter().try_for_each(Candidate::check)?;
-        let frame = NormalFrame::base(prior, settings.roughness);
+        let frame = NormalFrame::base(prior, settings.roughness).beside(settings.has_companion);
         let positions = match &settings.starts {
             Starts::Draws(draws) => draws.iter().map(|theta| frame.position(theta)).collect(),
             Starts::Even(count) => base::starts(&frame, *count),
@@ -47,7 +50,7 @@ impl EffectSearch {
         let mut search = Self::unasked(frame, likelihood, candidates, settings.seed);
         search.measures_noise = settings.has_numerical_noise;
         search.depth = Depth::of(settings.roughness);
-        search.ask(positions.into_iter().map(|position| (None, position)).collect());
+        search.ask(positions.into_iter().map(|position| Asked::of_model(None, position)).collect());
         Ok(search)
     }
 
@@ -62,7 +65,7 @@ impl EffectSearch {
         let mut search = Self::unasked(base.fit.frame.clone(), likelihood, candidates, seed);
         search.depth = depth;
         search.base = Some(base);
-        search.screen(0, (0..candidates.len()).collect());
+        search.begin_screen();
         search
     }
 
@@ -74,15 +77,16 @@ impl EffectSearch {
         seed: u64,
     ) -> Self {
         let mut search = Self::unasked(frame, likelihood, &[], seed);
-        search.ask(starts.into_iter().map(|start| (None, start)).collect());
+        search.ask(starts.into_iter().map(|start| Asked::of_model(None, start)).collect());
         search
     }
 
     /// The requests of this round; the position of one is its index.
     pub fn pending(&self) -> impl Iterator<Item = EffectRequest> {
         let pairs = self.asked.iter().zip(self.round.pending());
-        pairs.map(|((candidate, _), proposal)| EffectRequest {
-            candidate: *candidate,
+        pairs.map(|(asked, proposal)| EffectRequest {
+            candidate: asked.candidate,
+            is_companion: asked.is_companion,
             theta: proposal.theta.clone(),
         })
     }

@@ -6,7 +6,7 @@ use crate::candidate::Candidate;
 use crate::effect_search::depth::{Depth, FULL};
 use crate::effect_search::ranking::{EffectRanking, EvaluationCounts, EvidenceMethod};
 use crate::effect_search::screen::Screened;
-use crate::laplace::batch::FitBatch;
+use crate::laplace::batch::{Asked, FitBatch};
 use crate::laplace::coordinate::NormalFrame;
 use crate::laplace::fit::{FittedModel, LaplaceFit};
 use crate::laplace::importance::ImportanceSampler;
@@ -23,8 +23,8 @@ pub struct EffectSearch {
     pub(super) base_frame: NormalFrame,
     pub(super) candidates: Vec<CandidateState>,
     pub(super) round: ProposalRound<Option<Vec<f64>>>,
-    /// Candidate (`None`: the base) and position of each request of the round.
-    pub(super) asked: Vec<(Option<usize>, Vec<f64>)>,
+    /// The requests of the round.
+    pub(super) asked: Vec<Asked>,
     pub(super) phase: Phase,
     pub(super) seed: u64,
     pub(super) depth: &'static Depth,
@@ -45,7 +45,11 @@ pub struct EffectSearch {
 pub(super) struct CandidateState {
     /// The coordinates of the base with this candidate.
     pub(super) frame: NormalFrame,
+    /// The screen's result, of the model where that was asked.
     pub(super) screened: Option<Screened>,
+    /// That of the companion's screen.
+    pub(super) by_companion: Option<Screened>,
+    pub(super) is_screened_on_model: bool,
     pub(super) estimate: Option<EvidenceEstimate>,
     /// Evaluations spent on it alone.
     pub(super) evaluations: usize,
@@ -67,7 +71,9 @@ pub(super) enum Phase {
     Base(FitBatch),
     /// Of the base, with its fits, and the distance of neighbours on the line.
     NumericalNoise(FitBatch, f64),
-    /// Index of the strength that the screen tries.
+    /// On the companion.
+    CompanionScreen,
+    /// On the model: index of the strength that is tried.
     Screen(usize),
     /// With less room for discrepancy.
     Tightened(Likelihood, FitBatch),
@@ -95,6 +101,8 @@ impl EffectSearch {
         let candidates = candidates.iter().map(|candidate| CandidateState {
             frame: base_frame.with(candidate),
             screened: None,
+            by_companion: None,
+            is_screened_on_model: false,
             estimate: None,
             evaluations: 0,
         });
@@ -145,12 +153,13 @@ impl EffectSearch {
     }
 
     /// Begins a round.
-    pub(super) fn ask(&mut self, asked: Vec<(Option<usize>, Vec<f64>)>) {
-        for candidate in asked.iter().filter_map(|(candidate, _)| *candidate) {
+    pub(super) fn ask(&mut self, asked: Vec<Asked>) {
+        let of_model = asked.iter().filter(|own| !own.is_companion);
+        for candidate in of_model.filter_map(|own| own.candidate) {
             self.candidates[candidate].evaluations += 1;
         }
-        let proposals = asked.iter().enumerate().map(|(index, (candidate, position))| {
-            Proposal::plain(index, self.frame(*candidate).theta(position))
+        let proposals = asked.iter().enumerate().map(|(index, own)| {
+            Proposal::plain(index, self.frame(own.candidate).theta(&own.position))
         });
         let proposals = proposals.collect();
         self.round.ask(proposals);

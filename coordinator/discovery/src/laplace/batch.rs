@@ -3,6 +3,27 @@
 use crate::laplace::fit::LaplaceFit;
 use statistics::likelihood::Likelihood;
 
+/// A position to evaluate.
+#[derive(Debug, Clone)]
+pub(crate) struct Asked {
+    /// The candidate that is switched on; `None`: the base.
+    pub(crate) candidate: Option<usize>,
+    pub(crate) position: Vec<f64>,
+    /// Of the model's companion.
+    pub(crate) is_companion: bool,
+}
+
+impl Asked {
+    /// Of the model itself.
+    pub(crate) fn of_model(candidate: Option<usize>, position: Vec<f64>) -> Self {
+        Self {
+            candidate,
+            position,
+            is_companion: false,
+        }
+    }
+}
+
 /// Fits of the base (`None`) or of candidates.
 #[derive(Debug, Clone)]
 pub(crate) struct FitBatch {
@@ -20,13 +41,18 @@ impl FitBatch {
     }
 
     /// The positions to evaluate next, each with its model; none once all fits are complete.
-    pub(crate) fn ask(&mut self, likelihood: &Likelihood) -> Vec<(Option<usize>, Vec<f64>)> {
+    pub(crate) fn ask(&mut self, likelihood: &Likelihood) -> Vec<Asked> {
         let mut asked = Vec::new();
         self.waiting.clear();
         for (candidate, fit) in &mut self.fits {
             let positions = fit.ask(likelihood);
             self.waiting.push(positions.len());
-            asked.extend(positions.into_iter().map(|position| (*candidate, position)));
+            let is_companion = fit.asks_companion();
+            asked.extend(positions.into_iter().map(|position| Asked {
+                candidate: *candidate,
+                position,
+                is_companion,
+            }));
         }
         asked
     }

@@ -34,6 +34,8 @@ pub(crate) struct NormalFrame {
     base: Prior,
     /// How the predictions follow the parameters.
     pub(crate) roughness: Roughness,
+    /// Whether the model's companion has a form of the base and of every candidate.
+    pub(crate) has_companion: bool,
     /// Index of each strength of the last candidate, and its coordinate at which the candidate is absent.
     pub(crate) strengths: Vec<(usize, f64)>,
     /// Indices of the single strengths of all candidates, whose priors are widened.
@@ -95,8 +97,17 @@ impl NormalFrame {
             coordinates: prior.marginals().iter().map(NormalCoordinate::whole).collect(),
             base: prior.clone(),
             roughness,
+            has_companion: false,
             strengths: Vec::new(),
             widened: Vec::new(),
+        }
+    }
+
+    /// This frame of a model that may have a companion.
+    pub(crate) fn beside(self, has_companion: bool) -> Self {
+        Self {
+            has_companion,
+            ..self
         }
     }
 
@@ -129,6 +140,7 @@ impl NormalFrame {
             coordinates,
             base: self.base.clone(),
             roughness: self.roughness,
+            has_companion: self.has_companion && candidate.has_companion,
             strengths,
             widened,
         }
@@ -240,6 +252,7 @@ mod tests {
             neutral: 0.0,
             excludes: Vec::new(),
             family: None,
+            has_companion: false,
         };
         let frame = NormalFrame::base(&Prior::new(Vec::new()), Roughness::Smooth).with(&effect);
         for t in [0.0, 0.1, 1.0, 2.5, 5.0] {
@@ -281,6 +294,7 @@ mod tests {
             neutral: 0.0,
             excludes: Vec::new(),
             family: None,
+            has_companion: false,
         };
         let frame = NormalFrame::base(&Prior::new(Vec::new()), Roughness::Smooth).with(&effect);
         let (_, neutral) = frame.strength().unwrap();

@@ -25,7 +25,8 @@ const MOST_UNREACHED: f64 = 3.0;
 pub(crate) enum FitStep {
     /// Frees the coordinates that were held.
     Release,
-    /// Computes the Jacobian by finite differences.
+    /// Computes the Jacobian by finite differences: of the companion, as far as its difference from the model is known, and of the
+    /// model elsewhere.
     Differences,
     /// At most so many trial steps, one evaluation each.
     Trials(usize),
@@ -41,6 +42,12 @@ pub(crate) struct LaplaceFit {
     pub(crate) point: FitPoint,
     /// The Jacobian: derivatives of the predicted values, one column for each coordinate.
     pub(crate) columns: Vec<Vec<f64>>,
+    /// Of each column that was measured on the model, by how much it exceeded the companion's there: the companion is a control variate
+    /// of later fits' differences.
+    pub(crate) corrections: Vec<Option<Vec<f64>>>,
+    /// Those that an earlier fit measured, near by. This fit's own come from wherever it passes.
+    follows: Vec<bool>,
+    /// On the model.
     pub(crate) evaluations: usize,
     plan: VecDeque<FitStep>,
     damping: f64,
@@ -51,6 +58,8 @@ pub(crate) struct LaplaceFit {
     is_fresh: bool,
     /// A step has gained since then.
     has_gained: bool,
+    /// The companion's derivatives at the point, where they were just computed.
+    companion: Vec<Option<Vec<f64>>>,
     /// The Jacobian that the differences of the round gave, before the updates by its steps.
     of_round: Vec<Vec<f64>>,
     pending: Pending,
@@ -67,7 +76,9 @@ pub(crate) struct FittedModel {
 #[derive(Debug, Clone)]
 enum Pending {
     Nothing,
-    /// Index and offset of each difference, and whether this is the second attempt, with the opposite sign.
+    /// Of the companion, at the point and at each difference.
+    Companion(Vec<(usize, f64)>),
+    /// Of the model: index and offset of each difference, and whether this is the second attempt, with the opposite sign.
     Differences(Vec<(usize, f64)>, bool),
     /// A trial position and its predicted gain.
     Trial {
@@ -80,6 +91,9 @@ impl LaplaceFit {
     pub(crate) fn new(frame: NormalFrame, point: FitPoint, columns: Vec<Vec<f64>>, plan: &[FitStep]) -> Self {
         Self {
             held: vec![false; frame.dimension()],
+            corrections: vec![None; frame.dimension()],
+            follows: vec![false; frame.dimension()],
+            companion: Vec::new(),
             frame,
             point,
             columns,
@@ -96,7 +110,20 @@ impl LaplaceFit {
 
     /// The same fit continued with another plan.
     pub(crate) fn continued(&self, plan: &[FitStep]) -> Self {
-        Self::new(self.frame.clone(), self.point.clone(), self.columns.clone(), plan)
+        let continued = Self::new(self.frame.clone(), self.point.clone(), self.columns.clone(), plan);
+        continued.corrected(&self.corrections)
+    }
+
+    /// With the corrections of a fit of the same model, or of one that it extends.
+    pub(crate) fn corrected(mut self, corrections: &[Option<Vec<f64>>]) -> Self {
+        self.corrections[..corrections.len()].clone_from_slice(corrections);
+        self.follows = self.corrections.iter().map(Option::is_some).collect();
+        self
+    }
+
+    /// Whether what it asked for last is to be evaluated by the companion.
+    pub(crate) fn asks_companion(&self) -> bool {
+        matches!(self.pending, Pending::Companion(_))
     }
 
     /// Fixes coordinates until [`FitStep::Release`].
@@ -113,8 +140,8 @@ impl LaplaceFit {
 
     /// The positions to evaluate next; none once the plan is complete.
     pub(crate) fn ask(&mut self, likelihood: &Likelihood) -> Vec<Vec<f64>> {
-        if let Pending::Differences(again, _) = &self.pending {
-            return self.offset(again);
+        if let Pending::Differences(wanted, _) = &self.pending {
+            return self.offset(wanted);
         }
         while let Some(step) = self.plan.pop_front() {
             match step {
@@ -138,8 +165,13 @@ impl LaplaceFit {
                         .filter(|k| !is_noise(*k) && !self.held[*k])
                         .map(|k| (k, offset(k)))
                         .collect();
-                    let positions = self.offset(&wanted);
-                    self.pending = Pending::Differences(wanted, false);
+                    let mut positions = self.offset(&wanted);
+                    if self.frame.has_companion {
+                        positions.push(self.point.position.clone());
+                        self.pending = Pending::Companion(wanted);
+                    } else {
+                        self.pending = Pending::Differences(wanted, false);
+                    }
                     return positions;
                 }
                 FitStep::Rounds { most: 0, .. } | FitStep::Trials(0) => {}
@@ -202,9 +234,12 @@ impl LaplaceFit {
 
     /// Takes the predicted values at those positions; `None` where the model rejected one.
     pub(crate) fn tell(&mut self, likelihood: &Likelihood, answers: Vec<Option<Vec<f64>>>) {
-        self.evaluations += answers.len();
+        if !self.asks_companion() {
+            self.evaluations += answers.len();
+        }
         match std::mem::replace(&mut self.pending, Pending::Nothing) {
             Pending::Nothing => {}
+            Pending::Companion(wanted) => self.after_companion(wanted, answers),
             Pending::Differences(wanted, again) => self.after_differences(wanted, again, answers),
             Pending::Trial { position, predicted } => {
                 self.after_trial(
@@ -214,6 +249,32 @@ impl LaplaceFit {
                     answers.into_iter().flatten().next(),
                 );
             }
+        }
+    }
+
+    /// Columns whose correction is known are those of the companion with it; the others are asked of the model.
+    fn after_companion(&mut self, wanted: Vec<(usize, f64)>, mut answers: Vec<Option<Vec<f64>>>) {
+        let here = answers.pop().flatten();
+        self.companion = vec![None; self.frame.dimension()];
+        for ((k, offset), answer) in wanted.iter().zip(answers) {
+            let slope = |values: Vec<f64>, here: &Vec<f64>| {
+                let pairs = values.iter().zip(here);
+                pairs.map(|(x, m)| (x - m) / offset).collect()
+            };
+            self.companion[*k] = answer.zip(here.as_ref()).map(|(values, here)| slope(values, here));
+        }
+        let mut measured = Vec::new();
+        for (k, offset) in wanted {
+            match (&self.companion[k], &self.corrections[k]) {
+                (Some(companion), Some(correction)) if self.follows[k] => {
+                    let pairs = companion.iter().zip(correction);
+                    self.columns[k] = pairs.map(|(slope, beyond)| slope + beyond).collect();
+                }
+                _ => measured.push((k, offset)),
+            }
+        }
+        if !measured.is_empty() {
+            self.pending = Pending::Differences(measured, false);
         }
     }
 
@@ -231,6 +292,10 @@ impl LaplaceFit {
                 Some(values) => {
                     let pairs = values.iter().zip(&self.point.values);
                     self.columns[k] = pairs.map(|(x, m)| (x - m) / offset).collect();
+                    if let Some(Some(companion)) = self.companion.get(k) {
+                        let pairs = self.columns[k].iter().zip(companion);
+                        self.corrections[k] = Some(pairs.map(|(slope, cheap)| slope - cheap).collect());
+                    }
                 }
                 None if !is_second && (lower[k]..=upper[k]).contains(&-offset) => again.push((k, -offset)),
                 None => {}

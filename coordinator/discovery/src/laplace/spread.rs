@@ -34,7 +34,8 @@ pub(crate) fn spread(fit: &LaplaceFit, likelihood: &Likelihood) -> Vec<Axis> {
     (0..mode.len())
         .map(|column| {
             let (above, below) = (theta(column, 1.0), theta(column, -1.0));
-            if above.is_some() && fit.frame.roughness != Roughness::Smooth {
+            let is_dear = fit.frame.roughness != Roughness::Smooth && !fit.frame.has_companion;
+            if above.is_some() && is_dear {
                 Axis {
                     sides: [above, None],
                     spare: below,

@@ -160,6 +160,7 @@ mod tests {
             neutral: 0.0,
             excludes: Vec::new(),
             family: None,
+            has_companion: false,
         };
         let frame = NormalFrame::base(&Prior::new(Vec::new()), Roughness::Smooth).with(&effect);
         // The likelihood rises by 8 nats per standard deviation and hardly bends; the narrow parts balance it at once.

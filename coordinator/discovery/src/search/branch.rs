@@ -47,6 +47,7 @@ impl SearchBranch {
                     .reduction
                     .map_or(QueriedModel::With(effects), QueriedModel::Without),
                 is_proposed: false,
+                is_companion: request.is_companion,
                 theta: request.theta,
             }
         });

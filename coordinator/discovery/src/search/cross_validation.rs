@@ -68,7 +68,10 @@ impl RefittedModel {
             let position = fit.point.position.clone();
             let point = FitPoint::new(&fit.frame, part, position, taken(&fit.point.values))?;
             let columns = fit.columns.iter().map(|column| taken(column)).collect();
-            let mut refit = LaplaceFit::new(fit.frame.clone(), point, columns, &PLAN);
+            let corrections = fit.corrections.iter();
+            let corrections: Vec<_> = corrections.map(|own| own.as_deref().map(taken)).collect();
+            let refit = LaplaceFit::new(fit.frame.clone(), point, columns, &PLAN);
+            let mut refit = refit.corrected(&corrections);
             // Shapes are held: a threshold that moves with every left-out level does not generalise.
             let first = fit.frame.dimension() - own;
             refit.hold((first..fit.frame.dimension()).filter(|k| !fit.frame.is_strength(*k)));
@@ -162,20 +165,22 @@ impl CrossValidation {
     pub(super) fn queries(&mut self) -> Vec<Query> {
         let mut queries = Vec::new();
         self.answered_by.clear();
-        let mut asked: BTreeMap<(Vec<usize>, Vec<u64>), usize> = BTreeMap::new();
+        let mut asked: BTreeMap<(Vec<usize>, bool, Vec<u64>), usize> = BTreeMap::new();
         for model in &mut self.models {
             let effects = &model.key.effects;
             for refit in model.refits.iter_mut().flatten() {
                 refit.waiting = refit.fit.ask(&refit.part);
+                let is_companion = refit.fit.asks_companion();
                 for position in &refit.waiting {
                     let theta = refit.fit.frame.theta(position);
-                    let key = (effects.clone(), bits(&theta));
+                    let key = (effects.clone(), is_companion, bits(&theta));
                     let number = *asked.entry(key).or_insert(queries.len());
                     self.answered_by.push(number);
                     if number == queries.len() {
                         queries.push(Query {
                             model: QueriedModel::With(effects.clone()),
                             is_proposed: false,
+                            is_companion,
                             theta,
                         });
                     }
@@ -201,7 +206,11 @@ impl CrossValidation {
             let all: Vec<Option<&Vec<f64>>> = numbers.map(|number| answers[number].as_ref()).collect();
             let taken = |values: &Vec<f64>| refit.places.iter().map(|&i| values[i]).collect::<Vec<f64>>();
             let parts = all.iter().map(|values| values.map(taken)).collect();
+            let is_companion = refit.fit.asks_companion();
             refit.fit.tell(&refit.part, parts);
+            if is_companion {
+                continue;
+            }
             let at = waiting.iter().position(|w| *w == refit.fit.point.position);
             if let Some(Some(values)) = at.map(|i| all[i]) {
                 refit.all_values.clone_from(values);

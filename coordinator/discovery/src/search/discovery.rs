@@ -103,7 +103,8 @@ impl DiscoverySearch {
         let complete = self.round.tell(index, values.map(<[f64]>::to_vec))?;
         if complete {
             let (_, answers) = self.round.complete();
-            self.state.evaluations += answers.len();
+            let of_model = self.queries.iter().filter(|query| !query.is_companion);
+            self.state.evaluations += of_model.count();
             self.queries.clear();
             self.stage.take(answers);
             self.ask();

@@ -3,7 +3,6 @@
 use crate::chi_square::FURTHER_EFFECT;
 use crate::effect_search::depth::{GLANCE, QUICK};
 use crate::effect_search::state::EffectSearch;
-use crate::laplace::coordinate::NormalFrame;
 use crate::laplace::fit::FittedModel;
 use crate::probability::DETECTED;
 use crate::search::branch::SearchBranch;
@@ -136,7 +135,7 @@ impl SearchState {
             return self.curves();
         };
         let branches = best.effects.iter().map(|&dropped| {
-            let mut frame = NormalFrame::base(&self.task.prior, self.task.settings.roughness);
+            let mut frame = self.task.frame();
             let (own, mut rest) = best.fit.point.position.split_at(self.task.prior.dimension());
             let mut start = own.to_vec();
             let mut effects = Vec::new();

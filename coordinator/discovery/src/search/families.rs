@@ -2,7 +2,6 @@
 
 use crate::effect_search::base::starts;
 use crate::effect_search::state::EffectSearch;
-use crate::laplace::coordinate::NormalFrame;
 use crate::search::branch::SearchBranch;
 use crate::search::stage::Stage;
 use crate::search::state::SearchState;
@@ -70,7 +69,7 @@ impl SearchState {
     }
 
     fn together(&self, effects: Vec<usize>) -> Option<SearchBranch> {
-        let mut frame = NormalFrame::base(&self.task.prior, self.task.settings.roughness);
+        let mut frame = self.task.frame();
         let base = &self.hypotheses.base_fit()?.point.position;
         let mut at_base = vec![base.clone(); STRENGTHS.len()];
         for &k in &effects {

@@ -48,6 +48,10 @@ struct AskedHypothesis {
     probability: f64,
     /// `None` once it is told.
     mode: Option<Vec<f64>>,
+    /// Whether the companion is asked for the spread.
+    has_companion: bool,
+    /// What the spread is compared with: the prediction of the companion at the mode where that is asked, and of the model elsewhere.
+    middle: Option<Vec<f64>>,
     /// Those that are not told yet.
     spread: Vec<Axis>,
     /// `None` before it is told, and where the model rejects the mode.
@@ -63,9 +67,13 @@ pub(super) struct RunSelection {
 }
 
 impl AskedHypothesis {
-    fn thetas(&self) -> impl Iterator<Item = &Vec<f64>> {
+    /// The parameters to evaluate, each with whether it is the companion that is asked.
+    fn thetas(&self) -> impl Iterator<Item = (bool, &Vec<f64>)> {
         let sides = self.spread.iter().flat_map(|axis| axis.sides.iter().flatten());
-        self.mode.iter().chain(sides)
+        let middle = self.mode.iter().filter(|_| self.has_companion);
+        let spread = middle.chain(sides);
+        let of_model = self.mode.iter().map(|theta| (false, theta));
+        of_model.chain(spread.map(|theta| (self.has_companion, theta)))
     }
 
     /// Takes the answers to [`thetas`](Self::thetas). Along an axis with one answer its difference from the mode counts; along one
@@ -76,6 +84,11 @@ impl AskedHypothesis {
                 mean,
                 columns: Vec::new(),
             });
+            self.middle = if self.has_companion {
+                answers.next().flatten()
+            } else {
+                self.prediction.as_ref().map(|own| own.mean.clone())
+            };
         }
         let axes = std::mem::take(&mut self.spread);
         let Some(prediction) = &mut self.prediction else {
@@ -88,8 +101,8 @@ impl AskedHypothesis {
             match sides.map(|side| side.and_then(|_| answers.next().flatten())) {
                 [Some(above), Some(below)] => prediction.columns.push(half_difference(&above, &below, 0.5)),
                 [Some(one), None] | [None, Some(one)] => {
-                    let column = half_difference(&one, &prediction.mean, 1.0);
-                    prediction.columns.push(column);
+                    let column = self.middle.as_ref().map(|middle| half_difference(&one, middle, 1.0));
+                    prediction.columns.extend(column);
                 }
                 [None, None] => self.spread.extend(spare.map(|spare| Axis {
                     sides: [None, Some(spare)],
@@ -110,6 +123,8 @@ impl RunSelection {
             effects: explanation.effects,
             probability: explanation.probability,
             mode: Some(explanation.fit.theta()),
+            has_companion: explanation.fit.frame.has_companion,
+            middle: None,
             spread: spread(explanation.fit, &task.likelihood),
             prediction: None,
         });
@@ -123,9 +138,10 @@ impl RunSelection {
     pub(super) fn queries(&self) -> Vec<Query> {
         let of = |asked: &AskedHypothesis| {
             let model = QueriedModel::With(asked.effects.clone());
-            let queries = asked.thetas().map(|theta| Query {
+            let queries = asked.thetas().map(|(is_companion, theta)| Query {
                 model: model.clone(),
                 is_proposed: true,
+                is_companion,
                 theta: theta.clone(),
             });
             queries.collect::<Vec<_>>()
@@ -202,6 +218,8 @@ mod tests {
             effects: Vec::new(),
             probability: 0.5,
             mode: Some(vec![0.0]),
+            has_companion: false,
+            middle: None,
             spread: vec![Axis {
                 sides: sides.map(theta),
                 spare: theta(spare),
@@ -213,7 +231,7 @@ mod tests {
     /// Answers with the parameter until nothing is asked; the model rejects what lies above 0.
     fn columns(mut asked: AskedHypothesis) -> Vec<Vec<f64>> {
         while asked.thetas().next().is_some() {
-            let answers = asked.thetas().map(|t| (t[0] <= 0.0).then(|| t.clone()));
+            let answers = asked.thetas().map(|(_, t)| (t[0] <= 0.0).then(|| t.clone()));
             let answers: Vec<_> = answers.collect();
             asked.take(answers.into_iter());
         }

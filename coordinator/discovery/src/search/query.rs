@@ -16,6 +16,8 @@ pub struct Query {
     pub model: QueriedModel,
     /// On the proposed runs instead of the measured ones.
     pub is_proposed: bool,
+    /// Of the model's companion.
+    pub is_companion: bool,
     /// The parameters.
     pub theta: Vec<f64>,
 }

@@ -1,0 +1,123 @@
+//! The screen of a rough model on its companion, which tells the candidates that are worth evaluations of the model.
+
+use crate::effect_search::ranking::EvidenceMethod;
+use crate::effect_search::screen::{self, Evaluated, Screened};
+use crate::effect_search::state::{CandidateState, EffectSearch, EvidenceEstimate, Phase};
+use crate::laplace::batch::Asked;
+
+impl EffectSearch {
+    /// Screens what the companion has a form of on the companion, and the rest on the model.
+    pub(super) fn begin_screen(&mut self) {
+        let Some(base) = &self.base else { return };
+        let base = &base.fit.point.position;
+        let of_companion = |candidate: Option<usize>, position: Vec<f64>| Asked {
+            candidate,
+            position,
+            is_companion: true,
+        };
+        let mut asked = vec![of_companion(None, base.clone())];
+        for (k, state) in self.candidates.iter().enumerate() {
+            if state.frame.has_companion {
+                let at = screen::positions(&state.frame, base, self.depth, None, 0);
+                asked.extend(at.into_iter().map(|position| of_companion(Some(k), position)));
+            }
+        }
+        if asked.len() == 1 {
+            return self.screen(0, (0..self.candidates.len()).collect());
+        }
+        self.ask(asked);
+        self.phase = Phase::CompanionScreen;
+    }
+
+    /// The companion is a control variate: what a candidate changes of its predictions is added to those of the model's base.
+    pub(super) fn after_companion_screen(&mut self, answers: Vec<Option<Vec<f64>>>) {
+        let Some(base) = &self.base else { return };
+        let mut pairs = std::mem::take(&mut self.asked).into_iter().zip(answers);
+        let without = pairs.next().and_then(|(_, values)| values);
+        let shifted = |with: Vec<f64>| {
+            let without = without.as_ref()?.iter();
+            let changes = with.iter().zip(without).map(|(with, without)| with - without);
+            let values = base.fit.point.values.iter().zip(changes);
+            Some(values.map(|(value, change)| value + change).collect())
+        };
+        let mut evaluated: Vec<Vec<Evaluated>> = vec![Vec::new(); self.candidates.len()];
+        for (asked, values) in pairs {
+            if let Some(k) = asked.candidate {
+                evaluated[k].push((asked.position, values.and_then(shifted)));
+            }
+        }
+        for (state, evaluated) in self.candidates.iter_mut().zip(evaluated) {
+            if evaluated.is_empty() {
+                continue;
+            }
+            state.by_companion = screen::screened(&state.frame, base, &self.likelihood, &evaluated);
+            if let Some(screened) = &state.by_companion {
+                state.estimate = Some(EvidenceEstimate::of_screen(screened));
+                state.screened = Some(screened.clone());
+            }
+        }
+        let wanted = self.worth_evaluations();
+        self.screen(0, wanted);
+    }
+
+    /// What the companion could not screen, and the candidates with one strength that it lets near the best. A fit of several strengths
+    /// begins at the base and needs the derivatives alone.
+    fn worth_evaluations(&self) -> Vec<usize> {
+        let promise = |k: &usize| {
+            self.candidates[*k]
+                .by_companion
+                .as_ref()
+                .map(|own| own.log_bayes_factor)
+        };
+        let all = || 0..self.candidates.len();
+        let best = all().filter_map(|k| promise(&k)).fold(0.0, f64::max);
+        let near = self.best(self.depth.most_extended);
+        let is_worth = |k: &usize| {
+            let reach = self.depth.reach.map(|share| share * best);
+            let is_near = near.contains(k) || promise(k) > reach;
+            promise(k).is_none() || (self.awaits_model(*k) && is_near)
+        };
+        all().filter(is_worth).collect()
+    }
+
+    /// The coordinate of the shapes that the companion found best; `None` where it was not asked, or there are none.
+    pub(super) fn best_shape(&self, k: usize) -> Option<f64> {
+        let state = &self.candidates[k];
+        let own = &state.by_companion.as_ref()?.point.position;
+        let first = self.base_frame.dimension();
+        (first..own.len()).find(|k| !state.frame.is_strength(*k)).map(|k| own[k])
+    }
+
+    /// Whether a candidate has a point of its own that the model has not evaluated.
+    pub(super) fn awaits_model(&self, k: usize) -> bool {
+        let state = &self.candidates[k];
+        let is_sketched = state.by_companion.is_some() && !state.is_screened_on_model;
+        is_sketched && state.frame.strength().is_some()
+    }
+}
+
+impl CandidateState {
+    /// Takes the result of the model's screen, with what the companion's says of the shapes.
+    pub(super) fn take_screened(&mut self, screened: Option<Screened>, base_dimension: usize) {
+        self.is_screened_on_model = true;
+        self.screened = screened;
+        if let (Some(screened), Some(by_companion)) = (&mut self.screened, &self.by_companion) {
+            for k in (base_dimension..self.frame.dimension()).filter(|k| !self.frame.is_strength(*k)) {
+                screened.columns[k].clone_from(&by_companion.columns[k]);
+            }
+            screened.log_bayes_factor += by_companion.log_bayes_factor - by_companion.of_best_shape;
+        }
+        self.estimate = self.screened.as_ref().map(EvidenceEstimate::of_screen);
+    }
+}
+
+impl EvidenceEstimate {
+    fn of_screen(screened: &Screened) -> Self {
+        Self {
+            log_bayes_factor: screened.log_bayes_factor,
+            stated_log_bayes_factor: screened.log_bayes_factor,
+            method: EvidenceMethod::Screen,
+            fit: None,
+        }
+    }
+}
