@@ -4,6 +4,7 @@ use crate::effect_search::ranking::EvidenceMethod;
 use crate::effect_search::screen::{self, Evaluated, Screened};
 use crate::effect_search::state::{CandidateState, EffectSearch, EvidenceEstimate, Phase};
 use crate::laplace::batch::Asked;
+use crate::laplace::fit::Correction;
 
 impl EffectSearch {
     /// Screens what the companion has a form of on the companion, and the rest on the model.
@@ -53,7 +54,7 @@ impl EffectSearch {
             state.by_companion = screen::screened(&state.frame, base, &self.likelihood, &evaluated);
             if let Some(screened) = &state.by_companion {
                 state.estimate = Some(EvidenceEstimate::of_screen(screened));
-                state.screened = Some(screened.clone());
+                state.screened = Some(screened.uncorrected());
             }
         }
         let wanted = self.worth_evaluations();
@@ -102,12 +103,42 @@ impl CandidateState {
         self.is_screened_on_model = true;
         self.screened = screened;
         if let (Some(screened), Some(by_companion)) = (&mut self.screened, &self.by_companion) {
-            for k in (base_dimension..self.frame.dimension()).filter(|k| !self.frame.is_strength(*k)) {
-                screened.columns[k].clone_from(&by_companion.columns[k]);
+            for k in base_dimension..self.frame.dimension() {
+                if self.frame.is_strength(k) {
+                    let pairs = screened.change.iter().zip(&by_companion.change);
+                    screened.corrections[k] = Some(Correction {
+                        beyond: pairs.map(|(slope, cheap)| slope - cheap).collect(),
+                        is_secant: true,
+                    });
+                } else {
+                    screened.columns[k].clone_from(&by_companion.columns[k]);
+                    screened.corrections[k] = Some(Correction::none(screened.change.len()));
+                }
             }
             screened.log_bayes_factor += by_companion.log_bayes_factor - by_companion.of_best_shape;
         }
         self.estimate = self.screened.as_ref().map(EvidenceEstimate::of_screen);
+    }
+}
+
+impl Screened {
+    /// As if the model changed as its companion does.
+    fn uncorrected(&self) -> Self {
+        let none = |column: &Vec<f64>| Some(Correction::none(column.len()));
+        Self {
+            corrections: self.columns.iter().map(none).collect(),
+            ..self.clone()
+        }
+    }
+}
+
+impl Correction {
+    /// As if the model changed as its companion does, which a fit has to measure.
+    fn none(values: usize) -> Self {
+        Self {
+            beyond: vec![0.0; values],
+            is_secant: true,
+        }
     }
 }
 

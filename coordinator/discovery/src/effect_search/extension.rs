@@ -39,8 +39,10 @@ pub(crate) fn fit(
         }
     }
     let point = if is_present { present } else { absent };
+    let mut corrections = base.corrections.clone();
+    corrections.extend_from_slice(&screened.corrections[corrections.len()..]);
     let fit = LaplaceFit::new(frame.clone(), point, columns, depth.extension);
-    let mut fit = fit.corrected(&base.corrections);
+    let mut fit = fit.corrected(&corrections);
     if depth.holds_shapes {
         fit.hold(shapes());
     }

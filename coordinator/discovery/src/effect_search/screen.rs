@@ -3,7 +3,7 @@
 use crate::effect_search::depth::Depth;
 use crate::laplace::coordinate::NormalFrame;
 use crate::laplace::evidence::log_sum_exp;
-use crate::laplace::fit::{FittedModel, LaplaceFit};
+use crate::laplace::fit::{Correction, FittedModel, LaplaceFit};
 use crate::laplace::point::FitPoint;
 use crate::laplace::quadratic::quadratic;
 use crate::laplace::strength_prior::mixed_evidence;
@@ -25,6 +25,8 @@ pub(super) struct Screened {
     pub(super) change: Vec<f64>,
     /// Derivatives along the candidate's own coordinates, in the order of the frame; zeros for all others.
     pub(super) columns: Vec<Vec<f64>>,
+    /// By how much those exceed the companion's, where both were screened.
+    pub(super) corrections: Vec<Option<Correction>>,
     /// Mean over the shapes of the best among the strengths.
     pub(super) log_bayes_factor: f64,
     /// That of the best shape.
@@ -200,6 +202,7 @@ fn of_one(
     }
     columns[strength] = slope(best, &nodes, base, is_shape_of);
     Some(Screened {
+        corrections: vec![None; columns.len()],
         point: best.point.clone(),
         change: usual.change.clone(),
         columns,
@@ -242,6 +245,7 @@ fn of_switch(
     Some(Screened {
         change: difference(&point.values, fit, 1.0),
         columns: fit.columns.clone(),
+        corrections: vec![None; fit.columns.len()],
         log_bayes_factor: evidence - base.log_evidence,
         of_best_shape: evidence - base.log_evidence,
         point,
@@ -276,6 +280,7 @@ fn of_several(
     Some(Screened {
         point: absent,
         change,
+        corrections: vec![None; columns.len()],
         columns,
         log_bayes_factor: evidence - base.log_evidence,
         of_best_shape: evidence - base.log_evidence,

@@ -28,11 +28,20 @@ pub(crate) enum FitStep {
     /// Computes the Jacobian by finite differences: of the companion, as far as its difference from the model is known, and of the
     /// model elsewhere.
     Differences,
-    /// At most so many trial steps, one evaluation each.
+    /// At most so many trial steps, one evaluation each. After a step that gains, the Jacobian follows the companion where all of its
+    /// corrections are known.
     Trials(usize),
     /// `Differences` and `Trials(trials)`, repeated at most so many times, until a new Jacobian predicts no gain, which ends the plan.
     /// Of a rough model a round whose steps gain nothing ends the plan, too, with the Jacobian that its differences gave.
     Rounds { most: usize, trials: usize },
+}
+
+/// By how much a derivative of the model exceeds that of its companion.
+#[derive(Debug, Clone)]
+pub(crate) struct Correction {
+    pub(crate) beyond: Vec<f64>,
+    /// Over a long step of the screen: good for steps of a fit, not for an evidence.
+    pub(crate) is_secant: bool,
 }
 
 /// A fit of one model.
@@ -42,10 +51,10 @@ pub(crate) struct LaplaceFit {
     pub(crate) point: FitPoint,
     /// The Jacobian: derivatives of the predicted values, one column for each coordinate.
     pub(crate) columns: Vec<Vec<f64>>,
-    /// Of each column that was measured on the model, by how much it exceeded the companion's there: the companion is a control variate
-    /// of later fits' differences.
-    pub(crate) corrections: Vec<Option<Vec<f64>>>,
-    /// Those that an earlier fit measured, near by. This fit's own come from wherever it passes.
+    /// Of each column that was measured on the model: the companion is a control variate of the differences.
+    pub(crate) corrections: Vec<Option<Correction>>,
+    /// Whether a difference follows the companion: an earlier fit measured it on the model, near by. This fit's own corrections are
+    /// those of wherever it passes.
     follows: Vec<bool>,
     /// On the model.
     pub(crate) evaluations: usize,
@@ -58,6 +67,8 @@ pub(crate) struct LaplaceFit {
     is_fresh: bool,
     /// A step has gained since then.
     has_gained: bool,
+    /// The point has moved since the companion was asked.
+    has_moved: bool,
     /// The companion's derivatives at the point, where they were just computed.
     companion: Vec<Option<Vec<f64>>>,
     /// The Jacobian that the differences of the round gave, before the updates by its steps.
@@ -76,8 +87,8 @@ pub(crate) struct FittedModel {
 #[derive(Debug, Clone)]
 enum Pending {
     Nothing,
-    /// Of the companion, at the point and at each difference.
-    Companion(Vec<(usize, f64)>),
+    /// Of the companion, at each difference and at the point, and whether the model is asked for none.
+    Companion(Vec<(usize, f64)>, bool),
     /// Of the model: index and offset of each difference, and whether this is the second attempt, with the opposite sign.
     Differences(Vec<(usize, f64)>, bool),
     /// A trial position and its predicted gain.
@@ -103,6 +114,7 @@ impl LaplaceFit {
             failures: 0,
             is_fresh: false,
             has_gained: true,
+            has_moved: false,
             of_round: Vec::new(),
             pending: Pending::Nothing,
         }
@@ -115,15 +127,16 @@ impl LaplaceFit {
     }
 
     /// With the corrections of a fit of the same model, or of one that it extends.
-    pub(crate) fn corrected(mut self, corrections: &[Option<Vec<f64>>]) -> Self {
+    pub(crate) fn corrected(mut self, corrections: &[Option<Correction>]) -> Self {
         self.corrections[..corrections.len()].clone_from_slice(corrections);
-        self.follows = self.corrections.iter().map(Option::is_some).collect();
+        let is_near = |own: &Option<Correction>| own.as_ref().is_some_and(|own| !own.is_secant);
+        self.follows = self.corrections.iter().map(is_near).collect();
         self
     }
 
     /// Whether what it asked for last is to be evaluated by the companion.
     pub(crate) fn asks_companion(&self) -> bool {
-        matches!(self.pending, Pending::Companion(_))
+        matches!(self.pending, Pending::Companion(..))
     }
 
     /// Fixes coordinates until [`FitStep::Release`].
@@ -151,28 +164,8 @@ impl LaplaceFit {
                     self.failures = 0;
                 }
                 FitStep::Differences => {
-                    let (_, upper) = self.frame.room(&self.point.position);
-                    let uncertainty = self.quadratic(likelihood).uncertainty();
-                    let offset = |k: usize| {
-                        let length = uncertainty[k].unwrap_or(DIFFERENCE);
-                        let length = length.clamp(self.frame.roughness.least_difference(), DIFFERENCE);
-                        if upper[k] >= length { length } else { -length }
-                    };
-                    // Predictions do not depend on the noise sds.
-                    let noise = noise::coordinates(likelihood);
-                    let is_noise = |k: usize| noise.iter().any(|(own, _)| *own == k);
-                    let wanted: Vec<(usize, f64)> = (0..self.frame.dimension())
-                        .filter(|k| !is_noise(*k) && !self.held[*k])
-                        .map(|k| (k, offset(k)))
-                        .collect();
-                    let mut positions = self.offset(&wanted);
-                    if self.frame.has_companion {
-                        positions.push(self.point.position.clone());
-                        self.pending = Pending::Companion(wanted);
-                    } else {
-                        self.pending = Pending::Differences(wanted, false);
-                    }
-                    return positions;
+                    let wanted = self.differences(likelihood);
+                    return self.ask_differences(wanted, false);
                 }
                 FitStep::Rounds { most: 0, .. } | FitStep::Trials(0) => {}
                 FitStep::Rounds { most, trials } => {
@@ -182,6 +175,13 @@ impl LaplaceFit {
                     self.plan.push_front(FitStep::Differences);
                     self.is_fresh = true;
                     self.has_gained = false;
+                }
+                FitStep::Trials(left) if std::mem::take(&mut self.has_moved) => {
+                    self.plan.push_front(FitStep::Trials(left));
+                    let wanted = self.differences(likelihood);
+                    if self.frame.has_companion && wanted.iter().all(|(k, _)| self.corrections[*k].is_some()) {
+                        return self.ask_differences(wanted, true);
+                    }
                 }
                 FitStep::Trials(left) => {
                     if let Some((position, predicted)) = self.trial(likelihood) {
@@ -208,6 +208,38 @@ impl LaplaceFit {
             }
         }
         Vec::new()
+    }
+
+    /// Index and offset of each difference.
+    fn differences(&self, likelihood: &Likelihood) -> Vec<(usize, f64)> {
+        let (_, upper) = self.frame.room(&self.point.position);
+        let uncertainty = self.quadratic(likelihood).uncertainty();
+        let offset = |k: usize| {
+            let length = uncertainty[k].unwrap_or(DIFFERENCE);
+            let length = length.clamp(self.frame.roughness.least_difference(), DIFFERENCE);
+            if upper[k] >= length { length } else { -length }
+        };
+        // Predictions do not depend on the noise sds.
+        let noise = noise::coordinates(likelihood);
+        let is_noise = |k: usize| noise.iter().any(|(own, _)| *own == k);
+        (0..self.frame.dimension())
+            .filter(|k| !is_noise(*k) && !self.held[*k])
+            .map(|k| (k, offset(k)))
+            .collect()
+    }
+
+    /// # Arguments
+    /// - `follows`: the companion alone is asked, with whatever corrections there are.
+    fn ask_differences(&mut self, wanted: Vec<(usize, f64)>, follows: bool) -> Vec<Vec<f64>> {
+        let mut positions = self.offset(&wanted);
+        if self.frame.has_companion {
+            positions.push(self.point.position.clone());
+            self.pending = Pending::Companion(wanted, follows);
+        } else {
+            self.pending = Pending::Differences(wanted, false);
+        }
+        self.has_moved = false;
+        positions
     }
 
     fn offset(&self, wanted: &[(usize, f64)]) -> Vec<Vec<f64>> {
@@ -239,7 +271,7 @@ impl LaplaceFit {
         }
         match std::mem::replace(&mut self.pending, Pending::Nothing) {
             Pending::Nothing => {}
-            Pending::Companion(wanted) => self.after_companion(wanted, answers),
+            Pending::Companion(wanted, follows) => self.after_companion(wanted, follows, answers),
             Pending::Differences(wanted, again) => self.after_differences(wanted, again, answers),
             Pending::Trial { position, predicted } => {
                 self.after_trial(
@@ -253,7 +285,12 @@ impl LaplaceFit {
     }
 
     /// Columns whose correction is known are those of the companion with it; the others are asked of the model.
-    fn after_companion(&mut self, wanted: Vec<(usize, f64)>, mut answers: Vec<Option<Vec<f64>>>) {
+    fn after_companion(
+        &mut self,
+        wanted: Vec<(usize, f64)>,
+        follows: bool,
+        mut answers: Vec<Option<Vec<f64>>>,
+    ) {
         let here = answers.pop().flatten();
         self.companion = vec![None; self.frame.dimension()];
         for ((k, offset), answer) in wanted.iter().zip(answers) {
@@ -266,10 +303,11 @@ impl LaplaceFit {
         let mut measured = Vec::new();
         for (k, offset) in wanted {
             match (&self.companion[k], &self.corrections[k]) {
-                (Some(companion), Some(correction)) if self.follows[k] => {
-                    let pairs = companion.iter().zip(correction);
+                (Some(companion), Some(correction)) if follows || self.follows[k] => {
+                    let pairs = companion.iter().zip(&correction.beyond);
                     self.columns[k] = pairs.map(|(slope, beyond)| slope + beyond).collect();
                 }
+                _ if follows => {}
                 _ => measured.push((k, offset)),
             }
         }
@@ -294,7 +332,10 @@ impl LaplaceFit {
                     self.columns[k] = pairs.map(|(x, m)| (x - m) / offset).collect();
                     if let Some(Some(companion)) = self.companion.get(k) {
                         let pairs = self.columns[k].iter().zip(companion);
-                        self.corrections[k] = Some(pairs.map(|(slope, cheap)| slope - cheap).collect());
+                        self.corrections[k] = Some(Correction {
+                            beyond: pairs.map(|(slope, cheap)| slope - cheap).collect(),
+                            is_secant: false,
+                        });
                     }
                 }
                 None if !is_second && (lower[k]..=upper[k]).contains(&-offset) => again.push((k, -offset)),
@@ -326,6 +367,7 @@ impl LaplaceFit {
             Some(point) if point.value < self.point.value => {
                 let gain = self.point.value - point.value;
                 self.point = point;
+                self.has_moved = true;
                 if gain < self.frame.roughness.least_counted_gain() {
                     return self.fail();
                 }

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::laplace::fit::{FitStep, LaplaceFit};
+use crate::laplace::fit::{Correction, FitStep, LaplaceFit};
 use crate::laplace::point::FitPoint;
 use crate::search::query::{QueriedModel, Query};
 use statistics::likelihood::Likelihood;
@@ -69,7 +69,11 @@ impl RefittedModel {
             let point = FitPoint::new(&fit.frame, part, position, taken(&fit.point.values))?;
             let columns = fit.columns.iter().map(|column| taken(column)).collect();
             let corrections = fit.corrections.iter();
-            let corrections: Vec<_> = corrections.map(|own| own.as_deref().map(taken)).collect();
+            let part_of = |own: &Correction| Correction {
+                beyond: taken(&own.beyond),
+                ..*own
+            };
+            let corrections: Vec<_> = corrections.map(|own| own.as_ref().map(part_of)).collect();
             let refit = LaplaceFit::new(fit.frame.clone(), point, columns, &PLAN);
             let mut refit = refit.corrected(&corrections);
             // Shapes are held: a threshold that moves with every left-out level does not generalise.
