@@ -1,7 +1,7 @@
 //! The search of a rough model, whose evaluations are dear, beside that of the same model without its jumps.
 
 use discovery::{
-    Candidate, EffectRanking, EffectSearch, EvidenceMethod, RankedEffect, Roughness, SearchSettings,
+    Candidate, EffectRanking, EffectRequest, EffectSearch, EvidenceMethod, RankedEffect, Roughness, SearchSettings,
 };
 use statistics::rng::Stream;
 use statistics::{
@@ -25,7 +25,7 @@ fn candidate(k: usize) -> Candidate {
         neutral: 0.0,
         excludes: Vec::new(),
         family: None,
-        has_companion: false,
+        has_companion: true,
     }
 }
 
@@ -72,20 +72,51 @@ fn searched(likelihood: Likelihood, roughness: Roughness) -> EffectRanking {
 
 /// The search of a model of a roughness that is told another one.
 fn searched_as(likelihood: Likelihood, roughness: Roughness, told: Roughness) -> EffectRanking {
-    let normal = || Marginal::new(Distribution::Normal { mean: 0.0, sd: 1.0 }, None).unwrap();
-    let candidates: Vec<Candidate> = (0..EFFECTS).map(candidate).collect();
     let settings = SearchSettings {
         roughness: told,
         has_numerical_noise: told != Roughness::Smooth,
         ..SearchSettings::default()
     };
+    run(likelihood, &settings, |request| {
+        assert!(!request.is_companion);
+        Some(predicted(&request.theta, request.candidate, roughness))
+    })
+}
+
+/// The search of a rough model beside a companion.
+fn beside(truth: usize, companion: impl Fn(&EffectRequest) -> Option<Vec<f64>>) -> EffectRanking {
+    let settings = SearchSettings {
+        roughness: Roughness::Rough,
+        has_numerical_noise: true,
+        has_companion: true,
+        ..SearchSettings::default()
+    };
+    let likelihood = Likelihood::new(data(truth)).unwrap();
+    run(likelihood, &settings, |request| match request.is_companion {
+        true => companion(request),
+        false => Some(predicted(&request.theta, request.candidate, Roughness::Rough)),
+    })
+}
+
+/// A companion whose predictions are a share of the model's, without its jumps, and with an error of their own.
+fn biased(theta: &[f64], effect: Option<usize>) -> Vec<f64> {
+    let smooth = predicted(theta, effect, Roughness::Smooth);
+    smooth.iter().map(|value| 0.3 + 0.8 * value).collect()
+}
+
+fn run(
+    likelihood: Likelihood,
+    settings: &SearchSettings,
+    answer: impl Fn(&EffectRequest) -> Option<Vec<f64>>,
+) -> EffectRanking {
+    let normal = || Marginal::new(Distribution::Normal { mean: 0.0, sd: 1.0 }, None).unwrap();
+    let candidates: Vec<Candidate> = (0..EFFECTS).map(candidate).collect();
     let prior = Prior::new(vec![normal(), normal()]);
-    let mut search = EffectSearch::new(&prior, likelihood, &candidates, &settings).unwrap();
+    let mut search = EffectSearch::new(&prior, likelihood, &candidates, settings).unwrap();
     while search.ranking().is_none() {
         let pending: Vec<_> = search.pending().collect();
         for (index, request) in pending.iter().enumerate() {
-            let values = predicted(&request.theta, request.candidate, roughness);
-            search.tell(index, Some(&values)).unwrap();
+            search.tell(index, answer(request).as_deref()).unwrap();
         }
     }
     search.ranking().unwrap().clone()
@@ -187,4 +218,35 @@ fn a_model_of_unknown_roughness_is_searched_as_its_scatter_says() {
         let difference = own.log_bayes_factor - known.log_bayes_factor;
         assert!(difference.abs() < 0.1, "{:?}: {difference}", own.candidate);
     }
+}
+
+#[test]
+fn a_companion_saves_evaluations_of_the_model_and_the_same_is_named() {
+    let (mut with, mut without) = (0, 0);
+    for truth in [5, 7, 13, 22, 29] {
+        let alone = search(truth, Roughness::Rough);
+        let beside = beside(truth, |request| Some(biased(&request.theta, request.candidate)));
+        let class_of_truth = beside.of(Some(truth)).unwrap().class;
+        assert_eq!(leader(&beside).class, class_of_truth, "{truth}");
+        let [with_it, without_it] = [&beside, &alone].map(|ranking| leader(ranking).log_bayes_factor);
+        assert!(with_it > 0.85 * without_it, "{truth}: {with_it} and {without_it}");
+        with += beside.evaluations.screen + beside.evaluations.polish;
+        without += alone.evaluations.screen + alone.evaluations.polish;
+    }
+    assert!(2 * with < without, "{with} of {without}");
+}
+
+#[test]
+fn a_companion_that_answers_nothing_changes_nothing() {
+    assert_eq!(beside(13, |_| None), search(13, Roughness::Rough));
+}
+
+#[test]
+fn what_the_companion_does_not_show_is_screened_on_the_model() {
+    let truth = 13;
+    let blind = beside(truth, |request| {
+        let seen = request.candidate.filter(|k| *k != truth);
+        Some(biased(&request.theta, seen))
+    });
+    assert_eq!(leader(&blind).class, blind.of(Some(truth)).unwrap().class);
 }

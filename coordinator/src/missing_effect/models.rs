@@ -434,6 +434,34 @@ mod tests {
     use crate::missing_effect::fixture::read;
 
     #[test]
+    fn the_companion_of_every_candidate_is_a_quasi_static_variant() {
+        let (mut job, files, _) = read("examples/cmu-sand");
+        let smooth = SearchModels::new(&job, &files, 2).unwrap().task();
+        assert!(!smooth.settings.has_companion);
+        job.toml = job.toml.replacen("kind = \"quasi_static\"", "kind = \"scm\"", 1);
+        let mut models = SearchModels::new(&job, &files, 2).unwrap();
+        let task = models.task();
+        assert!(task.settings.has_companion);
+        let candidates = task.candidates();
+        for name in ["displacement_node", "pressure_direction_vertical", "flow_fraction"] {
+            let own = candidates.iter().filter(|own| own.name == name);
+            assert!(own.clone().all(|own| !own.has_companion), "{name}");
+        }
+        for (k, candidate) in candidates.iter().enumerate().filter(|(_, own)| own.has_companion) {
+            for is_proposed in [false, true] {
+                let query = Query {
+                    model: QueriedModel::With(vec![k]),
+                    is_proposed,
+                    is_companion: true,
+                    theta: Vec::new(),
+                };
+                let variant = models.variant(&query).map(|(_, variant)| variant.kind);
+                assert_eq!(variant.unwrap(), ModelKind::QuasiStatic, "{}", candidate.name);
+            }
+        }
+    }
+
+    #[test]
     fn a_search_asks_for_no_more_effects_than_a_job_may_have() {
         let (job, files, _) = read("examples/cmu-sand");
         let task = |count: usize| {

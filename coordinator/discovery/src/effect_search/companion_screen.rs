@@ -51,7 +51,9 @@ impl EffectSearch {
             if evaluated.is_empty() {
                 continue;
             }
-            state.by_companion = screen::screened(&state.frame, base, &self.likelihood, &evaluated);
+            let screened = screen::screened(&state.frame, base, &self.likelihood, &evaluated);
+            // What the companion does not show at all it cannot screen.
+            state.by_companion = screened.filter(|own| own.change.iter().any(|change| *change != 0.0));
             if let Some(screened) = &state.by_companion {
                 state.estimate = Some(EvidenceEstimate::of_screen(screened));
                 state.screened = Some(screened.uncorrected());

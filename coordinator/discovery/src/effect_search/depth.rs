@@ -50,6 +50,8 @@ pub(crate) struct Depth {
     /// weights of a rough model scatter as its log-likelihood does, so that few draws stand for all.
     pub(crate) confirms: bool,
     pub(crate) least_confirmed: usize,
+    /// How many are confirmed in any case where the best fit contradicts the data: a fit that is far off tells little of its rank.
+    pub(crate) least_confirmed_if_wrong: usize,
     /// Whatever lies, or promises to lie, within so many nats of the best is confirmed, too: a fit that stuck may lead.
     pub(crate) within: f64,
     pub(crate) samples: bool,
@@ -83,6 +85,7 @@ pub(crate) const FULL: Depth = Depth {
     polish: &[FitStep::Differences, FitStep::Trials(6)],
     confirms: true,
     least_confirmed: 4,
+    least_confirmed_if_wrong: 4,
     within: 10.0,
     samples: true,
     confirmation: THOROUGH,
@@ -109,6 +112,10 @@ pub(crate) const SPARING: Depth = Depth {
             FitStep::Differences,
         ],
         keeps_jacobian: true,
+    },
+    confirmation_if_wrong: Confirmation {
+        most_starts: 3,
+        ..THOROUGH
     },
     ..FULL
 };

@@ -295,7 +295,12 @@ impl EffectSearch {
         if !self.depth.confirms {
             return self.finish();
         }
-        let first = self.best(self.depth.least_confirmed);
+        let least = if self.is_wrong() {
+            self.depth.least_confirmed_if_wrong
+        } else {
+            self.depth.least_confirmed
+        };
+        let first = self.best(least);
         self.confirm_these(first);
     }
 

@@ -476,6 +476,46 @@ mod tests {
     }
 
     #[test]
+    fn a_derivative_that_was_measured_on_the_model_follows_the_companion() {
+        let prior = Marginal::new(Distribution::Normal { mean: 0.0, sd: 1.0 }, None).unwrap();
+        let frame = NormalFrame::base(&Prior::new(vec![prior]), Roughness::Rough).beside(true);
+        let datum = Datum {
+            run: 0,
+            channel: 0,
+            value: 3.0,
+            sd: ErrorSd::Known(0.5),
+        };
+        let likelihood = Likelihood::new(vec![datum]).unwrap();
+        // The model has another slope than its companion and the same curvature.
+        let companion = |t: f64| t + 0.5 * t * t;
+        let model = |t: f64| 2.0 * t + 0.5 * t * t;
+        let differences = |mut fit: LaplaceFit| {
+            let mut asked_model = 0;
+            loop {
+                let asked = fit.ask(&likelihood);
+                if asked.is_empty() {
+                    return (fit, asked_model);
+                }
+                let is_companion = fit.asks_companion();
+                asked_model += if is_companion { 0 } else { asked.len() };
+                let of = |t: f64| if is_companion { companion(t) } else { model(t) };
+                let answers = asked.iter().map(|position| Some(vec![of(position[0])]));
+                fit.tell(&likelihood, answers.collect());
+            }
+        };
+        let at = |t: f64| {
+            let point = FitPoint::new(&frame, &likelihood, vec![t], vec![model(t)]).unwrap();
+            LaplaceFit::new(frame.clone(), point, vec![vec![0.0]], &[FitStep::Differences])
+        };
+        let (measured, asked_model) = differences(at(0.0));
+        assert_eq!((asked_model, measured.evaluations), (1, 1));
+        let (followed, asked_model) = differences(at(1.0).corrected(&measured.corrections));
+        assert_eq!((asked_model, followed.evaluations), (0, 0));
+        // The forward difference over 0.15 of 2 t + t^2 / 2 at 1.
+        assert!((followed.columns[0][0] - 3.075).abs() < 1e-12, "{:?}", followed.columns);
+    }
+
+    #[test]
     fn a_rough_fit_whose_steps_all_fail_keeps_the_jacobian_of_its_differences() {
         // A slope of 1 that no step beyond the difference bears out.
         let fit = fitted(Roughness::Rough, |t| if t.abs() < 0.2 { t } else { -t.abs() });

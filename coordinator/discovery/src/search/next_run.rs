@@ -244,4 +244,19 @@ mod tests {
         assert_eq!(columns(asked([Some(1.0), Some(-1.0)], None)), [[-1.0]]);
         assert!(columns(asked([Some(1.0), None], None)).is_empty());
     }
+
+    #[test]
+    fn the_spread_is_that_of_the_companion_about_the_prediction_of_the_model() {
+        let mut asked = AskedHypothesis {
+            has_companion: true,
+            ..asked([Some(0.5), None], None)
+        };
+        let answers: Vec<_> = asked
+            .thetas()
+            .map(|(is_companion, theta)| Some(vec![if is_companion { 3.0 * theta[0] } else { 7.0 }]))
+            .collect();
+        asked.take(answers.into_iter());
+        let prediction = asked.prediction.expect("the mode is answered");
+        assert_eq!((prediction.mean, prediction.columns), (vec![7.0], vec![vec![1.5]]));
+    }
 }
