@@ -1,7 +1,8 @@
 //! The search of a rough model, whose evaluations are dear, beside that of the same model without its jumps.
 
 use discovery::{
-    Candidate, EffectRanking, EffectRequest, EffectSearch, EvidenceMethod, RankedEffect, Roughness, SearchSettings,
+    Candidate, EffectRanking, EffectRequest, EffectSearch, EvidenceMethod, RankedEffect, Roughness,
+    SearchSettings,
 };
 use statistics::rng::Stream;
 use statistics::{

@@ -2,7 +2,7 @@
 
 use discovery::Candidate;
 use formula::Effect;
-use job::{FreeParameter, ModelSwitch, PlainParameter, Spec};
+use job::{EffectOnNodes, FreeParameter, ModelSwitch, PlainParameter, Spec};
 use record::{Extension, NotTried};
 
 use shared::file::FileSet;
@@ -132,7 +132,8 @@ impl CandidateEntry {
                 neutral,
                 excludes: Vec::new(),
                 family: None,
-                has_companion: ModelKind::QuasiStatic.has_form(effect),
+                has_companion: ModelKind::QuasiStatic.has_form(effect)
+                    && EffectOnNodes::find(&candidate.name).is_none(),
             },
             names: free.into_iter().map(|p| p.name).collect(),
             not_tried: None,

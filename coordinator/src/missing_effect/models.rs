@@ -443,7 +443,12 @@ mod tests {
         let task = models.task();
         assert!(task.settings.has_companion);
         let candidates = task.candidates();
-        for name in ["displacement_node", "pressure_direction_vertical", "flow_fraction"] {
+        for name in [
+            "displacement_node",
+            "pressure_direction_vertical",
+            "flow_fraction",
+            "janosi_hanamoto_node",
+        ] {
             let own = candidates.iter().filter(|own| own.name == name);
             assert!(own.clone().all(|own| !own.has_companion), "{name}");
         }

@@ -4,7 +4,9 @@ use std::collections::BTreeMap;
 
 use coordinator::embedded::Evaluate;
 use coordinator::missing_effect::SearchModels;
-use discovery::{Conclusion, DiscoverySearch, EffectRanking, EffectRequest, EffectSearch, QueriedModel, Query};
+use discovery::{
+    Conclusion, DiscoverySearch, EffectRanking, EffectRequest, EffectSearch, QueriedModel, Query,
+};
 use shared::file::FileSet;
 use shared::model::RunCondition;
 use shared::outcome::{Observables, Outcome};

@@ -56,7 +56,7 @@ impl EffectSearch {
             state.by_companion = screened.filter(|own| own.change.iter().any(|change| *change != 0.0));
             if let Some(screened) = &state.by_companion {
                 state.estimate = Some(EvidenceEstimate::of_screen(screened));
-                state.screened = Some(screened.uncorrected());
+                state.screened = Some(screened.as_of_model());
             }
         }
         let wanted = self.worth_evaluations();
@@ -76,26 +76,28 @@ impl EffectSearch {
         let best = all().filter_map(|k| promise(&k)).fold(0.0, f64::max);
         let near = self.best(self.depth.most_extended);
         let is_worth = |k: &usize| {
-            let reach = self.depth.reach.map(|share| share * best);
-            let is_near = near.contains(k) || promise(k) > reach;
-            promise(k).is_none() || (self.awaits_model(*k) && is_near)
+            let Some(own) = promise(k) else { return true };
+            let is_within_reach = self.depth.reach.is_some_and(|share| own > share * best);
+            self.awaits_model(*k) && (near.contains(k) || is_within_reach)
         };
         all().filter(is_worth).collect()
     }
 
-    /// The coordinate of the shapes that the companion found best; `None` where it was not asked, or there are none.
-    pub(super) fn best_shape(&self, k: usize) -> Option<f64> {
-        let state = &self.candidates[k];
-        let own = &state.by_companion.as_ref()?.point.position;
-        let first = self.base_frame.dimension();
-        (first..own.len()).find(|k| !state.frame.is_strength(*k)).map(|k| own[k])
+    /// The coordinate of the shapes that the companion found best; `None` where it was not asked, or there are none, or the model
+    /// refused that shape.
+    pub(super) fn best_shape(&self, candidate: usize) -> Option<f64> {
+        let state = &self.candidates[candidate];
+        let position = &state.by_companion.as_ref()?.point.position;
+        let own = self.base_frame.dimension()..position.len();
+        let mut shapes = own.filter(|k| !state.frame.is_strength(*k));
+        shapes.next().map(|k| position[k])
     }
 
     /// Whether a candidate has a point of its own that the model has not evaluated.
     pub(super) fn awaits_model(&self, k: usize) -> bool {
         let state = &self.candidates[k];
-        let is_sketched = state.by_companion.is_some() && !state.is_screened_on_model;
-        is_sketched && state.frame.strength().is_some()
+        let is_of_companion = state.by_companion.is_some() && !state.is_screened_on_model;
+        is_of_companion && state.frame.strength().is_some()
     }
 }
 
@@ -104,17 +106,21 @@ impl CandidateState {
     pub(super) fn take_screened(&mut self, screened: Option<Screened>, base_dimension: usize) {
         self.is_screened_on_model = true;
         self.screened = screened;
+        if self.screened.is_none() {
+            // Another shape may be possible.
+            self.by_companion = None;
+        }
         if let (Some(screened), Some(by_companion)) = (&mut self.screened, &self.by_companion) {
             for k in base_dimension..self.frame.dimension() {
-                if self.frame.is_strength(k) {
+                screened.corrections[k] = Some(Correction::none(screened.change.len()));
+                if !self.frame.is_strength(k) {
+                    screened.columns[k].clone_from(&by_companion.columns[k]);
+                } else if screened.longest_step.to_bits() == by_companion.longest_step.to_bits() {
                     let pairs = screened.change.iter().zip(&by_companion.change);
                     screened.corrections[k] = Some(Correction {
                         beyond: pairs.map(|(slope, cheap)| slope - cheap).collect(),
                         is_secant: true,
                     });
-                } else {
-                    screened.columns[k].clone_from(&by_companion.columns[k]);
-                    screened.corrections[k] = Some(Correction::none(screened.change.len()));
                 }
             }
             screened.log_bayes_factor += by_companion.log_bayes_factor - by_companion.of_best_shape;
@@ -125,7 +131,7 @@ impl CandidateState {
 
 impl Screened {
     /// As if the model changed as its companion does.
-    fn uncorrected(&self) -> Self {
+    fn as_of_model(&self) -> Self {
         let none = |column: &Vec<f64>| Some(Correction::none(column.len()));
         Self {
             corrections: self.columns.iter().map(none).collect(),

@@ -105,7 +105,12 @@ impl EffectSearch {
     fn measure_noise(&mut self, batch: FitBatch, spacing: f64) {
         let Some(best) = batch.best() else { return };
         let asked = numerical_noise::positions(&best.point.position, spacing);
-        self.ask(asked.into_iter().map(|position| Asked::of_model(None, position)).collect());
+        self.ask(
+            asked
+                .into_iter()
+                .map(|position| Asked::of_model(None, position))
+                .collect(),
+        );
         self.phase = Phase::NumericalNoise(batch, spacing);
     }
 
@@ -315,7 +320,11 @@ impl EffectSearch {
             asked.extend(starts.map(|position| Asked::of_model(Some(k), position)));
             if is_wrong {
                 let anywhere = base::starts(&self.candidates[k].frame, confirmation::ANYWHERE);
-                asked.extend(anywhere.into_iter().map(|position| Asked::of_model(Some(k), position)));
+                asked.extend(
+                    anywhere
+                        .into_iter()
+                        .map(|position| Asked::of_model(Some(k), position)),
+                );
             }
             // The base may also improve from the extension's mode: a Bayes factor compares their best fits.
             if let Some(fit) = self.fit_of(k) {
@@ -362,7 +371,12 @@ impl EffectSearch {
         }
         for k in candidates {
             if let Some(fit) = self.fit_of(k) {
-                fits.push((Some(k), fit.continued(plan)));
+                let again = if confirmation.keeps_jacobian {
+                    fit.continued(plan)
+                } else {
+                    fit.measured_again(plan)
+                };
+                fits.push((Some(k), again));
             }
         }
         self.confirm(FitBatch::new(fits));

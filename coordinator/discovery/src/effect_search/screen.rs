@@ -25,7 +25,9 @@ pub(super) struct Screened {
     pub(super) change: Vec<f64>,
     /// Derivatives along the candidate's own coordinates, in the order of the frame; zeros for all others.
     pub(super) columns: Vec<Vec<f64>>,
-    /// By how much those exceed the companion's, where both were screened.
+    /// The step over which the change of a single strength was taken; 1 of others.
+    pub(super) longest_step: f64,
+    /// By how much those exceed the companion's, as far as that is known: nothing where the companion alone was screened.
     pub(super) corrections: Vec<Option<Correction>>,
     /// Mean over the shapes of the best among the strengths.
     pub(super) log_bayes_factor: f64,
@@ -205,6 +207,7 @@ fn of_one(
         corrections: vec![None; columns.len()],
         point: best.point.clone(),
         change: usual.change.clone(),
+        longest_step: usual.step,
         columns,
         log_bayes_factor: mean,
         of_best_shape: best.log_bayes_factor,
@@ -244,6 +247,7 @@ fn of_switch(
     let evidence = mixed_evidence(frame, &point.position, &quadratic, point.value, f64::INFINITY)?;
     Some(Screened {
         change: difference(&point.values, fit, 1.0),
+        longest_step: 1.0,
         columns: fit.columns.clone(),
         corrections: vec![None; fit.columns.len()],
         log_bayes_factor: evidence - base.log_evidence,
@@ -280,6 +284,7 @@ fn of_several(
     Some(Screened {
         point: absent,
         change,
+        longest_step: 1.0,
         corrections: vec![None; columns.len()],
         columns,
         log_bayes_factor: evidence - base.log_evidence,

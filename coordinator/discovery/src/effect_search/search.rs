@@ -50,7 +50,12 @@ impl EffectSearch {
         let mut search = Self::unasked(frame, likelihood, candidates, settings.seed);
         search.measures_noise = settings.has_numerical_noise;
         search.depth = Depth::of(settings.roughness);
-        search.ask(positions.into_iter().map(|position| Asked::of_model(None, position)).collect());
+        search.ask(
+            positions
+                .into_iter()
+                .map(|position| Asked::of_model(None, position))
+                .collect(),
+        );
         Ok(search)
     }
 
@@ -77,7 +82,12 @@ impl EffectSearch {
         seed: u64,
     ) -> Self {
         let mut search = Self::unasked(frame, likelihood, &[], seed);
-        search.ask(starts.into_iter().map(|start| Asked::of_model(None, start)).collect());
+        search.ask(
+            starts
+                .into_iter()
+                .map(|start| Asked::of_model(None, start))
+                .collect(),
+        );
         search
     }
 

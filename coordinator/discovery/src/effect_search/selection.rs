@@ -159,7 +159,10 @@ impl EffectSearch {
             .filter_map(|(k, state)| {
                 let estimate = state.estimate.as_ref()?;
                 let screened = state.screened.as_ref().map(|s| s.log_bayes_factor);
-                let screened = screened.filter(|_| estimate.method < EvidenceMethod::Confirmed);
+                // What the companion alone promised has no say once the model is fitted.
+                let is_of_model = state.by_companion.is_none() || state.is_screened_on_model;
+                let counts = estimate.method < EvidenceMethod::Confirmed && is_of_model;
+                let screened = screened.filter(|_| counts);
                 let highest = estimate
                     .log_bayes_factor
                     .max(screened.unwrap_or(f64::NEG_INFINITY));

@@ -158,9 +158,10 @@ impl EffectSearch {
         for candidate in of_model.filter_map(|own| own.candidate) {
             self.candidates[candidate].evaluations += 1;
         }
-        let proposals = asked.iter().enumerate().map(|(index, own)| {
-            Proposal::plain(index, self.frame(own.candidate).theta(&own.position))
-        });
+        let proposals = asked
+            .iter()
+            .enumerate()
+            .map(|(index, own)| Proposal::plain(index, self.frame(own.candidate).theta(&own.position)));
         let proposals = proposals.collect();
         self.round.ask(proposals);
         self.asked = asked;

@@ -140,7 +140,8 @@ impl NormalFrame {
             coordinates,
             base: self.base.clone(),
             roughness: self.roughness,
-            has_companion: self.has_companion && candidate.has_companion,
+            // A switch has no step along which the companion could stand for the model.
+            has_companion: self.has_companion && candidate.has_companion && !candidate.is_switch(),
             strengths,
             widened,
         }

@@ -28,8 +28,8 @@ pub(crate) enum FitStep {
     /// Computes the Jacobian by finite differences: of the companion, as far as its difference from the model is known, and of the
     /// model elsewhere.
     Differences,
-    /// At most so many trial steps, one evaluation each. After a step that gains, the Jacobian follows the companion where all of its
-    /// corrections are known.
+    /// At most so many trial steps, one evaluation each. After a step that gains, the Jacobian follows the companion, with no
+    /// correction of what the companion alone has screened.
     Trials(usize),
     /// `Differences` and `Trials(trials)`, repeated at most so many times, until a new Jacobian predicts no gain, which ends the plan.
     /// Of a rough model a round whose steps gain nothing ends the plan, too, with the Jacobian that its differences gave.
@@ -122,8 +122,12 @@ impl LaplaceFit {
 
     /// The same fit continued with another plan.
     pub(crate) fn continued(&self, plan: &[FitStep]) -> Self {
-        let continued = Self::new(self.frame.clone(), self.point.clone(), self.columns.clone(), plan);
-        continued.corrected(&self.corrections)
+        self.measured_again(plan).corrected(&self.corrections)
+    }
+
+    /// The same fit continued with another plan whose differences are the model's.
+    pub(crate) fn measured_again(&self, plan: &[FitStep]) -> Self {
+        Self::new(self.frame.clone(), self.point.clone(), self.columns.clone(), plan)
     }
 
     /// With the corrections of a fit of the same model, or of one that it extends.
@@ -176,10 +180,10 @@ impl LaplaceFit {
                     self.is_fresh = true;
                     self.has_gained = false;
                 }
-                FitStep::Trials(left) if std::mem::take(&mut self.has_moved) => {
+                FitStep::Trials(left) if self.frame.has_companion && std::mem::take(&mut self.has_moved) => {
                     self.plan.push_front(FitStep::Trials(left));
                     let wanted = self.differences(likelihood);
-                    if self.frame.has_companion && wanted.iter().all(|(k, _)| self.corrections[*k].is_some()) {
+                    if wanted.iter().all(|(k, _)| self.corrections[*k].is_some()) {
                         return self.ask_differences(wanted, true);
                     }
                 }
@@ -298,7 +302,9 @@ impl LaplaceFit {
                 let pairs = values.iter().zip(here);
                 pairs.map(|(x, m)| (x - m) / offset).collect()
             };
-            self.companion[*k] = answer.zip(here.as_ref()).map(|(values, here)| slope(values, here));
+            self.companion[*k] = answer
+                .zip(here.as_ref())
+                .map(|(values, here)| slope(values, here));
         }
         let mut measured = Vec::new();
         for (k, offset) in wanted {
@@ -330,7 +336,8 @@ impl LaplaceFit {
                 Some(values) => {
                     let pairs = values.iter().zip(&self.point.values);
                     self.columns[k] = pairs.map(|(x, m)| (x - m) / offset).collect();
-                    if let Some(Some(companion)) = self.companion.get(k) {
+                    // The companion's difference is that of the first attempt.
+                    if let Some(Some(companion)) = self.companion.get(k).filter(|_| !is_second) {
                         let pairs = self.columns[k].iter().zip(companion);
                         self.corrections[k] = Some(Correction {
                             beyond: pairs.map(|(slope, cheap)| slope - cheap).collect(),
@@ -512,7 +519,11 @@ mod tests {
         let (followed, asked_model) = differences(at(1.0).corrected(&measured.corrections));
         assert_eq!((asked_model, followed.evaluations), (0, 0));
         // The forward difference over 0.15 of 2 t + t^2 / 2 at 1.
-        assert!((followed.columns[0][0] - 3.075).abs() < 1e-12, "{:?}", followed.columns);
+        assert!(
+            (followed.columns[0][0] - 3.075).abs() < 1e-12,
+            "{:?}",
+            followed.columns
+        );
     }
 
     #[test]

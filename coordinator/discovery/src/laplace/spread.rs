@@ -16,6 +16,23 @@ pub(crate) struct Axis {
     pub(crate) spare: Option<Vec<f64>>,
 }
 
+impl Axis {
+    /// With one side to evaluate, and the other to spare.
+    pub(crate) fn one_sided(self) -> Self {
+        let [above, below] = self.sides;
+        match above {
+            Some(_) => Self {
+                sides: [above, None],
+                spare: below,
+            },
+            None => Self {
+                sides: [None, below],
+                spare: None,
+            },
+        }
+    }
+}
+
 /// The axes about a fit's mode; none where the posterior has no covariance.
 pub(crate) fn spread(fit: &LaplaceFit, likelihood: &Likelihood) -> Vec<Axis> {
     let covariance = Cholesky::new(fit.quadratic(likelihood).hessian).map(|c| c.inverse());

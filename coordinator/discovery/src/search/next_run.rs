@@ -48,7 +48,7 @@ struct AskedHypothesis {
     probability: f64,
     /// `None` once it is told.
     mode: Option<Vec<f64>>,
-    /// Whether the companion is asked for the spread.
+    /// Whether the companion is asked for the spread: at first, where there is one.
     has_companion: bool,
     /// What the spread is compared with: the prediction of the companion at the mode where that is asked, and of the model elsewhere.
     middle: Option<Vec<f64>>,
@@ -97,19 +97,30 @@ impl AskedHypothesis {
         let half_difference = |a: &[f64], b: &[f64], share: f64| -> Vec<f64> {
             a.iter().zip(b).map(|(a, b)| share * (a - b)).collect()
         };
-        for Axis { sides, spare } in axes {
-            match sides.map(|side| side.and_then(|_| answers.next().flatten())) {
-                [Some(above), Some(below)] => prediction.columns.push(half_difference(&above, &below, 0.5)),
-                [Some(one), None] | [None, Some(one)] => {
-                    let column = self.middle.as_ref().map(|middle| half_difference(&one, middle, 1.0));
-                    prediction.columns.extend(column);
+        for axis in axes {
+            let told = axis
+                .sides
+                .each_ref()
+                .map(|side| side.as_ref().and_then(|_| answers.next().flatten()));
+            let column = match (told, &self.middle) {
+                ([Some(above), Some(below)], _) => Some(half_difference(&above, &below, 0.5)),
+                ([Some(one), None] | [None, Some(one)], Some(middle)) => {
+                    Some(half_difference(&one, middle, 1.0))
                 }
-                [None, None] => self.spread.extend(spare.map(|spare| Axis {
+                _ => None,
+            };
+            match column {
+                Some(column) => prediction.columns.push(column),
+                None if self.has_companion => self.spread.push(axis.one_sided()),
+                None => self.spread.extend(axis.spare.map(|spare| Axis {
                     sides: [None, Some(spare)],
                     spare: None,
                 })),
             }
         }
+        // What the companion did not answer the model is asked.
+        self.has_companion = false;
+        self.middle = Some(prediction.mean.clone());
     }
 }
 
@@ -257,6 +268,9 @@ mod tests {
             .collect();
         asked.take(answers.into_iter());
         let prediction = asked.prediction.expect("the mode is answered");
-        assert_eq!((prediction.mean, prediction.columns), (vec![7.0], vec![vec![1.5]]));
+        assert_eq!(
+            (prediction.mean, prediction.columns),
+            (vec![7.0], vec![vec![1.5]])
+        );
     }
 }
