@@ -238,6 +238,31 @@ fn one_effect_is_named() {
 }
 
 #[test]
+fn where_the_prior_all_but_excludes_the_best_fit_nothing_is_claimed() {
+    let values = measured(|x, _| 0.3 + 0.5 * x + 0.8 * x * x);
+    let found = |slope: Distribution| {
+        let mut task = task(&values);
+        task.prior = Prior::new(vec![normal(1.0), Marginal::new(slope, None).unwrap()]);
+        // What could take the slope's place beside the square.
+        task.laws = Vec::new();
+        task.library[CUBE].excludes = vec![task.library[SQUARE].name.clone()];
+        search(task, false, answer)
+    };
+    let narrow = found(Distribution::Normal { mean: 0.0, sd: 0.03 });
+    assert_eq!(narrow.verdict, SearchVerdict::Undecided);
+    assert!(narrow.agreed.is_none());
+    let (parameter, sds) = narrow.implausible.unwrap();
+    assert!(parameter == 1 && sds > 5.0, "{parameter} {sds}");
+    // The end of a range is where its user wants it.
+    let bounded = found(Distribution::Uniform {
+        lower: -1.0,
+        upper: 0.45,
+    });
+    assert_eq!(bounded.verdict, SearchVerdict::Named(SQUARE));
+    assert_eq!(bounded.implausible, None);
+}
+
+#[test]
 fn every_explanation_has_its_predicted_values() {
     let found = found(|x, _| 0.3 + 0.5 * x + 0.8 * x * x);
     for effect in &found.ranking.effects {

@@ -40,6 +40,9 @@ pub struct Discovery {
     pub verdict: Verdict,
     /// The verdict in a sentence for a test engineer.
     pub text: String,
+    /// The parameter of the searched model that the best explanation puts where its prior all but excludes it: nothing is claimed then.
+    #[serde(default)]
+    pub implausible: Option<ImplausibleParameter>,
     /// The addition to the model, where the verdict names one, or where it is open but evidence and prediction of left-out levels
     /// have the same best set: its leading effect.
     pub extension: Option<Extension>,
@@ -95,6 +98,16 @@ pub struct Discovery {
     pub evaluations_to_name: u64,
     /// All evaluations.
     pub evaluations: u64,
+}
+
+/// A parameter that contradicts its prior.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct ImplausibleParameter {
+    /// Its name.
+    pub name: String,
+    /// Its distance from the median of its prior, in standard deviations of a normal density; beyond 5 either way. With a joint prior
+    /// that of the parameter given those before it.
+    pub prior_sds: f64,
 }
 
 /// An addition to a model.

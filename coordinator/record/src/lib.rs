@@ -19,8 +19,9 @@ mod verification;
 
 pub use calibration::{CalibrationRow, ExperimentRow, SealKey};
 pub use discovery::{
-    ChiSquare, CurveDatum, Discovery, EffectCurves, Extension, JudgedEffect, JudgedSet, NEXT_RUNS, NONE,
-    NOT_IN_LIBRARY, NextRun, NotTried, Outside, RemainingMisfit, RunInformation, Verdict, effect_of,
+    ChiSquare, CurveDatum, Discovery, EffectCurves, Extension, ImplausibleParameter, JudgedEffect, JudgedSet,
+    NEXT_RUNS, NONE, NOT_IN_LIBRARY, NextRun, NotTried, Outside, RemainingMisfit, RunInformation, Verdict,
+    effect_of,
 };
 pub use estimate::EstimateRow;
 pub use evaluation_key::{EvaluationKey, HOLDOUT_RUNS_FROM, LIKELIEST, PREDICTIONS_FROM};

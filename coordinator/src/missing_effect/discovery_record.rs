@@ -7,8 +7,8 @@ use discovery::{
 };
 use job::{PlainParameter, candidate_priors};
 use record::{
-    ChiSquare, Discovery, Extension, JudgedEffect, JudgedSet, NONE, NOT_IN_LIBRARY, NextRun, Outside,
-    RunInformation, Verdict,
+    ChiSquare, Discovery, Extension, ImplausibleParameter, JudgedEffect, JudgedSet, NONE, NOT_IN_LIBRARY,
+    NextRun, Outside, RunInformation, Verdict,
 };
 use shared::channel::Channel;
 
@@ -86,6 +86,10 @@ pub(super) fn discovery_record(models: &SearchModels, conclusion: &Conclusion) -
         given: given.map(|effect| effect.name.clone()).collect(),
         verdict,
         text: sentence(models, conclusion, &effects, outside.as_ref()),
+        implausible: conclusion.implausible.and_then(|(k, prior_sds)| {
+            let name = models.base.parameters.get(k)?.name.clone();
+            Some(ImplausibleParameter { name, prior_sds })
+        }),
         extension,
         drop: conclusion
             .redundant()

@@ -22,11 +22,14 @@ pub(super) fn sentence(
     effects: &[JudgedEffect],
     outside: Option<&Outside>,
 ) -> String {
-    let mut text = verdict(models, conclusion, effects, outside);
-    let is_claim = matches!(
-        conclusion.verdict,
-        SearchVerdict::Named(_) | SearchVerdict::Class(_) | SearchVerdict::NotInLibrary
-    );
+    let mut text = match implausible(models, conclusion) {
+        Some(reason) if conclusion.verdict == SearchVerdict::Undecided => {
+            format!("something is missing or the prior is wrong: {reason}")
+        }
+        Some(reason) => format!("{}; {reason}", verdict(models, conclusion, effects, outside)),
+        None => verdict(models, conclusion, effects, outside),
+    };
+    let is_claim = conclusion.verdict.is_claim();
     if let (true, Some(false), Some(chi)) = (is_claim, conclusion.complete, conclusion.chi_square_best) {
         let explained = conclusion.explained.map_or(String::new(), |share| {
             format!("{:.0} % of the excess chi-square is explained, ", 100.0 * share)
@@ -47,6 +50,27 @@ pub(super) fn sentence(
         );
     }
     text
+}
+
+/// The parameter that contradicts its prior in the best explanation, and what to do.
+fn implausible(models: &SearchModels, conclusion: &Conclusion) -> Option<String> {
+    let (k, sds) = conclusion.implausible?;
+    let best: Vec<String> = conclusion
+        .best
+        .effects
+        .iter()
+        .map(|&own| models.name(own))
+        .collect();
+    let side = if sds < 0.0 { "below" } else { "above" };
+    Some(format!(
+        "the best fit ({}) puts {} {:.1} sds of its prior {side} the middle, so the probabilities tell little; widen that prior and search again",
+        match best.as_slice() {
+            [] => format!("{} alone", models.base.model_words()),
+            own => list(own.iter().map(String::as_str)),
+        },
+        models.base.parameters.get(k)?.name,
+        sds.abs()
+    ))
 }
 
 fn verdict(

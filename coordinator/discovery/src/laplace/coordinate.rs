@@ -7,6 +7,10 @@ use crate::settings::Roughness;
 
 /// Limit of the search, in standard deviations of the prior.
 const FARTHEST: f64 = 7.5;
+/// A parameter farther out contradicts its prior \[standard deviations\]: a right prior puts one of two million there.
+const IMPLAUSIBLE: f64 = 5.0;
+/// Share of the distance from -1 to 1 sd by which a support goes on beyond a place that is not its end.
+const BEYOND: f64 = 0.01;
 
 /// The map from a parameter to its coordinate.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -77,6 +81,13 @@ impl NormalCoordinate {
             Side::Above => self.marginal.quantile(1.0 - 2.0 * normal::cdf(-t)),
             Side::Below => self.marginal.quantile(2.0 * normal::cdf(-t)),
         }
+    }
+
+    /// Whether the support ends at a coordinate, as a uniform density does at any far one.
+    fn ends_at(&self, t: f64) -> bool {
+        let (lower, upper) = self.marginal.support();
+        let end = if t < 0.0 { lower } else { upper };
+        (end - self.value(t)).abs() <= BEYOND * (self.value(1.0) - self.value(-1.0))
     }
 
     fn lower(&self) -> f64 {
@@ -226,6 +237,17 @@ impl NormalFrame {
     pub(crate) fn holds(&self, position: &[f64]) -> bool {
         let (lower, upper) = self.room(position);
         lower.iter().all(|l| *l <= 0.0) && upper.iter().all(|u| *u >= 0.0)
+    }
+
+    /// The parameter of the base that contradicts its prior most, and its coordinate; `None` without one. Where the support ends, the
+    /// bound is what the user declared.
+    pub(crate) fn implausible(&self, position: &[f64]) -> Option<(usize, f64)> {
+        let own = self.coordinates.iter().zip(position).take(self.base.dimension());
+        let far = own
+            .enumerate()
+            .filter(|(_, (coordinate, t))| t.abs() > IMPLAUSIBLE && !coordinate.ends_at(**t));
+        far.map(|(k, (_, t))| (k, *t))
+            .max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))
     }
 
     /// Which parameters lie within 2 % of a bound of their range, or at the value at which a half-normal strength is absent.

@@ -48,6 +48,9 @@ pub struct OutsideLaw {
 pub struct Conclusion {
     /// What the data support.
     pub verdict: SearchVerdict,
+    /// The parameter of the base that the best explanation puts where its prior all but excludes it, by its index, with its normal score:
+    /// evidences then measure how each explanation relieves that prior, and nothing is claimed. `None` without one.
+    pub implausible: Option<(usize, f64)>,
     /// The single effects, with the probabilities of all explanations.
     pub ranking: EffectRanking,
     /// Log Bayes factor and probability of a law outside the library; `None`: not searched.
@@ -116,20 +119,25 @@ impl Conclusion {
         let of_library = of_library.map(|best| &best.fit).or(hypotheses.base_fit());
         let law = hypotheses.confirmed_law();
         let law = law.filter(|law| explains(task, of_library.and_then(chi_square), law));
-        let verdict = SearchVerdict::new(
+        let supported = SearchVerdict::new(
             task,
             &weighing,
             hypotheses,
             law,
             hypotheses.is_incomplete(&task.likelihood),
         );
-        let law = law.filter(|_| verdict == SearchVerdict::NotInLibrary);
+        let law = law.filter(|_| supported == SearchVerdict::NotInLibrary);
         let detected = hypotheses.detected();
         let base = hypotheses.base_fit();
         let (effects, fit) = match (law, detected) {
             (Some(law), _) => (vec![law.candidate], Some(&law.fit)),
             (None, Some(best)) => (best.effects.clone(), Some(&best.fit)),
             (None, None) => (Vec::new(), base),
+        };
+        let implausible = fit.and_then(|fit| fit.frame.implausible(&fit.point.position));
+        let verdict = match implausible {
+            Some(_) if supported.is_claim() => SearchVerdict::Undecided,
+            _ => supported,
         };
         let model = |effects: Vec<usize>, fit: Option<&LaplaceFit>, number: u64| PosteriorModel {
             effects,
@@ -144,12 +152,15 @@ impl Conclusion {
         let incomplete = fit.filter(|_| after.is_some_and(|chi| !chi.is_complete()));
         Self {
             verdict,
+            implausible,
             remaining: incomplete.map_or(Vec::new(), |fit| residuals(fit, &task.likelihood)),
             complete: after.map(|chi| chi.is_complete()),
             explained: excess
                 .zip(left)
                 .map(|(excess, left)| (1.0 - left / excess).max(0.0)),
-            agreed: weighing.agreed().filter(|_| verdict == SearchVerdict::Undecided),
+            agreed: weighing
+                .agreed()
+                .filter(|_| verdict == SearchVerdict::Undecided && implausible.is_none()),
             ranking: weighing.ranking,
             not_in_library: weighing.not_in_library,
             predicted_by_law: hypotheses.laws.as_ref().and_then(|scan| {
@@ -158,13 +169,15 @@ impl Conclusion {
             }),
             sets: weighing.sets,
             misfit: weighing.misfit,
-            outside: law.map(|law| OutsideLaw {
-                law: law.law,
-                candidate: law.candidate,
-                log_bayes_factor: law.log_bayes_factor,
-                parameters: law.fit.theta()[task.prior.dimension()..].to_vec(),
-                left_out_nats: law.left_out.unwrap_or([0.0; 2]),
-            }),
+            outside: law
+                .filter(|_| verdict == SearchVerdict::NotInLibrary)
+                .map(|law| OutsideLaw {
+                    law: law.law,
+                    candidate: law.candidate,
+                    log_bayes_factor: law.log_bayes_factor,
+                    parameters: law.fit.theta()[task.prior.dimension()..].to_vec(),
+                    left_out_nats: law.left_out.unwrap_or([0.0; 2]),
+                }),
             combination: detected.map_or(Vec::new(), |best| best.effects.clone()),
             gains: hypotheses.gains.clone(),
             chi_square: base.and_then(chi_square),

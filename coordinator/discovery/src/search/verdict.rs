@@ -24,6 +24,11 @@ pub enum SearchVerdict {
 }
 
 impl SearchVerdict {
+    /// Whether it says what is missing.
+    pub fn is_claim(self) -> bool {
+        matches!(self, Self::Named(_) | Self::Class(_) | Self::NotInLibrary)
+    }
+
     /// A misfit that remains with the best explanation does not prevent a name: the probabilities account for it.
     ///
     /// # Arguments
