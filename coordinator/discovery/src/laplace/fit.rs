@@ -435,7 +435,8 @@ impl LaplaceFit {
     /// [`log_evidence`](Self::log_evidence).
     pub(crate) fn stated_gain(&self, likelihood: &Likelihood) -> Option<f64> {
         let quadratic = self.at_mode(likelihood);
-        stated_less_mixed(&self.frame, &self.point.position, &quadratic, self.point.value)
+        let (position, value) = (&self.point.position, self.point.value);
+        stated_less_mixed(&self.frame, position, &quadratic, value, MOST_UNREACHED)
     }
 
     fn at_mode(&self, likelihood: &Likelihood) -> QuadraticModel {

@@ -72,11 +72,9 @@ pub(crate) fn mixed_evidence(
         value,
         log_peak: 0.0,
     }];
-    let mut without_strengths = value;
     for &k in &frame.widened {
         let t = position[k];
         let own = -log_sum_exp(log_parts(t));
-        without_strengths -= own;
         let with = |part: &MixturePart| {
             let of_part = |(log_part, (weight, scale)): (f64, (f64, f64))| MixturePart {
                 quadratic: with_precision(&part.quadratic, k, t, 1.0 / (scale * scale)),
@@ -88,7 +86,7 @@ pub(crate) fn mixed_evidence(
         parts = parts.iter().flat_map(with).collect();
     }
     let halves = frame.halves();
-    let most = most_gain + libm::log(2.0) * halves.len() as f64 - without_strengths;
+    let most = most_gain + highest(frame, position, value);
     let evidence = |part: &MixturePart| {
         let own = log_evidence(&part.quadratic, part.value, &halves)?;
         Some(own.min(most + part.log_peak + log_volume(&part.quadratic)?))
@@ -97,18 +95,32 @@ pub(crate) fn mixed_evidence(
     Some(log_sum_exp(evidences?.into_iter()))
 }
 
+/// The log density at `position` without the priors of the widened strengths, relative to that of their whole range.
+fn highest(frame: &NormalFrame, position: &[f64], value: f64) -> f64 {
+    let of_strengths = frame
+        .widened
+        .iter()
+        .map(|&k| -log_sum_exp(log_parts(position[k])));
+    libm::log(2.0) * frame.halves().len() as f64 - value + of_strengths.sum::<f64>()
+}
+
 /// The log evidence under the stated priors less [`mixed_evidence`]: nats, `None` as there.
+///
+/// # Arguments
+/// - `most_gain`: as of [`mixed_evidence`], for both: a bound for one alone would be the difference.
 pub(crate) fn stated_less_mixed(
     frame: &NormalFrame,
     position: &[f64],
     quadratic: &QuadraticModel,
     value: f64,
+    most_gain: f64,
 ) -> Option<f64> {
     let stated = stated(frame, position, quadratic);
     let squares: f64 = position.iter().map(|t| t * t).sum();
     let stated_value = value - penalty(frame, position) + 0.5 * squares;
-    let own = log_evidence(&stated, stated_value, &frame.halves())?;
-    Some(own - mixed_evidence(frame, position, quadratic, value, f64::INFINITY)?)
+    let most = most_gain + highest(frame, position, value) + log_volume(&stated)?;
+    let own = log_evidence(&stated, stated_value, &frame.halves())?.min(most);
+    Some(own - mixed_evidence(frame, position, quadratic, value, most_gain)?)
 }
 
 /// The expansion with the stated priors of the strengths.
@@ -178,5 +190,8 @@ mod tests {
         let evidence = |most| mixed_evidence(&frame, &position, &quadratic, value, most).unwrap();
         assert!(evidence(f64::INFINITY) > 100.0);
         assert!(evidence(3.0) < 3.0 && evidence(3.0) > 0.0);
+        let stated = |most| stated_less_mixed(&frame, &position, &quadratic, value, most).unwrap();
+        assert!(stated(f64::INFINITY) < -100.0);
+        assert!(stated(3.0).abs() < 2.0, "{}", stated(3.0));
     }
 }
