@@ -35,11 +35,22 @@ const LAST_IN_SERIES: f64 = 0.5;
 /// Starts of the base's fit.
 const STARTS: usize = 32;
 
-/// A model, whether on the proposed runs, and whether its companion.
-type VariantKey = (QueriedModel, bool, bool);
+/// What decides the variant of a query.
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
+struct VariantKey {
+    model: QueriedModel,
+    is_proposed: bool,
+    is_companion: bool,
+}
 
-fn key(query: &Query) -> VariantKey {
-    (sorted(&query.model), query.is_proposed, query.is_companion)
+impl VariantKey {
+    fn of(query: &Query) -> Self {
+        Self {
+            model: sorted(&query.model),
+            is_proposed: query.is_proposed,
+            is_companion: query.is_companion,
+        }
+    }
 }
 
 /// The models of a search.
@@ -235,15 +246,15 @@ impl SearchModels {
     /// # Errors
     /// [`FileError`] where the effects are incompatible.
     pub fn make<'q>(&mut self, queries: impl Iterator<Item = &'q Query>) -> Result<(), FileError> {
-        let keys: BTreeSet<VariantKey> = queries.map(key).collect();
+        let keys: BTreeSet<VariantKey> = queries.map(VariantKey::of).collect();
         let unknown = keys.into_iter().filter(|key| !self.variants.contains_key(key));
         let unknown: Vec<VariantKey> = unknown.collect();
-        let one = |(model, is_proposed, is_companion): &VariantKey| {
-            let mut variant = self.of_fitted_runs(model)?;
-            if *is_proposed {
+        let one = |key: &VariantKey| {
+            let mut variant = self.of_fitted_runs(&key.model)?;
+            if key.is_proposed {
                 variant = self.of_proposed_runs(variant);
             }
-            if *is_companion {
+            if key.is_companion {
                 let coarse = variant.coarse();
                 variant = coarse.map_err(|e| FileError::whole(JOB, e.to_string()))?;
             }
@@ -262,12 +273,12 @@ impl SearchModels {
     /// [`FileError`] where the effects are incompatible.
     pub fn variant(&mut self, query: &Query) -> Result<&(String, ModelVariant), FileError> {
         self.make(std::iter::once(query))?;
-        Ok(&self.variants[&key(query)])
+        Ok(&self.variants[&VariantKey::of(query)])
     }
 
     /// The variant of a query that was made before, with its hash.
     pub fn made(&self, query: &Query) -> Option<&(String, ModelVariant)> {
-        self.variants.get(&key(query))
+        self.variants.get(&VariantKey::of(query))
     }
 
     /// The variant of a hash that was made before.

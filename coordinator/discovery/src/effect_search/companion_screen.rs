@@ -4,7 +4,7 @@ use crate::effect_search::ranking::EvidenceMethod;
 use crate::effect_search::screen::{self, Evaluated, Screened};
 use crate::effect_search::state::{CandidateState, EffectSearch, EvidenceEstimate, Phase};
 use crate::laplace::batch::Asked;
-use crate::laplace::fit::Correction;
+use crate::laplace::correction::Correction;
 
 impl EffectSearch {
     /// Screens what the companion has a form of on the companion, and the rest on the model.
@@ -116,11 +116,8 @@ impl CandidateState {
                 if !self.frame.is_strength(k) {
                     screened.columns[k].clone_from(&by_companion.columns[k]);
                 } else if screened.longest_step.to_bits() == by_companion.longest_step.to_bits() {
-                    let pairs = screened.change.iter().zip(&by_companion.change);
-                    screened.corrections[k] = Some(Correction {
-                        beyond: pairs.map(|(slope, cheap)| slope - cheap).collect(),
-                        is_secant: true,
-                    });
+                    let own = Correction::between(&screened.change, &by_companion.change, true);
+                    screened.corrections[k] = Some(own);
                 }
             }
             screened.log_bayes_factor += by_companion.log_bayes_factor - by_companion.of_best_shape;
@@ -136,16 +133,6 @@ impl Screened {
         Self {
             corrections: self.columns.iter().map(none).collect(),
             ..self.clone()
-        }
-    }
-}
-
-impl Correction {
-    /// As if the model changed as its companion does, which a fit has to measure.
-    fn none(values: usize) -> Self {
-        Self {
-            beyond: vec![0.0; values],
-            is_secant: true,
         }
     }
 }

@@ -1,12 +1,14 @@
 //! How far a search goes, and the plans of its fits.
 
 use crate::effect_search::base;
-use crate::laplace::fit::FitStep;
+use crate::laplace::fit::{FitStep, LaplaceFit};
 use crate::settings::Roughness;
 
 /// The confirmation of a model from several starts.
 #[derive(Debug)]
 pub(crate) struct Confirmation {
+    /// How many models are confirmed in any case, the best.
+    pub(crate) least: usize,
     /// Most starts of a model from which a fit continues, the most probable.
     pub(crate) most_starts: usize,
     /// The plan of these fits.
@@ -15,8 +17,20 @@ pub(crate) struct Confirmation {
     pub(crate) keeps_jacobian: bool,
 }
 
+impl Confirmation {
+    /// The fit continued by this plan.
+    pub(crate) fn continued(&self, fit: &LaplaceFit) -> LaplaceFit {
+        if self.keeps_jacobian {
+            fit.continued(self.plan)
+        } else {
+            fit.measured_again(self.plan)
+        }
+    }
+}
+
 /// As thorough as the base's fit.
 const THOROUGH: Confirmation = Confirmation {
+    least: 4,
     most_starts: 6,
     plan: &[FitStep::Rounds { most: 3, trials: 12 }, FitStep::Differences],
     keeps_jacobian: false,
@@ -46,16 +60,13 @@ pub(crate) struct Depth {
     /// How many of the best are polished, and the plan of that fit.
     pub(crate) most_polished: usize,
     pub(crate) polish: &'static [FitStep],
-    /// Whether the best are confirmed from several starts, how many are in any case, and whether doubtful evidences are sampled: the
-    /// weights of a rough model scatter as its log-likelihood does, so that few draws stand for all.
+    /// Whether the best are confirmed from several starts, and whether doubtful evidences are sampled: the weights of a rough model
+    /// scatter as its log-likelihood does, so that few draws stand for all.
     pub(crate) confirms: bool,
-    pub(crate) least_confirmed: usize,
-    /// How many are confirmed in any case where the best fit contradicts the data: a fit that is far off tells little of its rank.
-    pub(crate) least_confirmed_if_wrong: usize,
     /// Whatever lies, or promises to lie, within so many nats of the best is confirmed, too: a fit that stuck may lead.
     pub(crate) within: f64,
     pub(crate) samples: bool,
-    /// How a model is confirmed, and how where the best fit contradicts the data.
+    /// How a model is confirmed, and how where the best fit contradicts the data: a fit that is far off tells little of its rank.
     pub(crate) confirmation: Confirmation,
     pub(crate) confirmation_if_wrong: Confirmation,
 }
@@ -84,8 +95,6 @@ pub(crate) const FULL: Depth = Depth {
     most_polished: 3,
     polish: &[FitStep::Differences, FitStep::Trials(6)],
     confirms: true,
-    least_confirmed: 4,
-    least_confirmed_if_wrong: 4,
     within: 10.0,
     samples: true,
     confirmation: THOROUGH,
@@ -100,10 +109,10 @@ pub(crate) const SPARING: Depth = Depth {
     most_extended: 8,
     reach: Some(0.25),
     extension: &[FitStep::Trials(6)],
-    least_confirmed: 2,
     within: 5.0,
     samples: false,
     confirmation: Confirmation {
+        least: 2,
         most_starts: 2,
         plan: &[
             FitStep::Trials(6),

@@ -1,8 +1,9 @@
 //! The fit of the base with one effect added, from the screen's result.
 
 use crate::effect_search::depth::Depth;
-use crate::effect_search::screen::{Screened, difference};
+use crate::effect_search::screen::Screened;
 use crate::laplace::coordinate::NormalFrame;
+use crate::laplace::correction::quotient;
 use crate::laplace::fit::LaplaceFit;
 use crate::laplace::point::FitPoint;
 use crate::laplace::quadratic::quadratic;
@@ -31,7 +32,11 @@ pub(crate) fn fit(
     let shapes = || (base.columns.len()..frame.dimension()).filter(|k| !frame.is_strength(*k));
     if !is_present {
         if let Some((k, neutral)) = frame.strength() {
-            columns[k] = difference(&screened.point.values, base, screened.point.position[k] - neutral);
+            columns[k] = quotient(
+                &screened.point.values,
+                &base.point.values,
+                screened.point.position[k] - neutral,
+            );
         }
         // Where an effect is absent its shape changes nothing.
         for k in shapes() {

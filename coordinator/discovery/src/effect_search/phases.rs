@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use crate::effect_search::depth::Confirmation;
 use crate::effect_search::ranking::EvidenceMethod;
 use crate::effect_search::screen::{self, Evaluated, LEVELS};
 use crate::effect_search::state::{EffectSearch, Phase};
@@ -105,12 +106,7 @@ impl EffectSearch {
     fn measure_noise(&mut self, batch: FitBatch, spacing: f64) {
         let Some(best) = batch.best() else { return };
         let asked = numerical_noise::positions(&best.point.position, spacing);
-        self.ask(
-            asked
-                .into_iter()
-                .map(|position| Asked::of_model(None, position))
-                .collect(),
-        );
+        self.ask(Asked::all_of_model(None, asked).collect());
         self.phase = Phase::NumericalNoise(batch, spacing);
     }
 
@@ -165,7 +161,7 @@ impl EffectSearch {
             let frame = &self.candidates[k].frame;
             let base = &base.fit.point.position;
             let at = screen::positions(frame, base, self.depth, self.best_shape(k), level);
-            asked.extend(at.into_iter().map(|position| Asked::of_model(Some(k), position)));
+            asked.extend(Asked::all_of_model(Some(k), at));
         }
         if asked.is_empty() && level + 1 < LEVELS.len() {
             return self.screen(level + 1, wanted);
@@ -300,13 +296,16 @@ impl EffectSearch {
         if !self.depth.confirms {
             return self.finish();
         }
-        let least = if self.is_wrong() {
-            self.depth.least_confirmed_if_wrong
-        } else {
-            self.depth.least_confirmed
-        };
-        let first = self.best(least);
+        let first = self.best(self.confirmation().least);
         self.confirm_these(first);
+    }
+
+    fn confirmation(&self) -> &'static Confirmation {
+        if self.is_wrong() {
+            &self.depth.confirmation_if_wrong
+        } else {
+            &self.depth.confirmation
+        }
     }
 
     /// Fits candidates from several starts.
@@ -316,15 +315,14 @@ impl EffectSearch {
         let is_wrong = self.is_wrong();
         let mut asked = Vec::new();
         for &k in &candidates {
-            let starts = confirmation::starts(&self.candidates[k].frame, &base.fit).into_iter();
-            asked.extend(starts.map(|position| Asked::of_model(Some(k), position)));
+            let frame = &self.candidates[k].frame;
+            asked.extend(Asked::all_of_model(
+                Some(k),
+                confirmation::starts(frame, &base.fit),
+            ));
             if is_wrong {
-                let anywhere = base::starts(&self.candidates[k].frame, confirmation::ANYWHERE);
-                asked.extend(
-                    anywhere
-                        .into_iter()
-                        .map(|position| Asked::of_model(Some(k), position)),
-                );
+                let anywhere = base::starts(frame, confirmation::ANYWHERE);
+                asked.extend(Asked::all_of_model(Some(k), anywhere));
             }
             // The base may also improve from the extension's mode: a Bayes factor compares their best fits.
             if let Some(fit) = self.fit_of(k) {
@@ -348,12 +346,7 @@ impl EffectSearch {
             let point = values.and_then(|v| FitPoint::new(frame, &self.likelihood, asked.position, v));
             points.entry(asked.candidate).or_default().extend(point);
         }
-        let confirmation = if self.is_wrong() {
-            &self.depth.confirmation_if_wrong
-        } else {
-            &self.depth.confirmation
-        };
-        let plan = confirmation.plan;
+        let confirmation = self.confirmation();
         let mut fits = Vec::new();
         for (candidate, mut points) in points {
             points.sort_by(|a, b| a.value.total_cmp(&b.value));
@@ -365,20 +358,12 @@ impl EffectSearch {
             let columns = known.map_or_else(none, |known| known.columns.clone());
             let corrections = known.map_or(&[][..], |known| &known.corrections);
             for point in points {
-                let fit = LaplaceFit::new(frame.clone(), point, columns.clone(), plan);
+                let fit = LaplaceFit::new(frame.clone(), point, columns.clone(), confirmation.plan);
                 fits.push((candidate, fit.corrected(corrections)));
             }
         }
-        for k in candidates {
-            if let Some(fit) = self.fit_of(k) {
-                let again = if confirmation.keeps_jacobian {
-                    fit.continued(plan)
-                } else {
-                    fit.measured_again(plan)
-                };
-                fits.push((Some(k), again));
-            }
-        }
+        let known = candidates.into_iter().filter_map(|k| Some((k, self.fit_of(k)?)));
+        fits.extend(known.map(|(k, fit)| (Some(k), confirmation.continued(fit))));
         self.confirm(FitBatch::new(fits));
     }
 
@@ -404,8 +389,7 @@ impl EffectSearch {
             let number = candidate.map_or(0, |k| k as u64 + 1);
             let positions = model.ask(self.seed, number);
             waiting.push(positions.len());
-            let positions = positions.into_iter();
-            asked.extend(positions.map(|position| Asked::of_model(*candidate, position)));
+            asked.extend(Asked::all_of_model(*candidate, positions));
         }
         if asked.is_empty() {
             self.take_sampled(&models);

@@ -2,8 +2,9 @@
 
 use crate::effect_search::depth::Depth;
 use crate::laplace::coordinate::NormalFrame;
+use crate::laplace::correction::{Correction, quotient};
 use crate::laplace::evidence::log_sum_exp;
-use crate::laplace::fit::{Correction, FittedModel, LaplaceFit};
+use crate::laplace::fit::{FittedModel, LaplaceFit};
 use crate::laplace::point::FitPoint;
 use crate::laplace::quadratic::quadratic;
 use crate::laplace::strength_prior::mixed_evidence;
@@ -109,12 +110,6 @@ pub(super) fn screened(
     }
 }
 
-/// The finite difference of the predicted values over a step.
-pub(super) fn difference(values: &[f64], base: &LaplaceFit, step: f64) -> Vec<f64> {
-    let pairs = values.iter().zip(&base.point.values);
-    pairs.map(|(with, without)| (with - without) / step).collect()
-}
-
 /// A step of the screen.
 struct Node {
     log_bayes_factor: f64,
@@ -139,7 +134,7 @@ fn of_one(
     let nodes = evaluated.iter().filter_map(|(position, values)| {
         let values = values.clone()?;
         let step = position[strength] - neutral;
-        let change = difference(&values, base, step);
+        let change = quotient(&values, &base.point.values, step);
         let mut columns = base.columns.clone();
         columns.resize(frame.dimension(), vec![0.0; values.len()]);
         columns[strength].clone_from(&change);
@@ -230,8 +225,7 @@ fn slope(
         .reduce(|a, b| if b.step < a.step { b } else { a });
     let (low, from) = below.map_or((0.0, &base.point.values), |node| (node.step, &node.point.values));
     let to = above.unwrap_or(node);
-    let pairs = to.point.values.iter().zip(from);
-    pairs.map(|(x, m)| (x - m) / (to.step - low)).collect()
+    quotient(&to.point.values, from, to.step - low)
 }
 
 fn of_switch(
@@ -246,7 +240,7 @@ fn of_switch(
     let quadratic = quadratic(frame, likelihood, &point, &fit.columns);
     let evidence = mixed_evidence(frame, &point.position, &quadratic, point.value, f64::INFINITY)?;
     Some(Screened {
-        change: difference(&point.values, fit, 1.0),
+        change: quotient(&point.values, &fit.point.values, 1.0),
         longest_step: 1.0,
         columns: fit.columns.clone(),
         corrections: vec![None; fit.columns.len()],
@@ -267,7 +261,7 @@ fn of_several(
     let mut columns = fit.columns.clone();
     columns.resize(frame.dimension(), vec![0.0; fit.point.values.len()]);
     for ((k, neutral), (position, values)) in frame.strengths.iter().zip(evaluated) {
-        columns[*k] = difference(values.as_ref()?, fit, position[*k] - neutral);
+        columns[*k] = quotient(values.as_ref()?, &fit.point.values, position[*k] - neutral);
     }
     let absent = frame.without(&evaluated.first()?.0);
     let absent = FitPoint::new(frame, likelihood, absent, fit.point.values.clone())?;

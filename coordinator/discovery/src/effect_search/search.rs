@@ -50,12 +50,7 @@ impl EffectSearch {
         let mut search = Self::unasked(frame, likelihood, candidates, settings.seed);
         search.measures_noise = settings.has_numerical_noise;
         search.depth = Depth::of(settings.roughness);
-        search.ask(
-            positions
-                .into_iter()
-                .map(|position| Asked::of_model(None, position))
-                .collect(),
-        );
+        search.ask(Asked::all_of_model(None, positions).collect());
         Ok(search)
     }
 
@@ -82,12 +77,7 @@ impl EffectSearch {
         seed: u64,
     ) -> Self {
         let mut search = Self::unasked(frame, likelihood, &[], seed);
-        search.ask(
-            starts
-                .into_iter()
-                .map(|start| Asked::of_model(None, start))
-                .collect(),
-        );
+        search.ask(Asked::all_of_model(None, starts).collect());
         search
     }
 

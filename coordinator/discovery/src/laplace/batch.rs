@@ -22,6 +22,16 @@ impl Asked {
             is_companion: false,
         }
     }
+
+    /// Each of these positions, of the model itself.
+    pub(crate) fn all_of_model(
+        candidate: Option<usize>,
+        positions: Vec<Vec<f64>>,
+    ) -> impl Iterator<Item = Self> {
+        positions
+            .into_iter()
+            .map(move |position| Self::of_model(candidate, position))
+    }
 }
 
 /// Fits of the base (`None`) or of candidates.

@@ -3,6 +3,7 @@
 use std::collections::VecDeque;
 
 use crate::laplace::coordinate::NormalFrame;
+use crate::laplace::correction::{Correction, quotient};
 use crate::laplace::noise;
 use crate::laplace::point::FitPoint;
 use crate::laplace::quadratic::quadratic;
@@ -34,14 +35,6 @@ pub(crate) enum FitStep {
     /// `Differences` and `Trials(trials)`, repeated at most so many times, until a new Jacobian predicts no gain, which ends the plan.
     /// Of a rough model a round whose steps gain nothing ends the plan, too, with the Jacobian that its differences gave.
     Rounds { most: usize, trials: usize },
-}
-
-/// By how much a derivative of the model exceeds that of its companion.
-#[derive(Debug, Clone)]
-pub(crate) struct Correction {
-    pub(crate) beyond: Vec<f64>,
-    /// Over a long step of the screen: good for steps of a fit, not for an evidence.
-    pub(crate) is_secant: bool,
 }
 
 /// A fit of one model.
@@ -298,20 +291,14 @@ impl LaplaceFit {
         let here = answers.pop().flatten();
         self.companion = vec![None; self.frame.dimension()];
         for ((k, offset), answer) in wanted.iter().zip(answers) {
-            let slope = |values: Vec<f64>, here: &Vec<f64>| {
-                let pairs = values.iter().zip(here);
-                pairs.map(|(x, m)| (x - m) / offset).collect()
-            };
-            self.companion[*k] = answer
-                .zip(here.as_ref())
-                .map(|(values, here)| slope(values, here));
+            let pair = answer.as_ref().zip(here.as_ref());
+            self.companion[*k] = pair.map(|(values, here)| quotient(values, here, *offset));
         }
         let mut measured = Vec::new();
         for (k, offset) in wanted {
             match (&self.companion[k], &self.corrections[k]) {
                 (Some(companion), Some(correction)) if follows || self.follows[k] => {
-                    let pairs = companion.iter().zip(&correction.beyond);
-                    self.columns[k] = pairs.map(|(slope, beyond)| slope + beyond).collect();
+                    self.columns[k] = correction.of_model(companion);
                 }
                 _ if follows => {}
                 _ => measured.push((k, offset)),
@@ -334,15 +321,11 @@ impl LaplaceFit {
         for ((k, offset), answer) in wanted.into_iter().zip(answers) {
             match answer {
                 Some(values) => {
-                    let pairs = values.iter().zip(&self.point.values);
-                    self.columns[k] = pairs.map(|(x, m)| (x - m) / offset).collect();
+                    self.columns[k] = quotient(&values, &self.point.values, offset);
                     // The companion's difference is that of the first attempt.
                     if let Some(Some(companion)) = self.companion.get(k).filter(|_| !is_second) {
-                        let pairs = self.columns[k].iter().zip(companion);
-                        self.corrections[k] = Some(Correction {
-                            beyond: pairs.map(|(slope, cheap)| slope - cheap).collect(),
-                            is_secant: false,
-                        });
+                        let own = Correction::between(&self.columns[k], companion, false);
+                        self.corrections[k] = Some(own);
                     }
                 }
                 None if !is_second && (lower[k]..=upper[k]).contains(&-offset) => again.push((k, -offset)),
@@ -458,18 +441,24 @@ mod tests {
     use statistics::likelihood::{Datum, ErrorSd};
     use statistics::prior::{Distribution, Marginal, Prior};
 
-    /// The fit in rounds of a model with one parameter from its prior's middle to the datum
-    /// 3 with the sd 1/2.
-    fn fitted(roughness: Roughness, model: impl Fn(f64) -> f64) -> LaplaceFit {
+    /// One parameter, and the datum 3 with the sd 1/2.
+    fn one_datum(roughness: Roughness) -> (NormalFrame, Likelihood) {
         let prior = Marginal::new(Distribution::Normal { mean: 0.0, sd: 1.0 }, None).unwrap();
-        let frame = NormalFrame::base(&Prior::new(vec![prior]), roughness);
         let datum = Datum {
             run: 0,
             channel: 0,
             value: 3.0,
             sd: ErrorSd::Known(0.5),
         };
-        let likelihood = Likelihood::new(vec![datum]).unwrap();
+        (
+            NormalFrame::base(&Prior::new(vec![prior]), roughness),
+            Likelihood::new(vec![datum]).unwrap(),
+        )
+    }
+
+    /// The fit in rounds of a model of that datum from its prior's middle.
+    fn fitted(roughness: Roughness, model: impl Fn(f64) -> f64) -> LaplaceFit {
+        let (frame, likelihood) = one_datum(roughness);
         let start = FitPoint::new(&frame, &likelihood, vec![0.0], vec![model(0.0)]).unwrap();
         let plan = [FitStep::Rounds { most: 6, trials: 12 }, FitStep::Differences];
         let mut fit = LaplaceFit::new(frame, start, vec![vec![0.0]], &plan);
@@ -485,15 +474,8 @@ mod tests {
 
     #[test]
     fn a_derivative_that_was_measured_on_the_model_follows_the_companion() {
-        let prior = Marginal::new(Distribution::Normal { mean: 0.0, sd: 1.0 }, None).unwrap();
-        let frame = NormalFrame::base(&Prior::new(vec![prior]), Roughness::Rough).beside(true);
-        let datum = Datum {
-            run: 0,
-            channel: 0,
-            value: 3.0,
-            sd: ErrorSd::Known(0.5),
-        };
-        let likelihood = Likelihood::new(vec![datum]).unwrap();
+        let (frame, likelihood) = one_datum(Roughness::Rough);
+        let frame = frame.beside(true);
         // The model has another slope than its companion and the same curvature.
         let companion = |t: f64| t + 0.5 * t * t;
         let model = |t: f64| 2.0 * t + 0.5 * t * t;

@@ -3,12 +3,13 @@
 //! # Layout
 //! - `coordinate`: parameters as standard normal coordinates. `strength_prior`: the heavier tails of a candidate's strengths.
 //! - `point`: an evaluated position. `quadratic`: the expansion of the log posterior about it. `noise`: its part along noise sds.
-//! - `fit`: the minimisation for one model. `batch`: several side by side.
+//! - `fit`: the minimisation for one model; `correction`: of the companion's derivatives. `batch`: several side by side.
 //! - `evidence`: the integral over a quadratic. `importance`: the same integral by importance sampling. `draws`: posterior draws.
 //! - `spread`: points one standard deviation from the mode. `tightened`: the likelihood with less room for discrepancy.
 
 pub(crate) mod batch;
 pub(crate) mod coordinate;
+pub(crate) mod correction;
 pub(crate) mod draws;
 pub(crate) mod evidence;
 pub(crate) mod fit;

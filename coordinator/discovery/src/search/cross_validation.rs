@@ -2,7 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use crate::laplace::fit::{Correction, FitStep, LaplaceFit};
+use crate::laplace::correction::Correction;
+use crate::laplace::fit::{FitStep, LaplaceFit};
 use crate::laplace::point::FitPoint;
 use crate::search::query::{QueriedModel, Query};
 use statistics::likelihood::Likelihood;
