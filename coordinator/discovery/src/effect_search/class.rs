@@ -30,16 +30,21 @@ impl Projection {
         })
     }
 
+    /// How far a change moves along the columns: whitened inner products.
+    fn along(&self, whitened: &[f64]) -> DVector<f64> {
+        let products = self.columns.iter().map(|c| self.whitening.curvature(c, whitened));
+        DVector::from_iterator(self.columns.len(), products)
+    }
+
+    /// The step of the base that comes closest to a change of the predictions: `(I + J'J)^-1 J'g`.
+    pub(super) fn absorbing(&self, change: &[f64]) -> DVector<f64> {
+        self.cholesky.solve(&self.along(&self.whitening.apply(change)))
+    }
+
     /// Inner products of changes after projection out of `[J; I]`: `a'b - a'J (I + J'J)^-1 J'b`, whitened.
     pub(super) fn products(&self, changes: &[Vec<f64>]) -> DMatrix<f64> {
         let changes: Vec<Vec<f64>> = changes.iter().map(|g| self.whitening.apply(g)).collect();
-        let along: Vec<DVector<f64>> = changes
-            .iter()
-            .map(|g| {
-                let products = self.columns.iter().map(|c| self.whitening.curvature(c, g));
-                DVector::from_iterator(self.columns.len(), products)
-            })
-            .collect();
+        let along: Vec<DVector<f64>> = changes.iter().map(|g| self.along(g)).collect();
         let solved: Vec<DVector<f64>> = along.iter().map(|v| self.cholesky.solve(v)).collect();
         DMatrix::from_fn(changes.len(), changes.len(), |i, j| {
             self.whitening.curvature(&changes[i], &changes[j]) - along[i].dot(&solved[j])

@@ -123,7 +123,7 @@ impl EffectSearch {
     }
 
     /// Candidates that are to be confirmed next: those near the best that are not confirmed yet; once there are none, of a
-    /// model with numerical noise and once only, those whose fits got stuck.
+    /// model with numerical noise those whose fits got stuck, once only, and those of the best one's class that fall short of it.
     pub(super) fn unconfirmed(&mut self) -> Vec<usize> {
         let promises = self.promises();
         let Some(&(_, best)) = promises.first() else {
@@ -144,12 +144,66 @@ impl EffectSearch {
         let near = (best - self.depth.within).max(confirmation::LEAST_PROMISE);
         let next = first(&|k, _| open(k).is_some(), near);
         // Where the model scatters, fits get stuck more often than elsewhere.
-        if !next.is_empty() || self.has_confirmed_stuck || self.numerical_noise_sds.is_empty() {
+        if !next.is_empty() || self.numerical_noise_sds.is_empty() {
             return next;
         }
-        let stuck = first(&is_stuck, confirmation::STUCK * best.max(0.0));
-        self.has_confirmed_stuck = true;
-        stuck
+        let stuck = if std::mem::replace(&mut self.has_confirmed_stuck, true) {
+            Vec::new()
+        } else {
+            first(&is_stuck, confirmation::STUCK * best.max(0.0))
+        };
+        if !stuck.is_empty() {
+            return stuck;
+        }
+        self.alike(best - MOST_SHORT)
+    }
+
+    /// Candidates of the best one's class with less evidence than `least`, once for each best one of the first few: what changes the predictions alike
+    /// fits alike, unless its fit got stuck.
+    fn alike(&mut self, least: f64) -> Vec<usize> {
+        let is_new =
+            |best: &usize| self.had_alike.len() < confirmation::COUNT && !self.had_alike.contains(best);
+        let best = self.best(1).pop().filter(is_new);
+        let (Some(best), Some(projected)) = (best, self.projected()) else {
+            return Vec::new();
+        };
+        self.had_alike.push(best);
+        let of_best = projected.classes.get(&best);
+        let is_short = |k: &usize| {
+            let estimate = self.candidates[*k].estimate.as_ref();
+            estimate.is_some_and(|own| own.fit.is_some() && own.log_bayes_factor < least)
+        };
+        let own = projected
+            .classes
+            .iter()
+            .filter(|(_, class)| Some(*class) == of_best);
+        let short = own.map(|(k, _)| *k).filter(|k| *k != best && is_short(k));
+        short.take(confirmation::COUNT).collect()
+    }
+
+    /// A start that predicts as the best candidate's fit does: at the strength that changes the predictions alike, with the base's
+    /// parameters moved to absorb the rest. `None` of the best itself, of what has not one strength, and beyond the limits.
+    pub(super) fn in_place_of_best(&self, candidate: usize) -> Option<Vec<f64>> {
+        let best = self.best(1).pop().filter(|best| *best != candidate)?;
+        let fit = self.fit_of(best)?;
+        let (of_best, absent) = fit.frame.strength()?;
+        let frame = &self.candidates[candidate].frame;
+        let (strength, neutral) = frame.strength()?;
+        let change = |k: usize| Some(self.candidates[k].screened.as_ref()?.change.clone());
+        let changes = [change(candidate)?, change(best)?];
+        let projection = Projection::new(&self.base.as_ref()?.fit, &self.likelihood)?;
+        let products = projection.products(&changes);
+        let from = fit.point.position[of_best] - absent;
+        let to = from * products[(0, 1)] / products[(0, 0)];
+        let [own, others] = changes;
+        let rest: Vec<f64> = others.iter().zip(&own).map(|(a, b)| from * a - to * b).collect();
+        let mut position = self.fit_of(candidate)?.point.position.clone();
+        let absorbing = projection.absorbing(&rest);
+        for (t, (of_fit, by)) in position.iter_mut().zip(fit.point.position.iter().zip(&absorbing)) {
+            *t = of_fit + by;
+        }
+        position[strength] = neutral + to;
+        frame.holds(&position).then_some(position)
     }
 
     /// The candidates with their Bayes factors, the highest first.
@@ -248,5 +302,95 @@ impl EffectSearch {
         };
         ranking.weigh(|_| Vec::new(), None, 1.0);
         self.phase = Phase::Done(Box::new(ranking));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::candidate::Candidate;
+    use crate::settings::SearchSettings;
+    use statistics::likelihood::{Datum, ErrorSd, Likelihood};
+    use statistics::prior::{Distribution, Marginal, Prior};
+
+    const DATA: usize = 12;
+
+    /// A line, and the same square on two scales, once with some of the line.
+    fn predicted(theta: &[f64], effect: Option<usize>) -> Vec<f64> {
+        let at = |i: usize| {
+            let x = i as f64 / 6.0 - 1.0;
+            let own = match effect {
+                None => 0.0,
+                Some(0) => theta[2] * x * x,
+                Some(_) => theta[2] * (2.0 * x * x - 0.5 * x),
+            };
+            theta[0] + theta[1] * x + own
+        };
+        (0..DATA).map(at).collect()
+    }
+
+    fn searched() -> EffectSearch {
+        let normal = || Marginal::new(Distribution::Normal { mean: 0.0, sd: 1.0 }, None).unwrap();
+        let candidate = |name: &str| Candidate {
+            name: name.into(),
+            parameters: vec![normal()],
+            strengths: vec![0],
+            neutral: 0.0,
+            excludes: Vec::new(),
+            family: None,
+            has_companion: false,
+        };
+        let clean = predicted(&[0.2, -0.4, 0.9], Some(0));
+        let datum = |(run, value): (usize, f64)| Datum {
+            run,
+            channel: 0,
+            value,
+            sd: ErrorSd::Known(0.05),
+        };
+        let data = clean.into_iter().enumerate().map(datum).collect();
+        let prior = Prior::new(vec![normal(), normal()]);
+        let likelihood = Likelihood::new(data).unwrap();
+        let candidates = ["one", "other"].map(candidate);
+        let mut search =
+            EffectSearch::new(&prior, likelihood, &candidates, &SearchSettings::default()).unwrap();
+        while search.ranking().is_none() {
+            let pending: Vec<_> = search.pending().collect();
+            for (index, request) in pending.iter().enumerate() {
+                let values = predicted(&request.theta, request.candidate);
+                search.tell(index, Some(&values)).unwrap();
+            }
+        }
+        search
+    }
+
+    #[test]
+    fn a_start_in_place_of_the_best_predicts_as_the_best_does() {
+        let search = searched();
+        let best = search.best(1)[0];
+        let other = 1 - best;
+        let start = search.in_place_of_best(other).unwrap();
+        let theta = search.candidates[other].frame.theta(&start);
+        let expected = &search.fit_of(best).unwrap().point.values;
+        for (value, expected) in predicted(&theta, Some(other)).iter().zip(expected) {
+            assert!((value - expected).abs() < 0.01, "{value} {expected}");
+        }
+        assert_eq!(search.in_place_of_best(best), None);
+    }
+
+    #[test]
+    fn what_changes_alike_and_falls_short_is_confirmed_once_for_each_best() {
+        let mut search = searched();
+        let best = search.best(1)[0];
+        let own = search.candidates[best]
+            .estimate
+            .as_ref()
+            .unwrap()
+            .log_bayes_factor;
+        assert_eq!(search.alike(own - MOST_SHORT), []);
+        search.had_alike.clear();
+        let other = search.candidates[1 - best].estimate.as_mut().unwrap();
+        other.log_bayes_factor = own - 10.0;
+        assert_eq!(search.alike(own - MOST_SHORT), [1 - best]);
+        assert_eq!(search.alike(own - MOST_SHORT), []);
     }
 }

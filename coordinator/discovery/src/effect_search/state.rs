@@ -35,6 +35,8 @@ pub struct EffectSearch {
     pub(crate) numerical_noise_sds: Vec<f64>,
     /// Whether fits that got stuck were confirmed.
     pub(super) has_confirmed_stuck: bool,
+    /// The best ones so far of whose class those were that fall short.
+    pub(super) had_alike: Vec<usize>,
     /// Log evidence of the models that were sampled, the base among them; `None` where the sampling failed.
     pub(super) sampled: BTreeMap<Option<usize>, Option<f64>>,
     pub(super) evaluations: EvaluationCounts,
@@ -119,6 +121,7 @@ impl EffectSearch {
             measures_noise: false,
             numerical_noise_sds: Vec::new(),
             has_confirmed_stuck: false,
+            had_alike: Vec::new(),
             sampled: BTreeMap::new(),
             evaluations: EvaluationCounts::default(),
         }

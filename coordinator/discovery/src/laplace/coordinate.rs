@@ -7,8 +7,8 @@ use crate::settings::Roughness;
 
 /// Limit of the search, in standard deviations of the prior.
 const FARTHEST: f64 = 7.5;
-/// A parameter farther out contradicts its prior \[standard deviations\]: a right prior puts one of two million there.
-const IMPLAUSIBLE: f64 = 5.0;
+/// A parameter of the best fit so close to that limit contradicts its prior, and a better fit may lie beyond.
+const NEAR_LIMIT: f64 = 1.0;
 /// Share of the distance from -1 to 1 sd by which a support goes on beyond a place that is not its end.
 const BEYOND: f64 = 0.01;
 
@@ -245,7 +245,7 @@ impl NormalFrame {
         let own = self.coordinates.iter().zip(position).take(self.base.dimension());
         let far = own
             .enumerate()
-            .filter(|(_, (coordinate, t))| t.abs() > IMPLAUSIBLE && !coordinate.ends_at(**t));
+            .filter(|(_, (coordinate, t))| t.abs() > FARTHEST - NEAR_LIMIT && !coordinate.ends_at(**t));
         far.map(|(k, (_, t))| (k, *t))
             .max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))
     }

@@ -48,7 +48,7 @@ pub struct OutsideLaw {
 pub struct Conclusion {
     /// What the data support.
     pub verdict: SearchVerdict,
-    /// The parameter of the base that the best explanation puts where its prior all but excludes it, by its index, with its normal score:
+    /// The parameter of the base that the best explanation puts near the limit of the search, by its index, with its normal score:
     /// evidences then measure how each explanation relieves that prior, and nothing is claimed. `None` without one.
     pub implausible: Option<(usize, f64)>,
     /// The single effects, with the probabilities of all explanations.
