@@ -105,7 +105,7 @@ pub struct Discovery {
 pub struct ImplausibleParameter {
     /// Its name.
     pub name: String,
-    /// Its distance from the median of its prior, in standard deviations of a normal density; beyond 5 either way. With a joint prior
+    /// Its distance from the median of its prior, in standard deviations of a normal density; beyond 6.5 either way. With a joint prior
     /// that of the parameter given those before it.
     pub prior_sds: f64,
 }

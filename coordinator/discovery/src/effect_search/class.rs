@@ -9,15 +9,23 @@ use statistics::likelihood::{Likelihood, Whitening};
 const ALIKE: f64 = 0.98;
 
 /// The projection of changes of the predictions out of those that the fitted base absorbs.
-pub(super) struct Projection {
+pub(crate) struct Projection {
     whitening: Whitening,
     columns: Vec<Vec<f64>>,
     cholesky: Cholesky<f64, Dyn>,
 }
 
+/// A change of the predictions in the place of another.
+pub(crate) struct Exchange {
+    /// How far it goes.
+    pub(crate) step: f64,
+    /// The step of the base's parameters that absorbs the rest.
+    pub(crate) of_base: Vec<f64>,
+}
+
 impl Projection {
     /// `None` where the data cannot be whitened at the base's fit.
-    pub(super) fn new(base: &LaplaceFit, likelihood: &Likelihood) -> Option<Self> {
+    pub(crate) fn new(base: &LaplaceFit, likelihood: &Likelihood) -> Option<Self> {
         let whitening = likelihood.whitening(&base.point.values, &base.theta()).ok()?;
         Some(Self {
             columns: base
@@ -36,9 +44,18 @@ impl Projection {
         DVector::from_iterator(self.columns.len(), products)
     }
 
-    /// The step of the base that comes closest to a change of the predictions: `(I + J'J)^-1 J'g`.
-    pub(super) fn absorbing(&self, change: &[f64]) -> DVector<f64> {
-        self.cholesky.solve(&self.along(&self.whitening.apply(change)))
+    /// The exchange of a step of the second change g for one of the first h: `s = t h'P g / h'P h`, and of the base
+    /// `(I + J'J)^-1 J'(t g - s h)`.
+    pub(crate) fn exchange(&self, changes: [Vec<f64>; 2], step: f64) -> Exchange {
+        let products = self.products(&changes);
+        let own = step * products[(0, 1)] / products[(0, 0)];
+        let [to, from] = changes;
+        let rest: Vec<f64> = from.iter().zip(&to).map(|(g, h)| step * g - own * h).collect();
+        let along = self.along(&self.whitening.apply(&rest));
+        Exchange {
+            step: own,
+            of_base: self.cholesky.solve(&along).iter().copied().collect(),
+        }
     }
 
     /// Inner products of changes after projection out of `[J; I]`: `a'b - a'J (I + J'J)^-1 J'b`, whitened.

@@ -17,7 +17,7 @@
 //! - `class`: effects that the data cannot distinguish.
 
 pub(crate) mod base;
-mod class;
+pub(crate) mod class;
 mod companion_screen;
 mod confirmation;
 pub(crate) mod depth;

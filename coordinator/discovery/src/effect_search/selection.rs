@@ -192,17 +192,13 @@ impl EffectSearch {
         let change = |k: usize| Some(self.candidates[k].screened.as_ref()?.change.clone());
         let changes = [change(candidate)?, change(best)?];
         let projection = Projection::new(&self.base.as_ref()?.fit, &self.likelihood)?;
-        let products = projection.products(&changes);
-        let from = fit.point.position[of_best] - absent;
-        let to = from * products[(0, 1)] / products[(0, 0)];
-        let [own, others] = changes;
-        let rest: Vec<f64> = others.iter().zip(&own).map(|(a, b)| from * a - to * b).collect();
+        let exchange = projection.exchange(changes, fit.point.position[of_best] - absent);
         let mut position = self.fit_of(candidate)?.point.position.clone();
-        let absorbing = projection.absorbing(&rest);
-        for (t, (of_fit, by)) in position.iter_mut().zip(fit.point.position.iter().zip(&absorbing)) {
+        let base = fit.point.position.iter().zip(&exchange.of_base);
+        for (t, (of_fit, by)) in position.iter_mut().zip(base) {
             *t = of_fit + by;
         }
-        position[strength] = neutral + to;
+        position[strength] = neutral + exchange.step;
         frame.holds(&position).then_some(position)
     }
 

@@ -159,6 +159,7 @@ impl DiscoverySearch {
             Stage::Families(branches) => state.after_families(branches),
             Stage::BeamSearch(size, branches) => state.after_beam_search(*size, branches),
             Stage::BackwardElimination(branches) => state.after_backward_elimination(branches),
+            Stage::Exchanges(round, branches) => state.after_exchanges(*round, branches),
             Stage::Curves(branch) => state.after_curves(branch),
             Stage::Forms(branch) => state.after_forms(branch),
             Stage::CrossValidation(rank, validation) => state.after_cross_validation(*rank, validation),

@@ -132,7 +132,7 @@ impl SearchState {
     /// redundant.
     fn backward_elimination(&mut self) -> Stage {
         let Some(best) = self.hypotheses.best().filter(|best| best.effects.len() > 1) else {
-            return self.curves();
+            return self.exchanges(0);
         };
         let branches = best.effects.iter().map(|&dropped| {
             let mut frame = self.task.frame();
@@ -158,7 +158,7 @@ impl SearchState {
 
     pub(super) fn after_backward_elimination(&mut self, branches: &[SearchBranch]) -> Stage {
         self.add_fitted(branches);
-        self.curves()
+        self.exchanges(0)
     }
 
     /// Whether the best explanation so far contradicts the data, with a model whose evaluations are cheap enough to look for combinations of

@@ -105,6 +105,14 @@ impl Hypotheses {
         self.base.as_ref().map_or(0.0, |base| base.log_evidence)
     }
 
+    /// The combination of these effects, in whatever order.
+    pub(super) fn of_any_order(&self, effects: &[usize]) -> Option<&EffectCombination> {
+        let is_same = |own: &&EffectCombination| {
+            own.effects.len() == effects.len() && effects.iter().all(|k| own.effects.contains(k))
+        };
+        self.combinations.iter().find(is_same)
+    }
+
     /// Adds a combination unless the same one has more evidence already.
     pub(super) fn add(&mut self, combination: EffectCombination) {
         let key = |combination: &EffectCombination| {

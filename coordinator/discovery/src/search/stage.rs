@@ -16,6 +16,8 @@ pub(super) enum Stage {
     /// Beyond combinations of so many effects.
     BeamSearch(usize, Vec<SearchBranch>),
     BackwardElimination(Vec<SearchBranch>),
+    /// For so many times before.
+    Exchanges(usize, Vec<SearchBranch>),
     Curves(SearchBranch),
     Forms(SearchBranch),
     /// Of the law of this rank.
@@ -35,9 +37,8 @@ impl Stage {
             Self::BaseReduction(branches)
             | Self::Families(branches)
             | Self::BeamSearch(_, branches)
-            | Self::BackwardElimination(branches) => {
-                branches.iter().flat_map(SearchBranch::queries).collect()
-            }
+            | Self::BackwardElimination(branches)
+            | Self::Exchanges(_, branches) => branches.iter().flat_map(SearchBranch::queries).collect(),
             Self::CrossValidation(_, validation) | Self::Predictions(_, validation) => validation.queries(),
             Self::NextRuns(runs) => runs.queries(),
             Self::Done(_) | Self::Failed(_) => Vec::new(),
@@ -51,7 +52,8 @@ impl Stage {
             Self::BaseReduction(branches)
             | Self::Families(branches)
             | Self::BeamSearch(_, branches)
-            | Self::BackwardElimination(branches) => {
+            | Self::BackwardElimination(branches)
+            | Self::Exchanges(_, branches) => {
                 let mut answers = answers.into_iter();
                 for branch in branches {
                     let count = branch.queries().len();

@@ -1,0 +1,107 @@
+//! The stage that exchanges effects of the best combination for others of their class.
+
+use crate::effect_search::class::Projection;
+use crate::effect_search::state::EffectSearch;
+use crate::laplace::coordinate::NormalFrame;
+use crate::search::branch::SearchBranch;
+use crate::search::hypotheses::EffectCombination;
+use crate::search::stage::Stage;
+use crate::search::state::SearchState;
+
+/// What falls short by less is fitted as well \[nats\].
+const SHORT: f64 = 3.0;
+/// Most exchanges at once, and most times that they are made: what takes the place of the best may have others of its class.
+const MOST: usize = 4;
+const ROUNDS: usize = 2;
+
+impl SearchState {
+    /// Fits the best combination with each of its effects exchanged for others of its class. What changes the predictions alike fits
+    /// alike; on a model that scatters each fit may stop elsewhere, and evidences would tell the luck of the fits.
+    pub(super) fn exchanges(&mut self, round: usize) -> Stage {
+        let branches = match self.hypotheses.detected() {
+            Some(best) if round < ROUNDS && !self.numerical_noise_sds.is_empty() => self.exchanged(best),
+            _ => Vec::new(),
+        };
+        if branches.is_empty() {
+            return self.curves();
+        }
+        Stage::Exchanges(round, branches)
+    }
+
+    pub(super) fn after_exchanges(&mut self, round: usize, branches: &[SearchBranch]) -> Stage {
+        self.add_fitted(branches);
+        self.exchanges(round + 1)
+    }
+
+    fn exchanged(&self, best: &EffectCombination) -> Vec<SearchBranch> {
+        let class = |k: usize| Some(self.hypotheses.ranking.of(Some(k))?.class);
+        let places = best.effects.iter().enumerate();
+        let pairs = places.flat_map(|(place, &own)| {
+            let all = 0..self.task.library.len();
+            let alike = all.filter(move |other| class(own).is_some() && class(*other) == class(own));
+            alike.map(move |other| (place, other))
+        });
+        let branches = pairs.filter_map(|(place, other)| {
+            let mut effects = best.effects.clone();
+            if effects.contains(&other) {
+                return None;
+            }
+            effects[place] = other;
+            let library = &self.task.library;
+            let combines = effects
+                .iter()
+                .all(|k| *k == other || library[*k].combines_with(&library[other]));
+            let is_fitted = self
+                .hypotheses
+                .of_any_order(&effects)
+                .is_some_and(|known| known.log_bayes_factor > best.log_bayes_factor - SHORT);
+            if is_fitted || !combines {
+                return None;
+            }
+            let (frame, start) = self.in_place(best, place, other)?;
+            let likelihood = self.task.likelihood.clone();
+            let search = EffectSearch::refit(frame, vec![start], likelihood, self.task.settings.seed);
+            Some(SearchBranch::new(effects, Vec::new(), search))
+        });
+        branches.take(MOST).collect()
+    }
+
+    /// The frame of a combination with another effect in one place, and where it predicts as the combination's fit does.
+    fn in_place(
+        &self,
+        best: &EffectCombination,
+        place: usize,
+        other: usize,
+    ) -> Option<(NormalFrame, Vec<f64>)> {
+        let candidates = &self.hypotheses.candidates;
+        let base = self.task.prior.dimension();
+        let of_other = &self.hypotheses.single(other)?.fit;
+        let (own, mut rest) = best.fit.point.position.split_at(base);
+        let mut start = own.to_vec();
+        let (mut frame, mut known) = (self.task.frame(), self.task.frame());
+        let mut pair = None;
+        for (i, &k) in best.effects.iter().enumerate() {
+            known = known.with(&candidates[k]);
+            let (its, others) = rest.split_at(candidates[k].parameters.len());
+            rest = others;
+            if i == place {
+                frame = frame.with(&candidates[other]);
+                start.extend_from_slice(&of_other.point.position[base..]);
+                pair = Some((known.strength()?, frame.strength()?));
+            } else {
+                frame = frame.with(&candidates[k]);
+                start.extend_from_slice(its);
+            }
+        }
+        let ((given, absent), (strength, neutral)) = pair?;
+        let change = of_other.columns[of_other.frame.strength()?.0].clone();
+        let changes = [change, best.fit.columns[given].clone()];
+        let projection = Projection::new(self.hypotheses.base_fit()?, &self.task.likelihood)?;
+        let exchange = projection.exchange(changes, best.fit.point.position[given] - absent);
+        start[strength] = neutral + exchange.step;
+        for (t, by) in start.iter_mut().zip(&exchange.of_base) {
+            *t += by;
+        }
+        frame.holds(&start).then_some((frame, start))
+    }
+}
