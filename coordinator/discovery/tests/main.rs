@@ -3,6 +3,7 @@
 #![expect(clippy::unwrap_used, reason = "helpers of tests may panic as tests do")]
 
 mod effect_search;
+mod exchange;
 mod pairs;
 mod rough_model;
 mod search;

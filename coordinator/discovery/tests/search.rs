@@ -46,10 +46,10 @@ fn curve(name: &str) -> Candidate {
 }
 
 /// Effects of the library: three powers of x, and one that the base absorbs.
-const SQUARE: usize = 0;
+pub(crate) const SQUARE: usize = 0;
 const CUBE: usize = 1;
-const WIDTH: usize = 2;
-const CONSTANT: usize = 3;
+pub(crate) const WIDTH: usize = 2;
+pub(crate) const CONSTANT: usize = 3;
 const LIBRARY: usize = 4;
 /// Laws outside it: a curve over x with a step, a curve over w with a line.
 const OVER_X: usize = LIBRARY;
@@ -125,7 +125,7 @@ fn predict(effects: &[usize], theta: &[f64], x: f64, w: f64) -> f64 {
 /// Proposed runs, at x = 0 and x = 2, w = 0.
 const PROPOSED: [f64; 2] = [0.0, 2.0];
 
-fn answer(query: &Query) -> Vec<f64> {
+pub(crate) fn answer(query: &Query) -> Vec<f64> {
     let (effects, theta) = match &query.model {
         QueriedModel::With(effects) => (effects.clone(), query.theta.clone()),
         // The base's last parameter is a cube of its own in one test.
@@ -141,12 +141,12 @@ fn answer(query: &Query) -> Vec<f64> {
 }
 
 /// Data of a truth, with noise that is the same in every test.
-fn measured(truth: impl Fn(f64, f64) -> f64) -> Vec<f64> {
+pub(crate) fn measured(truth: impl Fn(f64, f64) -> f64) -> Vec<f64> {
     let noise = Stream::new(7, 0, 0, 0).normals(DATA);
     (0..DATA).map(|i| truth(x(i), w(i)) + SD * noise[i]).collect()
 }
 
-fn task(values: &[f64]) -> SearchTask {
+pub(crate) fn task(values: &[f64]) -> SearchTask {
     let datum = |(run, &value): (usize, &f64)| Datum {
         run,
         channel: 0,
@@ -175,6 +175,15 @@ fn task(values: &[f64]) -> SearchTask {
 
 /// Runs a search to its end, the last query of each round told first if `backwards`.
 fn search(task: SearchTask, backwards: bool, answer: impl Fn(&Query) -> Vec<f64>) -> Conclusion {
+    run(task, backwards, |query| Some(answer(query)))
+}
+
+/// The same of a model that may refuse.
+pub(crate) fn run(
+    task: SearchTask,
+    backwards: bool,
+    answer: impl Fn(&Query) -> Option<Vec<f64>>,
+) -> Conclusion {
     let mut search = DiscoverySearch::new(task).unwrap();
     loop {
         if let Some(found) = search.conclusion() {
@@ -188,7 +197,7 @@ fn search(task: SearchTask, backwards: bool, answer: impl Fn(&Query) -> Vec<f64>
             order.reverse();
         }
         for index in order {
-            let progress = search.tell(index, Some(&answer(&queries[index]))).unwrap();
+            let progress = search.tell(index, answer(&queries[index]).as_deref()).unwrap();
             assert!(!matches!(progress, TellProgress::Failed(_)));
         }
     }
@@ -252,7 +261,7 @@ fn where_the_prior_all_but_excludes_the_best_fit_nothing_is_claimed() {
     assert_eq!(narrow.verdict, SearchVerdict::Undecided);
     assert!(narrow.agreed.is_none());
     let (parameter, sds) = narrow.implausible.unwrap();
-    assert!(parameter == 1 && sds > 5.0, "{parameter} {sds}");
+    assert!(parameter == 1 && sds > 6.5, "{parameter} {sds}");
     // The end of a range is where its user wants it.
     let bounded = found(Distribution::Uniform {
         lower: -1.0,

@@ -91,8 +91,10 @@ pub(super) fn discovery_record(models: &SearchModels, conclusion: &Conclusion) -
             Some(ImplausibleParameter { name, prior_sds })
         }),
         extension,
+        // Evidences tell too little where a prior is contradicted.
         drop: conclusion
             .redundant()
+            .filter(|_| conclusion.implausible.is_none())
             .map(|k| models.reductions[k].0.clone())
             .collect(),
         other_tests: rig_test::deciding(&open, verdict),

@@ -23,10 +23,7 @@ pub(super) fn sentence(
     outside: Option<&Outside>,
 ) -> String {
     let mut text = match implausible(models, conclusion) {
-        Some(reason) if conclusion.verdict == SearchVerdict::Undecided => {
-            format!("something is missing or the prior is wrong: {reason}")
-        }
-        Some(reason) => format!("{}; {reason}", verdict(models, conclusion, effects, outside)),
+        Some(reason) => format!("something is missing or the prior is wrong: {reason}"),
         None => verdict(models, conclusion, effects, outside),
     };
     let is_claim = conclusion.verdict.is_claim();
@@ -55,19 +52,12 @@ pub(super) fn sentence(
 /// The parameter that contradicts its prior in the best explanation, and what to do.
 fn implausible(models: &SearchModels, conclusion: &Conclusion) -> Option<String> {
     let (k, sds) = conclusion.implausible?;
-    let best: Vec<String> = conclusion
-        .best
-        .effects
-        .iter()
-        .map(|&own| models.name(own))
-        .collect();
+    let best = conclusion.best.effects.iter().map(|&own| models.name(own));
+    let best: Vec<String> = best.collect();
     let side = if sds < 0.0 { "below" } else { "above" };
     Some(format!(
         "the best fit ({}) puts {} {:.1} sds of its prior {side} the middle, so the probabilities tell little; widen that prior and search again",
-        match best.as_slice() {
-            [] => format!("{} alone", models.base.model_words()),
-            own => list(own.iter().map(String::as_str)),
-        },
+        list(best.iter().map(String::as_str)),
         models.base.parameters.get(k)?.name,
         sds.abs()
     ))

@@ -51,8 +51,8 @@ class EffectFile:
 class Step:
     """A step to take; :meth:`grouser.Study.add` takes one that adds an effect."""
 
-    #: ``"add_effect"``, ``"add_effect_file"``, ``"discover"``, ``"make_runs"``, ``"measure_other"``,
-    #: ``"state_in_experiment"`` or ``"predict"``.
+    #: ``"add_effect"``, ``"add_effect_file"``, ``"discover"``, ``"widen_prior"``, ``"make_runs"``,
+    #: ``"measure_other"``, ``"state_in_experiment"`` or ``"predict"``.
     kind: str
     #: What to do, in a sentence.
     text: str

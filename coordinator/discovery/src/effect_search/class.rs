@@ -7,6 +7,14 @@ use statistics::likelihood::{Likelihood, Whitening};
 
 /// Least `|cos|` between projected changes of one class.
 const ALIKE: f64 = 0.98;
+/// Fits of a model that scatters differ by so much \[nats\].
+const LEAST_SHORT: f64 = 3.0;
+
+/// Evidence by which a member of a class may fall short of another that has so much, and fit as well: what the angle between them costs,
+/// and no less than fits differ \[nats\].
+pub(crate) fn shortfall(nats: f64) -> f64 {
+    (nats * (1.0 - ALIKE * ALIKE)).max(LEAST_SHORT)
+}
 
 /// The projection of changes of the predictions out of those that the fitted base absorbs.
 pub(crate) struct Projection {
@@ -17,7 +25,7 @@ pub(crate) struct Projection {
 
 /// A change of the predictions in the place of another.
 pub(crate) struct Exchange {
-    /// How far it goes.
+    /// How far it goes, in standard deviations of the strength's prior.
     pub(crate) step: f64,
     /// The step of the base's parameters that absorbs the rest.
     pub(crate) of_base: Vec<f64>,
@@ -44,11 +52,13 @@ impl Projection {
         DVector::from_iterator(self.columns.len(), products)
     }
 
-    /// The exchange of a step of the second change g for one of the first h: `s = t h'P g / h'P h`, and of the base
-    /// `(I + J'J)^-1 J'(t g - s h)`.
+    /// The exchange of a step t of the second change g for one of the first h, of the same class: `s = t (h'P g / |h'P g|)
+    /// (g'P g / h'P h)^(1/2)`, and of the base `(I + J'J)^-1 J'(t g - s h)`. A regression of g on h would make s too short, since
+    /// changes of a model that scatters scatter, too.
     pub(crate) fn exchange(&self, changes: [Vec<f64>; 2], step: f64) -> Exchange {
         let products = self.products(&changes);
-        let own = step * products[(0, 1)] / products[(0, 0)];
+        let ratio = (products[(1, 1)] / products[(0, 0)]).sqrt();
+        let own = step * ratio.copysign(products[(0, 1)]);
         let [to, from] = changes;
         let rest: Vec<f64> = from.iter().zip(&to).map(|(g, h)| step * g - own * h).collect();
         let along = self.along(&self.whitening.apply(&rest));

@@ -315,6 +315,14 @@ impl EffectSearch {
         let is_wrong = self.is_wrong();
         let mut asked = Vec::new();
         for &k in &candidates {
+            // Of a model that scatters, each fit may stop somewhere else.
+            if !self.numerical_noise_sds.is_empty() {
+                let in_place = self.in_place_of_best(k);
+                asked.extend(in_place.map(|position| Asked::of_model(Some(k), position)));
+            }
+            if self.is_confirmed(k) {
+                continue;
+            }
             let frame = &self.candidates[k].frame;
             asked.extend(Asked::all_of_model(
                 Some(k),
@@ -323,11 +331,6 @@ impl EffectSearch {
             if is_wrong {
                 let anywhere = base::starts(frame, confirmation::ANYWHERE);
                 asked.extend(Asked::all_of_model(Some(k), anywhere));
-            }
-            // Of a model that scatters, each fit may stop somewhere else.
-            if !self.numerical_noise_sds.is_empty() {
-                let in_place = self.in_place_of_best(k);
-                asked.extend(in_place.map(|position| Asked::of_model(Some(k), position)));
             }
             // The base may also improve from the extension's mode: a Bayes factor compares their best fits.
             if let Some(fit) = self.fit_of(k) {

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use crate::chi_square::FitChiSquare;
-use crate::effect_search::class::{Projection, classes};
+use crate::effect_search::class::{Projection, classes, shortfall};
 use crate::effect_search::confirmation;
 use crate::effect_search::extension;
 use crate::effect_search::ranking::{EffectRanking, EvidenceMethod, RankedEffect};
@@ -155,45 +155,45 @@ impl EffectSearch {
         if !stuck.is_empty() {
             return stuck;
         }
-        self.alike(best - MOST_SHORT)
+        self.alike()
     }
 
-    /// Candidates of the best one's class with less evidence than `least`, once for each best one of the first few: what changes the predictions alike
-    /// fits alike, unless its fit got stuck.
-    fn alike(&mut self, least: f64) -> Vec<usize> {
-        let is_new =
-            |best: &usize| self.had_alike.len() < confirmation::COUNT && !self.had_alike.contains(best);
-        let best = self.best(1).pop().filter(is_new);
-        let (Some(best), Some(projected)) = (best, self.projected()) else {
+    /// Candidates of the best one's class that fall short of it, the best first, once for each best one of the first few: what changes the
+    /// predictions alike fits alike, unless its fit got stuck.
+    fn alike(&mut self) -> Vec<usize> {
+        let promises = self.promises();
+        let Some(&(best, nats)) = promises.first() else {
             return Vec::new();
         };
+        if self.had_alike.len() >= confirmation::COUNT || self.had_alike.contains(&best) {
+            return Vec::new();
+        }
         self.had_alike.push(best);
-        let of_best = projected.classes.get(&best);
-        let is_short = |k: &usize| {
-            let estimate = self.candidates[*k].estimate.as_ref();
-            estimate.is_some_and(|own| own.fit.is_some() && own.log_bayes_factor < least)
-        };
-        let own = projected
-            .classes
-            .iter()
-            .filter(|(_, class)| Some(*class) == of_best);
-        let short = own.map(|(k, _)| *k).filter(|k| *k != best && is_short(k));
-        short.take(confirmation::COUNT).collect()
+        let least = nats - shortfall(nats);
+        let short = promises.into_iter().filter(|(_, own)| *own < least);
+        let short = short.filter(|(k, _)| self.in_place_of_best(*k).is_some());
+        short.map(|(k, _)| k).take(confirmation::COUNT).collect()
     }
 
-    /// A start that predicts as the best candidate's fit does: at the strength that changes the predictions alike, with the base's
-    /// parameters moved to absorb the rest. `None` of the best itself, of what has not one strength, and beyond the limits.
+    /// A start of a member of the best candidate's class that predicts as the best fit does: at the strength that changes the predictions
+    /// alike, with the base's parameters moved to absorb the rest. `None` of the best itself, of others, of what has not one strength,
+    /// and beyond the limits.
     pub(super) fn in_place_of_best(&self, candidate: usize) -> Option<Vec<f64>> {
         let best = self.best(1).pop().filter(|best| *best != candidate)?;
+        let projected = self.projected()?;
+        let of_best = projected.classes.get(&best)?;
+        projected.classes.get(&candidate).filter(|own| *own == of_best)?;
         let fit = self.fit_of(best)?;
         let (of_best, absent) = fit.frame.strength()?;
         let frame = &self.candidates[candidate].frame;
         let (strength, neutral) = frame.strength()?;
-        let change = |k: usize| Some(self.candidates[k].screened.as_ref()?.change.clone());
-        let changes = [change(candidate)?, change(best)?];
+        let screened = self.candidates[candidate].screened.as_ref()?;
+        let of_others = self.candidates[best].screened.as_ref()?.change.clone();
         let projection = Projection::new(&self.base.as_ref()?.fit, &self.likelihood)?;
-        let exchange = projection.exchange(changes, fit.point.position[of_best] - absent);
-        let mut position = self.fit_of(candidate)?.point.position.clone();
+        let step = fit.point.position[of_best] - absent;
+        let exchange = projection.exchange([screened.change.clone(), of_others], step);
+        // The change is that of the screen's shape.
+        let mut position = screened.point.position.clone();
         let base = fit.point.position.iter().zip(&exchange.of_base);
         for (t, (of_fit, by)) in position.iter_mut().zip(base) {
             *t = of_fit + by;
@@ -382,11 +382,12 @@ mod tests {
             .as_ref()
             .unwrap()
             .log_bayes_factor;
-        assert_eq!(search.alike(own - MOST_SHORT), []);
+        assert_eq!(search.alike(), []);
         search.had_alike.clear();
-        let other = search.candidates[1 - best].estimate.as_mut().unwrap();
-        other.log_bayes_factor = own - 10.0;
-        assert_eq!(search.alike(own - MOST_SHORT), [1 - best]);
-        assert_eq!(search.alike(own - MOST_SHORT), []);
+        let other = &mut search.candidates[1 - best];
+        other.screened.as_mut().unwrap().log_bayes_factor = own / 2.0;
+        other.estimate.as_mut().unwrap().log_bayes_factor = own / 2.0;
+        assert_eq!(search.alike(), [1 - best]);
+        assert_eq!(search.alike(), []);
     }
 }

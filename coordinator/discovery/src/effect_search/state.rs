@@ -151,6 +151,12 @@ impl EffectSearch {
         self.candidates[candidate].estimate.as_ref()?.fit.as_ref()
     }
 
+    /// Whether a candidate was confirmed from several starts.
+    pub(super) fn is_confirmed(&self, candidate: usize) -> bool {
+        let estimate = self.candidates[candidate].estimate.as_ref();
+        estimate.is_some_and(|own| own.method >= EvidenceMethod::Confirmed)
+    }
+
     pub(super) fn frame(&self, candidate: Option<usize>) -> &NormalFrame {
         candidate.map_or(&self.base_frame, |k| &self.candidates[k].frame)
     }

@@ -9,7 +9,7 @@ use crate::settings::Roughness;
 const FARTHEST: f64 = 7.5;
 /// A parameter of the best fit so close to that limit contradicts its prior, and a better fit may lie beyond.
 const NEAR_LIMIT: f64 = 1.0;
-/// Share of the distance from -1 to 1 sd by which a support goes on beyond a place that is not its end.
+/// Share of the distance from -1 to 1 sd by which a support goes on beyond a place that is not its end, in the sampling coordinate.
 const BEYOND: f64 = 0.01;
 
 /// The map from a parameter to its coordinate.
@@ -86,8 +86,9 @@ impl NormalCoordinate {
     /// Whether the support ends at a coordinate, as a uniform density does at any far one.
     fn ends_at(&self, t: f64) -> bool {
         let (lower, upper) = self.marginal.support();
-        let end = if t < 0.0 { lower } else { upper };
-        (end - self.value(t)).abs() <= BEYOND * (self.value(1.0) - self.value(-1.0))
+        let end = self.marginal.coordinate(if t < 0.0 { lower } else { upper });
+        let [here, low, high] = [t, -1.0, 1.0].map(|t| self.marginal.coordinate(self.value(t)));
+        (end - here).abs() <= BEYOND * (high - low)
     }
 
     fn lower(&self) -> f64 {
@@ -284,6 +285,29 @@ mod tests {
             assert!((frame.position(&[x])[0] - t).abs() < 1e-6);
         }
         assert!(frame.is_one_sided() && frame.halves() == [0]);
+    }
+
+    #[test]
+    fn a_prior_is_contradicted_near_the_limit_of_the_search_unless_its_support_ends_there() {
+        let far = |distribution, bounds, t: f64| {
+            let own = Marginal::new(distribution, bounds).unwrap();
+            let frame = NormalFrame::base(&Prior::new(vec![own]), Roughness::Smooth);
+            frame.implausible(&[t])
+        };
+        let normal = Distribution::Normal { mean: 1.0, sd: 0.1 };
+        assert_eq!(far(normal, None, 6.4), None);
+        assert_eq!(far(normal, None, -7.0), Some((0, -7.0)));
+        assert_eq!(far(normal, Some([0.9, 2.0]), -7.0), None);
+        let factor = Distribution::Lognormal {
+            median: 2.0,
+            factor: 3.0,
+        };
+        assert_eq!(far(factor, None, -7.0), Some((0, -7.0)));
+        let range = Distribution::Uniform {
+            lower: -1.0,
+            upper: 2.0,
+        };
+        assert_eq!(far(range, None, 7.5), None);
     }
 
     #[test]

@@ -95,7 +95,8 @@ pub(crate) fn mixed_evidence(
     Some(log_sum_exp(evidences?.into_iter()))
 }
 
-/// The log density at `position` without the priors of the widened strengths, relative to that of their whole range.
+/// ln of likelihood times priors at a position of this `value`, with the half-normal priors doubled and without those of the widened
+/// strengths.
 fn highest(frame: &NormalFrame, position: &[f64], value: f64) -> f64 {
     let of_strengths = frame
         .widened

@@ -134,7 +134,11 @@ impl Conclusion {
             (None, Some(best)) => (best.effects.clone(), Some(&best.fit)),
             (None, None) => (Vec::new(), base),
         };
-        let implausible = fit.and_then(|fit| fit.frame.implausible(&fit.point.position));
+        // A parameter that only the base needs far out is how a missing effect shows.
+        let explained_by = law.map(|law| &law.fit).or(detected.map(|best| &best.fit));
+        let implausible = explained_by
+            .filter(|_| supported != SearchVerdict::NothingDetectable)
+            .and_then(|fit| fit.frame.implausible(&fit.point.position));
         let verdict = match implausible {
             Some(_) if supported.is_claim() => SearchVerdict::Undecided,
             _ => supported,

@@ -1,6 +1,6 @@
 //! The stage that exchanges effects of the best combination for others of their class.
 
-use crate::effect_search::class::Projection;
+use crate::effect_search::class::{Projection, shortfall};
 use crate::effect_search::state::EffectSearch;
 use crate::laplace::coordinate::NormalFrame;
 use crate::search::branch::SearchBranch;
@@ -8,15 +8,20 @@ use crate::search::hypotheses::EffectCombination;
 use crate::search::stage::Stage;
 use crate::search::state::SearchState;
 
-/// What falls short by less is fitted as well \[nats\].
-const SHORT: f64 = 3.0;
 /// Most exchanges at once, and most times that they are made: what takes the place of the best may have others of its class.
 const MOST: usize = 4;
 const ROUNDS: usize = 2;
 
+fn sorted(effects: &[usize]) -> Vec<usize> {
+    let mut effects = effects.to_vec();
+    effects.sort_unstable();
+    effects
+}
+
 impl SearchState {
-    /// Fits the best combination with each of its effects exchanged for others of its class. What changes the predictions alike fits
-    /// alike; on a model that scatters each fit may stop elsewhere, and evidences would tell the luck of the fits.
+    /// Fits the best combination with each of its effects exchanged for others of its class that have a fit of their own. What changes
+    /// the predictions alike fits alike; on a model that scatters each fit may stop elsewhere, and evidences would tell the luck of the
+    /// fits.
     pub(super) fn exchanges(&mut self, round: usize) -> Stage {
         let branches = match self.hypotheses.detected() {
             Some(best) if round < ROUNDS && !self.numerical_noise_sds.is_empty() => self.exchanged(best),
@@ -25,6 +30,8 @@ impl SearchState {
         if branches.is_empty() {
             return self.curves();
         }
+        let tried = branches.iter().map(|branch| sorted(&branch.effects));
+        self.hypotheses.exchanged.extend(tried);
         Stage::Exchanges(round, branches)
     }
 
@@ -34,12 +41,13 @@ impl SearchState {
     }
 
     fn exchanged(&self, best: &EffectCombination) -> Vec<SearchBranch> {
-        let class = |k: usize| Some(self.hypotheses.ranking.of(Some(k))?.class);
-        let places = best.effects.iter().enumerate();
-        let pairs = places.flat_map(|(place, &own)| {
-            let all = 0..self.task.library.len();
-            let alike = all.filter(move |other| class(own).is_some() && class(*other) == class(own));
-            alike.map(move |other| (place, other))
+        let ranking = &self.hypotheses.ranking;
+        let class = |k: usize| Some(ranking.of(Some(k))?.class);
+        let others = ranking.ranked().into_iter().filter_map(|own| own.candidate);
+        let pairs = others.flat_map(|other| {
+            let places = best.effects.iter().enumerate();
+            let alike = places.filter(move |(_, own)| class(other) == class(**own));
+            alike.map(move |(place, _)| (place, other))
         });
         let branches = pairs.filter_map(|(place, other)| {
             let mut effects = best.effects.clone();
@@ -51,10 +59,14 @@ impl SearchState {
             let combines = effects
                 .iter()
                 .all(|k| *k == other || library[*k].combines_with(&library[other]));
-            let is_fitted = self
-                .hypotheses
-                .of_any_order(&effects)
-                .is_some_and(|known| known.log_bayes_factor > best.log_bayes_factor - SHORT);
+            let least = best.log_bayes_factor - shortfall(best.log_bayes_factor);
+            let known = sorted(&effects);
+            let is_fitted = self.hypotheses.exchanged.contains(&known)
+                || self
+                    .hypotheses
+                    .combinations
+                    .iter()
+                    .any(|own| own.log_bayes_factor > least && sorted(&own.effects) == known);
             if is_fitted || !combines {
                 return None;
             }

@@ -24,6 +24,8 @@ pub(super) struct Hypotheses {
     pub(super) combinations: Vec<EffectCombination>,
     /// The sets of effects of one family that were fitted together, each ascending.
     pub(super) of_families: Vec<Vec<usize>>,
+    /// The sets that were fitted with an effect exchanged, each ascending.
+    pub(super) exchanged: Vec<Vec<usize>>,
     /// Log Bayes factor of the base over itself without each effect that may be dropped; `None` where that cannot be fitted.
     pub(super) gains: Vec<Option<f64>>,
     /// Laws outside the library beyond the base; `None`: not searched.
@@ -88,6 +90,7 @@ impl Hypotheses {
             ranking: EffectRanking::default(),
             combinations: Vec::new(),
             of_families: Vec::new(),
+            exchanged: Vec::new(),
             gains: Vec::new(),
             laws: None,
             further_laws: None,
@@ -103,14 +106,6 @@ impl Hypotheses {
     /// Log evidence of the base; 0 before it is fitted.
     pub(super) fn base_evidence(&self) -> f64 {
         self.base.as_ref().map_or(0.0, |base| base.log_evidence)
-    }
-
-    /// The combination of these effects, in whatever order.
-    pub(super) fn of_any_order(&self, effects: &[usize]) -> Option<&EffectCombination> {
-        let is_same = |own: &&EffectCombination| {
-            own.effects.len() == effects.len() && effects.iter().all(|k| own.effects.contains(k))
-        };
-        self.combinations.iter().find(is_same)
     }
 
     /// Adds a combination unless the same one has more evidence already.

@@ -16,7 +16,7 @@ pub(super) enum Stage {
     /// Beyond combinations of so many effects.
     BeamSearch(usize, Vec<SearchBranch>),
     BackwardElimination(Vec<SearchBranch>),
-    /// For so many times before.
+    /// After so many rounds of them.
     Exchanges(usize, Vec<SearchBranch>),
     Curves(SearchBranch),
     Forms(SearchBranch),

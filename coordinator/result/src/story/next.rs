@@ -47,6 +47,8 @@ pub enum StepKind {
     AddEffectFile,
     /// Search for a missing effect.
     Discover,
+    /// Widen a prior of the job.
+    WidenPrior,
     /// Make test runs.
     MakeRuns,
     /// Make a test without a rolling wheel, or runs in conditions that no run had.
@@ -119,9 +121,16 @@ fn steps(study: &Study, calibration: &FinishedCalibration, is_within_noise: bool
         .filter(|extension| !is_made(study, calibration, &effect_of(extension)))
         .map(|extension| addition(id, record, extension));
     let runs = (!record.next_runs.is_empty()).then(|| runs(id, &record.next_runs));
+    let widen = record.implausible.as_ref().map(|own| {
+        let text = format!(
+            "widen the prior of {} in the job (one from a posterior by a larger transfer), and calibrate and search again",
+            own.name
+        );
+        NextStep::new(StepKind::WidenPrior, text, None)
+    });
     let mut steps: Vec<NextStep> = match record.verdict {
         // Runs decide before a guess is added.
-        Verdict::Undecided => runs.into_iter().chain(add).collect(),
+        Verdict::Undecided => widen.into_iter().chain(runs).chain(add).collect(),
         _ => add.into_iter().chain(runs).collect(),
     };
     if steps.is_empty() && is_within_noise {
