@@ -244,7 +244,7 @@ fn runs(id: i64, runs: &[NextRun]) -> NextStep {
 
 #[cfg(test)]
 mod tests {
-    use record::NotTried;
+    use record::{ImplausibleParameter, NotTried};
 
     use super::*;
     use crate::fixture;
@@ -288,6 +288,21 @@ mod tests {
         study.rounds[0].record.verdict = Verdict::Undecided;
         let open = Next::of(&study, &study.lead, false);
         assert_eq!(kinds(&open)[..2], [StepKind::MakeRuns, StepKind::AddEffect]);
+    }
+
+    #[test]
+    fn a_contradicted_prior_is_widened_before_runs_are_made() {
+        let mut study = searched();
+        let record = &mut study.rounds[0].record;
+        record.verdict = Verdict::Undecided;
+        record.extension = None;
+        record.implausible = Some(ImplausibleParameter {
+            name: "n".into(),
+            prior_sds: -7.1,
+        });
+        let next = Next::of(&study, &study.lead, false);
+        assert_eq!(kinds(&next)[..2], [StepKind::WidenPrior, StepKind::MakeRuns]);
+        assert!(next.text.starts_with("widen the prior of n"), "{}", next.text);
     }
 
     #[test]
