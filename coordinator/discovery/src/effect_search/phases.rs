@@ -309,7 +309,7 @@ impl EffectSearch {
     }
 
     /// Fits candidates from several starts.
-    fn confirm_these(&mut self, candidates: Vec<usize>) {
+    pub(super) fn confirm_these(&mut self, candidates: Vec<usize>) {
         let Some(base) = &self.base else { return };
         // A base that contradicts the data may lie at an end of its prior, and is then a poor start.
         let is_wrong = self.is_wrong();
@@ -320,7 +320,7 @@ impl EffectSearch {
                 let in_place = self.in_place_of_best(k);
                 asked.extend(in_place.map(|position| Asked::of_model(Some(k), position)));
             }
-            if self.is_confirmed(k) {
+            if self.candidates[k].had_confirmation {
                 continue;
             }
             let frame = &self.candidates[k].frame;
@@ -340,6 +340,9 @@ impl EffectSearch {
         }
         if asked.is_empty() {
             return self.finish();
+        }
+        for &k in &candidates {
+            self.candidates[k].had_confirmation = true;
         }
         self.ask(asked);
         self.phase = Phase::ConfirmationStarts(candidates);

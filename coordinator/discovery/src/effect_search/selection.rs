@@ -129,8 +129,10 @@ impl EffectSearch {
         let Some(&(_, best)) = promises.first() else {
             return Vec::new();
         };
+        // What the model refused from all starts, or has no evidence, would be open for ever.
         let open = |k: usize| {
-            let estimate = self.candidates[k].estimate.as_ref();
+            let state = &self.candidates[k];
+            let estimate = state.estimate.as_ref().filter(|_| !state.had_confirmation);
             estimate.filter(|estimate| estimate.method < EvidenceMethod::Confirmed)
         };
         let is_stuck = |k: usize, promise: f64| {
@@ -371,6 +373,26 @@ mod tests {
             assert!((value - expected).abs() < 0.01, "{value} {expected}");
         }
         assert_eq!(search.in_place_of_best(best), None);
+    }
+
+    #[test]
+    fn what_the_model_refuses_from_all_starts_is_confirmed_once() {
+        let mut search = searched();
+        let refused = 1 - search.best(1)[0];
+        let state = &mut search.candidates[refused];
+        state.had_confirmation = false;
+        let estimate = state.estimate.as_mut().unwrap();
+        (estimate.method, estimate.fit) = (EvidenceMethod::Screen, None);
+        search.confirm_these(vec![refused]);
+        for _ in 0..20 {
+            let pending: Vec<_> = search.pending().collect();
+            for (index, request) in pending.iter().enumerate() {
+                let values = predicted(&request.theta, request.candidate);
+                let answer = (request.candidate != Some(refused)).then_some(values.as_slice());
+                search.tell(index, answer).unwrap();
+            }
+        }
+        assert!(search.ranking().is_some());
     }
 
     #[test]

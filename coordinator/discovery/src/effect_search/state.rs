@@ -53,6 +53,8 @@ pub(super) struct CandidateState {
     pub(super) by_companion: Option<Screened>,
     pub(super) is_screened_on_model: bool,
     pub(super) estimate: Option<EvidenceEstimate>,
+    /// Whether it was fitted from several starts, even if the model refused all of them.
+    pub(super) had_confirmation: bool,
     /// Evaluations spent on it alone.
     pub(super) evaluations: usize,
 }
@@ -106,6 +108,7 @@ impl EffectSearch {
             by_companion: None,
             is_screened_on_model: false,
             estimate: None,
+            had_confirmation: false,
             evaluations: 0,
         });
         Self {
@@ -149,12 +152,6 @@ impl EffectSearch {
     /// The best fit of a candidate so far.
     pub(crate) fn fit_of(&self, candidate: usize) -> Option<&LaplaceFit> {
         self.candidates[candidate].estimate.as_ref()?.fit.as_ref()
-    }
-
-    /// Whether a candidate was confirmed from several starts.
-    pub(super) fn is_confirmed(&self, candidate: usize) -> bool {
-        let estimate = self.candidates[candidate].estimate.as_ref();
-        estimate.is_some_and(|own| own.method >= EvidenceMethod::Confirmed)
     }
 
     pub(super) fn frame(&self, candidate: Option<usize>) -> &NormalFrame {
