@@ -70,7 +70,7 @@ pub struct Discovery {
     pub outside: Option<Outside>,
     /// Effects that are not detectable with these data at their usual strength.
     pub cannot_exclude: Vec<String>,
-    /// Effects that the model rejected at every strength.
+    /// Effects that the model rejected at every strength, or from all starts of a fit.
     pub refused: Vec<String>,
     /// Effects that need what the experiment does not state: they are weighed with typical values, and never named.
     #[serde(default)]

@@ -373,8 +373,15 @@ impl EffectSearch {
                 fits.push((candidate, fit.corrected(corrections)));
             }
         }
-        let known = candidates.into_iter().filter_map(|k| Some((k, self.fit_of(k)?)));
-        fits.extend(known.map(|(k, fit)| (Some(k), confirmation.continued(fit))));
+        for k in candidates {
+            let estimate = self.candidates[k].estimate.as_ref();
+            let known = estimate.and_then(|own| Some((own.method, own.fit.as_ref()?)));
+            fits.extend(known.map(|(method, fit)| match method {
+                // It has had these steps; it is there to be compared with.
+                EvidenceMethod::Confirmed | EvidenceMethod::Sampled => (Some(k), fit.continued(&[])),
+                _ => (Some(k), confirmation.continued(fit)),
+            }));
+        }
         self.confirm(FitBatch::new(fits));
     }
 

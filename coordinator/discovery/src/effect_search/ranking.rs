@@ -86,7 +86,7 @@ pub struct EffectRanking {
     pub effects: Vec<RankedEffect>,
     /// Candidates whose usual strength the base would absorb: the data can neither show nor exclude them.
     pub cannot_exclude: Vec<usize>,
-    /// Candidates that the model rejected at every strength; they have no evidence.
+    /// Candidates that the model rejected at every strength, or from all starts of a fit; they have no evidence.
     pub refused: Vec<usize>,
     /// Evaluations spent.
     pub evaluations: EvaluationCounts,

@@ -12,6 +12,7 @@ use crate::laplace::batch::FitBatch;
 use crate::laplace::coordinate::NormalFrame;
 use crate::laplace::fit::{FittedModel, LaplaceFit};
 use crate::laplace::point::FitPoint;
+use crate::probability::DETECTED;
 use crate::settings::Roughness;
 
 /// A change of the predictions shorter than this many standard deviations, after projection, cannot be seen.
@@ -167,13 +168,14 @@ impl EffectSearch {
         let Some(&(best, nats)) = promises.first() else {
             return Vec::new();
         };
-        if self.had_alike.len() >= confirmation::COUNT || self.had_alike.contains(&best) {
+        let had_turn = self.had_alike.len() >= confirmation::COUNT || self.had_alike.contains(&best);
+        if had_turn || nats <= DETECTED {
             return Vec::new();
         }
         self.had_alike.push(best);
         let least = nats - shortfall(nats);
         let short = promises.into_iter().filter(|(_, own)| *own < least);
-        let short = short.filter(|(k, _)| self.in_place_of_best(*k).is_some());
+        let short = short.filter(|(k, _)| self.fit_of(*k).is_some() && self.in_place_of_best(*k).is_some());
         short.map(|(k, _)| k).take(confirmation::COUNT).collect()
     }
 
@@ -208,6 +210,7 @@ impl EffectSearch {
     fn promises(&self) -> Vec<(usize, f64)> {
         let states = self.candidates.iter().enumerate();
         let mut order: Vec<(usize, f64)> = states
+            .filter(|(_, state)| !state.is_refused())
             .filter_map(|(k, state)| {
                 let estimate = state.estimate.as_ref()?;
                 let screened = state.screened.as_ref().map(|s| s.log_bayes_factor);
@@ -263,7 +266,9 @@ impl EffectSearch {
         let mut effects = vec![ranked(None, &self.base_frame, &base.fit.point)];
         for (&k, class) in &projected.classes {
             let state = &self.candidates[k];
-            let (Some(estimate), Some(screened)) = (&state.estimate, &state.screened) else {
+            let (Some(estimate), Some(screened), false) =
+                (&state.estimate, &state.screened, state.is_refused())
+            else {
                 continue;
             };
             let point = estimate.fit.as_ref().map_or(&screened.point, |fit| &fit.point);
@@ -291,7 +296,9 @@ impl EffectSearch {
             .lengths
             .iter()
             .filter(|(_, length)| **length < LEAST_SEEN);
-        let refused = (0..self.candidates.len()).filter(|k| self.candidates[*k].screened.is_none());
+        let is_refused =
+            |k: &usize| self.candidates[*k].screened.is_none() || self.candidates[*k].is_refused();
+        let refused = (0..self.candidates.len()).filter(is_refused);
         let mut ranking = EffectRanking {
             effects,
             cannot_exclude: unseen.map(|(k, _)| *k).collect(),
@@ -392,7 +399,9 @@ mod tests {
                 search.tell(index, answer).unwrap();
             }
         }
-        assert!(search.ranking().is_some());
+        let ranking = search.ranking().unwrap();
+        assert_eq!(ranking.refused, [refused]);
+        assert!(ranking.of(Some(refused)).is_none() && ranking.of(Some(1 - refused)).is_some());
     }
 
     #[test]

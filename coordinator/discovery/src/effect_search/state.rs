@@ -94,6 +94,14 @@ pub(super) enum Phase {
     Failed(InferenceFailure),
 }
 
+impl CandidateState {
+    /// Whether the model refused it from all starts, or gave it no evidence: its screen's promise then says nothing.
+    pub(super) fn is_refused(&self) -> bool {
+        let has_fit = self.estimate.as_ref().is_some_and(|own| own.fit.is_some());
+        self.had_confirmation && !has_fit
+    }
+}
+
 impl EffectSearch {
     /// A search that has asked nothing.
     pub(super) fn unasked(

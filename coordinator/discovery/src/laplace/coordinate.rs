@@ -7,7 +7,7 @@ use crate::settings::Roughness;
 
 /// Limit of the search, in standard deviations of the prior.
 const FARTHEST: f64 = 7.5;
-/// A parameter of the best fit so close to that limit contradicts its prior, and a better fit may lie beyond.
+/// A parameter of the best fit so close to that limit \[standard deviations\] contradicts its prior, and a better fit may lie beyond.
 const NEAR_LIMIT: f64 = 1.0;
 /// Share of the distance from -1 to 1 sd by which a support goes on beyond a place that is not its end, in the sampling coordinate.
 const BEYOND: f64 = 0.01;

@@ -43,30 +43,31 @@ impl SearchState {
     fn exchanged(&self, best: &EffectCombination) -> Vec<SearchBranch> {
         let ranking = &self.hypotheses.ranking;
         let class = |k: usize| Some(ranking.of(Some(k))?.class);
-        let others = ranking.ranked().into_iter().filter_map(|own| own.candidate);
-        let pairs = others.flat_map(|other| {
-            let places = best.effects.iter().enumerate();
-            let alike = places.filter(move |(_, own)| class(other) == class(**own));
-            alike.map(move |(place, _)| (place, other))
+        let alike = |own: &usize| -> Vec<usize> {
+            let others = ranking.ranked().into_iter().filter_map(|own| own.candidate);
+            others.filter(|other| class(*other) == class(*own)).collect()
+        };
+        let alike: Vec<Vec<usize>> = best.effects.iter().map(alike).collect();
+        // The places take turns, each from its best.
+        let turns = (0..ranking.effects.len()).flat_map(|turn| {
+            let places = alike.iter().enumerate();
+            places.filter_map(move |(place, own)| Some((place, *own.get(turn)?)))
         });
-        let branches = pairs.filter_map(|(place, other)| {
+        let branches = turns.filter_map(|(place, other)| {
             let mut effects = best.effects.clone();
             if effects.contains(&other) {
                 return None;
             }
-            effects[place] = other;
+            effects.remove(place);
+            let gain = best.log_bayes_factor - self.known(&effects).unwrap_or(0.0);
+            effects.insert(place, other);
             let library = &self.task.library;
             let combines = effects
                 .iter()
                 .all(|k| *k == other || library[*k].combines_with(&library[other]));
-            let least = best.log_bayes_factor - shortfall(best.log_bayes_factor);
-            let known = sorted(&effects);
-            let is_fitted = self.hypotheses.exchanged.contains(&known)
-                || self
-                    .hypotheses
-                    .combinations
-                    .iter()
-                    .any(|own| own.log_bayes_factor > least && sorted(&own.effects) == known);
+            let least = best.log_bayes_factor - shortfall(gain);
+            let is_fitted = self.hypotheses.exchanged.contains(&sorted(&effects))
+                || self.known(&effects).is_some_and(|own| own > least);
             if is_fitted || !combines {
                 return None;
             }
@@ -76,6 +77,14 @@ impl SearchState {
             Some(SearchBranch::new(effects, Vec::new(), search))
         });
         branches.take(MOST).collect()
+    }
+
+    /// The log Bayes factor of a combination in whatever order.
+    fn known(&self, effects: &[usize]) -> Option<f64> {
+        let effects = sorted(effects);
+        let mut combinations = self.hypotheses.combinations.iter();
+        let own = combinations.find(|own| sorted(&own.effects) == effects)?;
+        Some(own.log_bayes_factor)
     }
 
     /// The frame of a combination with another effect in one place, and where it predicts as the combination's fit does.
