@@ -20,7 +20,7 @@ import urllib.request
 
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
-GROWTH_MIB = 64
+GROWTH_MIB = 48
 CHECKS = "not_a_server_error,status_code_conformance,content_type_conformance,response_schema_conformance"
 
 
@@ -36,8 +36,9 @@ def free_port():
 
 
 def resident_mib(pid):
+    """Memory that is no file's."""
     status = pathlib.Path(f"/proc/{pid}/status").read_text()
-    return int(re.search(r"VmRSS:\s+(\d+)", status)[1]) / 1024
+    return int(re.search(r"RssAnon:\s+(\d+)", status)[1]) / 1024
 
 
 def descriptors(pid):
@@ -59,9 +60,12 @@ def start(programs, folder):
     address = f"127.0.0.1:{free_port()}"
     log = open(pathlib.Path(folder, "log"), "w")
     serve = [coordinator, "serve", "--listen", address, "--store", f"sqlite://{store}/grouser.db"]
-    # One arena, so that what grows is what the service holds: each of glibc's arenas keeps pieces that others cannot use, and
-    # which thread uses which is chance.
-    service = subprocess.Popen(serve, stdout=log, stderr=log, env=os.environ | {"MALLOC_ARENA_MAX": "1"})
+    # What grows is to be what the service holds. An allocator also keeps free pieces, by chance up to twice that, unless it is told to
+    # give them back; and each of glibc's arenas has pieces that others cannot use.
+    trim = pathlib.Path(folder, "trim.so")
+    subprocess.run(["cc", "-shared", "-fPIC", "-pthread", "-o", trim, HERE / "trim.c"], check=True)
+    environment = os.environ | {"LD_PRELOAD": str(trim), "MALLOC_ARENA_MAX": "1"}
+    service = subprocess.Popen(serve, stdout=log, stderr=log, env=environment)
     work = [pathlib.Path(programs, "worker"), "--coordinator", f"http://{address}", "--threads", "1"]
     worker = subprocess.Popen(work, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     for _ in range(100):
@@ -93,7 +97,7 @@ def main():
             if service.poll() is not None:
                 sys.exit("the service has ended")
             sent = requests(url)
-            time.sleep(1)
+            time.sleep(3)
             after = resident_mib(service.pid), descriptors(service.pid)
             log = pathlib.Path(folder, "log").read_text()
         finally:
