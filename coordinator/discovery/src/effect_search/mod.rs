@@ -14,7 +14,7 @@
 //! - `companion_screen`: which candidates are worth evaluations of the model.
 //! - `numerical_noise`: the scatter of the model's predictions.
 //! - `selection`: the candidates that are kept, confirmed and ranked. `sampling`: those whose evidence is sampled. `ranking`: the result.
-//! - `class`: effects that the data cannot distinguish.
+//! - `projection`: changes of the predictions beyond what the base absorbs. `class`: effects that the data cannot distinguish by them.
 
 pub(crate) mod base;
 pub(crate) mod class;
@@ -24,6 +24,7 @@ pub(crate) mod depth;
 mod extension;
 mod numerical_noise;
 mod phases;
+pub(crate) mod projection;
 pub(crate) mod ranking;
 mod sampling;
 mod screen;

@@ -94,7 +94,7 @@ pub(super) fn positions(
 /// # Returns
 /// With one strength, the log Bayes factor of the extension linear in it, `s^2 / (2 (I + 1)) - ln(1 + I) / 2` with `I = g' P g` and
 /// `s = g' P r` of the change g and the residuals r, P the projection of
-/// [`Projection`](crate::effect_search::class::Projection); one-sided strengths truncated. With several, that of the model linear
+/// [`Projection`](crate::effect_search::projection::Projection); one-sided strengths truncated. With several, that of the model linear
 /// in all of them. Of a switch, that of the model linear in the base's parameters, with the base's derivatives. `None` if the model
 /// rejected all positions of the first, or one of the others.
 pub(super) fn screened(

@@ -3,9 +3,10 @@
 use std::collections::BTreeMap;
 
 use crate::chi_square::FitChiSquare;
-use crate::effect_search::class::{Projection, classes, shortfall};
+use crate::effect_search::class::{classes, shortfall};
 use crate::effect_search::confirmation;
 use crate::effect_search::extension;
+use crate::effect_search::projection::Projection;
 use crate::effect_search::ranking::{EffectRanking, EvidenceMethod, RankedEffect};
 use crate::effect_search::state::{EffectSearch, EvidenceEstimate, Phase};
 use crate::laplace::batch::FitBatch;
@@ -133,8 +134,7 @@ impl EffectSearch {
         // What the model refused from all starts, or has no evidence, would be open for ever.
         let open = |k: usize| {
             let state = &self.candidates[k];
-            let estimate = state.estimate.as_ref().filter(|_| !state.had_confirmation);
-            estimate.filter(|estimate| estimate.method < EvidenceMethod::Confirmed)
+            state.estimate.as_ref().filter(|_| !state.had_confirmation)
         };
         let is_stuck = |k: usize, promise: f64| {
             open(k).is_some_and(|estimate| estimate.log_bayes_factor < promise - MOST_SHORT)
@@ -190,7 +190,7 @@ impl EffectSearch {
         let fit = self.fit_of(best)?;
         let (of_best, absent) = fit.frame.strength()?;
         let frame = &self.candidates[candidate].frame;
-        let (strength, neutral) = frame.strength()?;
+        let given = frame.strength()?;
         let screened = self.candidates[candidate].screened.as_ref()?;
         let of_others = self.candidates[best].screened.as_ref()?.change.clone();
         let projection = Projection::new(&self.base.as_ref()?.fit, &self.likelihood)?;
@@ -198,11 +198,9 @@ impl EffectSearch {
         let exchange = projection.exchange([screened.change.clone(), of_others], step);
         // The change is that of the screen's shape.
         let mut position = screened.point.position.clone();
-        let base = fit.point.position.iter().zip(&exchange.of_base);
-        for (t, (of_fit, by)) in position.iter_mut().zip(base) {
-            *t = of_fit + by;
-        }
-        position[strength] = neutral + exchange.step;
+        let base = self.base_frame.dimension();
+        position[..base].copy_from_slice(&fit.point.position[..base]);
+        let position = exchange.made(position, given);
         frame.holds(&position).then_some(position)
     }
 
@@ -266,11 +264,12 @@ impl EffectSearch {
         let mut effects = vec![ranked(None, &self.base_frame, &base.fit.point)];
         for (&k, class) in &projected.classes {
             let state = &self.candidates[k];
-            let (Some(estimate), Some(screened), false) =
-                (&state.estimate, &state.screened, state.is_refused())
-            else {
+            let (Some(estimate), Some(screened)) = (&state.estimate, &state.screened) else {
                 continue;
             };
+            if state.is_refused() {
+                continue;
+            }
             let point = estimate.fit.as_ref().map_or(&screened.point, |fit| &fit.point);
             // A fit that falls far short of the screen's promise, and that is not confirmed, may be stuck.
             let least = if self.depth.confirms && estimate.method < EvidenceMethod::Confirmed {
@@ -296,9 +295,7 @@ impl EffectSearch {
             .lengths
             .iter()
             .filter(|(_, length)| **length < LEAST_SEEN);
-        let is_refused =
-            |k: &usize| self.candidates[*k].screened.is_none() || self.candidates[*k].is_refused();
-        let refused = (0..self.candidates.len()).filter(is_refused);
+        let refused = (0..self.candidates.len()).filter(|k| self.candidates[*k].is_refused());
         let mut ranking = EffectRanking {
             effects,
             cannot_exclude: unseen.map(|(k, _)| *k).collect(),

@@ -1,22 +1,17 @@
 //! The stage that exchanges effects of the best combination for others of their class.
 
-use crate::effect_search::class::{Projection, shortfall};
+use crate::effect_search::class::shortfall;
+use crate::effect_search::projection::Projection;
 use crate::effect_search::state::EffectSearch;
 use crate::laplace::coordinate::NormalFrame;
 use crate::search::branch::SearchBranch;
-use crate::search::hypotheses::EffectCombination;
+use crate::search::hypotheses::{EffectCombination, effect_set};
 use crate::search::stage::Stage;
 use crate::search::state::SearchState;
 
 /// Most exchanges at once, and most times that they are made: what takes the place of the best may have others of its class.
 const MOST: usize = 4;
 const ROUNDS: usize = 2;
-
-fn sorted(effects: &[usize]) -> Vec<usize> {
-    let mut effects = effects.to_vec();
-    effects.sort_unstable();
-    effects
-}
 
 impl SearchState {
     /// Fits the best combination with each of its effects exchanged for others of its class that have a fit of their own. What changes
@@ -30,7 +25,7 @@ impl SearchState {
         if branches.is_empty() {
             return self.curves();
         }
-        let tried = branches.iter().map(|branch| sorted(&branch.effects));
+        let tried = branches.iter().map(|branch| effect_set(&branch.effects));
         self.hypotheses.exchanged.extend(tried);
         Stage::Exchanges(round, branches)
     }
@@ -59,15 +54,16 @@ impl SearchState {
                 return None;
             }
             effects.remove(place);
-            let gain = best.log_bayes_factor - self.known(&effects).unwrap_or(0.0);
+            let known = |effects: &[usize]| self.hypotheses.log_bayes_factor_of(&effect_set(effects));
+            let gain = best.log_bayes_factor - known(&effects).unwrap_or(0.0);
             effects.insert(place, other);
             let library = &self.task.library;
             let combines = effects
                 .iter()
                 .all(|k| *k == other || library[*k].combines_with(&library[other]));
             let least = best.log_bayes_factor - shortfall(gain);
-            let is_fitted = self.hypotheses.exchanged.contains(&sorted(&effects))
-                || self.known(&effects).is_some_and(|own| own > least);
+            let is_fitted = self.hypotheses.exchanged.contains(&effect_set(&effects))
+                || known(&effects).is_some_and(|own| own > least);
             if is_fitted || !combines {
                 return None;
             }
@@ -77,14 +73,6 @@ impl SearchState {
             Some(SearchBranch::new(effects, Vec::new(), search))
         });
         branches.take(MOST).collect()
-    }
-
-    /// The log Bayes factor of a combination in whatever order.
-    fn known(&self, effects: &[usize]) -> Option<f64> {
-        let effects = sorted(effects);
-        let mut combinations = self.hypotheses.combinations.iter();
-        let own = combinations.find(|own| sorted(&own.effects) == effects)?;
-        Some(own.log_bayes_factor)
     }
 
     /// The frame of a combination with another effect in one place, and where it predicts as the combination's fit does.
@@ -114,15 +102,12 @@ impl SearchState {
                 start.extend_from_slice(its);
             }
         }
-        let ((given, absent), (strength, neutral)) = pair?;
+        let ((taken, absent), given) = pair?;
         let change = of_other.columns[of_other.frame.strength()?.0].clone();
-        let changes = [change, best.fit.columns[given].clone()];
+        let changes = [change, best.fit.columns[taken].clone()];
         let projection = Projection::new(self.hypotheses.base_fit()?, &self.task.likelihood)?;
-        let exchange = projection.exchange(changes, best.fit.point.position[given] - absent);
-        start[strength] = neutral + exchange.step;
-        for (t, by) in start.iter_mut().zip(&exchange.of_base) {
-            *t += by;
-        }
+        let exchange = projection.exchange(changes, best.fit.point.position[taken] - absent);
+        let start = exchange.made(start, given);
         frame.holds(&start).then_some((frame, start))
     }
 }

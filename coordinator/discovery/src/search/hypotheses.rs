@@ -1,5 +1,7 @@
 //! Combinations of effects and laws outside the library, found so far.
 
+use std::collections::BTreeSet;
+
 use crate::candidate::Candidate;
 use crate::chi_square::FitChiSquare;
 use crate::effect_search::ranking::EffectRanking;
@@ -22,10 +24,10 @@ pub(super) struct Hypotheses {
     pub(super) ranking: EffectRanking,
     /// Combinations by falling Bayes factor, single effects among them.
     pub(super) combinations: Vec<EffectCombination>,
-    /// The sets of effects of one family that were fitted together, each ascending.
-    pub(super) of_families: Vec<Vec<usize>>,
-    /// The sets that were fitted with an effect exchanged, each ascending.
-    pub(super) exchanged: Vec<Vec<usize>>,
+    /// The sets of effects of one family that were fitted together.
+    pub(super) of_families: BTreeSet<EffectSet>,
+    /// The sets that were fitted with an effect exchanged.
+    pub(super) exchanged: BTreeSet<EffectSet>,
     /// Log Bayes factor of the base over itself without each effect that may be dropped; `None` where that cannot be fitted.
     pub(super) gains: Vec<Option<f64>>,
     /// Laws outside the library beyond the base; `None`: not searched.
@@ -36,7 +38,14 @@ pub(super) struct Hypotheses {
     pub(super) predictive: Vec<(Vec<usize>, f64)>,
 }
 
-/// Effects that act together.
+/// Effects that act together, in whatever order.
+pub(super) type EffectSet = BTreeSet<usize>;
+
+pub(super) fn effect_set(effects: &[usize]) -> EffectSet {
+    effects.iter().copied().collect()
+}
+
+/// Effects that act together, with their fit.
 #[derive(Debug, Clone)]
 pub(super) struct EffectCombination {
     /// In the order in which their parameters follow the base's.
@@ -89,8 +98,8 @@ impl Hypotheses {
             base: None,
             ranking: EffectRanking::default(),
             combinations: Vec::new(),
-            of_families: Vec::new(),
-            exchanged: Vec::new(),
+            of_families: BTreeSet::new(),
+            exchanged: BTreeSet::new(),
             gains: Vec::new(),
             laws: None,
             further_laws: None,
@@ -110,16 +119,9 @@ impl Hypotheses {
 
     /// Adds a combination unless the same one has more evidence already.
     pub(super) fn add(&mut self, combination: EffectCombination) {
-        let key = |combination: &EffectCombination| {
-            let mut effects = combination.effects.clone();
-            effects.sort_unstable();
-            effects
-        };
-        let same = self
-            .combinations
-            .iter_mut()
-            .find(|other| key(other) == key(&combination));
-        match same {
+        let effects = effect_set(&combination.effects);
+        let mut others = self.combinations.iter_mut();
+        match others.find(|other| effect_set(&other.effects) == effects) {
             Some(other) if other.log_bayes_factor < combination.log_bayes_factor => *other = combination,
             Some(_) => {}
             None => self.combinations.push(combination),
@@ -169,6 +171,13 @@ impl Hypotheses {
     /// The combination of these effects, in this order.
     pub(super) fn of(&self, effects: &[usize]) -> Option<&EffectCombination> {
         self.combinations.iter().find(|c| c.effects == effects)
+    }
+
+    /// The log Bayes factor of these effects, if they were fitted together.
+    pub(super) fn log_bayes_factor_of(&self, effects: &EffectSet) -> Option<f64> {
+        let mut combinations = self.combinations.iter();
+        let own = combinations.find(|own| effect_set(&own.effects) == *effects)?;
+        Some(own.log_bayes_factor)
     }
 
     /// The scan for laws that is in progress or was the last.

@@ -1,0 +1,83 @@
+//! Changes of the predictions after projection out of what the base absorbs.
+
+use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
+
+use crate::laplace::fit::LaplaceFit;
+use statistics::likelihood::{Likelihood, Whitening};
+
+/// The projection of changes of the predictions out of those that the fitted base absorbs.
+pub(crate) struct Projection {
+    whitening: Whitening,
+    columns: Vec<Vec<f64>>,
+    cholesky: Cholesky<f64, Dyn>,
+}
+
+/// A change of the predictions in the place of another.
+pub(crate) struct Exchange {
+    /// How far it goes, in standard deviations of the strength's prior.
+    step: f64,
+    /// The step of the base's parameters that absorbs the rest.
+    of_base: Vec<f64>,
+}
+
+impl Exchange {
+    /// The position of a model, where the base's parameters come first, with the exchange made.
+    ///
+    /// # Arguments
+    /// - `strength`: the index of the strength that is given, and its neutral value.
+    pub(crate) fn made(&self, mut position: Vec<f64>, strength: (usize, f64)) -> Vec<f64> {
+        for (t, by) in position.iter_mut().zip(&self.of_base) {
+            *t += by;
+        }
+        position[strength.0] = strength.1 + self.step;
+        position
+    }
+}
+
+impl Projection {
+    /// `None` where the data cannot be whitened at the base's fit.
+    pub(crate) fn new(base: &LaplaceFit, likelihood: &Likelihood) -> Option<Self> {
+        let whitening = likelihood.whitening(&base.point.values, &base.theta()).ok()?;
+        Some(Self {
+            columns: base
+                .columns
+                .iter()
+                .map(|column| whitening.apply(column))
+                .collect(),
+            cholesky: Cholesky::new(base.quadratic(likelihood).hessian)?,
+            whitening,
+        })
+    }
+
+    /// How far a change moves along the columns: whitened inner products.
+    fn along(&self, whitened: &[f64]) -> DVector<f64> {
+        let products = self.columns.iter().map(|c| self.whitening.curvature(c, whitened));
+        DVector::from_iterator(self.columns.len(), products)
+    }
+
+    /// The exchange of a step t of the second change g for one of the first h, of the same class: `s = t (h'P g / |h'P g|)
+    /// (g'P g / h'P h)^(1/2)`, and of the base `(I + J'J)^-1 J'(t g - s h)`. A regression of g on h would make s too short, since
+    /// changes of a model that scatters scatter, too.
+    pub(crate) fn exchange(&self, changes: [Vec<f64>; 2], step: f64) -> Exchange {
+        let products = self.products(&changes);
+        let ratio = (products[(1, 1)] / products[(0, 0)]).sqrt();
+        let own = step * ratio.copysign(products[(0, 1)]);
+        let [to, from] = changes;
+        let rest: Vec<f64> = from.iter().zip(&to).map(|(g, h)| step * g - own * h).collect();
+        let along = self.along(&self.whitening.apply(&rest));
+        Exchange {
+            step: own,
+            of_base: self.cholesky.solve(&along).iter().copied().collect(),
+        }
+    }
+
+    /// Inner products of changes after projection out of `[J; I]`: `a'b - a'J (I + J'J)^-1 J'b`, whitened.
+    pub(super) fn products(&self, changes: &[Vec<f64>]) -> DMatrix<f64> {
+        let changes: Vec<Vec<f64>> = changes.iter().map(|g| self.whitening.apply(g)).collect();
+        let along: Vec<DVector<f64>> = changes.iter().map(|g| self.along(g)).collect();
+        let solved: Vec<DVector<f64>> = along.iter().map(|v| self.cholesky.solve(v)).collect();
+        DMatrix::from_fn(changes.len(), changes.len(), |i, j| {
+            self.whitening.curvature(&changes[i], &changes[j]) - along[i].dot(&solved[j])
+        })
+    }
+}
