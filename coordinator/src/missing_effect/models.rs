@@ -73,6 +73,8 @@ pub struct SearchModels {
     channels: Vec<(Channel, f64)>,
     /// Hash and variant of what was asked.
     variants: BTreeMap<VariantKey, (String, ModelVariant)>,
+    /// What was asked by the hash of its variant.
+    keys: BTreeMap<String, VariantKey>,
     max_effects: usize,
 }
 
@@ -172,6 +174,7 @@ impl SearchModels {
             laws,
             reductions,
             variants: BTreeMap::new(),
+            keys: BTreeMap::new(),
             max_effects: max_effects.min(room.saturating_sub(1)),
             base,
         })
@@ -263,6 +266,11 @@ impl SearchModels {
         let made: Vec<Result<(String, ModelVariant), FileError>> = unknown.par_iter().map(one).collect();
         // The first error in the order of the models, whichever came first in time.
         let made: Vec<(String, ModelVariant)> = made.into_iter().collect::<Result<_, _>>()?;
+        let keys = made
+            .iter()
+            .map(|(hash, _)| hash.clone())
+            .zip(unknown.iter().cloned());
+        self.keys.extend(keys);
         self.variants.extend(unknown.into_iter().zip(made));
         Ok(())
     }
@@ -283,8 +291,8 @@ impl SearchModels {
 
     /// The variant of a hash that was made before.
     pub fn of_hash(&self, hash: &str) -> Option<&ModelVariant> {
-        let mut made = self.variants.values();
-        made.find(|(own, _)| own == hash).map(|(_, variant)| variant)
+        let key = self.keys.get(hash)?;
+        self.variants.get(key).map(|(_, variant)| variant)
     }
 
     /// The same model on the proposed runs.

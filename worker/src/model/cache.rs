@@ -9,8 +9,8 @@ use super::error::CompileError;
 use super::variant::CompiledVariant;
 use crate::external::allowed::AllowedModels;
 
-/// Most variants in the cache; a metamodel brings a new one with every stage.
-const MOST_VARIANTS: usize = 64;
+/// Most conditions of all variants in the cache: a variant holds each.
+const MOST_CONDITIONS: usize = 100_000;
 
 /// Variants by hash, each compiled once; the oldest make room.
 #[derive(Debug)]
@@ -18,15 +18,21 @@ pub struct VariantCache {
     models: Arc<AllowedModels>,
     variants: BTreeMap<String, Arc<CompiledVariant>>,
     by_age: VecDeque<String>,
+    /// Of all variants.
+    conditions: usize,
 }
 
 impl VariantCache {
+    /// Most variants: a round of a search asks hundreds, and the next round most of them again.
+    pub const MOST: usize = 1024;
+
     /// An empty cache; `models` are those that are not ours and may be run.
     pub fn new(models: Arc<AllowedModels>) -> Self {
         VariantCache {
             models,
             variants: BTreeMap::new(),
             by_age: VecDeque::new(),
+            conditions: 0,
         }
     }
 
@@ -39,7 +45,7 @@ impl VariantCache {
     ///
     /// # Errors
     /// The variant does not have that hash, or cannot be compiled.
-    pub fn add(&mut self, hash: &str, variant: &ModelVariant) -> Result<(), CompileError> {
+    pub fn add(&mut self, hash: &str, variant: &ModelVariant) -> Result<Arc<CompiledVariant>, CompileError> {
         let own = variant.hash();
         if own != hash {
             return Err(CompileError::OtherHash {
@@ -47,16 +53,19 @@ impl VariantCache {
                 own,
             });
         }
-        let compiled = CompiledVariant::new(variant, &self.models)?;
-        let compiled = Arc::new(compiled);
-        if self.variants.insert(hash.to_owned(), compiled).is_none() {
-            self.by_age.push_back(hash.to_owned());
+        let compiled = Arc::new(CompiledVariant::new(variant, &self.models)?);
+        self.conditions += compiled.runs();
+        match self.variants.insert(own, compiled.clone()) {
+            Some(same) => self.conditions -= same.runs(),
+            None => self.by_age.push_back(hash.to_owned()),
         }
-        if self.by_age.len() > MOST_VARIANTS
-            && let Some(oldest) = self.by_age.pop_front()
-        {
-            self.variants.remove(&oldest);
+        while self.by_age.len() > Self::MOST || (self.conditions > MOST_CONDITIONS && self.by_age.len() > 1) {
+            let oldest = self
+                .by_age
+                .pop_front()
+                .and_then(|oldest| self.variants.remove(&oldest));
+            self.conditions -= oldest.map_or(0, |oldest| oldest.runs());
         }
-        Ok(())
+        Ok(compiled)
     }
 }

@@ -9,6 +9,8 @@
 pub mod exchange;
 pub mod limits;
 mod settings;
+#[cfg(test)]
+mod tests;
 mod worker;
 
 use std::sync::Arc;

@@ -57,7 +57,7 @@ struct Known {
     runs: usize,
 }
 
-/// Why a variant is not in the cache.
+/// Why there is no variant of a hash.
 enum Missing {
     /// It cannot be fetched now.
     Away,
@@ -413,26 +413,26 @@ impl<C: Coordinator> Worker<C> {
             tokio::time::sleep(BACK_OFF[1]).await;
         }
         let hashes: BTreeSet<String> = response.leases.iter().map(|l| l.variant.clone()).collect();
-        let mut missing = BTreeMap::new();
+        // Kept here, because a batch may have more variants than the cache.
+        let mut variants = BTreeMap::new();
         for hash in hashes {
-            if let Err(reason) = self.fetch(&hash).await {
-                missing.insert(hash, reason);
-            }
+            let variant = self.fetch(&hash).await;
+            variants.insert(hash, variant);
         }
         self.known.runs = 1;
         let mut batch = Vec::with_capacity(response.leases.len());
         for lease in response.leases {
-            match (self.variants.get(&lease.variant), missing.get(&lease.variant)) {
-                (Some(variant), _) => {
+            match variants.get(&lease.variant) {
+                Some(Ok(variant)) => {
                     self.known.runs = self.known.runs.max(variant.runs());
                     if lease.announce {
-                        self.announced.push((lease, variant));
+                        self.announced.push((lease, variant.clone()));
                     } else {
-                        batch.push((lease, variant));
+                        batch.push((lease, variant.clone()));
                     }
                 }
-                (None, Some(Missing::Unusable(reason))) => self.refuse(lease, reason.clone()),
-                (None, _) => {
+                Some(Err(Missing::Unusable(reason))) => self.refuse(lease, reason.clone()),
+                Some(Err(Missing::Away)) | None => {
                     self.held.remove(&lease.lease);
                     self.returned.push(lease.lease);
                 }
@@ -465,10 +465,10 @@ impl<C: Coordinator> Worker<C> {
         });
     }
 
-    /// Makes sure that a variant is in the cache.
-    async fn fetch(&mut self, hash: &str) -> Result<(), Missing> {
-        if self.variants.get(hash).is_some() {
-            return Ok(());
+    /// The compiled variant of a hash, from the cache or the coordinator.
+    async fn fetch(&mut self, hash: &str) -> Result<Arc<CompiledVariant>, Missing> {
+        if let Some(known) = self.variants.get(hash) {
+            return Ok(known);
         }
         match self.coordinator.variant(hash).await {
             Ok(Some(variant)) => self
@@ -521,78 +521,5 @@ impl<C: Coordinator> Worker<C> {
             ),
         }
         Ok(ended)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use std::sync::Mutex;
-
-    use shared::model::ModelVariant;
-
-    use super::*;
-    use crate::pull::limits::WorkerLimits;
-    use crate::pull::run;
-
-    /// A coordinator that leases two evaluations of a variant and never says what it is.
-    #[derive(Default)]
-    struct Silent {
-        returned: Mutex<Vec<u64>>,
-        is_asked: tokio::sync::Notify,
-    }
-
-    impl Coordinator for Silent {
-        async fn exchange(
-            &self,
-            request: ExchangeRequest,
-        ) -> Result<ExchangeResponse, (ExchangeError, Vec<WorkResult>)> {
-            let mut returned = self.returned.lock().unwrap();
-            returned.extend(&request.returned);
-            let lease = |lease| Lease {
-                lease,
-                calibration: 1,
-                evaluation: lease,
-                seal: String::new(),
-                variant: "unknown".into(),
-                theta: Vec::new(),
-                announce: false,
-                subchain: None,
-            };
-            Ok(ExchangeResponse {
-                leases: if request.want > 0 {
-                    vec![lease(7), lease(8)]
-                } else {
-                    Vec::new()
-                },
-                lease_ms: 60_000,
-                remaining: 2,
-                in_hand: 1,
-                workers: 1,
-                duplicates: 0,
-                refused: None,
-            })
-        }
-
-        async fn variant(&self, _hash: &str) -> Result<Option<ModelVariant>, ExchangeError> {
-            self.is_asked.notify_one();
-            std::future::pending().await
-        }
-    }
-
-    #[tokio::test]
-    async fn a_worker_stops_while_a_variant_does_not_come_and_gives_its_leases_back() {
-        let silent = Arc::new(Silent::default());
-        let settings = PullSettings {
-            name: "test".into(),
-            queue_job: None,
-            threads: 1,
-            models: Arc::default(),
-            limits: WorkerLimits::default(),
-        };
-        let stop = silent.is_asked.notified();
-        let ended = run(silent.clone(), settings, Arc::default(), stop);
-        let ended = tokio::time::timeout(Duration::from_secs(60), ended).await;
-        assert_eq!(ended, Ok(Ok(Ended::Asked)));
-        assert_eq!(*silent.returned.lock().unwrap(), [7, 8]);
     }
 }

@@ -1,0 +1,167 @@
+//! A worker against coordinators of few words.
+
+use std::collections::BTreeMap;
+use std::sync::{Arc, Mutex};
+use std::time::Duration;
+
+use shared::exchange::{ExchangeRequest, ExchangeResponse, Lease, WorkResult};
+use shared::experiment::Experiment;
+use shared::file::FileSet;
+use shared::model::{EffectSet, ModelSettings, ModelVariant};
+use shared::outcome::Outcome;
+
+use super::exchange::{Coordinator, ExchangeError};
+use super::limits::{Ended, WorkerLimits};
+use super::{PullSettings, run};
+use crate::model::VariantCache;
+
+/// A coordinator that leases two evaluations of a variant and never says what it is.
+#[derive(Default)]
+struct Silent {
+    returned: Mutex<Vec<u64>>,
+    is_asked: tokio::sync::Notify,
+}
+
+/// Deals one lease of each of its variants at once.
+struct Dealing {
+    variants: BTreeMap<String, ModelVariant>,
+    results: Mutex<Vec<WorkResult>>,
+    returned: Mutex<Vec<u64>>,
+    is_over: tokio::sync::Notify,
+}
+
+impl Dealing {
+    /// Of a wheel under so many loads.
+    fn new(variants: usize) -> Self {
+        let files = FileSet {
+            toml: include_str!("../../../tests/data/nothing-hidden/experiment.toml").into(),
+            files: BTreeMap::from([(
+                "runs.csv".into(),
+                include_str!("../../../tests/data/nothing-hidden/runs.csv").into(),
+            )]),
+        };
+        let experiment = Experiment::parse("experiment.toml", &files).unwrap();
+        let mut settings = ModelSettings::from_table(&"kind = \"quasi_static\"".parse().unwrap()).unwrap();
+        let parameters = include_str!("../../../tests/data/nothing-hidden/parameters.toml");
+        settings
+            .fixed
+            .extend(toml::from_str::<BTreeMap<String, f64>>(parameters).unwrap());
+        let effects = EffectSet::default();
+        let runs = &experiment.runs[..1];
+        let own = ModelVariant::new(&experiment, &settings, &effects, Vec::new(), runs).unwrap();
+        let under = |more: usize| {
+            let mut own = own.clone();
+            own.conditions[0].wheel_load_n += 0.01 * more as f64;
+            (own.hash(), own)
+        };
+        Self {
+            variants: (0..variants).map(under).collect(),
+            results: Mutex::default(),
+            returned: Mutex::default(),
+            is_over: tokio::sync::Notify::new(),
+        }
+    }
+}
+
+impl Coordinator for Dealing {
+    async fn exchange(
+        &self,
+        request: ExchangeRequest,
+    ) -> Result<ExchangeResponse, (ExchangeError, Vec<WorkResult>)> {
+        let mut results = self.results.lock().unwrap();
+        results.extend(request.results);
+        self.returned.lock().unwrap().extend(request.returned);
+        if results.len() == self.variants.len() {
+            self.is_over.notify_one();
+        }
+        let hashes = self.variants.keys().filter(|_| request.received == 0).zip(1..);
+        let leases = hashes.map(|(hash, number)| lease(number, hash)).collect();
+        Ok(answer(leases))
+    }
+
+    async fn variant(&self, hash: &str) -> Result<Option<ModelVariant>, ExchangeError> {
+        Ok(self.variants.get(hash).cloned())
+    }
+}
+
+fn lease(number: u64, variant: &str) -> Lease {
+    Lease {
+        lease: number,
+        calibration: 1,
+        evaluation: number,
+        seal: String::new(),
+        variant: variant.into(),
+        theta: Vec::new(),
+        announce: false,
+        subchain: None,
+    }
+}
+
+fn answer(leases: Vec<Lease>) -> ExchangeResponse {
+    ExchangeResponse {
+        leases,
+        lease_ms: 60_000,
+        remaining: 2,
+        in_hand: 1,
+        workers: 1,
+        duplicates: 0,
+        refused: None,
+    }
+}
+
+fn settings() -> PullSettings {
+    PullSettings {
+        name: "test".into(),
+        queue_job: None,
+        threads: 1,
+        models: Arc::default(),
+        limits: WorkerLimits::default(),
+    }
+}
+
+impl Coordinator for Silent {
+    async fn exchange(
+        &self,
+        request: ExchangeRequest,
+    ) -> Result<ExchangeResponse, (ExchangeError, Vec<WorkResult>)> {
+        let mut returned = self.returned.lock().unwrap();
+        returned.extend(&request.returned);
+        Ok(answer(if request.want > 0 {
+            vec![lease(7, "unknown"), lease(8, "unknown")]
+        } else {
+            Vec::new()
+        }))
+    }
+
+    async fn variant(&self, _hash: &str) -> Result<Option<ModelVariant>, ExchangeError> {
+        self.is_asked.notify_one();
+        std::future::pending().await
+    }
+}
+
+#[tokio::test]
+async fn a_worker_stops_while_a_variant_does_not_come_and_gives_its_leases_back() {
+    let silent = Arc::new(Silent::default());
+    let stop = silent.is_asked.notified();
+    let ended = run(silent.clone(), settings(), Arc::default(), stop);
+    let ended = tokio::time::timeout(Duration::from_secs(60), ended).await;
+    assert_eq!(ended, Ok(Ok(Ended::Asked)));
+    assert_eq!(*silent.returned.lock().unwrap(), [7, 8]);
+}
+
+#[tokio::test]
+async fn a_batch_of_more_variants_than_the_cache_holds_is_evaluated() {
+    let variants = VariantCache::MOST + 100;
+    let dealing = Arc::new(Dealing::new(variants));
+    let stop = dealing.is_over.notified();
+    let ended = run(dealing.clone(), settings(), Arc::default(), stop);
+    let ended = tokio::time::timeout(Duration::from_secs(60), ended).await;
+    assert_eq!(ended, Ok(Ok(Ended::Asked)));
+    assert!(dealing.returned.lock().unwrap().is_empty());
+    let results = dealing.results.lock().unwrap();
+    let is_evaluated = |result: &WorkResult| matches!(result.outcome, Some(Outcome::Evaluated(_)));
+    assert_eq!(
+        results.iter().filter(|result| is_evaluated(result)).count(),
+        variants
+    );
+}
