@@ -1,6 +1,7 @@
-// Preloaded by routes.py: gives free memory back to the system every second, so that what is resident is what the program holds.
+// Preloaded by routes.py, with glibc: gives free memory back to the system every second, so that what is resident is what the program holds.
 #include <malloc.h>
 #include <pthread.h>
+#include <stdlib.h>
 #include <unistd.h>
 
 static void *trim(void *unused) {
@@ -13,5 +14,6 @@ static void *trim(void *unused) {
 
 __attribute__((constructor)) static void begin(void) {
     pthread_t thread;
-    pthread_create(&thread, NULL, trim, NULL);
+    if (pthread_create(&thread, NULL, trim, NULL) != 0)
+        abort();
 }

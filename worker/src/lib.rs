@@ -16,6 +16,8 @@ pub mod client;
 pub mod config;
 pub mod evaluator;
 pub mod external;
+#[cfg(test)]
+mod fixture;
 pub mod model;
 pub mod processor;
 pub mod program;

@@ -73,7 +73,7 @@ pub struct SearchModels {
     channels: Vec<(Channel, f64)>,
     /// Hash and variant of what was asked.
     variants: BTreeMap<VariantKey, (String, ModelVariant)>,
-    /// What was asked by the hash of its variant.
+    /// Key of each variant by its hash.
     keys: BTreeMap<String, VariantKey>,
     max_effects: usize,
 }

@@ -38,4 +38,4 @@ pub use kind::ModelKind;
 pub use names::{ParameterScope, check_complete, lookup};
 pub use settings::ModelSettings;
 pub use spatial::SpatialSettings;
-pub use variant::{ModelVariant, equations_of};
+pub use variant::{ModelVariant, equations_of, hash_of};

@@ -225,15 +225,21 @@ impl ModelVariant {
         format!("{equations}{stated}{}", EffectSet::version(&self.effects))
     }
 
-    /// Name of the variant on the wire: the first 128 bits of the SHA-256 of its JSON, in hex.
+    /// Name of the variant on the wire, by [`hash_of`].
     pub fn hash(&self) -> String {
-        // Struct fields and ordered maps serialise in one order, so equal variants have equal text.
-        let text = serde_json::to_vec(self).expect("a variant holds only numbers, text and ordered maps");
-        Sha256::digest(&text)[..16]
-            .iter()
-            .map(|byte| format!("{byte:02x}"))
-            .collect()
+        hash_of(&self.text())
     }
+
+    /// Its JSON. Struct fields and ordered maps serialise in one order, so equal variants have equal text.
+    pub fn text(&self) -> Vec<u8> {
+        serde_json::to_vec(self).expect("a variant holds only numbers, text and ordered maps")
+    }
+}
+
+/// The hash of a variant of this text: the first 128 bits of the SHA-256, in hex.
+pub fn hash_of(text: &[u8]) -> String {
+    let digest = Sha256::digest(text);
+    digest[..16].iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
 /// The part of a model's version that names the equations.

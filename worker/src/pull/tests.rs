@@ -1,18 +1,17 @@
-//! A worker against coordinators of few words.
+//! A worker with coordinators that do one thing.
 
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 use shared::exchange::{ExchangeRequest, ExchangeResponse, Lease, WorkResult};
-use shared::experiment::Experiment;
-use shared::file::FileSet;
-use shared::model::{EffectSet, ModelSettings, ModelVariant};
+use shared::model::ModelVariant;
 use shared::outcome::Outcome;
 
 use super::exchange::{Coordinator, ExchangeError};
 use super::limits::{Ended, WorkerLimits};
 use super::{PullSettings, run};
+use crate::fixture::under_loads;
 use crate::model::VariantCache;
 
 /// A coordinator that leases two evaluations of a variant and never says what it is.
@@ -22,7 +21,7 @@ struct Silent {
     is_asked: tokio::sync::Notify,
 }
 
-/// Deals one lease of each of its variants at once.
+/// A coordinator that leases one evaluation of each of its variants at once, and none again.
 struct Dealing {
     variants: BTreeMap<String, ModelVariant>,
     results: Mutex<Vec<WorkResult>>,
@@ -31,31 +30,9 @@ struct Dealing {
 }
 
 impl Dealing {
-    /// Of a wheel under so many loads.
     fn new(variants: usize) -> Self {
-        let files = FileSet {
-            toml: include_str!("../../../tests/data/nothing-hidden/experiment.toml").into(),
-            files: BTreeMap::from([(
-                "runs.csv".into(),
-                include_str!("../../../tests/data/nothing-hidden/runs.csv").into(),
-            )]),
-        };
-        let experiment = Experiment::parse("experiment.toml", &files).unwrap();
-        let mut settings = ModelSettings::from_table(&"kind = \"quasi_static\"".parse().unwrap()).unwrap();
-        let parameters = include_str!("../../../tests/data/nothing-hidden/parameters.toml");
-        settings
-            .fixed
-            .extend(toml::from_str::<BTreeMap<String, f64>>(parameters).unwrap());
-        let effects = EffectSet::default();
-        let runs = &experiment.runs[..1];
-        let own = ModelVariant::new(&experiment, &settings, &effects, Vec::new(), runs).unwrap();
-        let under = |more: usize| {
-            let mut own = own.clone();
-            own.conditions[0].wheel_load_n += 0.01 * more as f64;
-            (own.hash(), own)
-        };
         Self {
-            variants: (0..variants).map(under).collect(),
+            variants: under_loads(variants).into_iter().collect(),
             results: Mutex::default(),
             returned: Mutex::default(),
             is_over: tokio::sync::Notify::new(),
@@ -68,10 +45,13 @@ impl Coordinator for Dealing {
         &self,
         request: ExchangeRequest,
     ) -> Result<ExchangeResponse, (ExchangeError, Vec<WorkResult>)> {
+        // A worker that holds nothing asks at once, and the test ends only where others have a turn.
+        tokio::task::yield_now().await;
         let mut results = self.results.lock().unwrap();
         results.extend(request.results);
-        self.returned.lock().unwrap().extend(request.returned);
-        if results.len() == self.variants.len() {
+        let mut returned = self.returned.lock().unwrap();
+        returned.extend(request.returned);
+        if results.len() + returned.len() == self.variants.len() {
             self.is_over.notify_one();
         }
         let hashes = self.variants.keys().filter(|_| request.received == 0).zip(1..);

@@ -25,7 +25,7 @@ impl Exchange {
     ///
     /// # Arguments
     /// - `strength`: the index of the strength that is given, and its neutral value.
-    pub(crate) fn made(&self, mut position: Vec<f64>, strength: (usize, f64)) -> Vec<f64> {
+    pub(crate) fn applied_to(&self, mut position: Vec<f64>, strength: (usize, f64)) -> Vec<f64> {
         for (t, by) in position.iter_mut().zip(&self.of_base) {
             *t += by;
         }

@@ -200,7 +200,7 @@ impl EffectSearch {
         let mut position = screened.point.position.clone();
         let base = self.base_frame.dimension();
         position[..base].copy_from_slice(&fit.point.position[..base]);
-        let position = exchange.made(position, given);
+        let position = exchange.applied_to(position, given);
         frame.holds(&position).then_some(position)
     }
 

@@ -96,7 +96,7 @@ pub(super) enum Phase {
 
 impl CandidateState {
     /// Whether the model refused it at every step of the screen or from all starts, or gave it no evidence: its screen's promise then
-    /// says nothing.
+    /// says nothing. True of all before the screen.
     pub(super) fn is_refused(&self) -> bool {
         let has_fit = self.estimate.as_ref().is_some_and(|own| own.fit.is_some());
         self.screened.is_none() || (self.had_confirmation && !has_fit)

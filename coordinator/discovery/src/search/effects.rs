@@ -6,7 +6,7 @@ use crate::effect_search::state::EffectSearch;
 use crate::laplace::fit::FittedModel;
 use crate::probability::DETECTED;
 use crate::search::branch::SearchBranch;
-use crate::search::hypotheses::{EffectCombination, effect_set};
+use crate::search::hypotheses::{EffectCombination, candidate_set};
 use crate::search::stage::Stage;
 use crate::search::state::SearchState;
 use crate::settings::{Roughness, SearchSettings, Starts};
@@ -70,7 +70,8 @@ impl SearchState {
         let mut best: Vec<&EffectCombination> = of_size.collect();
         let width = if is_wide { WIDE_BEAM } else { BEAM };
         // The best set of a family goes on beside the others: what it lacks yet may hide that it leads.
-        let is_of_family = |c: &&EffectCombination| hypotheses.of_families.contains(&effect_set(&c.effects));
+        let is_of_family =
+            |c: &&EffectCombination| hypotheses.of_families.contains(&candidate_set(&c.effects));
         let family = best.iter().position(is_of_family).filter(|place| *place >= width);
         let family = family.map(|place| best[place]);
         best.truncate(width);

@@ -5,7 +5,7 @@ use crate::effect_search::projection::Projection;
 use crate::effect_search::state::EffectSearch;
 use crate::laplace::coordinate::NormalFrame;
 use crate::search::branch::SearchBranch;
-use crate::search::hypotheses::{EffectCombination, effect_set};
+use crate::search::hypotheses::{EffectCombination, candidate_set};
 use crate::search::stage::Stage;
 use crate::search::state::SearchState;
 
@@ -25,7 +25,7 @@ impl SearchState {
         if branches.is_empty() {
             return self.curves();
         }
-        let tried = branches.iter().map(|branch| effect_set(&branch.effects));
+        let tried = branches.iter().map(|branch| candidate_set(&branch.effects));
         self.hypotheses.exchanged.extend(tried);
         Stage::Exchanges(round, branches)
     }
@@ -54,7 +54,7 @@ impl SearchState {
                 return None;
             }
             effects.remove(place);
-            let known = |effects: &[usize]| self.hypotheses.log_bayes_factor_of(&effect_set(effects));
+            let known = |effects: &[usize]| self.hypotheses.log_bayes_factor_of(&candidate_set(effects));
             let gain = best.log_bayes_factor - known(&effects).unwrap_or(0.0);
             effects.insert(place, other);
             let library = &self.task.library;
@@ -62,7 +62,7 @@ impl SearchState {
                 .iter()
                 .all(|k| *k == other || library[*k].combines_with(&library[other]));
             let least = best.log_bayes_factor - shortfall(gain);
-            let is_fitted = self.hypotheses.exchanged.contains(&effect_set(&effects))
+            let is_fitted = self.hypotheses.exchanged.contains(&candidate_set(&effects))
                 || known(&effects).is_some_and(|own| own > least);
             if is_fitted || !combines {
                 return None;
@@ -107,7 +107,7 @@ impl SearchState {
         let changes = [change, best.fit.columns[taken].clone()];
         let projection = Projection::new(self.hypotheses.base_fit()?, &self.task.likelihood)?;
         let exchange = projection.exchange(changes, best.fit.point.position[taken] - absent);
-        let start = exchange.made(start, given);
+        let start = exchange.applied_to(start, given);
         frame.holds(&start).then_some((frame, start))
     }
 }

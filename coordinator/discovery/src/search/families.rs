@@ -3,7 +3,7 @@
 use crate::effect_search::base::starts;
 use crate::effect_search::state::EffectSearch;
 use crate::search::branch::SearchBranch;
-use crate::search::hypotheses::effect_set;
+use crate::search::hypotheses::candidate_set;
 use crate::search::stage::Stage;
 use crate::search::state::SearchState;
 
@@ -30,7 +30,7 @@ impl SearchState {
 
     pub(super) fn after_families(&mut self, branches: &[SearchBranch]) -> Stage {
         self.add_fitted(branches);
-        let fitted = branches.iter().map(|branch| effect_set(&branch.effects));
+        let fitted = branches.iter().map(|branch| candidate_set(&branch.effects));
         self.hypotheses.of_families = fitted.collect();
         self.beam_search(1)
     }

@@ -25,9 +25,9 @@ pub(super) struct Hypotheses {
     /// Combinations by falling Bayes factor, single effects among them.
     pub(super) combinations: Vec<EffectCombination>,
     /// The sets of effects of one family that were fitted together.
-    pub(super) of_families: BTreeSet<EffectSet>,
+    pub(super) of_families: BTreeSet<CandidateSet>,
     /// The sets that were fitted with an effect exchanged.
-    pub(super) exchanged: BTreeSet<EffectSet>,
+    pub(super) exchanged: BTreeSet<CandidateSet>,
     /// Log Bayes factor of the base over itself without each effect that may be dropped; `None` where that cannot be fitted.
     pub(super) gains: Vec<Option<f64>>,
     /// Laws outside the library beyond the base; `None`: not searched.
@@ -38,10 +38,10 @@ pub(super) struct Hypotheses {
     pub(super) predictive: Vec<(Vec<usize>, f64)>,
 }
 
-/// Effects that act together, in whatever order.
-pub(super) type EffectSet = BTreeSet<usize>;
+/// Candidates that act together, in whatever order.
+pub(super) type CandidateSet = BTreeSet<usize>;
 
-pub(super) fn effect_set(effects: &[usize]) -> EffectSet {
+pub(super) fn candidate_set(effects: &[usize]) -> CandidateSet {
     effects.iter().copied().collect()
 }
 
@@ -119,9 +119,9 @@ impl Hypotheses {
 
     /// Adds a combination unless the same one has more evidence already.
     pub(super) fn add(&mut self, combination: EffectCombination) {
-        let effects = effect_set(&combination.effects);
+        let effects = candidate_set(&combination.effects);
         let mut others = self.combinations.iter_mut();
-        match others.find(|other| effect_set(&other.effects) == effects) {
+        match others.find(|other| candidate_set(&other.effects) == effects) {
             Some(other) if other.log_bayes_factor < combination.log_bayes_factor => *other = combination,
             Some(_) => {}
             None => self.combinations.push(combination),
@@ -174,9 +174,9 @@ impl Hypotheses {
     }
 
     /// The log Bayes factor of these effects, if they were fitted together.
-    pub(super) fn log_bayes_factor_of(&self, effects: &EffectSet) -> Option<f64> {
+    pub(super) fn log_bayes_factor_of(&self, effects: &CandidateSet) -> Option<f64> {
         let mut combinations = self.combinations.iter();
-        let own = combinations.find(|own| effect_set(&own.effects) == *effects)?;
+        let own = combinations.find(|own| candidate_set(&own.effects) == *effects)?;
         Some(own.log_bayes_factor)
     }
 
