@@ -2,7 +2,6 @@
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
-use std::time::Duration;
 
 use shared::api::{CalibrationCreated, RunsAdded};
 use shared::experiment::Experiment;
@@ -26,8 +25,6 @@ use record::effect_of;
 
 /// How job and experiment are called in messages.
 const FILES: [&str; 2] = ["job.toml", "experiment.toml"];
-/// Interval between checks for studies that can be extended.
-const LOOK: Duration = Duration::from_millis(500);
 
 impl Service {
     /// Adds a calibration to the study of another: its job with an effect more; one that is there already is meant.
@@ -168,12 +165,14 @@ impl Service {
     pub async fn keep_growing(&self) {
         // Members of each study when it was last seen to have no next step.
         let mut at_rest: BTreeMap<i64, i64> = BTreeMap::new();
+        let mut changes = self.study_changes();
         loop {
-            tokio::time::sleep(LOOK).await;
+            changes.next().await;
             let settled = match self.store().reader().settled_studies().await {
                 Ok(settled) => settled,
                 Err(error) => {
                     tracing::error!(%error, "failed to read the studies");
+                    changes.look_again();
                     continue;
                 }
             };
@@ -182,7 +181,7 @@ impl Service {
                     continue;
                 }
                 match self.advance(study).await {
-                    Ok(true) => {}
+                    Ok(true) => changes.look_again(),
                     Ok(false) => drop(at_rest.insert(study, members)),
                     Err(error) => {
                         tracing::error!(study, %error, "failed to extend the study");

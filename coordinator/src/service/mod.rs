@@ -26,6 +26,7 @@ mod overview_cache;
 mod recovery;
 mod removal;
 mod stored_calibration;
+mod study_changes;
 mod study_members;
 mod study_overview;
 mod study_results;

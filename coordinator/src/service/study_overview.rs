@@ -2,7 +2,6 @@
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
-use std::time::Duration;
 
 use shared::api::{CalibrationState, CalibrationStatus};
 
@@ -15,9 +14,6 @@ use crate::store::StoreError;
 use job::{is_discovery, model_kind};
 use record::CalibrationRow;
 use result::{StudyFile, StudyListItem, StudyOverview};
-
-/// Interval between looks for studies whose overview is out of date.
-const LOOK: Duration = Duration::from_millis(500);
 
 impl Service {
     /// A study as the page shows it.
@@ -126,7 +122,9 @@ impl Service {
     /// Computes the overviews of studies as their members begin and end, until the service ends.
     pub async fn keep_overviews(&self) {
         let mut seen: BTreeMap<i64, MemberKey> = BTreeMap::new();
+        let mut changes = self.study_changes();
         loop {
+            changes.next().await;
             match self.store().reader().member_states().await {
                 Ok(states) => {
                     let mut studies: BTreeMap<i64, Vec<(i64, CalibrationState)>> = BTreeMap::new();
@@ -148,9 +146,11 @@ impl Service {
                     }
                     seen = keys;
                 }
-                Err(error) => tracing::error!(%error, "failed to read the studies"),
+                Err(error) => {
+                    tracing::error!(%error, "failed to read the studies");
+                    changes.look_again();
+                }
             }
-            tokio::time::sleep(LOOK).await;
         }
     }
 }

@@ -5,6 +5,7 @@
 
 mod backup;
 mod blob;
+mod change;
 mod copy;
 mod damage;
 mod effects;
@@ -36,6 +37,7 @@ mod writer;
 use std::path::PathBuf;
 
 pub use backup::BackupError;
+pub use change::StateChange;
 pub use copy::copy_store;
 pub use effects::{AddedEffect, EffectVersion, NewEffect, StoredEffect};
 pub use error::StoreError;
@@ -49,7 +51,7 @@ pub use reader::Reader;
 pub use results::StudyResults;
 use sql::{Connection, Pool, query_scalar};
 pub use tokens::TokenTable;
-pub use writer::{FactSink, StateChange, Writer};
+pub use writer::{FactSink, Writer};
 
 /// The store: a pool of readers and the way to the one writer.
 #[derive(Debug, Clone)]

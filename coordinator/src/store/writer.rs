@@ -7,10 +7,10 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 
-use shared::api::CalibrationState;
 use shared::file::FileSet;
 use tokio::sync::{Notify, broadcast, mpsc, oneshot, watch};
 
+use super::change::{Listeners, StateChange};
 use super::effects::{AddedEffect, NewEffect, insert_effect};
 use super::error::{StoreError, is_locked};
 use super::health::StoreHealth;
@@ -69,23 +69,12 @@ enum Write {
     Close,
 }
 
-/// A change of state that is stored.
-#[derive(Debug, Clone)]
-pub struct StateChange {
-    /// The calibration.
-    pub calibration: i64,
-    /// Its new state.
-    pub state: CalibrationState,
-    /// Why paused or failed.
-    pub message: Option<String>,
-}
-
 /// The way to the writer; clones are cheap.
 #[derive(Debug, Clone)]
 pub struct Writer {
     sender: mpsc::UnboundedSender<Write>,
     committed: watch::Receiver<u64>,
-    states: broadcast::Sender<StateChange>,
+    listeners: Listeners,
     health: Arc<StoreHealth>,
     waiting: Arc<Waiting>,
 }
@@ -153,8 +142,8 @@ impl Writer {
     pub(super) fn start(connection: Connection, lock: Option<std::fs::File>) -> Writer {
         let (sender, receiver) = mpsc::unbounded_channel();
         let (committed_sender, committed) = watch::channel(0);
-        let states = broadcast::Sender::new(STATES);
-        let told = states.clone();
+        let listeners = Listeners::new(STATES);
+        let told = listeners.clone();
         let health = Arc::new(StoreHealth::default());
         let waiting = Arc::new(Waiting::default());
         let (shared, waited_for) = (health.clone(), waiting.clone());
@@ -177,7 +166,7 @@ impl Writer {
         Writer {
             sender,
             committed,
-            states,
+            listeners,
             health,
             waiting,
         }
@@ -190,7 +179,7 @@ impl Writer {
         Writer {
             sender,
             committed,
-            states: broadcast::Sender::new(1),
+            listeners: Listeners::new(1),
             health: Arc::default(),
             waiting: Arc::default(),
         }
@@ -256,7 +245,18 @@ impl Writer {
 
     /// Changes of state from now on, each after it is stored.
     pub fn state_changes(&self) -> broadcast::Receiver<StateChange> {
-        self.states.subscribe()
+        self.listeners.states()
+    }
+
+    /// Changes from now on of what studies there are, of their members and of the states of these, each after it is stored. Several may
+    /// be told as one.
+    pub fn study_changes(&self) -> watch::Receiver<()> {
+        self.listeners.studies()
+    }
+
+    /// Whether the writer has ended, or there was none.
+    pub fn has_ended(&self) -> bool {
+        self.committed.has_changed().is_err()
     }
 
     /// Figures of the writer.
@@ -350,7 +350,7 @@ async fn run(
     mut connection: Connection,
     mut receiver: mpsc::UnboundedReceiver<Write>,
     committed: &watch::Sender<u64>,
-    states: &broadcast::Sender<StateChange>,
+    listeners: &Listeners,
     health: &StoreHealth,
     waiting: &Waiting,
 ) -> Result<(), sqlx::Error> {
@@ -375,7 +375,7 @@ async fn run(
             server::in_time(server::GROUP_TIME, stored).await?
         };
         number += facts;
-        replies.send(states);
+        replies.send(listeners);
         health.commits.fetch_add(1, Ordering::Relaxed);
         health.facts.fetch_add(facts, Ordering::Relaxed);
         health.busy_us.fetch_add(
@@ -438,10 +438,13 @@ struct Replies {
     done: Vec<oneshot::Sender<()>>,
     deleted: Vec<(oneshot::Sender<bool>, bool)>,
     states: Vec<StateChange>,
+    /// Whether a study has begun, grown, been archived, taken back or deleted.
+    have_studies_changed: bool,
 }
 
 impl Replies {
-    fn send(self, states: &broadcast::Sender<StateChange>) {
+    fn send(self, listeners: &Listeners) {
+        listeners.tell(self.states, self.have_studies_changed);
         // An asker that has gone away finds what it stored in the list.
         for (reply, id) in self.ids {
             let _ = reply.send(id);
@@ -458,10 +461,6 @@ impl Replies {
         for (reply, is_gone) in self.deleted {
             let _ = reply.send(is_gone);
         }
-        for change in self.states {
-            // Nobody may want to know.
-            let _ = states.send(change);
-        }
     }
 }
 
@@ -474,6 +473,7 @@ async fn write_group(
     let mut facts = 0;
     let mut rows: Vec<(i64, EvaluationRow)> = Vec::new();
     for write in group {
+        replies.have_studies_changed |= changes_studies(&write);
         match write {
             Write::Fact(fact) => {
                 facts += 1;
@@ -481,7 +481,7 @@ async fn write_group(
                     Fact::Evaluated { calibration, row } => rows.push((calibration, row)),
                     other => {
                         insert_evaluations(connection, &mut rows).await?;
-                        replies.states.extend(state_change(&other));
+                        replies.states.extend(StateChange::of(&other));
                         super::facts::write(connection, other, health).await?;
                     }
                 }
@@ -527,20 +527,11 @@ async fn write_group(
     Ok(facts)
 }
 
-/// The change of state that a fact is.
-fn state_change(fact: &Fact) -> Option<StateChange> {
-    let Fact::State {
-        calibration,
-        state,
-        message,
-        ..
-    } = fact
-    else {
-        return None;
-    };
-    Some(StateChange {
-        calibration: *calibration,
-        state: *state,
-        message: message.clone(),
-    })
+/// Whether a write changes which studies there are, or which members they have.
+fn changes_studies(write: &Write) -> bool {
+    use Write::{Archive, Delete, Member, Study};
+    matches!(
+        write,
+        Study { .. } | Member { .. } | Archive { .. } | Delete { .. }
+    )
 }
