@@ -15,6 +15,7 @@ use tokio::sync::oneshot;
 
 use super::control::{Control, ControlError};
 use super::metrics::FarmMetrics;
+use super::pulse::{Heart, Pulse};
 use super::state::Farm;
 use super::worker_record::WorkerRecord;
 use crate::calibration::Calibration;
@@ -67,6 +68,7 @@ enum Message {
 #[derive(Debug, Clone)]
 pub struct Dispatcher {
     sender: mpsc::Sender<Message>,
+    pulse: Pulse,
 }
 
 /// The farm's thread has ended: the coordinator is going down.
@@ -83,6 +85,8 @@ impl Dispatcher {
     pub fn start(farm: Farm, sink: FactSink) -> std::io::Result<(Dispatcher, Rewinds)> {
         let (sender, receiver) = mpsc::channel();
         let (rewinds, asked) = unbounded_channel();
+        let heart = Heart::begin();
+        let pulse = heart.pulse();
         std::thread::Builder::new().name("farm".into()).spawn(move || {
             Thread {
                 farm,
@@ -92,9 +96,14 @@ impl Dispatcher {
                 parked_until_ms: u64::MAX,
                 began: Instant::now(),
             }
-            .run(&receiver)
+            .run(&receiver, &heart);
         })?;
-        Ok((Dispatcher { sender }, asked))
+        Ok((Dispatcher { sender, pulse }, asked))
+    }
+
+    /// What the thread is doing.
+    pub fn pulse(&self) -> &Pulse {
+        &self.pulse
     }
 
     fn send(&self, message: Message) -> Result<(), Stopped> {
@@ -239,7 +248,7 @@ struct Thread {
 }
 
 impl Thread {
-    fn run(mut self, receiver: &mpsc::Receiver<Message>) {
+    fn run(mut self, receiver: &mpsc::Receiver<Message>, heart: &Heart) {
         let mut next_tick = self.began + TICK;
         loop {
             let message = match receiver.recv_timeout(next_tick.saturating_duration_since(Instant::now())) {
@@ -247,6 +256,7 @@ impl Thread {
                 Ok(message) => Some(message),
                 Err(mpsc::RecvTimeoutError::Timeout) => None,
             };
+            heart.step_begins();
             let mut now_ms = self.now_ms();
             if let Some(message) = message {
                 self.handle(message, now_ms);
@@ -268,6 +278,7 @@ impl Thread {
                 return;
             }
             self.serve_parked(now_ms);
+            heart.rests();
         }
     }
 

@@ -4,7 +4,7 @@
 //! - `state`: [`Farm`]. Pure: the clock comes as an argument and facts go out as a list.
 //! - `leasing`: what a worker is given.
 //! - `verification`: what follows where workers disagree, and who is asked beside a slow one.
-//! - [`dispatch`]: gives it a thread.
+//! - [`dispatch`]: gives it a thread. `pulse`: what that thread is doing.
 //! - `control`: the commands of a user on a calibration.
 //! - `demand`: how much work there is.
 //! - `lease_numbers`: numbers of leases.
@@ -20,6 +20,7 @@ mod lease_numbers;
 mod leasing;
 mod metrics;
 mod progress;
+mod pulse;
 mod seal;
 mod share;
 mod state;

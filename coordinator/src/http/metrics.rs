@@ -16,7 +16,9 @@ use utoipa_axum::routes;
 
 use super::error::HttpError;
 use super::request_metrics::RequestMetrics;
+use crate::farm::dispatch::Stopped;
 use crate::service::Service;
+use crate::store::StoreError;
 
 fn counter(registry: &mut Registry, name: &str, help: &str, value: u64) {
     let counter: Counter = Counter::default();
@@ -192,17 +194,24 @@ struct Health {
     status: &'static str,
     /// Version of the coordinator.
     version: &'static str,
+    /// How long the farm's thread has been at its present step `[s]`: exchanges and answers about calibrations wait for its end.
+    farm_step_s: f64,
 }
 
 /// Whether the service works.
 ///
-/// Answers while farm and store work; needs no token.
+/// Answers while farm and store work, also in the middle of a long step of the farm; needs no token.
 #[utoipa::path(get, path = "/health", operation_id = "get_health", tag = "service", security(()),
     responses((status = 200, description = "it works", body = Health)))]
 async fn health(State(service): State<Service>) -> Result<Json<Health>, HttpError> {
-    service.dispatcher().metrics().await?;
+    // Neither is asked: a large step of a sampler takes seconds, and whoever restarts a service that does not answer makes it worse.
+    let step = service.dispatcher().pulse().step().ok_or(Stopped)?;
+    if !service.store().is_read_only() && service.store().writer().has_ended() {
+        return Err(StoreError::Stopped.into());
+    }
     Ok(Json(Health {
         status: "ok",
         version: env!("CARGO_PKG_VERSION"),
+        farm_step_s: step.as_secs_f64(),
     }))
 }

@@ -1,7 +1,8 @@
-//! The service as its operator sees it: figures, alerts, web hooks, encryption.
+//! The service as its operator sees it: figures, health, alerts, web hooks, encryption.
 
 mod doctor;
 mod figures;
+mod health;
 mod shell;
 mod tls;
 mod webhook;

@@ -1,0 +1,87 @@
+//! Whether the farm's thread lives, and how long it has been at its present step; told without asking the thread.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::{Duration, Instant};
+
+/// No step is in progress.
+const RESTING: u64 = u64::MAX;
+/// The thread has ended.
+const ENDED: u64 = u64::MAX - 1;
+
+/// What the farm's thread is doing; clones share it.
+#[derive(Debug, Clone)]
+pub struct Pulse {
+    began: Instant,
+    /// When the present step began, after `began` `[ms]`, or one of the constants above.
+    step_ms: Arc<AtomicU64>,
+}
+
+/// What the thread holds: a pulse ends with it, also where the thread panics.
+#[derive(Debug)]
+pub(super) struct Heart(Pulse);
+
+impl Heart {
+    /// That of a thread which begins now.
+    pub(super) fn begin() -> Heart {
+        Heart(Pulse {
+            began: Instant::now(),
+            step_ms: Arc::new(AtomicU64::new(RESTING)),
+        })
+    }
+
+    pub(super) fn pulse(&self) -> Pulse {
+        self.0.clone()
+    }
+
+    /// A step begins.
+    pub(super) fn step_begins(&self) {
+        self.0.step_ms.store(self.0.age_ms(), Ordering::Relaxed);
+    }
+
+    /// The step is over.
+    pub(super) fn rests(&self) {
+        self.0.step_ms.store(RESTING, Ordering::Relaxed);
+    }
+}
+
+impl Drop for Heart {
+    fn drop(&mut self) {
+        self.0.step_ms.store(ENDED, Ordering::Relaxed);
+    }
+}
+
+impl Pulse {
+    fn age_ms(&self) -> u64 {
+        u64::try_from(self.began.elapsed().as_millis()).unwrap_or(RESTING)
+    }
+
+    /// How long the thread has been at its present step, zero between two; `None` once it has ended.
+    pub fn step(&self) -> Option<Duration> {
+        match self.step_ms.load(Ordering::Relaxed) {
+            ENDED => None,
+            RESTING => Some(Duration::ZERO),
+            step_ms => Some(Duration::from_millis(self.age_ms().saturating_sub(step_ms))),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_step_lasts_until_the_thread_rests_and_an_ended_thread_has_none() {
+        let heart = Heart::begin();
+        let pulse = heart.pulse();
+        assert_eq!(pulse.step(), Some(Duration::ZERO));
+        heart.step_begins();
+        while pulse.step() == Some(Duration::ZERO) {
+            std::thread::yield_now();
+        }
+        heart.rests();
+        assert_eq!(pulse.step(), Some(Duration::ZERO));
+        drop(heart);
+        assert_eq!(pulse.step(), None);
+    }
+}

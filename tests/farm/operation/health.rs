@@ -1,0 +1,37 @@
+//! `/health`: whoever restarts what does not answer must not be misled by a service that is busy.
+
+use farm_tests::fake_worker::{FakeWorker, evaluated};
+use farm_tests::job::{FIT_RUNS, Job};
+use farm_tests::service::Service;
+use farm_tests::wait::until;
+
+#[test]
+fn health_is_answered_in_the_middle_of_a_long_step_of_the_farm() {
+    let service = Service::start(&[]);
+    service.submit(&Job::small().sampler(20_000, [2, 4], 1));
+    let worker = FakeWorker::new(&service.client, "worker");
+    let step_s = || {
+        let health = service.client.json("/health");
+        assert_eq!(health["status"], "ok");
+        health["farm_step_s"].as_f64().unwrap_or_default()
+    };
+    let outcome = |lease: &_| evaluated(lease, FIT_RUNS);
+    worker.answer(&worker.take(10_000), outcome);
+    let last = worker.take(10_000);
+    assert_eq!(last.len(), 10_000);
+    // Its answer comes when the sampler has proposed the next round.
+    std::thread::scope(|scope| {
+        let exchange = scope.spawn(|| worker.answer(&last, outcome));
+        until("an answer in the middle of a step", || {
+            let is_over = exchange.is_finished();
+            let step_s = step_s();
+            let is_in_the_middle = step_s > 0.2 && !exchange.is_finished();
+            assert!(
+                is_in_the_middle || !is_over,
+                "the step is over, and nobody was told"
+            );
+            is_in_the_middle.then_some(())
+        });
+    });
+    until("rest", || (step_s() < 0.1).then_some(()));
+}
