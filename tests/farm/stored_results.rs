@@ -78,6 +78,32 @@ fn a_service_shows_a_study_while_it_runs_and_what_it_has_become() {
 }
 
 #[test]
+fn stored_diagnostics_and_flags_are_handed_on_as_they_stand() {
+    let mut service = Service::start(&[]);
+    let id = service.submit(&Job::small());
+    let _worker = service.worker("worker", 2);
+    service.wait_for(id, "finished");
+    let [diagnostics, flags] = ["diagnostics", "flags"].map(|part| format!("/v1/calibrations/{id}/{part}"));
+    let first = service.client.get(&diagnostics);
+    assert_eq!(first.status, 200, "{}", first.body);
+    let mut database = service.database();
+    let stored = format!("SELECT body FROM results WHERE name = 'diagnostics-{id}.json'");
+    assert_eq!(database.text(&stored), first.body);
+    // What is stored stays from now on: it was computed for a request, and perhaps for the overview of the study at the same time.
+    assert!(service.terminate());
+    service.restart();
+    // What this program would not write itself shows whose text it is.
+    let marked = r#"{"flags": [ {"marked": 1.50} ], "more": 2}"#;
+    database.execute(&format!(
+        "UPDATE results SET body = '{marked}' WHERE name = 'diagnostics-{id}.json'"
+    ));
+    assert_eq!(service.client.get(&diagnostics).body, marked);
+    let answer = service.client.get(&flags);
+    assert_eq!(answer.body, r#"[ {"marked": 1.50} ]"#);
+    assert_eq!(answer.header("content-type"), Some("application/json"));
+}
+
+#[test]
 fn what_was_cancelled_has_no_results_and_says_so() {
     let service = Service::start(&[]);
     let id = service.submit(&Job::small());

@@ -96,7 +96,7 @@ impl Study {
             StudyFile::Overview => json(&self.overview()),
             StudyFile::Diagnostics(id) => {
                 let calibration = self.calibration(id)?;
-                json(&calibration.diagnostics(calibration.comparison()))
+                compact(&calibration.diagnostics(calibration.comparison()))
             }
             StudyFile::Figures(id) => compact(&self.figures_of(self.calibration(id)?)),
             StudyFile::Comparison(id) => compact(&self.calibration(id)?.comparison()),

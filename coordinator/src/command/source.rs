@@ -88,7 +88,7 @@ impl CalibrationSource {
                 client.get(&format!("/v1/calibrations/{id}/diagnostics")).await
             }
             CalibrationSource::Folder(reader) => {
-                Ok(diagnostics(reader, None, &calibration_row(reader, id).await?).await?)
+                Ok(diagnostics(reader, &calibration_row(reader, id).await?).await?)
             }
         }
     }

@@ -300,8 +300,8 @@ fn json(text: String) -> impl IntoResponse {
     (status = 200, description = "the diagnostics", body = Diagnostics),
     (status = 404, body = ErrorBody),
     (status = 409, body = ErrorBody)))]
-async fn diagnostics(State(service): State<Service>, Id(id): Id) -> Result<Json<Diagnostics>, HttpError> {
-    Ok(Json(service.diagnostics(id).await?))
+async fn diagnostics(State(service): State<Service>, Id(id): Id) -> Result<impl IntoResponse, HttpError> {
+    Ok(json(service.diagnostics(id).await?))
 }
 
 /// Time histories of the fitted runs.
@@ -336,8 +336,8 @@ async fn provenance(State(service): State<Service>, Id(id): Id) -> Result<Json<P
     (status = 200, description = "the flags; none if all is well", body = Vec<Flag>),
     (status = 404, body = ErrorBody),
     (status = 409, body = ErrorBody)))]
-async fn flags(State(service): State<Service>, Id(id): Id) -> Result<Json<Vec<Flag>>, HttpError> {
-    Ok(Json(service.diagnostics(id).await?.flags))
+async fn flags(State(service): State<Service>, Id(id): Id) -> Result<impl IntoResponse, HttpError> {
+    Ok(json(service.flags(id).await?))
 }
 
 /// The summary of the study.

@@ -21,7 +21,7 @@ use crate::store::{Store, StoreError, Writer};
 use crate::webhook::WebhookHosts;
 use job::Spec;
 use record::CalibrationRow;
-use result::{Diagnostics, StudyFile};
+use result::StudyFile;
 
 /// So many facts may wait for the store before the service asks for patience.
 const BACKLOG: u64 = 200_000;
@@ -184,13 +184,21 @@ impl Service {
         study_results::calibration_file(&self.store.reader(), self.results_writer(), &row, file(id)).await
     }
 
-    /// The diagnostics of a finished calibration.
+    /// The diagnostics of a finished calibration, as JSON.
     ///
     /// # Errors
     /// As those of [`super::diagnostics`].
-    pub async fn diagnostics(&self, id: i64) -> Result<Diagnostics, ServiceError> {
+    pub async fn diagnostics(&self, id: i64) -> Result<String, ServiceError> {
         let row = self.calibration_row(id).await?;
-        study_results::diagnostics(&self.store.reader(), self.results_writer(), &row).await
+        study_results::diagnostics_text(&self.store.reader(), self.results_writer(), &row).await
+    }
+
+    /// The flags of a finished calibration, as JSON.
+    ///
+    /// # Errors
+    /// As those of [`super::diagnostics`].
+    pub async fn flags(&self, id: i64) -> Result<String, ServiceError> {
+        study_results::flags_text(id, &self.diagnostics(id).await?)
     }
 
     /// The status of a calibration.

@@ -1,5 +1,7 @@
 //! The files of a study: computed once, then stored.
 
+use serde::Deserialize;
+use serde_json::value::RawValue;
 use shared::api::CalibrationState;
 
 use super::error::ServiceError;
@@ -53,24 +55,50 @@ pub async fn study_file(
     text.ok_or_else(none)
 }
 
-/// The diagnostics of a finished calibration, from the store where they stand there.
+/// The diagnostics of a finished calibration as JSON, from the store where they stand there.
 ///
 /// # Errors
 /// As those of [`finished_calibration`].
-pub async fn diagnostics(
+pub(super) async fn diagnostics_text(
     reader: &Reader,
     writer: Option<&Writer>,
     row: &CalibrationRow,
-) -> Result<Diagnostics, ServiceError> {
+) -> Result<String, ServiceError> {
     let is_diagnosed = row.state == CalibrationState::Finished && !is_discovery(&row.job.toml);
-    if !is_diagnosed || stamp(&reader.study(row.study).await?, (0, 0)).is_none() {
-        // Of what has no diagnostics this says why.
-        let calibration = finished_calibration(reader, row).await?;
-        return Ok(calibration.diagnostics(calibration.comparison()));
+    if is_diagnosed && stamp(&reader.study(row.study).await?, (0, 0)).is_some() {
+        return study_file(reader, writer, row, StudyFile::Diagnostics(row.id)).await;
     }
-    let text = study_file(reader, writer, row, StudyFile::Diagnostics(row.id)).await?;
-    let corrupt = |e| StoreError::Corrupt(format!("diagnostics of calibration {}: {e}", row.id));
-    Ok(serde_json::from_str(&text).map_err(corrupt)?)
+    // Of what has no diagnostics this says why.
+    let calibration = finished_calibration(reader, row).await?;
+    let diagnostics = calibration.diagnostics(calibration.comparison());
+    Ok(serde_json::to_string(&diagnostics).expect("results have a JSON form"))
+}
+
+/// The flags among the diagnostics of a calibration, as JSON.
+///
+/// # Errors
+/// [`StoreError::Corrupt`] where the text is none of diagnostics.
+pub(super) fn flags_text(id: i64, diagnostics: &str) -> Result<String, ServiceError> {
+    #[derive(Deserialize)]
+    struct Flagged<'a> {
+        #[serde(borrow)]
+        flags: &'a RawValue,
+    }
+    let flagged: Flagged<'_> = serde_json::from_str(diagnostics).map_err(|e| corrupt(id, &e))?;
+    Ok(flagged.flags.get().to_owned())
+}
+
+/// The diagnostics of a finished calibration in a folder, from its store where they stand there.
+///
+/// # Errors
+/// As those of [`finished_calibration`].
+pub async fn diagnostics(reader: &Reader, row: &CalibrationRow) -> Result<Diagnostics, ServiceError> {
+    let text = diagnostics_text(reader, None, row).await?;
+    serde_json::from_str(&text).map_err(|e| corrupt(row.id, &e))
+}
+
+fn corrupt(id: i64, error: &serde_json::Error) -> ServiceError {
+    StoreError::Corrupt(format!("diagnostics of calibration {id}: {error}")).into()
 }
 
 /// A file of a finished calibration, from the store where it stands there.
@@ -132,6 +160,21 @@ mod tests {
             evaluations: None,
             rejected: None,
         }
+    }
+
+    #[test]
+    fn flags_are_the_part_of_the_diagnostics_as_it_stands_there() {
+        let text = r#"{"sampler": null, "flags": [{"kind": "a", "numbers": [1.50]}], "findings": []}"#;
+        assert_eq!(
+            flags_text(1, text).unwrap(),
+            r#"[{"kind": "a", "numbers": [1.50]}]"#
+        );
+        assert!(
+            flags_text(1, "{}")
+                .unwrap_err()
+                .to_string()
+                .contains("missing field `flags`")
+        );
     }
 
     #[test]
