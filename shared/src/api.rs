@@ -291,7 +291,7 @@ pub struct ErrorDetail {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum ErrorKind {
-    /// The body is not what the route takes.
+    /// The body is not what the route takes, or the request breaks the rules of HTTP.
     InvalidBody,
     /// The body is in a form that the route does not take.
     UnsupportedMediaType,
@@ -311,7 +311,7 @@ pub enum ErrorKind {
     TooLarge,
     /// The worker speaks another version of the protocol.
     ProtocolMismatch,
-    /// The service has more work than it can store; try again later.
+    /// The service has more work than it can store, or more bodies on their way than it keeps memory for; try again later.
     Busy,
     /// Something failed inside; the log says what.
     Internal,

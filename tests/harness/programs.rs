@@ -104,6 +104,23 @@ fn command<S: AsRef<std::ffi::OsStr>>(name: &str, arguments: impl IntoIterator<I
     command
 }
 
+/// The same command, for a process that may have so many files and connections open.
+pub fn with_descriptors(count: u32, command: &Command) -> Command {
+    let mut limited = Command::new("sh");
+    limited
+        .args(["-c", &format!("ulimit -n {count} && exec \"$0\" \"$@\"")])
+        .arg(command.get_program())
+        .args(command.get_args())
+        .stdin(Stdio::null());
+    for (name, value) in command.get_envs() {
+        match value {
+            Some(value) => limited.env(name, value),
+            None => limited.env_remove(name),
+        };
+    }
+    limited
+}
+
 /// The folder of the two programs, built on the first call with the profile of the running test.
 fn built() -> &'static Path {
     static BUILT: OnceLock<Option<PathBuf>> = OnceLock::new();

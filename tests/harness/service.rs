@@ -24,6 +24,7 @@ pub struct Service {
     database: Option<ServerDatabase>,
     store_name: String,
     arguments: Vec<String>,
+    max_descriptors: Option<u32>,
     process: Option<Process>,
 }
 
@@ -32,6 +33,18 @@ impl Service {
     /// among them: what workers played by hand answer is nothing that a second one would.
     pub fn start(more: &[&str]) -> Service {
         Service::start_at(free_address(), more)
+    }
+
+    /// Starts a service on an empty store that may have so many files and connections open.
+    ///
+    /// # Panics
+    /// It does not start.
+    pub fn start_with_descriptors(max_descriptors: u32) -> Service {
+        let mut service = Service::start(&[]);
+        service.kill();
+        service.max_descriptors = Some(max_descriptors);
+        service.restart();
+        service
     }
 
     /// Starts a service on an empty store at an address.
@@ -77,6 +90,7 @@ impl Service {
             database,
             store_name,
             arguments,
+            max_descriptors: None,
             process: None,
         };
         service.restart();
@@ -90,6 +104,10 @@ impl Service {
     pub fn restart(&mut self) {
         assert!(self.process.is_none(), "the service is running");
         let command = programs::coordinator(&self.arguments);
+        let command = match self.max_descriptors {
+            Some(count) => programs::with_descriptors(count, &command),
+            None => command,
+        };
         let mut process = Process::start(command, &self.folder.path().join("coordinator.log"));
         until("an answer of the service", || {
             assert!(process.is_running(), "the service ended:\n{}", process.log());
@@ -144,6 +162,38 @@ impl Service {
             .expect("the service is running")
             .resident_kb()
             .expect("the service is running")
+    }
+
+    /// What the operating system keeps of answers that their clients have not taken `[bytes]`, and the number of connections that
+    /// are open, proc(5).
+    ///
+    /// # Panics
+    /// The system does not say.
+    pub fn untaken(&self) -> (u64, usize) {
+        let port = self
+            .client
+            .0
+            .rsplit_once(':')
+            .and_then(|(_, port)| port.parse().ok());
+        let port: u16 = port.expect("an address has a port");
+        let table = std::fs::read_to_string("/proc/net/tcp").expect("a table of connections");
+        let ours = format!(":{port:04X}");
+        let (mut bytes, mut open) = (0, 0);
+        for line in table.lines() {
+            let words: Vec<&str> = line.split_whitespace().collect();
+            let [_, local, _, state, queues, ..] = words[..] else {
+                continue;
+            };
+            let queue = queues
+                .split(':')
+                .next()
+                .and_then(|text| u64::from_str_radix(text, 16).ok());
+            if local.ends_with(&ours) && state != "0A" {
+                bytes += queue.unwrap_or_default();
+                open += usize::from(state == "01");
+            }
+        }
+        (bytes, open)
     }
 
     /// The file of its store.

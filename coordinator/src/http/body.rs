@@ -1,14 +1,18 @@
 //! The body of a request: its form, its size and the time that it takes are checked before its handler sees it.
 
+use std::error::Error;
+use std::future::poll_fn;
+use std::pin::Pin;
 use std::time::Duration;
 
-use axum::body::{Body, HttpBody, to_bytes};
+use axum::body::{Body, Bytes, HttpBody};
 use axum::extract::Request;
 use axum::http::Method;
 use axum::http::header::CONTENT_TYPE;
 use shared::api::ErrorKind;
 use shared::wire::WireForm;
 
+use super::body_memory::{BodyMemory, ORDINARY};
 use super::error::HttpError;
 
 /// Where workers post.
@@ -50,23 +54,60 @@ pub(super) fn check_form(request: &Request) -> Result<(), HttpError> {
 }
 
 /// The request with its whole body.
-pub(super) async fn received(request: Request) -> Result<Request, HttpError> {
+pub(super) async fn received(request: Request, memory: &BodyMemory) -> Result<Request, HttpError> {
     let limit = limit(request.uri().path());
-    let too_large = || {
-        let message = format!("the body is above the limit of {limit} bytes for this route");
-        HttpError::new(ErrorKind::TooLarge, message)
-    };
     let (parts, body) = request.into_parts();
+    if body.is_end_stream() {
+        return Ok(Request::from_parts(parts, body));
+    }
     if body.size_hint().lower() > limit as u64 {
-        return Err(too_large());
+        return Err(too_large(limit));
     }
     let late = |_| {
         let message = format!("the body has not arrived within {} s", BODY_TIME.as_secs());
         HttpError::new(ErrorKind::Timeout, message)
     };
-    let bytes = tokio::time::timeout(BODY_TIME, to_bytes(body, limit))
+    let bytes = tokio::time::timeout(BODY_TIME, whole(body, limit, memory))
         .await
-        .map_err(late)?
-        .map_err(|_| too_large())?;
+        .map_err(late)??;
     Ok(Request::from_parts(parts, Body::from(bytes)))
+}
+
+fn too_large(limit: usize) -> HttpError {
+    let message = format!("the body is above the limit of {limit} bytes for this route");
+    HttpError::new(ErrorKind::TooLarge, message)
+}
+
+/// The bytes of a body, in one piece: many small ones would leave holes in the memory of the process.
+async fn whole(mut body: Body, limit: usize, memory: &BodyMemory) -> Result<Bytes, HttpError> {
+    let stated = body
+        .size_hint()
+        .exact()
+        .and_then(|size| usize::try_from(size).ok());
+    let mut room = memory.take(stated.unwrap_or(limit.min(ORDINARY))).await?;
+    let mut bytes = Vec::with_capacity(stated.unwrap_or_default());
+    while let Some(frame) = poll_fn(|context| Pin::new(&mut body).poll_frame(context)).await {
+        // What follows the parts of a body is passed over.
+        let Ok(part) = frame.map_err(|error| unreadable(&error))?.into_data() else {
+            continue;
+        };
+        if part.len() > limit - bytes.len() {
+            return Err(too_large(limit));
+        }
+        if bytes.len() + part.len() > room.bytes() {
+            drop(room);
+            room = memory.take(limit).await?;
+        }
+        bytes.extend_from_slice(&part);
+    }
+    Ok(room.holding(bytes))
+}
+
+fn unreadable(error: &axum::Error) -> HttpError {
+    let mut cause: &dyn Error = error;
+    while let Some(source) = cause.source() {
+        cause = source;
+    }
+    let message = format!("the body cannot be read: {cause}");
+    HttpError::new(ErrorKind::InvalidBody, message)
 }

@@ -1,32 +1,48 @@
-//! Connections: how many there may be, and how long each may take to say what it wants.
+//! Connections: how many there may be, and how long each may keep the service waiting.
+//!
+//! Where all are taken, a new one takes the place of the one that has waited longest for its client: whoever connects and then neither
+//! sends nor takes anything shuts nobody out.
 
-use std::sync::Arc;
+use std::sync::{Arc, Weak};
 use std::time::Duration;
 
 use axum::Router;
+use axum::extract::Request;
 use hyper::server::conn::http1;
+use hyper::service::{Service as _, service_fn};
 use hyper_util::rt::{TokioIo, TokioTimer};
-use hyper_util::server::graceful::GracefulShutdown;
+use hyper_util::server::graceful::{GracefulShutdown, Watcher};
 use hyper_util::service::TowerToHyperService;
 use rustix::process::{Resource, getrlimit, setrlimit};
-use tokio::net::TcpListener;
-use tokio::sync::Semaphore;
+use socket2::SockRef;
+use tokio::io::{AsyncRead, AsyncWrite};
+use tokio::net::{TcpListener, TcpStream};
+use tokio::sync::{OwnedSemaphorePermit, Semaphore};
 use tokio_rustls::TlsAcceptor;
 
-/// Most connections at a time.
+use super::activity::Activity;
+use super::client_stream::ClientStream;
+
+/// The largest number of connections at a time.
 const CONNECTIONS: u64 = 4096;
-/// File descriptors that are left to the store and to outputs.
+/// File descriptors that are left to the store, to outputs and to a connection that waits for its place.
 const OTHER_DESCRIPTORS: u64 = 64;
 /// The head of a request, or the greeting of TLS, must have arrived after this time; a connection without requests is closed
 /// after it too.
 const HEADER_TIME: Duration = Duration::from_secs(15);
-/// Largest head of a request, and most that is read ahead of a body `[bytes]`.
+/// A connection whose client has taken nothing for so long, though there is something for it, is closed.
+const TAKING_TIME: Duration = Duration::from_secs(30);
+/// What the operating system keeps of an answer that its client has not taken `[bytes]`; Linux counts its own part twice.
+const SEND_BUFFER: usize = 64 << 10;
+/// Largest head of a request, and the largest part of a body that is read ahead `[bytes]`.
 const BUFFER: usize = 64 << 10;
-/// Pause after an error of the operating system.
+/// A connection that has waited so long for its client may have to make place for another.
+const GRACE: Duration = Duration::from_millis(250);
+/// Pause after an error of the operating system, and between looks for a connection that can make place.
 const PAUSE: Duration = Duration::from_millis(100);
 
 /// As many connections as descriptors allow, after asking for as many descriptors as the operating system grants.
-fn most_connections() -> usize {
+fn max_connections() -> usize {
     let mut limit = getrlimit(Resource::Nofile);
     let wanted = CONNECTIONS + OTHER_DESCRIPTORS;
     if limit.current.is_some_and(|current| current < wanted) {
@@ -35,10 +51,69 @@ fn most_connections() -> usize {
         let _ = setrlimit(Resource::Nofile, limit);
     }
     let descriptors = getrlimit(Resource::Nofile).current.unwrap_or(wanted);
-    let most = descriptors
+    let count = descriptors
         .saturating_sub(OTHER_DESCRIPTORS)
         .clamp(1, CONNECTIONS);
-    usize::try_from(most).unwrap_or(1)
+    usize::try_from(count).unwrap_or(1)
+}
+
+/// Bounds what a client that takes nothing costs; connections have the settings of their listener.
+fn bound_untaken(listener: &TcpListener) {
+    let socket = SockRef::from(listener);
+    let limit = socket
+        .set_send_buffer_size(SEND_BUFFER)
+        .and_then(|()| socket.set_tcp_user_timeout(Some(TAKING_TIME)));
+    if let Err(error) = limit {
+        tracing::warn!(%error, "clients that do not take their answers are not bounded");
+    }
+}
+
+/// The places of connections.
+struct Places {
+    free: Arc<Semaphore>,
+    count: usize,
+    /// Who has one; some have ended meanwhile.
+    taken: Vec<Weak<Activity>>,
+}
+
+impl Places {
+    fn new(count: usize) -> Self {
+        Places {
+            free: Arc::new(Semaphore::new(count)),
+            count,
+            taken: Vec::new(),
+        }
+    }
+
+    /// A place for a new connection, as soon as there is one.
+    async fn take(&mut self, activity: &Arc<Activity>) -> OwnedSemaphorePermit {
+        let place = loop {
+            if let Ok(place) = self.free.clone().try_acquire_owned() {
+                break place;
+            }
+            self.make_place();
+            let freed = tokio::time::timeout(PAUSE, self.free.clone().acquire_owned()).await;
+            // The semaphore is never closed.
+            if let Ok(Ok(place)) = freed {
+                break place;
+            }
+        };
+        if self.taken.len() >= 2 * self.count {
+            self.taken.retain(|taken| taken.strong_count() > 0);
+        }
+        self.taken.push(Arc::downgrade(activity));
+        place
+    }
+
+    /// Closes the connection that has waited longest for its client.
+    fn make_place(&self) {
+        let open = self.taken.iter().filter_map(Weak::upgrade);
+        let waiting = open.filter_map(|activity| Some((activity.waiting()?, activity)));
+        let longest = waiting.max_by_key(|(time, _)| *time);
+        if let Some((_, activity)) = longest.filter(|(time, _)| *time >= GRACE) {
+            activity.close();
+        }
+    }
 }
 
 /// Answers connections until `shutdown` is ready, then lets requests in progress end.
@@ -48,8 +123,9 @@ pub(super) async fn serve(
     router: Router,
     shutdown: impl Future<Output = ()>,
 ) {
-    let slots = Arc::new(Semaphore::new(most_connections()));
+    let mut places = Places::new(max_connections());
     let connections = GracefulShutdown::new();
+    bound_untaken(&listener);
     let mut http = http1::Builder::new();
     http.timer(TokioTimer::new())
         .header_read_timeout(HEADER_TIME)
@@ -57,41 +133,95 @@ pub(super) async fn serve(
     let mut shutdown = std::pin::pin!(shutdown);
     loop {
         let next = async {
-            let slot = slots.clone().acquire_owned().await;
-            (slot, listener.accept().await)
+            let (stream, _) = listener.accept().await?;
+            let activity = Activity::begin();
+            let place = places.take(&activity).await;
+            Ok::<_, std::io::Error>((stream, activity, place))
         };
-        let (slot, accepted) = tokio::select! {
+        let accepted = tokio::select! {
             next = next => next,
             () = &mut shutdown => break,
         };
-        let Ok((stream, _)) = accepted else {
+        let Ok((stream, activity, place)) = accepted else {
             tokio::time::sleep(PAUSE).await;
             continue;
         };
-        let service = TowerToHyperService::new(router.clone());
-        let (http, tls, watcher) = (http.clone(), tls.clone(), connections.watcher());
+        let connection = Connection {
+            http: http.clone(),
+            router: router.clone(),
+            watcher: connections.watcher(),
+            activity,
+        };
+        let tls = tls.clone();
         tokio::spawn(async move {
-            // A broken connection is its client's affair.
-            match tls {
-                None => drop(
-                    watcher
-                        .watch(http.serve_connection(TokioIo::new(stream), service))
-                        .await,
-                ),
-                Some(tls) => {
-                    let greeted = tokio::time::timeout(HEADER_TIME, tls.accept(stream)).await;
-                    if let Ok(Ok(stream)) = greeted {
-                        drop(
-                            watcher
-                                .watch(http.serve_connection(TokioIo::new(stream), service))
-                                .await,
-                        );
-                    }
-                }
-            }
-            drop(slot);
+            connection.answer(stream, tls).await;
+            drop(place);
         });
     }
     drop(listener);
     connections.shutdown().await;
+}
+
+/// What answers one connection.
+struct Connection {
+    http: http1::Builder,
+    router: Router,
+    watcher: Watcher,
+    activity: Arc<Activity>,
+}
+
+impl Connection {
+    /// Answers requests until either side ends the connection, or another one needs its place.
+    async fn answer(self, stream: TcpStream, tls: Option<TlsAcceptor>) {
+        let activity = self.activity.clone();
+        let stream = ClientStream::new(stream, activity.clone());
+        let answered = async {
+            match tls {
+                None => self.requests(stream).await,
+                Some(tls) => {
+                    let greeted = tokio::time::timeout(HEADER_TIME, tls.accept(stream)).await;
+                    if let Ok(Ok(stream)) = greeted {
+                        self.requests(stream).await;
+                    }
+                }
+            }
+        };
+        tokio::select! {
+            () = answered => {}
+            () = activity.closed() => {}
+        }
+    }
+
+    async fn requests(self, stream: impl AsyncRead + AsyncWrite + Send + Unpin + 'static) {
+        let router = TowerToHyperService::new(self.router);
+        let activity = self.activity;
+        let service = service_fn(move |request| {
+            let mut request: Request<hyper::body::Incoming> = request;
+            request.extensions_mut().insert(activity.clone());
+            router.call(request)
+        });
+        let connection = self.http.serve_connection(TokioIo::new(stream), service);
+        // A broken connection is its client's affair.
+        let _ = self.watcher.watch(connection).await;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[tokio::test]
+    async fn a_new_connection_takes_the_place_of_the_one_that_waits_for_its_client() {
+        let mut places = Places::new(2);
+        let (busy, silent) = (Activity::begin(), Activity::begin());
+        let _answering = busy.answer();
+        let (_busy_place, silent_place) = (places.take(&busy).await, places.take(&silent).await);
+        let silent_ends = async {
+            silent.closed().await;
+            drop(silent_place);
+        };
+        let new = Activity::begin();
+        let (_place, ()) = tokio::join!(places.take(&new), silent_ends);
+        assert_eq!(places.free.available_permits(), 0);
+    }
 }

@@ -34,12 +34,16 @@ use super::request_example::request_example;
 struct Document;
 
 /// Answers of the gate to a GET or DELETE, then those to a POST besides.
-const REFUSALS: [(&str, &str); 5] = [
+const REFUSALS: [(&str, &str); 6] = [
     ("401", "no token, or one that is not accepted"),
     ("403", "a foreign host or page, or a token of another role"),
     ("408", "the body has not arrived in time"),
     ("413", "the body is above the limit of the route"),
     ("415", "the body is not application/json"),
+    (
+        "429",
+        "more bodies are on their way than there is memory for; try again",
+    ),
 ];
 
 /// The document before the handlers: its information, and the scheme of the tokens.
@@ -53,6 +57,8 @@ pub(super) fn base() -> utoipa::openapi::OpenApi {
 
 /// Answer of a handler to a body or a query that it cannot read.
 const UNREADABLE: (&str, &str) = ("400", "a body or query that is not of the form described");
+/// Answer to a request without either.
+const BROKEN: (&str, &str) = ("400", "the request breaks the rules of HTTP, as with two hosts");
 
 /// What the statuses of errors mean where a handler says nothing closer.
 const MEANINGS: [(&str, &str); 4] = [
@@ -108,7 +114,8 @@ fn add_refusals(operation: &mut Operation, refusals: &[(&str, &str)]) {
         |own: &RefOr<Parameter>| matches!(own, RefOr::T(own) if own.parameter_in == ParameterIn::Query);
     let has_query = operation.parameters.iter().flatten().any(is_query);
     let is_read = operation.request_body.is_some() || has_query;
-    for &(status, description) in refusals.iter().chain(is_read.then_some(&UNREADABLE)) {
+    let malformed = if is_read { &UNREADABLE } else { &BROKEN };
+    for &(status, description) in refusals.iter().chain([malformed]) {
         let body = Content::new(Some(Ref::from_schema_name("ErrorBody")));
         let refusal = ResponseBuilder::new()
             .description(description)

@@ -1,5 +1,8 @@
 //! What every request passes before its handler: host and origin, form, token, body.
 
+use std::sync::Arc;
+
+use axum::Extension;
 use axum::extract::{Request, State};
 use axum::http::Method;
 use axum::middleware::Next;
@@ -7,7 +10,9 @@ use axum::response::Response;
 use shared::api::ErrorKind;
 
 use super::access::Access;
+use super::activity::Activity;
 use super::body;
+use super::body_memory::BodyMemory;
 use super::error::HttpError;
 use super::host::Hosts;
 
@@ -16,6 +21,7 @@ use super::host::Hosts;
 pub(super) struct Gate {
     pub(super) hosts: Hosts,
     pub(super) access: Access,
+    pub(super) body_memory: BodyMemory,
     /// Whether nothing may be changed.
     pub(super) is_read_only: bool,
 }
@@ -23,6 +29,7 @@ pub(super) struct Gate {
 /// Lets a request through, with its [`super::access::Caller`] and its whole body.
 pub(super) async fn pass(
     State(gate): State<Gate>,
+    Extension(activity): Extension<Arc<Activity>>,
     mut request: Request,
     next: Next,
 ) -> Result<Response, HttpError> {
@@ -35,5 +42,7 @@ pub(super) async fn pass(
         return Err(HttpError::new(ErrorKind::Forbidden, message));
     }
     request.extensions_mut().insert(caller);
-    Ok(next.run(body::received(request).await?).await)
+    let request = body::received(request, &gate.body_memory).await?;
+    let answering = activity.answer();
+    Ok(answering.through(next.run(request).await))
 }

@@ -1,11 +1,15 @@
 //! The REST interface under `/v1`; the only place that knows axum.
 //!
 //! One file per resource; each exports `routes()`. The OpenAPI `document` is made from the handlers, with `request_example`s. Before these stand
-//! `connections` (how many, how long) and `gate` (`host`, `body`, `access`: what is let through); `request_metrics` counts around them.
+//! `connections` (how many, how long; `client_stream` and `activity` tell which ones wait for their clients) and `gate` (`host`, `body` with
+//! `body_memory`, `access`: what is let through); `request_metrics` counts around them.
 
 mod access;
+mod activity;
 mod body;
+mod body_memory;
 mod calibrations;
+mod client_stream;
 mod connections;
 mod document;
 mod effects;
@@ -42,6 +46,7 @@ use crate::token::Token;
 
 use access::Access;
 pub use access::TokenRule;
+use body_memory::BodyMemory;
 pub use error::HttpError;
 use gate::Gate;
 use host::Hosts;
@@ -116,6 +121,7 @@ pub async fn serve(
     let gate = Gate {
         hosts: Hosts::new(exposure.listening, exposure.names),
         access: Access::start(exposure.token_rule, exposure.tokens, service.store().reader()),
+        body_memory: BodyMemory::new(),
         is_read_only: service.store().is_read_only(),
     };
     connections::serve(listener, exposure.tls, router(service, gate), shutdown).await;

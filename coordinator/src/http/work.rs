@@ -53,7 +53,7 @@ pub(super) fn routes() -> OpenApiRouter<Service> {
     (status = 413, body = ErrorBody, description = "the body is too large"),
     (status = 415, body = ErrorBody, description = "the body is neither JSON nor MessagePack"),
     (status = 426, body = ErrorBody, description = "another version of the protocol"),
-    (status = 429, body = ErrorBody, description = "more results wait than the store takes; try again"),
+    (status = 429, body = ErrorBody, description = "more results wait than the store takes, or more bodies are on their way than there is memory for; try again"),
 ))]
 async fn exchange(
     State(service): State<Service>,

@@ -188,8 +188,8 @@ fn the_description_of_the_interface_has_tokens_and_refusals() {
     );
     for (path, item) in document["paths"].as_object().expect("paths") {
         for (method, operation) in item.as_object().expect("operations") {
-            let all = ["401", "403", "408", "413", "415"];
-            let due = if method == "post" { &all[..] } else { &all[..2] };
+            let all = ["400", "401", "403", "408", "413", "415", "429"];
+            let due = if method == "post" { &all[..] } else { &all[..3] };
             for status in due {
                 assert!(
                     !operation["responses"][status].is_null(),

@@ -1,0 +1,117 @@
+//! The memory for all bodies that are on their way or being read.
+//!
+//! Ordinary bodies and large ones have memory of their own, so that nobody who sends large bodies, or halves of them, keeps a worker from
+//! posting its results. A worker posts what it has as soon as the answer before has arrived: about 2 kB for an evaluation of 24 runs,
+//! 200 kB for a hundred of them. There is room for 480 such messages at the same moment, and each is there for milliseconds.
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use axum::body::Bytes;
+use shared::api::ErrorKind;
+use tokio::sync::{OwnedSemaphorePermit, Semaphore};
+
+use super::error::HttpError;
+
+/// The largest ordinary body `[bytes]`.
+pub(super) const ORDINARY: usize = 4 << 20;
+/// Memory for all ordinary bodies together `[bytes]`.
+const ORDINARY_TOGETHER: usize = 96 << 20;
+/// Memory for all larger ones together: two of the largest `[bytes]`.
+const LARGE_TOGETHER: usize = 128 << 20;
+/// A body waits so long for memory before it is refused.
+const PATIENCE: Duration = Duration::from_secs(5);
+
+/// The memory of all bodies; clones share it.
+#[derive(Debug, Clone)]
+pub(super) struct BodyMemory {
+    ordinary: Arc<Semaphore>,
+    large: Arc<Semaphore>,
+}
+
+impl BodyMemory {
+    pub(super) fn new() -> Self {
+        BodyMemory {
+            ordinary: Arc::new(Semaphore::new(ORDINARY_TOGETHER)),
+            large: Arc::new(Semaphore::new(LARGE_TOGETHER)),
+        }
+    }
+
+    /// Room for a body of so many bytes, the largest of any route at most.
+    ///
+    /// # Errors
+    /// Others have the memory, and go on having it.
+    pub(super) async fn take(&self, bytes: usize) -> Result<Room, HttpError> {
+        let (memory, together) = match bytes <= ORDINARY {
+            true => (&self.ordinary, ORDINARY_TOGETHER),
+            false => (&self.large, LARGE_TOGETHER),
+        };
+        let full = || {
+            let message = format!(
+                "a body of {bytes} bytes does not fit beside those that are on their way: {} of {together} bytes are free; try again",
+                memory.available_permits()
+            );
+            HttpError::new(ErrorKind::Busy, message)
+        };
+        let count = u32::try_from(bytes).map_err(|_| full())?;
+        let permit = tokio::time::timeout(PATIENCE, memory.clone().acquire_many_owned(count)).await;
+        // The semaphore is never closed.
+        let permit = permit.ok().and_then(Result::ok).ok_or_else(full)?;
+        Ok(Room { bytes, permit })
+    }
+}
+
+/// Memory that a body may fill.
+#[derive(Debug)]
+pub(super) struct Room {
+    bytes: usize,
+    permit: OwnedSemaphorePermit,
+}
+
+impl Room {
+    pub(super) fn bytes(&self) -> usize {
+        self.bytes
+    }
+
+    /// A body in its room, which is free again when nobody reads the body any more.
+    pub(super) fn holding(self, content: Vec<u8>) -> Bytes {
+        Bytes::from_owner(Held {
+            content,
+            _permit: self.permit,
+        })
+    }
+}
+
+struct Held {
+    content: Vec<u8>,
+    _permit: OwnedSemaphorePermit,
+}
+
+impl AsRef<[u8]> for Held {
+    fn as_ref(&self) -> &[u8] {
+        &self.content
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use futures::FutureExt;
+
+    use super::*;
+
+    #[test]
+    fn large_bodies_leave_room_for_ordinary_ones_and_give_theirs_back() {
+        let memory = BodyMemory::new();
+        let take = |bytes| memory.take(bytes).now_or_never().map(Result::unwrap);
+        let (first, second) = (take(64 << 20).unwrap(), take(64 << 20).unwrap());
+        assert!(take(ORDINARY + 1).is_none(), "it waits");
+        assert_eq!(take(ORDINARY).unwrap().bytes(), ORDINARY);
+        let body = first.holding(vec![7; 3]);
+        let part = body.slice(1..);
+        drop((body, second));
+        assert!(take(64 << 20).is_some());
+        assert!(take(128 << 20).is_none(), "a part of the first is still read");
+        drop(part);
+        assert!(take(128 << 20).is_some());
+    }
+}
