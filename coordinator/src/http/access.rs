@@ -16,6 +16,11 @@ use crate::token::{Role, Token, TokenHash};
 
 /// A change of the tokens takes effect after this time at most.
 const LOOK: Duration = Duration::from_secs(1);
+/// Answer where a token is needed and none is sent.
+const NEEDED: &str =
+    "a token is needed: GROUSER_TOKEN or --token-file, sent as \"Authorization: Bearer TOKEN\"";
+/// Answer to a token that lets nobody in.
+const UNKNOWN: &str = "the token is unknown or revoked";
 
 /// When a token is asked for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -28,21 +33,61 @@ pub enum TokenRule {
     Never,
 }
 
+impl TokenRule {
+    /// Whether a store with these tokens asks for one.
+    fn asks(self, tokens: &[Token]) -> bool {
+        match self {
+            TokenRule::Always => true,
+            TokenRule::OnceThereIsOne => !tokens.is_empty(),
+            TokenRule::Never => false,
+        }
+    }
+}
+
+/// The token of a hash, unless it is revoked.
+fn valid<'a>(tokens: &'a [Token], hash: &TokenHash) -> Option<&'a Token> {
+    let found = tokens.iter().find(|token| token.hash.is(hash));
+    found.filter(|token| !token.is_revoked)
+}
+
 /// Who sends a request, for log and store.
 #[derive(Debug, Clone, FromRequestParts)]
 #[from_request(via(axum::Extension))]
-pub(super) struct Caller(Option<String>);
+pub(super) struct Caller {
+    /// The name of the token, where one is asked for.
+    name: Option<String>,
+    hash: Option<TokenHash>,
+    access: Access,
+}
 
 impl Caller {
     /// The name of the token, where one is asked for.
     pub(super) fn into_name(self) -> Option<String> {
-        self.0
+        self.name
+    }
+
+    /// Ready as soon as the sender would no longer be let in: its token was revoked, or tokens are asked for since. For what lasts long.
+    pub(super) async fn shut_out(mut self) -> HttpError {
+        let Access { rule, tokens } = &mut self.access;
+        let hash = self.hash.as_ref();
+        let is_out = |tokens: &Vec<Token>| {
+            let is_known = hash.is_some_and(|hash| valid(tokens, hash).is_some());
+            rule.asks(tokens) && !is_known
+        };
+        if tokens.wait_for(is_out).await.is_err() {
+            // Nobody looks after the tokens any more: the service is going down.
+            std::future::pending::<()>().await;
+        }
+        match hash {
+            Some(_) => HttpError::new(ErrorKind::Unauthorized, UNKNOWN),
+            None => HttpError::new(ErrorKind::Unauthorized, NEEDED),
+        }
     }
 }
 
 impl fmt::Display for Caller {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match &self.0 {
+        match &self.name {
             Some(name) => write!(f, "{}", name.escape_debug()),
             None => f.write_str("no token"),
         }
@@ -81,30 +126,24 @@ impl Access {
         headers: &HeaderMap,
     ) -> Result<Caller, HttpError> {
         let tokens = self.tokens.borrow();
-        let is_asked_for = match self.rule {
-            TokenRule::Always => true,
-            TokenRule::OnceThereIsOne => !tokens.is_empty(),
-            TokenRule::Never => false,
+        let is_asked_for = self.rule.asks(&tokens);
+        let caller = |name, hash| Caller {
+            name,
+            hash,
+            access: self.clone(),
         };
         let Some(needed) = needed(method, path).filter(|_| is_asked_for) else {
-            return Ok(Caller(None));
+            return Ok(caller(None, None));
         };
         let refused = |message| HttpError::new(ErrorKind::Unauthorized, message);
         let stated = headers.get(AUTHORIZATION).and_then(|value| value.to_str().ok());
         let stated = stated.and_then(|text| text.split_once(' '));
         let stated = stated.filter(|(scheme, _)| scheme.eq_ignore_ascii_case("bearer"));
-        let (_, stated) = stated.ok_or_else(|| {
-            refused(
-                "a token is needed: GROUSER_TOKEN or --token-file, sent as \"Authorization: Bearer TOKEN\"",
-            )
-        })?;
+        let (_, stated) = stated.ok_or_else(|| refused(NEEDED))?;
         let hash = TokenHash::of(stated.trim());
-        let found = tokens.iter().find(|token| token.hash.is(&hash));
-        let token = found
-            .filter(|token| !token.is_revoked)
-            .ok_or_else(|| refused("the token is unknown or revoked"))?;
+        let token = valid(&tokens, &hash).ok_or_else(|| refused(UNKNOWN))?;
         if token.role.includes(needed) {
-            return Ok(Caller(Some(token.name.clone())));
+            return Ok(caller(Some(token.name.clone()), Some(hash)));
         }
         let message = format!(
             "the token {:?} has the role {}; {method} {path} needs the role {}",

@@ -1,19 +1,20 @@
 //! `/v1/calibrations/ID/events`: server-sent events of a calibration.
 //!
 //! `event: status` carries the same JSON as `GET /v1/calibrations/ID` whenever it changed, looked at twice a
-//! second; `event: stage` carries each finished stage. The stream ends with the calibration.
+//! second; `event: stage` carries each finished stage. The stream ends with the calibration, or with the token of whoever watches.
 
 use std::convert::Infallible;
 use std::time::Duration;
 
 use axum::extract::State;
 use axum::response::sse::{Event, KeepAlive, Sse};
-use futures::Stream;
 use futures::stream;
+use futures::{Stream, StreamExt};
 use shared::api::{CalibrationStatus, ErrorBody};
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
+use super::access::Caller;
 use super::error::{HttpError, Id};
 use crate::service::Service;
 
@@ -44,7 +45,7 @@ struct CalibrationEvent {
 /// Streams what happens to a calibration.
 ///
 /// Server-sent events: `status` has the content of `GET /v1/calibrations/{id}` whenever that has changed, `stage`
-/// each finished stage. The stream ends with the calibration.
+/// each finished stage. The stream ends with the calibration, or soon after the token is revoked.
 #[utoipa::path(get, path = "/calibrations/{id}/events", operation_id = "watch_calibration", tag = "calibrations",
     params(("id" = i64, Path)), responses(
     (status = 200, content_type = "text/event-stream", body = CalibrationEvent, description = "events: status, stage"),
@@ -52,6 +53,7 @@ struct CalibrationEvent {
 async fn events(
     State(service): State<Service>,
     Id(id): Id,
+    caller: Caller,
 ) -> Result<Sse<impl Stream<Item = Result<Event, Infallible>>>, HttpError> {
     service.status(id).await?;
     let watch = Watch {
@@ -68,7 +70,8 @@ async fn events(
         let events = watch.look().await;
         Some((stream::iter(events.into_iter().map(Ok)), watch))
     });
-    Ok(Sse::new(futures::StreamExt::flatten(batches)).keep_alive(KeepAlive::default()))
+    let events = batches.flatten().take_until(Box::pin(caller.shut_out()));
+    Ok(Sse::new(events).keep_alive(KeepAlive::default()))
 }
 
 impl Watch {

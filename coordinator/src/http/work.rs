@@ -15,6 +15,7 @@ use shared::wire::WireForm;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
+use super::access::Caller;
 use super::error::HttpError;
 use crate::farm::WorkerRecord;
 use crate::service::Service;
@@ -57,6 +58,7 @@ pub(super) fn routes() -> OpenApiRouter<Service> {
 ))]
 async fn exchange(
     State(service): State<Service>,
+    caller: Caller,
     Exchange { mut request, answer }: Exchange,
 ) -> Result<impl IntoResponse, HttpError> {
     if request.protocol != PROTOCOL_VERSION {
@@ -69,7 +71,11 @@ async fn exchange(
     check_texts(&request)?;
     request.wait_ms = request.wait_ms.min(LONGEST_WAIT_MS);
     request.want = request.want.min(MOST_WANTED);
-    let response = service.exchange(request).await?.to_bytes(answer);
+    let response = tokio::select! {
+        response = service.exchange(request) => response?.to_bytes(answer),
+        // Leases that were given meanwhile go to others: nobody receives them.
+        refusal = caller.shut_out() => return Err(refusal),
+    };
     let body = response.map_err(|e| HttpError::new(ErrorKind::Internal, e.to_string()))?;
     Ok(([(CONTENT_TYPE, answer.media_type())], body))
 }

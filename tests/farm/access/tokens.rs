@@ -1,5 +1,8 @@
 //! Tokens: who has which role, what an address that others reach demands, and what the log says.
 
+use std::io::{BufRead, BufReader, Read, Write};
+use std::net::TcpStream;
+
 use farm_tests::fake_worker::FakeWorker;
 use farm_tests::http::Client;
 use farm_tests::job::Job;
@@ -119,6 +122,75 @@ fn each_role_does_its_own_and_no_more() {
     service.kill();
     service.restart();
     assert_eq!(status(&service.client, "GET", "/v1/calibrations", None), 401);
+}
+
+/// A stream of a calibration's events of which the first has arrived.
+fn watch(service: &Service, id: i64, token: &str) -> BufReader<TcpStream> {
+    let mut stream = TcpStream::connect(&service.client.0).expect("a connection");
+    let head = format!(
+        "GET /v1/calibrations/{id}/events HTTP/1.1\r\nHost: 127.0.0.1\r\nAuthorization: Bearer {token}\r\n\
+         Connection: close\r\n\r\n"
+    );
+    stream.write_all(head.as_bytes()).expect("a request");
+    let mut reader = BufReader::new(stream);
+    let mut line = String::new();
+    while !line.starts_with("event: ") {
+        line.clear();
+        assert!(reader.read_line(&mut line).expect("a stream of events") > 0);
+    }
+    reader
+}
+
+#[test]
+fn a_revoked_token_ends_the_streams_and_polls_that_it_began() {
+    let service = Service::start(&[]);
+    let client = &service.client;
+    let id = service.submit(&Job::small());
+    let [read, work, submit] = ["read", "work", "submit"].map(|role| add(&service, role, role));
+    until("a token asked for", || {
+        (status(client, "GET", "/v1/calibrations", None) == 401).then_some(())
+    });
+    let pause = format!("/v1/calibrations/{id}/pause");
+    assert_eq!(status(client, "POST", &pause, Some(&submit)), 200);
+
+    let mut events = watch(&service, id, &read);
+    let events = std::thread::spawn(move || events.read_to_end(&mut Vec::new()));
+    let mut request = FakeWorker::new(client, "parked").request();
+    (request["want"], request["wait_ms"]) = (1.into(), 30_000.into());
+    let (poller, bearer) = (client.clone(), format!("Bearer {work}"));
+    let poll = std::thread::spawn(move || {
+        let head = [
+            ("Content-Type", "application/json"),
+            ("Authorization", bearer.as_str()),
+        ];
+        let body = request.to_string();
+        poller.exchange("POST", "/v1/work/exchange", &head, Some(body.as_bytes()))
+    });
+    let bearer = format!("Bearer {submit}");
+    until("a parked poll", || {
+        let head = [("Authorization", bearer.as_str())];
+        let workers = client
+            .exchange("GET", "/v1/workers", &head, None)
+            .expect("an answer");
+        workers.body.contains("parked").then_some(())
+    });
+
+    for name in ["read", "work"] {
+        let store = service.store_name();
+        let revoke = programs::coordinator(["token", "revoke", name, "--store", store]);
+        programs::run(revoke).success();
+    }
+    for (path, token) in [("/v1/calibrations", &read), ("/v1/work/variants/0", &work)] {
+        until("a token revoked", || {
+            (status(client, "GET", path, Some(token)) == 401).then_some(())
+        });
+    }
+    let resume = format!("/v1/calibrations/{id}/resume");
+    assert_eq!(status(client, "POST", &resume, Some(&submit)), 200);
+    let answer = poll.join().expect("a poll").expect("an answer");
+    assert_eq!(answer.status, 401, "{}", answer.body);
+    assert!(answer.body.contains("unknown or revoked"), "{}", answer.body);
+    until("the end of the stream", || events.is_finished().then_some(()));
 }
 
 #[test]
