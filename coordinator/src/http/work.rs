@@ -30,6 +30,8 @@ const LONGEST_NAME: usize = 200;
 const LONGEST_MODEL: usize = 400;
 /// Most of them that a worker runs.
 const MOST_MODELS: usize = 100;
+/// Longest mean time of a worker's evaluations, twelve days `[s]`.
+const LONGEST_EVALUATION_S: f64 = 1e6;
 /// Longest message of an outcome `[bytes]`.
 const LONGEST_MESSAGE: usize = 10_000;
 
@@ -69,6 +71,7 @@ async fn exchange(
         return Err(HttpError::new(ErrorKind::ProtocolMismatch, message));
     }
     check_texts(&request)?;
+    check_time(&request)?;
     request.wait_ms = request.wait_ms.min(LONGEST_WAIT_MS);
     request.want = request.want.min(MOST_WANTED);
     let response = tokio::select! {
@@ -115,6 +118,18 @@ fn check_texts(request: &ExchangeRequest) -> Result<(), HttpError> {
         }
     }
     Ok(())
+}
+
+/// Refuses a time that nothing takes: what starts workers multiplies it by the evaluations that are left.
+fn check_time(request: &ExchangeRequest) -> Result<(), HttpError> {
+    match request.evaluation_s {
+        Some(evaluation_s) if !(0.0..=LONGEST_EVALUATION_S).contains(&evaluation_s) => {
+            let message =
+                format!("evaluation_s: {evaluation_s:?} s must lie in [0, {LONGEST_EVALUATION_S}] s");
+            Err(HttpError::new(ErrorKind::InvalidBody, message))
+        }
+        _ => Ok(()),
+    }
 }
 
 /// A request in either form, and the form of its answer.

@@ -76,6 +76,29 @@ fn what_a_worker_says_has_a_length_and_what_it_wants_a_number() {
 }
 
 #[test]
+fn a_time_that_no_evaluation_takes_is_refused() {
+    let service = Service::start(&[]);
+    let worker = FakeWorker::new(&service.client, "worker");
+    let saying = |evaluation_s: f64| {
+        let mut request = worker.request();
+        request["evaluation_s"] = evaluation_s.into();
+        worker.send(&request)
+    };
+    for (evaluation_s, text) in [(-1.0, "-1.0"), (1e308, "1e308"), (1_000_001.0, "1000001.0")] {
+        refused(
+            &saying(evaluation_s),
+            400,
+            &format!("evaluation_s: {text} s must lie in [0, 1000000] s"),
+        );
+    }
+    assert_eq!(service.client.json("/v1/workers"), json!({}));
+    for evaluation_s in [0.0, 1e6] {
+        assert_eq!(saying(evaluation_s).status, 200);
+    }
+    assert_eq!(service.client.json("/v1/work/demand")["evaluation_s"], 1e6);
+}
+
+#[test]
 fn what_is_too_large_to_work_on_is_refused_at_submission() {
     let service = Service::start(&[]);
     let client = &service.client;
