@@ -1,7 +1,7 @@
 //! `/v1/effects`: the catalogue, the library's effects and those that users add.
 
 use axum::Json;
-use axum::extract::{Path, State};
+use axum::extract::State;
 use axum::http::StatusCode;
 use formula::Effect;
 use formula::catalogue::{catalogue, find};
@@ -13,7 +13,7 @@ use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
 use super::access::Caller;
-use super::error::{Body, HttpError};
+use super::error::{Body, HttpError, Name};
 use crate::effect::EffectCard;
 use crate::effect::signature::{Signature, signature};
 use crate::farm::dispatch::Stopped;
@@ -73,10 +73,7 @@ async fn list(State(service): State<Service>) -> Result<Json<Vec<EffectCard>>, H
 #[utoipa::path(get, path = "/effects/{name}", operation_id = "get_effect", tag = "effects",
     params(("name" = String, Path, description = "`NAME`; of one that a user has added also `NAME@VERSION`")),
     responses((status = 200, description = "the effect", body = EffectPage), (status = 404, body = ErrorBody)))]
-async fn show(
-    State(service): State<Service>,
-    Path(name): Path<String>,
-) -> Result<Json<EffectPage>, HttpError> {
+async fn show(State(service): State<Service>, Name(name): Name) -> Result<Json<EffectPage>, HttpError> {
     let (effect, card, versions) = match find(&name) {
         Some(effect) => (effect.clone(), EffectCard::of(effect), Vec::new()),
         None => {

@@ -164,6 +164,11 @@ pub(super) struct Query<T>(pub(super) T);
 #[from_request(via(axum::extract::Path), rejection(HttpError))]
 pub(super) struct Id(pub(super) i64);
 
+/// The name in a path.
+#[derive(axum::extract::FromRequestParts, serde::Deserialize)]
+#[from_request(via(axum::extract::Path), rejection(HttpError))]
+pub(super) struct Name(pub(super) String);
+
 impl From<PathRejection> for HttpError {
     fn from(rejection: PathRejection) -> Self {
         HttpError::new(ErrorKind::NotFound, rejection.body_text())

@@ -3,12 +3,11 @@
 use std::collections::BTreeMap;
 
 use axum::Json;
-use axum::extract::Path;
 use shared::api::{ErrorBody, ErrorKind, NamedText};
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
-use super::error::HttpError;
+use super::error::{HttpError, Name};
 use crate::example::{EXAMPLES, Example};
 use crate::service::Service;
 
@@ -63,7 +62,7 @@ async fn list() -> Json<Vec<ListedExample>> {
 #[utoipa::path(get, path = "/examples/{name}", operation_id = "get_example", tag = "examples",
     params(("name" = String, Path, description = "name of the example")), responses(
     (status = 200, description = "the files", body = ExampleFiles), (status = 404, body = ErrorBody)))]
-async fn files(Path(name): Path<String>) -> Result<Json<ExampleFiles>, HttpError> {
+async fn files(Name(name): Name) -> Result<Json<ExampleFiles>, HttpError> {
     let example = EXAMPLES.iter().find(|example| example.name == name);
     let example = example
         .ok_or_else(|| HttpError::new(ErrorKind::NotFound, format!("there is no example \"{name}\"")))?;

@@ -2,7 +2,6 @@
 //! for with that of their user.
 
 use axum::Router;
-use axum::extract::Path;
 use axum::http::header::{
     CACHE_CONTROL, CONTENT_SECURITY_POLICY, CONTENT_TYPE, ETAG, IF_NONE_MATCH, REFERRER_POLICY,
     X_CONTENT_TYPE_OPTIONS,
@@ -12,7 +11,7 @@ use axum::response::{IntoResponse, Response};
 use axum::routing::get;
 use page::asset::{DOCS, INDEX, asset};
 
-use super::error::no_route;
+use super::error::{Name, no_route};
 use crate::service::Service;
 
 /// Where the files are.
@@ -35,9 +34,7 @@ pub(super) fn routes() -> Router<Service> {
         )
         .route(
             &format!("{FOLDER}{{*path}}"),
-            get(async |Path(path): Path<String>, uri: Uri, headers: HeaderMap| {
-                file(&path, uri, headers).await
-            }),
+            get(async |Name(path): Name, uri: Uri, headers: HeaderMap| file(&path, uri, headers).await),
         )
 }
 

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use axum::Json;
 use axum::body::Bytes;
-use axum::extract::{FromRequest, Path, Request, State};
+use axum::extract::{FromRequest, Request, State};
 use axum::http::header::{ACCEPT, CONTENT_TYPE, HeaderMap, HeaderValue};
 use axum::response::IntoResponse;
 use shared::api::{ErrorBody, ErrorKind, WorkDemand};
@@ -16,7 +16,7 @@ use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
 use super::access::Caller;
-use super::error::HttpError;
+use super::error::{HttpError, Name};
 use crate::farm::WorkerRecord;
 use crate::service::Service;
 
@@ -178,10 +178,7 @@ fn forms(headers: &HeaderMap) -> Result<(WireForm, WireForm), HttpError> {
 #[utoipa::path(get, path = "/work/variants/{hash}", operation_id = "get_variant", tag = "work",
     params(("hash" = String, Path, description = "hash of the variant, as a lease names it")), responses(
     (status = 200, description = "the variant", body = ModelVariant), (status = 404, body = ErrorBody)))]
-async fn variant(
-    State(service): State<Service>,
-    Path(hash): Path<String>,
-) -> Result<Json<ModelVariant>, HttpError> {
+async fn variant(State(service): State<Service>, Name(hash): Name) -> Result<Json<ModelVariant>, HttpError> {
     let variant = service.dispatcher().variant(hash.clone()).await?;
     variant.map(Json).ok_or_else(|| {
         HttpError::new(

@@ -154,6 +154,23 @@ fn what_is_too_large_to_work_on_is_refused_at_submission() {
 }
 
 #[test]
+fn a_name_that_is_no_text_is_refused_like_any_other() {
+    let service = Service::start(&[]);
+    for path in [
+        "/v1/effects/%ff",
+        "/v1/examples/%ff",
+        "/v1/work/variants/%ff",
+        "/page/%ff",
+        "/v1/calibrations/%ff",
+    ] {
+        let answer = service.client.get(path);
+        assert_eq!(answer.header("content-type"), Some("application/json"), "{path}");
+        assert_eq!(answer.json()["error"]["type"], "not_found", "{path}");
+        assert_eq!(answer.status, 404, "{path}");
+    }
+}
+
+#[test]
 fn a_lease_lasts_a_day_at_most() {
     let longest = u64::MAX.to_string();
     let refusal = programs::run(programs::coordinator(["serve", "--lease-ms", &longest])).refusal();
