@@ -32,6 +32,12 @@ impl Hosts {
     pub(super) fn check(&self, headers: &HeaderMap) -> Result<(), HttpError> {
         let text = |name: HeaderName| headers.get(name).map(|value| value.to_str().unwrap_or_default());
         let forbidden = |message: String| Err(HttpError::new(ErrorKind::Forbidden, message));
+        let count = headers.get_all(HOST).iter().count();
+        if count > 1 {
+            // What stands before the service may go by the one that the service passes over.
+            let message = format!("Host: {count} header fields must be 1");
+            return Err(HttpError::new(ErrorKind::InvalidBody, message));
+        }
         let stated = text(HOST).unwrap_or_default();
         let host = stated.parse::<Authority>().ok();
         let Some(host) = host.filter(|host| self.is_ours(host.host())) else {

@@ -81,4 +81,15 @@ fn a_proxy_is_reached_by_the_names_that_it_is_started_with() {
     assert_eq!(get("farm.example:8443"), 200);
     assert_eq!(get("localhost"), 200);
     assert_eq!(get("other.example"), 403);
+    let both = [("Host", "farm.example"), ("Host", "other.example")];
+    for head in [both, [both[1], both[0]]] {
+        let answer = service.client.exchange("GET", "/v1/calibrations", &head, None);
+        let answer = answer.expect("an answer");
+        assert_eq!(answer.status, 400, "{}", answer.body);
+        assert!(
+            answer.body.contains("Host: 2 header fields must be 1"),
+            "{}",
+            answer.body
+        );
+    }
 }
