@@ -1,7 +1,7 @@
 //! The file of a store: its name, its options, its lock, and what is refused as one.
 
 use std::io::Read;
-use std::os::unix::fs::MetadataExt;
+use std::os::unix::fs::{MetadataExt, OpenOptionsExt};
 use std::path::Path;
 
 use sqlx::sqlite::{SqliteConnectOptions, SqliteJournalMode, SqlitePoolOptions, SqliteSynchronous};
@@ -124,7 +124,12 @@ pub(super) fn lock(path: &str) -> Result<Option<std::fs::File>, StoreError> {
         path: file.into(),
         source: sqlx::Error::Io(e),
     };
-    let make = |name: &str| std::fs::OpenOptions::new().create(true).append(true).open(name);
+    // A store holds hashes of tokens, the keys of seals and unpublished measurements: it is its owner's alone. SQLite gives the files
+    // beside it the same mode. Whoever has opened a store to others keeps it so.
+    let make = |name: &str| {
+        let mut options = std::fs::OpenOptions::new();
+        options.create(true).append(true).mode(0o600).open(name)
+    };
     // A link may lead to a file that is not there yet. One that is there is not opened: closing it would end locks of this process.
     let found = std::fs::metadata(file).or_else(|_| make(file).and_then(|made| made.metadata()));
     let names = found.map_err(io)?.nlink();

@@ -1,6 +1,6 @@
 //! One coordinator to a file, whatever it is called; what others lock is waited for.
 
-use std::os::unix::fs::symlink;
+use std::os::unix::fs::{MetadataExt, symlink};
 use std::time::Duration;
 
 use farm_tests::job::Job;
@@ -23,6 +23,17 @@ fn a_symlink_to_a_store_in_use_starts_no_second_coordinator() {
             message.contains("another coordinator is using this file"),
             "{message}"
         );
+    }
+}
+
+#[test]
+fn a_new_store_is_its_owners_alone() {
+    let service = Service::start(&[]);
+    service.submit(&Job::small());
+    for end in ["", "-wal", "-shm", ".lock"] {
+        let file = format!("{}{end}", service.store().display());
+        let mode = std::fs::metadata(&file).expect("a file of the store").mode();
+        assert_eq!(mode & 0o777, 0o600, "{file}: {mode:o}");
     }
 }
 
