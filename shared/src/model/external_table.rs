@@ -205,9 +205,10 @@ fn is_word(key: &str, text: &str) -> Result<(), String> {
 }
 
 fn is_file_name(program: &str) -> Result<(), String> {
-    match program.contains(['/', '\\', ' ']) || program.starts_with('.') || program.len() > 100 {
+    let is_foreign = |c: char| c.is_control() || "/\\ ".contains(c);
+    match program.contains(is_foreign) || program.starts_with('.') || program.len() > 100 {
         true => Err(format!(
-            "program = \"{program}\" must be the name of a file without its folder and without arguments: where it lies, the worker's operator says by --allow-model"
+            "program = {program:?} must be the name of a file without its folder, arguments and control characters: where it lies, the worker's operator says by --allow-model"
         )),
         false => Ok(()),
     }
@@ -215,10 +216,12 @@ fn is_file_name(program: &str) -> Result<(), String> {
 
 fn is_url(url: &str) -> Result<(), String> {
     let rest = url.strip_prefix("http://").or(url.strip_prefix("https://"));
-    match rest.is_some_and(|host| !host.is_empty()) && !url.contains(char::is_whitespace) && url.len() <= 150
+    match rest.is_some_and(|host| !host.is_empty())
+        && !url.contains(|c: char| c.is_whitespace() || c.is_control())
+        && url.len() <= 150
     {
         true => Ok(()),
-        false => Err(format!("url = \"{url}\" must be as in \"http://localhost:4242\"")),
+        false => Err(format!("url = {url:?} must be as in \"http://localhost:4242\"")),
     }
 }
 
@@ -271,6 +274,22 @@ mod tests {
         assert_eq!(model.memory_mb, None);
         let error = read(ModelKind::Umbridge, &text.replace("http://h:1/", "h:1")).unwrap_err();
         assert!(error.contains("http://localhost:4242"), "{error}");
+    }
+
+    #[test]
+    fn no_name_has_control_characters() {
+        let text = PROGRAM.replace("wheel.py", "wheel\\u0000.py");
+        let error = read(ModelKind::Command, &text).unwrap_err();
+        assert!(
+            error.contains(r#"program = "wheel\0.py" must be the name of a file"#),
+            "{error}"
+        );
+        let text = PROGRAM.replace(
+            "program = \"wheel.py\"",
+            "url = \"http://h\\u0000\"\nmodel = \"wheel\"",
+        );
+        let error = read(ModelKind::Umbridge, &text).unwrap_err();
+        assert!(error.contains(r#"url = "http://h\0" must be"#), "{error}");
     }
 
     #[test]
