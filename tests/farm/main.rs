@@ -16,6 +16,7 @@ mod grousers;
 mod histories;
 mod import;
 mod leases;
+mod laws;
 mod likelihood;
 mod mesh;
 mod metamodel;

@@ -16,6 +16,7 @@ use super::candidate::{CandidateEffect, candidate_of};
 use super::curves::curves;
 use super::entry::CandidateEntry;
 use super::law::curve;
+use super::law::file::free_name;
 use super::models::SearchModels;
 use super::narrative::sentence;
 use super::remaining_misfit::remaining_misfit;
@@ -244,7 +245,7 @@ fn outside(models: &SearchModels, found: &OutsideLaw) -> Option<(Outside, Extens
         left_out_nats: found.left_out_nats,
     };
     let extension = Extension::File {
-        name: format!("{}.toml", entry.effect.name),
+        name: free_name(&entry.effect.name, &models.job),
         text: effect_file,
     };
     Some((outside, extension))
