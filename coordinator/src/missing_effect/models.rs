@@ -208,6 +208,7 @@ impl SearchModels {
             laws: self.laws.iter().map(law).collect(),
             reductions: self.reductions.iter().map(reduction).collect(),
             levels: design::levels(base),
+            conditions: design::conditions(base),
             proposed: ProposedRuns {
                 runs: self.design.len(),
                 beyond: design::beyond(base, &self.design),
