@@ -5,6 +5,7 @@ use std::path::Path;
 
 use farm_tests::job::{GAIN, Job};
 use farm_tests::programs::{coordinator, run};
+use farm_tests::service::Service;
 use farm_tests::workspace;
 use job::{JobFile, Spec, questions};
 use serde::Deserialize;
@@ -127,7 +128,7 @@ fn scaled(good: &str, column: &str, times: f64) -> String {
 #[test]
 fn no_mistake_is_silent() {
     let mistakes = mistakes();
-    assert_eq!(mistakes.len(), 67);
+    assert_eq!(mistakes.len(), 70);
     let told = |mistake: &Mistake| {
         let folder = tempfile::tempdir().unwrap();
         mistake.write(folder.path());
@@ -166,6 +167,62 @@ fn what_is_accepted_is_calibrated_and_kept() {
     let job = format!("accept = [\"data_few\"]\n{}", few.job);
     std::fs::write(&path, job).unwrap();
     run(coordinator(["run", &path, "--out", &out])).success();
+}
+
+#[test]
+fn a_pull_of_the_wrong_sign_is_asked_about_by_the_service_and_accepted_on_demand() {
+    let folder = tempfile::tempdir().unwrap();
+    let runs = scaled(&Job::small().runs, "drawbar_pull_n", -1.0);
+    let turned = Job { runs, ..Job::small() };
+    let service = Service::start(&[]);
+    let experiment = service.client.post("/v1/experiments", &turned.experiment_json());
+    let id = experiment.json()["id"].clone();
+    let submit = |job: &str| {
+        let body = serde_json::json!({"experiment": id, "toml": job});
+        service.client.post("/v1/calibrations", &body)
+    };
+    let refused = submit(&turned.job);
+    assert_eq!(refused.status, 422);
+    for words in [
+        "drawbar_pull_n has the opposite sign",
+        "run r06",
+        "--accept drawbar_pull_sign",
+    ] {
+        assert!(refused.body.contains(words), "{words} in {}", refused.body);
+    }
+    let accepted = format!("accept = [\"drawbar_pull_sign\"]\n{}", turned.job);
+    assert_eq!(submit(&accepted).status, 201);
+    let path = turned.write(folder.path()).display().to_string();
+    run(coordinator(["check", &path, "--accept", "drawbar_pull_sign"])).success();
+}
+
+#[test]
+fn every_algorithm_that_the_schema_offers_can_be_submitted() {
+    let schema = run(coordinator(["schema", "job"])).success();
+    let schema: serde_json::Value = serde_json::from_str(&schema).unwrap();
+    let sampler = &schema["properties"]["sampler"]["properties"];
+    let service = Service::start(&[]);
+    let experiment = service
+        .client
+        .post("/v1/experiments", &Job::small().experiment_json());
+    let id = experiment.json()["id"].clone();
+    let submit = |sampler: &str| {
+        let settings = "algorithm = \"tmcmc\"\nparticles = 60\nmoves = [2, 4]";
+        let body = serde_json::json!({"experiment": id, "toml": Job::small().in_job(settings, sampler).job});
+        service.client.post("/v1/calibrations", &body)
+    };
+    let algorithms = sampler["algorithm"]["enum"].as_array().unwrap();
+    for algorithm in algorithms {
+        let submitted = submit(&format!("algorithm = {algorithm}"));
+        assert_eq!(submitted.status, 201, "{algorithm}: {}", submitted.body);
+    }
+    let names = sampler["point_estimates"]["items"]["enum"].to_string();
+    let submitted = submit(&format!("point_estimates = {names}"));
+    assert_eq!(submitted.status, 201, "{names}: {}", submitted.body);
+    // The search is none of them, and no message offers it.
+    let refused = submit("algorithm = \"discoveri\"");
+    assert_eq!(refused.status, 422);
+    assert!(!refused.body.contains("discovery"), "{}", refused.body);
 }
 
 #[test]

@@ -17,7 +17,7 @@ use crate::study::record::{is_right, record};
 
 /// Random streams of truths and noise.
 const STAGE: u64 = 1 << 49;
-/// Noise sd of a channel over the root mean square of its values in the reference. Pulls of a good rig repeat to a hundredth \[MEASURED 6\],
+/// Noise sd of a channel over the root mean square of its values in the reference. Pulls of a good rig repeat to a hundredth,
 /// and at three hundredths few soils show a cohesion of 500 Pa.
 const NOISE: f64 = 0.01;
 /// Draws of the prior until the model takes all campaigns and each change is detectable.

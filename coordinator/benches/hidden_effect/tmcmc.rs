@@ -15,7 +15,7 @@ use crate::study::posterior::{PosteriorSample, sample};
 use crate::study::rate::{mean, median};
 use crate::study::trial::draw;
 
-/// Fewer repeat worse than the factors are read to \[DISCOVERY 1\].
+/// Fewer particles or moves scatter from seed to seed by more than the differences that the bench reads.
 const SAMPLER: &str = "[sampler]\nparticles = 1000\nmoves = [5, 10]\n";
 /// Largest difference that counts as none \[nats\], and the least share of such.
 const CLOSE: f64 = 1.0;

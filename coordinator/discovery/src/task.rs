@@ -21,6 +21,8 @@ pub struct SearchTask {
     pub reductions: Vec<Reduction>,
     /// The data of each level of the design, left out together in the cross-validation.
     pub levels: Vec<Vec<usize>>,
+    /// The data of each condition of the rig; those of runs that repeat it stand together.
+    pub conditions: Vec<Vec<usize>>,
     /// Runs that the rig could make.
     pub proposed: ProposedRuns,
     /// Most effects in a combination.

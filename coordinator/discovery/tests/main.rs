@@ -4,6 +4,7 @@
 
 mod effect_search;
 mod exchange;
+mod inferred_noise;
 mod pairs;
 mod rough_model;
 mod search;

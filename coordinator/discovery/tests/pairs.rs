@@ -96,6 +96,7 @@ fn found_in(library: Vec<Candidate>, wave: f64, sd: f64, has_discrepancy: bool) 
         laws: Vec::new(),
         reductions: Vec::new(),
         levels: Vec::new(),
+        conditions: Vec::new(),
         proposed: ProposedRuns::default(),
         max_effects: 2,
         settings: SearchSettings::default(),

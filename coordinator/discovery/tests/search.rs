@@ -25,7 +25,7 @@ fn w(i: usize) -> f64 {
     (i % OF_LEVEL) as f64 - 1.0
 }
 
-fn normal(sd: f64) -> Marginal {
+pub(crate) fn normal(sd: f64) -> Marginal {
     Marginal::new(Distribution::Normal { mean: 0.0, sd }, None).unwrap()
 }
 
@@ -162,6 +162,7 @@ pub(crate) fn task(values: &[f64]) -> SearchTask {
         levels: (0..LEVELS)
             .map(|level| (level * OF_LEVEL..(level + 1) * OF_LEVEL).collect())
             .collect(),
+        conditions: Vec::new(),
         proposed: ProposedRuns {
             runs: PROPOSED.len(),
             beyond: vec![0.0; PROPOSED.len()],

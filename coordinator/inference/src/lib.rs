@@ -62,6 +62,6 @@ pub use phase::EvaluationCount;
 pub use round::{Proposal, ProposalRound};
 pub use tell::{InferenceFailure, TellError, TellProgress};
 pub use tmcmc::{
-    Algorithm, EvaluationResult, Particle, PosteriorSample, Sampler, StageMethod, StageProgress, StageRecord,
-    TmcmcSettings, TmcmcSettingsError,
+    Algorithm, EvaluationResult, MAX_PARTICLES, Particle, PosteriorSample, Sampler, StageMethod,
+    StageProgress, StageRecord, TmcmcSettings, TmcmcSettingsError,
 };

@@ -24,7 +24,7 @@ mod table;
 pub use data::bevameter_readings::{BevameterReadings, PLATE, RING, Reading};
 pub use data::confounded_order::{ConfoundedOrder, SetCondition, confounded_orders};
 pub use data::level::levels_of;
-pub use data::noise::{repeat_scatter, repeats};
+pub use data::noise::{conditions, repeat_scatter, repeats};
 pub use data::soil_scatter::SoilScatter;
 pub use derived::accepting_job::accepting_job;
 pub use derived::assumed_experiment::{AssumedExperiment, SiteProperty, UnsaidProperty};

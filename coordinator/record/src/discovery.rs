@@ -43,6 +43,9 @@ pub struct Discovery {
     /// The parameter of the searched model that the best explanation puts where its prior all but excludes it: nothing is claimed then.
     #[serde(default)]
     pub implausible: Option<ImplausibleParameter>,
+    /// The inferred noise sds, by the names of their parameters, that are not known well enough for a claim: nothing is claimed then.
+    #[serde(default)]
+    pub unsupported_noise: Vec<String>,
     /// The addition to the model, where the verdict names one, or where it is open but evidence and prediction of left-out levels
     /// have the same best set: its leading effect.
     pub extension: Option<Extension>,

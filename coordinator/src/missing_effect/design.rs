@@ -38,6 +38,14 @@ pub(super) fn levels(spec: &Spec) -> Vec<Vec<usize>> {
     levels
 }
 
+/// The data of each condition of the fitted runs.
+pub(super) fn conditions(spec: &Spec) -> Vec<Vec<usize>> {
+    let conditions = job::conditions(&spec.experiment, &spec.fit_runs).into_iter();
+    conditions
+        .map(|runs| of_runs(&spec.likelihood, |run| runs.contains(&run)))
+        .collect()
+}
+
 /// The wheel data of some runs.
 fn of_runs(likelihood: &Likelihood, is_in: impl Fn(usize) -> bool) -> Vec<usize> {
     let data = likelihood.data().iter().enumerate();

@@ -16,6 +16,7 @@ use super::candidate::{CandidateEffect, candidate_of};
 use super::curves::curves;
 use super::entry::CandidateEntry;
 use super::law::curve;
+use super::law::file::free_name;
 use super::models::SearchModels;
 use super::narrative::sentence;
 use super::remaining_misfit::remaining_misfit;
@@ -90,6 +91,7 @@ pub(super) fn discovery_record(models: &SearchModels, conclusion: &Conclusion) -
             let name = models.base.parameters.get(k)?.name.clone();
             Some(ImplausibleParameter { name, prior_sds })
         }),
+        unsupported_noise: unsupported_noise(models, conclusion),
         extension,
         // Evidences tell too little where a prior is contradicted.
         drop: conclusion
@@ -117,6 +119,13 @@ pub(super) fn discovery_record(models: &SearchModels, conclusion: &Conclusion) -
         evaluations_to_name: conclusion.ranking.evaluations.to_name() as u64,
         evaluations: conclusion.evaluations as u64,
     }
+}
+
+/// The inferred noise sds that support no claim, by their names.
+fn unsupported_noise(models: &SearchModels, conclusion: &Conclusion) -> Vec<String> {
+    let sds = conclusion.unsupported_noise.iter();
+    sds.filter_map(|&k| Some(models.base.parameters.get(k)?.name.clone()))
+        .collect()
 }
 
 /// The channels that scatter, by their columns.
@@ -244,7 +253,7 @@ fn outside(models: &SearchModels, found: &OutsideLaw) -> Option<(Outside, Extens
         left_out_nats: found.left_out_nats,
     };
     let extension = Extension::File {
-        name: format!("{}.toml", entry.effect.name),
+        name: free_name(&entry.effect.name, &models.job),
         text: effect_file,
     };
     Some((outside, extension))

@@ -22,7 +22,7 @@ use super::design;
 use super::entry::{CandidateEntry, LawEntry};
 use super::family::set_families;
 use super::law::dependence::{Dependence, dependences};
-use super::law::form::LawForm;
+use super::law::file::LawFiles;
 use super::untried::untried;
 use job::{
     EffectOnNodes, FreeParameter, JobFile, MODEL_SWITCHES, PLAIN_PARAMETERS, Spec, free_parameters,
@@ -141,13 +141,15 @@ impl SearchModels {
         let of_model = |dependence: &Dependence| dependence.is_shown_by(base.model.external.as_ref());
         let dependences = dependences(&base.experiment).into_iter().filter(of_model);
         for dependence in dependences.take_while(|_| room > 1) {
-            let forms = LawForm::ALL
-                .iter()
-                .map(|form| Ok((*form, of_file(form.of(&dependence))?)))
-                .collect::<Result<_, FileError>>()?;
+            let Some(LawFiles { curve, forms }) =
+                LawFiles::addable(&dependence, job, &base.fit_variant.effects)
+            else {
+                continue;
+            };
+            let forms = forms.into_iter().map(|(form, file)| Ok((form, of_file(file)?)));
             laws.push(LawEntry {
-                curve: of_file(dependence.curve())?,
-                forms,
+                curve: of_file(curve)?,
+                forms: forms.collect::<Result<_, FileError>>()?,
                 dependence,
             });
         }
@@ -206,6 +208,7 @@ impl SearchModels {
             laws: self.laws.iter().map(law).collect(),
             reductions: self.reductions.iter().map(reduction).collect(),
             levels: design::levels(base),
+            conditions: design::conditions(base),
             proposed: ProposedRuns {
                 runs: self.design.len(),
                 beyond: design::beyond(base, &self.design),

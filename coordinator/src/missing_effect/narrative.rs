@@ -3,6 +3,7 @@
 use discovery::{Conclusion, DETECTED, SearchVerdict, WeighedSet};
 use job::{EffectOnNodes, ModelSwitch, PlainParameter};
 use record::{JudgedEffect, NONE, NOT_IN_LIBRARY, Outside};
+use statistics::ErrorSd;
 
 use super::candidate::candidate_of;
 use super::models::SearchModels;
@@ -22,9 +23,15 @@ pub(super) fn sentence(
     effects: &[JudgedEffect],
     outside: Option<&Outside>,
 ) -> String {
-    let mut text = match implausible(models, conclusion) {
-        Some(reason) => format!("something is missing or the prior is wrong: {reason}"),
-        None => verdict(models, conclusion, effects, outside),
+    let mut text = if let Some(reason) = implausible(models, conclusion) {
+        format!("something is missing or the prior is wrong: {reason}")
+    } else if let Some(reason) = unsupported_noise(models, conclusion) {
+        format!(
+            "nothing is named: {reason}; the 95 % set is {}",
+            credible(effects)
+        )
+    } else {
+        verdict(models, conclusion, effects, outside)
     };
     let is_claim = conclusion.verdict.is_claim();
     if let (true, Some(false), Some(chi)) = (is_claim, conclusion.complete, conclusion.chi_square_best) {
@@ -61,6 +68,25 @@ fn implausible(models: &SearchModels, conclusion: &Conclusion) -> Option<String>
         models.base.parameters.get(k)?.name,
         sds.abs()
     ))
+}
+
+/// The inferred noise that supports no claim, and what to do.
+fn unsupported_noise(models: &SearchModels, conclusion: &Conclusion) -> Option<String> {
+    let data = models.base.likelihood.data();
+    let in_words = |&parameter: &usize| {
+        let inferred = ErrorSd::Inferred { parameter };
+        let count = data.iter().filter(|datum| datum.sd == inferred).count();
+        let name = &models.base.parameters.get(parameter)?.name;
+        Some(format!("{name} from {count} measurements"))
+    };
+    let sds = conclusion.unsupported_noise.iter();
+    let sds: Vec<String> = sds.filter_map(in_words).collect();
+    (!sds.is_empty()).then(|| {
+        format!(
+            "the noise is inferred ({}), with too few measurements beside the fitted parameters and fewer than three repeats, so each effect that is added shrinks it; state its sds under [noise] or repeat at least three runs, and search again",
+            list(sds.iter().map(String::as_str))
+        )
+    })
 }
 
 fn verdict(
@@ -155,15 +181,18 @@ fn verdict(
                 "the best explanation of the library contradicts the data (chi-square {:.0} with {:.0} degrees of freedom), and these data do not decide what is missing",
                 chi.value, chi.degrees_of_freedom
             ),
-            _ => {
-                let credible = effects.iter().filter(|e| e.in_credible_set);
-                format!(
-                    "something is missing, and these data do not decide what: the 95 % set is {}",
-                    list(credible.map(|e| e.name.as_str()))
-                )
-            }
+            _ => format!(
+                "something is missing, and these data do not decide what: the 95 % set is {}",
+                credible(effects)
+            ),
         },
     }
+}
+
+/// The explanations of the 95 % set.
+fn credible(effects: &[JudgedEffect]) -> String {
+    let credible = effects.iter().filter(|e| e.in_credible_set);
+    list(credible.map(|e| e.name.as_str()))
 }
 
 /// What the most probable set with an effect has beside it.

@@ -1,4 +1,4 @@
-//! Tests without a rolling wheel, and the effects that they measure (PHYSICS 4.4).
+//! Tests without a rolling wheel, and the effects that they measure.
 
 use std::collections::BTreeSet;
 

@@ -1,8 +1,9 @@
 //! `job.toml`.
 
-use inference::TmcmcSettings;
 use inference::evolution::{CmaEsSettings, GaSettings};
 use inference::lm::LmSettings;
+use inference::{MAX_PARTICLES, TmcmcSettings};
+use job::AlgorithmName;
 use serde_json::{Value, json};
 use shared::channel::Channel;
 
@@ -11,7 +12,6 @@ use super::prior;
 use super::shape::{either, flag, list, named, number, one_of, pair, said, table, text, usual, whole};
 
 const ANY: f64 = f64::INFINITY;
-const POINT_ESTIMATES: [&str; 3] = ["lm", "ga", "cma-es"];
 
 /// The whole file.
 pub(super) fn job() -> Value {
@@ -60,21 +60,16 @@ pub(super) fn job() -> Value {
 fn sampler() -> Value {
     let (sample, fit) = (TmcmcSettings::default(), LmSettings::default());
     let (ga, cma_es) = (GaSettings::default(), CmaEsSettings::default());
-    let algorithms = [
-        "tmcmc",
-        "ching-chen-2007",
-        "basis",
-        "lm",
-        "ga",
-        "cma-es",
-        "discovery",
-    ];
+    let algorithms = AlgorithmName::STATED.map(AlgorithmName::name);
     table(
         "the algorithm and its settings",
         [
             (
                 "algorithm",
-                usual(one_of("how parameters are found", algorithms), "tmcmc"),
+                usual(
+                    one_of("how parameters are found", algorithms),
+                    AlgorithmName::Tmcmc.name(),
+                ),
             ),
             (
                 "seed",
@@ -83,7 +78,11 @@ fn sampler() -> Value {
             (
                 "particles",
                 usual(
-                    whole("size of the population, and draws of a stage", 0, Some(100_000)),
+                    whole(
+                        "size of the population, and draws of a stage",
+                        0,
+                        Some(MAX_PARTICLES as u64),
+                    ),
                     sample.particles,
                 ),
             ),
@@ -120,7 +119,10 @@ fn sampler() -> Value {
                 "point_estimates",
                 list(
                     "fits of the same job beside the sample",
-                    one_of("an algorithm", POINT_ESTIMATES),
+                    one_of(
+                        "an algorithm",
+                        AlgorithmName::POINT_ESTIMATES.map(AlgorithmName::name),
+                    ),
                 ),
             ),
             (

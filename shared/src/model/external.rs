@@ -54,14 +54,6 @@ impl ExternalSource {
             ExternalSource::Umbridge { url, model } => format!("{url} {model}"),
         }
     }
-
-    /// What its operator allows: the file of the program, or the URL of the server.
-    pub fn allowed_by(&self) -> &str {
-        match self {
-            ExternalSource::Command { program } => program,
-            ExternalSource::Umbridge { url, .. } => url,
-        }
-    }
 }
 
 /// A parameter of a model that is not ours.

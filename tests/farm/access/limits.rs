@@ -9,6 +9,7 @@ use farm_tests::http::Response;
 use farm_tests::job::Job;
 use farm_tests::programs;
 use farm_tests::service::Service;
+use farm_tests::workspace::{root, text};
 use serde_json::{Value, json};
 
 #[track_caller]
@@ -132,6 +133,16 @@ fn what_is_too_large_to_work_on_is_refused_at_submission() {
             &json!({"experiment": id, "toml": job.job, "name": name}),
         )
     };
+    // The schema and the documents state the same bound.
+    let schema = programs::run(programs::coordinator(["schema", "job"])).success();
+    let schema: Value = serde_json::from_str(&schema).expect("a schema");
+    assert_eq!(
+        schema["properties"]["sampler"]["properties"]["particles"]["maximum"],
+        100_000
+    );
+    let document = text(&root().join("docs/job.md"));
+    let key = document.lines().find(|line| line.starts_with("| `particles` |"));
+    assert!(key.expect("the key").ends_with(" At most 100,000 |"), "{key:?}");
     let crowd = Job::small().sampler(100_001, [2, 4], 1);
     refused(
         &submit(&crowd, "n"),

@@ -1,6 +1,7 @@
 //! The rules of the house, held by manifests, `use` lines and file sizes.
 
 mod circle;
+mod citation;
 mod import;
 
 use std::collections::BTreeSet;

@@ -12,7 +12,7 @@ use super::case::{SyntheticCase, spec};
 use super::error::StudyError;
 use super::local_search::{LocalSearch, run};
 
-/// Nats by which the truth must beat a rival for a trial to count \[DISCOVERY 4\].
+/// Nats by which the truth must beat a rival for a trial to count.
 pub(crate) const LEAST_SEPARATION: f64 = 10.0;
 
 /// The log-likelihood of the truth without noise, the maximum.

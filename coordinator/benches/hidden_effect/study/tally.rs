@@ -1,4 +1,4 @@
-//! The scores of all trials against the targets of the project \[DISCOVERY 4\].
+//! The scores of all trials against the targets of the project.
 
 use std::fmt;
 

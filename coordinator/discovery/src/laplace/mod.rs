@@ -14,7 +14,7 @@ pub(crate) mod draws;
 pub(crate) mod evidence;
 pub(crate) mod fit;
 pub(crate) mod importance;
-mod noise;
+pub(crate) mod noise;
 pub(crate) mod point;
 pub(crate) mod quadratic;
 pub(crate) mod spread;

@@ -7,6 +7,7 @@ use crate::laplace::fit::LaplaceFit;
 use crate::probability::DETECTED;
 use crate::search::hypotheses::FittedLaw;
 use crate::search::next_run::{InformativeRun, RunChoice};
+use crate::search::noise_support::unsupported_noise;
 use crate::search::state::SearchState;
 use crate::search::verdict::SearchVerdict;
 use crate::search::weighing::{WeighedSet, Weighing};
@@ -51,6 +52,9 @@ pub struct Conclusion {
     /// The parameter of the base that the best explanation puts near the limit of the search, by its index, with its normal score:
     /// evidences then measure how each explanation relieves that prior, and nothing is claimed. `None` without one.
     pub implausible: Option<(usize, f64)>,
+    /// The inferred noise sds, by their parameters of the base, that are not known well enough for a claim: nothing is claimed then. Empty
+    /// where nothing was detected.
+    pub unsupported_noise: Vec<usize>,
     /// The single effects, with the probabilities of all explanations.
     pub ranking: EffectRanking,
     /// Log Bayes factor and probability of a law outside the library; `None`: not searched.
@@ -139,9 +143,16 @@ impl Conclusion {
         let implausible = explained_by
             .filter(|_| supported != SearchVerdict::NothingDetectable)
             .and_then(|fit| fit.frame.implausible(&fit.point.position));
-        let verdict = match implausible {
-            Some(_) if supported.is_claim() => SearchVerdict::Undecided,
-            _ => supported,
+        let unsupported_noise = match (base, explained_by) {
+            (Some(base), Some(best)) if supported != SearchVerdict::NothingDetectable => {
+                unsupported_noise(task, base, best)
+            }
+            _ => Vec::new(),
+        };
+        let is_withheld = implausible.is_some() || !unsupported_noise.is_empty();
+        let verdict = match supported {
+            claim if is_withheld && claim.is_claim() => SearchVerdict::Undecided,
+            supported => supported,
         };
         let model = |effects: Vec<usize>, fit: Option<&LaplaceFit>, number: u64| PosteriorModel {
             effects,
@@ -157,6 +168,7 @@ impl Conclusion {
         Self {
             verdict,
             implausible,
+            unsupported_noise,
             remaining: incomplete.map_or(Vec::new(), |fit| residuals(fit, &task.likelihood)),
             complete: after.map(|chi| chi.is_complete()),
             explained: excess
@@ -164,7 +176,7 @@ impl Conclusion {
                 .map(|(excess, left)| (1.0 - left / excess).max(0.0)),
             agreed: weighing
                 .agreed()
-                .filter(|_| verdict == SearchVerdict::Undecided && implausible.is_none()),
+                .filter(|_| verdict == SearchVerdict::Undecided && !is_withheld),
             ranking: weighing.ranking,
             not_in_library: weighing.not_in_library,
             predicted_by_law: hypotheses.laws.as_ref().and_then(|scan| {

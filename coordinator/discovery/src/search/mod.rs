@@ -16,7 +16,8 @@
 //! - `discovery`: the interface. `query`: what the model is asked. `branch`: a search for one effect that is part of this one.
 //! - `stage`: the stages. `state`: task and hypotheses. `effects`, `families`, `exchange`, `laws`, `last_stages`: from one stage to the
 //!   next.
-//! - `hypotheses`: combinations and laws found so far. `weighing`: their probabilities. `verdict`, `conclusion`: the result.
+//! - `hypotheses`: combinations and laws found so far. `weighing`: their probabilities. `noise_support`: whether inferred noise supports
+//!   a claim. `verdict`, `conclusion`: the result.
 //! - `cross_validation`: fits without some of the data. `next_run`: the choice of runs not yet made; `run_information`: what they
 //!   would tell.
 
@@ -31,6 +32,7 @@ mod hypotheses;
 mod last_stages;
 mod laws;
 pub(crate) mod next_run;
+mod noise_support;
 pub(crate) mod query;
 mod run_information;
 mod stage;

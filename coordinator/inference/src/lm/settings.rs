@@ -1,6 +1,7 @@
 //! The settings of a fit, and why some are refused.
 
 use super::stencil::Sides;
+use crate::tmcmc::MAX_PARTICLES;
 
 /// Settings of a fit.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -49,8 +50,6 @@ impl Default for LmSettings {
 const MOST_EVALUATIONS: usize = 1_000_000;
 /// Least draws: intervals are their quantiles.
 const LEAST_DRAWS: usize = 20;
-/// Most draws.
-const MOST_DRAWS: usize = 100_000;
 /// Longest difference: a step to one side always fits between the bounds.
 const LONGEST_DIFFERENCE: f64 = 0.5;
 
@@ -101,7 +100,7 @@ pub enum LmSettingsError {
         draws: usize,
     },
     /// More draws than a store keeps well.
-    #[error("particles = {draws} is above {MOST_DRAWS}")]
+    #[error("particles = {draws} must be at most {MAX_PARTICLES}")]
     TooManyDraws {
         /// The setting.
         draws: usize,
@@ -161,7 +160,7 @@ impl LmSettings {
         if (1..LEAST_DRAWS).contains(&self.draws) {
             return Err(LmSettingsError::TooFewDraws { draws: self.draws });
         }
-        if self.draws > MOST_DRAWS {
+        if self.draws > MAX_PARTICLES {
             return Err(LmSettingsError::TooManyDraws { draws: self.draws });
         }
         if !(value > 0.0 && value <= LONGEST_DIFFERENCE) {

@@ -46,4 +46,4 @@ pub use evaluation::EvaluationResult;
 pub use particle::Particle;
 pub use record::{PosteriorSample, StageProgress, StageRecord};
 pub use sampler::Sampler;
-pub use settings::{Algorithm, StageMethod, TmcmcSettings, TmcmcSettingsError};
+pub use settings::{Algorithm, MAX_PARTICLES, StageMethod, TmcmcSettings, TmcmcSettingsError};

@@ -73,8 +73,8 @@ impl Default for TmcmcSettings {
     }
 }
 
-/// Largest population: gigabytes at a dozen parameters.
-const MOST_PARTICLES: usize = 1_000_000;
+/// Most particles of a sample, and most draws of a normal approximation: at 310 bytes each, they take 31 MB.
+pub const MAX_PARTICLES: usize = 100_000;
 /// Fewest particles of a stage of draws, for each of d + 1 numbers: a fifth of them is the least effective sample that a fit
 /// rests on.
 const DRAWN_PARTICLES: usize = 8;
@@ -101,7 +101,7 @@ pub enum TmcmcSettingsError {
         least: usize,
     },
     /// The population does not fit into memory.
-    #[error("{particles} particles are more than {MOST_PARTICLES}")]
+    #[error("particles = {particles} must be at most {MAX_PARTICLES}")]
     TooManyParticles {
         /// The setting.
         particles: usize,
@@ -154,7 +154,7 @@ impl TmcmcSettings {
             && self.particles >= DRAWN_PARTICLES * (dimension + 1)
     }
 
-    /// Checks the settings for a prior of `dimension` parameters; at least `2 dimension + 2` particles.
+    /// Checks the settings for a prior of `dimension` parameters; at least `2 dimension + 2` particles and at most [`MAX_PARTICLES`].
     ///
     /// # Errors
     /// [`TmcmcSettingsError`] with the setting and its bound.
@@ -169,7 +169,7 @@ impl TmcmcSettings {
                 dimension,
                 least,
             })
-        } else if self.particles > MOST_PARTICLES {
+        } else if self.particles > MAX_PARTICLES {
             Err(TmcmcSettingsError::TooManyParticles {
                 particles: self.particles,
             })

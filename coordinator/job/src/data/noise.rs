@@ -244,7 +244,7 @@ fn pooled(experiment: &Experiment, fit_runs: &[usize], channel: Channel) -> (f64
 }
 
 /// The fitted runs by condition, as positions among them; a run joins the first condition that it repeats.
-pub(crate) fn conditions(experiment: &Experiment, fit_runs: &[usize]) -> Vec<Vec<usize>> {
+pub fn conditions(experiment: &Experiment, fit_runs: &[usize]) -> Vec<Vec<usize>> {
     let mut conditions: Vec<(&TestRun, Vec<usize>)> = Vec::new();
     for (position, &i) in fit_runs.iter().enumerate() {
         let run = &experiment.runs[i];

@@ -3,7 +3,7 @@
 //! # Layout
 //! - `question`: [`Question`], and [`Unanswered`], the questions that a user must answer before anything is calibrated.
 //! - `typed`: numbers outside the usual range of their quantity. `measured`: measurements and noise against each other, and against
-//!   load and wheel. `effects`: effects that act where they should not.
+//!   load and wheel. `sign`: channels with the opposite sign. `effects`: effects that act where they should not.
 //!
 //! The usual ranges stand in [`shared::limit`], which also refuses what no rig has. A question is answered by a correction, or by its
 //! name under `accept` in the job.
@@ -11,6 +11,7 @@
 mod effects;
 mod measured;
 pub(crate) mod question;
+mod sign;
 mod typed;
 
 pub use question::{Question, Unanswered};
@@ -24,6 +25,7 @@ use crate::Spec;
 pub fn questions(spec: &Spec) -> Vec<Question> {
     let mut questions = typed::questions(spec);
     questions.extend(measured::questions(spec));
+    questions.extend(sign::questions(&spec.experiment));
     questions.extend(effects::questions(spec));
     questions.sort_by(|a, b| a.name.cmp(&b.name));
     questions

@@ -14,6 +14,11 @@ pub(super) const NEUTRAL: &str = "neutral";
 /// The question of slip angles.
 pub(super) const SLIP_ANGLE: &str = "slip_angle_deg";
 
+/// The name of the question about the sign of a channel.
+pub(super) fn sign_name(channel: Channel) -> String {
+    format!("{}_sign", channel.name())
+}
+
 /// Something that is possible, but was probably not meant.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Question {
@@ -36,6 +41,7 @@ impl Question {
         limited
             .chain(Channel::ALL.map(noise_parameter))
             .chain(measured)
+            .chain(Channel::ALL.map(sign_name))
             .chain([DATA_FEW, NEUTRAL, SLIP_ANGLE].map(str::to_owned))
             .collect()
     }

@@ -64,6 +64,20 @@ pub enum AlgorithmName {
 }
 
 impl AlgorithmName {
+    /// The algorithms that a job may state. The search for a missing effect is none of them: a study starts it by itself.
+    pub const STATED: [AlgorithmName; 6] = [
+        AlgorithmName::Tmcmc,
+        AlgorithmName::ChingChen2007,
+        AlgorithmName::Basis,
+        AlgorithmName::Lm,
+        AlgorithmName::Ga,
+        AlgorithmName::CmaEs,
+    ];
+
+    /// The algorithms that find the most probable parameters, which a job may ask for beside a sample.
+    pub const POINT_ESTIMATES: [AlgorithmName; 3] =
+        [AlgorithmName::Lm, AlgorithmName::Ga, AlgorithmName::CmaEs];
+
     /// The name in files.
     pub fn name(self) -> &'static str {
         match self {

@@ -64,7 +64,7 @@ impl SamplerKeys {
         ALL.into_iter()
             .find(|keys| keys.algorithm.name() == algorithm)
             .ok_or_else(|| {
-                let known = ALL.map(|keys| keys.algorithm.name());
+                let known = AlgorithmName::STATED.map(AlgorithmName::name);
                 TableError::Unknown(unknown_word("algorithm", algorithm, known))
             })
     }

@@ -10,15 +10,10 @@ use super::algorithm_settings::{AlgorithmName, AlgorithmSettings};
 use super::error::TableError;
 use super::sampler_keys::SamplerKeys;
 
-/// Most particles: at 310 bytes each, a population takes 31 MB.
-const MOST_PARTICLES: usize = 100_000;
-
 /// Least and most steps of a stage whose steps are subchains of a metamodel.
 const METAMODEL_STEPS: [usize; 2] = [3, 30];
 /// The values of `stages`.
 const STAGES: [&str; 2] = ["draws", "moves"];
-/// The algorithms that find the most probable parameters.
-const POINT_ESTIMATES: [&str; 3] = ["lm", "ga", "cma-es"];
 
 /// The table as written; every algorithm reads its own keys.
 #[derive(Default, Deserialize)]
@@ -43,7 +38,7 @@ pub(crate) struct RawSampler {
 impl RawSampler {
     /// The algorithm with its settings.
     pub(crate) fn algorithm(&self) -> Result<AlgorithmSettings, TableError> {
-        let keys = SamplerKeys::of(self.algorithm.as_deref().unwrap_or("tmcmc"))?;
+        let keys = SamplerKeys::of(self.algorithm.as_deref().unwrap_or(AlgorithmName::Tmcmc.name()))?;
         keys.refuse(&[
             ("particles", self.particles.is_some()),
             ("stages", self.stages.is_some()),
@@ -58,10 +53,6 @@ impl RawSampler {
             ("restarts", self.restarts.is_some()),
             ("point_estimates", self.point_estimates.is_some()),
         ])?;
-        if let Some(particles) = self.particles.filter(|&particles| particles > MOST_PARTICLES) {
-            let rule = format!("must be at most {MOST_PARTICLES}");
-            return Err(TableError::value("particles", particles, rule));
-        }
         Ok(match keys.algorithm {
             AlgorithmName::Tmcmc => self.sample(Algorithm::Tmcmc)?,
             AlgorithmName::ChingChen2007 => self.sample(Algorithm::ChingChen2007)?,
@@ -79,8 +70,9 @@ impl RawSampler {
     pub(crate) fn point_estimates(&self, seed: u64) -> Result<Vec<AlgorithmSettings>, TableError> {
         let names = self.point_estimates.as_deref().unwrap_or_default();
         let algorithm = |(i, name): (usize, &String)| {
-            if !POINT_ESTIMATES.contains(&name.as_str()) {
-                let unknown = unknown_word("point estimate", name, POINT_ESTIMATES);
+            let known = AlgorithmName::POINT_ESTIMATES.map(AlgorithmName::name);
+            if !known.contains(&name.as_str()) {
+                let unknown = unknown_word("point estimate", name, known);
                 return Err(TableError::Unknown(unknown));
             }
             if names[..i].contains(name) {

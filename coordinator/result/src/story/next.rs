@@ -130,7 +130,12 @@ fn steps(study: &Study, calibration: &FinishedCalibration, is_within_noise: bool
     });
     let mut steps: Vec<NextStep> = match record.verdict {
         // Runs decide before a guess is added.
-        Verdict::Undecided => widen.into_iter().chain(runs).chain(add).collect(),
+        Verdict::Undecided => widen
+            .into_iter()
+            .chain(noise(record))
+            .chain(runs)
+            .chain(add)
+            .collect(),
         _ => add.into_iter().chain(runs).collect(),
     };
     if steps.is_empty() && is_within_noise {
@@ -168,6 +173,21 @@ fn steps(study: &Study, calibration: &FinishedCalibration, is_within_noise: bool
         ));
     }
     steps
+}
+
+/// What makes a claim possible where the noise is inferred from too little; `None` where it is not.
+fn noise(record: &Discovery) -> Option<NextStep> {
+    let channels = record.unsupported_noise.iter();
+    let channels: Vec<String> = channels
+        .map(|name| name.trim_start_matches("noise.").to_owned())
+        .collect();
+    (!channels.is_empty()).then(|| {
+        let text = format!(
+            "state the sd of {} under [noise] in the experiment, or repeat at least three runs, and calibrate and search again",
+            number::list(&channels)
+        );
+        NextStep::new(StepKind::StateInExperiment, text, None)
+    })
 }
 
 /// Whether the study has a calibration with all that this one has, and the effect.
@@ -303,6 +323,26 @@ mod tests {
         let next = Next::of(&study, &study.lead, false);
         assert_eq!(kinds(&next)[..2], [StepKind::WidenPrior, StepKind::MakeRuns]);
         assert!(next.text.starts_with("widen the prior of n"), "{}", next.text);
+    }
+
+    #[test]
+    fn an_inferred_noise_that_supports_no_claim_is_stated_before_runs_are_made() {
+        let mut study = searched();
+        let record = &mut study.rounds[0].record;
+        record.verdict = Verdict::Undecided;
+        record.extension = None;
+        record.unsupported_noise = vec!["noise.torque_n_m".into(), "noise.sinkage_m".into()];
+        let next = Next::of(&study, &study.lead, false);
+        assert_eq!(
+            kinds(&next)[..2],
+            [StepKind::StateInExperiment, StepKind::MakeRuns]
+        );
+        assert!(
+            next.text
+                .starts_with("state the sd of torque_n_m and sinkage_m under [noise]"),
+            "{}",
+            next.text
+        );
     }
 
     #[test]

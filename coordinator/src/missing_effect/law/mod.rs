@@ -3,9 +3,10 @@
 //! # Layout
 //! - `range`: the variables along which an experiment can show a dependence, and their ranges.
 //! - `dependence`: a quantity that depends on a variable, as a curve; `form`: in simple forms.
-//! - `curve`: the values of such a law, and its file for the user.
+//! - `file`: which of these a job can take. `curve`: the values of such a law, and its file for the user.
 
 pub(super) mod curve;
 pub(super) mod dependence;
+pub(super) mod file;
 pub(super) mod form;
 mod range;
