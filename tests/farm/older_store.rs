@@ -1,4 +1,4 @@
-//! A store that the version before migration 9 wrote: it is read, goes on, and gives what that version gave.
+//! Stores that the versions before migrations 9 and 20 wrote: they are read, go on, and give what those versions gave.
 
 use std::path::PathBuf;
 
@@ -6,16 +6,17 @@ use farm_tests::programs::{coordinator, run};
 use farm_tests::text::same;
 use farm_tests::workspace::{data, text};
 use serde_json::Value;
+use sqlx::Connection as _;
 use tempfile::TempDir;
 
-/// The job in a folder, and in `out` beside it one of the stores that were kept of it.
-fn folder(store: &str) -> (TempDir, PathBuf, PathBuf) {
+/// The job of one of these versions in a folder, and in `out` beside it one of the stores that were kept of it.
+fn folder(version: &str, store: &str) -> (TempDir, PathBuf, PathBuf) {
     let temporary = tempfile::tempdir().expect("a folder");
     let (job, out) = (temporary.path().join("job"), temporary.path().join("out"));
     for made in [&job, &out] {
         std::fs::create_dir(made).expect("a folder");
     }
-    let kept = |name: &str| data("store-8").join(name);
+    let kept = |name: &str| data(version).join(name);
     for file in ["job.toml", "experiment.toml", "runs.csv"] {
         std::fs::copy(kept(file), job.join(file)).expect("a file is copied");
     }
@@ -51,7 +52,7 @@ fn same_numbers(summary: &str) {
 
 #[test]
 fn a_finished_one_is_shown_before_and_after_its_tables_are_brought_up_to_date() {
-    let (_temporary, job, out) = folder("finished.store");
+    let (_temporary, job, out) = folder("store-8", "finished.store");
     let posterior = text(&data("store-8/posterior.csv"));
     // Commands that only read do not migrate.
     same(&command(&["export", "1", "--format", "csv"], &out), &posterior);
@@ -68,11 +69,94 @@ fn a_finished_one_is_shown_before_and_after_its_tables_are_brought_up_to_date() 
 
 #[test]
 fn a_stopped_one_goes_on_and_ends_with_the_same_posterior_and_fit() {
-    let (_temporary, job, out) = folder("stopped.store");
+    let (_temporary, job, out) = folder("store-8", "stopped.store");
     command(&["run", &job.display().to_string()], &out);
     same_numbers(&text(&out.join("summary.json")));
     same(
         &text(&out.join("posterior.csv")),
         &text(&data("store-8/posterior.csv")),
     );
+}
+
+/// What the version before migration 20 said of its study.
+#[track_caller]
+fn same_study(summary: &str) {
+    let given: Value = serde_json::from_str(summary).expect("JSON");
+    let kept: Value = serde_json::from_str(&text(&data("store-19/summary.json"))).expect("JSON");
+    for fact in [
+        "/discovery/verdict",
+        "/discovery/chosen",
+        "/discovery/evaluations",
+        "/point_estimates",
+    ] {
+        assert!(kept.pointer(fact).is_some(), "{fact}");
+        assert_eq!(given.pointer(fact), kept.pointer(fact), "{fact}");
+    }
+    let lists = [
+        (
+            "/calibrations",
+            [
+                "effects",
+                "algorithm",
+                "log_evidence",
+                "evaluations",
+                "parameters",
+                "error",
+            ]
+            .as_slice(),
+        ),
+        ("/discovery/rounds", ["given", "verdict"].as_slice()),
+    ];
+    for (list, keys) in lists {
+        let of = |summary: &Value| {
+            summary
+                .pointer(list)
+                .and_then(Value::as_array)
+                .cloned()
+                .expect("a list")
+        };
+        let (given, kept) = (of(&given), of(&kept));
+        assert_eq!(given.len(), kept.len(), "{list}");
+        for (given, kept) in given.iter().zip(&kept) {
+            for key in keys {
+                assert!(!kept[key].is_null(), "{list} {key}");
+                assert_eq!(given[key], kept[key], "{list} {key}");
+            }
+        }
+    }
+}
+
+/// Name, role, parent and change of each stored calibration.
+async fn stored_members(store: &std::path::Path) -> Vec<(String, String, Option<i64>, Option<String>)> {
+    let url = format!("sqlite://{}?mode=ro", store.display());
+    let mut connection = sqlx::SqliteConnection::connect(&url).await.expect("a store");
+    sqlx::query_as("SELECT name, role, parent, change FROM calibrations ORDER BY id")
+        .fetch_all(&mut connection)
+        .await
+        .expect("rows")
+}
+
+#[tokio::test]
+async fn a_study_of_before_its_members_were_stored_is_the_same_study() {
+    let (_temporary, job, out) = folder("store-19", "finished.store");
+    // Commands that only read do not migrate, and find the searches by the rules of that version.
+    let summary = command(&["discover", "1"], &out);
+    assert!(summary.contains("janosi_hanamoto"), "{summary}");
+    command(&["run", &job.display().to_string()], &out);
+    same_study(&text(&out.join("summary.json")));
+    let add = r#"{"add":{"effect":"janosi_hanamoto"}}"#;
+    let lm = r#"{"algorithm":"lm"}"#;
+    let expected = [
+        ("mk19", "sample", None, None),
+        ("mk19 (lm)", "fit", Some(1), Some(lm)),
+        ("mk19 (discovery)", "search", Some(1), None),
+        ("mk19+janosi_hanamoto", "sample", Some(1), Some(add)),
+        ("mk19+janosi_hanamoto (discovery)", "search", Some(4), None),
+    ];
+    let given = stored_members(&out.join("grouser.db")).await;
+    let given: Vec<_> = given
+        .iter()
+        .map(|(name, role, parent, change)| (name.as_str(), role.as_str(), *parent, change.as_deref()))
+        .collect();
+    assert_eq!(given, expected, "nothing is searched again");
 }

@@ -8,7 +8,7 @@ use shared::model::ModelSettings;
 
 use crate::plausibility::question::Question;
 use crate::table::algorithm_settings::AlgorithmSettings;
-use crate::table::discovery_settings::{DiscoverySettings, RawDiscovery};
+use crate::table::discovery_settings::{Apply, DiscoverySettings, RawDiscovery};
 use crate::table::likelihood_settings::{LikelihoodSettings, RawLikelihood};
 use crate::table::model_entry::{ModelEntry, model_entries};
 use crate::table::posterior_prior::PosteriorPrior;
@@ -159,6 +159,21 @@ impl JobFile {
             first: job(first),
             others: others.into_iter().map(job).collect(),
         })
+    }
+
+    /// The search for missing effects of this job's model: it draws with the job's seed, and asks for nothing besides.
+    pub fn into_search(self) -> JobFile {
+        JobFile {
+            algorithm: AlgorithmSettings::Discover {
+                seed: self.algorithm.seed(),
+            },
+            point_estimates: Vec::new(),
+            discovery: DiscoverySettings {
+                apply: Apply::Off,
+                ..self.discovery
+            },
+            ..self
+        }
     }
 
     /// The files that the job names beside its experiment.

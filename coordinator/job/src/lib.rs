@@ -28,9 +28,8 @@ pub use data::noise::{conditions, repeat_scatter, repeats};
 pub use data::soil_scatter::SoilScatter;
 pub use derived::accepting_job::accepting_job;
 pub use derived::assumed_experiment::{AssumedExperiment, SiteProperty, UnsaidProperty};
-pub use derived::discovery_job::{
-    continued_job, discovery_job, effect_name, is_discovery, model_kind, searched_job, without_effects,
-};
+pub use derived::discovery_job::{continued_job, effect_name, model_kind, searched_job, without_effects};
+pub use derived::earlier_search::{earlier_search, is_earlier_search, searched_model};
 pub use derived::extended_job::{extended_job, with_free, with_setting};
 pub use derived::one_model::model_job;
 pub use derived::own_effects::{OwnEffect, foreign_effects, with_own_effects, without_own_effects};

@@ -102,6 +102,20 @@ impl Spec {
         Spec::of(job_name, parsed, &job.files, experiment_name, files)
     }
 
+    /// The specification of the search for missing effects of a job's model.
+    ///
+    /// # Errors
+    /// As those of [`Spec::new`].
+    pub fn of_search(
+        job_name: &str,
+        job: &FileSet,
+        experiment_name: &str,
+        files: &FileSet,
+    ) -> Result<Spec, FileError> {
+        let parsed = JobFile::parse(job_name, &job.toml)?.into_search();
+        Spec::of(job_name, parsed, &job.files, experiment_name, files)
+    }
+
     /// The same of a job that is parsed, with the texts of the files that it names.
     ///
     /// # Errors

@@ -3,6 +3,8 @@
 use shared::api::CalibrationState;
 use shared::file::FileSet;
 
+use crate::membership::{Membership, Role};
+
 /// A stored experiment.
 #[derive(Debug, Clone)]
 pub struct ExperimentRow {
@@ -31,6 +33,8 @@ pub struct CalibrationRow {
     pub study: i64,
     /// The experiment it is about.
     pub experiment: i64,
+    /// Its place in the study.
+    pub membership: Membership,
     /// Name for lists.
     pub name: String,
     /// Its job, with the effect files that it names.
@@ -53,4 +57,31 @@ pub struct CalibrationRow {
     pub evaluations: Option<u64>,
     /// Of these, rejected by the model.
     pub rejected: Option<u64>,
+}
+
+impl CalibrationRow {
+    /// A finished sample that is the first of its study and has an empty job: a fixture of tests.
+    #[doc(hidden)]
+    pub fn finished_sample(name: &str) -> Self {
+        CalibrationRow {
+            id: 1,
+            study: 1,
+            experiment: 1,
+            membership: Membership::submitted(Role::Sample),
+            name: name.to_owned(),
+            job: FileSet {
+                toml: String::new(),
+                files: Default::default(),
+            },
+            state: CalibrationState::Finished,
+            message: None,
+            model_version: None,
+            busy_ms: 0,
+            log_evidence: None,
+            log_evidence_se: None,
+            equilibrated: None,
+            evaluations: None,
+            rejected: None,
+        }
+    }
 }

@@ -344,6 +344,14 @@ pub struct ChiSquare {
     pub p: Option<f64>,
 }
 
+/// The name of an extension as a candidate: `EFFECT.WHEEL` of an effect on one wheel of several.
+pub fn addition_name(extension: &Extension) -> String {
+    match extension {
+        Extension::OnWheel { effect, wheel } => format!("{effect}.{wheel}"),
+        Extension::Effect(_) | Extension::File { .. } => effect_of(extension),
+    }
+}
+
 /// The name of the effect that an extension adds.
 pub fn effect_of(extension: &Extension) -> String {
     match extension {

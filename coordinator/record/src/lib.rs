@@ -3,7 +3,7 @@
 //! # Layout
 //! - [`fact`]: what must survive a restart, in order of occurrence.
 //! - `evaluation_key`: the permanent number of an evaluation.
-//! - `calibration`, `sample`, `estimate`: stored rows.
+//! - `calibration`, `sample`, `estimate`: stored rows. `membership`: the place of a calibration in its study.
 //! - `replay`: rows that a restart reads back.
 //! - `verification`: how far the answers of workers are verified.
 //! - `discovery`: the record of a search for a missing effect.
@@ -13,6 +13,7 @@ mod discovery;
 mod estimate;
 mod evaluation_key;
 pub mod fact;
+mod membership;
 mod replay;
 mod sample;
 mod verification;
@@ -21,11 +22,12 @@ pub use calibration::{CalibrationRow, ExperimentRow, SealKey};
 pub use discovery::{
     ChiSquare, CurveDatum, Discovery, EffectCurves, Extension, ImplausibleParameter, JudgedEffect, JudgedSet,
     NEXT_RUNS, NONE, NOT_IN_LIBRARY, NextRun, NotTried, Outside, RemainingMisfit, RunInformation, Verdict,
-    effect_of,
+    addition_name, effect_of,
 };
 pub use estimate::EstimateRow;
 pub use evaluation_key::{EvaluationKey, HOLDOUT_RUNS_FROM, LIKELIEST, PREDICTIONS_FROM};
 pub use fact::{Dispute, EvaluationRow, Fact, Fingerprint, Kept};
+pub use membership::{Change, Membership, Role};
 pub use replay::{Stored, StoredEvaluation};
 pub use sample::{Prediction, PriorDraw, RejectionReason, Sample, StageRow, Subchains};
 pub use verification::{Quarantine, Repeats, Verified};

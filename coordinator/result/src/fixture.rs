@@ -6,8 +6,8 @@ use inference::evolution::{EvolutionSettings, GaSettings};
 use inference::point_estimate::{Generation, StopReason};
 use job::{AlgorithmSettings, Spec};
 use record::{
-    CalibrationRow, EstimateRow, Outside, Prediction, PriorDraw, RejectionReason, Repeats, Sample, StageRow,
-    Verified,
+    CalibrationRow, EstimateRow, Outside, Prediction, PriorDraw, RejectionReason, Repeats, Role, Sample,
+    StageRow, Verified,
 };
 use shared::api::CalibrationState;
 use shared::experiment::Campaign;
@@ -17,7 +17,7 @@ use shared::outcome::Observables;
 use crate::discovery::DiscoveryRound;
 use crate::finished_calibration::FinishedCalibration;
 use crate::study::Study;
-use crate::study_member::{MemberKind, StudyMember};
+use crate::study_member::StudyMember;
 
 const JOB: &str = r#"
 # <i>bold & brave</i>
@@ -243,7 +243,7 @@ pub(crate) fn grown() -> Study {
         curve: vec![[0.0, 1.0], [0.3, 1.0], [0.31, 1.2], [0.6, 1.2]],
         left_out_nats: [8.0, 3.0],
     });
-    let member = |id: i64, kind: MemberKind, searches: Option<i64>| StudyMember {
+    let member = |id: i64, kind: Role, searches: Option<i64>| StudyMember {
         id,
         name: format!("member {id}"),
         state: CalibrationState::Finished,
@@ -254,9 +254,9 @@ pub(crate) fn grown() -> Study {
     };
     Study {
         members: vec![
-            member(1, MemberKind::Sample, None),
-            member(2, MemberKind::Search, Some(1)),
-            member(3, MemberKind::Sample, None),
+            member(1, Role::Sample, None),
+            member(2, Role::Search, Some(1)),
+            member(3, Role::Sample, None),
         ],
         extensions: vec![extension],
         rounds: vec![DiscoveryRound {
@@ -347,13 +347,7 @@ pub(crate) fn of_files(job: FileSet, files: &FileSet) -> FinishedCalibration {
         equilibrated: true,
     };
     let row = CalibrationRow {
-        id: 1,
-        study: 1,
-        experiment: 1,
-        name: "<script>sand".into(),
         job,
-        state: CalibrationState::Finished,
-        message: None,
         model_version: Some("1".into()),
         busy_ms: 1500,
         log_evidence: Some(-25.0),
@@ -361,6 +355,7 @@ pub(crate) fn of_files(job: FileSet, files: &FileSet) -> FinishedCalibration {
         equilibrated: Some(true),
         evaluations: Some(1000),
         rejected: Some(3),
+        ..CalibrationRow::finished_sample("<script>sand")
     };
     FinishedCalibration {
         experiment: row.name.clone(),

@@ -52,7 +52,7 @@ pub use provenance::Provenance;
 pub use story::Story;
 pub use study::Study;
 pub use study_file::StudyFile;
-pub use study_member::{MemberKind, StudyMember};
+pub use study_member::StudyMember;
 pub use summary::calibration::CalibrationSummary;
 pub use summary::parameter::ParameterSummary;
 pub use summary::point_estimate::PointEstimate;

@@ -1,5 +1,6 @@
 //! A member of a study, finished or not.
 
+use record::Role;
 use shared::api::CalibrationState;
 
 /// A calibration or a search of a study.
@@ -12,23 +13,11 @@ pub struct StudyMember {
     /// Its state.
     pub state: CalibrationState,
     /// What it computes.
-    pub kind: MemberKind,
+    pub kind: Role,
     /// The effects and freed parameters of its model beyond those of the submitted job.
     pub effects: Vec<String>,
     /// The calibration whose model it searches; null of a sample or a fit.
     pub searches: Option<i64>,
     /// Why it is paused or failed.
     pub message: Option<String>,
-}
-
-/// What a member of a study computes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum MemberKind {
-    /// A sample of the posterior.
-    Sample,
-    /// The most probable parameters, by `lm`, `ga` or `cma-es`.
-    Fit,
-    /// A search for missing effects.
-    Search,
 }

@@ -221,9 +221,9 @@ pub(super) fn check(
 pub(super) const JOB: &str = "job.toml";
 pub(super) const EXPERIMENT: &str = "experiment.toml";
 
-/// Parses a job and its experiment.
+/// Parses a job and its experiment as the search of that job's model.
 pub(super) fn spec(job: &FileSet, experiment: &FileSet) -> Result<Spec, FileError> {
-    Spec::new(JOB, job, EXPERIMENT, experiment)
+    Spec::of_search(JOB, job, EXPERIMENT, experiment)
 }
 
 #[cfg(test)]
@@ -271,9 +271,7 @@ mod tests {
             let given = width(&job, effect, parameter);
             assert!((given / median(scale) - 1.0).abs() < 1e-6, "{effect}: {given}");
         }
-        // A search of the job, and what follows from it, keep them.
-        let search = job::discovery_job("job.toml", &job).unwrap();
-        assert_eq!(candidate_priors(&search.toml), candidate_priors(&job.toml));
+        // What follows from the job, its search too, keeps them.
         let next = job::continued_job("job.toml", &job).unwrap();
         assert_eq!(candidate_priors(&next.toml), candidate_priors(&job.toml));
     }

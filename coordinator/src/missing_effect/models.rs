@@ -333,7 +333,7 @@ impl SearchModels {
                 (job, &self.base.experiment)
             }
         };
-        let parsed = JobFile::parse(JOB, &job.toml)?;
+        let parsed = JobFile::parse(JOB, &job.toml)?.into_search();
         let spec = Spec::measured(JOB, parsed, &job.files, EXPERIMENT, experiment.clone())?;
         Ok(spec.fit_variant)
     }

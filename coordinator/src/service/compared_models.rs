@@ -1,25 +1,16 @@
-//! The models with which a study begins where its job compares several.
+//! The compared models that a study does not go on with.
 
-use super::error::ServiceError;
-use crate::study::most_probable;
-use job::JobFile;
+use crate::study::{Lineage, most_probable};
 use record::CalibrationRow;
 
-/// How many models a study begins with: its first members are of those that its job compares.
-pub(super) fn models(rows: &[CalibrationRow]) -> Result<usize, ServiceError> {
-    let Some(lead) = rows.first() else { return Ok(1) };
-    let job = JobFile::parse("job.toml", &lead.job.toml)?;
-    Ok(job.models.min(rows.len()))
-}
-
-/// The compared models that a study does not go on with.
-pub(super) fn passed_over(rows: &[CalibrationRow]) -> Result<Vec<i64>, ServiceError> {
-    let models = models(rows)?;
-    if models == 1 {
-        return Ok(Vec::new());
+/// The compared models that a study does not go on with: all but the one of most evidence.
+pub(super) fn passed_over(rows: &[CalibrationRow]) -> Vec<i64> {
+    let compared = &rows[..Lineage::new(rows).model_count().min(rows.len())];
+    if compared.len() < 2 {
+        return Vec::new();
     }
-    let best = most_probable(rows[..models].iter().map(|row| row.log_evidence));
-    let others = rows[..models].iter().enumerate();
+    let best = most_probable(compared.iter().map(|row| row.log_evidence));
+    let others = compared.iter().enumerate();
     let others = others.filter(|(number, _)| Some(*number) != best);
-    Ok(others.map(|(_, row)| row.id).collect())
+    others.map(|(_, row)| row.id).collect()
 }

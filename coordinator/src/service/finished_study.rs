@@ -4,14 +4,13 @@ use std::sync::OnceLock;
 
 use shared::api::CalibrationState;
 
-use super::compared_models::models;
 use super::error::ServiceError;
 use super::stored_calibration::spec_of;
-use super::study_members::{searched_by, study_members};
+use super::study_members::study_members;
 use super::study_step::next_step_from;
 use crate::store::Reader;
-use crate::study::most_probable;
-use job::{AlgorithmSettings, is_discovery};
+use crate::study::{Lineage, most_probable};
+use job::AlgorithmSettings;
 use record::CalibrationRow;
 use result::{DiscoveryRound, FinishedCalibration, Study, first_population, likeliest};
 
@@ -27,7 +26,7 @@ pub async fn finished_calibration(
     if row.state != CalibrationState::Finished {
         return Err(ServiceError::not_finished(row));
     }
-    if is_discovery(&row.job.toml) {
+    if row.membership.is_search() {
         return Err(ServiceError::Search(row.id));
     }
     let stages = reader.stages(row.id).await?;
@@ -118,8 +117,9 @@ pub(super) async fn finished_study_of(
 ) -> Result<Study, ServiceError> {
     let unfinished = rows.iter().find(|r| r.state != CalibrationState::Finished);
     let finished = rows.iter().filter(|r| r.state == CalibrationState::Finished);
-    let calibrations: Vec<_> = finished.filter(|r| !is_discovery(&r.job.toml)).collect();
-    let models = models(rows)?;
+    let calibrations: Vec<_> = finished.filter(|row| !row.membership.is_search()).collect();
+    let lineage = Lineage::new(rows);
+    let models = lineage.model_count().min(rows.len());
     let compared = |row: &CalibrationRow| models > 1 && rows[..models].iter().any(|other| other.id == row.id);
     let of_models: Vec<_> = calibrations.iter().filter(|row| compared(row)).collect();
     let best = most_probable(of_models.iter().map(|row| row.log_evidence)).map(|i| of_models[i]);
@@ -132,16 +132,11 @@ pub(super) async fn finished_study_of(
             others.push(finished_calibration(reader, row).await?);
             continue;
         }
-        let outcome = finished_calibration(reader, row).await?;
-        let is_same = outcome.row.experiment == lead.row.experiment
-            && outcome.effects() == lead.effects()
-            && outcome.spec.freed() == lead.spec.freed();
-        if is_same {
-            &mut point_estimates
-        } else {
-            &mut extensions
-        }
-        .push(outcome);
+        let beside = match lineage.model_of(row.id) == lineage.model_of(lead.row.id) {
+            true => &mut point_estimates,
+            false => &mut extensions,
+        };
+        beside.push(finished_calibration(reader, row).await?);
     }
     let state = match unfinished {
         Some(row) => row.state,
@@ -157,7 +152,7 @@ pub(super) async fn finished_study_of(
         point_estimates,
         extensions,
         rounds: search_rounds(reader, rows).await?,
-        members: study_members(reader, rows).await?,
+        members: study_members(rows),
         combined: OnceLock::new(),
     })
 }
@@ -170,12 +165,11 @@ pub async fn search_rounds(
     reader: &Reader,
     rows: &[CalibrationRow],
 ) -> Result<Vec<DiscoveryRound>, ServiceError> {
-    let finished = rows.iter().filter(|r| r.state == CalibrationState::Finished);
-    let (searches, calibrations): (Vec<_>, Vec<_>) = finished.partition(|r| is_discovery(&r.job.toml));
+    let finished = rows.iter().filter(|row| row.state == CalibrationState::Finished);
     let mut rounds = Vec::new();
-    for search in searches {
-        let searched = searched_by(search, rows)?.or(calibrations.first().map(|lead| lead.id));
-        if let (Some(calibration), Some(record)) = (searched, reader.discovery(search.id).await?) {
+    for search in finished.filter(|row| row.membership.is_search()) {
+        let record = reader.discovery(search.id).await?;
+        if let (Some(calibration), Some(record)) = (search.membership.parent, record) {
             rounds.push(DiscoveryRound { calibration, record });
         }
     }

@@ -11,20 +11,16 @@ use super::clock::now_ms;
 use super::compared_models::passed_over;
 use super::error::ServiceError;
 use super::handle::Service;
-use super::stored_calibration::has_posterior;
-use super::study_step::{next_step_of, search_of};
+use super::stored_calibration::{FILES, has_posterior};
+use super::study_step::next_step_of;
+use super::submission::role_of;
 use crate::calibration::{Calibration, CalibrationIdentity};
 use crate::farm::dispatch::Stopped;
 use crate::missing_effect::candidate::extended;
 use crate::store::NewCalibrationRow;
-use crate::study::StudyStep;
-use job::{Spec, continued_job, discovery_job, is_discovery, without_effects};
-use record::CalibrationRow;
-use record::Extension;
-use record::effect_of;
-
-/// How job and experiment are called in messages.
-const FILES: [&str; 2] = ["job.toml", "experiment.toml"];
+use crate::study::{Lineage, StudyStep};
+use job::{Spec, continued_job, without_effects};
+use record::{CalibrationRow, Change, Extension, Membership, addition_name};
 
 impl Service {
     /// Adds a calibration to the study of another: its job with an effect more; one that is there already is meant.
@@ -38,28 +34,16 @@ impl Service {
     }
 
     async fn extended(&self, id: i64, extension: &Extension) -> Result<CalibrationCreated, ServiceError> {
-        use shared::api::CalibrationState::{Cancelled, Failed};
         let row = self.searchable(id).await?;
+        let change = Change::Add(extension.clone());
+        let rows = self.store().reader().study(row.study).await?;
+        if let Some(member) = Lineage::new(&rows).existing(id, &change) {
+            return Ok(created(member));
+        }
         let job = extended(FILES[0], &row.job, &[extension])?;
         let job = continued_job(FILES[0], &job)?;
-        let name = match extension {
-            Extension::OnWheel { wheel, .. } => format!("{}+{}.{wheel}", row.name, effect_of(extension)),
-            _ => format!("{}+{}", row.name, effect_of(extension)),
-        };
-        // The same model on the same measurements is one calibration, unless it ended without a result.
-        let members = self.store().reader().study(row.study).await?;
-        let same = members.iter().find(|member| {
-            let is_over = matches!(member.state, Failed | Cancelled);
-            member.experiment == row.experiment && member.job == job && !is_over
-        });
-        match same {
-            Some(member) => Ok(CalibrationCreated {
-                id: member.id,
-                study: member.study,
-                point_estimates: Vec::new(),
-            }),
-            None => self.add_member(&row, row.experiment, name, job).await,
-        }
+        let name = format!("{}+{}", row.name, addition_name(extension));
+        self.add_member(&row, change, row.experiment, name, job).await
     }
 
     /// Adds measurements to a study: an experiment with the rows of a CSV more, and the job of a calibration on it, of the last of
@@ -76,18 +60,13 @@ impl Service {
         let _growing = self.growing.lock().await;
         let rows = self.store().reader().study(study).await?;
         let (mut ledger, mut beside) = (None, None);
-        let passed_over = passed_over(&rows)?;
+        let passed_over = passed_over(&rows);
         let meant = |row: &&CalibrationRow| match calibration {
             Some(id) => id == row.id,
             None => !passed_over.contains(&row.id),
         };
-        for row in rows
-            .iter()
-            .filter(|row| !is_discovery(&row.job.toml))
-            .filter(meant)
-        {
-            let spec = self.spec_of(row).await?;
-            match has_posterior(&self.store().reader(), row, &spec).await? {
+        for row in Lineage::new(&rows).calibrations().filter(meant) {
+            match has_posterior(&self.store().reader(), row).await? {
                 true => ledger = Some(row),
                 false => beside = Some(row),
             }
@@ -102,7 +81,10 @@ impl Service {
         let job = continued_job(FILES[0], &last.job)?;
         // Refused before anything is stored.
         let name = format!("{} ({runs} runs)", last.name);
-        let member = self.prepared(last, 0, name, job, enlarged.clone()).await?;
+        let change = Some(Change::Runs(runs));
+        let member = self
+            .prepared(last, change, 0, name, job, enlarged.clone())
+            .await?;
         let experiment = self.store().writer().add_experiment(enlarged, now_ms()).await?;
         let created = self.take_in(member, experiment).await?;
         Ok(RunsAdded {
@@ -125,16 +107,17 @@ impl Service {
     async fn searched(&self, id: i64) -> Result<CalibrationCreated, ServiceError> {
         use shared::api::CalibrationState::{Cancelled, Failed};
         let row = self.searchable(id).await?;
-        match search_of(&self.store().reader(), &row).await? {
-            Some(search) if !matches!(search.state, Failed | Cancelled) => Ok(CalibrationCreated {
-                id: search.id,
-                study: search.study,
-                point_estimates: Vec::new(),
-            }),
+        let rows = self.store().reader().study(row.study).await?;
+        match Lineage::new(&rows).search_of(id) {
+            Some(search) if !matches!(search.state, Failed | Cancelled) => Ok(created(search)),
             _ => {
-                let job = discovery_job(FILES[0], &row.job)?;
+                let job = continued_job(FILES[0], &row.job)?;
                 let name = format!("{} (discovery)", row.name);
-                self.add_member(&row, row.experiment, name, job).await
+                let files = self.experiment(row.experiment).await?;
+                let search = self
+                    .prepared(&row, None, row.experiment, name, job, files)
+                    .await?;
+                self.take_in(search, row.experiment).await
             }
         }
     }
@@ -155,7 +138,8 @@ impl Service {
                 let row = self.calibration_row(id).await?;
                 let job = without_effects(FILES[0], &row.job, &effects)?;
                 let name = format!("{}-{}", row.name, effects.join("-"));
-                self.add_member(&row, row.experiment, name, job).await?
+                self.add_member(&row, Change::Drop(effects), row.experiment, name, job)
+                    .await?
             }
         };
         Ok(true)
@@ -195,59 +179,76 @@ impl Service {
     /// A calibration that can be extended and searched.
     pub(super) async fn searchable(&self, id: i64) -> Result<CalibrationRow, ServiceError> {
         let row = self.calibration_row(id).await?;
-        match is_discovery(&row.job.toml) {
+        match row.membership.is_search() {
             true => Err(ServiceError::Search(id)),
             false => Ok(row),
         }
     }
 
-    /// Stores a calibration beside another of its study, and takes it in hand.
+    /// Stores a calibration that a change makes of another, and takes it in hand.
     async fn add_member(
         &self,
-        beside: &CalibrationRow,
+        parent: &CalibrationRow,
+        change: Change,
         experiment: i64,
         name: String,
         job: FileSet,
     ) -> Result<CalibrationCreated, ServiceError> {
         let files = self.experiment(experiment).await?;
-        let member = self.prepared(beside, experiment, name, job, files).await?;
+        let member = self
+            .prepared(parent, Some(change), experiment, name, job, files)
+            .await?;
         self.take_in(member, experiment).await
     }
 
-    /// A calibration of the study of another, validated but not stored.
+    /// A calibration that a change makes of another, or the search of its model where nothing changes; validated but not stored.
     async fn prepared(
         &self,
-        beside: &CalibrationRow,
+        parent: &CalibrationRow,
+        change: Option<Change>,
         experiment: i64,
         name: String,
         job: FileSet,
         files: FileSet,
-    ) -> Result<(Calibration, FileSet), ServiceError> {
-        self.check_not_archived(beside.study).await?;
+    ) -> Result<(Calibration, NewCalibrationRow), ServiceError> {
+        self.check_not_archived(parent.study).await?;
         let identity = CalibrationIdentity {
             id: 0,
-            name,
-            study: beside.study,
+            name: name.clone(),
+            study: parent.study,
             experiment,
         };
+        let parent = parent.id;
         let member = tokio::task::spawn_blocking(move || {
-            let spec = Spec::new(FILES[0], &job, FILES[1], &files)?;
+            let [job_name, experiment_name] = FILES;
+            let (spec, membership) = match change {
+                None => (
+                    Spec::of_search(job_name, &job, experiment_name, &files)?,
+                    Membership::search_of(parent),
+                ),
+                Some(change) => {
+                    let spec = Spec::new(job_name, &job, experiment_name, &files)?;
+                    let role = role_of(&spec.algorithm);
+                    (spec, Membership::changed(role, parent, change))
+                }
+            };
             let calibration = Calibration::of(identity, Arc::new(spec), &job, &files)?;
-            Ok::<_, ServiceError>((calibration, job))
+            let row = NewCalibrationRow {
+                membership,
+                name,
+                job,
+            };
+            Ok::<_, ServiceError>((calibration, row))
         });
         member.await.map_err(|_| Stopped)?
     }
 
     async fn take_in(
         &self,
-        (mut calibration, job): (Calibration, FileSet),
+        (mut calibration, row): (Calibration, NewCalibrationRow),
         experiment: i64,
     ) -> Result<CalibrationCreated, ServiceError> {
         let identity = &mut calibration.identity;
-        let row = NewCalibrationRow {
-            name: identity.name.clone(),
-            job,
-        };
         let study = identity.study;
         let id = self
             .store()
@@ -261,5 +262,14 @@ impl Service {
             study,
             point_estimates: Vec::new(),
         })
+    }
+}
+
+/// What is there already, as if it were made now.
+fn created(row: &CalibrationRow) -> CalibrationCreated {
+    CalibrationCreated {
+        id: row.id,
+        study: row.study,
+        point_estimates: Vec::new(),
     }
 }

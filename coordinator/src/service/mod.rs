@@ -10,7 +10,7 @@
 //! - `announcement`: what web hooks are told.
 //! - `growth`: what is added to a study that is there. `what_if`: studies without some runs.
 //! - `stored_calibration`, `study_step`, `finished_study`: what is read from the store.
-//! - `compared_models`: the models with which a study begins. `study_members`: the members of a study. `study_overview`: studies as the page shows them, `overview_cache`: kept.
+//! - `compared_models`: the compared models that a study does not go on with. `study_members`: the members of a study. `study_overview`: studies as the page shows them, `overview_cache`: kept.
 //! - `study_results`: the files of a study, computed once.
 
 mod announcement;

@@ -5,8 +5,11 @@ use shared::file::FileSet;
 
 use super::error::ServiceError;
 use crate::store::{Reader, StoreError};
-use job::{AlgorithmSettings, Spec, model_kind};
-use record::CalibrationRow;
+use job::{JobFile, Spec, model_kind};
+use record::{CalibrationRow, Role};
+
+/// How messages call a job and its experiment.
+pub(super) const FILES: [&str; 2] = ["job.toml", "experiment.toml"];
 
 /// A stored calibration.
 ///
@@ -31,23 +34,24 @@ pub async fn experiment_files(reader: &Reader, id: i64) -> Result<FileSet, Servi
 /// [`ServiceError`].
 pub(super) async fn spec_of(reader: &Reader, row: &CalibrationRow) -> Result<Spec, ServiceError> {
     let experiment = experiment_files(reader, row.experiment).await?;
-    Ok(Spec::new("job.toml", &row.job, "experiment.toml", &experiment)?)
+    let [job, experiment_name] = FILES;
+    Ok(match row.membership.role {
+        Role::Search => Spec::of_search(job, &row.job, experiment_name, &experiment)?,
+        Role::Sample | Role::Fit => Spec::new(job, &row.job, experiment_name, &experiment)?,
+    })
 }
 
 /// Whether a calibration has draws of the posterior, or will have: of a sample, or of a fit's normal approximation. A finished fit has them
 /// where they are stored: fits of earlier versions have none.
-pub(super) async fn has_posterior(
-    reader: &Reader,
-    row: &CalibrationRow,
-    spec: &Spec,
-) -> Result<bool, ServiceError> {
-    let is_stored = match spec.algorithm {
-        AlgorithmSettings::Fit(_) if row.state == CalibrationState::Finished => {
+pub(super) async fn has_posterior(reader: &Reader, row: &CalibrationRow) -> Result<bool, ServiceError> {
+    Ok(match row.membership.role {
+        Role::Sample => true,
+        Role::Search => false,
+        Role::Fit if row.state == CalibrationState::Finished => {
             !reader.samples(row.id, None).await?.is_empty()
         }
-        _ => true,
-    };
-    Ok(spec.algorithm.has_posterior() && is_stored)
+        Role::Fit => JobFile::parse(FILES[0], &row.job.toml)?.algorithm.has_posterior(),
+    })
 }
 
 /// The status of a stored calibration that the farm does not hold. One whose row cannot be read still has a line in every list.

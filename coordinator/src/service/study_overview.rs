@@ -11,7 +11,7 @@ use super::overview_cache::{KeptOverview, MemberKey, member_key};
 use super::study_members::study_members;
 use super::study_results::study_file;
 use crate::store::StoreError;
-use job::{is_discovery, model_kind};
+use job::model_kind;
 use record::CalibrationRow;
 use result::{StudyFile, StudyListItem, StudyOverview};
 
@@ -63,7 +63,7 @@ impl Service {
             return Ok((*kept.overview).clone());
         }
         let is_finished =
-            |row: &&CalibrationRow| row.state == CalibrationState::Finished && !is_discovery(&row.job.toml);
+            |row: &&CalibrationRow| row.state == CalibrationState::Finished && !row.membership.is_search();
         let overview = match rows.iter().find(is_finished) {
             Some(row) => {
                 let text = study_file(&reader, self.results_writer(), row, StudyFile::Overview).await?;
@@ -73,7 +73,7 @@ impl Service {
             None => {
                 let lead = rows.first().expect("a study has a member");
                 let kind = model_kind(&lead.job.toml).map(|kind| kind.name().to_owned());
-                StudyOverview::begun(id, lead.experiment, kind, study_members(&reader, rows).await?)
+                StudyOverview::begun(id, lead.experiment, kind, study_members(rows))
             }
         };
         let kept = KeptOverview {

@@ -7,7 +7,6 @@ use shared::api::CalibrationState;
 use super::error::ServiceError;
 use super::finished_study::{finished_calibration, finished_study, finished_study_of};
 use crate::store::{Reader, StoreError, StudyResults, Writer};
-use job::is_discovery;
 use record::CalibrationRow;
 use result::{Diagnostics, StudyFile};
 
@@ -64,7 +63,7 @@ pub(super) async fn diagnostics_text(
     writer: Option<&Writer>,
     row: &CalibrationRow,
 ) -> Result<String, ServiceError> {
-    let is_diagnosed = row.state == CalibrationState::Finished && !is_discovery(&row.job.toml);
+    let is_diagnosed = row.state == CalibrationState::Finished && !row.membership.is_search();
     if is_diagnosed && stamp(&reader.study(row.study).await?, (0, 0)).is_some() {
         return study_file(reader, writer, row, StudyFile::Diagnostics(row.id)).await;
     }
@@ -111,7 +110,7 @@ pub(super) async fn calibration_file(
     row: &CalibrationRow,
     file: StudyFile,
 ) -> Result<String, ServiceError> {
-    if row.state != CalibrationState::Finished || is_discovery(&row.job.toml) {
+    if row.state != CalibrationState::Finished || row.membership.is_search() {
         // Says why there is none.
         finished_calibration(reader, row).await?;
     }
@@ -136,29 +135,13 @@ fn stamp(rows: &[CalibrationRow], (disputes, quarantined): (i64, i64)) -> Option
 
 #[cfg(test)]
 mod tests {
-    use shared::file::FileSet;
-
     use super::*;
 
     fn member(id: i64, state: CalibrationState) -> CalibrationRow {
         CalibrationRow {
             id,
-            study: 1,
-            experiment: 1,
-            name: String::new(),
-            job: FileSet {
-                toml: String::new(),
-                files: Default::default(),
-            },
             state,
-            message: None,
-            model_version: None,
-            busy_ms: 0,
-            log_evidence: None,
-            log_evidence_se: None,
-            equilibrated: None,
-            evaluations: None,
-            rejected: None,
+            ..CalibrationRow::finished_sample("")
         }
     }
 

@@ -16,6 +16,7 @@ use job::{
     AlgorithmSettings, JobFile, OwnEffect, Spec, check_accepted, model_job, point_job, with_own_effects,
     without_own_effects,
 };
+use record::{Change, Membership, Role};
 
 /// Longest name of a calibration `[bytes]`.
 const LONGEST_NAME: usize = 200;
@@ -64,18 +65,15 @@ impl Service {
         // runtime.
         let members = tokio::task::spawn_blocking(move || members(&trial, job, &own, &experiment));
         let members = members.await.map_err(|_| Stopped)??;
-        let row = |(calibration, job): &(Calibration, FileSet)| NewCalibrationRow {
-            name: calibration.identity.name.clone(),
-            job: job.clone(),
-        };
+        let (members, rows): (Vec<Calibration>, Vec<NewCalibrationRow>) = members.into_iter().unzip();
         let study = NewStudy {
             experiment: new.experiment,
-            calibrations: members.iter().map(row).collect(),
+            calibrations: rows,
             webhook: new.webhook,
             now_ms: now_ms(),
         };
         let StudyIds { study, calibrations } = self.store().writer().add_study(study).await?;
-        for ((mut calibration, _), &id) in members.into_iter().zip(&calibrations) {
+        for (mut calibration, &id) in members.into_iter().zip(&calibrations) {
             (calibration.identity.id, calibration.identity.study) = (id, study);
             self.take_in_hand(calibration).await?;
         }
@@ -95,7 +93,7 @@ fn members(
     job: FileSet,
     own: &[OwnEffect],
     experiment: &FileSet,
-) -> Result<Vec<(Calibration, FileSet)>, ServiceError> {
+) -> Result<Vec<(Calibration, NewCalibrationRow)>, ServiceError> {
     let file = "job.toml";
     // Messages name the lines of the file as it is; what is kept has the files of own effects.
     let mut parsed = JobFile::parse_models(file, &without_own_effects(file, &job.toml, own)?)?;
@@ -110,20 +108,13 @@ fn members(
     }
     let others = specs.split_off(1);
     let spec = specs.remove(0);
-    if matches!(spec.algorithm, AlgorithmSettings::Discover { .. }) {
-        let message = "[sampler] algorithm = \"discovery\" is a search that a study starts by itself: set apply = \"ask\" or \"auto\" under [discovery]";
-        return Err(FileError::whole(file, message).into());
-    }
     let point_estimates = spec.point_estimates.clone();
-    let mut members = vec![(Calibration::new(identity.clone(), Arc::new(spec))?, job.clone())];
-    for (number, spec) in others.into_iter().enumerate() {
-        let alone = model_job(file, &job, number + 1)?;
-        let identity = CalibrationIdentity {
-            name: format!("{} ({})", identity.name, spec.model.kind.name()),
-            ..identity.clone()
-        };
+    let mut members = vec![member(identity.name.clone(), None, spec, job.clone(), identity)?];
+    for (number, spec) in (1..).zip(others) {
+        let alone = model_job(file, &job, number)?;
+        let name = format!("{} ({})", identity.name, spec.model.kind.name());
         let spec = Spec::new(file, &alone, "experiment.toml", experiment)?;
-        members.push((Calibration::new(identity, Arc::new(spec))?, alone));
+        members.push(member(name, Some(Change::Model(number)), spec, alone, identity)?);
     }
     for algorithm in &point_estimates {
         let job = FileSet {
@@ -131,11 +122,46 @@ fn members(
             files: job.files.clone(),
         };
         let spec = Spec::new(file, &job, "experiment.toml", experiment)?;
-        let identity = CalibrationIdentity {
-            name: format!("{} ({})", identity.name, algorithm.name()),
-            ..identity.clone()
-        };
-        members.push((Calibration::new(identity, Arc::new(spec))?, job));
+        let name = format!("{} ({})", identity.name, algorithm.name());
+        let change = Change::Algorithm(algorithm.name().to_owned());
+        members.push(member(name, Some(change), spec, job, identity)?);
     }
     Ok(members)
+}
+
+/// A calibration with its row; the store fills in the parent.
+fn member(
+    name: String,
+    change: Option<Change>,
+    spec: Spec,
+    job: FileSet,
+    identity: &CalibrationIdentity,
+) -> Result<(Calibration, NewCalibrationRow), ServiceError> {
+    let membership = Membership {
+        role: role_of(&spec.algorithm),
+        parent: None,
+        change,
+    };
+    let identity = CalibrationIdentity {
+        name: name.clone(),
+        ..identity.clone()
+    };
+    let calibration = Calibration::new(identity, Arc::new(spec))?;
+    Ok((
+        calibration,
+        NewCalibrationRow {
+            membership,
+            name,
+            job,
+        },
+    ))
+}
+
+/// What a calibration by an algorithm computes.
+pub(super) fn role_of(algorithm: &AlgorithmSettings) -> Role {
+    match algorithm {
+        AlgorithmSettings::Sample(_) => Role::Sample,
+        AlgorithmSettings::Fit(_) | AlgorithmSettings::Evolve(_) => Role::Fit,
+        AlgorithmSettings::Discover { .. } => Role::Search,
+    }
 }

@@ -6,7 +6,7 @@ use shared::experiment::Experiment;
 use super::error::ServiceError;
 use super::handle::Service;
 use crate::farm::dispatch::Stopped;
-use job::{Spec, is_discovery, searched_job};
+use job::{Spec, searched_job};
 
 /// Most runs that a name lists.
 const NAMED: usize = 3;
@@ -18,7 +18,7 @@ impl Service {
     /// [`ServiceError`]: a run is unknown or held out already, or none is left to fit; the calibration is a search.
     pub async fn what_if(&self, id: i64, without: Vec<String>) -> Result<CalibrationCreated, ServiceError> {
         let row = self.calibration_row(id).await?;
-        if is_discovery(&row.job.toml) {
+        if row.membership.is_search() {
             return Err(ServiceError::Search(id));
         }
         let files = self.experiment(row.experiment).await?;

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use record::{Membership, Role};
 use shared::file::FileSet;
 use tempfile::TempDir;
 
@@ -18,6 +19,7 @@ pub(super) async fn store() -> (TempDir, Store, i64) {
     };
     let experiment = store.writer().add_experiment(files(), 0).await.unwrap();
     let row = NewCalibrationRow {
+        membership: Membership::submitted(Role::Sample),
         name: "sand".into(),
         job: files(),
     };

@@ -5,6 +5,7 @@ use shared::file::FileSet;
 use super::blob;
 use super::json::json;
 use super::sql::{Conflict, Connection, insert, query_scalar};
+use record::Membership;
 use record::fact::{EvaluationRow, Kept};
 
 /// Most rows in one statement; SQLite takes 32,766 parameters, PostgreSQL 65,535.
@@ -48,6 +49,8 @@ pub struct StudyIds {
 /// A calibration to store.
 #[derive(Debug, Clone)]
 pub struct NewCalibrationRow {
+    /// Its place in the study. The store knows the parent of what a new study begins with: the first of them.
+    pub membership: Membership,
     /// Name for lists.
     pub name: String,
     /// The job with the files it names.
@@ -87,7 +90,8 @@ pub(super) async fn insert_study(
     .fetch_one(&mut *connection)
     .await?;
     let mut calibrations = Vec::new();
-    for row in new.calibrations {
+    for mut row in new.calibrations {
+        row.membership.parent = calibrations.first().copied();
         let id = insert_calibration(connection, study, None, row, new.now_ms).await?;
         calibrations.push(id);
     }
@@ -103,10 +107,11 @@ pub(super) async fn insert_calibration(
     now_ms: i64,
 ) -> Result<i64, sqlx::Error> {
     query_scalar(
-        "INSERT INTO calibrations (id, study, experiment, name, toml, files, state, created_at_ms, seal_key)
+        "INSERT INTO calibrations
+         (id, study, experiment, name, toml, files, state, created_at_ms, seal_key, role, parent, change)
          VALUES (1 + max((SELECT coalesce(max(id), 0) FROM calibrations),
                          (SELECT coalesce(max(last_calibration), 0) FROM deletions)),
-                 ?1, nullif(?2, (SELECT experiment FROM studies WHERE id = ?1)), ?3, ?4, ?5, 'queued', ?6, randomblob(16))
+                 ?1, nullif(?2, (SELECT experiment FROM studies WHERE id = ?1)), ?3, ?4, ?5, 'queued', ?6, randomblob(16), ?7, ?8, ?9)
          RETURNING id",
     )
     .bind(study)
@@ -115,6 +120,9 @@ pub(super) async fn insert_calibration(
     .bind(row.job.toml)
     .bind(json(&row.job.files))
     .bind(now_ms)
+    .bind(row.membership.role.name())
+    .bind(row.membership.parent)
+    .bind(row.membership.change.as_ref().map(json))
     .fetch_one(connection)
     .await
 }

@@ -6,7 +6,7 @@ use sqlx::migrate::{Migration, MigrationType, Migrator};
 /// Number, name and text of each file of `migrations/`.
 ///
 /// They are listed here because the macro that lists them builds SQLite a second time, for the compiler.
-const FILES: [(i64, &str, &str); 19] = [
+const FILES: [(i64, &str, &str); 20] = [
     (
         1,
         "experiments",
@@ -98,14 +98,26 @@ const FILES: [(i64, &str, &str); 19] = [
         "repeats",
         include_str!("../../../migrations/0019_repeats.sql"),
     ),
+    (
+        20,
+        "members",
+        include_str!("../../../migrations/0020_members.sql"),
+    ),
 ];
 
 /// The same of `migrations/postgres/`: a server begins with the tables of version 19, and changes with the files of both.
-const SERVER_FILES: [(i64, &str, &str); 1] = [(
-    19,
-    "store",
-    include_str!("../../../migrations/postgres/0019_store.sql"),
-)];
+const SERVER_FILES: [(i64, &str, &str); 2] = [
+    (
+        19,
+        "store",
+        include_str!("../../../migrations/postgres/0019_store.sql"),
+    ),
+    (
+        20,
+        "members",
+        include_str!("../../../migrations/postgres/0020_members.sql"),
+    ),
+];
 
 /// The version of the tables that this program writes.
 pub(super) const VERSION: i64 = FILES[FILES.len() - 1].0;

@@ -17,6 +17,7 @@ mod fixture;
 mod health;
 mod insert;
 mod json;
+mod members;
 mod migrations;
 mod opening;
 mod place;
@@ -56,7 +57,7 @@ pub use writer::{FactSink, Writer};
 /// The store: a pool of readers and the way to the one writer.
 #[derive(Debug, Clone)]
 pub struct Store {
-    readers: Pool,
+    reader: Reader,
     writer: Writer,
     /// The file of one that stands in a file.
     file: Option<PathBuf>,
@@ -73,13 +74,13 @@ impl Store {
         let wrap = |source| StoreError::of(path, source);
         let (mut connection, lock) = opening::to_write(path).await?;
         let epoch = begin_epoch(&mut connection, now_ms).await.map_err(wrap)?;
-        let readers = match is_server(path) {
+        let pool = match is_server(path) {
             true => Pool::Postgres(server::pool(path).await?),
             false => Pool::Sqlite(file::pool(options(path)).await.map_err(wrap)?),
         };
         let writer = Writer::start(connection, lock);
         Ok(Store {
-            readers,
+            reader: Reader::of(pool),
             writer,
             file: (!is_server(path)).then(|| file_of(path).into()),
             epoch,
@@ -100,7 +101,7 @@ impl Store {
             }
         }
         Ok(Store {
-            readers: reader.pool,
+            reader,
             writer: Writer::none(),
             file: (!is_server(path)).then(|| file_of(path).into()),
             epoch: 0,
@@ -121,7 +122,7 @@ impl Store {
     /// Stores what was told before and closes the file.
     pub async fn close(&self) {
         // Readers first: the last connection folds the write-ahead log into the file.
-        self.readers.close().await;
+        self.reader.pool.close().await;
         self.writer.close().await;
     }
 
@@ -139,9 +140,7 @@ impl Store {
 
     /// What can be read.
     pub fn reader(&self) -> Reader {
-        Reader {
-            pool: self.readers.clone(),
-        }
+        self.reader.clone()
     }
 }
 

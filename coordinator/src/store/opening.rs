@@ -7,7 +7,7 @@ use super::error::StoreError;
 use super::health::PATIENCE;
 use super::place::{is_server, name_of};
 use super::sql::Connection;
-use super::{damage, file, migrations, server};
+use super::{damage, file, members, migrations, server};
 
 /// How soon a lock of a server is asked for again.
 const ASK_AGAIN: Duration = Duration::from_millis(100);
@@ -86,5 +86,6 @@ async fn migrate(connection: &mut Connection, path: &str) -> Result<(), StoreErr
         Connection::Sqlite(connection) => migrations::migrator().run(connection).await,
         Connection::Postgres(connection) => migrations::server_migrator().run(connection).await,
     };
-    migrated.map_err(|source| StoreError::of_migration(path, source))
+    migrated.map_err(|source| StoreError::of_migration(path, source))?;
+    members::fill(connection, path).await
 }

@@ -10,12 +10,13 @@ use shared::outcome::Observables;
 use super::blob;
 use super::error::StoreError;
 use super::json::{json, numbers};
+use super::members::Filled;
 use super::reader::Reader;
 use super::sql::{Pool, Row, query, query_as, query_scalar};
 use super::theta::theta;
 use record::{
-    CalibrationRow, Discovery, EstimateRow, EvaluationKey, ExperimentRow, LIKELIEST, PREDICTIONS_FROM,
-    Prediction, RejectionReason, Sample, StageRow, Subchains,
+    CalibrationRow, Discovery, EstimateRow, EvaluationKey, ExperimentRow, LIKELIEST, Membership,
+    PREDICTIONS_FROM, Prediction, RejectionReason, Role, Sample, StageRow, Subchains,
 };
 
 const CALIBRATION: &str = "SELECT c.*, coalesce(c.experiment, s.experiment) AS on_experiment
@@ -129,7 +130,7 @@ impl Reader {
             .bind(id)
             .fetch_optional(&self.pool)
             .await?;
-        row.as_ref().map(calibration_row).transpose()
+        row.as_ref().map(|row| self.calibration_row(row)).transpose()
     }
 
     /// Every calibration by its id, oldest first; in place of one whose row cannot be read, why.
@@ -139,7 +140,7 @@ impl Reader {
     pub async fn calibrations(&self) -> Result<Vec<(i64, Result<CalibrationRow, StoreError>)>, StoreError> {
         let sql = format!("{CALIBRATION} ORDER BY c.id");
         let rows = query(sqlx::AssertSqlSafe(sql)).fetch_all(&self.pool).await?;
-        let row = |row: &Row| Ok((row.try_get("id")?, calibration_row(row)));
+        let row = |row: &Row| Ok((row.try_get("id")?, self.calibration_row(row)));
         rows.iter().map(row).collect()
     }
 
@@ -153,7 +154,7 @@ impl Reader {
             .bind(id)
             .fetch_all(&self.pool)
             .await?;
-        rows.iter().map(calibration_row).collect()
+        rows.iter().map(|row| self.calibration_row(row)).collect()
     }
 
     /// All studies, oldest first.
@@ -500,17 +501,44 @@ fn array<T: serde::de::DeserializeOwned>(json: &str) -> Result<Vec<T>, StoreErro
     serde_json::from_str(json).map_err(|e| StoreError::Corrupt(format!("array {json}: {e}")))
 }
 
-fn file_map(json: &str) -> Result<BTreeMap<String, String>, StoreError> {
+pub(super) fn file_map(json: &str) -> Result<BTreeMap<String, String>, StoreError> {
     serde_json::from_str(json).map_err(|e| StoreError::Corrupt(format!("files: {e}")))
 }
 
-/// A calibration; what cannot be read is named with its id.
-fn calibration_row(row: &Row) -> Result<CalibrationRow, StoreError> {
-    let id: i64 = row.try_get("id")?;
-    columns(id, row).map_err(|error| error.within(&format!("calibration {id}")))
+impl Reader {
+    /// A calibration; what cannot be read is named with its id.
+    fn calibration_row(&self, row: &Row) -> Result<CalibrationRow, StoreError> {
+        let id: i64 = row.try_get("id")?;
+        let columns = || {
+            let filled = match &self.earlier_members {
+                Some(filled) => filled.get(&id).cloned().ok_or_else(|| {
+                    StoreError::Corrupt(
+                        "a program of another version has changed the store; open it again".into(),
+                    )
+                })?,
+                None => Filled {
+                    membership: membership(row)?,
+                    toml: None,
+                },
+            };
+            columns(id, row, filled)
+        };
+        columns().map_err(|error| error.within(&format!("calibration {id}")))
+    }
 }
 
-fn columns(id: i64, row: &Row) -> Result<CalibrationRow, StoreError> {
+fn membership(row: &Row) -> Result<Membership, StoreError> {
+    let role: &str = row.try_get("role")?;
+    let change: Option<&str> = row.try_get("change")?;
+    let corrupt = |e| StoreError::Corrupt(format!("change: {e}"));
+    Ok(Membership {
+        role: Role::from_name(role).ok_or_else(|| StoreError::Corrupt(format!("role {role}")))?,
+        parent: row.try_get("parent")?,
+        change: change.map(serde_json::from_str).transpose().map_err(corrupt)?,
+    })
+}
+
+fn columns(id: i64, row: &Row, filled: Filled) -> Result<CalibrationRow, StoreError> {
     let state: &str = row.try_get("state")?;
     let unsigned = |column| Ok::<_, StoreError>(row.try_get::<Option<i64>>(column)?.map(i64::unsigned_abs));
     Ok(CalibrationRow {
@@ -518,8 +546,9 @@ fn columns(id: i64, row: &Row) -> Result<CalibrationRow, StoreError> {
         study: row.try_get("study")?,
         experiment: row.try_get("on_experiment")?,
         name: row.try_get("name")?,
+        membership: filled.membership,
         job: FileSet {
-            toml: row.try_get("toml")?,
+            toml: filled.toml.map_or_else(|| row.try_get("toml"), Ok)?,
             files: file_map(row.try_get("files")?)?,
         },
         state: CalibrationState::from_name(state)

@@ -1,11 +1,14 @@
 //! Reads a store through a pool of connections.
 
+use std::collections::BTreeMap;
 use std::path::Path;
+use std::sync::Arc;
 
 use sqlx::sqlite::SqliteConnectOptions;
 
 use super::error::{StoreError, primary_code};
 use super::file::{examine, file_of, options, pool, recognise};
+use super::members::Filled;
 use super::place::is_server;
 use super::server;
 use super::sql::{Connection, Pool, query_scalar};
@@ -17,9 +20,19 @@ const DENIED: [u32; 4] = [8, 10, 13, 14];
 #[derive(Debug, Clone)]
 pub struct Reader {
     pub(super) pool: Pool,
+    /// What the rows of an earlier version lack: reading alone leaves the store as it is.
+    pub(super) earlier_members: Option<Arc<BTreeMap<i64, Filled>>>,
 }
 
 impl Reader {
+    /// Reads a store whose tables are up to date.
+    pub(super) fn of(pool: Pool) -> Reader {
+        Reader {
+            pool,
+            earlier_members: None,
+        }
+    }
+
     /// Opens an existing store for reading alone, a file also in a folder or on a disk that takes no further byte.
     ///
     /// # Errors
@@ -30,8 +43,7 @@ impl Reader {
             let wrap = |source| StoreError::of(path, source);
             let mut connection = Connection::Postgres(pool.acquire().await.map_err(wrap)?.detach());
             server::recognise(&mut connection, path).await?;
-            let pool = Pool::Postgres(pool);
-            return Ok(Reader { pool });
+            return Reader::of(Pool::Postgres(pool)).with_earlier_members().await;
         }
         let file = file_of(path);
         if !Path::new(file).is_file() {
@@ -85,12 +97,29 @@ impl Reader {
         Ok(tables > 0)
     }
 
+    /// Whether a table has a column.
+    pub(super) async fn has_column(&self, table: &str, column: &str) -> Result<bool, StoreError> {
+        let columns = match self.pool {
+            Pool::Sqlite(_) => "SELECT count(*) FROM pragma_table_info(?) WHERE name = ?",
+            Pool::Postgres(_) => {
+                "SELECT count(*) FROM information_schema.columns
+                 WHERE table_schema = current_schema() AND table_name = ? AND column_name = ?"
+            }
+        };
+        let columns = query_scalar(columns).bind(table).bind(column);
+        let columns: i64 = columns.fetch_one(&self.pool).await?;
+        Ok(columns > 0)
+    }
+
     async fn with(options: SqliteConnectOptions, path: &str) -> Result<Reader, StoreError> {
         let wrap = |source| StoreError::of(path, source);
         let pool = pool(options).await.map_err(wrap)?;
         recognise(&mut *pool.acquire().await.map_err(wrap)?, path).await?;
-        Ok(Reader {
-            pool: Pool::Sqlite(pool),
-        })
+        Reader::of(Pool::Sqlite(pool)).with_earlier_members().await
+    }
+
+    async fn with_earlier_members(mut self) -> Result<Reader, StoreError> {
+        self.earlier_members = self.earlier_members().await?.map(Arc::new);
+        Ok(self)
     }
 }

@@ -187,7 +187,7 @@ mod tests {
         )
         .bind(calibration)
         .bind(last as i64 + 1)
-        .execute(&store.readers)
+        .execute(&store.reader.pool)
         .await
         .unwrap();
         let stored = store

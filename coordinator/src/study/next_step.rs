@@ -1,40 +1,21 @@
 //! The next step of a study, a function of its state alone: a restart takes the same step.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use shared::api::CalibrationState;
 
 use job::{Apply, DiscoverySettings};
-use record::effect_of;
-use record::{Discovery, Extension};
+use record::{CalibrationRow, Discovery, Extension, effect_of};
 
-/// A calibration of a study.
-#[derive(Debug, Clone)]
-pub struct StudyMember {
-    /// Its id.
-    pub id: i64,
-    /// Its state.
-    pub state: CalibrationState,
-    /// Its role in the study.
-    pub part: StudyRole,
-}
+use super::lineage::Lineage;
 
-/// The role of a calibration in its study.
-#[derive(Debug, Clone)]
-pub enum StudyRole {
-    /// A line of the error ledger.
-    Ledger {
-        /// Names of its model's effects.
-        effects: Vec<String>,
-        /// The search of its model, if there is one.
-        search: Option<i64>,
-        /// Its log-evidence, once it is finished.
-        log_evidence: Option<f64>,
-    },
-    /// A point estimate.
-    Beside,
-    /// A search for a missing effect, with its record once it is finished.
-    Search(Option<Box<Discovery>>),
+/// What the finished calibrations of a study have given, by their ids.
+#[derive(Debug, Clone, Default)]
+pub struct StudyFindings {
+    /// The calibrations that have a posterior: the lines of the error ledger.
+    pub ledger: BTreeSet<i64>,
+    /// The records of the searches.
+    pub searches: BTreeMap<i64, Discovery>,
 }
 
 /// The next addition to a study.
@@ -59,114 +40,111 @@ pub fn most_probable(log_evidences: impl Iterator<Item = Option<f64>>) -> Option
 ///
 /// A failed or cancelled member ends it. With `ask` the last calibration of the ledger is searched, and the user decides. With
 /// `auto` it is extended by the effect that its search names, up to the allowed number of effects beyond those of the first
-/// member; an effect that was dropped is neither added nor dropped again. Where the first `models` members are models to compare, the
-/// study goes on with the one of most evidence.
-pub fn next_step(settings: DiscoverySettings, models: usize, members: &[StudyMember]) -> Option<StudyStep> {
-    if settings.apply == Apply::Off || members.iter().any(|m| m.state != CalibrationState::Finished) {
+/// member; an effect that was dropped is neither added nor dropped again. Where the job compares several models, the study goes
+/// on with the one of most evidence.
+pub fn next_step(
+    settings: DiscoverySettings,
+    rows: &[CalibrationRow],
+    findings: &StudyFindings,
+) -> Option<StudyStep> {
+    if settings.apply == Apply::Off || rows.iter().any(|row| row.state != CalibrationState::Finished) {
         return None;
     }
-    let (compared, later) = members.split_at_checked(models)?;
-    let best = most_probable(compared.iter().map(|member| match &member.part {
-        StudyRole::Ledger { log_evidence, .. } => *log_evidence,
-        StudyRole::Beside | StudyRole::Search(_) => None,
-    }));
-    let first = match models {
-        1 => &compared[0],
-        _ => &compared[best?],
+    let lineage = Lineage::new(rows);
+    let (compared, later) = rows.split_at_checked(lineage.model_count())?;
+    let first = match compared {
+        [only] => only,
+        _ => &compared[most_probable(compared.iter().map(|row| row.log_evidence))?],
     };
-    let ledger: Vec<(i64, BTreeSet<&str>, Option<i64>)> = std::iter::once(first)
+    let in_ledger = |row: &&CalibrationRow| findings.ledger.contains(&row.id);
+    let last = std::iter::once(first)
         .chain(later)
-        .filter_map(|member| match &member.part {
-            StudyRole::Ledger { effects, search, .. } => {
-                Some((member.id, effects.iter().map(String::as_str).collect(), *search))
-            }
-            StudyRole::Beside | StudyRole::Search(_) => None,
-        })
-        .collect();
-    let (last, has, search) = ledger.last()?;
-    let Some(search) = search else {
-        return Some(StudyStep::Search(*last));
+        .filter(in_ledger)
+        .next_back()?;
+    let Some(search) = lineage.search_of(last.id) else {
+        return Some(StudyStep::Search(last.id));
     };
     if settings.apply == Apply::Ask {
         return None;
     }
-    let found = members.iter().find_map(|member| match &member.part {
-        StudyRole::Search(record) if member.id == *search => record.as_deref(),
-        _ => None,
-    })?;
-    let dropped: BTreeSet<&str> = ledger
-        .windows(2)
-        .flat_map(|pair| pair[0].1.difference(&pair[1].1))
-        .copied()
-        .collect();
-    let added = has.difference(&ledger[0].1).count();
+    let found = findings.searches.get(&search.id)?;
     if let Some(extension) = &found.extension {
         let effect = effect_of(extension);
-        if added < settings.max_effects && !dropped.contains(&*effect) && !has.contains(&*effect) {
-            return Some(StudyStep::Extend(*last, extension.clone()));
+        let is_new = !lineage.has_added(last.id, &effect) && !lineage.has_dropped(&effect);
+        if lineage.additions(last.id).len() < settings.max_effects && is_new {
+            return Some(StudyStep::Extend(last.id, extension.clone()));
         }
     }
-    let drop: Vec<String> = found
-        .drop
-        .iter()
-        .filter(|effect| {
-            let effect = effect.as_str();
-            // Effects of the first job are the user's choice.
-            has.contains(effect) && !ledger[0].1.contains(effect) && !dropped.contains(effect)
-        })
-        .cloned()
-        .collect();
-    (!drop.is_empty()).then_some(StudyStep::Drop(*last, drop))
+    // Effects of the submitted job are the user's choice.
+    let can_go = |effect: &&String| lineage.has_added(last.id, effect) && !lineage.has_dropped(effect);
+    let drop: Vec<String> = found.drop.iter().filter(can_go).cloned().collect();
+    (!drop.is_empty()).then_some(StudyStep::Drop(last.id, drop))
 }
 
 #[cfg(test)]
 mod tests {
+    use record::{Change, Membership, Role};
+
     use super::*;
 
-    fn ledger(id: i64, effects: &[&str], search: Option<i64>) -> StudyMember {
-        StudyMember {
+    fn row(id: i64, membership: Membership) -> CalibrationRow {
+        CalibrationRow {
             id,
-            state: CalibrationState::Finished,
-            part: StudyRole::Ledger {
-                effects: effects.iter().map(|&e| e.to_owned()).collect(),
-                search,
-                log_evidence: None,
-            },
+            membership,
+            ..CalibrationRow::finished_sample("sand")
         }
     }
 
-    fn search(id: i64, names: Option<&str>, drop: &[&str]) -> StudyMember {
-        let record = Discovery {
-            extension: names.map(|name| Extension::Effect(name.to_owned())),
-            drop: drop.iter().map(|&e| e.to_owned()).collect(),
-            ..found()
-        };
-        StudyMember {
+    fn base(id: i64) -> CalibrationRow {
+        row(id, Membership::submitted(Role::Sample))
+    }
+
+    fn added(id: i64, parent: i64, effect: &str) -> CalibrationRow {
+        let change = Change::Add(Extension::Effect(effect.to_owned()));
+        row(id, Membership::changed(Role::Sample, parent, change))
+    }
+
+    fn dropped(id: i64, parent: i64, effect: &str) -> CalibrationRow {
+        let change = Change::Drop(vec![effect.to_owned()]);
+        row(id, Membership::changed(Role::Sample, parent, change))
+    }
+
+    fn fit(id: i64) -> CalibrationRow {
+        row(
             id,
-            state: CalibrationState::Finished,
-            part: StudyRole::Search(Some(Box::new(record))),
-        }
+            Membership::changed(Role::Fit, 1, Change::Algorithm("ga".into())),
+        )
+    }
+
+    fn search(id: i64, of: i64) -> CalibrationRow {
+        row(id, Membership::search_of(of))
     }
 
     fn found() -> Discovery {
         serde_json::from_str(include_str!("../../record/discovery.json")).unwrap()
     }
 
-    fn beside(id: i64) -> StudyMember {
-        StudyMember {
-            id,
-            state: CalibrationState::Finished,
-            part: StudyRole::Beside,
+    fn names(effect: Option<&str>, drop: &[&str]) -> Discovery {
+        Discovery {
+            extension: effect.map(|name| Extension::Effect(name.to_owned())),
+            drop: drop.iter().map(|&e| e.to_owned()).collect(),
+            ..found()
         }
     }
 
-    fn step(apply: Apply, members: &[StudyMember]) -> Option<StudyStep> {
+    /// The next step with at most two effects, where searches found these.
+    fn step(apply: Apply, rows: &[CalibrationRow], records: &[(i64, Discovery)]) -> Option<StudyStep> {
         let settings = DiscoverySettings {
             apply,
             max_effects: 2,
             other_kind: false,
         };
-        next_step(settings, 1, members)
+        let samples = rows.iter().filter(|row| row.membership.role == Role::Sample);
+        let findings = StudyFindings {
+            ledger: samples.map(|row| row.id).collect(),
+            searches: records.iter().cloned().collect(),
+        };
+        next_step(settings, rows, &findings)
     }
 
     fn extend(id: i64, effect: &str) -> Option<StudyStep> {
@@ -175,106 +153,108 @@ mod tests {
 
     #[test]
     fn of_several_models_the_one_with_the_most_evidence_is_searched_and_extended() {
-        let model = |id, log: f64, search| {
-            let StudyMember { state, part, .. } = ledger(id, &[], search);
-            let StudyRole::Ledger { effects, search, .. } = part else {
-                unreachable!("a line of the ledger")
-            };
-            let log_evidence = Some(log);
-            let part = StudyRole::Ledger {
-                effects,
-                search,
-                log_evidence,
-            };
-            StudyMember { id, state, part }
+        let model = |id: i64, log_evidence| CalibrationRow {
+            log_evidence: Some(log_evidence),
+            ..match id {
+                1 => base(1),
+                _ => row(
+                    id,
+                    Membership::changed(Role::Sample, 1, Change::Model(id as usize - 1)),
+                ),
+            }
         };
-        let settings = DiscoverySettings {
-            apply: Apply::Auto,
-            max_effects: 2,
-            other_kind: false,
-        };
-        let mut members = vec![
-            model(1, -30.0, None),
-            model(2, -20.0, None),
-            model(3, -20.0, None),
-        ];
-        assert_eq!(next_step(settings, 3, &members), Some(StudyStep::Search(2)));
-        members[1] = model(2, -20.0, Some(4));
-        members.push(search(4, Some("a"), &[]));
-        assert_eq!(next_step(settings, 3, &members), extend(2, "a"));
-        members.push(ledger(5, &["a"], None));
-        assert_eq!(next_step(settings, 3, &members), Some(StudyStep::Search(5)));
+        let mut rows = vec![model(1, -30.0), model(2, -20.0), model(3, -20.0)];
+        assert_eq!(step(Apply::Auto, &rows, &[]), Some(StudyStep::Search(2)));
+        rows.push(search(4, 2));
+        let mut records = vec![(4, names(Some("a"), &[]))];
+        assert_eq!(step(Apply::Auto, &rows, &records), extend(2, "a"));
+        rows.push(added(5, 2, "a"));
+        assert_eq!(step(Apply::Auto, &rows, &records), Some(StudyStep::Search(5)));
+        rows.push(search(6, 5));
+        records.push((6, names(None, &[])));
+        assert_eq!(step(Apply::Auto, &rows, &records), None);
         assert_eq!(most_probable([None, None].into_iter()), None);
-        assert_eq!(next_step(settings, 9, &members), None, "not all are there");
+        let one = [base(1)];
+        assert_eq!(
+            step(Apply::Auto, &one, &[]),
+            Some(StudyStep::Search(1)),
+            "evidence is not needed"
+        );
     }
 
     #[test]
     fn nothing_is_looked_for_unless_the_job_says_so() {
-        let members = [ledger(1, &[], None), beside(2)];
-        assert_eq!(step(Apply::Off, &members), None);
-        assert_eq!(step(Apply::Ask, &members), Some(StudyStep::Search(1)));
-        assert_eq!(step(Apply::Auto, &members), Some(StudyStep::Search(1)));
+        let rows = [base(1), fit(2)];
+        assert_eq!(step(Apply::Off, &rows, &[]), None);
+        assert_eq!(step(Apply::Ask, &rows, &[]), Some(StudyStep::Search(1)));
+        assert_eq!(step(Apply::Auto, &rows, &[]), Some(StudyStep::Search(1)));
     }
 
     #[test]
     fn a_member_that_is_not_finished_is_waited_for_and_one_that_failed_ends_the_growth() {
         for state in CalibrationState::ALL {
-            let members = [ledger(1, &[], None), StudyMember { state, ..beside(2) }];
+            let rows = [base(1), CalibrationRow { state, ..fit(2) }];
             let expected = (state == CalibrationState::Finished).then_some(StudyStep::Search(1));
-            assert_eq!(step(Apply::Auto, &members), expected, "{state:?}");
+            assert_eq!(step(Apply::Auto, &rows, &[]), expected, "{state:?}");
         }
     }
 
     #[test]
     fn ask_searches_once_and_leaves_the_rest_to_the_user() {
-        let base = [ledger(1, &[], Some(2)), search(2, Some("lug_thrust"), &[])];
-        assert_eq!(step(Apply::Ask, &base), None);
-        let extended = [base.to_vec(), vec![ledger(3, &["lug_thrust"], None)]].concat();
-        assert_eq!(step(Apply::Ask, &extended), Some(StudyStep::Search(3)));
+        let records = [(2, names(Some("lug_thrust"), &[]))];
+        let mut rows = vec![base(1), search(2, 1)];
+        assert_eq!(step(Apply::Ask, &rows, &records), None);
+        rows.push(added(3, 1, "lug_thrust"));
+        assert_eq!(step(Apply::Ask, &rows, &records), Some(StudyStep::Search(3)));
     }
 
     #[test]
-    fn auto_adds_what_is_named_until_nothing_is() {
-        let mut members = vec![ledger(1, &["hard_pan"], Some(2)), search(2, Some("a"), &[])];
-        assert_eq!(step(Apply::Auto, &members), extend(1, "a"));
-        members.push(ledger(3, &["hard_pan", "a"], None));
-        assert_eq!(step(Apply::Auto, &members), Some(StudyStep::Search(3)));
-        members.pop();
-        members.extend([ledger(3, &["hard_pan", "a"], Some(4)), search(4, None, &[])]);
-        assert_eq!(step(Apply::Auto, &members), None);
-        members.pop();
-        members.push(search(4, Some("b"), &[]));
-        assert_eq!(step(Apply::Auto, &members), extend(3, "b"));
-        members.extend([
-            ledger(5, &["hard_pan", "a", "b"], Some(6)),
-            search(6, Some("c"), &[]),
-        ]);
-        assert_eq!(
-            step(Apply::Auto, &members),
-            None,
-            "two are added, the job's own does not count"
-        );
+    fn auto_adds_what_is_named_until_the_allowed_number_is_there() {
+        let mut rows = vec![base(1), search(2, 1)];
+        let mut records = vec![(2, names(Some("a"), &[]))];
+        assert_eq!(step(Apply::Auto, &rows, &records), extend(1, "a"));
+        rows.push(added(3, 1, "a"));
+        assert_eq!(step(Apply::Auto, &rows, &records), Some(StudyStep::Search(3)));
+        rows.push(search(4, 3));
+        records.push((4, names(None, &[])));
+        assert_eq!(step(Apply::Auto, &rows, &records), None);
+        records[1] = (4, names(Some("b"), &[]));
+        assert_eq!(step(Apply::Auto, &rows, &records), extend(3, "b"));
+        rows.extend([added(5, 3, "b"), search(6, 5)]);
+        records.push((6, names(Some("c"), &[])));
+        assert_eq!(step(Apply::Auto, &rows, &records), None, "two are added");
     }
 
     #[test]
     fn an_effect_is_dropped_once_and_does_not_come_back() {
-        let mut members = vec![
-            ledger(1, &[], Some(2)),
-            search(2, Some("a"), &[]),
-            ledger(3, &["a"], Some(4)),
-            search(4, Some("b"), &[]),
-            ledger(5, &["a", "b"], Some(6)),
-            search(6, None, &["a"]),
+        let mut rows = vec![
+            base(1),
+            search(2, 1),
+            added(3, 1, "a"),
+            search(4, 3),
+            added(5, 3, "b"),
+        ];
+        rows.push(search(6, 5));
+        let mut records = vec![
+            (2, names(Some("a"), &[])),
+            (4, names(Some("b"), &[])),
+            (6, names(None, &["a", "of_the_job"])),
         ];
         assert_eq!(
-            step(Apply::Auto, &members),
+            step(Apply::Auto, &rows, &records),
             Some(StudyStep::Drop(5, vec!["a".into()]))
         );
-        members.extend([ledger(7, &["b"], Some(8)), search(8, Some("a"), &[])]);
-        assert_eq!(step(Apply::Auto, &members), None, "it was dropped before");
+        rows.extend([dropped(7, 5, "a"), search(8, 7)]);
+        records.push((8, names(Some("a"), &[])));
+        assert_eq!(step(Apply::Auto, &rows, &records), None, "it was dropped before");
         // the user insists
-        members.extend([ledger(9, &["a", "b"], Some(10)), search(10, None, &["a"])]);
-        assert_eq!(step(Apply::Auto, &members), None, "and is not dropped twice");
+        rows.extend([added(9, 7, "a"), search(10, 9)]);
+        records.push((10, names(None, &["a"])));
+        assert_eq!(
+            step(Apply::Auto, &rows, &records),
+            None,
+            "and is not dropped twice"
+        );
     }
 
     #[test]

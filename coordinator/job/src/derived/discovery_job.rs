@@ -1,4 +1,4 @@
-//! The jobs by which a study looks for missing effects: the search of a calibration's model, and what is added or dropped.
+//! The jobs with which a study goes on: with a search for missing effects, without some effects.
 
 use std::collections::BTreeMap;
 
@@ -7,23 +7,7 @@ use shared::model::ModelKind;
 use toml_edit::{DocumentMut, Item, TableLike};
 
 use super::one_model::keep_model;
-use super::point_job::{edited, keep_candidates, with_algorithm};
-use crate::table::algorithm_settings::AlgorithmName;
-
-/// The job that searches the model of another for missing effects; equal jobs have equal searches.
-///
-/// # Errors
-/// [`FileError`] where the text is no job.
-pub fn discovery_job(name: &str, job: &FileSet) -> Result<FileSet, FileError> {
-    Ok(FileSet {
-        toml: with_algorithm(
-            name,
-            &edited(name, &job.toml, |d| keep_model(d, 0))?,
-            AlgorithmName::Discovery,
-        )?,
-        files: job.files.clone(),
-    })
-}
+use super::point_job::{edited, keep_candidates};
 
 /// A job whose study searches for a missing effect: one that does not ask for it is given `[discovery] apply = "ask"`.
 ///
@@ -47,13 +31,6 @@ pub fn searched_job(name: &str, job: &FileSet) -> Result<FileSet, FileError> {
         toml,
         files: job.files.clone(),
     })
-}
-
-/// Whether a job is such a search.
-pub fn is_discovery(toml: &str) -> bool {
-    let job: Option<toml::Table> = toml.parse().ok();
-    let sampler = job.as_ref().and_then(|job| job.get("sampler"));
-    sampler.and_then(|sampler| sampler.get("algorithm")?.as_str()) == Some(AlgorithmName::Discovery.name())
 }
 
 /// The model of a job, of several the first; `None` where this version does not know it. Reads nothing else: lists ask this of every job.
@@ -169,34 +146,6 @@ apply = "auto"
                 .map(|(file_name, effect)| (file_name.to_owned(), file(effect)))
                 .into(),
         }
-    }
-
-    #[test]
-    fn a_search_has_the_seed_and_the_model_and_asks_for_nothing() {
-        let search = discovery_job("job.toml", &job()).unwrap();
-        let expected = JOB
-            .replace("particles = 50\n", "")
-            .replace("point_estimates = [\"ga\"]\n", "algorithm = \"discovery\"\n")
-            .replace("[discovery]\napply = \"auto\"\n", "");
-        assert_eq!(search.toml, expected);
-        assert!(is_discovery(&search.toml) && !is_discovery(JOB));
-        assert_eq!(search.files, job().files);
-        let of_continued = discovery_job("job.toml", &continued_job("job.toml", &job()).unwrap()).unwrap();
-        assert_eq!(of_continued.toml, expected, "equal models have equal searches");
-    }
-
-    #[test]
-    fn a_job_without_a_sampler_table_can_be_searched() {
-        let job = FileSet {
-            toml: "[model]\nkind = \"scm\"\n".into(),
-            files: BTreeMap::new(),
-        };
-        let search = discovery_job("job.toml", &job).unwrap();
-        assert!(
-            search.toml.contains("[sampler]\nalgorithm = \"discovery\"\n"),
-            "{}",
-            search.toml
-        );
     }
 
     #[test]

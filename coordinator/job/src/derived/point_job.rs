@@ -3,7 +3,7 @@
 use shared::file::FileError;
 use toml_edit::{DocumentMut, Item};
 
-use crate::table::algorithm_settings::{AlgorithmName, AlgorithmSettings};
+use crate::table::algorithm_settings::AlgorithmSettings;
 
 /// The text of a job with a fit or a search in place of its sampler; the seed and everything else stay as written.
 ///
@@ -12,7 +12,7 @@ use crate::table::algorithm_settings::{AlgorithmName, AlgorithmSettings};
 /// # Errors
 /// [`FileError`] where the text is no job.
 pub fn point_job(name: &str, toml: &str, algorithm: &AlgorithmSettings) -> Result<String, FileError> {
-    let text = with_algorithm(name, toml, algorithm.algorithm_name())?;
+    let text = with_algorithm(name, toml, algorithm.name())?;
     match algorithm {
         AlgorithmSettings::Fit(_) => edited(name, &text, |document| {
             // The sample is the posterior: beside it no approximation is drawn from.
@@ -24,7 +24,7 @@ pub fn point_job(name: &str, toml: &str, algorithm: &AlgorithmSettings) -> Resul
 }
 
 /// The same with another algorithm by its usual settings. Of the table `[discovery]` only what says which candidates there are stays.
-pub(super) fn with_algorithm(name: &str, toml: &str, algorithm: AlgorithmName) -> Result<String, FileError> {
+pub(super) fn with_algorithm(name: &str, toml: &str, algorithm: &str) -> Result<String, FileError> {
     edited(name, toml, |document| {
         let sampler = document
             .entry("sampler")
@@ -38,7 +38,7 @@ pub(super) fn with_algorithm(name: &str, toml: &str, algorithm: AlgorithmName) -
         for key in foreign {
             sampler.remove(&key);
         }
-        sampler.insert("algorithm", toml_edit::value(algorithm.name()));
+        sampler.insert("algorithm", toml_edit::value(algorithm));
         keep_candidates(document);
         Ok(())
     })

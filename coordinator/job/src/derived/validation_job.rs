@@ -15,7 +15,7 @@ pub fn validation_job(name: &str, job: &FileSet, by_own_algorithm: bool) -> Resu
     Ok(match by_own_algorithm {
         true => continued,
         false => FileSet {
-            toml: with_algorithm(name, &continued.toml, AlgorithmName::Lm)?,
+            toml: with_algorithm(name, &continued.toml, AlgorithmName::Lm.name())?,
             ..continued
         },
     })

@@ -9,5 +9,4 @@ pub(crate) mod model_entry;
 pub(crate) mod posterior_prior;
 pub(crate) mod prior_entry;
 pub(crate) mod prior_entry_error;
-mod sampler_keys;
 pub(crate) mod sampler_table;

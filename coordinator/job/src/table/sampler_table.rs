@@ -8,12 +8,99 @@ use shared::file::unknown_word;
 
 use super::algorithm_settings::{AlgorithmName, AlgorithmSettings};
 use super::error::TableError;
-use super::sampler_keys::SamplerKeys;
 
 /// Least and most steps of a stage whose steps are subchains of a metamodel.
 const METAMODEL_STEPS: [usize; 2] = [3, 30];
 /// The values of `stages`.
 const STAGES: [&str; 2] = ["draws", "moves"];
+
+/// An algorithm and its keys.
+#[derive(Debug, Clone, Copy)]
+struct SamplerKeys {
+    /// The algorithm.
+    algorithm: AlgorithmName,
+    keys: &'static [&'static str],
+    /// Reads them.
+    read: fn(&RawSampler) -> Result<AlgorithmSettings, TableError>,
+}
+
+const ALL: [SamplerKeys; 6] = [
+    SamplerKeys {
+        algorithm: AlgorithmName::Tmcmc,
+        keys: &[
+            "particles",
+            "stages",
+            "components",
+            "moves",
+            "metamodel_moves",
+            "seed",
+            "point_estimates",
+        ],
+        read: |raw| raw.sample(Algorithm::Tmcmc),
+    },
+    SamplerKeys {
+        algorithm: AlgorithmName::ChingChen2007,
+        keys: &["particles", "moves", "seed", "point_estimates"],
+        read: |raw| raw.sample(Algorithm::ChingChen2007),
+    },
+    SamplerKeys {
+        algorithm: AlgorithmName::Basis,
+        keys: &["particles", "seed", "point_estimates"],
+        read: |raw| raw.sample(Algorithm::Basis),
+    },
+    SamplerKeys {
+        algorithm: AlgorithmName::Lm,
+        keys: &[
+            "particles",
+            "starts",
+            "max_evaluations",
+            "difference_step",
+            "seed",
+        ],
+        read: RawSampler::fit,
+    },
+    SamplerKeys {
+        algorithm: AlgorithmName::Ga,
+        keys: &["population", "generations", "seed"],
+        read: RawSampler::ga,
+    },
+    SamplerKeys {
+        algorithm: AlgorithmName::CmaEs,
+        keys: &["population", "max_evaluations", "restarts", "seed"],
+        read: RawSampler::cma_es,
+    },
+];
+
+impl SamplerKeys {
+    /// The keys of an algorithm.
+    fn of(algorithm: &str) -> Result<SamplerKeys, TableError> {
+        ALL.into_iter()
+            .find(|keys| keys.algorithm.name() == algorithm)
+            .ok_or_else(|| {
+                let known = AlgorithmName::STATED.map(AlgorithmName::name);
+                TableError::Unknown(unknown_word("algorithm", algorithm, known))
+            })
+    }
+
+    /// Rejects keys of other algorithms, given each key and whether the job has it.
+    fn refuse(&self, stated: &[(&str, bool)]) -> Result<(), TableError> {
+        let foreign = stated
+            .iter()
+            .find(|(key, is_stated)| *is_stated && !self.keys.contains(key));
+        let Some((key, _)) = foreign else { return Ok(()) };
+        let owners: Vec<&str> = ALL
+            .iter()
+            .filter(|keys| keys.keys.contains(key))
+            .map(|keys| keys.algorithm.name())
+            .collect();
+        Err(TableError::ForeignKey {
+            key: (*key).to_owned(),
+            owners: owners.join(" and "),
+            algorithm: self.algorithm.name(),
+            keys: self.keys.join(", "),
+        })
+    }
+}
 
 /// The table as written; every algorithm reads its own keys.
 #[derive(Default, Deserialize)]
@@ -53,17 +140,11 @@ impl RawSampler {
             ("restarts", self.restarts.is_some()),
             ("point_estimates", self.point_estimates.is_some()),
         ])?;
-        Ok(match keys.algorithm {
-            AlgorithmName::Tmcmc => self.sample(Algorithm::Tmcmc)?,
-            AlgorithmName::ChingChen2007 => self.sample(Algorithm::ChingChen2007)?,
-            AlgorithmName::Basis => self.sample(Algorithm::Basis)?,
-            AlgorithmName::Lm => self.fit(),
-            AlgorithmName::Ga => self.ga(),
-            AlgorithmName::CmaEs => self.cma_es(),
-            AlgorithmName::Discovery => AlgorithmSettings::Discover {
-                seed: self.seed.unwrap_or(TmcmcSettings::default().seed),
-            },
-        })
+        if let Some(particles) = self.particles.filter(|&particles| particles > MOST_PARTICLES) {
+            let rule = format!("must be at most {MOST_PARTICLES}");
+            return Err(TableError::value("particles", particles, rule));
+        }
+        (keys.read)(self)
     }
 
     /// The fits and searches beside the sample: each with its usual settings and the sample's seed.
@@ -128,36 +209,38 @@ impl RawSampler {
         }))
     }
 
-    fn fit(&self) -> AlgorithmSettings {
+    fn fit(&self) -> Result<AlgorithmSettings, TableError> {
         let usual = LmSettings::default();
-        AlgorithmSettings::Fit(LmSettings {
+        Ok(AlgorithmSettings::Fit(LmSettings {
             starts: self.starts.unwrap_or(usual.starts),
             max_evaluations: self.max_evaluations.unwrap_or(usual.max_evaluations),
             draws: self.particles.unwrap_or(usual.draws),
             difference_step: self.difference_step.unwrap_or(usual.difference_step),
             seed: self.seed.unwrap_or(usual.seed),
             ..usual
-        })
+        }))
     }
 
-    fn ga(&self) -> AlgorithmSettings {
+    fn ga(&self) -> Result<AlgorithmSettings, TableError> {
         let usual = GaSettings::default();
-        AlgorithmSettings::Evolve(EvolutionSettings::Ga(GaSettings {
+        Ok(AlgorithmSettings::Evolve(EvolutionSettings::Ga(GaSettings {
             population: self.population.unwrap_or(usual.population),
             generations: self.generations.unwrap_or(usual.generations),
             seed: self.seed.unwrap_or(usual.seed),
             ..usual
-        }))
+        })))
     }
 
-    fn cma_es(&self) -> AlgorithmSettings {
+    fn cma_es(&self) -> Result<AlgorithmSettings, TableError> {
         let usual = CmaEsSettings::default();
-        AlgorithmSettings::Evolve(EvolutionSettings::CmaEs(CmaEsSettings {
-            population: self.population,
-            max_evaluations: self.max_evaluations.unwrap_or(usual.max_evaluations),
-            restarts: self.restarts.unwrap_or(usual.restarts),
-            seed: self.seed.unwrap_or(usual.seed),
-            ..usual
-        }))
+        Ok(AlgorithmSettings::Evolve(EvolutionSettings::CmaEs(
+            CmaEsSettings {
+                population: self.population,
+                max_evaluations: self.max_evaluations.unwrap_or(usual.max_evaluations),
+                restarts: self.restarts.unwrap_or(usual.restarts),
+                seed: self.seed.unwrap_or(usual.seed),
+                ..usual
+            },
+        )))
     }
 }

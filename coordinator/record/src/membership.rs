@@ -1,0 +1,99 @@
+//! The place of a calibration in its study.
+
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+
+use crate::discovery::Extension;
+
+/// What a calibration computes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Role {
+    /// A sample of the posterior.
+    Sample,
+    /// The most probable parameters, by `lm`, `ga` or `cma-es`.
+    Fit,
+    /// A search for missing effects.
+    Search,
+}
+
+impl Role {
+    /// All roles.
+    pub const ALL: [Role; 3] = [Role::Sample, Role::Fit, Role::Search];
+
+    /// The word in the store.
+    pub fn name(self) -> &'static str {
+        match self {
+            Role::Sample => "sample",
+            Role::Fit => "fit",
+            Role::Search => "search",
+        }
+    }
+
+    /// The role of a word.
+    pub fn from_name(name: &str) -> Option<Role> {
+        Role::ALL.into_iter().find(|role| role.name() == name)
+    }
+}
+
+/// How the job of a calibration differs from that of its parent.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Change {
+    /// The model and the measurements are the same; this algorithm calibrates them.
+    Algorithm(String),
+    /// It is another of the models that the submitted job compares, by its number in the job, from 0.
+    Model(usize),
+    /// The model has an addition.
+    Add(Extension),
+    /// The model lacks these effects.
+    Drop(Vec<String>),
+    /// The experiment has so many runs more.
+    Runs(usize),
+}
+
+/// The place of a calibration in its study. Held by `study::lineage`, which follows the parents.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Membership {
+    /// What the calibration computes.
+    pub role: Role,
+    /// The calibration whose model it changes, or searches; `None` of the submitted one.
+    pub parent: Option<i64>,
+    /// How its job differs from its parent's; `None` of the submitted one and of a search, and where an earlier version did not
+    /// leave enough to tell.
+    pub change: Option<Change>,
+}
+
+impl Membership {
+    /// The calibration that a job was submitted for.
+    pub fn submitted(role: Role) -> Self {
+        Membership {
+            role,
+            parent: None,
+            change: None,
+        }
+    }
+
+    /// A calibration that follows from another.
+    pub fn changed(role: Role, parent: i64, change: Change) -> Self {
+        Membership {
+            role,
+            parent: Some(parent),
+            change: Some(change),
+        }
+    }
+
+    /// The search of a calibration's model.
+    pub fn search_of(calibration: i64) -> Self {
+        Membership {
+            role: Role::Search,
+            parent: Some(calibration),
+            change: None,
+        }
+    }
+
+    /// Whether this is a search for missing effects.
+    pub fn is_search(&self) -> bool {
+        self.role == Role::Search
+    }
+}

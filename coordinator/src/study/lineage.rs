@@ -1,0 +1,199 @@
+//! How the calibrations of a study follow from one another, read from their stored membership alone.
+
+use record::{CalibrationRow, Change, Extension, effect_of};
+
+/// The calibrations of a study, oldest first.
+#[derive(Debug, Clone, Copy)]
+pub struct Lineage<'a> {
+    rows: &'a [CalibrationRow],
+}
+
+impl<'a> Lineage<'a> {
+    /// The lineage of the calibrations of one study, oldest first.
+    pub fn new(rows: &'a [CalibrationRow]) -> Self {
+        Self { rows }
+    }
+
+    /// The calibrations, searches left out.
+    pub fn calibrations(self) -> impl Iterator<Item = &'a CalibrationRow> {
+        self.rows.iter().filter(|row| !row.membership.is_search())
+    }
+
+    /// How many models the study compares: its first members are of these.
+    pub fn model_count(self) -> usize {
+        let compared = |row: &&CalibrationRow| matches!(row.membership.change, Some(Change::Model(_)));
+        1 + self.rows.iter().filter(compared).count()
+    }
+
+    /// The calibration with which a model on its measurements began: another algorithm has the model of its parent.
+    pub fn model_of(self, id: i64) -> i64 {
+        self.ancestors(id)
+            .find(|row| !matches!(row.membership.change, Some(Change::Algorithm(_))))
+            .map_or(id, |row| row.id)
+    }
+
+    /// The search of a calibration's model, if there is one; of several, which can only be where one failed, the last. A search is
+    /// its own.
+    pub fn search_of(self, id: i64) -> Option<&'a CalibrationRow> {
+        let model = self.model_of(id);
+        self.rows.iter().rev().find(|row| {
+            let searched = row.membership.parent.filter(|_| row.membership.is_search());
+            row.id == id && row.membership.is_search()
+                || searched.is_some_and(|of| self.model_of(of) == model)
+        })
+    }
+
+    /// The additions to the submitted model that a calibration has, in the order in which the study made them.
+    pub fn additions(self, id: i64) -> Vec<&'a Extension> {
+        let mut changes: Vec<&Change> = self
+            .ancestors(id)
+            .filter_map(|row| row.membership.change.as_ref())
+            .collect();
+        changes.reverse();
+        let mut additions: Vec<&Extension> = Vec::new();
+        for change in changes {
+            match change {
+                Change::Add(extension) => additions.push(extension),
+                Change::Drop(effects) => {
+                    additions.retain(|extension| !effects.iter().any(|effect| is_part(extension, effect)));
+                }
+                Change::Algorithm(_) | Change::Model(_) | Change::Runs(_) => {}
+            }
+        }
+        additions
+    }
+
+    /// Whether a calibration has an effect that the study added.
+    pub fn has_added(self, id: i64, effect: &str) -> bool {
+        self.additions(id)
+            .iter()
+            .any(|extension| is_part(extension, effect))
+    }
+
+    /// Whether the study has dropped an effect.
+    pub fn has_dropped(self, effect: &str) -> bool {
+        self.calibrations().any(|row| match &row.membership.change {
+            Some(Change::Drop(effects)) => effects.iter().any(|dropped| dropped == effect),
+            _ => false,
+        })
+    }
+
+    /// The calibration that a change made of another, unless it ended without a result.
+    pub fn existing(self, parent: i64, change: &Change) -> Option<&'a CalibrationRow> {
+        use shared::api::CalibrationState::{Cancelled, Failed};
+        self.calibrations().find(|row| {
+            let is_same =
+                row.membership.parent == Some(parent) && row.membership.change.as_ref() == Some(change);
+            is_same && !matches!(row.state, Failed | Cancelled)
+        })
+    }
+
+    /// A calibration and those that it follows from, the nearest first.
+    fn ancestors(self, id: i64) -> impl Iterator<Item = &'a CalibrationRow> {
+        let find = move |id: i64| self.rows.iter().find(|row| row.id == id);
+        // A parent is older than its child, so that no row of a damaged store leads in a circle.
+        std::iter::successors(find(id), move |row| {
+            row.membership
+                .parent
+                .filter(|&parent| parent < row.id)
+                .and_then(find)
+        })
+    }
+}
+
+/// Whether an addition brings an effect: an effect on the nodes of the soil brings the effect alone.
+fn is_part(extension: &Extension, effect: &str) -> bool {
+    let name = effect_of(extension);
+    name == effect || job::EffectOnNodes::find(&name).is_some_and(|on_nodes| on_nodes.effect.name == effect)
+}
+
+#[cfg(test)]
+mod tests {
+    use record::{Membership, Role};
+    use shared::api::CalibrationState;
+
+    use super::*;
+
+    fn row(id: i64, membership: Membership) -> CalibrationRow {
+        CalibrationRow {
+            id,
+            membership,
+            ..CalibrationRow::finished_sample("sand")
+        }
+    }
+
+    fn changed(id: i64, parent: i64, change: Change) -> CalibrationRow {
+        row(id, Membership::changed(Role::Sample, parent, change))
+    }
+
+    fn effect(name: &str) -> Extension {
+        Extension::Effect(name.into())
+    }
+
+    /// A sample with a fit beside it and its search; an extension with its search; the extension on more runs.
+    fn study() -> Vec<CalibrationRow> {
+        vec![
+            row(1, Membership::submitted(Role::Sample)),
+            changed(2, 1, Change::Algorithm("lm".into())),
+            row(3, Membership::search_of(1)),
+            changed(4, 1, Change::Add(effect("janosi_hanamoto"))),
+            row(5, Membership::search_of(4)),
+            changed(6, 4, Change::Runs(3)),
+        ]
+    }
+
+    #[test]
+    fn a_search_is_found_by_what_is_stored_and_not_by_the_text_of_its_job() {
+        let mut rows = study();
+        // A later release may write the same job otherwise.
+        for (number, row) in rows.iter_mut().enumerate() {
+            row.job.toml = format!("# written by release {number}\n");
+        }
+        let search_of = |id| Lineage::new(&rows).search_of(id).map(|row| row.id);
+        let found: Vec<_> = [1, 2, 3, 4, 5, 6].map(search_of).into();
+        assert_eq!(found, [Some(3), Some(3), Some(3), Some(5), Some(5), None]);
+    }
+
+    #[test]
+    fn additions_are_kept_over_further_runs_and_go_with_what_is_dropped() {
+        let mut rows = study();
+        rows.push(changed(7, 6, Change::Add(effect("hard_pan"))));
+        rows.push(changed(8, 7, Change::Drop(vec!["janosi_hanamoto".into()])));
+        let lineage = Lineage::new(&rows);
+        assert_eq!(lineage.additions(2), Vec::<&Extension>::new());
+        assert_eq!(lineage.additions(6), [&effect("janosi_hanamoto")]);
+        assert_eq!(lineage.additions(8), [&effect("hard_pan")]);
+        assert!(lineage.has_dropped("janosi_hanamoto") && !lineage.has_dropped("hard_pan"));
+    }
+
+    #[test]
+    fn an_effect_on_the_nodes_is_one_addition_and_goes_with_its_effect() {
+        let mut rows = vec![row(1, Membership::submitted(Role::Sample))];
+        rows.push(changed(2, 1, Change::Add(effect("janosi_hanamoto_node"))));
+        assert_eq!(Lineage::new(&rows).additions(2).len(), 1);
+        assert!(Lineage::new(&rows).has_added(2, "janosi_hanamoto"));
+        rows.push(changed(3, 2, Change::Drop(vec!["janosi_hanamoto".into()])));
+        assert!(Lineage::new(&rows).additions(3).is_empty());
+    }
+
+    #[test]
+    fn a_change_is_made_once_unless_it_ended_without_a_result() {
+        let change = Change::Add(effect("janosi_hanamoto"));
+        let mut rows = study();
+        let existing =
+            |rows: &[CalibrationRow], parent| Lineage::new(rows).existing(parent, &change).map(|row| row.id);
+        assert_eq!(existing(&rows, 1), Some(4));
+        assert_eq!(existing(&rows, 6), None);
+        rows[3].state = CalibrationState::Failed;
+        assert_eq!(existing(&rows, 1), None);
+    }
+
+    #[test]
+    fn parents_in_a_circle_end() {
+        let rows = [
+            changed(1, 2, Change::Runs(1)),
+            changed(2, 1, Change::Add(effect("a"))),
+        ];
+        assert_eq!(Lineage::new(&rows).additions(2), [&effect("a")]);
+    }
+}
