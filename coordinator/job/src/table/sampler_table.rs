@@ -140,10 +140,6 @@ impl RawSampler {
             ("restarts", self.restarts.is_some()),
             ("point_estimates", self.point_estimates.is_some()),
         ])?;
-        if let Some(particles) = self.particles.filter(|&particles| particles > MOST_PARTICLES) {
-            let rule = format!("must be at most {MOST_PARTICLES}");
-            return Err(TableError::value("particles", particles, rule));
-        }
         (keys.read)(self)
     }
 
