@@ -2,6 +2,7 @@
 
 mod circle;
 mod import;
+mod script;
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};

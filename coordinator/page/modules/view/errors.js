@@ -8,7 +8,7 @@ import { Ledger } from "../part/ledger.js";
 import { LedgerCharts } from "../chart/ledger_chart.js";
 import { path } from "../rest/routes.js";
 import { useAnswers } from "../rest/use_answer.js";
-import { modelName } from "./study.js";
+import { modelName } from "../words/model.js";
 
 /** @param {{ study: any }} properties */
 export function Errors({ study }) {
