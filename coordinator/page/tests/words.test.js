@@ -37,9 +37,46 @@ test("durations have one unit", () => {
   assert.deepEqual([0.2, 45, 600, 9000].map(duration), ["1 s", "45 s", "10 min", "2.5 h"]);
 });
 
-test("levels lie more than 15 % apart", () => {
-  assert.deepEqual(levels([60, 62, 120, 119]), [{ low: 60, high: 62 }, { low: 119, high: 120 }]);
+/** Numbers from 0 to 1 that repeat from run to run of the test. */
+function* shares(seed = 1) {
+  for (let state = seed; ; yield state / 2 ** 31) state = (1103515245 * state + 12345) % 2 ** 31;
+}
+const named = (/** @type {number[]} */ values) => levels(values).map((level) => levelWords(level, "N"));
+const repeated = (/** @type {number[]} */ values, /** @type {number} */ count) => values.flatMap((value) => Array(count).fill(value));
+
+test("settings that are repeated are a level each, however near they lie", () => {
+  assert.deepEqual(named(repeated([100, 110, 120], 6)), ["100 N", "110 N", "120 N"]);
+  assert.deepEqual(named(repeated([100, 103, 106], 2)), ["100 N", "103 N", "106 N"]);
+  assert.deepEqual(named([...repeated([100, 110, 120, 200, 210], 4), 105]), ["100 N", "105 N", "110 N", "120 N", "200 N", "210 N"]);
+  // Computed from slip and speed, typed with four digits.
+  assert.equal(levels([0.02, 0.020002, 0.019997, 0.022, 0.021998, 0.022]).length, 2);
+});
+
+test("readings that scatter by 3 % about five loads are one level for each", () => {
+  const random = shares();
+  const load = (/** @type {number} */ nominal) => nominal * (0.97 + 0.06 * /** @type {number} */ (random.next().value));
+  for (const runs of [6, 12, 30]) {
+    const found = levels([60, 80, 100, 120, 140].flatMap((nominal) => Array.from({ length: runs }, () => load(nominal))));
+    assert.deepEqual(found.map(({ low }) => Math.round(low / 20) * 20), [60, 80, 100, 120, 140]);
+    assert.ok(found.every(({ count }) => count === runs));
+  }
+});
+
+test("readings about one load, and a range without gaps, are one level", () => {
+  assert.deepEqual(named([58.3, 59.1, 60.4, 60.9, 61.2, 61.7]), ["58 to 62 N"]);
+  assert.deepEqual(named([21.3, 22, 22.7, 23.3, 23.9, 24.6, 25.2, 26, 26.6]), ["21 to 27 N"]);
+});
+
+test("values that lie far apart are levels without a repeat", () => {
+  assert.deepEqual(levels([60, 62, 120, 119]).map(({ low, high }) => [low, high]), [[60, 62], [119, 120]]);
+  assert.deepEqual(named([60, 80, 120]), ["60 N", "80 N", "120 N"]);
+  assert.deepEqual(levels([]), []);
+});
+
+test("the ends of a level have the digits that tell them apart", () => {
   assert.equal(levelWords({ low: 21.3, high: 26.6 }, "N"), "21 to 27 N");
+  assert.equal(levelWords({ low: 135.8, high: 144.2 }, "N"), "136 to 144 N");
+  assert.equal(levelWords({ low: 0.0199, high: 0.01991 }, "mm/s", 1000), "19.9 mm/s");
 });
 
 test("runs are grouped by the speed that the rig holds", () => {
