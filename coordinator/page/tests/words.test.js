@@ -3,7 +3,7 @@ import { test } from "node:test";
 
 import { table } from "../modules/chart/download.js";
 import { groups, levels, levelWords } from "../modules/words/group.js";
-import { digits, duration, meanAndSd, numberOf, parameterUnit, probability, size } from "../modules/words/quantity.js";
+import { digits, duration, meanAndSd, numberOf, parameterName, probability, shown, size, tickWords, titled } from "../modules/words/quantity.js";
 
 test("a number has its significant digits, and an exponent only where it needs one", () => {
   assert.equal(digits(0.00933), "0.00933");
@@ -13,6 +13,10 @@ test("a number has its significant digits, and an exponent only where it needs o
   assert.equal(digits(4.7e7, 2), "5·10⁷");
   assert.equal(digits(0), "0");
   assert.equal(digits(null), "–");
+});
+
+test("a tick is short, with an exponent where its number is large or small", () => {
+  assert.deepEqual([0, 0.1 + 0.2, -0.95, 1500, 15e6, 9e7, -2e-5].map(tickWords), ["0", "0.3", "−0.95", "1500", "1.5·10⁷", "9·10⁷", "−2·10⁻⁵"]);
 });
 
 test("lengths are shown in millimetres", () => {
@@ -93,12 +97,18 @@ test("a table as CSV quotes what needs it", () => {
   assert.equal(table([{ run: 'a "1", b', rmse: 1.5 }, { run: "c", unit: null }]), 'run,rmse,unit\n"a ""1"", b",1.5,\nc,,\n');
 });
 
-test("the name of a parameter tells its unit", () => {
-  assert.equal(parameterUnit("wheel_radius_m.smooth"), "m");
-  assert.equal(parameterUnit("friction_angle_deg"), "°");
-  assert.equal(parameterUnit("n"), "1");
-  assert.equal(parameterUnit("deflection_m_n"), "m/N");
-  assert.equal(parameterUnit("drag_n_s_m"), "N s/m");
+test("a parameter is shown in the unit that the service states, which its name need not repeat", () => {
+  const label = (/** @type {string} */ name, /** @type {string} */ unit) => titled(parameterName(name, unit), shown(unit).unit);
+  assert.equal(label("xi_n_pa_m", "Pa/m"), "xi n [Pa/m]");
+  assert.equal(shown("Pa/m").scale, 1);
+  assert.equal(label("wheel_radius_m.smooth", "m"), "wheel radius.smooth [mm]");
+  assert.equal(label("friction_angle_deg", "deg"), "friction angle [°]");
+  assert.equal(label("sled_drag.drag_n_s_m", "N s/m"), "sled drag.drag [N s/m]");
+  assert.equal(label("moisture.rate_per_m.grousered", "1/m"), "moisture.rate.grousered [1/m]");
+  assert.equal(label("log10_p_ref", "log10 Pa"), "log10 p ref [log10 Pa]");
+  assert.equal(label("n", "1"), "n");
+  // No unit is guessed from a name.
+  assert.equal(parameterName("wheel_radius_m", null), "wheel radius m");
 });
 
 test("a typed number has a point or a comma", () => {

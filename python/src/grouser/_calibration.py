@@ -45,7 +45,8 @@ class Calibration:
         answer = self._get("samples", stage=stage)
         names = ["log_likelihood", "log_prior", *answer["parameters"]]
         rows = [[s["log_likelihood"], s["log_prior"], *s["theta"]] for s in answer["samples"]]
-        return Table.from_rows([dict(zip(names, row, strict=True)) for row in rows], names, self._units())
+        units = dict(zip(answer["parameters"], answer["units"], strict=True))
+        return Table.from_rows([dict(zip(names, row, strict=True)) for row in rows], names, units)
 
     def _units(self) -> dict[str, str]:
         return {parameter["name"]: parameter["unit"] for parameter in self._get("diagnostics")["parameters"]}

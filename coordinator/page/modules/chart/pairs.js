@@ -30,7 +30,7 @@ export function PairPlot({ pairs, marginals, name, onCell }) {
     const ticks = (/** @type {any} */ g, /** @type {any} */ axis) => g.call(axis).attr("font-size", 9).attr("font-family", "inherit").select(".domain").remove();
     const label = (/** @type {any} */ text, /** @type {any} */ m) => {
       text.attr("text-anchor", "middle").attr("font-size", 10).attr("fill", "currentColor");
-      [short(parameterName(m.name)), titled("", shown(m.unit).unit).trim()].forEach((line, k) => text.append("tspan").attr("x", text.attr("x")).attr("dy", k === 0 ? 0 : "1.15em").text(line));
+      [short(parameterName(m.name, m.unit)), titled("", shown(m.unit).unit).trim()].forEach((line, k) => text.append("tspan").attr("x", text.attr("x")).attr("dy", k === 0 ? 0 : "1.15em").text(line));
     };
     const tick = (/** @type {any} */ m) => (/** @type {any} */ v) => digits(v * shown(m.unit).scale);
     const svg = d3.create("svg").attr("viewBox", `0 0 ${whole} ${whole}`).attr("width", Math.min(width, whole));
@@ -67,8 +67,8 @@ export function PairPlot({ pairs, marginals, name, onCell }) {
   const open = (/** @type {any} */ event) => event.target.value !== "" && onCell(pairs[Number(event.target.value)]);
   return html`
     <p><label>Large picture of <select onChange=${open}><option value="">a pair: choose it, or click its cell</option>
-      ${pairs.map((p, k) => html`<option value=${k}>${p.parameters.map((/** @type {any} */ q) => parameterName(q.name)).join(" and ")}, rank correlation ${digits(p.rank_correlation, 2)}</option>`)}</select></label></p>
-    <${Figure} title=${`Joint posterior of ${marginals.map((m) => parameterName(m.name)).join(", ")}`} name=${fileName("pairs", name)} deps=${[marginals.map((m) => m.name).join()]} draw=${draw}
+      ${pairs.map((p, k) => html`<option value=${k}>${p.parameters.map((/** @type {any} */ q) => parameterName(q.name, q.unit)).join(" and ")}, rank correlation ${digits(p.rank_correlation, 2)}</option>`)}</select></label></p>
+    <${Figure} title=${`Joint posterior of ${marginals.map((m) => parameterName(m.name, m.unit)).join(", ")}`} name=${fileName("pairs", name)} deps=${[marginals.map((m) => m.name).join()]} draw=${draw}
       rows=${() => densities(pairs.filter((p) => p.parameters.every((/** @type {any} */ q) => marginals.some((m) => m.name === q.name))))} />`;
 }
 
@@ -91,7 +91,7 @@ function entryGlyph(/** @type {any} */ mark, /** @type {number} */ k) {
 
 /** @param {{ pair: any }} properties */
 export function JointPicture({ pair }) {
-  const [a, b] = pair.parameters.map((/** @type {any} */ p) => ({ ...p, ...shown(p.unit) }));
+  const [a, b] = pair.parameters.map((/** @type {any} */ p) => ({ name: p.name, title: parameterName(p.name, p.unit), ...shown(p.unit) }));
   const domain = (/** @type {number} */ k, /** @type {number} */ scale) => /** @type {[number, number]} */ ([pair.grid[k][0] * scale, pair.grid[k].at(-1) * scale]);
   const mark = (/** @type {any} */ m, /** @type {number} */ k) => {
     const stroke = `var(--series-${(k % 7) + 1})`;
@@ -99,14 +99,14 @@ export function JointPicture({ pair }) {
     if (m.at.x === null) return Plot.ruleY([m.at.y * b.scale], { stroke });
     return Plot.dot([m], { x: () => m.at.x * a.scale, y: () => m.at.y * b.scale, symbol: /** @type {any} */ (symbol(k + 1)), stroke, fill: stroke, r: 5 });
   };
-  const title = `Joint posterior of ${parameterName(a.name)} and ${parameterName(b.name)}`;
+  const title = `Joint posterior of ${a.title} and ${b.title}`;
   return html`<${Figure} title=${title} note=${`regions of ${pair.contours.map((/** @type {any} */ c) => Math.round(100 * c.share)).join(", ")} % of the posterior; rank correlation ${digits(pair.rank_correlation, 2)}`}
     name=${fileName("joint", a.name, b.name)} deps=${[pair]} rows=${() => densities([pair])}
     legend=${pair.marks.map((/** @type {any} */ m, /** @type {number} */ k) => html`<${Entry} glyph=${entryGlyph(m, k)}>${m.label}<//>`)}
     draw=${(/** @type {number} */ width) => Plot.plot({
       width: Math.min(width, 620), height: 420, marginLeft: 60, marginBottom: 40, grid: true, style: STYLE,
-      x: { label: titled(parameterName(a.name), a.unit), labelArrow: "none", labelAnchor: "center", domain: domain(0, a.scale) },
-      y: { label: titled(parameterName(b.name), b.unit), labelArrow: "none", domain: domain(1, b.scale) },
+      x: { label: titled(a.title, a.unit), labelArrow: "none", labelAnchor: "center", domain: domain(0, a.scale) },
+      y: { label: titled(b.title, b.unit), labelArrow: "none", domain: domain(1, b.scale) },
       marks: [
         (/** @type {any} */ _, /** @type {any} */ scales) => /** @type {any} */ (d3.create("svg:g").call((g) => regions(pair, (v) => scales.x(v * a.scale), (v) => scales.y(v * b.scale))
           .forEach((/** @type {string} */ d) => g.append("path").attr("d", d).attr("fill", "var(--series-0)").attr("fill-opacity", 0.2).attr("fill-rule", "evenodd"))).node()),
