@@ -38,6 +38,13 @@ test("an example is edited in the form and calibrated", async () => {
   }
 });
 
+test("regions of the corner plot end at their cells", async () => {
+  await view(page, "Posterior");
+  const inside = page.locator('[data-figure^="pairs"] .plot > svg svg');
+  await inside.first().waitFor();
+  assert.deepEqual([...new Set(await inside.evaluateAll((all) => all.map((svg) => getComputedStyle(svg).overflow)))], ["hidden"]);
+});
+
 test("the explanations come with a map of the runs that would tell", async () => {
   await view(page, "Missing effect");
   await page.locator("table.explanations tbody tr").first().waitFor();
