@@ -49,6 +49,12 @@ test("the explanations come with a map of the runs that would tell", async () =>
   await view(page, "Missing effect");
   await page.locator("table.explanations tbody tr").first().waitFor();
   await page.locator('section[aria-label="Missing effect"] figure .plot > svg').last().waitFor();
+  const cells = page.locator('[data-figure*="next-runs"] g[fill] rect, [data-figure*="next-runs"] rect[fill]');
+  const fills = await cells.evaluateAll((all) => all.map((cell) => cell.getAttribute("fill")).filter((fill) => fill?.startsWith("color-mix")));
+  assert.ok(fills.length > 20, `${fills.length} cells`);
+  assert.deepEqual(fills.filter((fill) => fill.includes(" -")), []);
+  assert.deepEqual(await page.evaluate((all) => all.filter((fill) => !CSS.supports("fill", fill)), fills), []);
+  await page.locator(".ramp").waitFor();
   await page.locator("table.explanations button.plain").first().focus();
   await page.locator(".ghosts .note b").first().waitFor();
   await shot(page, "cmu-effects");

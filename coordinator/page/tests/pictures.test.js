@@ -5,8 +5,16 @@ import vm from "node:vm";
 
 // The vendored libraries are scripts that leave their names behind, as in the document.
 vm.runInThisContext(readFileSync(new URL("../vendor/d3.js", import.meta.url), "utf8"));
+const { natsWords, shownNats } = await import("../modules/chart/information_map.js");
 const { scaleOf, ticksOf } = await import("../modules/chart/pairs.js");
 const { tickWords } = await import("../modules/words/quantity.js");
+
+test("an estimate of information below 0 is drawn and called 0 within its error", () => {
+  assert.equal(shownNats(-0.0005), 0);
+  assert.equal(shownNats(0.07), 0.07);
+  assert.match(natsWords(-0.0005), /^0 nats within the error/);
+  assert.equal(natsWords(0.071), "0.071 nats");
+});
 
 test("the axis of a parameter ends at the bounds of its prior, in the unit that is shown", () => {
   const kappa = { unit: "1", bounds: [-0.95, null], mean: -0.6, sd: 0.25, q05: -0.93, q95: -0.1 };
