@@ -4,6 +4,7 @@ import { test } from "node:test";
 import { table } from "../modules/chart/download.js";
 import { groups, levels, levelWords } from "../modules/words/group.js";
 import { digits, duration, meanAndSd, numberOf, parameterName, probability, shown, size, tickWords, titled } from "../modules/words/quantity.js";
+import { meanErrorSd, residualSds } from "../modules/words/residual.js";
 
 test("a number has its significant digits, and an exponent only where it needs one", () => {
   assert.equal(digits(0.00933), "0.00933");
@@ -109,6 +110,15 @@ test("a parameter is shown in the unit that the service states, which its name n
   assert.equal(label("n", "1"), "n");
   // No unit is guessed from a name.
   assert.equal(parameterName("wheel_radius_m", null), "wheel radius m");
+});
+
+test("residuals count in all errors that are assumed, as their band does", () => {
+  const row = { measured: -3.9, predicted: -3.5, noise_sd: 0.1, error_sd: 4 };
+  assert.ok(Math.abs(/** @type {number} */ (residualSds(row)) + 0.1) < 1e-12);
+  assert.equal(residualSds({ ...row, predicted: null }), null);
+  assert.equal(residualSds({ ...row, error_sd: null }), null);
+  assert.equal(meanErrorSd([row, { error_sd: 6 }, { error_sd: null }]), 5);
+  assert.equal(meanErrorSd([]), null);
 });
 
 test("a typed number has a point or a comma", () => {

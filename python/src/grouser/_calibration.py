@@ -9,7 +9,7 @@ from ._table import CONDITIONS, Table
 
 COMPARISON = (
     "run", "use", "wheel", "slip", "wheel_load_n", "sled_speed_m_s", "slip_angle_deg", "channel", "unit",
-    "measured", "predicted", "q05", "q95", "noise_sd", "residual_sigma",
+    "measured", "predicted", "q05", "q95", "noise_sd", "residual_sigma", "error_sd",
     "corrected", "corrected_q05", "corrected_q95", "interpolated",
 )  # fmt: skip
 
@@ -61,8 +61,9 @@ class Calibration:
     def comparison(self) -> Table:
         """Model against measurement: a row for each run and measured channel.
 
-        ``unit`` is the SI unit of ``measured``, ``predicted`` (posterior mean), ``q05`` and ``q95`` (of a new measurement)
-        and ``noise_sd``; ``residual_sigma`` is measured minus predicted in noise sds.
+        ``unit`` is the SI unit of ``measured``, ``predicted`` (posterior mean), ``q05`` and ``q95`` (of a new measurement),
+        ``noise_sd`` and ``error_sd``, the sd of all errors that the calibration assumes or infers (noise, scatter of the
+        soil, discrepancy); ``residual_sigma`` is measured minus predicted in noise sds.
         """
         return Table.from_rows(self._get("comparison")["rows"], COMPARISON, CONDITIONS)
 
