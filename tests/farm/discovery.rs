@@ -71,6 +71,17 @@ fn a_study_grows_by_effects_and_by_runs() {
     };
     assert_eq!(runs(2), (Some(24), Some(16), Some(24)));
     assert_eq!(runs(3), (Some(25), Some(17), Some(24)), "their sinkage is blank");
+    let lines = summary["calibrations"].as_array().expect("a ledger");
+    let data: Vec<String> = lines
+        .iter()
+        .map(|line| {
+            format!(
+                "{}: {} + {}",
+                line["experiment"], line["fitted_runs"], line["held_out_runs"]
+            )
+        })
+        .collect();
+    assert_eq!(data, ["1: 24 + 16", "1: 24 + 16", "1: 24 + 16", "2: 25 + 17"]);
     assert_eq!(
         summary["point_estimates"].as_array().map(Vec::len),
         Some(1),

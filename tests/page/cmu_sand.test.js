@@ -80,6 +80,14 @@ test("measured values of the proposed runs start a calibration of all", async ()
   const names = await page.getByRole("group", { name: "Models that are shown" }).getByRole("button").allTextContents();
   assert.equal(new Set(names).size, names.length, `models share a name: ${names}`);
   await page.locator('[data-figure*="layers"] [data-run^="next-"]').first().waitFor({ state: "attached" });
+  // Errors and evidence over different runs stand apart.
+  const picture = page.locator('[data-figure*="error-drawbar"] .plot > svg');
+  assert.match(await picture.locator("text").allTextContents().then((all) => all.join(" ")), /\+ 1 run/);
+  const ends = study.ledger.map((line) => line.experiment).filter((experiment, k, all) => k === 0 || experiment !== all[k - 1]).length;
+  assert.ok(ends > 1);
+  assert.equal(await picture.locator(".errors path").count(), 2 * ends);
+  assert.equal(await page.getByRole("region", { name: /^Error ledger, / }).count(), new Set(study.ledger.map((line) => line.experiment)).size);
+  await shot(page, "cmu-errors-more-runs");
 });
 
 test("nothing went wrong on the way", () => assert.deepEqual(tab.faults, []));

@@ -25,8 +25,7 @@ pub(super) async fn study_members(
         // A job that this version does not understand stays in the list, with nothing said of its model.
         let (kind, parts) = match spec_of(reader, row).await {
             Ok(spec) => {
-                let effects = spec.fit_variant.effects.iter().map(|e| e.name.clone());
-                let parts: Vec<String> = effects.chain(spec.freed()).collect();
+                let parts = [spec.effects_on_wheels(), spec.freed()].concat();
                 (kind_of(&spec.algorithm), parts)
             }
             Err(ServiceError::File(_)) => (MemberKind::Sample, Vec::new()),

@@ -21,7 +21,7 @@ class Calibration:
         id: its number.
         name: its name.
         state: its state when the study was loaded or refreshed.
-        effects: effects of its model beyond those of the submitted job.
+        effects: effects of its model beyond those of the submitted job, ``EFFECT.WHEEL`` on one wheel of several.
     """
 
     def __init__(self, place: Place, member: dict[str, Any]) -> None:

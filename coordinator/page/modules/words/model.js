@@ -11,13 +11,19 @@ export function modelOf(/** @type {any} */ study, /** @type {number | null} */ a
 }
 
 /**
- * The name of a model of a study: that of the comparison where the job compares it; else what it has beyond the submitted job, and, where
- * another has the same, its calibration.
+ * The name of a model of a study: that of the comparison where the job compares it; else what it has beyond the submitted job, with the
+ * number of its runs where it was calibrated on others; and, where another has the same, the number of its calibration.
  */
 export function modelName(/** @type {any} */ study, /** @type {any} */ member) {
   const compared = study.models?.models.find((/** @type {any} */ m) => m.calibration === member.id);
   if (compared) return compared.name;
-  const name = (/** @type {any} */ m) => (m.effects.length === 0 ? "base" : `with ${m.effects.join(", ")}`);
+  const name = (/** @type {any} */ m) => [m.effects.length === 0 ? "base" : `with ${m.effects.join(", ")}`, ...otherRuns(study, m)].join(", ");
   const isShared = models(study).filter((/** @type {any} */ m) => name(m) === name(member)).length > 1;
-  return isShared ? `${name(member)} (${member.name}, ${member.id})` : name(member);
+  return isShared ? `${name(member)} (calibration ${member.id})` : name(member);
+}
+
+/** How many runs a model was fitted to, where these are not those of the submitted job. */
+function otherRuns(/** @type {any} */ study, /** @type {any} */ member) {
+  const line = study.ledger.find((/** @type {any} */ l) => l.calibration === member.id);
+  return line && line.experiment !== study.experiment ? [line.fitted_runs === 1 ? "1 fitted run" : `${line.fitted_runs} fitted runs`] : [];
 }
