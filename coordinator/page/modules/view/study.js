@@ -45,9 +45,12 @@ export function StudyPage({ id, view, query }) {
     choose(null);
     point(null);
   }, []);
+  const shown = VIEWS.find((v) => v.name === view) ?? VIEWS[0];
+  useEffect(() => {
+    document.title = [shown.title, study?.name ?? `study ${id}`, "Grouser"].join(" – ");
+  }, [shown, study?.name]);
   if (!study) return html`<${Pending} answer=${study} error=${error} what=${`study ${id}`} />`;
   const model = modelOf(study, query.model ? Number(query.model) : null);
-  const shown = VIEWS.find((v) => v.name === view) ?? VIEWS[0];
   const to = (/** @type {string} */ name) => address(["studies", id, name], { model: query.model });
   return html`
     <div class="heading">
