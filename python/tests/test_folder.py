@@ -51,6 +51,12 @@ def test_tables_are_the_files_of_the_folder_to_the_bit(study: grouser.Study, fol
     assert study.summary() == json.loads((folder / "summary.json").read_text(encoding="utf-8"))
 
 
+def test_a_population_has_the_units_that_the_service_states(study: grouser.Study) -> None:
+    population = study.current.samples(1)
+    assert population.units["wheel_radius_m"] == "m" and population.units["friction_angle_deg"] == "deg"
+    assert population.units == {name: unit for name, unit in study.current.posterior().units.items() if name in population}
+
+
 def test_the_report_is_written(study: grouser.Study, tmp_path: Path) -> None:
     report = study.report(tmp_path / "report.html")
     assert "janosi_hanamoto" in report.read_text(encoding="utf-8")

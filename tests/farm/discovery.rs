@@ -71,6 +71,17 @@ fn a_study_grows_by_effects_and_by_runs() {
     };
     assert_eq!(runs(2), (Some(24), Some(16), Some(24)));
     assert_eq!(runs(3), (Some(25), Some(17), Some(24)), "their sinkage is blank");
+    let lines = summary["calibrations"].as_array().expect("a ledger");
+    let data: Vec<String> = lines
+        .iter()
+        .map(|line| {
+            format!(
+                "{}: {} + {}",
+                line["experiment"], line["fitted_runs"], line["held_out_runs"]
+            )
+        })
+        .collect();
+    assert_eq!(data, ["1: 24 + 16", "1: 24 + 16", "1: 24 + 16", "2: 25 + 17"]);
     assert_eq!(
         summary["point_estimates"].as_array().map(Vec::len),
         Some(1),
@@ -330,6 +341,12 @@ fn killing_coordinator_and_workers_while_a_study_is_searched_changes_nothing() {
     let chosen = &expected["discovery"]["chosen"];
     assert_eq!(chosen, &json!(["janosi_hanamoto"]), "{expected:#}");
     assert_eq!(expected["calibrations"].as_array().map(Vec::len), Some(2));
+    let explanations = expected["discovery"]["effects"].as_array().expect("a list");
+    let named = explanations.iter().find(|own| own["name"] == "janosi_hanamoto");
+    assert_eq!(
+        named.map(|own| &own["units"]),
+        Some(&json!({"janosi_hanamoto.shear_modulus_m": "m"}))
+    );
     drop(quiet);
     let mut service = Service::start(&["--lease-ms", "500"]);
     service.submit(&hidden());

@@ -131,6 +131,11 @@ fn two_jobs_outlive_a_crash_of_the_coordinator_and_give_results() {
         (part["of"].as_u64(), whole["of"].as_u64()),
         (Some(100), Some(100))
     );
+    assert_eq!(
+        whole["parameters"],
+        json!(["log10_p_ref", "n", "friction_angle_deg", "wheel_radius_m"])
+    );
+    assert_eq!(whole["units"], json!(["log10 Pa", "1", "deg", "m"]));
     let spaced = (0..10).map(|k| whole["samples"][10 * k + 9].clone());
     assert_eq!(part["samples"], spaced.collect::<Value>());
     let studies = service.client.json("/v1/studies");

@@ -38,10 +38,23 @@ test("an example is edited in the form and calibrated", async () => {
   }
 });
 
+test("regions of the corner plot end at their cells", async () => {
+  await view(page, "Posterior");
+  const inside = page.locator('[data-figure^="pairs"] .plot > svg svg');
+  await inside.first().waitFor();
+  assert.deepEqual([...new Set(await inside.evaluateAll((all) => all.map((svg) => getComputedStyle(svg).overflow)))], ["hidden"]);
+});
+
 test("the explanations come with a map of the runs that would tell", async () => {
   await view(page, "Missing effect");
   await page.locator("table.explanations tbody tr").first().waitFor();
   await page.locator('section[aria-label="Missing effect"] figure .plot > svg').last().waitFor();
+  const cells = page.locator('[data-figure*="next-runs"] g[fill] rect, [data-figure*="next-runs"] rect[fill]');
+  const fills = await cells.evaluateAll((all) => all.map((cell) => cell.getAttribute("fill")).filter((fill) => fill?.startsWith("color-mix")));
+  assert.ok(fills.length > 20, `${fills.length} cells`);
+  assert.deepEqual(fills.filter((fill) => fill.includes(" -")), []);
+  assert.deepEqual(await page.evaluate((all) => all.filter((fill) => !CSS.supports("fill", fill)), fills), []);
+  await page.locator(".ramp").waitFor();
   await page.locator("table.explanations button.plain").first().focus();
   await page.locator(".ghosts .note b").first().waitFor();
   await shot(page, "cmu-effects");
@@ -67,6 +80,14 @@ test("measured values of the proposed runs start a calibration of all", async ()
   const names = await page.getByRole("group", { name: "Models that are shown" }).getByRole("button").allTextContents();
   assert.equal(new Set(names).size, names.length, `models share a name: ${names}`);
   await page.locator('[data-figure*="layers"] [data-run^="next-"]').first().waitFor({ state: "attached" });
+  // Errors and evidence over different runs stand apart.
+  const picture = page.locator('[data-figure*="error-drawbar"] .plot > svg');
+  assert.match(await picture.locator("text").allTextContents().then((all) => all.join(" ")), /\+ 1 run/);
+  const ends = study.ledger.map((line) => line.experiment).filter((experiment, k, all) => k === 0 || experiment !== all[k - 1]).length;
+  assert.ok(ends > 1);
+  assert.equal(await picture.locator(".errors path").count(), 2 * ends);
+  assert.equal(await page.getByRole("region", { name: /^Error ledger, / }).count(), new Set(study.ledger.map((line) => line.experiment)).size);
+  await shot(page, "cmu-errors-more-runs");
 });
 
 test("nothing went wrong on the way", () => assert.deepEqual(tab.faults, []));

@@ -7,8 +7,8 @@ import { join } from "node:path";
 import { after, before, test } from "node:test";
 import { pathToFileURL } from "node:url";
 
-import { findings, open, shot, sideways } from "./browser.js";
-import { coordinator } from "./service.js";
+import { findings, open, shot, sideways, studyOf } from "./browser.js";
+import { Service, coordinator, filesOf } from "./service.js";
 
 let folder;
 
@@ -40,3 +40,28 @@ for (const [theme, width] of [["light", 1280], ["dark", 400]]) {
     }
   });
 }
+
+test("the particles of a model are drawn in the units that the service states", async () => {
+  const service = await Service.start();
+  const tab = await open({ url: service.url });
+  const { page } = tab;
+  try {
+    await page.goto(`${service.url}/#/new`);
+    const files = await filesOf("examples/which-model", (job) => job, ["job.toml", "experiment.toml", "runs.csv"]);
+    await page.locator('input[type="file"]').setInputFiles(files.map(({ text, ...file }) => ({ ...file, buffer: Buffer.from(text) })));
+    await page.locator(".card.file").nth(files.length - 1).waitFor();
+    await page.getByRole("button", { name: "Start the calibration" }).click();
+    await page.waitForURL(/live/);
+    const study = await service.finished(studyOf(page));
+    const samples = await Promise.all(study.members.map((m) => service.get(`/v1/calibrations/${m.id}/samples?most=1`)));
+    const rft = study.members[samples.findIndex((s) => s.parameters.includes("xi_n_pa_m"))];
+    await page.goto(`${service.url}/#/studies/${study.id}/live?member=${rft.id}`);
+    const label = page.locator('[data-figure^="particles"] svg text', { hasText: "xi n" });
+    assert.equal(await label.first().textContent(), "xi n [Pa/m]");
+    assert.deepEqual(tab.faults, []);
+    await shot(page, "models-live");
+  } finally {
+    await tab.close();
+    await service.stop();
+  }
+});

@@ -1,5 +1,7 @@
 //! A specification in words, for terminals and reports.
 
+use std::collections::BTreeSet;
+
 use shared::experiment::{Scatter, ScatterSd};
 
 use crate::spec::Spec;
@@ -15,6 +17,24 @@ impl Spec {
             [] => kind.to_owned(),
             parts => format!("{kind} with {}", parts.join(", ")),
         }
+    }
+
+    /// The effects of the model: `EFFECT`, or `EFFECT.WHEEL` where its strength stands for one wheel of several.
+    pub fn effects_on_wheels(&self) -> Vec<String> {
+        let variant = &self.fit_variant;
+        let names = || variant.parameters.iter().chain(variant.fixed.keys());
+        let shown = |effect: &str| {
+            let of_effect = names().filter_map(|name| match name.splitn(3, '.').collect::<Vec<_>>()[..] {
+                [owner, _, wheel] if owner == effect => Some(wheel),
+                _ => None,
+            });
+            let wheels: BTreeSet<&str> = of_effect.collect();
+            match wheels.first() {
+                Some(wheel) if wheels.len() == 1 => format!("{effect}.{wheel}"),
+                _ => effect.to_owned(),
+            }
+        };
+        variant.effects.iter().map(|effect| shown(&effect.name)).collect()
     }
 
     /// What tests and runs have in common, a sentence each.

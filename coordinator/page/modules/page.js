@@ -20,6 +20,10 @@ function Page() {
     document.getElementById("content")?.focus({ preventScroll: true });
     scrollTo(0, 0);
   }, [first, id, view]);
+  useEffect(() => {
+    // A study names itself when it is known.
+    if (!isStudy) document.title = first === "new" ? "New calibration – Grouser" : "Studies – Grouser";
+  }, [first, isStudy]);
   return html`
     <a class="skip" href="#content" onClick=${skip}>To the content</a>
     <header class="top">

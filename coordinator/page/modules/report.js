@@ -7,7 +7,8 @@ import { Pending } from "./part/message.js";
 import { Source } from "./part/source.js";
 import { path } from "./rest/routes.js";
 import { useAnswer } from "./rest/use_answer.js";
-import { VIEWS, modelName, modelOf, models } from "./view/study.js";
+import { VIEWS } from "./view/study.js";
+import { modelName, modelOf, models } from "./words/model.js";
 
 /** Which study, and which of its calibrations, the file is about. */
 const shown = JSON.parse(document.getElementById("shown")?.textContent ?? "{}");

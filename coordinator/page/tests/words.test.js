@@ -3,7 +3,8 @@ import { test } from "node:test";
 
 import { table } from "../modules/chart/download.js";
 import { groups, levels, levelWords } from "../modules/words/group.js";
-import { digits, duration, meanAndSd, numberOf, parameterUnit, probability, size } from "../modules/words/quantity.js";
+import { digits, duration, meanAndSd, numberOf, parameterName, probability, shown, size, tickWords, titled } from "../modules/words/quantity.js";
+import { meanErrorSd, residualSds } from "../modules/words/residual.js";
 
 test("a number has its significant digits, and an exponent only where it needs one", () => {
   assert.equal(digits(0.00933), "0.00933");
@@ -13,6 +14,10 @@ test("a number has its significant digits, and an exponent only where it needs o
   assert.equal(digits(4.7e7, 2), "5·10⁷");
   assert.equal(digits(0), "0");
   assert.equal(digits(null), "–");
+});
+
+test("a tick is short, with an exponent where its number is large or small", () => {
+  assert.deepEqual([0, 0.1 + 0.2, -0.95, 1500, 15e6, 9e7, -2e-5].map(tickWords), ["0", "0.3", "−0.95", "1500", "1.5·10⁷", "9·10⁷", "−2·10⁻⁵"]);
 });
 
 test("lengths are shown in millimetres", () => {
@@ -37,9 +42,46 @@ test("durations have one unit", () => {
   assert.deepEqual([0.2, 45, 600, 9000].map(duration), ["1 s", "45 s", "10 min", "2.5 h"]);
 });
 
-test("levels lie more than 15 % apart", () => {
-  assert.deepEqual(levels([60, 62, 120, 119]), [{ low: 60, high: 62 }, { low: 119, high: 120 }]);
+/** Numbers from 0 to 1 that repeat from run to run of the test. */
+function* shares(seed = 1) {
+  for (let state = seed; ; yield state / 2 ** 31) state = (1103515245 * state + 12345) % 2 ** 31;
+}
+const named = (/** @type {number[]} */ values) => levels(values).map((level) => levelWords(level, "N"));
+const repeated = (/** @type {number[]} */ values, /** @type {number} */ count) => values.flatMap((value) => Array(count).fill(value));
+
+test("settings that are repeated are a level each, however near they lie", () => {
+  assert.deepEqual(named(repeated([100, 110, 120], 6)), ["100 N", "110 N", "120 N"]);
+  assert.deepEqual(named(repeated([100, 103, 106], 2)), ["100 N", "103 N", "106 N"]);
+  assert.deepEqual(named([...repeated([100, 110, 120, 200, 210], 4), 105]), ["100 N", "105 N", "110 N", "120 N", "200 N", "210 N"]);
+  // Computed from slip and speed, typed with four digits.
+  assert.equal(levels([0.02, 0.020002, 0.019997, 0.022, 0.021998, 0.022]).length, 2);
+});
+
+test("readings that scatter by 3 % about five loads are one level for each", () => {
+  const random = shares();
+  const load = (/** @type {number} */ nominal) => nominal * (0.97 + 0.06 * /** @type {number} */ (random.next().value));
+  for (const runs of [6, 12, 30]) {
+    const found = levels([60, 80, 100, 120, 140].flatMap((nominal) => Array.from({ length: runs }, () => load(nominal))));
+    assert.deepEqual(found.map(({ low }) => Math.round(low / 20) * 20), [60, 80, 100, 120, 140]);
+    assert.ok(found.every(({ count }) => count === runs));
+  }
+});
+
+test("readings about one load, and a range without gaps, are one level", () => {
+  assert.deepEqual(named([58.3, 59.1, 60.4, 60.9, 61.2, 61.7]), ["58 to 62 N"]);
+  assert.deepEqual(named([21.3, 22, 22.7, 23.3, 23.9, 24.6, 25.2, 26, 26.6]), ["21 to 27 N"]);
+});
+
+test("values that lie far apart are levels without a repeat", () => {
+  assert.deepEqual(levels([60, 62, 120, 119]).map(({ low, high }) => [low, high]), [[60, 62], [119, 120]]);
+  assert.deepEqual(named([60, 80, 120]), ["60 N", "80 N", "120 N"]);
+  assert.deepEqual(levels([]), []);
+});
+
+test("the ends of a level have the digits that tell them apart", () => {
   assert.equal(levelWords({ low: 21.3, high: 26.6 }, "N"), "21 to 27 N");
+  assert.equal(levelWords({ low: 135.8, high: 144.2 }, "N"), "136 to 144 N");
+  assert.equal(levelWords({ low: 0.0199, high: 0.01991 }, "mm/s", 1000), "19.9 mm/s");
 });
 
 test("runs are grouped by the speed that the rig holds", () => {
@@ -56,12 +98,27 @@ test("a table as CSV quotes what needs it", () => {
   assert.equal(table([{ run: 'a "1", b', rmse: 1.5 }, { run: "c", unit: null }]), 'run,rmse,unit\n"a ""1"", b",1.5,\nc,,\n');
 });
 
-test("the name of a parameter tells its unit", () => {
-  assert.equal(parameterUnit("wheel_radius_m.smooth"), "m");
-  assert.equal(parameterUnit("friction_angle_deg"), "°");
-  assert.equal(parameterUnit("n"), "1");
-  assert.equal(parameterUnit("deflection_m_n"), "m/N");
-  assert.equal(parameterUnit("drag_n_s_m"), "N s/m");
+test("a parameter is shown in the unit that the service states, which its name need not repeat", () => {
+  const label = (/** @type {string} */ name, /** @type {string} */ unit) => titled(parameterName(name, unit), shown(unit).unit);
+  assert.equal(label("xi_n_pa_m", "Pa/m"), "xi n [Pa/m]");
+  assert.equal(shown("Pa/m").scale, 1);
+  assert.equal(label("wheel_radius_m.smooth", "m"), "wheel radius.smooth [mm]");
+  assert.equal(label("friction_angle_deg", "deg"), "friction angle [°]");
+  assert.equal(label("sled_drag.drag_n_s_m", "N s/m"), "sled drag.drag [N s/m]");
+  assert.equal(label("moisture.rate_per_m.grousered", "1/m"), "moisture.rate.grousered [1/m]");
+  assert.equal(label("log10_p_ref", "log10 Pa"), "log10 p ref [log10 Pa]");
+  assert.equal(label("n", "1"), "n");
+  // No unit is guessed from a name.
+  assert.equal(parameterName("wheel_radius_m", null), "wheel radius m");
+});
+
+test("residuals count in all errors that are assumed, as their band does", () => {
+  const row = { measured: -3.9, predicted: -3.5, noise_sd: 0.1, error_sd: 4 };
+  assert.ok(Math.abs(/** @type {number} */ (residualSds(row)) + 0.1) < 1e-12);
+  assert.equal(residualSds({ ...row, predicted: null }), null);
+  assert.equal(residualSds({ ...row, error_sd: null }), null);
+  assert.equal(meanErrorSd([row, { error_sd: 6 }, { error_sd: null }]), 5);
+  assert.equal(meanErrorSd([]), null);
 });
 
 test("a typed number has a point or a comma", () => {

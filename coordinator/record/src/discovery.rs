@@ -156,6 +156,9 @@ pub struct JudgedEffect {
     pub strength_prior: Option<String>,
     /// Its own most probable parameters, SI.
     pub parameters: BTreeMap<String, f64>,
+    /// The units of these by name; empty in records of earlier versions.
+    #[serde(default)]
+    pub units: BTreeMap<String, String>,
     /// How the evidence was computed: `screen`, `rank_one`, `polished`, `confirmed` or `sampled`.
     pub method: String,
 }

@@ -14,7 +14,7 @@ pub struct StudyMember {
     pub state: CalibrationState,
     /// What it computes.
     pub kind: Role,
-    /// The effects and freed parameters of its model beyond those of the submitted job.
+    /// The effects (`EFFECT.WHEEL` on one wheel of several) and freed parameters of its model beyond those of the submitted job.
     pub effects: Vec<String>,
     /// The calibration whose model it searches; null of a sample or a fit.
     pub searches: Option<i64>,

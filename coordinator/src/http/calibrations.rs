@@ -189,6 +189,8 @@ struct WhichSamples {
 struct Population {
     /// Names of the parameters, in the order of `theta`.
     parameters: Vec<String>,
+    /// Their units, in the same order; `1` of a number without one.
+    units: Vec<String>,
     /// Size of the population.
     of: u64,
     /// Its draws in their order, or equally spaced ones of them.
@@ -200,7 +202,7 @@ struct Population {
 /// By default that of the last stage. With `most`, at most so many equally spaced draws of it.
 #[utoipa::path(get, path = "/calibrations/{id}/samples", operation_id = "get_samples", tag = "results",
     params(("id" = i64, Path), WhichSamples), responses(
-    (status = 200, description = "parameter names, size and draws", body = Population),
+    (status = 200, description = "parameter names, units, size and draws", body = Population),
     (status = 404, body = ErrorBody)))]
 async fn samples(
     State(service): State<Service>,
@@ -209,7 +211,8 @@ async fn samples(
 ) -> Result<Json<Population>, HttpError> {
     let row = service.calibration_row(id).await?;
     let spec = service.spec_of(&row).await?;
-    let parameters = spec.parameters.into_iter().map(|p| p.name).collect();
+    let parameters = spec.parameters.into_iter().map(|p| (p.name, p.unit));
+    let (parameters, units) = parameters.unzip();
     let reader = service.store().reader();
     let (samples, of) = match which.most {
         None => {
@@ -221,6 +224,7 @@ async fn samples(
     };
     Ok(Json(Population {
         parameters,
+        units,
         of,
         samples,
     }))

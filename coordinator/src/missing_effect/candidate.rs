@@ -290,7 +290,12 @@ mod tests {
             "{}",
             with.toml
         );
-        let names = spec(&with, &files).unwrap().parameters;
+        let with = spec(&with, &files).unwrap();
+        assert_eq!(with.effects_on_wheels(), ["slip_sinkage.grousered"]);
+        let everywhere = extended("job.toml", &job, &[&of("slip_sinkage").unwrap().extension]).unwrap();
+        let everywhere = spec(&everywhere, &files).unwrap();
+        assert_eq!(everywhere.effects_on_wheels(), ["slip_sinkage"]);
+        let names = with.parameters;
         assert!(
             names
                 .iter()

@@ -150,6 +150,16 @@ fn parameters(entry: &CandidateEntry, values: &[f64]) -> BTreeMap<String, f64> {
     entry.names.iter().cloned().zip(values.iter().copied()).collect()
 }
 
+/// Units by the names of the parameters.
+fn units(entry: &CandidateEntry) -> BTreeMap<String, String> {
+    entry
+        .names
+        .iter()
+        .cloned()
+        .zip(entry.units.iter().cloned())
+        .collect()
+}
+
 /// Every explanation by falling probability.
 fn effects(models: &SearchModels, conclusion: &Conclusion) -> Vec<JudgedEffect> {
     let base = models.base.parameters.len();
@@ -166,6 +176,7 @@ fn effects(models: &SearchModels, conclusion: &Conclusion) -> Vec<JudgedEffect> 
             in_credible_set: effect.is_credible,
             strength_prior: entry.and_then(|entry| strength_prior(&entry.effect, models)),
             parameters: entry.map_or(BTreeMap::new(), |entry| parameters(entry, &effect.theta[base..])),
+            units: entry.map(units).unwrap_or_default(),
             method: method(effect.method).to_owned(),
         }
     };
@@ -182,6 +193,7 @@ fn effects(models: &SearchModels, conclusion: &Conclusion) -> Vec<JudgedEffect> 
             in_credible_set: probability > LEAST_CREDIBLE,
             strength_prior: None,
             parameters: BTreeMap::new(),
+            units: BTreeMap::new(),
             method: method(EvidenceMethod::Polished).to_owned(),
         });
     }

@@ -7,7 +7,7 @@ use record::{Extension, NotTried};
 
 use shared::file::FileSet;
 use shared::model::ModelKind;
-use shared::parameters::SPATIAL;
+use shared::parameters::{SPATIAL, of_models};
 
 use super::candidate::{CandidateEffect, JOB, extended, spec};
 use super::law::dependence::Dependence;
@@ -20,6 +20,8 @@ pub(super) struct CandidateEntry {
     pub(super) candidate: Candidate,
     /// Full names of its free parameters, in the candidate's order.
     pub(super) names: Vec<String>,
+    /// Their units, in the same order.
+    pub(super) units: Vec<String>,
     /// Where the experiment does not state what the effect needs: it is weighed with typical values, and never named.
     pub(super) not_tried: Option<NotTried>,
 }
@@ -36,6 +38,7 @@ impl CandidateEntry {
     /// The candidate that is a parameter of the model itself; `None` where the job does not hold it fixed.
     pub(super) fn plain(plain: &PlainParameter, base: &Spec) -> Option<Self> {
         let (neutral, density) = plain.held_by(base)?;
+        let unit = of_models().find(|known| known.name == plain.name)?.unit;
         let name = plain.name.to_owned();
         Some(Self {
             candidate: Candidate {
@@ -48,6 +51,7 @@ impl CandidateEntry {
                 has_companion: !SPATIAL.iter().any(|own| own.name == plain.name),
             },
             names: vec![name.clone()],
+            units: vec![unit.to_owned()],
             not_tried: None,
             effect: CandidateEffect {
                 extension: Extension::Effect(name.clone()),
@@ -99,6 +103,7 @@ impl CandidateEntry {
                 has_companion: false,
             },
             names: Vec::new(),
+            units: Vec::new(),
             not_tried: None,
             effect: CandidateEffect { name, extension },
         }))
@@ -135,6 +140,7 @@ impl CandidateEntry {
                 has_companion: ModelKind::QuasiStatic.has_form(effect)
                     && EffectOnNodes::find(&candidate.name).is_none(),
             },
+            units: free.iter().map(|p| p.unit.clone()).collect(),
             names: free.into_iter().map(|p| p.name).collect(),
             not_tried: None,
             effect: candidate,

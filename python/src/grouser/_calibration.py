@@ -9,7 +9,7 @@ from ._table import CONDITIONS, Table
 
 COMPARISON = (
     "run", "use", "wheel", "slip", "wheel_load_n", "sled_speed_m_s", "slip_angle_deg", "channel", "unit",
-    "measured", "predicted", "q05", "q95", "noise_sd", "residual_sigma",
+    "measured", "predicted", "q05", "q95", "noise_sd", "residual_sigma", "error_sd",
     "corrected", "corrected_q05", "corrected_q95", "interpolated",
 )  # fmt: skip
 
@@ -21,7 +21,7 @@ class Calibration:
         id: its number.
         name: its name.
         state: its state when the study was loaded or refreshed.
-        effects: effects of its model beyond those of the submitted job.
+        effects: effects of its model beyond those of the submitted job, ``EFFECT.WHEEL`` on one wheel of several.
     """
 
     def __init__(self, place: Place, member: dict[str, Any]) -> None:
@@ -45,7 +45,8 @@ class Calibration:
         answer = self._get("samples", stage=stage)
         names = ["log_likelihood", "log_prior", *answer["parameters"]]
         rows = [[s["log_likelihood"], s["log_prior"], *s["theta"]] for s in answer["samples"]]
-        return Table.from_rows([dict(zip(names, row, strict=True)) for row in rows], names, self._units())
+        units = dict(zip(answer["parameters"], answer["units"], strict=True))
+        return Table.from_rows([dict(zip(names, row, strict=True)) for row in rows], names, units)
 
     def _units(self) -> dict[str, str]:
         return {parameter["name"]: parameter["unit"] for parameter in self._get("diagnostics")["parameters"]}
@@ -60,8 +61,9 @@ class Calibration:
     def comparison(self) -> Table:
         """Model against measurement: a row for each run and measured channel.
 
-        ``unit`` is the SI unit of ``measured``, ``predicted`` (posterior mean), ``q05`` and ``q95`` (of a new measurement)
-        and ``noise_sd``; ``residual_sigma`` is measured minus predicted in noise sds.
+        ``unit`` is the SI unit of ``measured``, ``predicted`` (posterior mean), ``q05`` and ``q95`` (of a new measurement),
+        ``noise_sd`` and ``error_sd``, the sd of all errors that the calibration assumes or infers (noise, scatter of the
+        soil, discrepancy); ``residual_sigma`` is measured minus predicted in noise sds.
         """
         return Table.from_rows(self._get("comparison")["rows"], COMPARISON, CONDITIONS)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import warnings
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any, Protocol
 
 import numpy as np
 import numpy.typing as npt
@@ -14,16 +14,27 @@ from ._prediction import CHANNELS, NoPredictionError, predict
 from ._prior import UnstatedPriorError, check_moments, draw
 from ._table import CONDITIONS, Table
 
-if TYPE_CHECKING:
-    from ._calibration import Calibration
-
 Values = npt.NDArray[np.float64]
 #: Largest difference of a log-likelihood from the calibration's own that counts as rounding, over max(1, |value|).
 ROUNDING = 1e-6
 HEAD = ("log_likelihood", "log_prior")
 
 
-def build(calibration: Calibration, draws: int | None, predictions: bool, prior_draws: int) -> Any:
+class Calibrated(Protocol):
+    """What inference data are made from: a calibration, which imports this module."""
+
+    id: int
+    name: str
+
+    def posterior(self) -> Table: ...
+    def stages(self) -> Table: ...
+    def comparison(self) -> Table: ...
+    def provenance(self) -> dict[str, Any]: ...
+    def experiment(self) -> dict[str, Any]: ...
+    def _prior_moments(self) -> dict[str, tuple[float, float]]: ...
+
+
+def build(calibration: Calibrated, draws: int | None, predictions: bool, prior_draws: int) -> Any:
     """The groups of :meth:`Calibration.inference_data`."""
     posterior = calibration.posterior()
     if posterior.rows == 0:

@@ -3,6 +3,7 @@
 mod circle;
 mod citation;
 mod import;
+mod script;
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};

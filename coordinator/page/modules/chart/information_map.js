@@ -6,12 +6,19 @@ import { levelOf, levels, levelWords, rimSpeed } from "../words/group.js";
 import { Figure, fileName } from "./figure.js";
 import { Plot, STYLE } from "./library.js";
 
+/** What is drawn: an estimate below 0 is 0 within its error. */
+export const shownNats = (/** @type {number} */ nats) => Math.max(0, nats);
+
+/** What is said of an estimate. */
+export const natsWords = (/** @type {number} */ nats) => (nats < 0 ? `0 nats within the error of the estimate, ${digits(nats, 2)}` : `${digits(nats, 2)} nats`);
+
 /** @param {{ record: any, name: string }} properties */
 export function InformationMap({ record, name }) {
   const runs = record.information ?? [];
   if (runs.length === 0) return html`<${ProposedRuns} record=${record} />`;
   const speeds = levels(runs.map(rimSpeed));
-  const most = Math.max(...runs.map((/** @type {any} */ r) => r.nats), 1e-6);
+  const max = Math.max(...runs.map((/** @type {any} */ r) => r.nats), 1e-6);
+  const hasNegative = runs.some((/** @type {any} */ r) => r.nats < 0);
   const draw = (/** @type {number} */ k) => (/** @type {number} */ width) => {
     const own = runs.filter((/** @type {any} */ r) => levelOf(speeds, rimSpeed(r)) === k);
     const next = record.next_runs.map((/** @type {any} */ r, /** @type {number} */ n) => ({ ...r, n: n + 1 })).filter((/** @type {any} */ r) => own.some((/** @type {any} */ o) => isSame(o, r)));
@@ -19,16 +26,17 @@ export function InformationMap({ record, name }) {
       width, height: 210, marginTop: 26, marginLeft: 60, marginBottom: 40, style: STYLE,
       x: { label: "slip", labelArrow: "none", labelAnchor: "center", type: "band", tickFormat: (/** @type {number} */ v) => minus(v) },
       y: { label: "wheel load [N]", labelArrow: "none", type: "band", reverse: true },
-      color: { type: "linear", domain: [0, most], range: ["var(--panel)", "var(--accent)"], interpolate: /** @type {any} */ ((/** @type {string} */ a, /** @type {string} */ b) => (/** @type {number} */ t) => `color-mix(in srgb, ${b} ${(100 * t).toFixed(1)}%, ${a})`) },
+      color: { type: "linear", domain: [0, max], clamp: true, range: ["var(--panel)", "var(--accent)"], interpolate: /** @type {any} */ ((/** @type {string} */ a, /** @type {string} */ b) => (/** @type {number} */ t) => `color-mix(in srgb, ${b} ${(100 * t).toFixed(1)}%, ${a})`) },
       marks: [
-        Plot.cell(own, { x: "slip", y: "wheel_load_n", fill: "nats", inset: 0.5, title: (/** @type {any} */ r) => `${digits(r.nats, 2)} nats at slip ${minus(r.slip)}, ${r.wheel_load_n} N, ${digits(1000 * r.sled_speed_m_s, 2)} mm/s` }),
+        Plot.cell(own, { x: "slip", y: "wheel_load_n", fill: (/** @type {any} */ r) => shownNats(r.nats), inset: 0.5, title: (/** @type {any} */ r) => `${natsWords(r.nats)} at slip ${minus(r.slip)}, ${r.wheel_load_n} N, ${digits(1000 * r.sled_speed_m_s, 2)} mm/s` }),
         Plot.dot(next, { x: "slip", y: "wheel_load_n", r: 10, fill: "var(--paper)", stroke: "currentColor" }),
         Plot.text(next, { x: "slip", y: "wheel_load_n", text: "n", fontWeight: "bold", fill: "currentColor" }),
       ],
     });
   };
   return html`
-    <p class="note">Darker: the run tells more, up to ${digits(most, 2)} nats about which explanation holds (a sure answer to a yes or no is worth ${digits(Math.log(2), 2)}). Numbers: the runs to make, each chosen given those before it.</p>
+    <p class="note">The stronger the colour of a run, the more it tells about which explanation holds (a sure answer to a yes or no is worth ${digits(Math.log(2), 2)} nats). Numbers: the runs to make, each chosen given those before it.${hasNegative ? " An estimate below 0 is 0 within its error, and is drawn as 0." : ""}</p>
+    <p class="legend"><span>0 nats <i class="ramp" role="img" aria-label="colours from no information to the most"></i> ${digits(max, 2)} nats</span></p>
     <div class="figures small">${speeds.map((speed, k) => html`
       <${Figure} key=${k} title=${`Information of a run at a rim speed of ${levelWords(speed, "mm/s", 1000)}`} name=${fileName(name, "next-runs", k + 1)} deps=${[record]} draw=${draw(k)}
         rows=${() => runs.filter((/** @type {any} */ r) => levelOf(speeds, rimSpeed(r)) === k)} />`)}</div>

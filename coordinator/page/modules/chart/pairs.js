@@ -1,7 +1,7 @@
 // Joint posteriors: a triangle of small contours, and one of them large with what else is known of its parameters.
 
 import { html } from "../html.js";
-import { digits, shown, titled, parameterName } from "../words/quantity.js";
+import { digits, parameterName, shown, tickWords, titled } from "../words/quantity.js";
 import { symbol } from "./colour.js";
 import { Entry, Figure, fileName } from "./figure.js";
 import { glyph } from "./glyph.js";
@@ -17,49 +17,78 @@ function regions(/** @type {any} */ pair, /** @type {(v: number) => number} */ x
     `M${ring.map(([i, j]) => (isTurned ? [x(at(ys, j)), y(at(xs, i))] : [x(at(xs, i)), y(at(ys, j))]).map((v) => v.toFixed(1)).join(",")).join("L")}Z`).join(""));
 }
 
-const SIDE = 110;
+/** Sides of a cell, which grows with the room [px]. */
+const SIDES = [110, 180];
 const GAP = 8;
-/** Left of the first column and under the last row: a name with its unit, and ticks. */
-const EDGE = 64;
+/** Left of the first column, and under the last row: a name with its unit, and ticks [px]. */
+const EDGE = 76;
+const UNDER = 44;
+/** A character of a tick's label [px]. */
+const CHARACTER = 5.4;
+
+/** The scale of a parameter in the unit that is shown: 3.5 sds about the mean and the 90 % interval, within the bounds of its prior. */
+export function scaleOf(/** @type {any} */ m, /** @type {[number, number]} */ range) {
+  const { scale } = shown(m.unit);
+  const low = Math.max(m.bounds[0] ?? -Infinity, Math.min(m.q05, m.mean - 3.5 * m.sd));
+  const high = Math.min(m.bounds[1] ?? Infinity, Math.max(m.q95, m.mean + 3.5 * m.sd));
+  return d3.scaleLinear([low * scale, high * scale], range);
+}
+
+/**
+ * Places of ticks of which no label reaches out of its cell or into another.
+ * @param {d3.ScaleLinear<number, number>} axis
+ * @param {(label: string) => number} extent of a label along the axis [px]
+ */
+export function ticksOf(axis, extent) {
+  const ends = [...axis.range()].sort((a, b) => a - b);
+  let free = ends[0] - GAP / 2;
+  return axis.ticks(3).sort((a, b) => axis(a) - axis(b)).filter((v) => {
+    const half = extent(tickWords(v)) / 2;
+    if (axis(v) - half < free || axis(v) + half > ends[1] + GAP / 2) return false;
+    free = axis(v) + half + GAP / 2;
+    return true;
+  });
+}
 
 /** @param {{ pairs: any[], marginals: any[], name: string, onCell: (pair: any) => void }} properties */
 export function PairPlot({ pairs, marginals, name, onCell }) {
   const count = marginals.length;
   const draw = (/** @type {number} */ width) => {
-    const whole = EDGE + count * (SIDE + GAP);
-    const ticks = (/** @type {any} */ g, /** @type {any} */ axis) => g.call(axis).attr("font-size", 9).attr("font-family", "inherit").select(".domain").remove();
+    const side = Math.round(Math.max(SIDES[0], Math.min(SIDES[1], (width - EDGE) / count - GAP)));
+    const whole = EDGE + count * (side + GAP);
+    const ticks = (/** @type {any} */ g, /** @type {any} */ axis, /** @type {number[]} */ values) =>
+      g.call(axis.tickValues(values).tickFormat(tickWords).tickSize(3)).attr("font-size", 9).attr("font-family", "inherit").select(".domain").remove();
     const label = (/** @type {any} */ text, /** @type {any} */ m) => {
       text.attr("text-anchor", "middle").attr("font-size", 10).attr("fill", "currentColor");
-      [short(parameterName(m.name)), titled("", shown(m.unit).unit).trim()].forEach((line, k) => text.append("tspan").attr("x", text.attr("x")).attr("dy", k === 0 ? 0 : "1.15em").text(line));
+      [short(parameterName(m.name, m.unit)), titled("", shown(m.unit).unit).trim()].forEach((line, k) => text.append("tspan").attr("x", text.attr("x")).attr("dy", k === 0 ? 0 : "1.15em").text(line));
     };
-    const tick = (/** @type {any} */ m) => (/** @type {any} */ v) => digits(v * shown(m.unit).scale);
-    const svg = d3.create("svg").attr("viewBox", `0 0 ${whole} ${whole}`).attr("width", Math.min(width, whole));
-    const scale = (/** @type {any} */ m) => d3.scaleLinear([Math.min(m.q05, m.mean - 3.5 * m.sd), Math.max(m.q95, m.mean + 3.5 * m.sd)], [0, SIDE]);
+    const svg = d3.create("svg").attr("viewBox", `0 0 ${whole} ${count * (side + GAP) + UNDER}`).attr("width", Math.min(width, whole));
     marginals.forEach((row, j) => marginals.slice(0, j + 1).forEach((column, i) => {
-      const cell = svg.append("g").attr("transform", `translate(${EDGE + i * (SIDE + GAP)},${j * (SIDE + GAP)})`);
-      cell.append("rect").attr("width", SIDE).attr("height", SIDE).attr("fill", "transparent").attr("stroke", "var(--rule)");
+      const cell = svg.append("g").attr("transform", `translate(${EDGE + i * (side + GAP)},${j * (side + GAP)})`);
+      cell.append("rect").attr("width", side).attr("height", side).attr("fill", "transparent").attr("stroke", "var(--rule)");
       // A picture of its own, at whose edge contours end.
-      const inside = cell.append("svg").attr("width", SIDE).attr("height", SIDE);
-      const x = scale(column);
+      const inside = cell.append("svg").attr("width", side).attr("height", side).attr("overflow", "hidden");
+      const [across, up] = [scaleOf(column, [0, side]), scaleOf(row, [side, 0])];
+      const x = (/** @type {number} */ v) => across(v * shown(column.unit).scale);
       if (i === j) {
         const top = d3.max(column.posterior) ?? 1;
-        const line = d3.line((/** @type {any} */ _, k) => x(column.grid[k]), (/** @type {any} */ v) => SIDE - (0.92 * SIDE * v) / Number(top)).defined((_, k) => x(column.grid[k]) >= 0 && x(column.grid[k]) <= SIDE);
+        const line = d3.line((/** @type {any} */ _, k) => x(column.grid[k]), (/** @type {any} */ v) => side - (0.92 * side * v) / Number(top));
         inside.append("path").attr("d", line(column.posterior)).attr("fill", "none").attr("stroke", "var(--series-0)");
       } else {
         const pair = pairs.find((p) => [column.name, row.name].every((n) => p.parameters.some((/** @type {any} */ q) => q.name === n)));
         if (!pair) return;
-        const y = (/** @type {number} */ v) => SIDE - scale(row)(v);
+        const y = (/** @type {number} */ v) => up(v * shown(row.unit).scale);
         regions(pair, x, y, pair.parameters[0].name !== column.name).forEach((/** @type {string} */ d) => inside.append("path").attr("d", d).attr("fill", "var(--series-0)").attr("fill-opacity", 0.2).attr("fill-rule", "evenodd"));
         cell.style("cursor", "pointer").on("click", () => onCell(pair));
       }
       if (j === count - 1) {
-        ticks(cell.append("g").attr("transform", `translate(0,${SIDE})`), d3.axisBottom(x).ticks(3).tickSize(3).tickFormat(tick(column)));
-        label(cell.append("text").attr("x", SIDE / 2).attr("y", SIDE + 28), column);
+        ticks(cell.append("g").attr("transform", `translate(0,${side})`), d3.axisBottom(across), ticksOf(across, (text) => CHARACTER * text.length));
+        label(cell.append("text").attr("x", side / 2).attr("y", side + 28), column);
       }
       if (i === 0) {
         // The first row has a density upwards, the others their parameter.
-        if (j > 0) ticks(cell.append("g"), d3.axisLeft(scale(row).range([SIDE, 0])).ticks(3).tickSize(3).tickFormat(tick(row)));
-        label(cell.append("text").attr("x", 0).attr("transform", `translate(-48,${SIDE / 2}) rotate(-90)`), row);
+        if (j > 0) ticks(cell.append("g"), d3.axisLeft(up), ticksOf(up, () => 10));
+        label(cell.append("text").attr("x", 0).attr("transform", `translate(-60,${side / 2}) rotate(-90)`), row);
       }
     }));
     return /** @type {any} */ (svg.node());
@@ -67,8 +96,8 @@ export function PairPlot({ pairs, marginals, name, onCell }) {
   const open = (/** @type {any} */ event) => event.target.value !== "" && onCell(pairs[Number(event.target.value)]);
   return html`
     <p><label>Large picture of <select onChange=${open}><option value="">a pair: choose it, or click its cell</option>
-      ${pairs.map((p, k) => html`<option value=${k}>${p.parameters.map((/** @type {any} */ q) => parameterName(q.name)).join(" and ")}, rank correlation ${digits(p.rank_correlation, 2)}</option>`)}</select></label></p>
-    <${Figure} title=${`Joint posterior of ${marginals.map((m) => parameterName(m.name)).join(", ")}`} name=${fileName("pairs", name)} deps=${[marginals.map((m) => m.name).join()]} draw=${draw}
+      ${pairs.map((p, k) => html`<option value=${k}>${p.parameters.map((/** @type {any} */ q) => parameterName(q.name, q.unit)).join(" and ")}, rank correlation ${digits(p.rank_correlation, 2)}</option>`)}</select></label></p>
+    <${Figure} title=${`Joint posterior of ${marginals.map((m) => parameterName(m.name, m.unit)).join(", ")}`} name=${fileName("pairs", name)} deps=${[marginals.map((m) => m.name).join()]} draw=${draw}
       rows=${() => densities(pairs.filter((p) => p.parameters.every((/** @type {any} */ q) => marginals.some((m) => m.name === q.name))))} />`;
 }
 
@@ -91,7 +120,7 @@ function entryGlyph(/** @type {any} */ mark, /** @type {number} */ k) {
 
 /** @param {{ pair: any }} properties */
 export function JointPicture({ pair }) {
-  const [a, b] = pair.parameters.map((/** @type {any} */ p) => ({ ...p, ...shown(p.unit) }));
+  const [a, b] = pair.parameters.map((/** @type {any} */ p) => ({ name: p.name, title: parameterName(p.name, p.unit), ...shown(p.unit) }));
   const domain = (/** @type {number} */ k, /** @type {number} */ scale) => /** @type {[number, number]} */ ([pair.grid[k][0] * scale, pair.grid[k].at(-1) * scale]);
   const mark = (/** @type {any} */ m, /** @type {number} */ k) => {
     const stroke = `var(--series-${(k % 7) + 1})`;
@@ -99,14 +128,14 @@ export function JointPicture({ pair }) {
     if (m.at.x === null) return Plot.ruleY([m.at.y * b.scale], { stroke });
     return Plot.dot([m], { x: () => m.at.x * a.scale, y: () => m.at.y * b.scale, symbol: /** @type {any} */ (symbol(k + 1)), stroke, fill: stroke, r: 5 });
   };
-  const title = `Joint posterior of ${parameterName(a.name)} and ${parameterName(b.name)}`;
+  const title = `Joint posterior of ${a.title} and ${b.title}`;
   return html`<${Figure} title=${title} note=${`regions of ${pair.contours.map((/** @type {any} */ c) => Math.round(100 * c.share)).join(", ")} % of the posterior; rank correlation ${digits(pair.rank_correlation, 2)}`}
     name=${fileName("joint", a.name, b.name)} deps=${[pair]} rows=${() => densities([pair])}
     legend=${pair.marks.map((/** @type {any} */ m, /** @type {number} */ k) => html`<${Entry} glyph=${entryGlyph(m, k)}>${m.label}<//>`)}
     draw=${(/** @type {number} */ width) => Plot.plot({
       width: Math.min(width, 620), height: 420, marginLeft: 60, marginBottom: 40, grid: true, style: STYLE,
-      x: { label: titled(parameterName(a.name), a.unit), labelArrow: "none", labelAnchor: "center", domain: domain(0, a.scale) },
-      y: { label: titled(parameterName(b.name), b.unit), labelArrow: "none", domain: domain(1, b.scale) },
+      x: { label: titled(a.title, a.unit), labelArrow: "none", labelAnchor: "center", domain: domain(0, a.scale), ticks: 6, tickFormat: tickWords },
+      y: { label: titled(b.title, b.unit), labelArrow: "none", domain: domain(1, b.scale), tickFormat: tickWords },
       marks: [
         (/** @type {any} */ _, /** @type {any} */ scales) => /** @type {any} */ (d3.create("svg:g").call((g) => regions(pair, (v) => scales.x(v * a.scale), (v) => scales.y(v * b.scale))
           .forEach((/** @type {string} */ d) => g.append("path").attr("d", d).attr("fill", "var(--series-0)").attr("fill-opacity", 0.2).attr("fill-rule", "evenodd"))).node()),

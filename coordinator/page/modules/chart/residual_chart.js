@@ -1,7 +1,8 @@
-// Residuals of a channel against a condition, with the noise and the tested trend.
+// Residuals of a channel against a condition, with the errors that are assumed and the tested trend.
 
 import { html } from "../html.js";
 import { digits, minus, shown, titled, words } from "../words/quantity.js";
+import { meanErrorSd } from "../words/residual.js";
 import { colour, symbol } from "./colour.js";
 import { spanWords } from "./condition.js";
 import { Figure, fileName } from "./figure.js";
@@ -21,8 +22,8 @@ export function ResidualChart({ channel, rows, axis, trends, name }) {
   const wheels = [...new Set(rows.map((r) => r.wheel))];
   const trend = trends.find((t) => t.channel === channel && t.against === AGAINST[axis.key]);
   const isBeyond = trend && trend.p * trends.length < LEVEL;
-  const noise = judged.map((r) => r.noise_sd).filter((sd) => sd > 0);
-  const sd = noise.length > 0 ? (noise.reduce((a, b) => a + b, 0) / noise.length) * quantity.scale : null;
+  const mean = meanErrorSd(judged);
+  const sd = mean === null ? null : mean * quantity.scale;
   const line = isBeyond ? trendLine(judged.filter((r) => r.use !== "holdout"), trend, x, y, quantity.scale) : [];
   const draw = (/** @type {number} */ width) => Plot.plot({
     width, height: Math.max(220, Math.min(300, 0.5 * width)), marginTop: 26, marginLeft: 56, marginBottom: 40, insetLeft: 7, insetRight: 7, grid: true, style: STYLE,

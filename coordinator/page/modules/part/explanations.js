@@ -3,7 +3,7 @@
 import { html, useState } from "../html.js";
 import { path } from "../rest/routes.js";
 import { useAnswer } from "../rest/use_answer.js";
-import { digits, minus, parameterName, parameterUnit, probability, shown } from "../words/quantity.js";
+import { digits, minus, parameterName, probability, shown } from "../words/quantity.js";
 
 /** So many are shown at first. */
 const FIRST = 8;
@@ -35,7 +35,7 @@ export function Explanations({ record, ghost, kept, show, keep, add, study, mode
             </th>
             <td><span class="bar"><i style=${{ width: `${(100 * effect.probability).toFixed(1)}%` }}></i></span> <span class="number">${probability(effect.probability)}</span></td>
             <td class="number">${minus(effect.log_bayes_factor.toFixed(1))}</td>
-            <td>${Object.entries(effect.parameters).map(([name, value]) => html`<div>${strength(name, /** @type {number} */ (value))}</div>`)}
+            <td>${Object.entries(effect.parameters).map(([name, value]) => html`<div>${strength(name, /** @type {number} */ (value), effect.units[name])}</div>`)}
               ${effect.prior_sds !== null && Math.abs(effect.prior_sds) > 2 ? html`<span class="note">${digits(effect.prior_sds, 2)} sds out in its prior</span>` : null}</td>
             <td>${add && !(effect.name in OTHERS) && !untried.has(effect.name) && (isMade(effect.name)
               ? html`<span class="note">added</span>`
@@ -48,11 +48,12 @@ export function Explanations({ record, ghost, kept, show, keep, add, study, mode
     <p class="note">Nats: log evidence over that of the model as it is. Bold lines are in the 95 % set of explanations. Half of the prior probability is on “nothing is missing”.</p>`;
 }
 
-/** A fitted parameter in the unit of its name. */
-function strength(/** @type {string} */ name, /** @type {number} */ value) {
+/** A fitted parameter in its unit; records of earlier versions do not state it. */
+function strength(/** @type {string} */ name, /** @type {number} */ value, /** @type {string | undefined} */ stated) {
   const own = name.split(".").slice(1).join(".") || name;
-  const { unit, scale } = shown(parameterUnit(own));
-  return `${parameterName(own)} ${digits(value * scale)}${unit === "1" ? "" : ` ${unit}`}`;
+  if (stated === undefined) return `${parameterName(own, null)} ${digits(value)} (SI)`;
+  const { unit, scale } = shown(stated);
+  return `${parameterName(own, stated)} ${digits(value * scale)}${unit === "1" ? "" : ` ${unit}`}`;
 }
 
 /** The others of a class. */

@@ -1,8 +1,8 @@
 // Flags: those of the current model open, those of superseded models folded away.
 
 import { html } from "../html.js";
+import { modelName } from "../words/model.js";
 import { words } from "../words/quantity.js";
-import { modelName } from "../view/study.js";
 
 /** @param {{ study: any }} properties */
 export function Flags({ study }) {

@@ -1,13 +1,24 @@
 // The error ledger as a table.
 
 import { html } from "../html.js";
+import { dataSets, runWords } from "../words/ledger.js";
 import { CHANNELS, digits, minus, short, shown, unitOf } from "../words/quantity.js";
 import { Table } from "./table.js";
 
 const USES = { fit: "fitted", holdout: "held out" };
 
-/** @param {{ study: any, lines: any[] }} properties */
+/**
+ * A table for each set of runs: neither errors nor evidence compare between them.
+ * @param {{ study: any, lines: import("../words/ledger.js").LedgerLine[] }} properties
+ */
 export function Ledger({ study, lines }) {
+  const sets = dataSets(lines);
+  return html`${sets.map((set) => html`
+    ${sets.length > 1 && html`<h3>${runWords(set[0].line)}</h3>`}
+    <${SetLedger} study=${study} lines=${set} label=${sets.length > 1 ? `Error ledger, ${runWords(set[0].line)}` : "Error ledger"} />`)}`;
+}
+
+function SetLedger(/** @type {{ study: any, lines: import("../words/ledger.js").LedgerLine[], label: string }} */ { study, lines, label }) {
   const channels = CHANNELS.filter((channel) => lines.some(({ line }) => line.error.fit[channel]));
   const head = ["model", "runs", ...channels.map((c) => `${short(c)} ${shown(unitOf(c)).unit}`), "noise sds", "in 90 % interval", "ln evidence"];
   const row = (/** @type {string} */ name, /** @type {"fit" | "holdout"} */ use, /** @type {any} */ error, /** @type {number | null | undefined} */ inside, evidence = "") => [
@@ -24,12 +35,12 @@ export function Ledger({ study, lines }) {
   for (const [name, of] of beside(study, lines)) {
     if (of?.holdout) rows.push(row(name, "holdout", of.holdout, of.coverage90?.holdout));
   }
-  return html`<${Table} label="Error ledger" head=${head} rows=${rows} numbers=${head.map((_, k) => k).filter((k) => k > 1)} />`;
+  return html`<${Table} label=${label} head=${head} rows=${rows} numbers=${head.map((_, k) => k).filter((k) => k > 1)} />`;
 }
 
-/** What predicts held-out runs beside the models as they are. */
+/** What predicts held-out runs beside the models as they are, among the lines with the current model. */
 function beside(/** @type {any} */ study, /** @type {any[]} */ lines) {
   const current = lines.find((own) => own.id === study.current)?.line;
-  const combined = study.combined?.models > 1 ? study.combined : null;
+  const combined = current && study.combined?.models > 1 ? study.combined : null;
   return /** @type {[string, any][]} */ ([["current, corrected", current?.corrected], ["all, combined", combined], ["interpolation", current?.baseline]]);
 }

@@ -7,7 +7,7 @@ import { Table } from "./table.js";
 /** @param {{ marginals: any[], line: any }} properties line: of the ledger, or of the point estimates */
 export function ParameterTable({ marginals, line }) {
   if (marginals.length === 0) {
-    const rows = Object.entries(line?.parameters ?? {}).map(([name, value]) => [parameterName(name), digits(typeof value === "number" ? value : /** @type {any} */ (value).map, 4)]);
+    const rows = Object.entries(line?.parameters ?? {}).map(([name, value]) => [parameterName(name, null), digits(typeof value === "number" ? value : /** @type {any} */ (value).map, 4)]);
     return html`<${Table} label="Parameters" head=${["parameter (SI units)", "value of the fit"]} rows=${rows} numbers=${[1]} />`;
   }
   const rows = marginals.map((m) => {
@@ -16,7 +16,7 @@ export function ParameterTable({ marginals, line }) {
     const { mean, sd } = meanAndSd(m.mean * scale, m.sd * scale);
     const prior = known && meanAndSd(known.prior_mean * scale, known.prior_sd * scale);
     return [
-      parameterName(m.name), unit === "1" ? "" : unit, `${mean} ± ${sd}`, `${digits(m.q05 * scale, 4)} to ${digits(m.q95 * scale, 4)}`,
+      parameterName(m.name, m.unit), unit === "1" ? "" : unit, `${mean} ± ${sd}`, `${digits(m.q05 * scale, 4)} to ${digits(m.q95 * scale, 4)}`,
       digits(m.mode === null ? null : m.mode * scale, 4), prior ? `${prior.mean} ± ${prior.sd}` : "–",
       m.reference === null ? "–" : digits(m.reference * scale, 4),
       known?.at_bound ? html`<span class="state failed">at a bound of its prior</span>` : "",

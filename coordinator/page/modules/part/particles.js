@@ -5,7 +5,7 @@ import { Plot, STYLE } from "../chart/library.js";
 import { html, useEffect, useMemo, useState } from "../html.js";
 import { path } from "../rest/routes.js";
 import { useAnswer } from "../rest/use_answer.js";
-import { digits, parameterName, parameterUnit, shown, titled } from "../words/quantity.js";
+import { digits, parameterName, shown, tickWords, titled } from "../words/quantity.js";
 import { Pending } from "./message.js";
 
 const FRAME_MS = 700;
@@ -28,15 +28,15 @@ export function Particles({ id, stages }) {
     if (!isPlaying && stage >= last) setStage(1);
     setPlaying(!isPlaying);
   };
-  const names = answer?.parameters ?? first.answer?.parameters ?? [];
-  const chosen = pair.map((k) => Math.min(k, Math.max(0, names.length - 1)));
+  const parameters = parametersOf(answer ?? first.answer);
+  const chosen = pair.map((k) => Math.min(k, Math.max(0, parameters.length - 1)));
   const points = (/** @type {any} */ of) => (of?.samples ?? []).map((/** @type {any} */ s) => ({ x: s.theta[chosen[0]], y: s.theta[chosen[1]] }));
   const now = useMemo(() => points(answer), [answer, ...chosen]);
   const early = useMemo(() => points(first.answer), [first.answer, ...chosen]);
   const exponent = stages[stage - 1]?.tempering_exponent;
   const choose = (/** @type {number} */ end) => html`<label>${end === 0 ? "across" : "up"} <select value=${chosen[end]}
     onChange=${(/** @type {any} */ e) => setPair(pair.map((k, i) => (i === end ? Number(e.target.value) : k)))}>
-    ${names.map((/** @type {string} */ name, /** @type {number} */ k) => html`<option value=${k} selected=${k === chosen[end]}>${parameterName(name)}</option>`)}</select></label>`;
+    ${parameters.map(({ name, unit }, k) => html`<option value=${k} selected=${k === chosen[end]}>${parameterName(name, unit)}</option>`)}</select></label>`;
   return html`
     <h2>Particles</h2>
     <div class="actions">${choose(0)} ${choose(1)}
@@ -44,7 +44,7 @@ export function Particles({ id, stages }) {
       <label>stage <input type="range" min="1" max=${last} value=${stage} onInput=${(/** @type {any} */ e) => { setPlaying(false); setStage(Number(e.target.value)); }} /></label>
       <output>${stage} of ${last}: exponent ${digits(exponent, 2)}</output></div>
     ${now.length === 0 && !isPlaying && html`<${Pending} answer=${answer} error=${error} what="This population" />`}
-    ${now.length + early.length > 0 && html`<${Cloud} id=${id} x=${named(names[chosen[0]])} y=${named(names[chosen[1]])} now=${now} early=${early} />`}`;
+    ${now.length + early.length > 0 && html`<${Cloud} id=${id} x=${parameters[chosen[0]]} y=${parameters[chosen[1]]} now=${now} early=${early} />`}`;
 }
 
 /**
@@ -66,18 +66,21 @@ export function RecordedParticles({ id }) {
     <${Cloud} id=${id} x=${parameters[0]} y=${parameters[1]} now=${of(stages[shown])} early=${of(stages[0])} />`;
 }
 
-/** A parameter of which only the name is known, which ends with its unit. */
-const named = (/** @type {string} */ name) => ({ name, unit: parameterUnit(name) });
+/**
+ * The parameters of a population with their units.
+ * @param {{ parameters: string[], units: string[] } | null} population
+ */
+const parametersOf = (population) => (population?.parameters ?? []).map((name, k) => ({ name, unit: population?.units[k] ?? "1" }));
 
 /** @param {{ id: number, x: { name: string, unit: string }, y: { name: string, unit: string }, now: any[], early: any[] }} properties */
 function Cloud({ id, x, y, now, early }) {
-  const label = (/** @type {{ name: string, unit: string }} */ p) => titled(parameterName(p.name), shown(p.unit).unit);
+  const label = (/** @type {{ name: string, unit: string }} */ p) => titled(parameterName(p.name, p.unit), shown(p.unit).unit);
   const at = { x: (/** @type {any} */ p) => p.x * shown(x.unit).scale, y: (/** @type {any} */ p) => p.y * shown(y.unit).scale };
-  return html`<${Figure} title=${`Particles in ${parameterName(x.name)} and ${parameterName(y.name)}`} note="grey: the first stage, close to the prior"
+  return html`<${Figure} title=${`Particles in ${parameterName(x.name, x.unit)} and ${parameterName(y.name, y.unit)}`} note="grey: the first stage, close to the prior"
     name=${fileName("particles", id, x.name, y.name)} deps=${[now, early]} rows=${() => now}
     draw=${(/** @type {number} */ width) => Plot.plot({
       width: Math.min(width, 640), height: 380, marginLeft: 64, marginTop: 26, marginBottom: 40, grid: true, style: STYLE,
-      x: { label: label(x), labelArrow: "none", labelAnchor: "center" }, y: { label: label(y), labelArrow: "none" },
+      x: { label: label(x), labelArrow: "none", labelAnchor: "center", ticks: 6, tickFormat: tickWords }, y: { label: label(y), labelArrow: "none", tickFormat: tickWords },
       marks: [Plot.dot(early, { ...at, r: 1.6, fill: "var(--rule)" }), Plot.dot(now, { ...at, r: 2, fill: "var(--series-0)", fillOpacity: 0.6 })],
     })} />`;
 }

@@ -9,7 +9,7 @@ export function RunTable({ rows }) {
   return html`
     <div class="scroll" tabindex="0" role="region" aria-label="All runs">
       <table>
-        <thead><tr>${["run", "use", "slip", "load N", "speed mm/s", "channel", "measured", "model", "90 % interval", "residual, sds"].map((h, k) => html`<th scope="col" class=${k > 1 && k !== 5 ? "number" : ""}>${h}</th>`)}</tr></thead>
+        <thead><tr>${["run", "use", "slip", "load N", "speed mm/s", "channel", "measured", "model", "90 % interval", "residual, noise sds"].map((h, k) => html`<th scope="col" class=${k > 1 && k !== 5 ? "number" : ""}>${h}</th>`)}</tr></thead>
         <tbody>${rows.map((r) => html`<${RunRow} key=${`${r.run} ${r.channel}`} row=${r} />`)}</tbody>
       </table>
     </div>`;

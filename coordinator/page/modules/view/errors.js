@@ -8,7 +8,7 @@ import { Ledger } from "../part/ledger.js";
 import { LedgerCharts } from "../chart/ledger_chart.js";
 import { path } from "../rest/routes.js";
 import { useAnswers } from "../rest/use_answer.js";
-import { modelName } from "./study.js";
+import { modelName } from "../words/model.js";
 
 /** @param {{ study: any }} properties */
 export function Errors({ study }) {
@@ -36,11 +36,11 @@ export function Errors({ study }) {
 
 /**
  * The lines of the ledger with their names and colours.
- * @returns {{ id: number, name: string, colour: string, line: any }[]}
+ * @returns {(import("../words/ledger.js").LedgerLine & { colour: string })[]}
  */
 export function ledgerLines(/** @type {any} */ study) {
   return study.ledger.map((/** @type {any} */ line, /** @type {number} */ k) => {
     const member = study.members.find((/** @type {any} */ m) => m.id === line.calibration);
-    return { id: line.calibration, name: member ? modelName(study, member) : `calibration ${line.calibration}`, colour: colour(k), line };
+    return { id: line.calibration, name: member ? modelName(study, member) : `calibration ${line.calibration}`, effects: member?.effects ?? line.effects, colour: colour(k), line };
   });
 }

@@ -11,6 +11,7 @@ import { Pending } from "../part/message.js";
 import { path } from "../rest/routes.js";
 import { useAnswer } from "../rest/use_answer.js";
 import { CHANNELS, digits, minus, short } from "../words/quantity.js";
+import { residualSds } from "../words/residual.js";
 
 /** Residuals beyond so many sds have one colour. */
 const MOST_SDS = 4;
@@ -40,7 +41,7 @@ export function Failures({ study, model }) {
     </div>
     <${HeatMap} rows=${rows} order=${order} name=${study.name} />
     <h2>Residuals against ${axis.title}</h2>
-    <p class="note">Measured less computed; the grey band is one sd of all errors that the calibration assumes or infers: noise, discrepancy and shared errors. The line is the trend that the diagnosis tests, where it is beyond chance (p below 0.01 among all tests).</p>
+    <p class="note">Measured less computed; the grey band is one sd, the mean over the runs, of all errors that the calibration assumes or infers: noise, scatter of the soil and discrepancy, as in the diagnosis. The line is the trend that the diagnosis tests, where it is beyond chance (p below 0.01 among all tests).</p>
     <div class="figures">
       ${ofChannel.map(({ channel, own }) => html`
         <${ResidualChart} key=${channel} channel=${channel} rows=${own} axis=${axis} trends=${diagnostics?.trends ?? []} name=${study.name} />`)}
@@ -58,16 +59,16 @@ function withPlace(/** @type {any[]} */ rows) {
 
 /** Runs by channels, coloured by the residual over its sd. */
 function HeatMap(/** @type {{ rows: any[], order: string, name: string }} */ { rows, order, name }) {
-  const judged = rows.filter((r) => r.residual_sigma !== null && r.residual_sigma !== undefined);
+  const judged = rows.map((r) => ({ ...r, sds: residualSds(r) })).filter((r) => r.sds !== null);
   /** @type {Map<string, number>} */
   const worst = new Map();
-  for (const r of judged) worst.set(r.run, Math.max(worst.get(r.run) ?? 0, Math.abs(r.residual_sigma)));
+  for (const r of judged) worst.set(r.run, Math.max(worst.get(r.run) ?? 0, Math.abs(r.sds)));
   const first = new Map(rows.map((r) => [r.run, r]));
   const runs = [...new Set(judged.map((r) => r.run))];
   const value = (/** @type {string} */ run) => (order === "size" ? -(worst.get(run) ?? 0) : order === "made" ? first.get(run).place : first.get(run)[order]);
   const values = new Map(runs.map((run) => [run, value(run)]));
   runs.sort((a, b) => values.get(a) - values.get(b) || first.get(a).place - first.get(b).place);
-  const hint = (/** @type {any} */ r) => `run ${r.run}${r.use === "holdout" ? " (held out)" : ""}, ${short(r.channel)}\nslip ${digits(r.slip, 2)}, ${digits(r.wheel_load_n)} N, ${digits(1000 * r.sled_speed_m_s)} mm/s\n${minus(r.residual_sigma.toFixed(1))} sds: measured ${r.residual_sigma > 0 ? "above" : "below"} computed`;
+  const hint = (/** @type {any} */ r) => `run ${r.run}${r.use === "holdout" ? " (held out)" : ""}, ${short(r.channel)}\nslip ${digits(r.slip, 2)}, ${digits(r.wheel_load_n)} N, ${digits(1000 * r.sled_speed_m_s)} mm/s\n${minus(r.sds.toFixed(1))} sds of all errors, ${minus(r.residual_sigma.toFixed(1))} of the noise alone: measured ${r.sds > 0 ? "above" : "below"} computed`;
   const isNamed = (/** @type {number} */ width) => (width - 112) / runs.length >= LEAST_CELL;
   const below = (/** @type {number} */ width) => (isNamed(width) ? 14 + CHARACTER * Math.max(...runs.map((run) => run.length)) : 26);
   const draw = (/** @type {number} */ width) => Plot.plot({
@@ -76,13 +77,13 @@ function HeatMap(/** @type {{ rows: any[], order: string, name: string }} */ { r
     y: { domain: CHANNELS.filter((c) => judged.some((r) => r.channel === c)), label: null, tickFormat: short, tickSize: 0 },
     color: { type: "linear", domain: [-MOST_SDS, 0, MOST_SDS], range: RESIDUAL_RANGE, clamp: true, interpolate: /** @type {any} */ (mix) },
     marks: [
-      Plot.cell(judged, byRun(judged, { x: "run", y: "channel", fill: "residual_sigma", inset: runs.length > 200 ? 0 : 0.5 })),
+      Plot.cell(judged, byRun(judged, { x: "run", y: "channel", fill: "sds", inset: runs.length > 200 ? 0 : 0.5 })),
       Plot.dot(judged.filter((r) => r.use === "holdout"), { x: "run", y: "channel", r: isNamed(width) ? 2 : 1, fill: "var(--ink)", className: "held" }),
       Plot.tip(judged, Plot.pointer({ x: "run", y: "channel", title: hint, fill: "var(--panel)", stroke: "var(--rule)" })),
     ],
   });
-  return html`<${Figure} title="Residuals of every run and channel, in sds of noise, discrepancy and shared errors" name=${fileName(name, "residuals")} deps=${[rows, order]} draw=${draw}
-    rows=${() => judged.map((r) => ({ run: r.run, use: r.use, channel: r.channel, slip: r.slip, wheel_load_n: r.wheel_load_n, sled_speed_m_s: r.sled_speed_m_s, residual_sds: r.residual_sigma }))}
+  return html`<${Figure} title="Residuals of every run and channel, in sds of noise, scatter of the soil and discrepancy" name=${fileName(name, "residuals")} deps=${[rows, order]} draw=${draw}
+    rows=${() => judged.map((r) => ({ run: r.run, use: r.use, channel: r.channel, slip: r.slip, wheel_load_n: r.wheel_load_n, sled_speed_m_s: r.sled_speed_m_s, residual_sds: r.sds, residual_noise_sds: r.residual_sigma }))}
     onDrawn=${(/** @type {any} */ plot) => pointable(plot)}
     legend=${html`<span><i class="swatch below"></i>computed too high by ${MOST_SDS} sds or more</span><span><i class="swatch level"></i>as measured</span><span><i class="swatch above"></i>computed too low</span><span>dot: held out</span>`} />`;
 }

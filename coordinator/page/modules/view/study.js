@@ -9,6 +9,7 @@ import { path } from "../rest/routes.js";
 import { useAnswer } from "../rest/use_answer.js";
 import { address, replace } from "../route.js";
 import { choose, point } from "../selection.js";
+import { modelName, modelOf, models } from "../words/model.js";
 import { Compare } from "./compare.js";
 import { Errors } from "./errors.js";
 import { Failures } from "./failures.js";
@@ -36,29 +37,6 @@ export const VIEWS = [
   { name: "trust", title: "How far to trust it", view: Trust },
 ];
 
-/**
- * The name of a model of a study: that of the comparison where the job compares it; else what it has beyond the submitted job, and, where
- * another has the same, its calibration.
- */
-export function modelName(/** @type {any} */ study, /** @type {any} */ member) {
-  const compared = study.models?.models.find((/** @type {any} */ m) => m.calibration === member.id);
-  if (compared) return compared.name;
-  const name = (/** @type {any} */ m) => (m.effects.length === 0 ? "base" : `with ${m.effects.join(", ")}`);
-  const isShared = models(study).filter((/** @type {any} */ m) => name(m) === name(member)).length > 1;
-  return isShared ? `${name(member)} (${member.name}, ${member.id})` : name(member);
-}
-
-/** The models of a study that have results: everything but searches. */
-export const models = (/** @type {any} */ study) => study.members.filter((/** @type {any} */ m) => m.kind !== "search");
-
-/** The model that is shown: the one that the address names, or the current one, or the first. */
-export function modelOf(/** @type {any} */ study, /** @type {number | null} */ asked) {
-  const all = models(study);
-  const finished = all.filter((/** @type {any} */ m) => m.state === "finished");
-  const named = finished.find((/** @type {any} */ m) => m.id === asked) ?? finished.find((/** @type {any} */ m) => m.id === study.current);
-  return named ?? finished[0] ?? null;
-}
-
 /** @param {{ id: number, view: string, query: Record<string, string> }} properties */
 export function StudyPage({ id, view, query }) {
   const { answer: study, error, reload } = useAnswer(path.study(id), { everyMs: (now) => (isOver(now) ? REST_MS : LOOK_MS) });
@@ -67,9 +45,12 @@ export function StudyPage({ id, view, query }) {
     choose(null);
     point(null);
   }, []);
+  const shown = VIEWS.find((v) => v.name === view) ?? VIEWS[0];
+  useEffect(() => {
+    document.title = [shown.title, study?.name ?? `study ${id}`, "Grouser"].join(" – ");
+  }, [shown, study?.name]);
   if (!study) return html`<${Pending} answer=${study} error=${error} what=${`study ${id}`} />`;
   const model = modelOf(study, query.model ? Number(query.model) : null);
-  const shown = VIEWS.find((v) => v.name === view) ?? VIEWS[0];
   const to = (/** @type {string} */ name) => address(["studies", id, name], { model: query.model });
   return html`
     <div class="heading">

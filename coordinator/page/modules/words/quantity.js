@@ -2,7 +2,7 @@
 
 /** Lengths are shown in millimetres, everything else in SI. */
 export function shown(/** @type {string} */ unit) {
-  return unit === "m" ? { unit: "mm", scale: 1000 } : { unit, scale: 1 };
+  return unit === "m" ? { unit: "mm", scale: 1000 } : { unit: unit.replace(/^deg$/, "°"), scale: 1 };
 }
 
 const SHORT = { drawbar_pull: "pull", torque: "torque", sinkage: "sinkage", lateral_force: "lateral force" };
@@ -17,17 +17,17 @@ export const words = (/** @type {string} */ name) => name.replaceAll("_", " ");
 /** A sentence begins with a capital, unless it begins with a name of the program. */
 export const capital = (/** @type {string} */ text) => (/^[a-z0-9]*_/.test(text) ? text : text.charAt(0).toUpperCase() + text.slice(1));
 
-const PARAMETER_UNITS = { n_s_m: "N s/m", m_pa: "m/Pa", m_n: "m/N", per_m: "1/m", n_m: "N m", m_s: "m/s", kg_m3: "kg/m³", deg: "°", pa: "Pa", m: "m", n: "N" };
-/** The unit that a name ends with, before the name of a wheel. */
-const UNIT_AT_END = new RegExp(`_(${Object.keys(PARAMETER_UNITS).join("|")})(?=\\.[^.]*$|$)`);
+/** How names of parameters spell a unit at their end: `Pa/m` as `pa_m`, `1/m` as `per_m`, `kg/m^3` as `kg_m3`. */
+const spelt = (/** @type {string} */ unit) => unit.toLowerCase().replace(/^1\//, "per_").replaceAll("^", "").replace(/[^a-z0-9]+/g, "_");
 
-/** The name of a parameter as words, without the unit at its end, which stands beside it. */
-export const parameterName = (/** @type {string} */ name) => words(name.replace(UNIT_AT_END, ""));
-
-/** The unit in SI with which the name of a parameter ends; `1` where it ends with none. */
-export function parameterUnit(/** @type {string} */ name) {
-  const end = UNIT_AT_END.exec(name)?.[1];
-  return end === undefined ? "1" : PARAMETER_UNITS[/** @type {keyof typeof PARAMETER_UNITS} */ (end)];
+/**
+ * The name of a parameter as words, without the unit that it ends with before the name of a wheel, because the unit stands beside it;
+ * whole where its unit is not known.
+ * @param {string} name
+ * @param {string | null | undefined} unit in SI
+ */
+export function parameterName(name, unit) {
+  return words(unit && unit !== "1" ? name.replace(new RegExp(`_${spelt(unit)}(?=\\.[^.]*$|$)`), "") : name);
 }
 
 /** A number that a person typed, with a point or a comma; null where it is none. */
@@ -57,6 +57,12 @@ export function digits(/** @type {number | null | undefined} */ value, count = 3
     return `${minus(factor)}·${power(size)}`;
   }
   return minus(value.toFixed(Math.max(0, count - 1 - size)));
+}
+
+/** A number at a tick of an axis, with an exponent where it is large or small. */
+export function tickWords(/** @type {number} */ value) {
+  const size = Math.abs(value);
+  return value !== 0 && (size >= 1e5 || size < 1e-3) ? digits(value, 3) : minus(Number(value.toPrecision(6)));
 }
 
 /** A value of a unit in SI as people read it: `3.5 mm`. */

@@ -20,6 +20,12 @@ use crate::table::row::rows_of;
 pub struct CalibrationSummary {
     /// Id of the calibration.
     pub calibration: i64,
+    /// Id of its experiment: errors and evidence of lines over different ones do not compare.
+    pub experiment: i64,
+    /// Runs that were fitted.
+    pub fitted_runs: usize,
+    /// Runs that were held out.
+    pub held_out_runs: usize,
     /// Effects switched on.
     pub effects: Vec<String>,
     /// Algorithm.
@@ -120,6 +126,9 @@ impl FinishedCalibration {
             .collect();
         Some(CalibrationSummary {
             calibration: self.row.id,
+            experiment: self.row.experiment,
+            fitted_runs: self.spec.fit_runs.len(),
+            held_out_runs: self.spec.holdout_runs.len(),
             effects: self.effects(),
             algorithm: self.spec.algorithm.algorithm_name(),
             normal_approximation: self.approximated.is_some(),

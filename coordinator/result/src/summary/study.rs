@@ -109,6 +109,20 @@ mod tests {
     use crate::fixture;
 
     #[test]
+    fn a_line_of_the_ledger_says_over_which_runs_it_is() {
+        let mut study = fixture::grown();
+        study.extensions[0] = fixture::with_held_out_runs(5, 0.5);
+        study.extensions[0].row.experiment += 1;
+        let lines = study.summary().calibrations;
+        let runs: Vec<_> = lines
+            .iter()
+            .map(|line| (line.experiment, line.fitted_runs, line.held_out_runs))
+            .collect();
+        let first = study.lead.row.experiment;
+        assert_eq!(runs, [(first, 3, 1), (first + 1, 4, 5)]);
+    }
+
+    #[test]
     fn a_sample_is_in_the_ledger_and_a_search_among_the_point_estimates() {
         let summary = fixture::study().summary();
         let algorithms: Vec<&str> = summary.calibrations.iter().map(|c| c.algorithm.name()).collect();

@@ -65,6 +65,7 @@ impl FinishedCalibration {
                     q95: p.and_then(|p| p.interval).map(|[_, q95]| q95),
                     noise_sd: p.and_then(|p| p.noise_sd),
                     residual_sigma: p.and_then(|p| p.noise_sd.map(|sd| (measured - p.mean) / sd)),
+                    error_sd: p.and_then(|p| p.error_sd),
                     corrected: corrected.map(|own| own.mean),
                     corrected_q05: corrected_interval.map(|[q05, _]| q05),
                     corrected_q95: corrected_interval.map(|[_, q95]| q95),
@@ -117,5 +118,36 @@ impl FinishedCalibration {
             of: draws.len(),
             reason: refused.first()?.to_string(),
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use statistics::Discrepancy;
+
+    use super::*;
+    use crate::fixture;
+
+    #[test]
+    fn all_errors_together_are_the_noise_alone_without_a_discrepancy_and_wider_with_one() {
+        let plain = fixture::calibration();
+        let mut inadequate = fixture::calibration();
+        inadequate.spec.likelihood_settings.discrepancies = [Discrepancy::Known(3.0); 4];
+        let of = |calibration: &FinishedCalibration| -> Vec<(Channel, f64, f64, f64)> {
+            let rows = calibration.comparison().rows.iter();
+            rows.filter_map(|row| Some((row.channel, row.noise_sd?, row.error_sd?, row.residual_sigma?)))
+                .collect()
+        };
+        let (alone, with) = (of(&plain), of(&inadequate));
+        assert!(!alone.is_empty() && alone.len() == with.len());
+        for ((channel, noise, all, residual), (_, _, wider, same)) in alone.into_iter().zip(with) {
+            match channel {
+                Channel::DrawbarPull => assert!((all - noise).abs() < 1e-12, "declared: {noise} {all}"),
+                // One is the mean over the draws, the other their root mean square.
+                _ => assert!(all >= noise, "inferred: {noise} {all}"),
+            }
+            assert!((wider / all - 10.0_f64.sqrt()).abs() < 1e-12, "{all} {wider}");
+            assert_eq!(residual.to_bits(), same.to_bits());
+        }
     }
 }

@@ -9,6 +9,7 @@ use super::fixed_sigma::FixedSigmas;
 use super::row::rows_of;
 use crate::finished_calibration::FinishedCalibration;
 use crate::study::Study;
+use crate::words::number;
 
 /// Growth of an error that counts as worse: below it, draws and runs scatter.
 const WORSE: f64 = 1.05;
@@ -82,14 +83,17 @@ impl Study {
     }
 
     fn model_words(&self, calibration: &FinishedCalibration) -> String {
-        let parts = self.parts(calibration);
+        let parts = [calibration.spec.effects_on_wheels(), self.freed(calibration)].concat();
         let model = match parts.as_slice() {
             [] => "base".to_owned(),
             parts => format!("with {}", parts.join(", ")),
         };
         match calibration.row.experiment == self.lead.row.experiment {
             true => model,
-            false => format!("{model}, {} fitted runs", calibration.spec.fit_runs.len()),
+            false => {
+                let runs = number::count(calibration.spec.fit_runs.len(), "fitted run");
+                format!("{model}, {runs}")
+            }
         }
     }
 }

@@ -22,6 +22,9 @@ pub struct Predictive {
     pub interval: Option<[f64; 2]>,
     /// Noise standard deviation: declared, its posterior mean, or fitted.
     pub noise_sd: Option<f64>,
+    /// Scale of all errors about the model's value, its root mean square over the draws: noise, scatter of the soil and
+    /// discrepancy. Of normal errors it is their standard deviation.
+    pub error_sd: Option<f64>,
 }
 
 /// Source of the noise sd of a channel of a run.
@@ -73,7 +76,17 @@ pub(crate) fn predictive(
             .is_none()
             .then(|| [0.05, 0.95].map(|p| quantile(&components, law, p))),
         noise_sd: inference::diagnostics::mean(&sds),
+        error_sd: error_sd(&components),
     })
+}
+
+/// The root mean square of the scales; `None` where one of them is not known.
+fn error_sd(components: &[Component]) -> Option<f64> {
+    let squares: Option<Vec<(f64, f64)>> = components
+        .iter()
+        .map(|c| Some((c.scale?.powi(2), c.weight)))
+        .collect();
+    weighted_mean(&squares?).map(f64::sqrt)
 }
 
 /// What a final draw says of a new measurement.
@@ -267,6 +280,19 @@ pub(super) fn accepted(
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn all_errors_together_are_the_root_mean_square_over_draws_and_discrepancies() {
+        let component = |scale, weight| Component {
+            mean: 7.0,
+            scale,
+            weight,
+        };
+        let both = [component(Some(3.0), 0.25), component(Some(5.0), 0.75)];
+        assert!((error_sd(&both).unwrap() - 21.0_f64.sqrt()).abs() < 1e-15);
+        assert_eq!(error_sd(&[component(Some(3.0), 1.0), component(None, 1.0)]), None);
+        assert_eq!(error_sd(&[]), None);
+    }
 
     #[test]
     fn independent_errors_add_their_squares_and_none_changes_nothing() {

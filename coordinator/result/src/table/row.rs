@@ -44,6 +44,9 @@ pub struct ComparisonRow {
     pub noise_sd: Option<f64>,
     /// (measured - predicted) / noise sd.
     pub residual_sigma: Option<f64>,
+    /// Standard deviation of all errors that the calibration assumes or infers: noise, scatter of the soil and discrepancy (of Student's
+    /// t the scale); what the diagnosis judges residuals by. Null where no noise is known.
+    pub error_sd: Option<f64>,
     /// The prediction with the discrepancy of the model that the fitted conditions show, of a fitted run the other conditions; `None`
     /// where they show none.
     pub corrected: Option<f64>,

@@ -1,0 +1,56 @@
+// The lines of the error ledger: which of them compare, and what each has beyond the one before it.
+
+/**
+ * @typedef {{ experiment: number, fitted_runs: number, held_out_runs: number }} Runs
+ * @typedef {{ id: number, name: string, effects: string[], line: any & Runs }} LedgerLine
+ */
+
+/**
+ * The lines that were calibrated on the same runs, in their order: errors and evidence of others do not compare.
+ * @template {LedgerLine} L
+ * @param {L[]} lines
+ * @returns {L[][]}
+ */
+export function dataSets(lines) {
+  /** @type {Map<number, L[]>} */
+  const sets = new Map();
+  for (const own of lines) sets.set(own.line.experiment, [...(sets.get(own.line.experiment) ?? []), own]);
+  return [...sets.values()];
+}
+
+/** Of each line, the number of changes of the runs before it: neighbours with the same number compare. */
+export function changesOfRuns(/** @type {LedgerLine[]} */ lines) {
+  let changes = 0;
+  return lines.map(({ line }, k) => (k > 0 && line.experiment !== lines[k - 1].line.experiment ? (changes += 1) : changes));
+}
+
+/** `28 fitted runs, 12 held out`. */
+export function runWords(/** @type {Runs} */ { fitted_runs, held_out_runs }) {
+  const fitted = `${fitted_runs} fitted ${fitted_runs === 1 ? "run" : "runs"}`;
+  return held_out_runs === 0 ? fitted : `${fitted}, ${held_out_runs} held out`;
+}
+
+/**
+ * What a line has that the line before it has not: `+ slip_sinkage`, `+ 1 run`; its model where that dropped something, its name where it
+ * differs in nothing.
+ * @param {LedgerLine | undefined} before
+ * @param {LedgerLine} own
+ * @returns {string[]} the parts
+ */
+export function step(before, own) {
+  if (!before) return [own.name];
+  const added = own.effects.filter((effect) => !before.effects.includes(effect)).map((effect) => `+ ${effect}`);
+  const isShorter = before.effects.some((effect) => !own.effects.includes(effect));
+  const whole = own.effects.length === 0 ? "base" : `with ${own.effects.join(", ")}`;
+  const parts = [...(isShorter ? [whole] : added), ...runStep(before.line, own.line)];
+  return parts.length === 0 ? [own.name] : parts;
+}
+
+/** How the runs changed. */
+function runStep(/** @type {Runs} */ before, /** @type {Runs} */ now) {
+  if (before.experiment === now.experiment) return [];
+  const more = now.fitted_runs + now.held_out_runs - before.fitted_runs - before.held_out_runs;
+  if (more === 0) return ["other runs"];
+  const count = Math.abs(more);
+  return [`${more > 0 ? "+" : "−"} ${count} ${count === 1 ? "run" : "runs"}`];
+}
