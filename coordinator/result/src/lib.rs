@@ -12,10 +12,9 @@
 //! - [`validation`]: the levels of a factor, each predicted from the others.
 //! - `overview`, `study_member`: a study as the page shows it. `summary`: `summary.json`. `discovery`: its block on missing effects.
 //! - [`figure`]: the numbers of the source paper's figures.
-//! - [`report`]: one document with everything. [`terminal`]: text for a terminal.
 //! - `provenance`: how a calibration came about, and what it reached in sentences.
 //! - [`story`]: what is wrong, what is missing, what to do next.
-//! - [`report`]: the HTML page. [`terminal`]: text for a terminal.
+//! - [`report`]: one HTML document with everything. [`terminal`]: text for a terminal.
 //! - `words`: numbers, units, probabilities and citations as people read them.
 
 mod diagnosis;
