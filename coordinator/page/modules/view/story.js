@@ -26,7 +26,7 @@ export function Story({ study, model, reload }) {
     ${study.models && html`<p class=${`verdict ${study.models.none_of_these ? "doubt" : ""}`}>${sentence(signed(study.models.text))}</p>`}
     <div class="three">
       <section class="card"><h2>What the model gets wrong</h2>
-        <p class=${story.wrong.channels.every((/** @type {any} */ c) => c.is_within_noise) ? "calm" : "alarm"}>${sentence(story.wrong.text)}</p>
+        <p class=${mood(story.wrong.channels)}>${sentence(story.wrong.text)}</p>
         <p class="note"><a href=${to("failures")}>Where it fails</a></p></section>
       <section class="card"><h2>What is missing</h2>
         <p>${sentence(story.missing.text)}</p>
@@ -40,6 +40,12 @@ export function Story({ study, model, reload }) {
     ${study.models && html`<${ModelTable} comparison=${study.models} />`}
     ${lines.length > 0 && html`<h2>How the error falls</h2><${LedgerCharts} study=${study} lines=${lines} />`}
     <${Flags} study=${study} />`;
+}
+
+/** Alarm where an error is no noise, calm where each is, neither where the noise of a channel is not known. */
+function mood(/** @type {any[]} */ channels) {
+  if (channels.every((c) => c.is_within_noise)) return "calm";
+  return channels.some((c) => c.is_judged && !c.is_within_noise) || channels.length === 0 ? "alarm" : "";
 }
 
 const sentence = (/** @type {string} */ text) => capital(/[.!?]$/.test(text) ? text : `${text}.`);

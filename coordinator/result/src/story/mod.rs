@@ -14,7 +14,7 @@ use crate::study::Study;
 
 pub use missing::{AddedEffect, Alternative, Missing, NamedEffect};
 pub use next::{EffectFile, Next, NextStep, StepKind};
-pub use wrong::{ChannelFailure, Wrong};
+pub use wrong::{BesideInterpolation, ChannelFailure, Wrong};
 
 /// The story of a calibration within its study.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
