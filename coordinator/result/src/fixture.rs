@@ -251,6 +251,7 @@ pub(crate) fn grown() -> Study {
         effects: Vec::new(),
         searches,
         message: None,
+        rejections: None,
     };
     Study {
         members: vec![

@@ -10,6 +10,7 @@ use crate::flag::kind::{Flag, FlagKind};
 use crate::model_comparison::ModelComparison;
 use crate::story::Story;
 use crate::study::Study;
+use crate::study_failure::StudyFailure;
 use crate::study_member::StudyMember;
 use crate::summary::calibration::CalibrationSummary;
 use crate::summary::error::{CombinedSummary, ErrorSummary};
@@ -55,6 +56,8 @@ pub struct StudyOverview {
     pub flags: Vec<StudyFlag>,
     /// The verdict of the search of the current model, else of the last search; null where none is finished.
     pub verdict: Option<StudyVerdict>,
+    /// Why the study failed and what to do; null where no member failed.
+    pub failure: Option<StudyFailure>,
 }
 
 /// A member of a study with its story.
@@ -123,6 +126,8 @@ pub struct StudyListItem {
     pub progress: Option<Progress>,
     /// The verdict of the search of the current model, else of the last search; null where none is finished.
     pub verdict: Option<StudyVerdict>,
+    /// Why it failed and what to do; null where no member failed.
+    pub failure: Option<StudyFailure>,
 }
 
 impl StudyOverview {
@@ -138,6 +143,7 @@ impl StudyOverview {
             archived: false,
             model_kind,
             current: None,
+            failure: StudyFailure::of(members.iter()),
             calibrations: members.iter().map(|m| m.id).collect(),
             members: members
                 .into_iter()
@@ -176,6 +182,7 @@ impl StudyOverview {
             error: current.map(|line| line.error.clone()),
             progress,
             verdict: self.verdict.clone(),
+            failure: self.failure.clone(),
         }
     }
 }

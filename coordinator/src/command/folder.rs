@@ -169,6 +169,9 @@ impl Folder {
             self.write_results(row.id, &rounds).await?;
             say(&self.results(row.id, &rounds, details).await?)?;
         }
+        if let Some(failure) = self.service.study_overview(study).await?.failure {
+            bail!(failure.text);
+        }
         match rows.iter().find(|row| row.state != CalibrationState::Finished) {
             None => Ok(()),
             Some(row) => bail!(

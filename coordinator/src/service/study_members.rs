@@ -7,7 +7,8 @@ use super::study_step::is_search_of;
 use crate::store::Reader;
 use job::{AlgorithmSettings, is_discovery};
 use record::CalibrationRow;
-use result::{MemberKind, StudyMember};
+use result::{MemberKind, Rejections, StudyMember};
+use shared::api::CalibrationState;
 
 /// The members of a study, finished or not, oldest first.
 ///
@@ -37,7 +38,8 @@ pub(super) async fn study_members(
             submitted.extend(parts.iter().cloned());
         }
         let effects = parts.into_iter().filter(|part| !submitted.contains(part));
-        members.push(member(row, kind, effects.collect(), None));
+        let member = member(row, kind, effects.collect(), None);
+        members.push(with_rejections(reader, member).await?);
     }
     for row in rows.iter().filter(|row| is_discovery(&row.job.toml)) {
         let searches = searched_by(row, rows)?;
@@ -68,7 +70,20 @@ fn member(
         effects,
         searches,
         message: row.message.clone(),
+        rejections: None,
     }
+}
+
+/// The member; with what the model rejected where it failed.
+async fn with_rejections(reader: &Reader, member: StudyMember) -> Result<StudyMember, ServiceError> {
+    let rejections = match member.state {
+        CalibrationState::Failed => Some(Rejections {
+            kinds: reader.rejections(member.id).await?,
+            first: reader.first_rejection(member.id).await?,
+        }),
+        _ => None,
+    };
+    Ok(StudyMember { rejections, ..member })
 }
 
 fn kind_of(algorithm: &AlgorithmSettings) -> MemberKind {

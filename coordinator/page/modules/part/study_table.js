@@ -2,7 +2,7 @@
 
 import { html } from "../html.js";
 import { address } from "../route.js";
-import { CHANNELS, digits, short, shown, titled, unitOf, words } from "../words/quantity.js";
+import { capital, CHANNELS, digits, short, shown, titled, unitOf, words } from "../words/quantity.js";
 import { progressWords, verdictWords } from "../words/state.js";
 import { Table } from "./table.js";
 
@@ -15,6 +15,7 @@ const pair = (/** @type {any} */ error, /** @type {(use: any) => number | null |
 
 function State(/** @type {{ study: any }} */ { study }) {
   return html`<span class=${`state ${study.state}`}>${study.state}</span>
+    ${study.failure && html`<div class="note">${capital(study.failure.reason)}. <b>What to do:</b> ${study.failure.advice}.</div>`}
     ${study.progress && html`<div class="note">${progressWords(study.progress)}</div>`}`;
 }
 
@@ -22,7 +23,7 @@ function State(/** @type {{ study: any }} */ { study }) {
 export function StudyTable({ studies }) {
   const channels = CHANNELS.filter((channel) => studies.some((s) => s.error?.fit?.[channel] ?? s.error?.holdout?.[channel]));
   const rows = [...studies].sort((a, b) => b.id - a.id).map((study) => [
-    html`<a href=${address(["studies", study.id, study.state === "finished" ? "story" : "live"])}>${study.name ?? `study ${study.id}`}</a>
+    html`<a href=${address(["studies", study.id, ["finished", "failed"].includes(study.state) ? "story" : "live"])}>${study.name ?? `study ${study.id}`}</a>
       <div class="note">study ${study.id}${study.archived ? ", archived" : ""}</div>`,
     html`<${State} study=${study} />`,
     html`${words(study.model_kind ?? "unknown")}${study.effects.length > 0 && html`<div class="note">with ${study.effects.map(words).join(", ")}</div>`}`,

@@ -17,12 +17,14 @@ export function Story({ study, model, reload }) {
   const story = model?.story;
   const lines = ledgerLines(study);
   if (!story) {
-    return html`<p class="empty">Nothing is finished yet: the story begins with the first calibration. <a href=${address(["studies", study.id, "live"])}>Live</a> shows how far it is.</p>`;
+    return html`${study.failure ? html`<${StudyFailure} study=${study} />`
+      : html`<p class="empty">Nothing is finished yet: the story begins with the first calibration. <a href=${address(["studies", study.id, "live"])}>Live</a> shows how far it is.</p>`}`;
   }
   // What it does next by itself is no advice.
   const isAtWork = !isReport && ["queued", "running"].includes(study.state);
   const to = (/** @type {string} */ view) => (isReport ? `#${view}` : address(["studies", study.id, view], { model: model.id }));
   return html`
+    <${StudyFailure} study=${study} />
     ${study.models && html`<p class=${`verdict ${study.models.none_of_these ? "doubt" : ""}`}>${sentence(signed(study.models.text))}</p>`}
     <div class="three">
       <section class="card"><h2>What the model gets wrong</h2>
@@ -46,6 +48,14 @@ export function Story({ study, model, reload }) {
 function mood(/** @type {any[]} */ channels) {
   if (channels.every((c) => c.is_within_noise)) return "calm";
   return channels.some((c) => c.is_judged && !c.is_within_noise) || channels.length === 0 ? "alarm" : "";
+}
+
+/** Why a study failed, and what to do. */
+function StudyFailure(/** @type {{ study: any }} */ { study }) {
+  if (!study.failure) return null;
+  return html`<section class="card" role="alert"><h2>${study.members.length > 1 ? `Calibration ${study.failure.calibration} failed` : "The calibration failed"}</h2>
+    <p class="error">${sentence(study.failure.reason)}</p>
+    <p><b>What to do:</b> ${sentence(study.failure.advice)}</p></section>`;
 }
 
 const sentence = (/** @type {string} */ text) => capital(/[.!?]$/.test(text) ? text : `${text}.`);
