@@ -6,6 +6,7 @@ mod bad_input;
 mod bevameter;
 mod bit_identity;
 mod chaos;
+mod class;
 mod conformance;
 mod diagnostics;
 mod discovery;

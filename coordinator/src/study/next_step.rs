@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use shared::api::CalibrationState;
 
 use job::{Apply, DiscoverySettings};
-use record::effect_of;
+use record::parts_of;
 use record::{Discovery, Extension};
 
 /// A calibration of a study.
@@ -101,8 +101,10 @@ pub fn next_step(settings: DiscoverySettings, models: usize, members: &[StudyMem
         .collect();
     let added = has.difference(&ledger[0].1).count();
     if let Some(extension) = &found.extension {
-        let effect = effect_of(extension);
-        if added < settings.max_effects && !dropped.contains(&*effect) && !has.contains(&*effect) {
+        let parts = parts_of(extension);
+        let is_dropped = parts.iter().any(|part| dropped.contains(part.as_str()));
+        let is_there = parts.iter().all(|part| has.contains(part.as_str()));
+        if added < settings.max_effects && !is_dropped && !is_there {
             return Some(StudyStep::Extend(*last, extension.clone()));
         }
     }
@@ -121,6 +123,8 @@ pub fn next_step(settings: DiscoverySettings, models: usize, members: &[StudyMem
 
 #[cfg(test)]
 mod tests {
+    use record::effect_of;
+
     use super::*;
 
     fn ledger(id: i64, effects: &[&str], search: Option<i64>) -> StudyMember {
@@ -275,6 +279,16 @@ mod tests {
         // the user insists
         members.extend([ledger(9, &["a", "b"], Some(10)), search(10, None, &["a"])]);
         assert_eq!(step(Apply::Auto, &members), None, "and is not dropped twice");
+    }
+
+    #[test]
+    fn an_effect_on_the_nodes_is_known_again_by_its_effect_and_its_setting() {
+        let named = Some("janosi_hanamoto_node");
+        let has = ["displacement_node", "janosi_hanamoto"];
+        let mut members = vec![ledger(1, &[], Some(2)), search(2, named, &[])];
+        assert_eq!(step(Apply::Auto, &members), extend(1, "janosi_hanamoto_node"));
+        members.extend([ledger(3, &has, Some(4)), search(4, named, &[])]);
+        assert_eq!(step(Apply::Auto, &members), None, "the model has it");
     }
 
     #[test]

@@ -19,6 +19,12 @@ function State(/** @type {{ study: any }} */ { study }) {
     ${study.progress && html`<div class="note">${progressWords(study.progress)}</div>`}`;
 }
 
+/** What the search of the current model found, and what it leaves open. */
+function Verdict(/** @type {{ study: any }} */ { study }) {
+  if (study.state !== "finished" && !study.verdict) return "";
+  return html`${verdictWords(study.verdict?.verdict ?? null, study.effects)}${study.verdict?.open && html`<div class="note">${study.verdict.open}</div>`}`;
+}
+
 /** @param {{ studies: any[] }} properties */
 export function StudyTable({ studies }) {
   const channels = CHANNELS.filter((channel) => studies.some((s) => s.error?.fit?.[channel] ?? s.error?.holdout?.[channel]));
@@ -30,7 +36,7 @@ export function StudyTable({ studies }) {
     study.error && html`${["fit", "holdout"].filter((use) => study.error[use]).map((use) => html`<div class="whole">${use === "fit" ? "fit" : "held out"}</div>`)}`,
     ...channels.map((channel) => pair(study.error, (use) => use[channel]?.rmse, shown(unitOf(channel)).scale)),
     pair(study.error, (use) => use.all?.rmse_fixed_sigma),
-    study.state === "finished" || study.verdict ? verdictWords(study.verdict?.verdict ?? null) : "",
+    html`<${Verdict} study=${study} />`,
   ]);
   return html`
     <p class="note">Errors are root mean squares of prediction minus measurement of the current model; 1 × noise is as good as the measurements allow.</p>

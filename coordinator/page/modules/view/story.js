@@ -9,7 +9,7 @@ import { ModelTable } from "../part/model_table.js";
 import { isReport } from "../rest/answers.js";
 import { discover, extend } from "../rest/routes.js";
 import { address } from "../route.js";
-import { capital, probability } from "../words/quantity.js";
+import { capital } from "../words/quantity.js";
 import { ledgerLines } from "./errors.js";
 
 /** @param {{ study: any, model: any, reload?: () => void }} properties */
@@ -32,7 +32,6 @@ export function Story({ study, model, reload }) {
         <p class="note"><a href=${to("failures")}>Where it fails</a></p></section>
       <section class="card"><h2>What is missing</h2>
         <p>${sentence(story.missing.text)}</p>
-        ${story.missing.verdict !== "nothing_detectable" && story.missing.alternatives.length > 0 && html`<p class="note">It could also be ${story.missing.alternatives.map((/** @type {any} */ a) => `${a.name} (${probability(a.probability)})`).join(", ")}.</p>`}
         <p class="note"><a href=${to("effects")}>All explanations</a></p></section>
       <section class="card"><h2>What to do next</h2>
         ${isAtWork && html`<p>The program is at work on this study: <a href=${to("live")}>Live</a> shows how far it is.</p>`}
@@ -86,7 +85,7 @@ function Step(/** @type {{ step: any, study: any, model: any, reload?: () => voi
     predict: () => (study.current !== model.id
       ? html`<a class="button" href=${address(["studies", study.id, "story"], { model: study.current })}>Go to the current model</a>`
       : html`<a class="button" href=${address(["studies", study.id, "posterior"], { model: model.id })}>Open the posterior</a>`),
-    make_runs: () => html`<a class="button" href=${address(["studies", study.id, "effects"])}>See the runs, and add them</a>`,
+    make_runs: () => html`<a class="button" href=${address(["studies", study.id, "effects"], { model: step.calibration })}>See the runs, and add them</a>`,
   });
   const button = !isReport && model && buttons[step.kind];
   return html`${sentence(step.text)} ${button ? html`<span class="actions">${button()}</span>` : step.command && html`<code>coordinator ${step.command}${isReport ? " --out ." : ""}</code>`}<${Failure} error=${failure} />`;
