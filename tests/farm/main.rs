@@ -12,6 +12,7 @@ mod diagnostics;
 mod discovery;
 mod effects;
 mod end_to_end;
+mod first_run;
 mod forward;
 mod grousers;
 mod histories;
