@@ -291,7 +291,10 @@ fn a_folder_grows_and_its_run_knows_it_again() {
         again.stderr
     );
     let enlarged = go(&["add-runs", "2", &runs.display().to_string()]).success();
-    assert!(enlarged.contains("(42 runs)"), "{enlarged}");
+    assert!(
+        enlarged.contains("with torque_gain, 25 fitted runs"),
+        "{enlarged}"
+    );
     assert_eq!(
         go(&["run", &path]).success(),
         enlarged,

@@ -128,7 +128,7 @@ fn a_run_prints_the_whole_study_and_knows_its_folder_again() {
     let go = || coordinator(["run", &path, "--out", &out.display().to_string()]);
     let printed = run(go()).success();
     for words in [
-        "log-evidence",
+        "root mean sq. error",
         "lm stopped by",
         "cma-es stopped by",
         "\nwrong:",

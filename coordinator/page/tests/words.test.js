@@ -5,6 +5,7 @@ import { table } from "../modules/chart/download.js";
 import { groups, levels, levelWords } from "../modules/words/group.js";
 import { digits, duration, meanAndSd, numberOf, parameterName, probability, shown, size, tickWords, titled } from "../modules/words/quantity.js";
 import { meanErrorSd, residualSds } from "../modules/words/residual.js";
+import { verdictWords } from "../modules/words/state.js";
 
 test("a number has its significant digits, and an exponent only where it needs one", () => {
   assert.equal(digits(0.00933), "0.00933");
@@ -126,4 +127,11 @@ test("a typed number has a point or a comma", () => {
   assert.equal(numberOf("−3.5"), -3.5);
   assert.equal(numberOf("1,234.5"), null);
   assert.equal(numberOf(""), null);
+});
+
+test("what a study has found and added is not said to be nothing", () => {
+  assert.equal(verdictWords("nothing_detectable"), "nothing detectable is missing");
+  assert.equal(verdictWords("nothing_detectable", ["slip_sinkage"]), "nothing further is detectable");
+  assert.equal(verdictWords("class", ["slip_sinkage"]), "an effect is missing: one of a class");
+  assert.equal(verdictWords(null), "no search yet");
 });

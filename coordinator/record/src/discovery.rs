@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
-use job::effect_name;
+use job::{EffectOnNodes, effect_name};
 use shared::channel::Channel;
 
 /// Name of the explanation that nothing is missing.
@@ -360,5 +360,18 @@ pub fn effect_of(extension: &Extension) -> String {
     match extension {
         Extension::Effect(effect) | Extension::OnWheel { effect, .. } => effect.clone(),
         Extension::File { name, text } => effect_name(text).unwrap_or_else(|| name.clone()),
+    }
+}
+
+/// What a model has more by an extension: its effect, and with an effect of the displacement on the nodes the setting too.
+pub fn parts_of(extension: &Extension) -> Vec<String> {
+    parts_of_effect(&effect_of(extension))
+}
+
+/// The same of the name of an effect.
+pub fn parts_of_effect(effect: &str) -> Vec<String> {
+    match EffectOnNodes::find(effect) {
+        Some(on_nodes) => vec![on_nodes.effect.name.clone(), on_nodes.setting.name.to_owned()],
+        None => vec![effect.to_owned()],
     }
 }

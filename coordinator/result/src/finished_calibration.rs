@@ -29,7 +29,7 @@ pub struct FinishedCalibration {
     pub estimate: Option<EstimateRow>,
     /// The fit about which the draws are those of a normal approximation; `None` where the posterior was sampled.
     pub approximated: Option<EstimateRow>,
-    /// The equally weighted draws of the posterior; none of a fit.
+    /// The equally weighted draws of the posterior, of a fit those of its normal approximation; empty of a fit without one.
     pub posterior: Vec<Sample>,
     /// The draws from the prior, then the populations at the end of the stages before the last; none of a fit.
     pub populations: Vec<Vec<Sample>>,

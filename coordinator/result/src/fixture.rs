@@ -6,8 +6,8 @@ use inference::evolution::{EvolutionSettings, GaSettings};
 use inference::point_estimate::{Generation, StopReason};
 use job::{AlgorithmSettings, Spec};
 use record::{
-    CalibrationRow, EstimateRow, Outside, Prediction, PriorDraw, RejectionReason, Repeats, Role, Sample,
-    StageRow, Verified,
+    CalibrationRow, Discovery, EstimateRow, Extension, JudgedEffect, NONE, Outside, Prediction, PriorDraw,
+    RejectionReason, Repeats, Role, Sample, StageRow, Verdict, Verified,
 };
 use shared::api::CalibrationState;
 use shared::experiment::Campaign;
@@ -251,6 +251,7 @@ pub(crate) fn grown() -> Study {
         effects: Vec::new(),
         searches,
         message: None,
+        rejections: None,
     };
     Study {
         members: vec![
@@ -267,13 +268,83 @@ pub(crate) fn grown() -> Study {
     }
 }
 
+/// A study whose search found a class of two effects, extended by one of them; the extended model was searched again, and nothing was
+/// found.
+pub(crate) fn of_a_class() -> Study {
+    let mut study = grown();
+    let extension = &mut study.extensions[0];
+    *extension = build_with("effects = [\"slip_sinkage\"]\n", &RUNS.replace("LAST", "holdout"));
+    extension.row.id = 3;
+    extension.row.log_evidence = Some(-20.0);
+    let record = &mut study.rounds[0].record;
+    record.verdict = Verdict::Class;
+    record.extension = None;
+    record.text = "one of slip_sinkage (0.68), slip_softened_pressure (0.30) is missing".into();
+    for (effect, (name, probability)) in record.effects.iter_mut().zip([
+        ("slip_sinkage", 0.68),
+        ("slip_softened_pressure", 0.30),
+        ("bulldozing", 0.02),
+        (NONE, 0.0),
+    ]) {
+        (effect.name, effect.probability) = (name.into(), probability);
+        effect.in_credible_set = probability > 0.1;
+        effect.class = u32::from(name != NONE) + u32::from(probability < 0.1 && name != NONE);
+    }
+    let after = Discovery {
+        given: vec!["slip_sinkage".into()],
+        verdict: Verdict::NothingDetectable,
+        next_runs: Vec::new(),
+        other_tests: Vec::new(),
+        effects: vec![JudgedEffect {
+            probability: 0.9,
+            ..record.effects[3].clone()
+        }],
+        ..record.clone()
+    };
+    study.rounds.push(DiscoveryRound {
+        calibration: 3,
+        record: after,
+    });
+    study
+}
+
+/// A study of the model of a rolling wheel, extended by an effect of the displacement that is kept on the nodes of the soil, as a search
+/// named it.
+pub(crate) fn on_the_nodes() -> Study {
+    let rolling = |more: &str| {
+        let job = JOB.replace("\"quasi_static\"\n", &format!("\"scm\"\n{more}"));
+        of_job(&job, &RUNS.replace("LAST", "holdout"))
+    };
+    let mut extension = rolling("displacement = \"node\"\neffects = [\"janosi_hanamoto\"]\n");
+    extension.row.id = 3;
+    let mut study = Study {
+        lead: rolling(""),
+        extensions: vec![extension],
+        ..grown()
+    };
+    let record = &mut study.rounds[0].record;
+    record.extension = Some(Extension::Effect("janosi_hanamoto_node".into()));
+    record.effects[0].name = "janosi_hanamoto_node".into();
+    study
+}
+
 fn build(runs: &str) -> FinishedCalibration {
+    build_with("", runs)
+}
+
+/// - `more`: lines under `[model]`.
+fn build_with(more: &str, runs: &str) -> FinishedCalibration {
+    let kind = "kind = \"quasi_static\"\n";
+    of_job(&JOB.replace(kind, &format!("{kind}{more}")), runs)
+}
+
+fn of_job(job: &str, runs: &str) -> FinishedCalibration {
     let files = FileSet {
         toml: EXPERIMENT.into(),
         files: BTreeMap::from([("runs.csv".into(), runs.to_owned())]),
     };
     let job = FileSet {
-        toml: JOB.into(),
+        toml: job.into(),
         files: BTreeMap::new(),
     };
     of_files(job, &files)

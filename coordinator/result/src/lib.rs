@@ -10,12 +10,12 @@
 //!   `diagnosis`: both, computed once.
 //! - `model_comparison`: the models that a job compares, by evidence and by prediction.
 //! - [`validation`]: the levels of a factor, each predicted from the others.
-//! - `overview`, `study_member`: a study as the page shows it. `summary`: `summary.json`. `discovery`: its block on missing effects.
+//! - `overview`, `study_member`: a study as the page shows it. `study_failure`: why it failed.
+//! - `summary`: `summary.json`. `discovery`: its block on missing effects.
 //! - [`figure`]: the numbers of the source paper's figures.
-//! - [`report`]: one document with everything. [`terminal`]: text for a terminal.
 //! - `provenance`: how a calibration came about, and what it reached in sentences.
 //! - [`story`]: what is wrong, what is missing, what to do next.
-//! - [`report`]: the HTML page. [`terminal`]: text for a terminal.
+//! - [`report`]: one HTML document with everything. [`terminal`]: text for a terminal.
 //! - `words`: numbers, units, probabilities and citations as people read them.
 
 mod diagnosis;
@@ -32,6 +32,7 @@ mod provenance;
 pub mod report;
 pub mod story;
 mod study;
+mod study_failure;
 mod study_file;
 mod study_member;
 mod summary;
@@ -51,8 +52,9 @@ pub use overview::{MemberOverview, StudyFlag, StudyListItem, StudyOverview, Stud
 pub use provenance::Provenance;
 pub use story::Story;
 pub use study::Study;
+pub use study_failure::StudyFailure;
 pub use study_file::StudyFile;
-pub use study_member::StudyMember;
+pub use study_member::{Rejections, StudyMember};
 pub use summary::calibration::CalibrationSummary;
 pub use summary::parameter::ParameterSummary;
 pub use summary::point_estimate::PointEstimate;

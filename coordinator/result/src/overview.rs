@@ -8,8 +8,9 @@ use shared::api::{CalibrationState, Progress};
 use crate::diagnostics::trends::TrendVariable;
 use crate::flag::kind::{Flag, FlagKind};
 use crate::model_comparison::ModelComparison;
-use crate::story::Story;
+use crate::story::{AddedEffect, Story, added};
 use crate::study::Study;
+use crate::study_failure::StudyFailure;
 use crate::study_member::StudyMember;
 use crate::summary::calibration::CalibrationSummary;
 use crate::summary::error::{CombinedSummary, ErrorSummary};
@@ -55,6 +56,8 @@ pub struct StudyOverview {
     pub flags: Vec<StudyFlag>,
     /// The verdict of the search of the current model, else of the last search; null where none is finished.
     pub verdict: Option<StudyVerdict>,
+    /// Why the study failed and what to do; null where no member failed.
+    pub failure: Option<StudyFailure>,
 }
 
 /// A member of a study with its story.
@@ -94,8 +97,10 @@ pub struct StudyVerdict {
     pub calibration: i64,
     /// The verdict.
     pub verdict: Verdict,
-    /// The verdict in a sentence.
+    /// The verdict in a sentence, with what it leaves open.
     pub text: String,
+    /// What the data do not exclude in place of the effects that were added, and the run that would tell; null where that is nothing.
+    pub open: Option<String>,
 }
 
 /// A study in a list.
@@ -123,6 +128,8 @@ pub struct StudyListItem {
     pub progress: Option<Progress>,
     /// The verdict of the search of the current model, else of the last search; null where none is finished.
     pub verdict: Option<StudyVerdict>,
+    /// Why it failed and what to do; null where no member failed.
+    pub failure: Option<StudyFailure>,
 }
 
 impl StudyOverview {
@@ -138,6 +145,7 @@ impl StudyOverview {
             archived: false,
             model_kind,
             current: None,
+            failure: StudyFailure::of(members.iter()),
             calibrations: members.iter().map(|m| m.id).collect(),
             members: members
                 .into_iter()
@@ -176,6 +184,7 @@ impl StudyOverview {
             error: current.map(|line| line.error.clone()),
             progress,
             verdict: self.verdict.clone(),
+            failure: self.failure.clone(),
         }
     }
 }
@@ -185,10 +194,6 @@ impl Study {
     pub fn overview(&self) -> StudyOverview {
         let sigmas = self.fixed_sigmas();
         let current = self.current().map(|calibration| calibration.row.id);
-        let of_current = self
-            .rounds
-            .iter()
-            .find(|round| Some(round.calibration) == current);
         let kind = self.lead.spec.model.kind.name().to_owned();
         let (id, experiment) = (self.lead.row.study, self.lead.row.experiment);
         StudyOverview {
@@ -211,11 +216,7 @@ impl Study {
                 .into_iter()
                 .map(StudyFlag::from)
                 .collect(),
-            verdict: of_current.or(self.rounds.last()).map(|round| StudyVerdict {
-                calibration: round.calibration,
-                verdict: round.record.verdict,
-                text: round.record.text.clone(),
-            }),
+            verdict: self.verdict(),
             members: self.members_with_stories(),
             ..StudyOverview::begun(id, experiment, Some(kind), self.members.clone())
         }
@@ -223,6 +224,28 @@ impl Study {
 }
 
 impl Study {
+    /// The verdict of the last search of the current model, else of the last search, with what was left open before.
+    fn verdict(&self) -> Option<StudyVerdict> {
+        let current = self.current();
+        let mut rounds = self.rounds.iter().rev();
+        let of_current = rounds.find(|round| current.is_some_and(|own| own.row.id == round.calibration));
+        let round = of_current.or(self.rounds.last())?;
+        let added = current.map_or_else(Vec::new, |own| added(self, own));
+        let questions: Vec<String> = added.iter().filter_map(AddedEffect::open_question).collect();
+        let open = (!questions.is_empty()).then(|| questions.join("; "));
+        Some(StudyVerdict {
+            calibration: round.calibration,
+            verdict: round.record.verdict,
+            text: [Some(&round.record.text), open.as_ref()]
+                .into_iter()
+                .flatten()
+                .map(|text| text.trim_end_matches('.'))
+                .collect::<Vec<_>>()
+                .join("; "),
+            open,
+        })
+    }
+
     /// The members, each finished calibration with its story.
     fn members_with_stories(&self) -> Vec<MemberOverview> {
         let with_story = |member: &StudyMember| {

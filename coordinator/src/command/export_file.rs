@@ -16,14 +16,18 @@ pub(super) async fn export(config: &ExportArguments) -> anyhow::Result<()> {
     let place = CalibrationSource::open(&config.target.source).await?;
     let id = place.id(&config.target).await?;
     match config.format {
-        ExportFormat::Csv => write(output, &place.posterior(id).await?.to_csv()),
+        ExportFormat::Csv => write(output, &place.posterior(id).await?.to_csv(), "posterior.csv"),
         ExportFormat::Json => {
             let all = json!({
                 "summary": place.summary(id).await?,
                 "posterior": place.posterior(id).await?,
                 "comparison": place.comparison(id).await?,
             });
-            write(output, &(serde_json::to_string_pretty(&all)? + "\n"))
+            write(
+                output,
+                &(serde_json::to_string_pretty(&all)? + "\n"),
+                "results.json",
+            )
         }
         ExportFormat::Arrow => {
             let file = format::arrow(&DrawTable::of(&data(&place, id).await?)?)?;
@@ -46,7 +50,7 @@ async fn data(place: &CalibrationSource, id: i64) -> anyhow::Result<InferenceDat
 }
 
 fn needed(output: Option<&Path>) -> anyhow::Result<&Path> {
-    output.context("--output is missing: only csv and json are written to a terminal")
+    output.context("--output is missing: only csv and json are written to standard output")
 }
 
 fn write_bytes(output: Option<&Path>, bytes: &[u8]) -> anyhow::Result<()> {

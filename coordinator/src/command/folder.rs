@@ -169,6 +169,9 @@ impl Folder {
             self.write_results(row.id, &rounds).await?;
             say(&self.results(row.id, &rounds, details).await?)?;
         }
+        if let Some(failure) = self.service.study_overview(study).await?.failure {
+            bail!(failure.text);
+        }
         match rows.iter().find(|row| row.state != CalibrationState::Finished) {
             None => Ok(()),
             Some(row) => bail!(
@@ -187,28 +190,23 @@ impl Folder {
         rounds: &[DiscoveryRound],
         details: Details,
     ) -> anyhow::Result<String> {
-        let place = format!("--out {}", self.out.display());
         let file = async |file| self.service.study_file(calibration, file).await;
-        let mut text = String::new();
+        let (mut text, is_brief) = match details {
+            Details::Hidden => (file(StudyFile::Brief).await?, true),
+            Details::Shown { .. } => (file(StudyFile::Details).await?, false),
+        };
+        text.push('\n');
         if let Details::Shown { searched } = details {
-            text += &(file(StudyFile::Details).await? + "\n");
             let meant = rounds.iter().find(|r| Some(r.calibration) == searched);
             if let Some(round) = meant.or(rounds.last()) {
+                let place = format!("--out {}", self.out.display());
                 text += &terminal::discovery::text(&round.record, round.calibration, &place, &self.out);
                 text.push('\n');
             }
         }
-        text += &file(StudyFile::Brief).await?;
-        let more = match details {
-            Details::Hidden => "\nmore with --verbose, and",
-            Details::Shown { .. } => "\nfiles",
-        };
-        text += &format!(
-            "{more} in {}: report.html, summary.json, predictions.csv, posterior.csv, grouser.db\n\n",
-            self.out.display()
-        );
         let story = serde_json::from_str(&file(StudyFile::Story).await?)?;
-        Ok(text + &terminal::story(&story, &place, &self.out))
+        text += &terminal::story(&story, &self.out, is_brief);
+        Ok(text + &terminal::ending(&self.out, is_brief))
     }
 
     /// Simulates until the study is over, or until ^C.
@@ -243,11 +241,7 @@ impl Folder {
         stop.now();
         if let Some(workers) = workers {
             let share = workers.simulated_s() / (wall_s * workers.threads as f64);
-            note(&format!(
-                "{} local workers simulated {:.1} % of {wall_s:.1} s",
-                workers.threads,
-                100.0 * share
-            ));
+            tracing::debug!(threads = workers.threads, wall_s, share, "simulated");
             workers.join().await;
         }
         if let Some(server) = server {

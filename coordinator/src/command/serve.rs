@@ -1,5 +1,6 @@
 //! `coordinator serve`: the service.
 
+use std::net::{IpAddr, Ipv4Addr, Ipv6Addr, SocketAddr};
 use std::ops::RangeInclusive;
 use std::pin::pin;
 use std::time::Duration;
@@ -8,6 +9,7 @@ use anyhow::{Context, bail};
 use tokio::net::TcpListener;
 
 use super::exposure::exposure;
+use super::output::note;
 use super::shutdown::{Shutdown, stop_signal};
 use crate::config::ServeArguments;
 use crate::embedded::{LocalModels, LocalWorkers};
@@ -65,6 +67,11 @@ pub(super) async fn serve(config: ServeArguments) -> anyhow::Result<()> {
     let exposure = exposure(address, &config.exposure, &service.store().reader(), store).await?;
     let tls = exposure.tls.is_some();
     tracing::info!(%address, store = name_of(store), tls, read_only = config.read_only, "serving");
+    note(&opening(
+        address,
+        tls,
+        config.exposure.host.first().map(String::as_str),
+    ));
 
     let stop = Shutdown::new();
     let workers = (config.local_workers > 0 && !config.read_only).then(|| {
@@ -104,6 +111,22 @@ pub(super) async fn serve(config: ServeArguments) -> anyhow::Result<()> {
     Ok(())
 }
 
+/// Where a browser shows the page: on this machine where the service listens to all addresses, at the name of its certificate with TLS.
+fn opening(listening: SocketAddr, tls: bool, name: Option<&str>) -> String {
+    let scheme = if tls { "https" } else { "http" };
+    let port = listening.port();
+    let here = match listening.ip() {
+        IpAddr::V4(ip) if ip.is_unspecified() => IpAddr::V4(Ipv4Addr::LOCALHOST),
+        IpAddr::V6(ip) if ip.is_unspecified() => IpAddr::V6(Ipv6Addr::LOCALHOST),
+        ip => ip,
+    };
+    let here = SocketAddr::new(here, port);
+    match name.filter(|_| tls) {
+        None => format!("open {scheme}://{here}"),
+        Some(name) => format!("open {scheme}://{name}:{port}"),
+    }
+}
+
 /// Opens a store as soon as no other coordinator holds it.
 async fn standby(store: &str, settings: FarmSettings) -> anyhow::Result<Service> {
     tracing::info!(store = name_of(store), "standing by");
@@ -119,5 +142,35 @@ async fn standby(store: &str, settings: FarmSettings) -> anyhow::Result<Service>
             Err(error) => return Err(error.into()),
         }
         tokio::time::sleep(STANDBY).await;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_page_is_opened_at_an_address_that_a_browser_reaches() {
+        for (listening, tls, name, address) in [
+            ("127.0.0.1:7070", false, None, "http://127.0.0.1:7070"),
+            ("0.0.0.0:8080", false, None, "http://127.0.0.1:8080"),
+            ("[::]:7070", true, None, "https://[::1]:7070"),
+            ("192.0.2.7:80", false, None, "http://192.0.2.7:80"),
+            (
+                "127.0.0.1:7070",
+                false,
+                Some("proxy.example"),
+                "http://127.0.0.1:7070",
+            ),
+            (
+                "0.0.0.0:7070",
+                true,
+                Some("farm.example"),
+                "https://farm.example:7070",
+            ),
+        ] {
+            let listening = listening.parse().expect("an address");
+            assert_eq!(opening(listening, tls, name), format!("open {address}"));
+        }
     }
 }

@@ -1,5 +1,6 @@
 //! The short commands: submit, list, status, cancel, pause, resume, archive, delete, compare, diagnose, report.
 
+use std::io::IsTerminal;
 use std::path::Path;
 
 use anyhow::{Context, bail};
@@ -158,13 +159,43 @@ pub(super) async fn report(config: &ReportArguments) -> anyhow::Result<()> {
         Some(id) => showing(&report, id),
         None => report,
     };
-    write(config.output.as_deref(), &report)
+    write(config.output.as_deref(), &report, "report.html")
 }
 
-/// Writes a text to a file, or to the terminal.
-pub(super) fn write(path: Option<&Path>, text: &str) -> anyhow::Result<()> {
+/// Writes a text to a file, or to whatever reads this program. A terminal, where nobody could read it, gets its size and what to give.
+///
+/// # Arguments
+/// - `name`: of the file that is proposed.
+pub(super) fn write(path: Option<&Path>, text: &str, name: &str) -> anyhow::Result<()> {
     match path {
         Some(path) => std::fs::write(path, text).with_context(|| path.display().to_string()),
+        None if std::io::stdout().is_terminal() => Ok(say(&in_place_of(text, name))?),
         None => Ok(say(text)?),
+    }
+}
+
+/// What a terminal is told in place of a long text.
+fn in_place_of(text: &str, name: &str) -> String {
+    let mut said = format!("{} lines, {} kB", text.lines().count(), text.len().div_ceil(1000));
+    if name.ends_with(".csv")
+        && let Some(head) = text.lines().next()
+    {
+        said += &format!("; columns {}", head.replace(',', ", "));
+    }
+    said + &format!("\nwrite them to a file with --output {name}, or hand them to another program with |\n")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_terminal_is_told_the_size_and_the_columns_of_a_table_and_what_to_give() {
+        let table = format!("log_prior,n\n{}", "-1.5,1.1\n".repeat(1000));
+        assert_eq!(
+            in_place_of(&table, "posterior.csv"),
+            "1001 lines, 10 kB; columns log_prior, n\nwrite them to a file with --output posterior.csv, or hand them to another program with |\n"
+        );
+        assert!(!in_place_of("<html>", "report.html").contains("columns"));
     }
 }

@@ -161,9 +161,10 @@ fn verdict(
             let untried = models.not_tried();
             let untried = untried.filter(|untried| own().any(|e| e.name == untried.name));
             let needs = untried.map(|untried| format!("; {} needs {}", untried.name, untried.needs));
+            let members: Vec<String> = own().map(weighed).collect();
             format!(
                 "one of {} is missing (joint {}); these data cannot distinguish them{}",
-                list(own().map(|e| e.name.as_str())),
+                list(members.iter().map(String::as_str)),
                 probability(own().map(|e| e.probability).sum()),
                 needs.collect::<String>()
             )
@@ -178,21 +179,44 @@ fn verdict(
         ),
         _ => match conclusion.chi_square_best {
             Some(chi) if chi.is_wrong() => format!(
-                "the best explanation of the library contradicts the data (chi-square {:.0} with {:.0} degrees of freedom), and these data do not decide what is missing",
-                chi.value, chi.degrees_of_freedom
+                "the best explanation of the library contradicts the data (chi-square {:.0} with {:.0} degrees of freedom), and these data do not decide what is missing: {}",
+                chi.value,
+                chi.degrees_of_freedom,
+                credible_set(effects)
             ),
-            _ => format!(
-                "something is missing, and these data do not decide what: the 95 % set is {}",
-                credible(effects)
-            ),
+            _ => undecided(effects),
         },
     }
 }
 
-/// The explanations of the 95 % set.
-fn credible(effects: &[JudgedEffect]) -> String {
+/// What is said where the data decide nothing.
+fn undecided(effects: &[JudgedEffect]) -> String {
+    let mut credible = effects.iter().filter(|e| e.in_credible_set);
+    let question = match credible.any(|e| e.name == NONE) {
+        true => "these data do not decide whether something is missing",
+        false => "something is missing, and these data do not decide what",
+    };
+    format!("{question}: {}", credible_set(effects))
+}
+
+/// `the 95 % set is moisture (0.50), adhesion (0.47)`.
+fn credible_set(effects: &[JudgedEffect]) -> String {
     let credible = effects.iter().filter(|e| e.in_credible_set);
-    list(credible.map(|e| e.name.as_str()))
+    let set: Vec<String> = credible.map(weighed).collect();
+    format!("the 95 % set is {}", list(set.iter().map(String::as_str)))
+}
+
+/// `slip_sinkage (0.68)`.
+fn weighed(effect: &JudgedEffect) -> String {
+    let name = match effect.name.as_str() {
+        NONE => "nothing",
+        NOT_IN_LIBRARY => "a law outside the library",
+        name => name,
+    };
+    match effect.probability {
+        p if p < 0.001 => format!("{name} (< 0.001)"),
+        p => format!("{name} ({p:.2})"),
+    }
 }
 
 /// What the most probable set with an effect has beside it.
@@ -231,6 +255,35 @@ fn list<'a>(names: impl Iterator<Item = &'a str>) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn where_nothing_may_be_missing_it_is_not_said_that_something_is() {
+        let effect = |name: &str, probability: f64, in_credible_set: bool| JudgedEffect {
+            name: name.into(),
+            log_bayes_factor: 1.0,
+            prior_sds: None,
+            probability,
+            class: 0,
+            in_credible_set,
+            strength_prior: None,
+            parameters: Default::default(),
+            method: "confirmed".into(),
+        };
+        let with_none = [effect(NONE, 0.6, true), effect("stick_slip", 0.36, true)];
+        assert_eq!(
+            undecided(&with_none),
+            "these data do not decide whether something is missing: the 95 % set is nothing (0.60), stick_slip (0.36)"
+        );
+        let without = [
+            effect("moisture", 0.5, true),
+            effect("adhesion", 0.47, true),
+            effect(NONE, 0.03, false),
+        ];
+        assert_eq!(
+            undecided(&without),
+            "something is missing, and these data do not decide what: the 95 % set is moisture (0.50), adhesion (0.47)"
+        );
+    }
 
     #[test]
     fn a_name_says_with_what_its_most_probable_set_has_it() {

@@ -152,7 +152,7 @@ pub(super) async fn finished_study_of(
         point_estimates,
         extensions,
         rounds: search_rounds(reader, rows).await?,
-        members: study_members(rows),
+        members: study_members(reader, rows).await?,
         combined: OnceLock::new(),
     })
 }

@@ -20,7 +20,7 @@ pub(super) struct KeptOverview {
     pub(super) overview: Arc<StudyOverview>,
 }
 
-/// Ids of the finished members, and the number of all.
+/// Ids of the members that are over, and the number of all.
 pub(super) type MemberKey = (Vec<i64>, usize);
 
 impl Overviews {
@@ -42,12 +42,12 @@ impl Overviews {
 
 /// What an overview of these members is kept under.
 pub(super) fn member_key(members: impl Iterator<Item = (i64, CalibrationState)>) -> MemberKey {
-    let (mut finished, mut count) = (Vec::new(), 0);
+    let (mut over, mut count) = (Vec::new(), 0);
     for (id, state) in members {
         count += 1;
-        if state == CalibrationState::Finished {
-            finished.push(id);
+        if state.is_final() {
+            over.push(id);
         }
     }
-    (finished, count)
+    (over, count)
 }

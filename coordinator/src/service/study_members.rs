@@ -1,16 +1,27 @@
 //! The members of a study as its overview shows them.
 
+use shared::api::CalibrationState;
+
+use super::error::ServiceError;
+use crate::store::Reader;
 use crate::study::Lineage;
 use record::{CalibrationRow, addition_name};
-use result::StudyMember;
+use result::{Rejections, StudyMember};
 
 /// The members of a study, finished or not, oldest first.
-pub(super) fn study_members(rows: &[CalibrationRow]) -> Vec<StudyMember> {
+///
+/// # Errors
+/// [`ServiceError`] where the store cannot be read.
+pub(super) async fn study_members(
+    reader: &Reader,
+    rows: &[CalibrationRow],
+) -> Result<Vec<StudyMember>, ServiceError> {
     let lineage = Lineage::new(rows);
-    let member = |row: &CalibrationRow| {
+    let mut members = Vec::new();
+    for row in rows {
         let searches = row.membership.parent.filter(|_| row.membership.is_search());
         let additions = lineage.additions(searches.unwrap_or(row.id));
-        StudyMember {
+        members.push(StudyMember {
             id: row.id,
             name: row.name.clone(),
             state: row.state,
@@ -18,7 +29,19 @@ pub(super) fn study_members(rows: &[CalibrationRow]) -> Vec<StudyMember> {
             effects: additions.into_iter().map(addition_name).collect(),
             searches,
             message: row.message.clone(),
-        }
-    };
-    rows.iter().map(member).collect()
+            rejections: rejections(reader, row).await?,
+        });
+    }
+    Ok(members)
+}
+
+/// What the model rejected of a calibration that failed.
+async fn rejections(reader: &Reader, row: &CalibrationRow) -> Result<Option<Rejections>, ServiceError> {
+    if row.state != CalibrationState::Failed || row.membership.is_search() {
+        return Ok(None);
+    }
+    Ok(Some(Rejections {
+        kinds: reader.rejections(row.id).await?,
+        first: reader.first_rejection(row.id).await?,
+    }))
 }

@@ -73,7 +73,7 @@ impl Service {
             None => {
                 let lead = rows.first().expect("a study has a member");
                 let kind = model_kind(&lead.job.toml).map(|kind| kind.name().to_owned());
-                StudyOverview::begun(id, lead.experiment, kind, study_members(rows))
+                StudyOverview::begun(id, lead.experiment, kind, study_members(&reader, rows).await?)
             }
         };
         let kept = KeptOverview {

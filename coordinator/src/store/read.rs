@@ -481,6 +481,26 @@ impl Reader {
             .map(|row| (row.get("kind"), row.get::<i64>("n").unsigned_abs()))
             .collect())
     }
+
+    /// The message of the first rejected parameter vector of the sampler or the fit, without its kind.
+    ///
+    /// # Errors
+    /// [`StoreError`].
+    pub async fn first_rejection(&self, calibration: i64) -> Result<Option<String>, StoreError> {
+        let row = query(
+            "SELECT rejection FROM evaluations
+             WHERE calibration = ? AND evaluation < ? AND rejection IS NOT NULL ORDER BY evaluation LIMIT 1",
+        )
+        .bind(calibration)
+        .bind(PREDICTIONS_FROM as i64)
+        .fetch_optional(&self.pool)
+        .await?;
+        let text: Option<String> = row.map(|row| row.get("rejection"));
+        Ok(text.map(|text| match text.split_once(": ") {
+            Some((_, message)) => message.to_owned(),
+            None => text,
+        }))
+    }
 }
 
 /// A number that fits 32 bits.

@@ -1,6 +1,6 @@
 //! How the calibrations of a study follow from one another, read from their stored membership alone.
 
-use record::{CalibrationRow, Change, Extension, effect_of};
+use record::{CalibrationRow, Change, Extension, parts_of};
 
 /// The calibrations of a study, oldest first.
 #[derive(Debug, Clone, Copy)]
@@ -101,10 +101,9 @@ impl<'a> Lineage<'a> {
     }
 }
 
-/// Whether an addition brings an effect: an effect on the nodes of the soil brings the effect alone.
-fn is_part(extension: &Extension, effect: &str) -> bool {
-    let name = effect_of(extension);
-    name == effect || job::EffectOnNodes::find(&name).is_some_and(|on_nodes| on_nodes.effect.name == effect)
+/// Whether an addition brings an effect or a setting.
+fn is_part(extension: &Extension, part: &str) -> bool {
+    parts_of(extension).iter().any(|brought| brought == part)
 }
 
 #[cfg(test)]

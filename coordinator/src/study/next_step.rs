@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use shared::api::CalibrationState;
 
 use job::{Apply, DiscoverySettings};
-use record::{CalibrationRow, Discovery, Extension, effect_of};
+use record::{CalibrationRow, Discovery, Extension, parts_of};
 
 use super::lineage::Lineage;
 
@@ -69,9 +69,10 @@ pub fn next_step(
     }
     let found = findings.searches.get(&search.id)?;
     if let Some(extension) = &found.extension {
-        let effect = effect_of(extension);
-        let is_new = !lineage.has_added(last.id, &effect) && !lineage.has_dropped(&effect);
-        if lineage.additions(last.id).len() < settings.max_effects && is_new {
+        let parts = parts_of(extension);
+        let is_dropped = parts.iter().any(|part| lineage.has_dropped(part));
+        let is_there = parts.iter().all(|part| lineage.has_added(last.id, part));
+        if lineage.additions(last.id).len() < settings.max_effects && !is_dropped && !is_there {
             return Some(StudyStep::Extend(last.id, extension.clone()));
         }
     }
@@ -83,7 +84,7 @@ pub fn next_step(
 
 #[cfg(test)]
 mod tests {
-    use record::{Change, Membership, Role};
+    use record::{Change, Membership, Role, effect_of};
 
     use super::*;
 
@@ -255,6 +256,17 @@ mod tests {
             None,
             "and is not dropped twice"
         );
+    }
+
+    #[test]
+    fn an_effect_on_the_nodes_is_known_again_by_its_effect_and_its_setting() {
+        let node = "janosi_hanamoto_node";
+        let mut rows = vec![base(1), search(2, 1)];
+        let mut records = vec![(2, names(Some(node), &[]))];
+        assert_eq!(step(Apply::Auto, &rows, &records), extend(1, node));
+        rows.extend([added(3, 1, node), search(4, 3)]);
+        records.push((4, names(Some(node), &[])));
+        assert_eq!(step(Apply::Auto, &rows, &records), None, "the model has it");
     }
 
     #[test]

@@ -22,8 +22,10 @@ class ChannelError:
     noise_sds: float | None
     #: Where the model fails and in which direction; ``None`` where no pattern stands out.
     place: str | None
-    #: Whether noise alone explains the error.
+    #: Whether noise alone explains the error; false where it cannot be judged.
     is_within_noise: bool
+    #: Whether the error can be judged; not where the noise is inferred together with the misfit.
+    is_judged: bool
 
 
 @dataclass(frozen=True)
@@ -134,7 +136,7 @@ def next_run(run: Mapping[str, Any]) -> NextRun:
 
 def story(told: Mapping[str, Any]) -> Story:
     """A story as ``GET /v1/studies/ID`` tells it."""
-    keys = ("channel", "use", "rmse", "unit", "noise_sds", "place", "is_within_noise")
+    keys = ("channel", "use", "rmse", "unit", "noise_sds", "place", "is_within_noise", "is_judged")
     channels = [ChannelError(**{key: channel.get(key) for key in keys}) for channel in told["wrong"]["channels"]]
     steps = [
         Step(

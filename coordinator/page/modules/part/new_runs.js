@@ -13,8 +13,8 @@ const COLUMNS = /** @type {Record<string, string>} */ ({ drawbar_pull: "drawbar_
 
 /** @typedef {{ run: string, rig: string, slip: string, load: string, speed: string, angle: string, values: Record<string, string> }} NewRun */
 
-/** @param {{ study: any, record: any, comparison: any, reload?: () => void }} properties */
-export function NewRuns({ study, record, comparison, reload }) {
+/** @param {{ study: any, model: any, record: any, comparison: any, reload?: () => void }} properties */
+export function NewRuns({ study, model, record, comparison, reload }) {
   const { answer: experiment, error } = useAnswer(path.experiment(study.experiment));
   const [rows, setRows] = useState(/** @type {NewRun[] | null} */ (null));
   const [failure, setFailure] = useState(/** @type {any} */ (null));
@@ -48,7 +48,8 @@ export function NewRuns({ study, record, comparison, reload }) {
     setFailure(null);
     setBusy(true);
     try {
-      const added = await addRuns(study.id, table(filled.map(lineOf)));
+      // To the model that is shown: the runs that its search proposes tell its explanations apart.
+      const added = await addRuns(study.id, table(filled.map(lineOf)), model.id);
       reload?.();
       location.hash = address(["studies", added.study, "live"]);
     } catch (error) {

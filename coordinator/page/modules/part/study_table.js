@@ -2,7 +2,7 @@
 
 import { html } from "../html.js";
 import { address } from "../route.js";
-import { CHANNELS, digits, short, shown, titled, unitOf, words } from "../words/quantity.js";
+import { capital, CHANNELS, digits, short, shown, titled, unitOf, words } from "../words/quantity.js";
 import { progressWords, verdictWords } from "../words/state.js";
 import { Table } from "./table.js";
 
@@ -15,21 +15,28 @@ const pair = (/** @type {any} */ error, /** @type {(use: any) => number | null |
 
 function State(/** @type {{ study: any }} */ { study }) {
   return html`<span class=${`state ${study.state}`}>${study.state}</span>
+    ${study.failure && html`<div class="note">${capital(study.failure.reason)}. <b>What to do:</b> ${study.failure.advice}.</div>`}
     ${study.progress && html`<div class="note">${progressWords(study.progress)}</div>`}`;
+}
+
+/** What the search of the current model found, and what it leaves open. */
+function Verdict(/** @type {{ study: any }} */ { study }) {
+  if (study.state !== "finished" && !study.verdict) return "";
+  return html`${verdictWords(study.verdict?.verdict ?? null, study.effects)}${study.verdict?.open && html`<div class="note">${study.verdict.open}</div>`}`;
 }
 
 /** @param {{ studies: any[] }} properties */
 export function StudyTable({ studies }) {
   const channels = CHANNELS.filter((channel) => studies.some((s) => s.error?.fit?.[channel] ?? s.error?.holdout?.[channel]));
   const rows = [...studies].sort((a, b) => b.id - a.id).map((study) => [
-    html`<a href=${address(["studies", study.id, study.state === "finished" ? "story" : "live"])}>${study.name ?? `study ${study.id}`}</a>
+    html`<a href=${address(["studies", study.id, ["finished", "failed"].includes(study.state) ? "story" : "live"])}>${study.name ?? `study ${study.id}`}</a>
       <div class="note">study ${study.id}${study.archived ? ", archived" : ""}</div>`,
     html`<${State} study=${study} />`,
     html`${words(study.model_kind ?? "unknown")}${study.effects.length > 0 && html`<div class="note">with ${study.effects.map(words).join(", ")}</div>`}`,
     study.error && html`${["fit", "holdout"].filter((use) => study.error[use]).map((use) => html`<div class="whole">${use === "fit" ? "fit" : "held out"}</div>`)}`,
     ...channels.map((channel) => pair(study.error, (use) => use[channel]?.rmse, shown(unitOf(channel)).scale)),
     pair(study.error, (use) => use.all?.rmse_fixed_sigma),
-    study.state === "finished" || study.verdict ? verdictWords(study.verdict?.verdict ?? null) : "",
+    html`<${Verdict} study=${study} />`,
   ]);
   return html`
     <p class="note">Errors are root mean squares of prediction minus measurement of the current model; 1 × noise is as good as the measurements allow.</p>

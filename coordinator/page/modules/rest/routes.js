@@ -45,7 +45,7 @@ export const whatIf = (/** @type {number} */ id, /** @type {string[]} */ without
   post(`${calibration(id)}/what-if`, { without });
 
 /** @returns {Promise<Schemas["RunsAdded"]>} */
-export const addRuns = (/** @type {number} */ id, /** @type {string} */ runs) => post(`${study(id)}/runs`, { runs });
+export const addRuns = (/** @type {number} */ id, /** @type {string} */ runs, /** @type {number} */ calibration) => post(`${study(id)}/runs`, { runs, calibration });
 
 /** @returns {Promise<Schemas["ExperimentCreated"]>} */
 export const addExperiment = (/** @type {Schemas["NewExperiment"]} */ experiment) => post("/v1/experiments", experiment);

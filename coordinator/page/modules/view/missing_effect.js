@@ -70,7 +70,7 @@ export function MissingEffect({ study, model, reload }) {
     ${record.next_runs.length === 0 && html`<p>No run within reach of the rig would change these probabilities by much.</p>`}
     <${InformationMap} record=${record} name=${study.name} />
     ${record.other_tests.length > 0 && html`<h3>Tests without a rolling wheel that would tell</h3><ul>${record.other_tests.map((/** @type {string} */ t) => html`<li>${t}</li>`)}</ul>`}
-    ${!isReport && comparison && html`<${NewRuns} study=${study} record=${record} comparison=${comparison} reload=${reload} />`}`;
+    ${!isReport && comparison && html`<${NewRuns} study=${study} model=${model} record=${record} comparison=${comparison} reload=${reload} />`}`;
 }
 
 /**

@@ -9,7 +9,7 @@ import { ModelTable } from "../part/model_table.js";
 import { isReport } from "../rest/answers.js";
 import { discover, extend } from "../rest/routes.js";
 import { address } from "../route.js";
-import { capital, probability } from "../words/quantity.js";
+import { capital } from "../words/quantity.js";
 import { ledgerLines } from "./errors.js";
 
 /** @param {{ study: any, model: any, reload?: () => void }} properties */
@@ -17,20 +17,21 @@ export function Story({ study, model, reload }) {
   const story = model?.story;
   const lines = ledgerLines(study);
   if (!story) {
-    return html`<p class="empty">Nothing is finished yet: the story begins with the first calibration. <a href=${address(["studies", study.id, "live"])}>Live</a> shows how far it is.</p>`;
+    return html`${study.failure ? html`<${StudyFailure} study=${study} />`
+      : html`<p class="empty">Nothing is finished yet: the story begins with the first calibration. <a href=${address(["studies", study.id, "live"])}>Live</a> shows how far it is.</p>`}`;
   }
   // What it does next by itself is no advice.
   const isAtWork = !isReport && ["queued", "running"].includes(study.state);
   const to = (/** @type {string} */ view) => (isReport ? `#${view}` : address(["studies", study.id, view], { model: model.id }));
   return html`
+    <${StudyFailure} study=${study} />
     ${study.models && html`<p class=${`verdict ${study.models.none_of_these ? "doubt" : ""}`}>${sentence(signed(study.models.text))}</p>`}
     <div class="three">
       <section class="card"><h2>What the model gets wrong</h2>
-        <p class=${story.wrong.channels.every((/** @type {any} */ c) => c.is_within_noise) ? "calm" : "alarm"}>${sentence(story.wrong.text)}</p>
+        <p class=${mood(story.wrong.channels)}>${sentence(story.wrong.text)}</p>
         <p class="note"><a href=${to("failures")}>Where it fails</a></p></section>
       <section class="card"><h2>What is missing</h2>
         <p>${sentence(story.missing.text)}</p>
-        ${story.missing.verdict !== "nothing_detectable" && story.missing.alternatives.length > 0 && html`<p class="note">It could also be ${story.missing.alternatives.map((/** @type {any} */ a) => `${a.name} (${probability(a.probability)})`).join(", ")}.</p>`}
         <p class="note"><a href=${to("effects")}>All explanations</a></p></section>
       <section class="card"><h2>What to do next</h2>
         ${isAtWork && html`<p>The program is at work on this study: <a href=${to("live")}>Live</a> shows how far it is.</p>`}
@@ -40,6 +41,20 @@ export function Story({ study, model, reload }) {
     ${study.models && html`<${ModelTable} comparison=${study.models} />`}
     ${lines.length > 0 && html`<h2>How the error falls</h2><${LedgerCharts} study=${study} lines=${lines} />`}
     <${Flags} study=${study} />`;
+}
+
+/** Alarm where an error is no noise, calm where each is, neither where the noise of a channel is not known. */
+function mood(/** @type {any[]} */ channels) {
+  if (channels.every((c) => c.is_within_noise)) return "calm";
+  return channels.some((c) => c.is_judged && !c.is_within_noise) || channels.length === 0 ? "alarm" : "";
+}
+
+/** Why a study failed, and what to do. */
+function StudyFailure(/** @type {{ study: any }} */ { study }) {
+  if (!study.failure) return null;
+  return html`<section class="card" role="alert"><h2>${study.members.length > 1 ? `Calibration ${study.failure.calibration} failed` : "The calibration failed"}</h2>
+    <p class="error">${sentence(study.failure.reason)}</p>
+    <p><b>What to do:</b> ${sentence(study.failure.advice)}</p></section>`;
 }
 
 const sentence = (/** @type {string} */ text) => capital(/[.!?]$/.test(text) ? text : `${text}.`);
@@ -70,7 +85,7 @@ function Step(/** @type {{ step: any, study: any, model: any, reload?: () => voi
     predict: () => (study.current !== model.id
       ? html`<a class="button" href=${address(["studies", study.id, "story"], { model: study.current })}>Go to the current model</a>`
       : html`<a class="button" href=${address(["studies", study.id, "posterior"], { model: model.id })}>Open the posterior</a>`),
-    make_runs: () => html`<a class="button" href=${address(["studies", study.id, "effects"])}>See the runs, and add them</a>`,
+    make_runs: () => html`<a class="button" href=${address(["studies", study.id, "effects"], { model: step.calibration })}>See the runs, and add them</a>`,
   });
   const button = !isReport && model && buttons[step.kind];
   return html`${sentence(step.text)} ${button ? html`<span class="actions">${button()}</span>` : step.command && html`<code>coordinator ${step.command}${isReport ? " --out ." : ""}</code>`}<${Failure} error=${failure} />`;

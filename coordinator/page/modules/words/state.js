@@ -10,9 +10,16 @@ const VERDICTS = {
   undecided: "undecided",
 };
 
-/** A verdict of a search; null where none has ended. */
-export const verdictWords = (/** @type {string | null} */ verdict) =>
-  verdict === null ? "no search yet" : VERDICTS[/** @type {keyof typeof VERDICTS} */ (verdict)] ?? verdict.replaceAll("_", " ");
+/**
+ * A verdict of a search; null where none has ended.
+ * @param {string | null} verdict
+ * @param {string[]} added what the study has added to the searched model
+ */
+export function verdictWords(verdict, added = []) {
+  if (verdict === null) return "no search yet";
+  if (verdict === "nothing_detectable" && added.length > 0) return "nothing further is detectable";
+  return VERDICTS[/** @type {keyof typeof VERDICTS} */ (verdict)] ?? verdict.replaceAll("_", " ");
+}
 
 /** How far a calibration has come: `stage 5, exponent 0.012, 2300 evaluations, about 12 s to go`. */
 export function progressWords(/** @type {any} */ progress) {

@@ -2,7 +2,7 @@
 
 use record::{
     ChiSquare, Discovery, JudgedEffect, JudgedSet, NextRun, NotTried, Outside, RemainingMisfit, Verdict,
-    effect_of,
+    effect_of, parts_of,
 };
 
 use super::round::DiscoveryRound;
@@ -54,7 +54,7 @@ impl DiscoverySummary {
             record
                 .extension
                 .as_ref()
-                .is_some_and(|e| added.contains(&effect_of(e)))
+                .is_some_and(|e| parts_of(e).iter().all(|part| added.contains(part)))
         });
         let seeing = || {
             records

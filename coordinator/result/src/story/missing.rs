@@ -3,14 +3,16 @@
 use job::effect_name;
 use record::{Discovery, Extension, NONE, NOT_IN_LIBRARY, Verdict, effect_of};
 
+use super::added::{AddedEffect, added};
+use super::explanation::{Alternative, LEAST, class, p, split};
 use crate::finished_calibration::FinishedCalibration;
 use crate::study::Study;
 use crate::words::number;
 
 /// Most alternatives.
 const ALTERNATIVES: usize = 3;
-/// Least probability of an alternative.
-const LEAST: f64 = 0.01;
+/// Most names of effects that were not judged.
+const NOT_JUDGED: usize = 3;
 
 /// The answer of the search of a model.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
@@ -22,9 +24,9 @@ pub struct Missing {
     /// Probability of what is named, together; that nothing is missing where nothing is; of the leading explanation where it is
     /// undecided.
     pub probability: Option<f64>,
-    /// Other explanations, at most three.
+    /// Other explanations, at most three: what the verdict does not name, where it is undecided what is outside its 95 % set.
     pub alternatives: Vec<Alternative>,
-    /// Effects that need what the experiment does not state.
+    /// Effects that need what the experiment does not state, without those that the verdict or the alternatives name.
     pub not_tried: Vec<String>,
     /// Effects that the study added to the model.
     pub already_added: Vec<AddedEffect>,
@@ -41,24 +43,6 @@ pub struct NamedEffect {
     pub wheel: Option<String>,
 }
 
-/// Another explanation.
-#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
-pub struct Alternative {
-    /// The effect, `EFFECT.WHEEL` on one wheel of several; or `none`, or `not_in_library`.
-    pub name: String,
-    /// Its probability.
-    pub probability: f64,
-}
-
-/// An effect that the study added.
-#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
-pub struct AddedEffect {
-    /// Its name.
-    pub name: String,
-    /// The probability with which a search named it; null where none did.
-    pub probability: Option<f64>,
-}
-
 impl Study {
     /// The search of a calibration's model; of several the last.
     pub(super) fn search_of(&self, calibration: &FinishedCalibration) -> Option<&Discovery> {
@@ -70,10 +54,10 @@ impl Study {
 
 impl Missing {
     pub(super) fn of(study: &Study, calibration: &FinishedCalibration) -> Missing {
-        let already_added = already_added(study, calibration);
-        let before: Vec<String> = already_added.iter().map(added).collect();
+        let already_added = added(study, calibration);
+        let mut text: Vec<String> = already_added.iter().map(AddedEffect::words).collect();
         let Some(record) = study.search_of(calibration) else {
-            let text = [before.as_slice(), &["this model was not searched".into()]].concat();
+            text.push("this model was not searched".into());
             return Missing {
                 verdict: None,
                 named: Vec::new(),
@@ -85,64 +69,12 @@ impl Missing {
             };
         };
         let named = named(record);
-        let is_named = |name: &str| named.iter().any(|effect| label(effect) == name);
-        let others = record.effects.iter().filter(|effect| !is_named(&effect.name));
-        let leading = |effects: &mut dyn Iterator<Item = f64>| effects.fold(0.0, f64::max);
-        let of = |name: &str| {
-            record
-                .effects
-                .iter()
-                .find(|e| e.name == name)
-                .map(|e| e.probability)
-        };
-        let probability = match record.verdict {
-            Verdict::NothingDetectable => of(NONE),
-            Verdict::NotInLibrary => of(NOT_IN_LIBRARY),
-            Verdict::Undecided => Some(leading(&mut record.effects.iter().map(|e| e.probability))),
-            Verdict::Named | Verdict::Class => {
-                let own = record.effects.iter().filter(|effect| is_named(&effect.name));
-                Some(own.map(|effect| effect.probability).sum())
-            }
-        };
-        let says_itself = |name: &str| match record.verdict {
-            Verdict::NothingDetectable => name == NONE,
-            Verdict::NotInLibrary => name == NOT_IN_LIBRARY,
-            _ => false,
-        };
-        let alternatives: Vec<Alternative> = others
-            .filter(|effect| effect.probability > LEAST && !says_itself(&effect.name))
-            .take(ALTERNATIVES)
-            .map(|effect| Alternative {
-                name: effect.name.clone(),
-                probability: effect.probability,
-            })
-            .collect();
-        let not_tried = folded(record);
-        let mut text = before;
+        let probability = probability(record, &named);
+        let alternatives = alternatives(record, &named);
+        let not_tried = not_tried(record, &named, &alternatives);
         text.push(finding(record, probability, !already_added.is_empty()));
-        if !alternatives.is_empty() && record.verdict != Verdict::NothingDetectable {
-            let words = alternatives
-                .iter()
-                .map(|a| format!("{} ({})", a.name, p(a.probability)));
-            text.push(format!("less probable: {}", words.collect::<Vec<_>>().join(", ")));
-        }
-        if !not_tried.is_empty() {
-            text.push(format!(
-                "not judged for want of data on the rig: {}",
-                not_tried.join(", ")
-            ));
-        }
-        let outside = record
-            .not_tried
-            .iter()
-            .filter(|effect| !effect.lacks_data())
-            .count();
-        if outside > 0 {
-            text.push(format!(
-                "not judged: {}, of whose cause this model shows nothing",
-                number::count(outside, "effect")
-            ));
-        }
+        text.extend(less_probable(record, &alternatives));
+        text.extend(not_judged(record, &not_tried));
         Missing {
             verdict: Some(record.verdict),
             named,
@@ -153,6 +85,49 @@ impl Missing {
             text: text.join("; "),
         }
     }
+}
+
+/// The probability of the verdict.
+fn probability(record: &Discovery, named: &[NamedEffect]) -> Option<f64> {
+    let effects = record.effects.iter();
+    let of = |name: &str| {
+        let mut effects = record.effects.iter();
+        effects.find(|e| e.name == name).map(|e| e.probability)
+    };
+    match record.verdict {
+        Verdict::NothingDetectable => of(NONE),
+        Verdict::NotInLibrary => of(NOT_IN_LIBRARY),
+        Verdict::Undecided => Some(effects.fold(0.0, |most, e| f64::max(most, e.probability))),
+        Verdict::Named | Verdict::Class => {
+            let of_named = effects.filter(|e| named.iter().any(|own| label(own) == e.name));
+            Some(of_named.map(|e| e.probability).sum())
+        }
+    }
+}
+
+/// The explanations that the verdict does not say itself, by falling probability.
+fn alternatives(record: &Discovery, named: &[NamedEffect]) -> Vec<Alternative> {
+    let leader = record.effects.iter().map(|e| e.probability).fold(0.0, f64::max);
+    let is_said = |name: &str| match record.verdict {
+        Verdict::NothingDetectable => name == NONE,
+        Verdict::NotInLibrary => name == NOT_IN_LIBRARY,
+        Verdict::Named | Verdict::Class => named.iter().any(|own| label(own) == name),
+        Verdict::Undecided => false,
+    };
+    let others = record.effects.iter().filter(|effect| {
+        let is_open = record.verdict == Verdict::Undecided && effect.in_credible_set;
+        effect.probability > LEAST && effect.probability < leader && !is_open && !is_said(&effect.name)
+    });
+    others.take(ALTERNATIVES).map(Alternative::from).collect()
+}
+
+/// The alternatives in words; where nothing is missing they are no news.
+fn less_probable(record: &Discovery, alternatives: &[Alternative]) -> Option<String> {
+    if record.verdict == Verdict::NothingDetectable || alternatives.is_empty() {
+        return None;
+    }
+    let words: Vec<String> = alternatives.iter().map(Alternative::words).collect();
+    Some(format!("less probable: {}", words.join(", ")))
 }
 
 /// The verdict in words.
@@ -171,22 +146,25 @@ fn finding(record: &Discovery, probability: Option<f64>, is_extended: bool) -> S
     }
 }
 
-/// `slip_sinkage was missing (P 0.960) and is added`.
-fn added(effect: &AddedEffect) -> String {
-    match effect.probability {
-        Some(probability) => format!("{} was missing ({}) and is added", effect.name, p(probability)),
-        None => format!("{} was added by hand", effect.name),
+/// What the search could not judge: the names of a few, the number of more.
+fn not_judged(record: &Discovery, not_tried: &[String]) -> Vec<String> {
+    let mut text = Vec::new();
+    if !not_tried.is_empty() {
+        let names = match not_tried.len() > NOT_JUDGED {
+            true => number::count(not_tried.len(), "effect"),
+            false => not_tried.join(", "),
+        };
+        text.push(format!("not judged for want of data on the rig: {names}"));
     }
-}
-
-/// `P 0.96`; never a certainty.
-fn p(probability: f64) -> String {
-    match probability {
-        p if p > 0.999 => "P > 0.999".into(),
-        p if p < 0.001 => "P < 0.001".into(),
-        p if p > 0.99 => format!("P {p:.3}"),
-        p => format!("P {p:.2}"),
+    let outside = record.not_tried.iter().filter(|effect| !effect.lacks_data());
+    let outside = outside.count();
+    if outside > 0 {
+        text.push(format!(
+            "not judged: {}, of whose cause this model shows nothing",
+            number::count(outside, "effect")
+        ));
     }
+    text
 }
 
 fn named(record: &Discovery) -> Vec<NamedEffect> {
@@ -200,9 +178,14 @@ fn named(record: &Discovery) -> Vec<NamedEffect> {
             wheel: None,
         }],
         (Verdict::Class, _) => {
-            let class = record.effects.iter().find(|e| e.class != 0).map(|e| e.class);
-            let members = record.effects.iter().filter(|e| Some(e.class) == class);
-            members.map(|e| split(&e.name)).collect()
+            let member = |name: &str| {
+                let (effect, wheel) = split(name);
+                NamedEffect {
+                    name: effect.into(),
+                    wheel: wheel.map(str::to_owned),
+                }
+            };
+            class(record).map(|e| member(&e.name)).collect()
         }
         (Verdict::NotInLibrary, _) => {
             let file = record
@@ -217,19 +200,6 @@ fn named(record: &Discovery) -> Vec<NamedEffect> {
     }
 }
 
-fn split(name: &str) -> NamedEffect {
-    match name.split_once('.') {
-        Some((effect, wheel)) => NamedEffect {
-            name: effect.into(),
-            wheel: Some(wheel.into()),
-        },
-        None => NamedEffect {
-            name: name.into(),
-            wheel: None,
-        },
-    }
-}
-
 fn label(effect: &NamedEffect) -> String {
     match &effect.wheel {
         Some(wheel) => format!("{}.{wheel}", effect.name),
@@ -237,38 +207,27 @@ fn label(effect: &NamedEffect) -> String {
     }
 }
 
-/// The effects that were not tried, without the wheels.
-fn folded(record: &Discovery) -> Vec<String> {
+/// The effects that were not tried, without the wheels, and without those that the verdict speaks of: these were weighed.
+fn not_tried(record: &Discovery, named: &[NamedEffect], alternatives: &[Alternative]) -> Vec<String> {
+    let is_said = |name: &str| {
+        let mut of_set = record.effects.iter().filter(|e| e.in_credible_set);
+        match record.verdict {
+            Verdict::NothingDetectable => false,
+            Verdict::Undecided if of_set.any(|e| split(&e.name).0 == name) => true,
+            _ => {
+                let mut others = alternatives.iter().map(|own| split(&own.name).0);
+                named.iter().any(|own| own.name == name) || others.any(|own| own == name)
+            }
+        }
+    };
     let mut names: Vec<String> = Vec::new();
     for effect in record.not_tried.iter().filter(|effect| effect.lacks_data()) {
-        let name = split(&effect.name).name;
-        if !names.contains(&name) {
-            names.push(name);
+        let (name, _) = split(&effect.name);
+        if !names.iter().any(|own| own == name) && !is_said(name) {
+            names.push(name.to_owned());
         }
     }
     names
-}
-
-fn already_added(study: &Study, calibration: &FinishedCalibration) -> Vec<AddedEffect> {
-    let had = study.lead.effects();
-    let added = study
-        .parts(calibration)
-        .into_iter()
-        .filter(|name| !had.contains(name));
-    let probability = |name: &str| {
-        let naming = study.rounds.iter().map(|round| &round.record).find(|record| {
-            let extension = record.extension.as_ref();
-            extension.is_some_and(|extension| effect_of(extension) == name)
-        })?;
-        let own = naming.effects.iter().find(|e| split(&e.name).name == name);
-        let outside = || naming.effects.iter().find(|e| e.name == NOT_IN_LIBRARY);
-        own.or_else(outside).map(|e| e.probability)
-    };
-    let added = added.map(|name| AddedEffect {
-        probability: probability(&name),
-        name,
-    });
-    added.collect()
 }
 
 #[cfg(test)]
@@ -301,6 +260,45 @@ mod tests {
     }
 
     #[test]
+    fn what_the_sentence_has_said_is_not_said_again_as_less_probable() {
+        let mut study = fixture::grown();
+        let record = &mut study.rounds[0].record;
+        record.verdict = Verdict::Undecided;
+        record.text = "something is missing, and these data do not decide what: the 95 % set is slip_sinkage (0.60), bulldozing (0.36)".into();
+        for (effect, (probability, is_open)) in
+            record
+                .effects
+                .iter_mut()
+                .zip([(0.60, true), (0.36, true), (0.03, false), (0.01, false)])
+        {
+            (effect.probability, effect.in_credible_set) = (probability, is_open);
+        }
+        record.not_tried = ["bulldozing", "end_wall"]
+            .map(|name| record::NotTried {
+                name: name.into(),
+                why: "the density is not stated".into(),
+                needs: "density_kg_m3".into(),
+            })
+            .into();
+        let missing = Missing::of(&study, &study.lead);
+        let names: Vec<&str> = missing.alternatives.iter().map(|a| a.name.as_str()).collect();
+        assert_eq!(names, [NOT_IN_LIBRARY], "{missing:?}");
+        assert!(
+            missing
+                .text
+                .contains("; less probable: a law outside the library (P 0.03); "),
+            "{}",
+            missing.text
+        );
+        // What is in the set was judged.
+        assert_eq!(missing.not_tried, ["end_wall"]);
+        let class = fixture::of_a_class();
+        let class = Missing::of(&class, &class.lead);
+        let names: Vec<&str> = class.alternatives.iter().map(|a| a.name.as_str()).collect();
+        assert_eq!(names, ["bulldozing"]);
+    }
+
+    #[test]
     fn a_model_that_is_searched_again_says_what_is_left() {
         let mut study = fixture::grown();
         let record = Discovery {
@@ -320,12 +318,5 @@ mod tests {
         );
         // The first search still speaks of the first model.
         assert_eq!(Missing::of(&study, &study.lead).verdict, Some(Verdict::Named));
-    }
-
-    #[test]
-    fn no_probability_is_a_certainty() {
-        assert_eq!(p(1.0), "P > 0.999");
-        assert_eq!(p(0.992), "P 0.992");
-        assert_eq!(p(0.641), "P 0.64");
     }
 }

@@ -2,8 +2,11 @@
 //!
 //! # Layout
 //! - `wrong`: the errors, worst first. `pattern`: where they are.
-//! - `missing`: the searches' answer. `next`: steps with their commands.
+//! - `missing`: the searches' answer; `added`: what the study added before. `explanation`: the explanations of a search in words.
+//! - `next`: steps with their commands.
 
+mod added;
+mod explanation;
 mod missing;
 mod next;
 mod pattern;
@@ -11,10 +14,14 @@ mod wrong;
 
 use crate::finished_calibration::FinishedCalibration;
 use crate::study::Study;
+use next::Known;
 
-pub use missing::{AddedEffect, Alternative, Missing, NamedEffect};
+pub use added::AddedEffect;
+pub(crate) use added::added;
+pub use explanation::Alternative;
+pub use missing::{Missing, NamedEffect};
 pub use next::{EffectFile, Next, NextStep, StepKind};
-pub use wrong::{ChannelFailure, Wrong};
+pub use wrong::{BesideInterpolation, ChannelFailure, Wrong};
 
 /// The story of a calibration within its study.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
@@ -35,11 +42,16 @@ impl Story {
     /// The story of a calibration of the study.
     pub fn of(study: &Study, calibration: &FinishedCalibration) -> Story {
         let wrong = Wrong::of(study, calibration);
+        let missing = Missing::of(study, calibration);
+        let known = Known {
+            is_within_noise: wrong.is_within_noise(),
+            added: &missing.already_added,
+        };
         Story {
             calibration: calibration.row.id,
             model: study.model_comparison().map(|comparison| comparison.text),
-            missing: Missing::of(study, calibration),
-            next: Next::of(study, calibration, wrong.is_within_noise()),
+            next: Next::of(study, calibration, known),
+            missing,
             wrong,
         }
     }

@@ -2,12 +2,17 @@
 
 use std::collections::BTreeSet;
 
-use record::{Discovery, Extension, NextRun, Verdict, effect_of};
+use record::{Discovery, Extension, NextRun, Verdict, effect_of, parts_of};
 
+use super::added::AddedEffect;
+use super::explanation::run_words;
 use crate::discovery::effect_file;
 use crate::finished_calibration::FinishedCalibration;
 use crate::study::Study;
 use crate::words::number;
+
+/// File of the draws in the command that writes them.
+const POSTERIOR: &str = "posterior.csv";
 
 /// The steps, the first one first; at least one.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
@@ -35,6 +40,8 @@ pub struct NextStep {
     pub effect_file: Option<EffectFile>,
     /// The runs to make.
     pub runs: Vec<NextRun>,
+    /// The calibration that the runs are added to; null of a step without runs.
+    pub calibration: Option<i64>,
 }
 
 /// Kind of a step.
@@ -78,19 +85,29 @@ impl NextStep {
             wheel: None,
             effect_file: None,
             runs: Vec::new(),
+            calibration: None,
         }
     }
 }
 
+/// What the steps follow from, beside the search.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Known<'a> {
+    /// Whether noise alone explains the errors of every channel.
+    pub(super) is_within_noise: bool,
+    /// What the study added to the model.
+    pub(super) added: &'a [AddedEffect],
+}
+
 impl Next {
-    pub(super) fn of(study: &Study, calibration: &FinishedCalibration, is_within_noise: bool) -> Next {
-        let steps = steps(study, calibration, is_within_noise);
+    pub(super) fn of(study: &Study, calibration: &FinishedCalibration, known: Known<'_>) -> Next {
+        let steps = steps(study, calibration, known);
         let text = steps.first().map_or_else(String::new, |step| step.text.clone());
         Next { steps, text }
     }
 }
 
-fn steps(study: &Study, calibration: &FinishedCalibration, is_within_noise: bool) -> Vec<NextStep> {
+fn steps(study: &Study, calibration: &FinishedCalibration, known: Known<'_>) -> Vec<NextStep> {
     let id = calibration.row.id;
     if let Some(current) = study.current().filter(|current| current.row.id != id) {
         let text = format!(
@@ -100,7 +117,11 @@ fn steps(study: &Study, calibration: &FinishedCalibration, is_within_noise: bool
         let command = format!("report {}", current.row.id);
         return vec![NextStep::new(StepKind::Predict, text, Some(command))];
     }
-    let predict = |text: &str| NextStep::new(StepKind::Predict, text, Some(format!("export {id}")));
+    let predict = |text: &str| {
+        let command = format!("export {id} --output {POSTERIOR}");
+        NextStep::new(StepKind::Predict, text, Some(command))
+    };
+    let deciding = known.added.iter().filter_map(deciding);
     let Some(record) = study.search_of(calibration) else {
         let text = "search the library for the effect that the model is missing";
         let mut steps = vec![NextStep::new(
@@ -108,17 +129,18 @@ fn steps(study: &Study, calibration: &FinishedCalibration, is_within_noise: bool
             text,
             Some(format!("discover {id}")),
         )];
-        if is_within_noise {
+        if known.is_within_noise {
             steps.push(predict(
                 "predict with the posterior: its errors are within the noise",
             ));
         }
+        steps.extend(deciding);
         return steps;
     };
     let add = record
         .extension
         .as_ref()
-        .filter(|extension| !is_made(study, calibration, &effect_of(extension)))
+        .filter(|extension| !is_made(study, calibration, &parts_of(extension)))
         .map(|extension| addition(id, record, extension));
     let runs = (!record.next_runs.is_empty()).then(|| runs(id, &record.next_runs));
     let widen = record.implausible.as_ref().map(|own| {
@@ -138,11 +160,13 @@ fn steps(study: &Study, calibration: &FinishedCalibration, is_within_noise: bool
             .collect(),
         _ => add.into_iter().chain(runs).collect(),
     };
-    if steps.is_empty() && is_within_noise {
+    if steps.is_empty() && known.is_within_noise {
         steps.push(predict(
             "predict with the posterior: the model explains the runs to within the noise",
         ));
     }
+    // Which of several effects it is matters more than anything that the model with one of them leaves open.
+    steps.splice(0..0, deciding);
     let tests = record.other_tests.iter();
     steps.extend(tests.map(|test| NextStep::new(StepKind::MeasureOther, format!("measure {test}"), None)));
     let lacking = record.not_tried.iter().filter(|effect| effect.lacks_data());
@@ -190,11 +214,36 @@ fn noise(record: &Discovery) -> Option<NextStep> {
     })
 }
 
-/// Whether the study has a calibration with all that this one has, and the effect.
-fn is_made(study: &Study, calibration: &FinishedCalibration, effect: &String) -> bool {
-    let parts = study.parts(calibration);
-    let mut others = study.line().map(|other| study.parts(other));
-    others.any(|other| other.contains(effect) && parts.iter().all(|part| other.contains(part)))
+/// Whether the study has a calibration of the same measurements with all that this one has, and these parts.
+fn is_made(study: &Study, calibration: &FinishedCalibration, added: &[String]) -> bool {
+    let parts = [study.parts(calibration).as_slice(), added].concat();
+    let same = study
+        .line()
+        .filter(|other| other.row.experiment == calibration.row.experiment);
+    let mut others = same.map(|other| study.parts(other));
+    others.any(|other| parts.iter().all(|part| other.contains(part)))
+}
+
+/// The run that tells an added effect from what the data do not exclude in its place. It is added to the model without the effect,
+/// which is then searched again with it.
+fn deciding(added: &AddedEffect) -> Option<NextStep> {
+    let (run, searched) = (added.deciding_run.clone()?, added.searched?);
+    let rivals = added.rivals.iter().map(|rival| rival.name.clone());
+    let names: Vec<String> = std::iter::once(added.name.clone()).chain(rivals).collect();
+    let text = format!(
+        "run the wheel at {}, which tells {} apart, and add the row to calibration {searched}, which is then searched again",
+        run_words(&run),
+        number::list(&names)
+    );
+    Some(NextStep {
+        runs: vec![run],
+        calibration: Some(searched),
+        ..NextStep::new(
+            StepKind::MakeRuns,
+            text,
+            Some(format!("add-runs {searched} new-runs.csv")),
+        )
+    })
 }
 
 fn addition(id: i64, record: &Discovery, extension: &Extension) -> NextStep {
@@ -235,18 +284,10 @@ fn addition(id: i64, record: &Discovery, extension: &Extension) -> NextStep {
 }
 
 fn runs(id: i64, runs: &[NextRun]) -> NextStep {
-    let words = runs.iter().map(|run| {
-        format!(
-            "slip {:.2} under {} N at {} mm/s",
-            run.slip,
-            number::significant(run.wheel_load_n, 3),
-            number::significant(1000.0 * run.sled_speed_m_s, 3)
-        )
-    });
     let mut separates: Vec<String> = runs.iter().flat_map(|run| run.separates.clone()).collect();
     separates.sort();
     separates.dedup();
-    let words: Vec<String> = words.collect();
+    let words: Vec<String> = runs.iter().map(run_words).collect();
     let text = format!(
         "run the wheel at {}, which tells {} apart, and add the rows",
         words.join(", then "),
@@ -254,6 +295,7 @@ fn runs(id: i64, runs: &[NextRun]) -> NextStep {
     );
     NextStep {
         runs: runs.to_vec(),
+        calibration: Some(id),
         ..NextStep::new(
             StepKind::MakeRuns,
             text,
@@ -269,6 +311,21 @@ mod tests {
     use super::*;
     use crate::fixture;
 
+    /// Errors beyond the noise, or within it.
+    fn open() -> Known<'static> {
+        Known {
+            is_within_noise: false,
+            added: &[],
+        }
+    }
+
+    fn closed() -> Known<'static> {
+        Known {
+            is_within_noise: true,
+            ..open()
+        }
+    }
+
     fn kinds(next: &Next) -> Vec<StepKind> {
         next.steps.iter().map(|step| step.kind).collect()
     }
@@ -283,16 +340,19 @@ mod tests {
     #[test]
     fn what_was_not_searched_is_searched_next() {
         let study = fixture::study();
-        let next = Next::of(&study, &study.lead, false);
+        let next = Next::of(&study, &study.lead, open());
         assert_eq!(kinds(&next), [StepKind::Discover]);
         assert_eq!(next.steps[0].command.as_deref(), Some("discover 1"));
-        assert_eq!(kinds(&Next::of(&study, &study.lead, true))[1], StepKind::Predict);
+        assert_eq!(
+            kinds(&Next::of(&study, &study.lead, closed()))[1],
+            StepKind::Predict
+        );
     }
 
     #[test]
     fn a_named_effect_is_added_before_runs_are_made_and_an_open_one_after() {
         let mut study = searched();
-        let next = Next::of(&study, &study.lead, false);
+        let next = Next::of(&study, &study.lead, open());
         assert_eq!(
             kinds(&next),
             [StepKind::AddEffect, StepKind::MakeRuns, StepKind::MeasureOther]
@@ -306,7 +366,7 @@ mod tests {
             "{next:?}"
         );
         study.rounds[0].record.verdict = Verdict::Undecided;
-        let open = Next::of(&study, &study.lead, false);
+        let open = Next::of(&study, &study.lead, open());
         assert_eq!(kinds(&open)[..2], [StepKind::MakeRuns, StepKind::AddEffect]);
     }
 
@@ -320,7 +380,7 @@ mod tests {
             name: "n".into(),
             prior_sds: -7.1,
         });
-        let next = Next::of(&study, &study.lead, false);
+        let next = Next::of(&study, &study.lead, open());
         assert_eq!(kinds(&next)[..2], [StepKind::WidenPrior, StepKind::MakeRuns]);
         assert!(next.text.starts_with("widen the prior of n"), "{}", next.text);
     }
@@ -349,19 +409,22 @@ mod tests {
     fn an_extension_that_the_study_has_made_is_not_advised_again() {
         let mut study = fixture::grown();
         let advises =
-            |study: &Study| kinds(&Next::of(study, &study.lead, false)).contains(&StepKind::AddEffect);
+            |study: &Study| kinds(&Next::of(study, &study.lead, open())).contains(&StepKind::AddEffect);
         study.rounds[0].record.extension = Some(Extension::Effect("cohesion_pa".into()));
         assert!(advises(&study));
         study.extensions[0].spec.parameters[0].name = "cohesion_pa".into();
         assert_eq!(study.parts(&study.extensions[0]), ["cohesion_pa"]);
         assert!(!advises(&study));
+        // With runs more it is another question.
+        study.lead.row.experiment += 1;
+        assert!(advises(&study));
     }
 
     #[test]
     fn a_superseded_model_sends_to_the_current_one() {
         let mut study = fixture::grown();
         study.extensions[0].row.log_evidence = Some(10.0);
-        let next = Next::of(&study, &study.lead, false);
+        let next = Next::of(&study, &study.lead, open());
         assert_eq!(kinds(&next), [StepKind::Predict]);
         assert_eq!(next.steps[0].command.as_deref(), Some("report 3"));
     }
@@ -373,7 +436,7 @@ mod tests {
             name: "anything.toml".into(),
             text: "name = \"shear_slip_step\"\n".into(),
         });
-        let next = Next::of(&study, &study.lead, false);
+        let next = Next::of(&study, &study.lead, open());
         assert_eq!(next.steps[0].kind, StepKind::AddEffectFile);
         let file = next.steps[0].effect_file.as_ref().unwrap();
         assert_eq!(file.name, "shear_slip_step.toml");
@@ -392,7 +455,7 @@ mod tests {
             why: "the length of the bin is not stated".into(),
             needs: "bin_length_m under [rig]".into(),
         }];
-        let next = Next::of(&study, &study.lead, true);
+        let next = Next::of(&study, &study.lead, closed());
         assert_eq!(kinds(&next), [StepKind::Predict, StepKind::StateInExperiment]);
         assert!(next.steps[1].text.contains("bin_length_m under [rig]"));
     }
@@ -406,7 +469,7 @@ mod tests {
             why: "it changes nothing at the slips and slip angles of the fitted runs".into(),
             needs: "runs at a slip angle".into(),
         }];
-        let next = Next::of(&study, &study.lead, true);
+        let next = Next::of(&study, &study.lead, closed());
         let step = next.steps.last().unwrap();
         assert_eq!(
             (step.kind, step.text.as_str()),

@@ -5,12 +5,13 @@ use shared::channel::Channel;
 use shared::experiment::RunUse;
 
 use super::pattern;
+use crate::diagnostics::trends::TrendDiagnostics;
 use crate::finished_calibration::FinishedCalibration;
 use crate::flag::interpolation::{BY_CHANCE, LEAST_RUNS, RATIO};
 use crate::study::Study;
 use crate::table::errors::ErrorTable;
-use crate::table::fixed_sigma::SigmaSource;
-use crate::table::row::rows_of;
+use crate::table::fixed_sigma::{FixedSigmas, SigmaSource};
+use crate::table::row::{ComparisonRow, rows_of};
 use crate::words::data_channel::ShownUnit;
 use crate::words::number;
 
@@ -39,71 +40,121 @@ pub struct ChannelFailure {
     pub unit: String,
     /// The error in the noise sd that all calibrations of the study are measured by; null where none is known.
     pub noise_sds: Option<f64>,
-    /// Error of interpolation between the fitted runs, where it need not extrapolate \[SI\]; null where it has no value.
-    pub interpolation_rmse: Option<f64>,
-    /// The model's error over that of interpolation on the same runs, where the model is clearly worse; null elsewhere.
-    pub times_worse: Option<f64>,
+    /// The model beside interpolation between the fitted runs; null where that reaches no held-out run without extrapolating.
+    pub beside_interpolation: Option<BesideInterpolation>,
+    /// Whether the model is clearly worse than interpolation on the same runs.
+    pub is_beaten: bool,
     /// Where it fails and in which direction; null where no pattern stands out.
     pub place: Option<String>,
-    /// Whether noise alone explains the error.
+    /// Whether noise alone explains the error; false where it cannot be judged.
     pub is_within_noise: bool,
+    /// Whether the error can be judged; not where the noise is inferred together with the misfit, unless interpolation predicts better.
+    pub is_judged: bool,
+}
+
+/// The errors of the model and of interpolation on the held-out runs that lie between the fitted ones.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
+pub struct BesideInterpolation {
+    /// Number of these runs.
+    pub runs: usize,
+    /// Number of the held-out runs with a prediction.
+    pub of: usize,
+    /// Error of the model on them \[SI\].
+    pub model_rmse: f64,
+    /// Error of interpolation on them \[SI\].
+    pub interpolation_rmse: f64,
+}
+
+/// What the channels of a calibration are judged by.
+struct Judge<'a> {
+    rows: &'a [ComparisonRow],
+    trends: Vec<TrendDiagnostics>,
+    sigmas: FixedSigmas,
+    /// Errors on held-out runs, then on fitted ones.
+    errors: [(RunUse, Option<ErrorTable>); 2],
+    /// Errors of the model, and of interpolation, where both predict and none extrapolates.
+    beside: [Option<ErrorTable>; 2],
+}
+
+impl<'a> Judge<'a> {
+    fn new(study: &Study, calibration: &FinishedCalibration, rows: &'a [ComparisonRow]) -> Self {
+        let table = |usage| ErrorTable::of_model(rows_of(rows, usage));
+        let both = || rows_of(rows, RunUse::Holdout).filter(|r| r.is_interpolated());
+        Judge {
+            rows,
+            trends: calibration.diagnostics(calibration.comparison()).trends,
+            sigmas: study.fixed_sigmas(),
+            errors: [RunUse::Holdout, RunUse::Fit].map(|usage| (usage, table(usage))),
+            beside: [ErrorTable::of_model(both()), ErrorTable::of_baseline(both())],
+        }
+    }
+
+    /// The error of a channel; `None` where it is not measured.
+    fn failure(&self, channel: Channel) -> Option<ChannelFailure> {
+        let measured =
+            |(usage, table): &(RunUse, Option<ErrorTable>)| Some((*usage, table.as_ref()?.channel(channel)?));
+        let (usage, error) = self.errors.iter().find_map(measured)?;
+        let sigma = self.sigmas.get(channel);
+        let noise_sds = sigma.map(|sigma| error.rmse / sigma.sd);
+        let by_noise = noise_sds.and_then(|sds| {
+            let runs = error.runs as f64;
+            chi_square_tail(runs * sds * sds, runs)
+        });
+        // An inferred noise is the model's own error: neither an excuse, nor a failure.
+        let is_known = sigma.is_none_or(|sigma| sigma.source != SigmaSource::Inferred);
+        let is_noise = is_known && by_noise.is_some_and(|p| p >= BY_CHANCE);
+        let beside_interpolation = self.beside_interpolation(channel, error.runs);
+        let is_beaten = !is_noise
+            && beside_interpolation
+                .is_some_and(|own| own.runs >= LEAST_RUNS && own.model_rmse > RATIO * own.interpolation_rmse);
+        let is_judged = is_known || is_beaten;
+        let rows: Vec<_> = rows_of(self.rows, usage)
+            .filter(|row| row.channel == channel)
+            .collect();
+        let place = || pattern::of(channel, &rows, &self.trends);
+        Some(ChannelFailure {
+            channel,
+            usage,
+            rmse: error.rmse,
+            unit: channel.unit().into(),
+            noise_sds,
+            beside_interpolation,
+            is_beaten,
+            place: (is_judged && !is_noise).then(place).flatten(),
+            is_within_noise: is_noise,
+            is_judged,
+        })
+    }
+
+    fn beside_interpolation(&self, channel: Channel, of: usize) -> Option<BesideInterpolation> {
+        let [model, interpolation] = &self.beside;
+        let model = model.as_ref()?.channel(channel)?;
+        let interpolation = interpolation.as_ref()?.channel(channel)?;
+        Some(BesideInterpolation {
+            runs: model.runs,
+            of,
+            model_rmse: model.rmse,
+            interpolation_rmse: interpolation.rmse,
+        })
+    }
 }
 
 impl Wrong {
     pub(super) fn of(study: &Study, calibration: &FinishedCalibration) -> Wrong {
-        let comparison = calibration.comparison();
-        let trends = calibration.diagnostics(comparison).trends;
-        let sigmas = study.fixed_sigmas();
-        let table = |usage| ErrorTable::of_model(rows_of(&comparison.rows, usage));
-        let tables = [RunUse::Holdout, RunUse::Fit].map(|usage| (usage, table(usage)));
-        let both = || rows_of(&comparison.rows, RunUse::Holdout).filter(|r| r.is_interpolated());
-        let (beside, interpolation) = (ErrorTable::of_model(both()), ErrorTable::of_baseline(both()));
-        let failure = |channel: Channel| {
-            let measured = |(usage, table): &(RunUse, Option<ErrorTable>)| {
-                Some((*usage, table.as_ref()?.channel(channel)?))
-            };
-            let (usage, error) = tables.iter().find_map(measured)?;
-            let sigma = sigmas.get(channel);
-            let noise_sds = sigma.map(|sigma| error.rmse / sigma.sd);
-            let by_noise = noise_sds.and_then(|sds| {
-                let runs = error.runs as f64;
-                chi_square_tail(runs * sds * sds, runs)
-            });
-            let is_noise = by_noise.is_some_and(|p| p >= BY_CHANCE);
-            let baseline = interpolation.as_ref().and_then(|table| table.channel(channel));
-            let own = beside.as_ref().and_then(|table| table.channel(channel));
-            // An inferred noise is the model's own error, and no excuse.
-            let is_excused = is_noise && sigma.is_some_and(|s| s.source != SigmaSource::Inferred);
-            let times_worse = own
-                .zip(baseline)
-                .filter(|(own, _)| own.runs >= LEAST_RUNS && !is_excused)
-                .map(|(own, baseline)| own.rmse / baseline.rmse)
-                .filter(|&ratio| ratio > RATIO);
-            let is_within_noise = is_noise && times_worse.is_none();
-            let rows: Vec<_> = rows_of(&comparison.rows, usage)
-                .filter(|row| row.channel == channel)
-                .collect();
-            Some(ChannelFailure {
-                channel,
-                usage,
-                rmse: error.rmse,
-                unit: channel.unit().into(),
-                noise_sds,
-                interpolation_rmse: baseline.map(|error| error.rmse),
-                times_worse,
-                place: (!is_within_noise)
-                    .then(|| pattern::of(channel, &rows, &trends))
-                    .flatten(),
-                is_within_noise,
-            })
+        let rows = &calibration.comparison().rows;
+        let judge = Judge::new(study, calibration, rows);
+        let failures = Channel::ALL.into_iter();
+        let mut channels: Vec<ChannelFailure> = failures.filter_map(|own| judge.failure(own)).collect();
+        let rank = |c: &ChannelFailure| {
+            let sds = c.noise_sds.unwrap_or(f64::INFINITY);
+            (c.is_beaten, c.is_judged, sds)
         };
-        let mut channels: Vec<ChannelFailure> = Channel::ALL.into_iter().filter_map(failure).collect();
-        let rank = |c: &ChannelFailure| (c.times_worse.is_some(), c.noise_sds.unwrap_or(f64::INFINITY));
         channels.sort_by(|a, b| {
-            let ((a_beaten, a_sds), (b_beaten, b_sds)) = (rank(a), rank(b));
-            b_beaten.cmp(&a_beaten).then(b_sds.total_cmp(&a_sds))
+            let ((a_beaten, a_judged, a_sds), (b_beaten, b_judged, b_sds)) = (rank(a), rank(b));
+            let by_kind = (b_beaten, b_judged).cmp(&(a_beaten, a_judged));
+            by_kind.then(b_sds.total_cmp(&a_sds))
         });
-        let text = match (channels.is_empty(), comparison.rows.is_empty()) {
+        let text = match (channels.is_empty(), rows.is_empty()) {
             (true, true) => "there is no wheel run to compare the model with".into(),
             (true, false) => "the model predicts no run: it rejected every final draw".into(),
             (false, _) => text(&channels),
@@ -111,36 +162,55 @@ impl Wrong {
         Wrong { channels, text }
     }
 
-    /// Whether noise alone explains the errors of every channel.
+    /// Whether noise alone explains the errors of every channel; not where one cannot be judged.
     pub(super) fn is_within_noise(&self) -> bool {
         !self.channels.is_empty() && self.channels.iter().all(|channel| channel.is_within_noise)
     }
 }
 
 fn text(channels: &[ChannelFailure]) -> String {
-    let (within, beyond): (Vec<_>, Vec<_>) = channels.iter().partition(|c| c.is_within_noise);
+    let (judged, open): (Vec<_>, Vec<_>) = channels.iter().partition(|c| c.is_judged);
+    let (within, beyond): (Vec<_>, Vec<_>) = judged.into_iter().partition(|c| c.is_within_noise);
     let small = |c: &&ChannelFailure| {
         let sds = c
             .noise_sds
             .map(|sds| format!(", {} times the noise", number::significant(sds, 2)));
-        format!(
-            "{} {}{}",
-            c.channel.words(),
-            size(c.channel, c.rmse),
-            sds.unwrap_or_default()
-        )
+        format!("{}{}", named(c), sds.unwrap_or_default())
     };
-    let small: Vec<String> = within.iter().map(small).collect();
-    let Some(first) = beyond.first() else {
-        let runs = runs(channels[0].usage);
-        return format!("nothing beyond the noise on {runs} ({})", small.join("; "));
-    };
-    let mut clauses = vec![clause(first, None)];
+    let small = within.iter().map(small).collect::<Vec<_>>().join("; ");
+    let mut clauses: Vec<String> = beyond
+        .first()
+        .map(|first| clause(first, None))
+        .into_iter()
+        .collect();
     clauses.extend(beyond.windows(2).map(|pair| clause(pair[1], Some(pair[0]))));
-    if !small.is_empty() {
-        clauses.push(format!("within the noise: {}", small.join("; ")));
+    match (within.first(), beyond.is_empty()) {
+        (None, _) => {}
+        (Some(first), true) => {
+            let runs = runs(first.usage);
+            clauses.push(format!("nothing beyond the noise on {runs} ({small})"));
+        }
+        (Some(_), false) => clauses.push(format!("within the noise: {small}")),
+    }
+    if let Some(first) = open.first() {
+        let names: Vec<String> = open.iter().map(|c| named(c)).collect();
+        let its = if open.len() == 1 { "its" } else { "their" };
+        clauses.push(format!(
+            "{} on {} cannot be judged: {its} noise is inferred together with the misfit",
+            number::list(&names),
+            runs(first.usage)
+        ));
     }
     clauses.join("; ")
+}
+
+/// `sinkage 0.31 mm`.
+fn named(failure: &ChannelFailure) -> String {
+    format!(
+        "{} {}",
+        failure.channel.words(),
+        size(failure.channel, failure.rmse)
+    )
 }
 
 /// The error of a channel in words, without what the clause before has said.
@@ -153,16 +223,11 @@ fn clause(failure: &ChannelFailure, before: Option<&ChannelFailure>) -> String {
     if before.is_none_or(|before| before.usage != failure.usage) {
         text += &format!(" on {}", runs(failure.usage));
     }
-    match (failure.times_worse, failure.interpolation_rmse, failure.noise_sds) {
-        (Some(ratio), Some(rmse), _) => {
-            text += &format!(
-                ", {} times the {} of interpolation between the fitted runs",
-                number::significant(ratio, 2),
-                size(failure.channel, rmse)
-            );
-        }
-        (_, _, Some(sds)) => text += &format!(", {} times the noise", number::significant(sds, 2)),
-        _ => {}
+    let interpolation = failure.beside_interpolation.filter(|_| failure.is_beaten);
+    match (interpolation, failure.noise_sds) {
+        (Some(both), _) => text += &beaten(failure.channel, both, before.is_some_and(|own| own.is_beaten)),
+        (None, Some(sds)) => text += &format!(", {} times the noise", number::significant(sds, 2)),
+        (None, None) => {}
     }
     match (&failure.place, before.and_then(|before| before.place.as_ref())) {
         (Some(place), Some(said)) if place == said => text += ", likewise",
@@ -170,6 +235,20 @@ fn clause(failure: &ChannelFailure, before: Option<&ChannelFailure>) -> String {
         (None, _) => {}
     }
     text
+}
+
+/// `, where interpolation between the fitted runs has 0.31 N m`; the model's error is said again where interpolation reaches fewer runs.
+fn beaten(channel: Channel, both: BesideInterpolation, is_repeated: bool) -> String {
+    let interpolation = size(channel, both.interpolation_rmse);
+    if both.runs == both.of {
+        return format!(", where interpolation between the fitted runs has {interpolation}");
+    }
+    let between = match is_repeated {
+        false => format!("on the {} of {} that lie between fitted runs", both.runs, both.of),
+        true => format!("on {} of {}", both.runs, both.of),
+    };
+    let model = size(channel, both.model_rmse);
+    format!(", and {between} by {model} where interpolation has {interpolation}")
 }
 
 /// `11.7 N`.
@@ -209,18 +288,63 @@ mod tests {
             (Channel::DrawbarPull, RunUse::Holdout)
         );
         assert!((first.rmse - 8.0).abs() < 1e-9, "{first:?}");
-        assert!(first.times_worse.is_some_and(|ratio| ratio > RATIO), "{first:?}");
+        assert!(first.is_beaten, "{first:?}");
         assert_eq!(first.place.as_deref(), Some("over-predicted in every run"));
-        for words in [
-            "drawbar pull is off by 8.00 N on held-out runs",
-            "of interpolation",
-        ] {
-            assert!(
-                wrong.text.starts_with("drawbar pull") && wrong.text.contains(words),
-                "{}",
-                wrong.text
-            );
+        let words = "drawbar pull is off by 8.00 N on held-out runs, where interpolation between the fitted runs has 0";
+        assert!(wrong.text.starts_with(words), "{}", wrong.text);
+    }
+
+    #[test]
+    fn errors_that_stand_beside_interpolation_are_on_the_runs_that_it_reaches() {
+        let mut calibration = fixture::with_held_out_runs(8, 8.0);
+        // Four of the runs move beyond the fitted slips, where the model is worse.
+        for &run in &calibration.spec.holdout_runs[4..] {
+            calibration.spec.experiment.runs[run].slip = 0.9;
         }
+        for holdout in calibration
+            .predictions
+            .iter_mut()
+            .flat_map(|own| &mut own.holdout)
+        {
+            let observables = holdout.together.as_mut().unwrap();
+            observables.drawbar_pull_n[4..]
+                .iter_mut()
+                .for_each(|pull| *pull += 72.0);
+        }
+        let study = Study::from(calibration);
+        let wrong = Wrong::of(&study, &study.lead);
+        let first = &wrong.channels[0];
+        let both = first.beside_interpolation.unwrap();
+        assert_eq!((both.runs, both.of), (4, 8));
+        assert!((both.model_rmse - 8.0).abs() < 1e-9, "{both:?}");
+        let words = "drawbar pull is off by 56.9 N on held-out runs, and on the 4 of 8 that lie between fitted runs by 8.00 N where interpolation has 0";
+        assert!(wrong.text.starts_with(words), "{}", wrong.text);
+        // The first number is that of the ledger.
+        let lines = study.ledger_lines();
+        let row = lines[0].rows.iter().find(|row| row.usage == RunUse::Holdout);
+        let in_ledger = row.and_then(|row| row.errors.channel(Channel::DrawbarPull));
+        assert!((in_ledger.unwrap().rmse - first.rmse).abs() < 1e-9);
+    }
+
+    #[test]
+    fn a_channel_whose_noise_is_inferred_cannot_be_judged() {
+        let wrong = wrong(fixture::with_held_out_runs(6, 0.1));
+        let mut channels = wrong.channels.iter();
+        let sinkage = channels.find(|c| c.channel == Channel::Sinkage).unwrap();
+        assert!(!sinkage.is_judged && !sinkage.is_within_noise && sinkage.place.is_none());
+        assert!(!wrong.is_within_noise());
+        let words = "on fitted runs cannot be judged: its noise is inferred together with the misfit";
+        let (before, _) = wrong
+            .text
+            .split_once(words)
+            .unwrap_or_else(|| panic!("{}", wrong.text));
+        let (_, sinkage) = before.rsplit_once("; sinkage ").unwrap();
+        assert!(sinkage.ends_with(" mm "), "{}", wrong.text);
+        assert!(
+            !before.contains("mm, "),
+            "no share of an inferred noise: {}",
+            wrong.text
+        );
     }
 
     #[test]
@@ -247,7 +371,7 @@ mod tests {
             wrong
                 .channels
                 .iter()
-                .all(|c| c.usage == RunUse::Fit && c.interpolation_rmse.is_none())
+                .all(|c| c.usage == RunUse::Fit && c.beside_interpolation.is_none())
         );
         assert!(wrong.text.contains("fitted runs"), "{}", wrong.text);
     }

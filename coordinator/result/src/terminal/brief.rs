@@ -1,51 +1,34 @@
-//! A study in a few lines: its calibrations and searches, what casts doubt on them, its error ledger.
-
-use std::fmt::Write;
-
-use record::{Verdict, effect_of};
+//! A study in a few lines: what casts doubt on it, the models that it compares, its error ledger.
 
 use super::calibration::headline;
 use super::campaign::digitised;
-use super::ledger::ledger;
+use super::ledger::brief_ledger;
 use super::models::models;
-use crate::discovery::word;
 use crate::flag::kind::FlagKind;
 use crate::study::Study;
-use crate::words::number;
 
-/// The calibrations with their searches, a line each, and the error ledger.
+/// Cautions, the models that the job compares, the error ledger, and a line for each calibration that has none in it.
 pub fn brief(study: &Study) -> String {
-    let mut text = String::new();
-    for calibration in study.calibrations() {
-        let _ = writeln!(text, "{}", headline(calibration));
-        let own = |id| id == calibration.row.id;
-        for round in study.rounds.iter().filter(|round| own(round.calibration)) {
-            let found = match (round.record.verdict, &round.record.extension) {
-                (Verdict::Named, Some(extension)) => format!("{} named", effect_of(extension)),
-                (verdict, _) => word(verdict).replace('_', " "),
-            };
-            let cost = number::count(round.record.evaluations as usize, "evaluation");
-            let _ = writeln!(text, "  search: {found}, {cost}");
-        }
-    }
-    if let Some(campaign) = &study.lead.spec.experiment.campaign {
-        text += &digitised(campaign);
-    }
-    for doubt in doubts(study) {
-        let _ = writeln!(text, "caution: {doubt}");
-    }
-    text + &models(study) + &ledger(study)
+    let is_in_ledger = |id: i64| study.ledger().any(|line| line.row.id == id);
+    let beside = study.line().filter(|own| !is_in_ledger(own.row.id));
+    let mut text: String = beside.map(|own| headline(own) + "\n").collect();
+    text += &cautions(study);
+    text += &models(study);
+    text + &brief_ledger(study)
 }
 
-/// Why the numbers themselves may be wrong: of the study and of its current model.
-fn doubts(study: &Study) -> Vec<String> {
+/// Where the measurements were read off figures, and why the numbers themselves may be wrong: of the study and of its current model.
+pub(super) fn cautions(study: &Study) -> String {
+    let campaign = study.lead.spec.experiment.campaign.as_ref();
+    let digitised = campaign.map_or_else(String::new, digitised);
     let current = study.current().unwrap_or(&study.lead);
     let flags = current.diagnostics(current.comparison()).flags;
     let of_numbers = flags
         .into_iter()
         .filter(|flag| matches!(flag.kind, FlagKind::NotEquilibrated | FlagKind::Worker));
-    let texts = study.missed_modes().into_iter().chain(of_numbers);
-    texts.map(|flag| flag.text).collect()
+    let doubts = study.missed_modes().into_iter().chain(of_numbers);
+    let doubts = doubts.map(|flag| format!("caution: {}\n", flag.text));
+    digitised + &doubts.collect::<String>()
 }
 
 #[cfg(test)]
@@ -54,18 +37,29 @@ mod tests {
     use crate::{fixture, terminal};
 
     #[test]
-    fn a_study_has_a_line_for_each_calibration_and_search_and_no_table_of_runs() {
+    fn a_study_is_its_ledger_without_the_cost_of_its_calibrations_and_without_tables() {
         let text = brief(&fixture::grown());
-        let lines: Vec<&str> = text.lines().collect();
+        let ledger = text.find("root mean sq. error").expect("a ledger");
+        for (words, is_there) in [
+            ("base ", true),
+            ("<script>sand: 3 stages", false),
+            ("search:", false),
+            ("noise:", false),
+            ("90 % interval", false),
+        ] {
+            assert_eq!(text[ledger..].contains(words), is_there, "{words} in\n{text}");
+        }
+    }
+
+    #[test]
+    fn what_has_no_line_in_the_ledger_has_one_before_it() {
+        let text = brief(&fixture::study());
         assert!(
-            lines[0].starts_with("<script>sand: 3 stages, 1000 evaluations"),
+            text.starts_with("<script>sand: ga stopped by generations"),
             "{text}"
         );
-        assert_eq!(lines[1], "  search: slip_sinkage named, 4000 evaluations");
-        assert!(
-            !text.contains("90 % interval") && !text.contains("prior"),
-            "{text}"
-        );
+        let text = brief(&fixture::fit().into());
+        assert!(text.starts_with("<script>sand: lm stopped by"), "{text}");
     }
 
     #[test]
@@ -85,7 +79,7 @@ mod tests {
     #[test]
     fn a_sampler_that_drifted_is_a_caution() {
         let text = brief(&fixture::all_rejected().into());
-        assert!(text.contains("\ncaution: "), "{text}");
+        assert!(text.contains("caution: "), "{text}");
         assert!(!brief(&fixture::calibration().into()).contains("caution"));
     }
 }

@@ -22,8 +22,27 @@ const COMBINED: &str = "all, combined";
 /// The line of what no model predicts.
 const INTERPOLATION: &str = "interpolation";
 
-/// The ledger of a study, with a line on the noise that errors are measured by; nothing without a calibration in it.
+/// The ledger of a study, with what all models predict together and the noise that errors are measured by; nothing without a
+/// calibration in it.
 pub(super) fn ledger(study: &Study) -> String {
+    let combined = study.combined_summary(&study.fixed_sigmas());
+    let combined = combined.filter(|own| own.models > 1).and_then(|own| own.holdout);
+    let current = study.current().map(FinishedCalibration::comparison);
+    let corrected = current.and_then(|own| own.corrected_holdout.as_ref());
+    let text = table(study, &[(CORRECTED, corrected), (COMBINED, combined.as_ref())]);
+    match text.is_empty() {
+        true => text,
+        false => text + &labelled("noise:", &study.fixed_sigmas().words()),
+    }
+}
+
+/// The ledger of a study: its models, and interpolation.
+pub(super) fn brief_ledger(study: &Study) -> String {
+    table(study, &[])
+}
+
+/// - `predictions`: others of the held-out runs, with their names.
+fn table(study: &Study, predictions: &[(&str, Option<&ErrorTable>)]) -> String {
     let lines = study.ledger_lines();
     let measured = |channel: &Channel| {
         let mut rows = lines.iter().flat_map(|line| &line.rows);
@@ -37,7 +56,7 @@ pub(super) fn ledger(study: &Study) -> String {
         .iter()
         .map(|line| line.model.chars().count())
         .fold(MODEL, usize::max);
-    let mut text = format!("\n{:<width$} {:<8}", "root mean sq. error", "runs");
+    let mut text = format!("{:<width$} {:<8}", "root mean sq. error", "runs");
     for &channel in &channels {
         let unit = ShownUnit::of(channel);
         let _ = write!(text, " {:>10}", format!("{} {}", short_name(channel), unit.name));
@@ -50,15 +69,8 @@ pub(super) fn ledger(study: &Study) -> String {
         }
     }
     let current = study.current().map(FinishedCalibration::comparison);
-    let corrected = current.and_then(|own| own.corrected_holdout.as_ref());
     let interpolated = current.and_then(|own| own.baseline_holdout.as_ref());
-    let combined = study.combined_summary(&study.fixed_sigmas());
-    let combined = combined.filter(|own| own.models > 1).and_then(|own| own.holdout);
-    for (name, errors) in [
-        (CORRECTED, corrected),
-        (COMBINED, combined.as_ref()),
-        (INTERPOLATION, interpolated),
-    ] {
+    for (name, errors) in predictions.iter().copied().chain([(INTERPOLATION, interpolated)]) {
         if let Some(errors) = errors {
             let cells = cells(errors, &channels, &[]);
             let _ = write!(text, "{name:<width$} {:<8}{cells}", usage(RunUse::Holdout));
@@ -68,7 +80,6 @@ pub(super) fn ledger(study: &Study) -> String {
             };
         }
     }
-    text += &labelled("noise:", &study.fixed_sigmas().words());
     if lines
         .iter()
         .flat_map(|line| &line.rows)

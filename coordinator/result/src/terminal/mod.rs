@@ -2,8 +2,8 @@
 //!
 //! # Layout
 //! - `specification`: a job before it runs. `campaign`: where its measurements come from. `status`: states of calibrations.
-//! - `brief`: a study in a few lines; `story`: its three last. `ledger`: the errors of its calibrations.
-//! - `study`: the tables of a study; `calibration`: of one calibration; `comparison`: its errors.
+//! - `brief`: a study in a few lines; `story`: its three answers; `ending`: where the rest is. `ledger`: the errors of its calibrations.
+//! - `study`: everything of a study; `calibration`: of one calibration; `comparison`: its errors.
 //! - `diagnostics`: how far a result can be trusted. [`discovery`]: a search for a missing effect.
 //! - `validation`: the levels of a factor, each left out in turn.
 //! - `column`: widths and cells of columns.
@@ -15,6 +15,7 @@ mod column;
 mod comparison;
 mod diagnostics;
 pub mod discovery;
+mod ending;
 mod ledger;
 mod models;
 mod specification;
@@ -26,6 +27,7 @@ mod validation;
 pub use brief::brief;
 pub use comparison::{comparison, groups};
 pub use diagnostics::diagnostics;
+pub use ending::ending;
 pub use specification::specification;
 pub use status::status_table;
 pub use story::story;

@@ -29,7 +29,7 @@ pub(super) fn models(study: &Study) -> String {
         .map(|m| m.name.chars().count())
         .fold(16, usize::max);
     let mut text = format!(
-        "\n{:<width$} {:>12} {:>8} {:>8}",
+        "{:<width$} {:>12} {:>8} {:>8}",
         "model", "ln evidence", "P", "chi2 p"
     );
     for &channel in &channels {
@@ -68,5 +68,5 @@ pub(super) fn models(study: &Study) -> String {
             _ => "each condition when the others are fitted",
         }
     );
-    text
+    text + "\n"
 }

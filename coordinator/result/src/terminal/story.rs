@@ -4,20 +4,25 @@ use std::fmt::Write;
 use std::path::Path;
 
 use super::column::{LABEL, labelled};
+use super::ending::quoted;
 use crate::story::{NextStep, Story};
 
-/// Most steps.
-const STEPS: usize = 3;
+/// Most steps of a brief story.
+const STEPS: usize = 2;
 
 /// The story, with the commands of its steps.
 ///
 /// # Arguments
-/// - `place`: the argument that locates the study. `folder`: of effect files.
-pub fn story(story: &Story, place: &str, folder: &Path) -> String {
+/// - `folder`: of the study, and of effect files. `is_brief`: the first step alone, and with it the next that a command takes.
+pub fn story(story: &Story, folder: &Path, is_brief: bool) -> String {
+    let place = format!("--out {}", quoted(&folder.display().to_string()));
     let model = story.model.as_ref();
     let mut text = model.map_or_else(String::new, |model| labelled("model:", model));
     text += &(labelled("wrong:", &story.wrong.text) + &labelled("missing:", &story.missing.text));
-    for (number, step) in story.next.steps.iter().take(STEPS).enumerate() {
+    let steps = story.next.steps.iter().enumerate();
+    let shown = steps.filter(|(number, step)| !is_brief || *number == 0 || step.command.is_some());
+    let most = if is_brief { STEPS } else { usize::MAX };
+    for (number, step) in shown.take(most) {
         let label = if number == 0 { "next:" } else { "  then:" };
         text += &labelled(label, &step.text);
         if let Some(command) = command(step, folder) {
@@ -31,7 +36,10 @@ pub fn story(story: &Story, place: &str, folder: &Path) -> String {
 fn command(step: &NextStep, folder: &Path) -> Option<String> {
     let command = step.command.clone()?;
     Some(match &step.effect_file {
-        Some(file) => command.replace(&file.name, &folder.join(&file.name).display().to_string()),
+        Some(file) => {
+            let path = folder.join(&file.name).display().to_string();
+            command.replace(&file.name, &quoted(&path))
+        }
         None => command,
     })
 }
@@ -52,7 +60,15 @@ mod tests {
     }
 
     fn printed(study: &Study) -> String {
-        story(&Story::current(study), "--out out/sand", Path::new("out/sand"))
+        story(&Story::current(study), Path::new("out/sand"), true)
+    }
+
+    #[test]
+    fn a_brief_story_has_the_first_step_and_one_more_with_a_command_and_the_whole_has_all() {
+        let study = searched();
+        assert!(!printed(&study).contains("measure a plate test"));
+        let whole = story(&Story::current(&study), Path::new("out/sand"), false);
+        assert!(whole.contains("measure a plate test"), "{whole}");
     }
 
     #[test]

@@ -1,0 +1,124 @@
+//! Why a study failed, and what to do about it.
+
+use shared::api::CalibrationState;
+
+use crate::study_member::{Rejections, StudyMember};
+
+/// The failed member of a study.
+#[derive(Debug, Clone, PartialEq, Eq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
+pub struct StudyFailure {
+    /// Its id.
+    pub calibration: i64,
+    /// Why it failed, with what the model rejected.
+    pub reason: String,
+    /// What to do.
+    pub advice: String,
+    /// Both in a sentence.
+    pub text: String,
+}
+
+impl StudyFailure {
+    /// Of the first member that failed; `None` where none did.
+    pub(crate) fn of<'a>(mut members: impl Iterator<Item = &'a StudyMember>) -> Option<StudyFailure> {
+        let failed = members.find(|member| member.state == CalibrationState::Failed)?;
+        let message = failed.message.as_deref().unwrap_or("no reason is stored");
+        let rejections = failed.rejections.as_ref();
+        let reason = match rejections.and_then(Rejections::words) {
+            Some(words) => format!("{message} ({words})"),
+            None => message.to_owned(),
+        };
+        let advice = advice(rejections.and_then(Rejections::usual));
+        Some(StudyFailure {
+            calibration: failed.id,
+            text: format!("calibration {} failed: {reason}; {advice}", failed.name),
+            reason,
+            advice: advice.to_owned(),
+        })
+    }
+}
+
+/// What to do where the model rejects most of the parameter vectors for this reason.
+fn advice(kind: Option<&str>) -> &'static str {
+    match kind {
+        Some("no_support") => {
+            "check wheel loads, radius and width, or move the priors to a soil that carries the wheel (a larger log10_p_ref), and submit the corrected job as a new study"
+        }
+        Some("invalid_parameter") => {
+            "give the priors bounds within which the model is defined, and submit the corrected job as a new study"
+        }
+        Some("formula") => {
+            "correct the formula of the effect, or the priors of its parameters, and submit the corrected job as a new study"
+        }
+        Some("protocol") => {
+            "check the travel and the sampling of the runs, and submit the corrected job as a new study"
+        }
+        Some("fault") => "read what the workers logged, and submit the job again",
+        Some("model" | "model_error" | "time_limit") => {
+            "read what the model's program says of these parameters, or narrow the priors, and submit the corrected job as a new study"
+        }
+        Some(_) => {
+            "narrow the priors to parameters at which the model has a solution, and submit the corrected job as a new study"
+        }
+        None => "correct the job or the experiment accordingly, and submit it as a new study",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::study_member::MemberKind;
+
+    fn member(state: CalibrationState, kinds: &[(&str, u64)]) -> StudyMember {
+        StudyMember {
+            id: 4,
+            name: "sand".into(),
+            state,
+            kind: MemberKind::Sample,
+            effects: Vec::new(),
+            searches: None,
+            message: Some("all 1000 prior draws were rejected by the model".into()),
+            rejections: Some(Rejections {
+                kinds: kinds.iter().map(|&(kind, count)| (kind.into(), count)).collect(),
+                first: Some("the soil carries at most 80 N of the 140 N wheel load".into()),
+            }),
+        }
+    }
+
+    #[test]
+    fn a_failure_says_what_the_model_rejected_and_what_to_do() {
+        let failed = member(
+            CalibrationState::Failed,
+            &[("not_finite", 10), ("no_support", 990)],
+        );
+        let failure = StudyFailure::of([&failed].into_iter()).unwrap();
+        assert_eq!(
+            failure.reason,
+            "all 1000 prior draws were rejected by the model (no_support 990 and not_finite 10, such as \"the soil carries at most 80 N of the 140 N wheel load\")"
+        );
+        assert!(failure.advice.starts_with("check wheel loads"), "{failure:?}");
+        assert!(
+            failure.text.starts_with("calibration sand failed: all 1000"),
+            "{failure:?}"
+        );
+    }
+
+    #[test]
+    fn what_has_not_failed_has_no_failure_and_what_failed_otherwise_has_its_message() {
+        for state in CalibrationState::ALL
+            .into_iter()
+            .filter(|s| *s != CalibrationState::Failed)
+        {
+            assert_eq!(
+                StudyFailure::of([&member(state, &[])].into_iter()),
+                None,
+                "{state:?}"
+            );
+        }
+        let mut failed = member(CalibrationState::Failed, &[]);
+        failed.rejections = None;
+        failed.message = Some("tempering exponent 0.1 cannot grow".into());
+        let failure = StudyFailure::of([&failed].into_iter()).unwrap();
+        assert_eq!(failure.reason, "tempering exponent 0.1 cannot grow");
+        assert!(failure.advice.starts_with("correct the job"), "{failure:?}");
+    }
+}

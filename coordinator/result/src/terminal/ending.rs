@@ -1,0 +1,53 @@
+//! The last lines of a run: where its files are, and how to see the study in a browser.
+
+use std::path::Path;
+
+use super::column::labelled;
+
+/// Characters that a shell takes as they are.
+const PLAIN: &str = "/._-+=:,@%";
+
+/// The files of a folder, and the command that shows its study in a browser.
+///
+/// # Arguments
+/// - `is_brief`: whether the tables were left out.
+pub fn ending(folder: &Path, is_brief: bool) -> String {
+    let out = folder.display();
+    let more = if is_brief { "; more with --verbose" } else { "" };
+    let files = format!("report.html and its data in {out}{more}");
+    let store = quoted(&format!("sqlite://{}", folder.join("grouser.db").display()));
+    // A command stays on one line, so that it can be copied.
+    format!(
+        "{}page:    coordinator serve --read-only --store {store}\n",
+        labelled("files:", &files)
+    )
+}
+
+/// A word as a shell of Unix reads it.
+pub(super) fn quoted(word: &str) -> String {
+    let is_plain = |c: char| c.is_alphanumeric() || PLAIN.contains(c);
+    match word.chars().all(is_plain) {
+        true => word.to_owned(),
+        false => format!("'{}'", word.replace('\'', "'\\''")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_command_of_the_page_is_one_line_and_names_the_store() {
+        let text = ending(Path::new("out/sand"), true);
+        let last = text.lines().last();
+        let command = "page:    coordinator serve --read-only --store sqlite://out/sand/grouser.db";
+        assert_eq!(last, Some(command));
+        assert!(text.contains("--verbose") && !ending(Path::new("o"), false).contains("--verbose"));
+    }
+
+    #[test]
+    fn a_word_that_a_shell_would_split_is_quoted() {
+        assert_eq!(quoted("out/Sand-1"), "out/Sand-1");
+        assert_eq!(quoted("my rig/it's"), "'my rig/it'\\''s'");
+    }
+}

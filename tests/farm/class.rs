@@ -1,0 +1,58 @@
+//! A campaign whose runs cannot tell which of two effects is missing: what is said before one of them is added, and after it.
+
+use farm_tests::programs::{coordinator, run};
+use farm_tests::service::Service;
+use farm_tests::wait::until;
+use farm_tests::workspace::{root, text};
+use serde_json::Value;
+
+const RIVAL: &str = "slip_softened_pressure (P 0.42) in place of slip_sinkage cannot be excluded";
+const RUN: &str = "slip 0.80 under 280 N at 5.80 mm/s";
+
+/// A text without its line breaks.
+fn joined(text: &str) -> String {
+    text.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+#[test]
+fn the_rival_of_an_added_effect_and_the_run_that_decides_are_said_until_it_is_decided() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let job = root()
+        .join("tests/data/one-of-a-class/job.toml")
+        .display()
+        .to_string();
+    let out = folder.path().join("out").display().to_string();
+    let go = |words: &[&str]| run(coordinator(words.iter().copied().chain(["--out", &out]))).success();
+    let before = joined(&go(&["run", &job]));
+    for words in [
+        "missing: one of slip_sinkage (0.58), slip_softened_pressure (0.42) is missing",
+        "coordinator add-runs 1 new-runs.csv",
+    ] {
+        assert!(before.contains(words), "{words} in {before}");
+    }
+    let after = joined(&go(&["extend", "1", "--effect", "slip_sinkage"]));
+    for words in [
+        "missing: slip_sinkage (P 0.58) is added: held-out error from 1.5 to 1.1 times the noise",
+        RIVAL,
+        "beyond that, nothing that these data can show",
+        "next: run the wheel at slip 0.80 under 280 N at 5.80 mm/s, which tells",
+        "coordinator add-runs 1 new-runs.csv",
+    ] {
+        assert!(after.contains(words), "{words} in {after}");
+    }
+    assert!(!after.contains("by hand"), "{after}");
+    let report = text(&folder.path().join("out/report.html"));
+    assert!(report.contains(RIVAL) && report.contains(RUN));
+    let service = Service::start_on(&format!("sqlite://{out}/grouser.db"), &["--read-only"]);
+    let listed = until("the verdict in the list", || {
+        let verdict = service.client.json("/v1/studies")[0]["verdict"].clone();
+        (verdict != Value::Null).then_some(verdict)
+    });
+    for verdict in [listed, service.client.json("/v1/studies/1")["verdict"].clone()] {
+        assert_eq!(verdict["verdict"], "nothing_detectable", "of the extended model");
+        for key in ["open", "text"] {
+            let told = verdict[key].as_str().unwrap_or_default();
+            assert!(told.contains(RIVAL) && told.contains(RUN), "{key}: {told}");
+        }
+    }
+}

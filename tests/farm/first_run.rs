@@ -1,0 +1,99 @@
+//! What a new user sees: the end of the first command, as the README prints it, and the way to the page.
+
+use farm_tests::http::Client;
+use farm_tests::job::Job;
+use farm_tests::process::Process;
+use farm_tests::programs::{coordinator, run};
+use farm_tests::text::same;
+use farm_tests::wait::until;
+use farm_tests::workspace::{root, text};
+use serde_json::Value;
+
+/// Lines of a terminal of 80 columns.
+fn rows(text: &str) -> usize {
+    text.lines()
+        .map(|line| line.chars().count().div_ceil(80).max(1))
+        .sum()
+}
+
+#[test]
+fn the_first_command_ends_with_what_the_readme_prints_in_twenty_lines() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let job = root().join("examples/hidden-effect/job.toml");
+    let mut command = coordinator(["run"]);
+    command.arg(job).current_dir(&folder);
+    let ended = run(command);
+    let (progress, printed) = (ended.stderr.clone(), ended.success());
+    let readme = text(&root().join("README.md"));
+    let (_, block) = readme.split_once("```text\n").expect("a block");
+    let (block, _) = block.split_once("```").expect("its end");
+    same(&printed, block);
+    assert!(rows(&printed) <= 20, "{} lines:\n{printed}", rows(&printed));
+    // Behind the last line of progress nothing more is said of it.
+    let last = progress.lines().last().expect("progress");
+    assert!(last.contains(" %"), "{progress}");
+}
+
+#[test]
+fn the_command_that_a_run_ends_with_opens_its_study() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let job = Job::small().write(&folder.path().join("job"));
+    let mut command = coordinator(["run", "--out", "my rig/it's"]);
+    command.arg(job).current_dir(&folder);
+    let printed = run(command).success();
+    let last = printed.lines().last().expect("a last line");
+    let serve = last.strip_prefix("page:    coordinator ").expect("the command");
+    // A shell of the user, with the program on its path.
+    let program = coordinator(["--version"]).get_program().to_owned();
+    let mut shell = std::process::Command::new("sh");
+    shell
+        .arg("-c")
+        .arg(format!("exec \"$0\" {serve} --listen 127.0.0.1:0"));
+    shell.arg(program).current_dir(&folder);
+    let log = folder.path().join("serve.log");
+    let service = Process::start(shell, &log);
+    let address = until("the address to open", || {
+        let said = service.log();
+        let line = said.lines().find_map(|line| line.strip_prefix("open http://"))?;
+        Some(line.to_owned())
+    });
+    let client = Client(address);
+    let page = client.get("/");
+    assert!(
+        page.status == 200 && page.body.contains("Grouser"),
+        "{}",
+        page.body
+    );
+    assert_eq!(client.json("/v1/studies")[0]["name"], "job");
+}
+
+#[test]
+fn a_study_that_fails_says_why_and_what_to_do() {
+    let folder = tempfile::tempdir().expect("a folder");
+    // A soil like water carries no wheel.
+    let job = Job::small().in_job(
+        "log10_p_ref = { uniform = [4.0, 5.6] }",
+        "log10_p_ref = { uniform = [1.1, 1.6] }",
+    );
+    let path = job.write(&folder.path().join("job")).display().to_string();
+    let out = folder.path().join("out").display().to_string();
+    let refusal = run(coordinator(["run", &path, "--out", &out])).refusal();
+    for words in [
+        "calibration job failed: all 60 prior draws were rejected by the model (no_support ",
+        "the soil carries at most",
+        "check wheel loads, radius and width",
+    ] {
+        assert!(refusal.contains(words), "{words} in {refusal}");
+    }
+    let service =
+        farm_tests::service::Service::start_on(&format!("sqlite://{out}/grouser.db"), &["--read-only"]);
+    let study = service.client.json("/v1/studies/1");
+    assert_eq!(study["state"], "failed");
+    let told = study["failure"]["text"].as_str().unwrap_or_default();
+    assert!(refusal.starts_with(told), "{told}\n{refusal}");
+    let listed = until("the list", || {
+        let listed = service.client.json("/v1/studies")[0]["failure"].clone();
+        (listed != Value::Null).then_some(listed)
+    });
+    assert_eq!(listed, study["failure"]);
+}

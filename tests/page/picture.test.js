@@ -1,0 +1,117 @@
+// The picture of the page in the README: taken again of the same study, and compared. PICTURE=write puts the new one in its place.
+//
+// Fonts and their smoothing differ between machines, so two things are compared. The words: the picture carries those that it shows, those
+// in charts too, as the text of its file. The layout: both pictures are drawn 160 pixels wide, and a pixel differs where a colour does by more
+// than 32 of 255; a serif font changes 8 % of them, another story 10 %.
+
+import assert from "node:assert/strict";
+import { readFile, writeFile } from "node:fs/promises";
+import { after, before, test } from "node:test";
+
+import { open, view } from "./browser.js";
+import { Service, filesOf } from "./service.js";
+
+const FOLDER = "examples/hidden-effect";
+const PICTURE = new URL("../../docs/page.png", import.meta.url);
+/** Most bytes of the picture: a README is read over slow lines too. */
+const MOST_BYTES = 200_000;
+/** Most of the small pixels that may differ. */
+const MOST_SHARE = 0.09;
+const SIZE = { width: 1280, height: 1040 };
+let service, tab;
+
+before(async () => {
+  service = await Service.start();
+  tab = await open({ url: service.url, ...SIZE });
+});
+after(async () => {
+  await tab?.close();
+  await service?.stop();
+});
+
+/** The study of the example as the service ends it by itself. */
+async function submitted() {
+  const texts = Object.fromEntries((await filesOf(FOLDER)).map(({ name, text }) => [name, text]));
+  const { "job.toml": job, "experiment.toml": experiment, ...files } = texts;
+  const { id } = await service.post("/v1/experiments", { toml: experiment, files });
+  return (await service.post("/v1/calibrations", { experiment: id, toml: job, files: {}, name: "hidden-effect" })).study;
+}
+
+/** Share of the pixels that differ, of two pictures that are drawn small; 1 where their sizes differ. */
+const difference = (page, pictures) => page.evaluate(async (sources) => {
+  const images = await Promise.all(sources.map(async (source) => {
+    const image = new Image();
+    image.src = `data:image/png;base64,${source}`;
+    await image.decode();
+    return image;
+  }));
+  const [before, now] = images;
+  if (before.width !== now.width || before.height !== now.height) return 1;
+  const width = 160, height = Math.round((width * now.height) / now.width);
+  const [a, b] = images.map((image) => {
+    const canvas = Object.assign(document.createElement("canvas"), { width, height });
+    const context = canvas.getContext("2d");
+    context.imageSmoothingQuality = "high";
+    context.drawImage(image, 0, 0, width, height);
+    return context.getImageData(0, 0, width, height).data;
+  });
+  let differing = 0;
+  for (let k = 0; k < a.length; k += 4) {
+    if ([0, 1, 2].some((c) => Math.abs(a[k + c] - b[k + c]) > 32)) differing += 1;
+  }
+  return differing / (a.length / 4);
+}, pictures.map((bytes) => bytes.toString("base64")));
+
+/** What a picture file says of itself: text chunks as the format PNG has them, after the pixels. */
+const KEY = "Description\0\0\0\0\0";
+
+/** The picture with a text. */
+function withText(/** @type {Buffer} */ png, /** @type {string} */ text) {
+  const body = Buffer.from(`iTXt${KEY}${text}`);
+  const [length, sum] = [Buffer.alloc(4), Buffer.alloc(4)];
+  length.writeUInt32BE(body.length - 4);
+  sum.writeUInt32BE(crc32(body));
+  const end = png.length - 12;
+  return Buffer.concat([png.subarray(0, end), length, body, sum, png.subarray(end)]);
+}
+
+/** The text of a picture; empty without one. */
+function textOf(/** @type {Buffer} */ png) {
+  const at = png.indexOf(`iTXt${KEY}`);
+  return at < 0 ? "" : png.subarray(at + 4 + KEY.length, at + 4 + png.readUInt32BE(at - 4)).toString();
+}
+
+function crc32(/** @type {Buffer} */ bytes) {
+  let sum = ~0;
+  for (const byte of bytes) {
+    sum ^= byte;
+    for (let k = 0; k < 8; k += 1) sum = (sum >>> 1) ^ (sum & 1 ? 0xedb88320 : 0);
+  }
+  return ~sum >>> 0;
+}
+
+/** The words of the page, those of charts too, in the order of the document. */
+const wordsOf = (page) => page.evaluate(() => document.body.textContent.replace(/\s+/g, " ").trim());
+
+test("the picture in the README is that of the page", async () => {
+  const study = await submitted();
+  await service.finished(study);
+  const { page } = tab;
+  await page.goto(`${service.url}/#/studies/${study}/story`);
+  await view(page, "Story");
+  await page.locator("figure .plot svg").first().waitFor();
+  await page.mouse.move(2, 2);
+  const taken = withText(await page.screenshot(), await wordsOf(page));
+  if (process.env.PICTURE === "write") await writeFile(PICTURE, taken);
+  const kept = await readFile(PICTURE);
+  assert.ok(kept.length < MOST_BYTES, `docs/page.png has ${kept.length} bytes`);
+  assert.equal(textOf(kept), textOf(taken), "docs/page.png shows other words than the page; tests/page/run with PICTURE=write takes it again");
+  // A document of its own: the policy of the page forbids pictures as data.
+  const blank = await tab.context.newPage();
+  const share = await difference(blank, [kept, taken]);
+  assert.ok(share < MOST_SHARE, `${(100 * share).toFixed(1)} % of docs/page.png differs from the page; tests/page/run with PICTURE=write takes it again`);
+  // The comparison can fail: the page without its cards is another picture.
+  await page.addStyleTag({ content: ".three { display: none }" }).catch(() => page.evaluate(() => document.querySelector(".three").remove()));
+  const other = await page.screenshot();
+  assert.ok((await difference(blank, [taken, other])) > MOST_SHARE, "a page without its cards passes for the same");
+});
