@@ -1,5 +1,6 @@
-//! Who may do what: pages of other sites, tokens and roles, listening where others reach the service, and how much.
+//! Who may do what: pages of other sites, tokens and roles, listening where others reach the service, how much, and who hangs up.
 
 mod foreign_page;
+mod hang_up;
 mod limits;
 mod tokens;
