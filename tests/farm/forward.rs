@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use farm_tests::job::Job;
 use farm_tests::programs::{self, Ended};
 use farm_tests::workspace::{data, text};
 
@@ -120,5 +121,44 @@ fn simulated_noise_is_reproducible_and_has_the_declared_sd() {
             "{}: variance {variance}",
             CHANNELS[c]
         );
+    }
+}
+
+#[test]
+fn simulated_runs_are_read_by_their_own_experiment() {
+    let folder = tempfile::tempdir().unwrap();
+    let small = Job::small();
+    let header = small.runs.lines().find(|line| line.starts_with("run,")).unwrap();
+    let more = |line: &str| match line {
+        comment if comment.starts_with('#') => comment.to_owned(),
+        line if line == header => format!("{line},lateral_force_n_sd,order,prepared"),
+        line if line.starts_with("r00") => format!("{line},0.5,1,bed 1"),
+        line => format!("{line},,2,bed 2"),
+    };
+    let runs: String = small.runs.lines().map(|line| more(line) + "\n").collect();
+    // Once as it is, once with the noise of a channel in one row alone, and with preparations.
+    let prepared = "sinkage_m = 0.0004\npreparation_scatter = 0.05";
+    let jobs = [
+        Job::small(),
+        Job { runs, ..small }.in_experiment("sinkage_m = 0.0004", prepared),
+    ];
+    for (k, job) in jobs.into_iter().enumerate() {
+        let folder = folder.path().join(k.to_string());
+        let job = job.write(&folder);
+        let at = |name: &str| folder.join(name).display().to_string();
+        let mut command = programs::worker(["simulate", &at("experiment.toml"), "--noise-seed", "7"]);
+        for (flag, file) in [("--model", "model.toml"), ("--parameters", "parameters.toml")] {
+            command.arg(flag).arg(data("nothing-hidden").join(file));
+        }
+        command.arg("--out").arg(at("runs.csv"));
+        programs::run(command).success();
+        let said = programs::run(programs::coordinator(["check", &job.display().to_string()])).success();
+        assert!(said.contains("24 fit runs with 7"), "{said}");
+        let lateral: Vec<String> = text(&folder.join("runs.csv"))
+            .lines()
+            .skip(1)
+            .map(|line| line.split(',').nth(11).unwrap_or_default().to_owned())
+            .collect();
+        assert_eq!(lateral.iter().filter(|cell| !cell.is_empty()).count(), k);
     }
 }

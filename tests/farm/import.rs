@@ -4,9 +4,10 @@ use std::path::{Path, PathBuf};
 
 use base64::Engine as _;
 use base64::prelude::BASE64_STANDARD;
+use farm_tests::job::Job;
 use farm_tests::programs::{coordinator, run};
 use farm_tests::service::Service;
-use farm_tests::workspace::root;
+use farm_tests::workspace::{data, root};
 use serde_json::{Value, json};
 
 fn example(file: &str) -> PathBuf {
@@ -37,6 +38,43 @@ fn text(path: &Path) -> String {
     std::fs::read_to_string(path).expect("a text")
 }
 
+/// Compares the numbers of runs with those of the data that a table was made from, run by run; how many there are.
+#[track_caller]
+fn same_numbers(runs: &str, made_from: &str, share: f64) -> usize {
+    let rows = |text: &str| -> Vec<Vec<String>> {
+        let lines = text.lines().filter(|line| !line.starts_with('#'));
+        lines
+            .map(|line| line.split(',').map(str::to_owned).collect())
+            .collect()
+    };
+    let (found, expected) = (rows(runs), rows(made_from));
+    assert_eq!(found.len(), expected.len());
+    let number = |rows: &[Vec<String>], row: usize, name: &str| -> f64 {
+        let at = rows[0].iter().position(|column| column == name);
+        rows[row][at.expect("the column")].parse().expect("a number")
+    };
+    let mut compared = 0;
+    for row in 1..found.len() {
+        for name in [
+            "slip",
+            "wheel_load_n",
+            "sled_speed_m_s",
+            "drawbar_pull_n",
+            "torque_n_m",
+            "sinkage_m",
+        ] {
+            let (a, b) = (number(&found, row, name), number(&expected, row, name));
+            assert!(
+                (a - b).abs() <= share * b.abs(),
+                "{name} of {}: {a}, {b}",
+                found[row][0]
+            );
+            compared += 1;
+        }
+    }
+    compared
+}
+
 #[test]
 fn a_german_spreadsheet_becomes_the_runs_that_it_was_made_from() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -59,43 +97,8 @@ fn a_german_spreadsheet_becomes_the_runs_that_it_was_made_from() {
         ),
         "{notes}"
     );
-    // The numbers are those of the data that the spreadsheet was made from, to their digits.
     let made_from = text(&root().join("examples/hidden-effect/runs.csv"));
-    let made_from: Vec<&str> = made_from.lines().filter(|line| line.starts_with('r')).collect();
-    let columns = |text: &str| -> Vec<String> { text.split(',').map(str::to_owned).collect() };
-    let (header, expected) = (
-        columns(made_from[0]),
-        made_from[1..].iter().map(|line| columns(line)),
-    );
-    let mut lines = runs.lines().map(columns);
-    let own = lines.next().expect("a header");
-    let mut compared = 0;
-    for (found, expected) in lines.zip(expected) {
-        for name in [
-            "slip",
-            "wheel_load_n",
-            "sled_speed_m_s",
-            "drawbar_pull_n",
-            "torque_n_m",
-            "sinkage_m",
-        ] {
-            let number = |header: &[String], row: &[String]| -> f64 {
-                let at = header
-                    .iter()
-                    .position(|column| column == name)
-                    .expect("the column");
-                row[at].parse().expect("a number")
-            };
-            let (a, b) = (number(&own, &found), number(&header, &expected));
-            assert!(
-                (a - b).abs() <= 1e-6 * b.abs(),
-                "{name} of {}: {a}, {b}",
-                found[0]
-            );
-            compared += 1;
-        }
-    }
-    assert_eq!(compared, 240);
+    assert_eq!(same_numbers(&runs, &made_from, 1e-6), 240);
     // What is written is what the program reads.
     for file in ["experiment.toml", "job.toml"] {
         std::fs::copy(example(file), folder.path().join(file)).expect("a copy");
@@ -104,6 +107,63 @@ fn a_german_spreadsheet_becomes_the_runs_that_it_was_made_from() {
     std::fs::write(folder.path().join("job.toml"), job).expect("written");
     let checked = run(coordinator(["check", &shown(&folder.path().join("job.toml"))])).success();
     assert!(checked.contains("24 fit runs with 72 measurements"), "{checked}");
+}
+
+#[test]
+fn a_german_text_with_a_row_of_means_becomes_a_calibration_with_held_out_runs() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let at = |name: &str| folder.path().join(name);
+    let table = shown(&data("german-table/Messung.csv"));
+    let guessed = run(coordinator(["import", &table, "--guess"]));
+    assert!(
+        guessed
+            .stderr
+            .contains("note: the file is read as windows-1252, which it does not state\n"),
+        "{}",
+        guessed.stderr
+    );
+    let proposed = guessed.success();
+    assert!(
+        proposed.contains("words = { \"Kontrolle\" = \"holdout\", \"neu geharkt\" = \"fit\" }"),
+        "{proposed}"
+    );
+    let import = |map: &str| {
+        std::fs::write(at("map.toml"), map).expect("written");
+        let (map, output) = (shown(&at("map.toml")), shown(&at("runs.csv")));
+        run(coordinator([
+            "import", &table, "--map", &map, "--output", &output,
+        ]))
+    };
+    let answered =
+        proposed
+            .replacen("value = \"?\"", "value = \"w\"", 1)
+            .replacen("value = \"?\"", "value = \"s\"", 1);
+    let refused = import(&answered);
+    assert!(
+        refused
+            .stderr
+            .contains("Messung.csv line 44: the row \"Mittelwert\" is no run: skip it with `skip = [44]`"),
+        "{}",
+        refused.stderr
+    );
+    assert!(!refused.stderr.contains("fill_down"), "{}", refused.stderr);
+    assert!(refused.refusal().starts_with("1 mistake; "));
+    let said = import(&format!("skip = [44]\n{answered}")).success();
+    assert!(said.contains("left out, as the map says: 44\n"), "{said}");
+    assert!(said.ends_with("runs.csv: 40 runs\n"), "{said}");
+    let job = Job::small();
+    let runs = text(&at("runs.csv"));
+    assert_eq!(same_numbers(&runs, &job.runs, 1e-9), 240);
+    assert_eq!(runs.lines().filter(|line| line.ends_with(",holdout")).count(), 16);
+    let fitted = Job { runs, ..job }.in_job(
+        "algorithm = \"tmcmc\"\nparticles = 60\nmoves = [2, 4]",
+        "algorithm = \"lm\"",
+    );
+    let path = shown(&fitted.write(&at("job")));
+    run(coordinator(["run", &path, "--out", &shown(&at("out"))])).success();
+    let summary: Value = serde_json::from_str(&text(&at("out").join("summary.json"))).expect("JSON");
+    let held_out = &summary["calibrations"][0]["error"]["holdout"]["all"]["rmse_sigma"];
+    assert!(held_out.as_f64().is_some_and(|error| error < 2.0), "{held_out}");
 }
 
 #[test]

@@ -46,8 +46,6 @@ fn next(runs: String, posterior: &str) -> Job {
     let job = Job { runs, ..Job::small() };
     job.in_job(SAMPLER, FIT)
         .in_job(PRIORS, "posterior = \"reference.csv\"\nkappa = 0.0\n")
-        // The simulation has lateral forces, of which the rig measures none.
-        .in_experiment("sinkage_m = 0.0004", "sinkage_m = 0.0004\nlateral_force_n = 1.0")
         .beside("reference.csv", posterior)
 }
 

@@ -83,9 +83,18 @@ impl Process {
 
     /// Memory that it holds `[kB]`; `None` where it has ended.
     pub fn resident_kb(&self) -> Option<u64> {
+        self.memory_kb("VmRSS:")
+    }
+
+    /// Most memory that it ever held `[kB]`; `None` where it has ended.
+    pub fn peak_kb(&self) -> Option<u64> {
+        self.memory_kb("VmHWM:")
+    }
+
+    fn memory_kb(&self, key: &str) -> Option<u64> {
         let path = format!("/proc/{}/status", self.child.id());
         let status = std::fs::read_to_string(path).ok()?;
-        let value = status.lines().find_map(|line| line.strip_prefix("VmRSS:"))?;
+        let value = status.lines().find_map(|line| line.strip_prefix(key))?;
         value.trim_end_matches("kB").trim().parse().ok()
     }
 

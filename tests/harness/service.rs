@@ -196,6 +196,18 @@ impl Service {
         (bytes, open)
     }
 
+    /// Most memory that it ever held `[kB]`.
+    ///
+    /// # Panics
+    /// It is not running.
+    pub fn peak_kb(&self) -> u64 {
+        self.process
+            .as_ref()
+            .expect("the service is running")
+            .peak_kb()
+            .expect("the service is running")
+    }
+
     /// The file of its store.
     ///
     /// # Panics

@@ -6,6 +6,16 @@ use shared::sentence::one_line;
 /// Most complaints about the cells of one column; the rest are counted.
 const MOST_OF_A_COLUMN: usize = 10;
 
+/// What removes a mistake without a look into the file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, utoipa::ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Fix {
+    /// The row of `line` is left out, by `skip` of the map.
+    Skip,
+    /// A blank cell of `field` has the value of the cell above, by `fill_down` of the map.
+    FillDown,
+}
+
 /// One mistake of a file or of its map.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, utoipa::ToSchema)]
 pub struct Complaint {
@@ -23,6 +33,12 @@ pub struct Complaint {
     pub field: Option<String>,
     /// What is wrong, what was expected, and the nearest fix.
     pub message: String,
+    /// The same for people who see no map, where `message` names its keys; else null.
+    pub plain: Option<String>,
+    /// What removes the mistake, where one change of the map does.
+    pub fix: Option<Fix>,
+    /// The cells of the row that the fix leaves out, the first of them.
+    pub row: Vec<String>,
 }
 
 impl std::fmt::Display for Complaint {
@@ -106,12 +122,13 @@ impl Complaints {
                     "{} more cells of this column have mistakes",
                     count - MOST_OF_A_COLUMN
                 );
-                let (line, cell) = (None, None);
                 self.all.push(Complaint {
-                    line,
-                    cell,
                     message,
-                    ..first
+                    file: first.file,
+                    sheet: first.sheet,
+                    column: first.column,
+                    field: first.field,
+                    ..Complaint::default()
                 });
             }
         }

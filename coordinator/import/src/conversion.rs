@@ -1,6 +1,6 @@
 //! A file and its map to runs.csv, with every mistake at once.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use serde::Serialize;
 
@@ -12,6 +12,7 @@ use crate::read::{self, SourceFile};
 use crate::recording::Knife;
 use crate::rows;
 use crate::run::{noted, notes_csv, runs_csv};
+use crate::summary;
 use crate::table::{Cell, Form, Row};
 use crate::title::{self, Titled};
 
@@ -78,7 +79,6 @@ fn judge(
     converted.remarks.clone_from(&titled.table.remarks);
     complain_of_missing(titled, (map_file, map), fields, complaints);
     let rows = chosen(titled, (map_file, map), converted, complaints);
-    check_width(titled, &rows, complaints);
     let binding = Binding::new(
         (map_file, map),
         titled,
@@ -86,6 +86,17 @@ fn judge(
         &mut converted.remarks,
         complaints,
     );
+    let (mut rows, left_out) = binding.chosen(rows);
+    if !left_out.is_empty() {
+        converted.remarks.push(format!(
+            "left out, because a word of theirs means skip: {}",
+            lines(left_out.into_iter())
+        ));
+    }
+    if map.recording.is_none() {
+        rows = summary::without(titled, rows, &binding, &mut converted.remarks, complaints);
+    }
+    check_width(titled, &rows, complaints);
     let order = || fields.iter().map(|field| field.name.clone());
     let runs = match &map.recording {
         Some(recording) => {
@@ -149,8 +160,9 @@ fn chosen<'a>(
     converted: &mut Converted,
     complaints: &mut Complaints,
 ) -> Vec<&'a Row> {
+    let known: BTreeSet<usize> = titled.data().map(|row| row.line).collect();
     for line in &map.skip {
-        if !titled.data().any(|row| row.line == *line) {
+        if !known.contains(line) {
             let message = format!(
                 "skip has {line}, and {} is no row of data",
                 titled.table.place(*line)
@@ -169,22 +181,27 @@ fn chosen<'a>(
         .data()
         .filter(|row| !map.skip.contains(&row.line))
         .partition(|row| !is_comment(row));
-    let lines = |rows: &mut dyn Iterator<Item = usize>| {
-        rows.map(|line| line.to_string()).collect::<Vec<_>>().join(", ")
-    };
     if !comments.is_empty() {
         converted.remarks.push(format!(
             "comments, left out: lines {}",
-            lines(&mut comments.iter().map(|row| row.line))
+            lines(comments.iter().map(|row| row.line))
         ));
     }
     if !map.skip.is_empty() {
         converted.remarks.push(format!(
             "left out, as the map says: {}",
-            lines(&mut map.skip.iter().copied())
+            lines(map.skip.iter().copied())
         ));
     }
     kept
+}
+
+/// The numbers of lines in a sentence.
+fn lines(numbers: impl Iterator<Item = usize>) -> String {
+    numbers
+        .map(|line| line.to_string())
+        .collect::<Vec<_>>()
+        .join(", ")
 }
 
 /// Rows of a text that have more or fewer fields than there are titles.

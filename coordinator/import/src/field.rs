@@ -1,5 +1,6 @@
 //! The columns of runs.csv, as an import fills them.
 
+use serde::Serialize;
 use shared::channel::Channel;
 
 use crate::unit::Quantity;
@@ -15,6 +16,31 @@ pub(crate) enum Kind {
     Use,
     /// A quantity; the column is in its SI unit, angles in degrees.
     Measured(Quantity),
+}
+
+/// What becomes of a row, as a word of one of its columns says.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, utoipa::ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum RowUse {
+    /// The run is fitted.
+    Fit,
+    /// The run is never fitted, and judges the prediction.
+    Holdout,
+    /// The row is no run, and is left out.
+    Skip,
+}
+
+impl RowUse {
+    pub(crate) const ALL: [RowUse; 3] = [RowUse::Fit, RowUse::Holdout, RowUse::Skip];
+
+    /// Its word in a map; the first two are those of runs.csv.
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            RowUse::Fit => "fit",
+            RowUse::Holdout => "holdout",
+            RowUse::Skip => "skip",
+        }
+    }
 }
 
 /// A column of runs.csv.
@@ -139,7 +165,15 @@ const OTHERS: [Entry; 4] = [
         "use (fit or holdout)",
         Kind::Use,
         false,
-        &["use", "verwendung"],
+        &[
+            "use",
+            "verwendung",
+            "holdout",
+            "held out",
+            "kontrolle",
+            "validation",
+            "validierung",
+        ],
     ),
 ];
 

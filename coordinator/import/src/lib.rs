@@ -4,9 +4,10 @@
 //! - `read`: the bytes of a file (text, spreadsheet, MATLAB) to a `table` of cells with their places.
 //! - `title`: where the titles of a table stand, and the units that they state.
 //! - `map`: what a map states; `binding`: a map bound to a table.
+//! - `summary`: rows that are no runs, as means and totals.
 //! - `rows`: a run from every row; `recording`: runs cut from one long recording; `run`: the files that are written.
 //! - `number`, `unit`: numbers and units as people write them; `field`, `rule`: the columns of runs.csv and what they must hold.
-//! - `guess`: a map proposed from the titles.
+//! - `guess`: a map proposed from the titles, and from the words of columns.
 //! - `conversion`: all of it, with every mistake at once. [`Complaint`]: a mistake and its place.
 //!
 //! The crate is pure: bytes and a map in, texts and complaints out. No bytes make it panic.
@@ -23,12 +24,13 @@ mod recording;
 mod rows;
 mod rule;
 mod run;
+mod summary;
 mod table;
 mod title;
 mod unit;
 
-pub use complaint::Complaint;
+pub use complaint::{Complaint, Fix};
 pub use conversion::{Converted, convert};
-pub use field::columns;
-pub use guess::{ColumnCard, FieldGuess, Guess, QuantityGuess, guess};
+pub use field::{RowUse, columns};
+pub use guess::{ColumnCard, FieldGuess, Guess, QuantityGuess, WordCard, guess};
 pub use read::SourceFile;

@@ -1,6 +1,6 @@
 //! Runs cut from one long recording, where a marker changes.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 use shared::channel::Channel;
 
@@ -393,17 +393,22 @@ impl Knife<'_> {
 
 /// Runs whose marker comes again are numbered: a marker may only count on and off.
 fn number_repeated(segments: &mut [Segment<'_>], remarks: &mut Vec<String>) {
-    let names: Vec<String> = segments.iter().map(|segment| segment.name.clone()).collect();
-    for name in names.iter().collect::<BTreeSet<_>>() {
-        let count = names.iter().filter(|other| *other == name).count();
-        if count > 1 {
-            remarks.push(format!(
-                "the marker \"{name}\" comes {count} times: its runs are named {name}-1 to {name}-{count}"
-            ));
-            let own = segments.iter_mut().zip(&names).filter(|(_, own)| *own == name);
-            for (number, (segment, _)) in own.enumerate() {
-                segment.name = format!("{name}-{}", number + 1);
-            }
+    let mut counts: BTreeMap<String, usize> = BTreeMap::new();
+    for segment in segments.iter() {
+        *counts.entry(segment.name.clone()).or_default() += 1;
+    }
+    counts.retain(|_, count| *count > 1);
+    for (name, count) in &counts {
+        remarks.push(format!(
+            "the marker \"{name}\" comes {count} times: its runs are named {name}-1 to {name}-{count}"
+        ));
+    }
+    let mut numbers: BTreeMap<String, usize> = BTreeMap::new();
+    for segment in segments {
+        if counts.contains_key(&segment.name) {
+            let number = numbers.entry(segment.name.clone()).or_default();
+            *number += 1;
+            segment.name = format!("{}-{number}", segment.name);
         }
     }
 }

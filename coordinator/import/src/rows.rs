@@ -1,7 +1,9 @@
 //! A table with one run in each row.
 
-use crate::binding::{Above, Binding, is_text};
-use crate::complaint::Complaints;
+use std::collections::BTreeMap;
+
+use crate::binding::{Above, Binding, Output, is_text, of_cell};
+use crate::complaint::{Complaint, Complaints, Fix};
 use crate::rule;
 use crate::run::{Run, noted, notes_of, repeated, shown};
 use crate::table::Row;
@@ -16,6 +18,12 @@ pub(crate) fn runs(
 ) -> Vec<Run> {
     let notes = noted(titled, &binding.mapped);
     let mut above = Above::default();
+    let mut blanks = Blanks {
+        titled,
+        rows,
+        binding,
+        blocks: BTreeMap::new(),
+    };
     let mut runs = Vec::with_capacity(rows.len());
     for (number, row) in rows.iter().enumerate() {
         let numbers = binding.numbers(titled, row, &mut above, complaints);
@@ -45,11 +53,9 @@ pub(crate) fn runs(
                 None if (field.is_needed || field.name == "run")
                     && !complaints.is_said(row.line, &field.name) =>
                 {
-                    let message = format!(
-                        "{} is blank: every run needs it; `fill_down = true` takes it from the row above",
-                        field.words
-                    );
-                    complaints.add_cell(binding.complaint(titled, row, output, message));
+                    if let Some(complaint) = blanks.complaint(output, row) {
+                        complaints.add_cell(complaint);
+                    }
                 }
                 None => {}
             }
@@ -60,4 +66,61 @@ pub(crate) fn runs(
         complaints.add_cell(complaint);
     }
     runs
+}
+
+/// What to do about blank cells that every run needs.
+struct Blanks<'a> {
+    titled: &'a Titled,
+    rows: &'a [&'a Row],
+    binding: &'a Binding,
+    /// By column, the first line from which on a blank cell may stand for the cell above; `None` where it never may.
+    blocks: BTreeMap<usize, Option<usize>>,
+}
+
+impl Blanks<'_> {
+    /// The complaint about a column of runs.csv that a row does not give; `None` where a cell that cannot be read is the reason.
+    fn complaint(&mut self, output: &Output, row: &Row) -> Option<Complaint> {
+        let field = &output.field;
+        let (name, column) = self.binding.blank(output, row)?;
+        let because = if name == field.name {
+            String::new()
+        } else {
+            format!(", because {name} is")
+        };
+        let plain = format!("{} is blank{because}: every run needs it", field.words);
+        // No two runs have one name, so none comes from the row above.
+        let (fix, advice) = if field.name != "run" && self.is_of_a_block(column, row) {
+            (
+                Fix::FillDown,
+                "`fill_down = true` takes it from the row above".to_owned(),
+            )
+        } else {
+            (
+                Fix::Skip,
+                format!("fill it in, or leave the row out with `skip = [{}]`", row.line),
+            )
+        };
+        let message = format!("{plain}; {advice}");
+        Some(Complaint {
+            plain: Some(plain),
+            fix: Some(fix),
+            row: match fix {
+                Fix::Skip => row.beginning(),
+                Fix::FillDown => Vec::new(),
+            },
+            ..of_cell(self.titled, row, column, name, message)
+        })
+    }
+
+    /// Whether a blank cell may stand for the cell above: a column that states its values once for a block of rows has at least a third
+    /// of its cells blank, and the first one filled.
+    fn is_of_a_block(&mut self, column: usize, row: &Row) -> bool {
+        let rows = self.rows;
+        let begin = self.blocks.entry(column).or_insert_with(|| {
+            let mut filled = rows.iter().filter(|row| !row.cell(column).is_blank());
+            let first = filled.next()?.line;
+            (3 * (1 + filled.count()) <= 2 * rows.len()).then_some(first)
+        });
+        begin.is_some_and(|first| first < row.line)
+    }
 }

@@ -50,9 +50,9 @@ pub(crate) fn of_text(field: &Field, text: &str) -> Result<String, String> {
             )),
             _ => Err(format!("{} \"{text}\" must be a whole number", field.name)),
         },
-        Kind::Use if text != "fit" && text != "holdout" => {
-            Err(format!("use \"{text}\" must be fit or holdout"))
-        }
+        Kind::Use if text != "fit" && text != "holdout" => Err(format!(
+            "use \"{text}\" must be fit or holdout; where it is another word, `words = {{ \"{text}\" = \"holdout\" }}` in the map says what it means"
+        )),
         _ => Ok(text.to_owned()),
     }
 }

@@ -2,6 +2,23 @@
 
 use crate::complaint::Complaint;
 
+/// Largest number of columns of a table: a rig has some dozens, and every one is compared with every column of runs.csv.
+pub(crate) const MAX_COLUMNS: usize = 20_000;
+/// So many cells of a row are shown where a person is to recognise it.
+const SHOWN_CELLS: usize = 12;
+
+/// Why a table with so many columns is refused.
+pub(crate) fn too_wide(columns: usize) -> String {
+    format!(
+        "{columns} columns must be at most {MAX_COLUMNS}: a table has a column for each quantity, and a row for each run"
+    )
+}
+
+/// A text with its spaces and line breaks counted as one each.
+pub(crate) fn spaced(text: &str) -> String {
+    text.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
 /// What a cell holds.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Cell {
@@ -62,6 +79,11 @@ impl Row {
 
     pub(crate) fn is_blank(&self) -> bool {
         self.cells.iter().all(Cell::is_blank)
+    }
+
+    /// Its first cells as people read them.
+    pub(crate) fn beginning(&self) -> Vec<String> {
+        self.cells.iter().take(SHOWN_CELLS).map(Cell::shown).collect()
     }
 }
 

@@ -1,10 +1,17 @@
 //! The titles of a table: where they stand, and the units that they state.
 
+use std::collections::BTreeMap;
+
 use crate::complaint::Complaint;
 use crate::field::Field;
 use crate::number;
-use crate::table::{Cell, Form, Row, Table, column_of, letter};
+use crate::table::{Cell, Form, MAX_COLUMNS, Row, Table, column_of, letter, spaced, too_wide};
 use crate::unit::{self, Unit};
+
+/// So many names are listed in a sentence.
+const LISTED: usize = 40;
+/// Longest title that is compared with a similar one: the comparison takes the product of both lengths.
+const NEAR_BYTES: usize = 200;
 
 /// What a title, or the row of units, says about the unit.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -33,22 +40,21 @@ pub(crate) struct Titled {
     /// The line of the titles; 0 where there are none.
     pub(crate) title_line: usize,
     pub(crate) unit_line: Option<usize>,
-    /// Position of the first row of data.
-    first: usize,
+    /// The columns of each title.
+    by_text: BTreeMap<String, Vec<usize>>,
+    /// Positions of the rows of data: those below the titles that are not blank.
+    data: Vec<usize>,
 }
 
 impl Titled {
     /// The rows below the titles, blank ones left out.
     pub(crate) fn data(&self) -> impl Iterator<Item = &Row> {
-        self.table.rows[self.first..].iter().filter(|row| !row.is_blank())
+        self.data.iter().map(|&position| &self.table.rows[position])
     }
 
     /// The column that a map means: by its title, else by its letters.
     pub(crate) fn column(&self, meant: &str) -> Result<usize, String> {
-        let is_meant = |title: &&Title| spaced(&title.text) == spaced(meant);
-        let found: Vec<usize> = (0..self.titles.len())
-            .filter(|&k| is_meant(&&self.titles[k]))
-            .collect();
+        let found = self.by_text.get(&spaced(meant)).map_or(&[][..], Vec::as_slice);
         match found[..] {
             [one] => Ok(one),
             [] => match column_of(meant).filter(|&column| column < self.titles.len()) {
@@ -56,10 +62,10 @@ impl Titled {
                 None => Err(self.unknown_column(meant)),
             },
             _ => {
-                let letters: Vec<String> = found.iter().map(|&k| letter(k)).collect();
+                let letters = found.iter().map(|&k| letter(k));
                 Err(format!(
                     "several columns have the title \"{meant}\": name the one that is meant by its letter, {}",
-                    letters.join(" or ")
+                    listed(letters, " or ")
                 ))
             }
         }
@@ -67,13 +73,18 @@ impl Titled {
 
     fn unknown_column(&self, meant: &str) -> String {
         let sought = meant.to_lowercase();
+        let is_short = |text: &str| text.len() <= NEAR_BYTES;
         let is_near = |title: &&Title| {
             let (text, name) = (title.text.to_lowercase(), title.name.to_lowercase());
+            if text == sought || name == sought {
+                return true;
+            }
+            if name.is_empty() || !is_short(&text) || !is_short(&sought) {
+                return false;
+            }
             let distance =
                 strsim::damerau_levenshtein(&name, &sought).min(strsim::damerau_levenshtein(&text, &sought));
-            text == sought
-                || name == sought
-                || (!name.is_empty() && distance <= sought.chars().count().max(name.chars().count()) / 3)
+            distance <= sought.chars().count().max(name.chars().count()) / 3
         };
         let begins =
             |title: &&Title| sought.chars().count() > 2 && title.text.to_lowercase().starts_with(&sought);
@@ -82,13 +93,7 @@ impl Titled {
             .iter()
             .find(is_near)
             .or_else(|| self.titles.iter().find(begins));
-        let known = || {
-            self.titles
-                .iter()
-                .map(|title| title.text.as_str())
-                .collect::<Vec<_>>()
-                .join(", ")
-        };
+        let known = || listed(self.titles.iter().map(|title| title.text.clone()), ", ");
         match near {
             Some(near) => format!(
                 "no column has the title \"{meant}\"; did you mean \"{}\"",
@@ -99,9 +104,15 @@ impl Titled {
     }
 }
 
-/// A title with its spaces and line breaks counted as one each.
-fn spaced(text: &str) -> String {
-    text.split_whitespace().collect::<Vec<_>>().join(" ")
+/// Names in a sentence, the first of them where there are many.
+fn listed(names: impl ExactSizeIterator<Item = String>, between: &str) -> String {
+    let more = names.len().saturating_sub(LISTED);
+    let shown = names.take(LISTED).collect::<Vec<_>>().join(between);
+    if more == 0 {
+        shown
+    } else {
+        format!("{shown} and {more} more")
+    }
 }
 
 /// Finds the titles; `stated` are the lines of titles and units as the map has them, 0 for none.
@@ -145,6 +156,9 @@ pub(crate) fn find(
         .map(|row| row.cells.len())
         .max()
         .unwrap_or(0);
+    if width > MAX_COLUMNS {
+        return Err(table.refusal(too_wide(width)));
+    }
     // `slip` names no unit, except beside names of runs.csv that do.
     let is_own = at.is_some_and(|k| {
         table.rows[k]
@@ -156,7 +170,7 @@ pub(crate) fn find(
         .iter()
         .filter(|field| is_own || field.name != "slip")
         .collect();
-    let titles = (0..width)
+    let titles: Vec<Title> = (0..width)
         .map(|column| {
             let text = at
                 .map(|k| spaced(&table.rows[k].cell(column).shown()))
@@ -172,11 +186,17 @@ pub(crate) fn find(
             title(&text, column, below, &own)
         })
         .collect();
+    let mut by_text: BTreeMap<String, Vec<usize>> = BTreeMap::new();
+    for (column, title) in titles.iter().enumerate() {
+        by_text.entry(title.text.clone()).or_default().push(column);
+    }
+    let is_filled = |&position: &usize| !table.rows[position].is_blank();
     Ok(Titled {
+        data: (first..table.rows.len()).filter(is_filled).collect(),
+        by_text,
         title_line: at.map_or(0, |k| table.rows[k].line),
         unit_line: units.map(|k| table.rows[k].line),
         titles,
-        first,
         table,
     })
 }

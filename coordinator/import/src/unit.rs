@@ -191,18 +191,22 @@ const NOT_UNITS: [(&str, &str); 10] = [
     ("digit", "a raw reading has no unit; give the calibrated quantity"),
 ];
 
-/// A unit's name without what does not matter.
-fn plain(text: &str) -> String {
+/// The characters of a unit's name that matter.
+fn plain_chars(text: &str) -> impl Iterator<Item = char> + '_ {
     text.chars()
         .filter(|c| !c.is_whitespace() && !"·⋅*.[]()".contains(*c))
-        .collect()
+}
+
+/// A unit's name without what does not matter.
+fn plain(text: &str) -> String {
+    plain_chars(text).collect()
 }
 
 /// The unit that a text means; `None` where it means none.
 pub(crate) fn find(text: &str) -> Option<&'static Unit> {
-    let sought = plain(text);
-    let is_named =
-        |unit: &&Unit| plain(unit.name) == sought || unit.words.iter().any(|word| plain(word) == sought);
+    // Every title and every cell below the titles is asked about, so nothing is allocated.
+    let is_meant = |name: &str| plain_chars(name).eq(plain_chars(text));
+    let is_named = |unit: &&Unit| is_meant(unit.name) || unit.words.iter().any(|word| is_meant(word));
     UNITS.iter().find(is_named)
 }
 

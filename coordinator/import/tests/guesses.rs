@@ -46,6 +46,42 @@ fn german_titles_with_units_need_no_more_than_wheel_and_soil() {
 }
 
 #[test]
+fn a_column_whose_words_mark_held_out_runs_is_proposed_with_what_they_mean() {
+    let text = "run;wheel;soil;slip [%];load [N];speed [mm/s];pull [N];Bediener;Bemerkung\na;w;s;20;100;8;1,5;Ada;\nb;w;s;30;100;8;1,7;Bob;Kontrolle\nc;w;s;40;100;8;1,8;Ada;neu aufbereitet\n";
+    let found = guessed("a.csv", text.as_bytes());
+    assert!(
+        found.map.contains("[columns.use]\ncolumn = \"Bemerkung\"\nwords = { \"Kontrolle\" = \"holdout\", \"neu aufbereitet\" = \"fit\" }   # fit, holdout"),
+        "{}",
+        found.map
+    );
+    assert!(runs("a.csv", text.as_bytes(), &found.map).ends_with(
+        "\na,w,s,0.2,100,0.008,1.5,\nb,w,s,0.3,100,0.008,1.7,holdout\nc,w,s,0.4,100,0.008,1.8,fit\n"
+    ));
+    // A title that says so, with words that do not tell which is which, is a question.
+    let marks = text
+        .replace("Bemerkung", "Kontrolle")
+        .replace(";Kontrolle\nc", ";x\nc");
+    let found = guessed("a.csv", marks.as_bytes());
+    let said = complaints("a.csv", marks.as_bytes(), &found.map);
+    assert!(
+        said[0].contains("words: \"neu aufbereitet\" = \"?\" asks for an answer"),
+        "{said:#?}"
+    );
+    assert!(said[1].contains("words: \"x\" = \"?\""), "{said:#?}");
+    // Where nothing says which are held out, the map shows how a column could.
+    let quiet = text.replace("Kontrolle", "");
+    let found = guessed("a.csv", quiet.as_bytes());
+    assert!(
+        found.map.contains(
+            "# [columns.use]\n# column = \"Bediener\"\n# words = { \"Ada\" = \"?\", \"Bob\" = \"?\" }"
+        ),
+        "{}",
+        found.map
+    );
+    assert_eq!(complaints("a.csv", quiet.as_bytes(), &found.map), [""; 0]);
+}
+
+#[test]
 fn a_unit_that_is_not_stated_is_a_question() {
     let text =
         "run,wheel,soil,slip,load,speed [mm/s],sinkage,torque [kg]\na,w,s,20,100,8,5,1\nb,w,s,30,100,8,6,2\n";

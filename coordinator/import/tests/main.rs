@@ -1,6 +1,8 @@
 //! Every kind of file, mistakes, guesses and recordings.
 
+mod cost;
 mod files;
+mod fixes;
 mod guesses;
 mod mistakes;
 mod properties;

@@ -48,7 +48,7 @@ column = "Zugkraft [N]"
             "Sand.csv line 4, column \"Zugkraft [N]\": \"n.b.\" is no number: a number like 1,5 is expected; leave the cell blank where nothing was measured, or name the word under `missing` in the map",
             "Sand.csv line 4, column \"Schlupf [%]\": slip 4 must lie in [-1, 1): is this in %? State `unit = \"%\"` in the map",
             "Sand.csv line 5, column \"Zugkraft [N]\": \"35 N\" is no number: a number like 1,5 is expected; did you mean 35",
-            "Sand.csv line 5, column \"Versuch\": run is blank: every run needs it; `fill_down = true` takes it from the row above",
+            "Sand.csv line 5, column \"Versuch\": run is blank: every run needs it; fill it in, or leave the row out with `skip = [5]`",
             "Sand.csv line 4: run \"V2\" is named in line 3 too: give each run a name of its own, or leave [columns.run] out to have them numbered",
         ]
     );

@@ -48,7 +48,7 @@ fn text() -> impl Strategy<Value = Vec<u8>> {
 
 fn map() -> impl Strategy<Value = String> {
     let entry = "columns\\.(slip|run|wheel_load_n|pass) = \\{ (column|value|formula|unit) = \"[a-zA-Z%?*/() 0-9]{0,8}\"(, unit = \"(%|N|kN|\\?)\")? \\}\n";
-    let head = "(titles = [0-9]\n)?(units = [0-9]\n)?(decimal = \"[.,?]\"\n)?(skip = \\[[0-9]\\]\n)?";
+    let head = "(titles = [0-9]\n)?(units = [0-9]\n)?(decimal = \"[.,?]\"\n)?(skip = \\[[0-9]\\]\n)?(columns\\.use = \\{ column = \"[a-zA-Z]\", words = \\{ [a-zA-Z]{1,3} = \"(fit|skip|\\?|x)\" \\} \\}\n)?";
     prop_oneof![
         (head, prop::collection::vec(entry, 0..4)).prop_map(|(head, entries)| head + &entries.concat()),
         any::<String>()

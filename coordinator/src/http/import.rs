@@ -57,16 +57,21 @@ struct GuessRequest {
         (status = 422, body = ErrorBody, description = "the content is not base64, or no reader gets through it"),
     ))]
 async fn import_table(Body(asked): Body<ImportRequest>) -> Result<Json<Converted>, HttpError> {
-    let bytes = decoded(&asked.content_base64)?;
-    let converted = alone(move || {
+    let ImportRequest {
+        name,
+        content_base64,
+        map,
+    } = asked;
+    let converted = alone(move || -> Result<Converted, HttpError> {
+        let bytes = decoded(content_base64)?;
         let source = SourceFile {
-            name: &asked.name,
+            name: &name,
             bytes: &bytes,
             is_own: false,
         };
-        convert(&source, ("map.toml", &asked.map), "runs")
+        Ok(convert(&source, ("map.toml", &map), "runs"))
     });
-    Ok(Json(converted.await?))
+    Ok(Json(converted.await??))
 }
 
 /// Proposes a map for a table.
@@ -80,22 +85,26 @@ async fn import_table(Body(asked): Body<ImportRequest>) -> Result<Json<Converted
         (status = 422, body = ErrorBody, description = "the content is not base64, or is no table"),
     ))]
 async fn guess_map(Body(asked): Body<GuessRequest>) -> Result<Json<Guess>, HttpError> {
-    let bytes = decoded(&asked.content_base64)?;
-    let found = alone(move || {
+    let GuessRequest {
+        name,
+        content_base64,
+        sheet,
+    } = asked;
+    let found = alone(move || -> Result<Guess, HttpError> {
+        let bytes = decoded(content_base64)?;
         let source = SourceFile {
-            name: &asked.name,
+            name: &name,
             bytes: &bytes,
             is_own: false,
         };
-        guess(&source, asked.sheet.as_deref())
+        guess(&source, sheet.as_deref())
+            .map_err(|complaint| HttpError::new(ErrorKind::InvalidFile, complaint.to_string()))
     });
-    let found = found.await?;
-    Ok(Json(found.map_err(|complaint| {
-        HttpError::new(ErrorKind::InvalidFile, complaint.to_string())
-    })?))
+    Ok(Json(found.await??))
 }
 
-fn decoded(content: &str) -> Result<Vec<u8>, HttpError> {
+/// The bytes of a file; its text is given back to the memory at once.
+fn decoded(content: String) -> Result<Vec<u8>, HttpError> {
     let bytes = BASE64_STANDARD.decode(content);
     bytes.map_err(|e| {
         HttpError::new(
@@ -108,11 +117,44 @@ fn decoded(content: &str) -> Result<Vec<u8>, HttpError> {
 /// Reads a table off the threads that serve, one at a time.
 async fn alone<T: Send + 'static>(read: impl FnOnce() -> T + Send + 'static) -> Result<T, HttpError> {
     // The semaphore is never closed.
-    let _turn = ONE_AT_A_TIME.acquire().await;
+    let turn = ONE_AT_A_TIME.acquire().await;
+    // A thread that reads cannot be stopped. It keeps its turn until it has ended: its client may hang up long before, and with the
+    // client goes this future.
+    let read = move || {
+        let _turn = turn;
+        read()
+    };
     tokio::task::spawn_blocking(read).await.map_err(|_| {
         HttpError::new(
             ErrorKind::InvalidFile,
             "the file is damaged: no reader gets through it",
         )
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::mpsc;
+
+    use super::*;
+
+    #[tokio::test]
+    async fn a_table_keeps_its_turn_when_its_client_hangs_up() {
+        let (begun, begins) = mpsc::channel();
+        let (release, released) = mpsc::channel::<()>();
+        let reading = tokio::spawn(alone(move || {
+            begun.send(()).expect("the test waits for it");
+            released.recv()
+        }));
+        tokio::task::spawn_blocking(move || begins.recv())
+            .await
+            .expect("no panic")
+            .expect("the reading begins");
+        reading.abort();
+        assert!(reading.await.is_err_and(|e| e.is_cancelled()));
+        assert_eq!(ONE_AT_A_TIME.available_permits(), 0, "the thread still reads");
+        release.send(()).expect("the thread waits for it");
+        let next = alone(|| 1).await;
+        assert!(matches!(next, Ok(1)), "the next table is read");
+    }
 }

@@ -26,10 +26,7 @@ pub(super) fn sentence(
     let mut text = if let Some(reason) = implausible(models, conclusion) {
         format!("something is missing or the prior is wrong: {reason}")
     } else if let Some(reason) = unsupported_noise(models, conclusion) {
-        format!(
-            "nothing is named: {reason}; the 95 % set is {}",
-            credible(effects)
-        )
+        format!("nothing is named: {reason}; {}", credible_set(effects))
     } else {
         verdict(models, conclusion, effects, outside)
     };

@@ -2,9 +2,11 @@
 //!
 //! # Layout
 //! - here: the wheel's runs, and which table goes where.
+//! - `averages`: the table of the wheel's runs.
 //! - `bevameter`: the tables of plates and rings.
 //! - `histories`: the time histories of each run.
 
+mod averages;
 mod bevameter;
 mod error;
 mod histories;
@@ -18,10 +20,10 @@ use std::sync::Arc;
 use rand::{RngExt, SeedableRng};
 use scm::spatial::History;
 use shared::channel::Channel;
-use shared::experiment::{CONDITION_COLUMNS, Experiment, NoiseSd, Scatter, ScatterSd, TestRun};
+use shared::experiment::{Experiment, NoiseSd, Scatter, ScatterSd, TestRun};
 use shared::file::{FileError, number, parse_toml};
 use shared::model::{EffectSet, ModelSettings, ModelVariant};
-use shared::outcome::{Observables, Outcome};
+use shared::outcome::Outcome;
 use shared::text_file::{read_beside, read_text};
 
 use crate::config::Simulate;
@@ -128,7 +130,7 @@ fn wheel_runs(
         }
     }
     let noise = noise(experiment, command)?;
-    Ok(table(experiment, &observables, &noise)?)
+    Ok(averages::averages(experiment, &observables, &noise)?)
 }
 
 fn variant(
@@ -239,31 +241,4 @@ fn noise(experiment: &Experiment, command: &Simulate) -> Result<Vec<[f64; 4]>, F
         }
     }
     Ok(noise)
-}
-
-fn table(
-    experiment: &Experiment,
-    observables: &Observables,
-    noise: &[[f64; 4]],
-) -> Result<Vec<u8>, csv::Error> {
-    let mut writer = csv::Writer::from_writer(Vec::new());
-    writer.write_record(
-        CONDITION_COLUMNS
-            .into_iter()
-            .chain(Channel::ALL.map(Channel::column))
-            .chain(["use"]),
-    )?;
-    for (i, run) in experiment.runs.iter().enumerate() {
-        let mut row = vec![run.name.clone(), run.wheel.clone(), run.soil.clone()];
-        row.extend(
-            [run.slip, run.wheel_load_n, run.sled_speed_m_s, run.slip_angle_deg].map(|x| x.to_string()),
-        );
-        row.push(run.pass.to_string());
-        // A model that is not ours may lack a channel: then it is not measured.
-        let noisy = |c: Channel| Some((observables.channel(c).get(i)? + noise[i][c.index()]).to_string());
-        row.extend(Channel::ALL.map(|c| noisy(c).unwrap_or_default()));
-        row.push(run.usage.name().to_owned());
-        writer.write_record(&row)?;
-    }
-    writer.into_inner().map_err(|e| e.into_error().into())
 }

@@ -1,16 +1,16 @@
 //! A map bound to a table: the numbers and texts of each row.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use formula::unit::Unit as Dimension;
 
 use super::maker::{Maker, dimension};
 use super::source::{From, Input, Output, Source};
 use crate::complaint::{Complaint, Complaints};
-use crate::field::Field;
+use crate::field::{Field, RowUse};
 use crate::map::{Map, Origin};
 use crate::number;
-use crate::table::{Cell, Row};
+use crate::table::{Cell, Row, spaced};
 use crate::title::Titled;
 
 /// A map bound to a table.
@@ -20,7 +20,7 @@ pub(crate) struct Binding {
     pub(crate) outputs: Vec<Output>,
     /// The columns that runs.csv has as they are, up to their units.
     pub(crate) mapped: BTreeSet<usize>,
-    missing: Vec<String>,
+    missing: BTreeSet<String>,
 }
 
 /// The cells above, where blank ones count as these.
@@ -55,6 +55,7 @@ impl Binding {
             map,
             map_file,
             titled,
+            fields,
             remarks,
             complaints,
         };
@@ -107,6 +108,7 @@ impl Binding {
             binding.outputs.push(Output {
                 field: field.clone(),
                 source,
+                words: entry.words.clone(),
             });
         }
         for (field, entry, text, quantity) in formulas {
@@ -114,6 +116,7 @@ impl Binding {
                 binding.outputs.push(Output {
                     field: field.clone(),
                     source: Source::Formula(expression),
+                    words: BTreeMap::new(),
                 });
             }
         }
@@ -164,14 +167,71 @@ impl Binding {
         let Source::Text(from) = &output.source else {
             return None;
         };
-        match from {
-            From::Fixed(text) => Some(text.clone()),
-            From::Column {
-                column, fills_down, ..
-            } => {
-                let text = above.cell(row, *column, *fills_down).shown();
-                (!text.is_empty() && !self.missing.contains(&text)).then_some(text)
-            }
+        let From::Column {
+            column, fills_down, ..
+        } = from
+        else {
+            return from.fixed();
+        };
+        let text = above.cell(row, *column, *fills_down).shown();
+        let text = (!text.is_empty() && !self.missing.contains(&text)).then_some(text);
+        let word = text.as_deref().map(spaced).unwrap_or_default();
+        match output.words.get(&word) {
+            Some(meaning) => Some(meaning.name().to_owned()),
+            None => text,
+        }
+    }
+
+    /// The rows without those that a word of theirs says are no runs, and the lines of these.
+    pub(crate) fn chosen<'a>(&self, rows: Vec<&'a Row>) -> (Vec<&'a Row>, Vec<usize>) {
+        let leaves_out = |output: &&Output| output.words.values().any(|word| *word == RowUse::Skip);
+        let Some(output) = self.outputs.iter().find(leaves_out) else {
+            return (rows, Vec::new());
+        };
+        let mut above = Above::default();
+        let mut is_run =
+            |row: &&Row| self.text(output, row, &mut above).as_deref() != Some(RowUse::Skip.name());
+        let (kept, left_out): (Vec<&Row>, Vec<&Row>) = rows.into_iter().partition(|row| is_run(row));
+        (kept, left_out.iter().map(|row| row.line).collect())
+    }
+
+    /// Whether a row itself lacks what every run needs: a cell is blank, or has no number where one is needed.
+    pub(crate) fn lacks(&self, row: &Row) -> bool {
+        let needed = self.outputs.iter().filter(|output| output.field.is_needed);
+        let lacks_input = |input: &usize| {
+            let Some(column) = self.inputs.get(*input).and_then(Input::column) else {
+                return false;
+            };
+            let cell = row.cell(column);
+            self.is_blank(cell) || matches!(cell, Cell::Text(text) if !number::is_number(text))
+        };
+        needed.into_iter().any(|output| match &output.source {
+            Source::Input(input) => lacks_input(input),
+            Source::Formula(expression) => expression.used().iter().any(lacks_input),
+            Source::Text(from) => from
+                .column()
+                .is_some_and(|column| self.is_blank(row.cell(column))),
+        })
+    }
+
+    fn is_blank(&self, cell: &Cell) -> bool {
+        match cell {
+            Cell::Text(text) => self.missing.contains(text),
+            cell => cell.is_blank(),
+        }
+    }
+
+    /// The name in the map and the column of the first blank cell that a column of runs.csv needs of a row.
+    pub(crate) fn blank<'a>(&'a self, output: &'a Output, row: &Row) -> Option<(&'a str, usize)> {
+        let of_input = |input: &usize| {
+            let input = self.inputs.get(*input)?;
+            let column = input.column().filter(|column| self.is_blank(row.cell(*column)))?;
+            Some((input.name.as_str(), column))
+        };
+        match &output.source {
+            Source::Input(input) => of_input(input),
+            Source::Formula(expression) => expression.used().iter().find_map(of_input),
+            Source::Text(from) => Some((output.field.name.as_str(), from.column()?)),
         }
     }
 
@@ -201,12 +261,9 @@ impl Binding {
         message: String,
     ) -> Complaint {
         let column = match &output.source {
-            Source::Input(input) => match self.inputs.get(*input).map(|input| &input.from) {
-                Some(From::Column { column, .. }) => Some(*column),
-                _ => None,
-            },
-            Source::Text(From::Column { column, .. }) => Some(*column),
-            Source::Formula(_) | Source::Text(From::Fixed(_)) => None,
+            Source::Input(input) => self.inputs.get(*input).and_then(Input::column),
+            Source::Text(from) => from.column(),
+            Source::Formula(_) => None,
         };
         match column {
             Some(column) => of_cell(titled, row, column, &output.field.name, message),
@@ -220,7 +277,7 @@ impl Binding {
 }
 
 /// A complaint about a cell.
-fn of_cell(titled: &Titled, row: &Row, column: usize, field: &str, message: String) -> Complaint {
+pub(crate) fn of_cell(titled: &Titled, row: &Row, column: usize, field: &str, message: String) -> Complaint {
     Complaint {
         column: titled.titles.get(column).map(|title| title.text.clone()),
         field: Some(field.to_owned()),

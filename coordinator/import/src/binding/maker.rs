@@ -5,20 +5,19 @@ use formula::unit::Unit as Dimension;
 
 use super::source::{From, Input, Reading};
 use crate::complaint::{Complaint, Complaints};
-use crate::map::{Entry, Map, Origin, quantity_of};
+use crate::field::Field;
+use crate::map::{Entry, Map, Origin, QUESTION, quantity_of};
 use crate::number::{self, Decimal, Evidence, Writing};
 use crate::table::Cell;
 use crate::title::{Stated, Titled};
 use crate::unit::{self, Quantity, Unit};
-
-/// The mark of a question in a map.
-const QUESTION: &str = "?";
 
 /// What the binding is made from.
 pub(super) struct Maker<'a> {
     pub(super) map: &'a Map,
     pub(super) map_file: &'a str,
     pub(super) titled: &'a Titled,
+    pub(super) fields: &'a [Field],
     pub(super) remarks: &'a mut Vec<String>,
     pub(super) complaints: &'a mut Complaints,
 }
@@ -35,7 +34,7 @@ pub(super) fn dimension(quantity: Quantity) -> Dimension {
     Dimension::parse(quantity.si()).unwrap_or(Dimension::ONE)
 }
 
-impl Maker<'_> {
+impl<'a> Maker<'a> {
     pub(super) fn complain(&mut self, entry: &Entry, message: impl Into<String>) {
         self.complaints.add(Complaint {
             file: self.map_file.to_owned(),
@@ -44,6 +43,24 @@ impl Maker<'_> {
             message: format!("{}: {}", entry.name, message.into()),
             ..Complaint::default()
         });
+    }
+
+    /// Asks for what an entry leaves open; `plain` is the question for people who see no map.
+    fn ask(&mut self, entry: &Entry, message: &str, plain: String) {
+        self.complaints.add(Complaint {
+            file: self.map_file.to_owned(),
+            line: Some(entry.line),
+            field: Some(entry.name.clone()),
+            message: format!("{}: {message}", entry.name),
+            plain: Some(plain),
+            ..Complaint::default()
+        });
+    }
+
+    /// Words for people of a column of runs.csv.
+    fn words(&self, entry: &Entry) -> Option<&'a str> {
+        let field = self.fields.iter().find(|field| field.name == entry.name);
+        field.map(|field| field.words.as_str())
     }
 
     /// The column of an entry.
@@ -74,11 +91,20 @@ impl Maker<'_> {
             Some(quantity) => unit::read(text, quantity),
             None => Err(format!("unknown unit \"{text}\"")),
         };
-        let found = match (&entry.unit, stated, &title) {
-            (Some(text), _, _) if text == QUESTION => Err(format!(
+        if entry.unit.as_deref() == Some(QUESTION) {
+            let message = format!(
                 "unit = \"?\" asks for an answer, which the file does not state: one of {}",
                 choices()
-            )),
+            );
+            let what = title.map_or_else(|| "it".to_owned(), |title| format!("\"{}\"", title.text));
+            self.ask(
+                entry,
+                &message,
+                format!("In which unit is {what}? The file does not state it."),
+            );
+            return None;
+        }
+        let found = match (&entry.unit, stated, &title) {
             (Some(text), _, _) => read(text),
             (None, Some(stated), _) => read(stated.name),
             (None, None, Some(title)) => Err(match &title.unknown {
@@ -149,9 +175,16 @@ impl Maker<'_> {
                 ))
             }
             Origin::Value(text) if text == QUESTION => {
-                self.complain(
+                let what = self.words(entry).map_or_else(
+                    || "How large is it".to_owned(),
+                    |words| format!("What is the {words}"),
+                );
+                self.ask(
                     entry,
                     "value = \"?\" asks for an answer: the value that all rows have, with its unit",
+                    format!(
+                        "{what}? Choose its column, or give the value that all rows have, with its unit."
+                    ),
                 );
                 None
             }
@@ -217,9 +250,20 @@ impl Maker<'_> {
                 "a name or a number without unit has no unit: leave `unit` out",
             );
         }
+        if !entry.words.is_empty() && !matches!(entry.origin, Origin::Column(_)) {
+            self.complain(
+                entry,
+                "words are those of a column: state `column`, or leave `words` out",
+            );
+        }
         match &entry.origin {
             Origin::Value(text) if text == QUESTION => {
-                self.complain(entry, "value = \"?\" asks for an answer: the value that all rows have, as experiment.toml names it");
+                let words = self.words(entry).unwrap_or(&entry.name);
+                self.ask(
+                    entry,
+                    "value = \"?\" asks for an answer: the value that all rows have, as experiment.toml names it",
+                    format!("Which {words}? Choose its column, or give one name for all rows."),
+                );
                 None
             }
             Origin::Value(text) => Some(From::Fixed(text.clone())),

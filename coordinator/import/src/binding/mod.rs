@@ -9,5 +9,5 @@ mod bound;
 mod maker;
 mod source;
 
-pub(crate) use bound::{Above, Binding};
+pub(crate) use bound::{Above, Binding, of_cell};
 pub(crate) use source::{Output, is_text};

@@ -1,8 +1,10 @@
 //! What is read from a row, and what a column of runs.csv is made of.
 
+use std::collections::BTreeMap;
+
 use formula::expression::Expression;
 
-use crate::field::{Field, Kind};
+use crate::field::{Field, Kind, RowUse};
 use crate::number::{Decimal, Writing};
 
 /// Where a number or a text is read.
@@ -14,6 +16,24 @@ pub(super) enum From<T> {
         with: T,
     },
     Fixed(String),
+}
+
+impl<T> From<T> {
+    /// The column that it is read from.
+    pub(super) fn column(&self) -> Option<usize> {
+        match self {
+            From::Column { column, .. } => Some(*column),
+            From::Fixed(_) => None,
+        }
+    }
+
+    /// The text that all rows have.
+    pub(super) fn fixed(&self) -> Option<String> {
+        match self {
+            From::Column { .. } => None,
+            From::Fixed(text) => Some(text.clone()),
+        }
+    }
 }
 
 /// How a number is read.
@@ -33,6 +53,13 @@ pub(super) struct Input {
     pub(super) fixed: f64,
 }
 
+impl Input {
+    /// The column that it is read from.
+    pub(super) fn column(&self) -> Option<usize> {
+        self.from.column()
+    }
+}
+
 /// What a column of runs.csv is made of.
 #[derive(Debug)]
 pub(super) enum Source {
@@ -46,6 +73,8 @@ pub(super) enum Source {
 pub(crate) struct Output {
     pub(crate) field: Field,
     pub(super) source: Source,
+    /// What the words of its column mean; empty where they mean themselves.
+    pub(super) words: BTreeMap<String, RowUse>,
 }
 
 /// Whether a column holds a name or a number without unit.

@@ -1,8 +1,14 @@
 //! What a map states, as written.
 
+use std::collections::{BTreeMap, BTreeSet};
+
+use crate::field::RowUse;
 use crate::number::Decimal;
 use crate::read::Hints;
 use crate::unit::Quantity;
+
+/// The mark of a question in a map.
+pub(crate) const QUESTION: &str = "?";
 
 /// Where a column comes from, as written.
 #[derive(Debug, Clone, PartialEq)]
@@ -27,6 +33,8 @@ pub(crate) struct Entry {
     pub(crate) decimal: Option<Decimal>,
     /// Whether a blank cell has the value of the cell above.
     pub(crate) fills_down: bool,
+    /// What the words of the column mean, of `use` alone; the blank word is that of a blank cell.
+    pub(crate) words: BTreeMap<String, RowUse>,
 }
 
 /// A recording of several runs one after the other.
@@ -39,7 +47,7 @@ pub(crate) struct Recording {
     /// The column that changes from run to run.
     pub(crate) marker: String,
     /// What it holds between runs.
-    pub(crate) between: Vec<String>,
+    pub(crate) between: BTreeSet<String>,
     /// What is averaged, from the beginning of each run `[s]`.
     pub(crate) window_s: Option<(f64, f64)>,
     /// Whether the channels are written as histories, not as averages.
@@ -54,8 +62,8 @@ pub(crate) struct Map {
     pub(crate) units: Option<usize>,
     pub(crate) decimal: Option<Decimal>,
     pub(crate) has_thousands: bool,
-    pub(crate) skip: Vec<usize>,
-    pub(crate) missing: Vec<String>,
+    pub(crate) skip: BTreeSet<usize>,
+    pub(crate) missing: BTreeSet<String>,
     pub(crate) columns: Vec<Entry>,
     pub(crate) quantities: Vec<Entry>,
     pub(crate) recording: Option<Recording>,

@@ -1,9 +1,14 @@
 //! Keys of a table of a map, read with all their mistakes.
 
+use std::collections::BTreeMap;
+
 use shared::file::unknown_word;
 use toml_edit::{Item, TableLike};
 
+use super::content::QUESTION;
 use crate::complaint::{Complaint, Complaints};
+use crate::field::RowUse;
+use crate::table::spaced;
 
 /// The text of a map, for lines.
 pub(super) struct Source<'a> {
@@ -60,12 +65,17 @@ impl<'a> Keys<'a> {
         }
     }
 
-    fn wrong(&mut self, complaints: &mut Complaints, item: Option<&Item>, message: String) {
-        let place = if self.name.is_empty() {
+    /// What messages about it begin with.
+    fn place(&self) -> String {
+        if self.name.is_empty() {
             String::new()
         } else {
             format!("{}: ", self.name)
-        };
+        }
+    }
+
+    fn wrong(&mut self, complaints: &mut Complaints, item: Option<&Item>, message: String) {
+        let place = self.place();
         let byte = item.and_then(Item::span).map(|span| span.start);
         self.is_right = false;
         complaints.add(
@@ -147,6 +157,44 @@ impl<'a> Keys<'a> {
         found.unwrap_or_default()
     }
 
+    /// A table of words and what they mean, one of [`RowUse`] each.
+    pub(super) fn words(
+        &mut self,
+        complaints: &mut Complaints,
+        key: &'static str,
+    ) -> BTreeMap<String, RowUse> {
+        let mut words = BTreeMap::new();
+        let Some(table) = self.table(complaints, key) else {
+            return words;
+        };
+        for (word, item) in table.iter() {
+            let stated = item.as_str().unwrap_or_default();
+            if let Some(known) = RowUse::ALL.iter().find(|known| known.name() == stated) {
+                words.insert(spaced(word), *known);
+                continue;
+            }
+            let is_open = stated == QUESTION;
+            let what = if is_open {
+                " = \"?\" asks for an answer:"
+            } else {
+                " must be"
+            };
+            let message =
+                format!("{key}: \"{word}\"{what} \"fit\", \"holdout\" (never fitted) or \"skip\" (no run)");
+            let plain = format!("What does \"{word}\" mean: is the run fitted, held out, or no run?");
+            self.is_right = false;
+            complaints.add(Complaint {
+                plain: is_open.then_some(plain),
+                ..self.source.complaint(
+                    item.span().map(|span| span.start),
+                    self.field.as_deref(),
+                    self.place() + &message,
+                )
+            });
+        }
+        words
+    }
+
     /// A table within it, with the byte at which it begins.
     pub(super) fn table(
         &mut self,
@@ -165,6 +213,18 @@ impl<'a> Keys<'a> {
     pub(super) fn complain(&mut self, complaints: &mut Complaints, key: &str, message: impl Into<String>) {
         let item = self.table.get(key);
         self.wrong(complaints, item, message.into());
+    }
+
+    /// Asks for the answer that a key of the map leaves open; `plain` is the question for people who see no map.
+    pub(super) fn ask(&mut self, complaints: &mut Complaints, key: &str, message: &str, plain: &str) {
+        let byte = self.table.get(key).and_then(Item::span).map(|span| span.start);
+        self.is_right = false;
+        complaints.add(Complaint {
+            plain: Some(plain.to_owned()),
+            ..self
+                .source
+                .complaint(byte, self.field.as_deref(), self.place() + message)
+        });
     }
 
     /// Complains about all keys that nobody has asked for.

@@ -9,5 +9,5 @@ mod content;
 mod entry;
 mod read;
 
-pub(crate) use content::{Entry, Map, Origin, Recording, quantity_of};
+pub(crate) use content::{Entry, Map, Origin, QUESTION, Recording, quantity_of};
 pub(crate) use read::read;

@@ -1,10 +1,12 @@
 //! The text of a map to a [`Map`].
 
+use std::collections::BTreeMap;
+
 use formula::nesting::too_deep;
 use shared::file::unknown_word;
 use toml_edit::{Document, TableLike};
 
-use super::content::{Entry, Map, Origin, Recording};
+use super::content::{Entry, Map, Origin, QUESTION, Recording};
 use super::entry::{Keys, Source};
 use crate::complaint::Complaints;
 use crate::field::Field;
@@ -13,6 +15,8 @@ use crate::read::Hints;
 
 /// Deepest nesting of brackets; a map needs three.
 const DEEPEST: usize = 16;
+/// Most columns or quantities of a map: runs.csv has some two dozen, and each is looked for among all titles.
+const MAX_ENTRIES: usize = 200;
 /// Largest map `[bytes]`.
 const LARGEST: usize = 1 << 20;
 
@@ -47,7 +51,9 @@ pub(crate) fn read(file: &str, text: &str, fields: &[Field], complaints: &mut Co
     map.has_thousands = thousands(&mut keys, complaints, map.decimal);
     for line in keys.list(complaints, "skip") {
         match line.parse() {
-            Ok(line) => map.skip.push(line),
+            Ok(line) => {
+                map.skip.insert(line);
+            }
             Err(_) => keys.complain(
                 complaints,
                 "skip",
@@ -55,7 +61,7 @@ pub(crate) fn read(file: &str, text: &str, fields: &[Field], complaints: &mut Co
             ),
         }
     }
-    map.missing = keys.list(complaints, "missing");
+    map.missing = keys.list(complaints, "missing").into_iter().collect();
     if let Some(columns) = keys.table(complaints, "columns") {
         map.columns = entries(&source, columns, "columns", complaints, Some(fields));
     }
@@ -72,8 +78,8 @@ pub(crate) fn read(file: &str, text: &str, fields: &[Field], complaints: &mut Co
 fn decimal(keys: &mut Keys<'_>, complaints: &mut Complaints) -> Option<Decimal> {
     let mark = keys.text(complaints, "decimal")?;
     let found = Decimal::of(&mark);
-    if mark == "?" {
-        keys.complain(complaints, "decimal", "decimal = \"?\" asks for an answer: write \",\" where 1,234 is a little more than one, \".\" where it is more than a thousand");
+    if mark == QUESTION {
+        keys.ask(complaints, "decimal", "decimal = \"?\" asks for an answer: write \",\" where 1,234 is a little more than one, \".\" where it is more than a thousand", "Is 1,234 a little more than one, or more than a thousand?");
     } else if found.is_none() {
         keys.complain(
             complaints,
@@ -107,6 +113,11 @@ fn entries(
     fields: Option<&[Field]>,
 ) -> Vec<Entry> {
     let mut entries = Vec::new();
+    if tables.len() > MAX_ENTRIES {
+        let message = format!("[{of}]: {} tables must be at most {MAX_ENTRIES}", tables.len());
+        complaints.add(source.complaint(None, None, message));
+        return entries;
+    }
     for (name, item) in tables.iter() {
         let byte = item.span().map(|span| span.start);
         let place = format!("[{of}.{name}]");
@@ -136,6 +147,11 @@ fn entries(
         let unit = keys.text(complaints, "unit");
         let decimal = decimal(&mut keys, complaints);
         let fills_down = keys.flag(complaints, "fill_down");
+        let words = if name == "use" && fields.is_some() {
+            keys.words(complaints, "words")
+        } else {
+            BTreeMap::new()
+        };
         keys.end(complaints);
         let mut origins = [column, value, formula].into_iter().flatten();
         match (origins.next(), origins.next()) {
@@ -148,6 +164,7 @@ fn entries(
                     unit,
                     decimal,
                     fills_down,
+                    words,
                 });
             }
             (Some(_), None) => {}
@@ -171,7 +188,7 @@ fn read_recording(
     let time = keys.text(complaints, "time");
     let time_unit = keys.text(complaints, "time_unit");
     let marker = keys.text(complaints, "marker");
-    let between = keys.list(complaints, "between");
+    let between = keys.list(complaints, "between").into_iter().collect();
     let window = keys.list(complaints, "window_s");
     let histories = keys.flag(complaints, "histories");
     keys.end(complaints);

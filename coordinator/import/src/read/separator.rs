@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use crate::number;
+use crate::table::{Cell, MAX_COLUMNS, Row, too_wide};
 
 /// What stands between fields.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -20,11 +21,11 @@ const NAMES: [(&str, Separator); 5] = [
     (",", Separator::Byte(b',')),
     ("space", Separator::Spaces),
 ];
-/// Lines that are looked at.
+/// Lines that are looked at, and so many bytes of them: the first two lines are looked at whole.
 const SAMPLE: usize = 200;
-
-/// The fields of lines, with the number of each line.
-type Lines = Vec<(usize, Vec<String>)>;
+const SAMPLE_BYTES: usize = 1 << 20;
+/// Fields of a line that are judged to be numbers or none.
+const SAMPLE_FIELDS: usize = 1000;
 
 impl Separator {
     pub(super) fn named(name: &str) -> Result<Self, String> {
@@ -39,12 +40,15 @@ impl Separator {
 
     /// The separator of a text: the one by which the most lines have as many fields, and the most fields are numbers.
     pub(super) fn found(text: &str) -> Option<Self> {
-        let sample: String = text
-            .lines()
-            .filter(|line| !line.trim().is_empty())
-            .take(SAMPLE)
-            .flat_map(|line| [line, "\n"])
-            .collect();
+        let (mut sample, mut lines) = (String::new(), 0);
+        for line in text.lines().filter(|line| !line.trim().is_empty()) {
+            if lines == SAMPLE || (lines >= 2 && sample.len() + line.len() > SAMPLE_BYTES) {
+                break;
+            }
+            lines += 1;
+            sample += line;
+            sample.push('\n');
+        }
         let scored = NAMES
             .iter()
             .filter_map(|&(_, separator)| Some((separator, score(&sample, separator)?)));
@@ -52,69 +56,96 @@ impl Separator {
         best.map(|(separator, _)| separator)
     }
 
-    /// The fields of every line, with the line's number.
-    pub(super) fn fields(self, text: &str) -> Result<Lines, (usize, String)> {
-        match self {
-            Separator::Spaces => Ok(text
-                .lines()
-                .enumerate()
-                .map(|(i, line)| (i + 1, line.split_whitespace().map(str::to_owned).collect()))
-                .collect()),
-            Separator::Byte(delimiter) => {
-                let mut reader = csv::ReaderBuilder::new()
-                    .delimiter(delimiter)
-                    .has_headers(false)
-                    .flexible(true)
-                    .from_reader(text.as_bytes());
-                let mut rows = Vec::new();
-                for record in reader.records() {
-                    let record = record.map_err(|e| {
-                        let line = e.position().map_or(1, |place| place.line());
-                        (usize::try_from(line).unwrap_or(usize::MAX), e.to_string())
-                    })?;
-                    let line = record.position().map_or(1, |place| place.line());
-                    // Blank lines before a record belong to its position.
-                    let byte = record
-                        .position()
-                        .map_or(0, |place| usize::try_from(place.byte()).unwrap_or(0));
-                    let blank = text
-                        .get(byte..)
-                        .unwrap_or_default()
-                        .bytes()
-                        .take_while(|b| *b == b'\n' || *b == b'\r')
-                        .filter(|b| *b == b'\n')
-                        .count();
-                    let line = usize::try_from(line).unwrap_or(usize::MAX).saturating_add(blank);
-                    rows.push((line, record.iter().map(str::to_owned).collect()));
-                }
-                Ok(rows)
+    /// The rows of a text, none wider than a table may be.
+    pub(super) fn rows(self, text: &str) -> Result<Vec<Row>, (usize, String)> {
+        let mut rows = Vec::new();
+        self.each(text, |line, fields| {
+            if fields.len() > MAX_COLUMNS {
+                return Err(too_wide(fields.len()));
             }
+            rows.push(Row {
+                line,
+                cells: fields.iter().map(|field| Cell::of_text(field)).collect(),
+            });
+            Ok(())
+        })?;
+        Ok(rows)
+    }
+
+    /// Gives every line's number and fields to `take`, one line after the other: a large text is never held twice.
+    fn each(
+        self,
+        text: &str,
+        mut take: impl FnMut(usize, &[&str]) -> Result<(), String>,
+    ) -> Result<(), (usize, String)> {
+        let Separator::Byte(delimiter) = self else {
+            for (number, line) in text.lines().enumerate() {
+                let fields: Vec<&str> = line.split_whitespace().collect();
+                take(number + 1, &fields).map_err(|message| (number + 1, message))?;
+            }
+            return Ok(());
+        };
+        let mut reader = csv::ReaderBuilder::new()
+            .delimiter(delimiter)
+            .has_headers(false)
+            .flexible(true)
+            .from_reader(text.as_bytes());
+        let number = |line: u64| usize::try_from(line).unwrap_or(usize::MAX);
+        let mut record = csv::StringRecord::new();
+        loop {
+            let is_there = reader.read_record(&mut record).map_err(|e| {
+                let line = e.position().map_or(1, csv::Position::line);
+                (number(line), e.to_string())
+            })?;
+            if !is_there {
+                return Ok(());
+            }
+            let line = number(record.position().map_or(1, csv::Position::line));
+            // Blank lines before a record belong to its position.
+            let byte = number(record.position().map_or(0, csv::Position::byte));
+            let blank = text
+                .get(byte..)
+                .unwrap_or_default()
+                .bytes()
+                .take_while(|b| *b == b'\n' || *b == b'\r')
+                .filter(|b| *b == b'\n')
+                .count();
+            let line = line.saturating_add(blank);
+            let fields: Vec<&str> = record.iter().collect();
+            take(line, &fields).map_err(|message| (line, message))?;
         }
     }
 }
 
 /// How well a separator fits: the share of the lines with the usual number of fields, and the share of numbers among theirs.
 fn score(sample: &str, separator: Separator) -> Option<f64> {
-    let rows = separator.fields(sample).ok()?;
-    let mut counts: BTreeMap<usize, usize> = BTreeMap::new();
-    for (_, fields) in &rows {
+    let (mut rows, mut counts) = (Vec::new(), BTreeMap::<usize, usize>::new());
+    let judged = separator.each(sample, |_, fields| {
+        let filled = fields
+            .iter()
+            .take(SAMPLE_FIELDS)
+            .map(|field| field.trim())
+            .filter(|field| !field.is_empty());
+        let is_number = |field: &&str| !field.contains(' ') && number::is_number(field);
+        rows.push((
+            fields.len(),
+            filled.clone().count(),
+            filled.filter(is_number).count(),
+        ));
         *counts.entry(fields.len()).or_default() += 1;
-    }
+        Ok(())
+    });
+    judged.ok()?;
     let (&usual, &lines) = counts
         .iter()
         .filter(|(fields, _)| **fields > 1)
         .max_by_key(|(fields, lines)| (**lines, **fields))?;
-    let cells: Vec<&str> = rows
-        .iter()
-        .filter(|(_, fields)| fields.len() == usual)
-        .flat_map(|(_, fields)| fields.iter().map(|f| f.trim()))
-        .filter(|field| !field.is_empty())
-        .collect();
-    let numbers = cells
-        .iter()
-        .filter(|cell| !cell.contains(' ') && number::is_number(cell))
-        .count();
-    Some(lines as f64 / rows.len() as f64 + numbers as f64 / cells.len().max(1) as f64)
+    let (mut cells, mut numbers) = (0, 0);
+    for (_, of_filled, of_numbers) in rows.iter().filter(|(fields, ..)| *fields == usual) {
+        cells += of_filled;
+        numbers += of_numbers;
+    }
+    Some(lines as f64 / rows.len() as f64 + numbers as f64 / cells.max(1) as f64)
 }
 
 #[cfg(test)]
@@ -144,8 +175,8 @@ mod tests {
 
     #[test]
     fn lines_are_those_of_the_file() {
-        let rows = Separator::Byte(b';').fields("a;b\n\n\"x\ny\";2\n3;4\n").unwrap();
-        let lines: Vec<usize> = rows.iter().map(|(line, _)| *line).collect();
+        let rows = Separator::Byte(b';').rows("a;b\n\n\"x\ny\";2\n3;4\n").unwrap();
+        let lines: Vec<usize> = rows.iter().map(|row| row.line).collect();
         assert_eq!(lines, [1, 3, 5]);
     }
 }

@@ -24,19 +24,14 @@ pub(super) fn read(source: &SourceFile<'_>, hints: &Hints) -> Result<Table, Box<
             table.complaint("no line has two fields or more: a table with , ; | tab or spaces between its columns is expected")
         })?,
     };
-    // Excel writes the separator into the first line; it is no row.
-    let is_statement = |line: &str| line.trim().to_lowercase().starts_with("sep=");
-    let fields = separator.fields(&text).map_err(|(line, message)| Complaint {
+    table.rows = separator.rows(&text).map_err(|(line, message)| Complaint {
         line: Some(line),
         ..table.complaint(message)
     })?;
-    table.rows = fields
-        .into_iter()
-        .filter(|(line, fields)| !(*line == 1 && fields.first().is_some_and(|field| is_statement(field))))
-        .map(|(line, fields)| Row {
-            line,
-            cells: fields.iter().map(|field| Cell::of_text(field)).collect(),
-        })
-        .collect();
+    // Excel writes the separator into the first line; it is no row.
+    let is_statement = |row: &Row| {
+        row.line == 1 && matches!(row.cell(0), Cell::Text(text) if text.to_lowercase().starts_with("sep="))
+    };
+    table.rows.retain(|row| !is_statement(row));
     Ok(table)
 }

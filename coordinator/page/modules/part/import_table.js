@@ -2,8 +2,9 @@
 
 import { save } from "../chart/download.js";
 import { html, useEffect, useMemo, useState } from "../html.js";
-import { byField, mapOf, proposed, words } from "../import_map.js";
+import { byField, mapOf, meaningsOf, proposed, withAgain, without } from "../import_map.js";
 import { guessImport, importTable } from "../rest/routes.js";
+import { FilledDown, Meanings, Mistake, SkippedRows } from "./import_fix.js";
 import { Failure } from "./message.js";
 import { Table } from "./table.js";
 
@@ -65,8 +66,9 @@ export function ImportTable({ name, bytes, onFiles, onRemove }) {
   const said = byField(answer?.complaints ?? [], [...fields, ...quantities].map((/** @type {any} */ field) => field.name));
   const set = (/** @type {"fields" | "quantities"} */ kind, /** @type {string} */ own, /** @type {Partial<Choice>} */ change) =>
     setChoices({ ...choices, [kind]: { ...choices[kind], [own]: { ...choices[kind][own], ...change } } });
+  const skip = (/** @type {import("../import_map.js").Skipped} */ left) => setChoices(without(choices, left));
   const row = (/** @type {any} */ field, /** @type {"fields" | "quantities"} */ kind) =>
-    cells(field, choices[kind][field.name], guess.columns, said.of(field.name), (change) => set(kind, field.name, change));
+    cells(field, choices[kind][field.name], guess.columns, said.of(field.name), (change) => set(kind, field.name, change), skip);
   const titles = guess.columns.map((/** @type {any} */ column) => column.title);
   const samples = (guess.columns[0]?.sample ?? []).map((/** @type {string} */ _, /** @type {number} */ k) => guess.columns.map((/** @type {any} */ column) => column.sample[k] ?? ""));
   const isRight = answer !== null && answer.complaints.length === 0;
@@ -85,7 +87,8 @@ export function ImportTable({ name, bytes, onFiles, onRemove }) {
       <${Table} label=${`Columns of ${name}`} head=${["quantity", "column", "unit", "or the same in all rows"]}
         rows=${[...fields.map((/** @type {any} */ field) => row(field, "fields")), ...quantities.map((/** @type {any} */ field) => row(field, "quantities"))]} />
       ${!isAll && html`<p><button type="button" onClick=${() => setAll(true)}>Show all columns of runs.csv</button></p>`}
-      ${said.others.map((/** @type {any} */ complaint) => html`<p class="error">${words(complaint)}</p>`)}
+      ${said.others.map((/** @type {any} */ complaint) => html`<${Mistake} complaint=${complaint} onSkip=${skip} />`)}
+      <${SkippedRows} skipped=${choices.skipped} onSkip=${skip} onTake=${(/** @type {number} */ line) => setChoices(withAgain(choices, line))} />
       <${Failure} error=${failure} />
       ${(answer?.remarks ?? []).map((/** @type {string} */ remark) => html`<p class="note">${remark}</p>`)}
       <div class="actions">
@@ -101,16 +104,25 @@ export function ImportTable({ name, bytes, onFiles, onRemove }) {
  * The cells of a field: where it comes from, in which unit, and what is wrong with it.
  * @returns {unknown[]}
  */
-function cells(/** @type {any} */ field, /** @type {Choice} */ choice, /** @type {any[]} */ columns, /** @type {any[]} */ complaints, /** @type {(change: Partial<Choice>) => void} */ onChange) {
+function cells(/** @type {any} */ field, /** @type {Choice} */ choice, /** @type {any[]} */ columns, /** @type {any[]} */ complaints,
+  /** @type {(change: Partial<Choice>) => void} */ onChange, /** @type {(row: import("../import_map.js").Skipped) => void} */ onSkip) {
   const absent = ABSENT[field.name] ?? (choice.formula !== "" ? choice.formula : field.is_needed ? "(none)" : "(not measured)");
   const isOpen = choice.unit === "" && (choice.column !== null || choice.value !== "");
+  const fillDown = complaints.some((complaint) => complaint.fix === "fill_down") ? () => onChange({ fillsDown: true }) : null;
+  const take = (/** @type {string} */ name) => {
+    const column = columns.find((one) => one.name === name);
+    onChange({ column: column?.name ?? null, fillsDown: false, words: field.name === "use" ? meaningsOf(column) : {},
+      ...(column ? { unit: field.units.includes(column.unit) ? column.unit : "" } : {}) });
+  };
   return [
-    html`${field.words}${complaints.map((complaint) => html`<p class="error" data-field=${field.name}>${words(complaint)}</p>`)}`,
-    html`<select aria-label=${`column of ${field.words}`} aria-invalid=${complaints.length > 0} value=${choice.column ?? ""}
-      onChange=${(/** @type {any} */ e) => onChange(e.target.value === "" ? { column: null } : { column: e.target.value, unit: columns.find((column) => column.name === e.target.value && field.units.includes(column.unit))?.unit ?? "" })}>
+    html`${field.words}${complaints.map((complaint) => html`<${Mistake} complaint=${complaint} field=${field.name} onSkip=${onSkip} />`)}
+      ${fillDown && html`<button type="button" onClick=${fillDown}>Blank cells have the value above</button>`}`,
+    html`<div><select aria-label=${`column of ${field.words}`} aria-invalid=${complaints.length > 0} value=${choice.column ?? ""} onChange=${(/** @type {any} */ e) => take(e.target.value)}>
       <option value="" selected=${choice.column === null}>${absent}</option>
       ${columns.map((column) => html`<option value=${column.name} selected=${choice.column === column.name}>${column.title}</option>`)}
-    </select>`,
+    </select>
+    ${choice.fillsDown && html`<${FilledDown} words=${field.words} onUndo=${() => onChange({ fillsDown: false })} />`}
+    <${Meanings} words=${choice.words} onChange=${(/** @type {Record<string, string>} */ words) => onChange({ words })} /></div>`,
     field.units.length === 0 || (choice.formula !== "" && choice.column === null) ? "" : html`<select aria-label=${`unit of ${field.words}`} aria-invalid=${isOpen} value=${choice.unit} onChange=${(/** @type {any} */ e) => onChange({ unit: e.target.value })}>
       <option value="" selected=${choice.unit === ""}>choose</option>
       ${field.units.map((/** @type {string} */ unit) => html`<option value=${unit} selected=${choice.unit === unit}>${unit}</option>`)}

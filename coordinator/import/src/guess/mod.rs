@@ -1,95 +1,26 @@
 //! A map proposed from the titles; what they do not state is asked.
+//!
+//! # Layout
+//! - here: which column is which.
+//! - `card`: what a proposal shows. `word`: the words of columns, and which of them mark runs that are held out.
+//! - `proposal`: the text of a proposed map.
 
-use serde::Serialize;
+mod card;
+mod proposal;
+mod word;
+
+pub use card::{ColumnCard, FieldGuess, Guess, QuantityGuess, WordCard};
 
 use crate::complaint::Complaint;
 use crate::field::{Field, Kind, fields};
 use crate::number::{self, Decimal, Evidence};
 use crate::read::{self, Hints, SourceFile};
-use crate::table::{Cell, Form, letter};
+use crate::table::{Cell, letter};
 use crate::title::{self, Stated, Title, Titled};
 use crate::unit::Quantity;
 
 /// Cells of a column that are shown.
 const SAMPLE: usize = 5;
-
-/// A column of the file.
-#[derive(Debug, Clone, PartialEq, Serialize, utoipa::ToSchema)]
-pub struct ColumnCard {
-    /// Its letters: `A`.
-    pub letter: String,
-    /// Its title.
-    pub title: String,
-    /// How a map names it: by its title, or by its letters where the title is another column's too.
-    pub name: String,
-    /// The unit that the file states.
-    pub unit: Option<String>,
-    /// Its first cells.
-    pub sample: Vec<String>,
-}
-
-/// Where a column of runs.csv comes from, as proposed.
-#[derive(Debug, Clone, PartialEq, Serialize, utoipa::ToSchema)]
-pub struct FieldGuess {
-    /// The column of runs.csv.
-    pub name: String,
-    /// Words for people.
-    pub words: String,
-    /// Whether every run needs it.
-    pub is_needed: bool,
-    /// The units that it can be given in; none of a name.
-    pub units: Vec<String>,
-    /// The proposed column, as a map names it.
-    pub column: Option<String>,
-    /// Its unit; null where the file does not state it.
-    pub unit: Option<String>,
-    /// The proposed formula.
-    pub formula: Option<String>,
-    /// What must be answered before the map can be used.
-    pub question: Option<String>,
-}
-
-/// A quantity that a proposed formula needs.
-#[derive(Debug, Clone, PartialEq, Serialize, utoipa::ToSchema)]
-pub struct QuantityGuess {
-    /// Its name in formulas.
-    pub name: String,
-    /// Words for people.
-    pub words: String,
-    /// The units that it can be given in.
-    pub units: Vec<String>,
-    /// The proposed column; null where a value for all rows is asked for.
-    pub column: Option<String>,
-    /// Its unit; null where the file does not state it.
-    pub unit: Option<String>,
-    /// What must be answered before the map can be used.
-    pub question: Option<String>,
-}
-
-/// A proposed map, and what it is made from.
-#[derive(Debug, Clone, PartialEq, Serialize, utoipa::ToSchema)]
-pub struct Guess {
-    /// The text of the map.
-    pub map: String,
-    /// The sheet that is read; null where the file has none.
-    pub sheet: Option<String>,
-    /// All sheets of the file.
-    pub sheets: Vec<String>,
-    /// The line of the titles; 0 where there are none.
-    pub title_line: usize,
-    /// The line of the units below them; null where there is none.
-    pub unit_line: Option<usize>,
-    /// The columns of the file.
-    pub columns: Vec<ColumnCard>,
-    /// The columns of runs.csv.
-    pub fields: Vec<FieldGuess>,
-    /// The quantities of proposed formulas.
-    pub quantities: Vec<QuantityGuess>,
-    /// The decimal mark of numbers that are texts: `.` or `,`; `?` where they can be read in two ways; null where there are none.
-    pub decimal: Option<String>,
-    /// What was found out about the file.
-    pub remarks: Vec<String>,
-}
 
 /// Proposes a map for a file. Of several sheets, that with the most cells is taken where `sheet` names none.
 ///
@@ -107,11 +38,12 @@ pub fn guess(source: &SourceFile<'_>, sheet: Option<&str>) -> Result<Guess, Box<
     let columns = cards(&titled);
     let mut taken = vec![false; titled.titles.len()];
     let mut fields = vec![None; all.len()];
+    let names: Vec<String> = titled.titles.iter().map(|title| plain(&title.name)).collect();
     // The names of runs.csv first: no other title is as certain.
     for is_exact in [true, false] {
         for (field, place) in all.iter().zip(&mut fields) {
             if place.is_none() {
-                let found = column_for(field, &titled.titles, &taken, is_exact);
+                let found = column_for(field, (&titled.titles, &names), &taken, is_exact);
                 if let Some(column) = found {
                     taken[column] = true;
                     *place = Some(column);
@@ -125,6 +57,7 @@ pub fn guess(source: &SourceFile<'_>, sheet: Option<&str>) -> Result<Guess, Box<
         .map(|(field, column)| of_field(field, column, &titled, &columns))
         .collect();
     let quantities = from_rotation(&mut guessed, &titled, &columns, &mut taken);
+    from_words(&mut guessed, &columns, &mut taken);
     let mut found = Guess {
         map: String::new(),
         sheet: titled.table.sheet.clone(),
@@ -137,7 +70,7 @@ pub fn guess(source: &SourceFile<'_>, sheet: Option<&str>) -> Result<Guess, Box<
         decimal,
         remarks: titled.table.remarks.clone(),
     };
-    found.map = text(source.name, &found, titled.table.form);
+    found.map = proposal::text(source.name, &found, titled.table.form, titled.data().count());
     Ok(found)
 }
 
@@ -184,6 +117,7 @@ fn cards(titled: &Titled) -> Vec<ColumnCard> {
             .map(|row| row.cell(column).shown())
             .take(SAMPLE)
             .collect(),
+        words: word::words(titled.data(), column),
     };
     titled.titles.iter().enumerate().map(card).collect()
 }
@@ -205,25 +139,36 @@ fn plain(text: &str) -> String {
         .join(" ")
 }
 
-/// How well a title fits: 3 the same, 2 the same words first or last, 1 within a compound.
-fn fit(field: &Field, title: &Title) -> usize {
-    let own = plain(&title.name);
+/// How well the plain name of a title fits: 3 the same, 2 the same words first or last, 1 within a compound.
+fn fit(field: &Field, name: &str) -> usize {
     let is_certain = matches!(field.kind, Kind::Measured(_));
     let of = |known: &String| {
-        if own == *known {
+        let is_first = || {
+            name.strip_prefix(known.as_str())
+                .is_some_and(|rest| rest.starts_with(' '))
+        };
+        let is_last = || {
+            name.strip_suffix(known.as_str())
+                .is_some_and(|rest| rest.ends_with(' '))
+        };
+        if name == known {
             3
-        } else if is_certain && (own.starts_with(&format!("{known} ")) || own.ends_with(&format!(" {known}")))
-        {
+        } else if is_certain && (is_first() || is_last()) {
             2
         } else {
-            usize::from(is_certain && known.chars().count() > 5 && own.contains(known.as_str()))
+            usize::from(is_certain && known.chars().count() > 5 && name.contains(known.as_str()))
         }
     };
     field.titles.iter().map(of).max().unwrap_or(0)
 }
 
 /// The column whose title fits a field best; one that states a unit of another quantity does not.
-fn column_for(field: &Field, titles: &[Title], taken: &[bool], is_exact: bool) -> Option<usize> {
+fn column_for(
+    field: &Field,
+    (titles, names): (&[Title], &[String]),
+    taken: &[bool],
+    is_exact: bool,
+) -> Option<usize> {
     let fits = |column: &usize| {
         let title = &titles[*column];
         if is_exact {
@@ -232,7 +177,7 @@ fn column_for(field: &Field, titles: &[Title], taken: &[bool], is_exact: bool) -
         match (title.stated, field.quantity()) {
             (Stated::Unit(unit), Some(quantity)) if unit.quantity != quantity => 0,
             (Stated::Unit(_), None) => 0,
-            _ => fit(field, title),
+            _ => fit(field, &names[*column]),
         }
     };
     let free = (0..titles.len()).filter(|&column| !taken[column]).rev();
@@ -249,9 +194,16 @@ fn of_field(field: &Field, column: Option<usize>, titled: &Titled, columns: &[Co
         Stated::Nothing => None,
     });
     let title = column.map(|column| columns[column].title.as_str());
+    let meanings = match column {
+        Some(column) if field.kind == Kind::Use => word::meanings(&columns[column]),
+        _ => Vec::new(),
+    };
     let question = match (title, &stated) {
         (Some(title), None) if !units.is_empty() => Some(format!(
             "in which unit is \"{title}\"? The file does not state it"
+        )),
+        (Some(title), _) if meanings.iter().any(|card| card.means.is_none()) => Some(format!(
+            "what do the words of \"{title}\" mean: is the run fitted, held out, or no run"
         )),
         (None, _) if field.is_needed && field.name != "run" => Some(format!(
             "which column has the {}, or which value have all rows",
@@ -267,6 +219,7 @@ fn of_field(field: &Field, column: Option<usize>, titled: &Titled, columns: &[Co
         column: column.map(|column| columns[column].name.clone()),
         unit: stated,
         formula: None,
+        meanings,
         question,
     }
 }
@@ -340,91 +293,15 @@ fn from_rotation(
     ]
 }
 
-/// A text of TOML in quotes.
-fn quoted(text: &str) -> String {
-    let escaped = text.chars().map(|c| match c {
-        '"' | '\\' => format!("\\{c}"),
-        c if c.is_control() => format!("\\u{:04X}", u32::from(c)),
-        c => c.to_string(),
-    });
-    format!("\"{}\"", escaped.collect::<String>())
-}
-
-/// The text of a proposed map.
-fn text(file: &str, guess: &Guess, form: Form) -> String {
-    let name: String = file.chars().filter(|c| !c.is_control()).collect();
-    let mut text = format!("# How {name} becomes runs.csv. What is marked with \"?\" must be answered.\n");
-    if let Some(sheet) = &guess.sheet {
-        text += &format!("sheet = {}\n", quoted(sheet));
-    }
-    if form != Form::Variables {
-        text += &format!(
-            "titles = {}                    # line of the titles\n",
-            guess.title_line
-        );
-    }
-    if let Some(line) = guess.unit_line {
-        text += &format!("units = {line}                     # line of their units\n");
-    }
-    match guess.decimal.as_deref() {
-        Some("?") => {
-            text += "decimal = \"?\"                 # \",\" or \".\": is 1,234 a little more than one, or more than a thousand?\n"
-        }
-        Some(mark) => text += &format!("decimal = \"{mark}\"\n"),
-        None => {}
-    }
-    for field in &guess.fields {
-        let origin = match (&field.column, &field.formula) {
-            (Some(column), _) => format!("column = {}\n", quoted(column)),
-            (None, Some(formula)) => format!("formula = {}\n", quoted(formula)),
-            (None, None) if field.is_needed => format!(
-                "value = \"?\"                   # the same in all rows; or column = \"…\": {}\n",
-                field.words
-            ),
-            (None, None) => continue,
-        };
-        text += &format!("\n[columns.{}]\n{origin}", field.name);
-        if field.formula.is_none() && !field.units.is_empty() {
-            text += &unit_line(field.unit.as_deref(), &field.units);
-        }
-    }
-    for quantity in &guess.quantities {
-        let origin = match &quantity.column {
-            Some(column) => format!("column = {}\n", quoted(column)),
-            None => format!("value = \"?\"                   # {}\n", quantity.words),
-        };
-        text += &format!(
-            "\n[quantities.{}]\n{origin}{}",
-            quantity.name,
-            unit_line(quantity.unit.as_deref(), &quantity.units)
-        );
-    }
-    let mapped = |column: &&ColumnCard| {
-        let name = Some(&column.name);
-        guess.fields.iter().any(|field| field.column.as_ref() == name)
-            || guess
-                .quantities
-                .iter()
-                .any(|quantity| quantity.column.as_ref() == name)
-    };
-    let rest: Vec<String> = guess
-        .columns
-        .iter()
-        .filter(|column| !mapped(column))
-        .map(|column| quoted(&column.title))
-        .collect();
-    if !rest.is_empty() {
-        text += &format!("\n# Kept as notes: {}\n", rest.join(", "));
-    }
-    text
-}
-
-fn unit_line(unit: Option<&str>, units: &[String]) -> String {
-    match unit {
-        Some(unit) => format!("unit = {}\n", quoted(unit)),
-        None => format!(
-            "unit = \"?\"                    # the file does not state it: {}\n",
-            units.join(", ")
-        ),
+/// Where no title says which runs are held out, the words of a column may.
+fn from_words(fields: &mut [FieldGuess], columns: &[ColumnCard], taken: &mut [bool]) {
+    let marking = (0..columns.len()).find(|&column| !taken[column] && word::marks_held_out(&columns[column]));
+    let open = fields
+        .iter_mut()
+        .find(|field| field.name == "use" && field.column.is_none());
+    if let (Some(field), Some(column)) = (open, marking) {
+        taken[column] = true;
+        field.column = Some(columns[column].name.clone());
+        field.meanings = word::meanings(&columns[column]);
     }
 }

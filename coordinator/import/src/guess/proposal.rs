@@ -1,0 +1,120 @@
+//! The text of a proposed map.
+
+use super::card::{ColumnCard, Guess, WordCard};
+use super::word;
+use crate::field::RowUse;
+use crate::table::Form;
+
+/// A text of TOML in quotes.
+fn quoted(text: &str) -> String {
+    let escaped = text.chars().map(|c| match c {
+        '"' | '\\' => format!("\\{c}"),
+        c if c.is_control() => format!("\\u{:04X}", u32::from(c)),
+        c => c.to_string(),
+    });
+    format!("\"{}\"", escaped.collect::<String>())
+}
+
+/// The text of a proposed map.
+pub(super) fn text(file: &str, guess: &Guess, form: Form, rows: usize) -> String {
+    let name: String = file.chars().filter(|c| !c.is_control()).collect();
+    let mut text = format!("# How {name} becomes runs.csv. What is marked with \"?\" must be answered.\n");
+    if let Some(sheet) = &guess.sheet {
+        text += &format!("sheet = {}\n", quoted(sheet));
+    }
+    if form != Form::Variables {
+        text += &format!(
+            "titles = {}                    # line of the titles\n",
+            guess.title_line
+        );
+    }
+    if let Some(line) = guess.unit_line {
+        text += &format!("units = {line}                     # line of their units\n");
+    }
+    match guess.decimal.as_deref() {
+        Some("?") => {
+            text += "decimal = \"?\"                 # \",\" or \".\": is 1,234 a little more than one, or more than a thousand?\n"
+        }
+        Some(mark) => text += &format!("decimal = \"{mark}\"\n"),
+        None => {}
+    }
+    for field in &guess.fields {
+        let origin = match (&field.column, &field.formula) {
+            (Some(column), _) => format!("column = {}\n", quoted(column)),
+            (None, Some(formula)) => format!("formula = {}\n", quoted(formula)),
+            (None, None) if field.is_needed => format!(
+                "value = \"?\"                   # the same in all rows; or column = \"…\": {}\n",
+                field.words
+            ),
+            (None, None) => continue,
+        };
+        text += &format!("\n[columns.{}]\n{origin}", field.name);
+        if field.formula.is_none() && !field.units.is_empty() {
+            text += &unit_line(field.unit.as_deref(), &field.units);
+        }
+        if !field.meanings.is_empty() {
+            text += &format!(
+                "words = {}   # fit, holdout (never fitted) or skip (no run)\n",
+                meanings(&field.meanings)
+            );
+        }
+    }
+    for quantity in &guess.quantities {
+        let origin = match &quantity.column {
+            Some(column) => format!("column = {}\n", quoted(column)),
+            None => format!("value = \"?\"                   # {}\n", quantity.words),
+        };
+        text += &format!(
+            "\n[quantities.{}]\n{origin}{}",
+            quantity.name,
+            unit_line(quantity.unit.as_deref(), &quantity.units)
+        );
+    }
+    let mapped = |column: &&ColumnCard| {
+        let name = Some(&column.name);
+        guess.fields.iter().any(|field| field.column.as_ref() == name)
+            || guess
+                .quantities
+                .iter()
+                .any(|quantity| quantity.column.as_ref() == name)
+    };
+    let rest: Vec<&ColumnCard> = guess.columns.iter().filter(|column| !mapped(column)).collect();
+    let is_open = guess
+        .fields
+        .iter()
+        .any(|field| field.name == "use" && field.column.is_none());
+    if let Some(column) = rest
+        .iter()
+        .find(|column| is_open && word::could_mark(column, rows))
+    {
+        text += &format!(
+            "\n# No column says which runs are held out; the words of one can, as\n# [columns.use]\n# column = {}\n# words = {}   # fit, holdout (never fitted) or skip (no run)\n",
+            quoted(&column.name),
+            meanings(&column.words)
+        );
+    }
+    let rest: Vec<String> = rest.iter().map(|column| quoted(&column.title)).collect();
+    if !rest.is_empty() {
+        text += &format!("\n# Kept as notes: {}\n", rest.join(", "));
+    }
+    text
+}
+
+/// The table of words; what the file does not tell is asked.
+fn meanings(words: &[WordCard]) -> String {
+    let entry = |card: &WordCard| {
+        let means = card.means.map_or("?", RowUse::name);
+        format!("{} = \"{means}\"", quoted(&card.word))
+    };
+    format!("{{ {} }}", words.iter().map(entry).collect::<Vec<_>>().join(", "))
+}
+
+fn unit_line(unit: Option<&str>, units: &[String]) -> String {
+    match unit {
+        Some(unit) => format!("unit = {}\n", quoted(unit)),
+        None => format!(
+            "unit = \"?\"                    # the file does not state it: {}\n",
+            units.join(", ")
+        ),
+    }
+}
