@@ -55,7 +55,8 @@ pub(super) fn check_form(request: &Request) -> Result<(), HttpError> {
 
 /// The request with its whole body.
 pub(super) async fn received(request: Request, memory: &BodyMemory) -> Result<Request, HttpError> {
-    let limit = limit(request.uri().path());
+    let path = request.uri().path();
+    let (limit, is_of_worker) = (limit(path), path == EXCHANGE);
     let (parts, body) = request.into_parts();
     if body.is_end_stream() {
         return Ok(Request::from_parts(parts, body));
@@ -67,9 +68,8 @@ pub(super) async fn received(request: Request, memory: &BodyMemory) -> Result<Re
         let message = format!("the body has not arrived within {} s", BODY_TIME.as_secs());
         HttpError::new(ErrorKind::Timeout, message)
     };
-    let bytes = tokio::time::timeout(BODY_TIME, whole(body, limit, memory))
-        .await
-        .map_err(late)??;
+    let whole = whole(body, limit, memory, is_of_worker);
+    let bytes = tokio::time::timeout(BODY_TIME, whole).await.map_err(late)??;
     Ok(Request::from_parts(parts, Body::from(bytes)))
 }
 
@@ -79,12 +79,18 @@ fn too_large(limit: usize) -> HttpError {
 }
 
 /// The bytes of a body, in one piece: many small ones would leave holes in the memory of the process.
-async fn whole(mut body: Body, limit: usize, memory: &BodyMemory) -> Result<Bytes, HttpError> {
+async fn whole(
+    mut body: Body,
+    limit: usize,
+    memory: &BodyMemory,
+    is_of_worker: bool,
+) -> Result<Bytes, HttpError> {
     let stated = body
         .size_hint()
         .exact()
         .and_then(|size| usize::try_from(size).ok());
-    let mut room = memory.take(stated.unwrap_or(limit.min(ORDINARY))).await?;
+    let first = stated.unwrap_or(limit.min(ORDINARY));
+    let mut room = memory.take(first, is_of_worker).await?;
     let mut bytes = Vec::with_capacity(stated.unwrap_or_default());
     while let Some(frame) = poll_fn(|context| Pin::new(&mut body).poll_frame(context)).await {
         // What follows the parts of a body is passed over.
@@ -96,7 +102,7 @@ async fn whole(mut body: Body, limit: usize, memory: &BodyMemory) -> Result<Byte
         }
         if bytes.len() + part.len() > room.bytes() {
             drop(room);
-            room = memory.take(limit).await?;
+            room = memory.take(limit, is_of_worker).await?;
         }
         bytes.extend_from_slice(&part);
     }

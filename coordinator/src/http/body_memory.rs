@@ -1,8 +1,9 @@
 //! The memory for all bodies that are on their way or being read.
 //!
-//! Ordinary bodies and large ones have memory of their own, so that nobody who sends large bodies, or halves of them, keeps a worker from
-//! posting its results. A worker posts what it has as soon as the answer before has arrived: about 2 kB for an evaluation of 24 runs,
-//! 200 kB for a hundred of them. There is room for 480 such messages at the same moment, and each is there for milliseconds.
+//! What workers post, other ordinary bodies, and large ones have memory of their own, so that nobody who sends large bodies, or halves of
+//! them, keeps a worker from posting its results. A worker posts what it has as soon as the answer before has arrived: about 2 kB for an
+//! evaluation of 24 runs, 200 kB for a hundred of them. There is room for 320 such messages at the same moment, and each is there for
+//! milliseconds.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -15,8 +16,10 @@ use super::error::HttpError;
 
 /// The largest ordinary body `[bytes]`.
 pub(super) const ORDINARY: usize = 4 << 20;
-/// Memory for all ordinary bodies together `[bytes]`.
-const ORDINARY_TOGETHER: usize = 96 << 20;
+/// Memory for all ordinary bodies of workers together `[bytes]`.
+const OF_WORKERS_TOGETHER: usize = 64 << 20;
+/// Memory for all other ordinary bodies together `[bytes]`.
+const ORDINARY_TOGETHER: usize = 32 << 20;
 /// Memory for all larger ones together: two of the largest `[bytes]`.
 const LARGE_TOGETHER: usize = 128 << 20;
 /// A body waits so long for memory before it is refused.
@@ -25,6 +28,7 @@ const PATIENCE: Duration = Duration::from_secs(5);
 /// The memory of all bodies; clones share it.
 #[derive(Debug, Clone)]
 pub(super) struct BodyMemory {
+    of_workers: Arc<Semaphore>,
     ordinary: Arc<Semaphore>,
     large: Arc<Semaphore>,
 }
@@ -32,6 +36,7 @@ pub(super) struct BodyMemory {
 impl BodyMemory {
     pub(super) fn new() -> Self {
         BodyMemory {
+            of_workers: Arc::new(Semaphore::new(OF_WORKERS_TOGETHER)),
             ordinary: Arc::new(Semaphore::new(ORDINARY_TOGETHER)),
             large: Arc::new(Semaphore::new(LARGE_TOGETHER)),
         }
@@ -41,10 +46,11 @@ impl BodyMemory {
     ///
     /// # Errors
     /// Others have the memory, and go on having it.
-    pub(super) async fn take(&self, bytes: usize) -> Result<Room, HttpError> {
-        let (memory, together) = match bytes <= ORDINARY {
-            true => (&self.ordinary, ORDINARY_TOGETHER),
-            false => (&self.large, LARGE_TOGETHER),
+    pub(super) async fn take(&self, bytes: usize, is_of_worker: bool) -> Result<Room, HttpError> {
+        let (memory, together) = match (bytes <= ORDINARY, is_of_worker) {
+            (true, true) => (&self.of_workers, OF_WORKERS_TOGETHER),
+            (true, false) => (&self.ordinary, ORDINARY_TOGETHER),
+            (false, _) => (&self.large, LARGE_TOGETHER),
         };
         let full = || {
             let message = format!(
@@ -99,10 +105,19 @@ mod tests {
 
     use super::*;
 
-    #[test]
-    fn large_bodies_leave_room_for_ordinary_ones_and_give_theirs_back() {
+    #[tokio::test]
+    async fn ordinary_bodies_of_others_leave_room_for_those_of_workers() {
         let memory = BodyMemory::new();
-        let take = |bytes| memory.take(bytes).now_or_never().map(Result::unwrap);
+        let take = |is_of_worker| memory.take(ORDINARY, is_of_worker).now_or_never();
+        let others: Vec<_> = std::iter::from_fn(|| take(false)).collect();
+        assert_eq!(others.len(), 8);
+        assert!(take(true).is_some());
+    }
+
+    #[tokio::test]
+    async fn large_bodies_leave_room_for_ordinary_ones_and_give_theirs_back() {
+        let memory = BodyMemory::new();
+        let take = |bytes| memory.take(bytes, false).now_or_never().map(Result::unwrap);
         let (first, second) = (take(64 << 20).unwrap(), take(64 << 20).unwrap());
         assert!(take(ORDINARY + 1).is_none(), "it waits");
         assert_eq!(take(ORDINARY).unwrap().bytes(), ORDINARY);

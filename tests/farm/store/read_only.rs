@@ -22,9 +22,9 @@ fn finished() -> Service {
     service
 }
 
-/// Who may do what in a folder.
-fn set_mode(folder: &Path, mode: u32) {
-    std::fs::set_permissions(folder, Permissions::from_mode(mode)).expect("a mode is set");
+/// Who may do what with a file or in a folder.
+fn set_mode(path: &Path, mode: u32) {
+    std::fs::set_permissions(path, Permissions::from_mode(mode)).expect("a mode is set");
 }
 
 /// A copy of a store and its log in a folder that its reader may not write to.
@@ -35,8 +35,11 @@ impl Closed {
         let folder = tempfile::tempdir().expect("a folder");
         for end in ["", "-wal"] {
             let from = format!("{}{end}", service.store().display());
-            // Without a log beside it the file is whole.
-            let _ = std::fs::copy(from, folder.path().join(format!("grouser.db{end}")));
+            let to = folder.path().join(format!("grouser.db{end}"));
+            // Without a log beside it the file is whole. A store is its owner's alone until the owner lets others read it.
+            if std::fs::copy(from, &to).is_ok() {
+                set_mode(&to, 0o644);
+            }
         }
         let program = coordinator(["list"]).get_program().to_owned();
         std::fs::copy(program, folder.path().join("coordinator")).expect("the program is copied");
