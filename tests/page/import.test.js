@@ -4,7 +4,7 @@ import assert from "node:assert/strict";
 import { readFile } from "node:fs/promises";
 import { after, before, test } from "node:test";
 
-import { findings, open, shot, sideways } from "./browser.js";
+import { findings, open, shot, sideways, studyOf } from "./browser.js";
 import { Service } from "./service.js";
 
 const FILE = "examples/import-german/Messung_Sand.xlsx";
@@ -84,6 +84,58 @@ test("a text in another encoding keeps its letters, and a file that is no table 
   await files({ name: "broken.xlsx", mimeType: "application/octet-stream", buffer: Buffer.from("PK\x03\x04rubbish") });
   await page.locator(".card.mapping .error").first().waitFor();
   assert.match(await page.locator(".card.mapping .error").first().textContent(), /broken\.xlsx: the file is damaged/);
+});
+
+test("a row of means is left out by a click, and words hold runs out", async () => {
+  await page.goto(`${service.url}/#/`);
+  await page.getByRole("link", { name: "New calibration" }).first().click();
+  await files({ name: "Messung.csv", mimeType: "text/csv", buffer: await readFile("tests/data/german-table/Messung.csv") });
+  const wheel = page.locator('[data-field="wheel"]');
+  await wheel.waitFor();
+  assert.equal(await wheel.textContent(), "Which wheel? Choose its column, or give one name for all rows.");
+  await page.getByLabel("wheel of all rows", { exact: true }).fill("w");
+  await page.getByLabel("soil of all rows", { exact: true }).fill("s");
+  const means = page.locator(".card.mapping .error", { hasText: "Mittelwert" });
+  await means.waitFor();
+  assert.match(await means.textContent(), /line 44: the row "Mittelwert" is no run\s*Mittelwert · – · – · – · /);
+  assert.deepEqual(await findings(page), []);
+  await shot(page, "import-means");
+  await page.getByRole("button", { name: "Leave out line 44" }).click();
+  await page.getByRole("button", { name: "Use these 40 runs" }).waitFor();
+  await page.getByRole("button", { name: "Undo: take in line 44 again" }).click();
+  await page.getByRole("button", { name: "Leave out line 44" }).click();
+  assert.equal(await page.getByLabel("meaning of Kontrolle", { exact: true }).inputValue(), "holdout");
+  assert.equal(await page.getByLabel("meaning of neu geharkt", { exact: true }).inputValue(), "fit");
+  await page.getByRole("button", { name: "Use these 40 runs" }).waitFor();
+  assert.deepEqual(await findings(page), []);
+  assert.equal(await sideways(page), 0);
+  await shot(page, "import-held-out");
+});
+
+test("the runs that the words hold out judge the calibration", async () => {
+  await page.getByRole("button", { name: "Use these 40 runs" }).click();
+  await page.getByText("Wheel and noise").waitFor();
+  const experiment = await readFile("tests/data/nothing-hidden/experiment.toml", "utf8");
+  const job = (await readFile("examples/import-german/job.toml", "utf8")).replace("[sampler]", '[sampler]\nalgorithm = "lm"').replace(/\[discovery\][^[]*/, "");
+  await files(buffer("experiment.toml", experiment), buffer("job.toml", job));
+  await page.getByRole("button", { name: "Start the calibration" }).click();
+  await page.waitForURL(/studies\/\d+\/live/);
+  const study = await service.finished(studyOf(page));
+  assert.equal(study.state, "finished");
+  const { rows } = await service.get(`/v1/calibrations/${study.calibrations[0].id ?? study.calibrations[0]}/comparison`);
+  assert.equal(new Set(rows.filter((row) => row.use === "holdout").map((row) => row.run)).size, 16);
+});
+
+test("blank cells of a block take the value above by a click, and keep none by another", async () => {
+  await page.getByRole("link", { name: "New calibration" }).first().click();
+  await files(buffer("Block.csv", "Versuch;Rad;Boden;Schlupf [%];Last [N];Geschwindigkeit [mm/s];Einsinkung [mm]\nA;w;s;20;100;8;5,5\nB;w;s;30;;8;6,5\nC;w;s;40;;8;7,5\n"));
+  const fill = page.getByRole("button", { name: "Blank cells have the value above" });
+  await fill.click();
+  await page.getByRole("button", { name: "Use these 3 runs" }).waitFor();
+  await shot(page, "import-filled");
+  await page.getByRole("button", { name: "Undo: blank cells of wheel load stay blank" }).click();
+  await fill.waitFor();
+  await page.getByRole("button", { name: "remove Block.csv" }).click();
 });
 
 test("nothing went wrong on the way", () => assert.deepEqual(tab.faults, []));

@@ -28,7 +28,7 @@ export function SkippedRows({ skipped, onSkip, onTake }) {
   };
   return html`
     ${skipped.map((row) => html`<div class="skipped" key=${row.line}><span>Left out: line ${row.line} ${row.cells.length > 0 && html`<code class="row">${shown(row.cells)}</code>`}</span>
-      <button type="button" onClick=${() => onTake(row.line)} aria-label=${`Take in line ${row.line} again`}>Undo</button></div>`)}
+      <button type="button" onClick=${() => onTake(row.line)} aria-label=${`Undo: take in line ${row.line} again`}>Undo</button></div>`)}
     <div class="actions">
       <label>A line that is no run <input size="5" inputmode="numeric" aria-invalid=${text !== "" && !isLine} value=${text} onInput=${(/** @type {any} */ e) => setText(e.target.value)} /></label>
       <button type="button" disabled=${!isLine} onClick=${leave}>Leave it out</button>
@@ -37,7 +37,7 @@ export function SkippedRows({ skipped, onSkip, onTake }) {
 
 /** @param {{ words: string, onUndo: () => void }} properties words: of the quantity */
 export const FilledDown = ({ words, onUndo }) => html`<div class="skipped"><span class="note">Blank cells have the value above.</span>
-  <button type="button" onClick=${onUndo} aria-label=${`Blank cells of ${words} stay blank`}>Undo</button></div>`;
+  <button type="button" onClick=${onUndo} aria-label=${`Undo: blank cells of ${words} stay blank`}>Undo</button></div>`;
 
 /** What each word of a column means for its run. @param {{ words: Record<string, string>, onChange: (words: Record<string, string>) => void }} properties */
 export function Meanings({ words, onChange }) {

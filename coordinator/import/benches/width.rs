@@ -1,0 +1,34 @@
+//! Print what a proposal for a table costs, by its number of columns: the time should grow as they do, and a table that is too wide
+//! should be refused at once.
+//!
+//! `cargo bench -p import --bench width`
+
+use std::time::Instant;
+
+use import::{SourceFile, guess};
+
+/// A table with so many columns, each with a title of its own, and two rows.
+fn wide(columns: usize) -> String {
+    let line = |cell: &dyn Fn(usize) -> String| (0..columns).map(cell).collect::<Vec<_>>().join(";") + "\n";
+    line(&|k| format!("force {k} [N]")) + &line(&|k| k.to_string()) + &line(&|k| format!("{k},5"))
+}
+
+fn main() {
+    println!("{:>9}  {:>7}", "columns", "ms");
+    for columns in [2_500, 5_000, 10_000, 20_000, 1_000_000] {
+        let text = wide(columns);
+        let source = SourceFile {
+            name: "wide.csv",
+            bytes: text.as_bytes(),
+            is_own: false,
+        };
+        let begin = Instant::now();
+        let found = guess(&source, None);
+        let ms = 1e3 * begin.elapsed().as_secs_f64();
+        let words = found.map_or_else(
+            |refusal| refusal.message,
+            |found| format!("{} read", found.columns.len()),
+        );
+        println!("{columns:>9}  {ms:>7.1}  {words}");
+    }
+}
