@@ -264,6 +264,7 @@ mod tests {
             in_credible_set,
             strength_prior: None,
             parameters: Default::default(),
+            units: Default::default(),
             method: "confirmed".into(),
         };
         let with_none = [effect(NONE, 0.6, true), effect("stick_slip", 0.36, true)];
