@@ -345,9 +345,11 @@ fn killing_coordinator_and_workers_while_a_study_is_searched_changes_nothing() {
     assert_eq!(chosen, &json!(["janosi_hanamoto"]), "{expected:#}");
     assert_eq!(expected["calibrations"].as_array().map(Vec::len), Some(2));
     let explanations = expected["discovery"]["effects"].as_array().expect("a list");
-    let named = explanations.iter().find(|own| own["name"] == "janosi_hanamoto");
+    let named = explanations
+        .iter()
+        .find(|effect| effect["name"] == "janosi_hanamoto");
     assert_eq!(
-        named.map(|own| &own["units"]),
+        named.map(|effect| &effect["units"]),
         Some(&json!({"janosi_hanamoto.shear_modulus_m": "m"}))
     );
     drop(quiet);

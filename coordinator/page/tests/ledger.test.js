@@ -24,7 +24,7 @@ test("a step is what a line has beyond the one before it", () => {
 
 test("lines over the same runs stand together, and change where the runs do", () => {
   const lines = [line(1, []), line(2, ["slip_sinkage"]), line(4, ["slip_sinkage"], 2, 29)];
-  assert.deepEqual(dataSets(lines).map((set) => set.map((own) => own.id)), [[1, 2], [4]]);
+  assert.deepEqual(dataSets(lines).map((set) => set.map(({ id }) => id)), [[1, 2], [4]]);
   assert.deepEqual(changesOfRuns(lines), [0, 0, 1]);
   assert.deepEqual(changesOfRuns([...lines, line(5, ["slip_sinkage", "adhesion"])]), [0, 0, 1, 2]);
   assert.equal(runWords(lines[2].line), "29 fitted runs, 12 held out");

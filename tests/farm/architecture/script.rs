@@ -91,7 +91,7 @@ pub(super) fn of_package(sources: &Sources) -> Imports {
         let mut targets = BTreeSet::new();
         for line in on_one_line(text).lines() {
             let statement = line.trim_start().strip_prefix("from .");
-            let Some((from, names)) = statement.and_then(|own| own.split_once(" import ")) else {
+            let Some((from, names)) = statement.and_then(|rest| rest.split_once(" import ")) else {
                 continue;
             };
             let names = names.split('#').next().unwrap_or_default();

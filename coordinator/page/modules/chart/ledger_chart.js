@@ -37,7 +37,7 @@ function LedgerChart(/** @type {{ study: any, lines: LedgerLine[], channel: stri
     return rmse === undefined || rmse === null ? [] : [{ name, rmse: rmse * quantity.scale }];
   });
   const draw = (/** @type {number} */ width) => picture({ width, lines, points, floor, baseline, title: titled(`error of ${words(channel)}`, quantity.unit) });
-  const reached = [...new Set(baseline.map((own) => digits(own.rmse)))];
+  const reached = [...new Set(baseline.map(({ rmse }) => digits(rmse)))];
   return html`<${Figure} title=${`Error of ${words(channel)}`} name=${fileName(study.name, "error", channel)} deps=${[lines.length, points.map((p) => p.rmse).join()]} draw=${draw}
     rows=${() => points.map((p) => ({ model: p.name, runs: p.look.words, [`rmse [${quantity.unit}]`]: p.rmse, number: p.runs }))}
     legend=${html`
@@ -50,7 +50,7 @@ function LedgerChart(/** @type {{ study: any, lines: LedgerLine[], channel: stri
 /** @param {{ width: number, lines: LedgerLine[], points: any[], floor: number | null, baseline: { name: string, rmse: number }[], title: string }} properties */
 function picture({ width, lines, points, floor, baseline, title }) {
   const names = lines.map((l) => l.name);
-  const labels = tickLabels({ names: lines.map((own, k) => step(lines[k - 1], own)), width, left: 56, right: RIGHT });
+  const labels = tickLabels({ names: lines.map((line, k) => step(lines[k - 1], line)), width, left: 56, right: RIGHT });
   // The greater error of a model has its value above, the lesser below.
   const isUpper = (/** @type {any} */ p) => points.every((other) => other.name !== p.name || other === p || other.rmse < p.rmse || (other.rmse === p.rmse && other.look.use === "fit"));
   const value = (/** @type {any[]} */ some, /** @type {number} */ dy) => Plot.text(some, {

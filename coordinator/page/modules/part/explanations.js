@@ -50,10 +50,10 @@ export function Explanations({ record, ghost, kept, show, keep, add, study, mode
 
 /** A fitted parameter in its unit; records of earlier versions do not state it. */
 function strength(/** @type {string} */ name, /** @type {number} */ value, /** @type {string | undefined} */ stated) {
-  const own = name.split(".").slice(1).join(".") || name;
-  if (stated === undefined) return `${parameterName(own, null)} ${digits(value)} (SI)`;
+  const parameter = name.split(".").slice(1).join(".") || name;
+  if (stated === undefined) return `${parameterName(parameter, null)} ${digits(value)} (SI)`;
   const { unit, scale } = shown(stated);
-  return `${parameterName(own, stated)} ${digits(value * scale)}${unit === "1" ? "" : ` ${unit}`}`;
+  return `${parameterName(parameter, stated)} ${digits(value * scale)}${unit === "1" ? "" : ` ${unit}`}`;
 }
 
 /** The others of a class. */

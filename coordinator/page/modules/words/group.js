@@ -60,7 +60,7 @@ function cut(/** @type {number[]} */ ascending, /** @type {(low: number) => numb
 
 /** Whether most runs of the levels are not alone. */
 function isRepeated(/** @type {Level[]} */ all) {
-  const count = (/** @type {Level[]} */ of) => of.reduce((sum, level) => sum + level.count, 0);
+  const count = (/** @type {Level[]} */ some) => some.reduce((sum, level) => sum + level.count, 0);
   return count(all.filter((level) => level.count > 1)) >= REPEATED * count(all);
 }
 

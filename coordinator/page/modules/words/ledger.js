@@ -6,7 +6,7 @@
  */
 
 /**
- * The lines that were calibrated on the same runs, in their order: errors and evidence of others do not compare.
+ * The lines that were calibrated on the same runs, in their order: errors and evidence over different runs do not compare.
  * @template {LedgerLine} L
  * @param {L[]} lines
  * @returns {L[][]}
@@ -14,7 +14,7 @@
 export function dataSets(lines) {
   /** @type {Map<number, L[]>} */
   const sets = new Map();
-  for (const own of lines) sets.set(own.line.experiment, [...(sets.get(own.line.experiment) ?? []), own]);
+  for (const entry of lines) sets.set(entry.line.experiment, [...(sets.get(entry.line.experiment) ?? []), entry]);
   return [...sets.values()];
 }
 
@@ -34,16 +34,16 @@ export function runWords(/** @type {Runs} */ { fitted_runs, held_out_runs }) {
  * What a line has that the line before it has not: `+ slip_sinkage`, `+ 1 run`; its model where that dropped something, its name where it
  * differs in nothing.
  * @param {LedgerLine | undefined} before
- * @param {LedgerLine} own
+ * @param {LedgerLine} now
  * @returns {string[]} the parts
  */
-export function step(before, own) {
-  if (!before) return [own.name];
-  const added = own.effects.filter((effect) => !before.effects.includes(effect)).map((effect) => `+ ${effect}`);
-  const isShorter = before.effects.some((effect) => !own.effects.includes(effect));
-  const whole = own.effects.length === 0 ? "base" : `with ${own.effects.join(", ")}`;
-  const parts = [...(isShorter ? [whole] : added), ...runStep(before.line, own.line)];
-  return parts.length === 0 ? [own.name] : parts;
+export function step(before, now) {
+  if (!before) return [now.name];
+  const added = now.effects.filter((effect) => !before.effects.includes(effect)).map((effect) => `+ ${effect}`);
+  const isShorter = before.effects.some((effect) => !now.effects.includes(effect));
+  const whole = now.effects.length === 0 ? "base" : `with ${now.effects.join(", ")}`;
+  const parts = [...(isShorter ? [whole] : added), ...runStep(before.line, now.line)];
+  return parts.length === 0 ? [now.name] : parts;
 }
 
 /** How the runs changed. */
