@@ -65,15 +65,16 @@ fn advice(kind: Option<&str>) -> &'static str {
 
 #[cfg(test)]
 mod tests {
+    use record::Role;
+
     use super::*;
-    use crate::study_member::MemberKind;
 
     fn member(state: CalibrationState, kinds: &[(&str, u64)]) -> StudyMember {
         StudyMember {
             id: 4,
             name: "sand".into(),
             state,
-            kind: MemberKind::Sample,
+            kind: Role::Sample,
             effects: Vec::new(),
             searches: None,
             message: Some("all 1000 prior draws were rejected by the model".into()),

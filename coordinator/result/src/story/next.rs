@@ -392,7 +392,7 @@ mod tests {
         record.verdict = Verdict::Undecided;
         record.extension = None;
         record.unsupported_noise = vec!["noise.torque_n_m".into(), "noise.sinkage_m".into()];
-        let next = Next::of(&study, &study.lead, false);
+        let next = Next::of(&study, &study.lead, open());
         assert_eq!(
             kinds(&next)[..2],
             [StepKind::StateInExperiment, StepKind::MakeRuns]
