@@ -230,7 +230,7 @@ fn a_run_stopped_by_interrupt_or_kill_goes_on_to_the_same_bytes() {
             );
         }
         let table = run.finish();
-        assert!(table.contains("log-evidence"), "{table}");
+        assert!(table.contains("root mean sq. error"), "{table}");
         same(&run.posterior(), &whole.posterior());
     }
 }

@@ -77,7 +77,7 @@ fn a_study_grows_by_effects_and_by_runs() {
         .map(|line| {
             format!(
                 "{}: {} + {}",
-                line["experiment"], line["fitted_runs"], line["held_out_runs"]
+                line["data_set"], line["fitted_runs"], line["held_out_runs"]
             )
         })
         .collect();

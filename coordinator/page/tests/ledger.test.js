@@ -5,8 +5,8 @@ import { places, tickLabels, textWidth } from "../modules/chart/tick_labels.js";
 import { changesOfRuns, dataSets, runWords, step } from "../modules/words/ledger.js";
 import { modelName } from "../modules/words/model.js";
 
-const line = (/** @type {number} */ id, /** @type {string[]} */ effects, experiment = 1, fitted_runs = 28) => ({
-  id, name: effects.length === 0 ? "base" : `with ${effects.join(", ")}`, effects, line: { calibration: id, experiment, fitted_runs, held_out_runs: 12 },
+const line = (/** @type {number} */ id, /** @type {string[]} */ effects, data_set = 1, fitted_runs = 28) => ({
+  id, name: effects.length === 0 ? "base" : `with ${effects.join(", ")}`, effects, line: { calibration: id, data_set, fitted_runs, held_out_runs: 12 },
 });
 
 test("a step is what a line has beyond the one before it", () => {
@@ -32,7 +32,7 @@ test("lines over the same runs stand together, and change where the runs do", ()
 
 test("a model that was calibrated on other runs is called so", () => {
   const member = (/** @type {number} */ id, /** @type {string[]} */ effects) => ({ id, kind: "sample", name: "sand", effects });
-  const study = { experiment: 1, models: null, members: [member(1, []), member(4, []), member(5, ["slip_digging.grousered"])], ledger: [line(1, []).line, line(4, [], 2, 29).line, line(5, [], 2, 29).line] };
+  const study = { models: null, members: [member(1, []), member(4, []), member(5, ["slip_digging.grousered"])], ledger: [line(1, []).line, line(4, [], 2, 29).line, line(5, [], 2, 29).line] };
   assert.deepEqual(study.members.map((m) => modelName(study, m)), ["base", "base, 29 fitted runs", "with slip_digging.grousered, 29 fitted runs"]);
   const twice = { ...study, members: [member(1, []), member(2, [])], ledger: [line(1, []).line, line(2, []).line] };
   assert.deepEqual(twice.members.map((m) => modelName(twice, m)), ["base (calibration 1)", "base (calibration 2)"]);

@@ -1,5 +1,7 @@
 //! Values as JSON text in a column.
 
+use std::collections::BTreeMap;
+
 use super::error::StoreError;
 
 /// Numbers as a JSON array; every finite `f64` comes back to the bit.
@@ -10,4 +12,9 @@ pub(super) fn json<T: serde::Serialize + ?Sized>(values: &T) -> String {
 /// The numbers of a JSON array.
 pub(super) fn numbers(json: &str) -> Result<Vec<f64>, StoreError> {
     serde_json::from_str(json).map_err(|e| StoreError::Corrupt(format!("parameter vector {json}: {e}")))
+}
+
+/// Texts by the names of their files.
+pub(super) fn file_map(json: &str) -> Result<BTreeMap<String, String>, StoreError> {
+    serde_json::from_str(json).map_err(|e| StoreError::Corrupt(format!("files: {e}")))
 }

@@ -8,9 +8,7 @@ use std::collections::BTreeMap;
 use shared::file::FileSet;
 
 use super::error::StoreError;
-use super::json::json;
-use super::read::file_map;
-use super::reader::Reader;
+use super::json::{file_map, json};
 use super::sql::{Connection, On, Row, query, query_scalar};
 use job::{
     AlgorithmSettings, JobFile, continued_job, earlier_search, effect_name, is_earlier_search, searched_model,
@@ -75,17 +73,11 @@ pub(super) async fn fill(connection: &mut Connection, path: &str) -> Result<(), 
     connection.commit().await.map_err(wrap)
 }
 
-impl Reader {
-    /// What the rows of an earlier version lack, by their ids; `None` where the store has it. Reading alone leaves a store as it is.
-    pub(super) async fn earlier_members(&self) -> Result<Option<BTreeMap<i64, Filled>>, StoreError> {
-        if !self.has_table("calibrations").await? || self.has_column("calibrations", "role").await? {
-            return Ok(None);
-        }
-        Ok(Some(filled(&self.pool).await?))
-    }
-}
-
-async fn filled(on: impl Into<On<'_>>) -> Result<BTreeMap<i64, Filled>, sqlx::Error> {
+/// What the rows of an earlier version lack, by their ids.
+///
+/// # Errors
+/// The database's reason.
+pub(super) async fn filled(on: impl Into<On<'_>>) -> Result<BTreeMap<i64, Filled>, sqlx::Error> {
     let rows = query(
         "SELECT c.id, c.study, coalesce(c.experiment, s.experiment) AS on_experiment, c.name, c.toml, c.files
          FROM calibrations c JOIN studies s ON s.id = c.study ORDER BY c.study, c.id",

@@ -9,7 +9,7 @@ use shared::outcome::Observables;
 
 use super::blob;
 use super::error::StoreError;
-use super::json::{json, numbers};
+use super::json::{file_map, json, numbers};
 use super::members::Filled;
 use super::reader::Reader;
 use super::sql::{Pool, Row, query, query_as, query_scalar};
@@ -519,10 +519,6 @@ fn sample(row: &Row) -> Result<Sample, StoreError> {
 
 fn array<T: serde::de::DeserializeOwned>(json: &str) -> Result<Vec<T>, StoreError> {
     serde_json::from_str(json).map_err(|e| StoreError::Corrupt(format!("array {json}: {e}")))
-}
-
-pub(super) fn file_map(json: &str) -> Result<BTreeMap<String, String>, StoreError> {
-    serde_json::from_str(json).map_err(|e| StoreError::Corrupt(format!("files: {e}")))
 }
 
 impl Reader {

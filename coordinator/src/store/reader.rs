@@ -8,7 +8,7 @@ use sqlx::sqlite::SqliteConnectOptions;
 
 use super::error::{StoreError, primary_code};
 use super::file::{examine, file_of, options, pool, recognise};
-use super::members::Filled;
+use super::members::{Filled, filled};
 use super::place::is_server;
 use super::server;
 use super::sql::{Connection, Pool, query_scalar};
@@ -119,7 +119,9 @@ impl Reader {
     }
 
     async fn with_earlier_members(mut self) -> Result<Reader, StoreError> {
-        self.earlier_members = self.earlier_members().await?.map(Arc::new);
+        if self.has_table("calibrations").await? && !self.has_column("calibrations", "role").await? {
+            self.earlier_members = Some(Arc::new(filled(&self.pool).await?));
+        }
         Ok(self)
     }
 }

@@ -1,7 +1,7 @@
 // The lines of the error ledger: which of them compare, and what each has beyond the one before it.
 
 /**
- * @typedef {{ experiment: number, fitted_runs: number, held_out_runs: number }} Runs
+ * @typedef {{ data_set: number, fitted_runs: number, held_out_runs: number }} Runs
  * @typedef {{ id: number, name: string, effects: string[], line: any & Runs }} LedgerLine
  */
 
@@ -14,14 +14,14 @@
 export function dataSets(lines) {
   /** @type {Map<number, L[]>} */
   const sets = new Map();
-  for (const entry of lines) sets.set(entry.line.experiment, [...(sets.get(entry.line.experiment) ?? []), entry]);
+  for (const entry of lines) sets.set(entry.line.data_set, [...(sets.get(entry.line.data_set) ?? []), entry]);
   return [...sets.values()];
 }
 
 /** Of each line, the number of changes of the runs before it: neighbours with the same number compare. */
 export function changesOfRuns(/** @type {LedgerLine[]} */ lines) {
   let changes = 0;
-  return lines.map(({ line }, k) => (k > 0 && line.experiment !== lines[k - 1].line.experiment ? (changes += 1) : changes));
+  return lines.map(({ line }, k) => (k > 0 && line.data_set !== lines[k - 1].line.data_set ? (changes += 1) : changes));
 }
 
 /** `28 fitted runs, 12 held out`. */
@@ -48,7 +48,7 @@ export function step(before, now) {
 
 /** How the runs changed. */
 function runStep(/** @type {Runs} */ before, /** @type {Runs} */ now) {
-  if (before.experiment === now.experiment) return [];
+  if (before.data_set === now.data_set) return [];
   const more = now.fitted_runs + now.held_out_runs - before.fitted_runs - before.held_out_runs;
   if (more === 0) return ["other runs"];
   const count = Math.abs(more);

@@ -25,5 +25,5 @@ export function modelName(/** @type {any} */ study, /** @type {any} */ member) {
 /** How many runs a model was fitted to, where these are not those of the submitted job. */
 function otherRuns(/** @type {any} */ study, /** @type {any} */ member) {
   const line = study.ledger.find((/** @type {any} */ l) => l.calibration === member.id);
-  return line && line.experiment !== study.experiment ? [line.fitted_runs === 1 ? "1 fitted run" : `${line.fitted_runs} fitted runs`] : [];
+  return line && line.data_set !== 1 ? [line.fitted_runs === 1 ? "1 fitted run" : `${line.fitted_runs} fitted runs`] : [];
 }

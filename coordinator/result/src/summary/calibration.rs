@@ -20,8 +20,8 @@ use crate::table::row::rows_of;
 pub struct CalibrationSummary {
     /// Id of the calibration.
     pub calibration: i64,
-    /// Id of its experiment: errors and evidence of lines over different ones do not compare.
-    pub experiment: i64,
+    /// Number of its set of runs in the study, from 1: errors and evidence of lines over different sets do not compare.
+    pub data_set: usize,
     /// Runs that were fitted.
     pub fitted_runs: usize,
     /// Runs that were held out.
@@ -126,7 +126,7 @@ impl FinishedCalibration {
             .collect();
         Some(CalibrationSummary {
             calibration: self.row.id,
-            experiment: self.row.experiment,
+            data_set: 1,
             fitted_runs: self.spec.fit_runs.len(),
             held_out_runs: self.spec.holdout_runs.len(),
             effects: self.effects(),

@@ -59,11 +59,15 @@ impl Study {
 
     /// The lines of the error ledger.
     pub(crate) fn ledger_summaries(&self, sigmas: &FixedSigmas) -> Vec<CalibrationSummary> {
+        let mut experiments: Vec<i64> = self.ledger().map(|line| line.row.experiment).collect();
+        experiments.dedup();
+        let number = |id: i64| experiments.iter().position(|&other| other == id);
         let line = |calibration: &FinishedCalibration| {
             let line = calibration.calibration_summary()?;
             let effects = self.parts(calibration);
             Some(CalibrationSummary {
                 effects,
+                data_set: 1 + number(calibration.row.experiment).unwrap_or_default(),
                 ..line.in_fixed_sigmas(sigmas)
             })
         };
@@ -116,10 +120,9 @@ mod tests {
         let lines = study.summary().calibrations;
         let runs: Vec<_> = lines
             .iter()
-            .map(|line| (line.experiment, line.fitted_runs, line.held_out_runs))
+            .map(|line| (line.data_set, line.fitted_runs, line.held_out_runs))
             .collect();
-        let first = study.lead.row.experiment;
-        assert_eq!(runs, [(first, 3, 1), (first + 1, 4, 5)]);
+        assert_eq!(runs, [(1, 3, 1), (2, 4, 5)]);
     }
 
     #[test]
