@@ -107,8 +107,8 @@ fn value(summary: &Value, place: &str) -> Option<f64> {
             _ => found.get(part).cloned(),
         }
     };
-    let parts = pointer.trim_start_matches('/').split('/');
-    let found = parts.fold(Some(summary.clone()), |found, part| step(&found?, part))?;
+    let mut parts = pointer.trim_start_matches('/').split('/');
+    let found = parts.try_fold(summary.clone(), |found, part| step(&found, part))?;
     match found {
         Value::Array(list) => Some(list.len() as f64 * factor),
         found => Some(found.as_f64()? * factor),

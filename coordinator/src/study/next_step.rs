@@ -56,11 +56,9 @@ pub fn next_step(
         [only] => only,
         _ => &compared[most_probable(compared.iter().map(|row| row.log_evidence))?],
     };
-    let in_ledger = |row: &&CalibrationRow| findings.ledger.contains(&row.id);
     let last = std::iter::once(first)
         .chain(later)
-        .filter(in_ledger)
-        .next_back()?;
+        .rfind(|row| findings.ledger.contains(&row.id))?;
     let Some(search) = lineage.search_of(last.id) else {
         return Some(StudyStep::Search(last.id));
     };
