@@ -123,6 +123,7 @@ fn a_german_text_with_a_row_of_means_becomes_a_calibration_with_held_out_runs() 
         guessed.stderr
     );
     let proposed = guessed.success();
+    assert!(proposed.ends_with('\n'), "{proposed}");
     assert!(
         proposed.contains("words = { \"Kontrolle\" = \"holdout\", \"neu geharkt\" = \"fit\" }"),
         "{proposed}"

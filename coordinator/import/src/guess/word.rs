@@ -71,12 +71,12 @@ pub(super) fn marks_held_out(column: &ColumnCard) -> bool {
 
 /// What a map must say about the words of a column of `use`: nothing, where they are those of runs.csv.
 pub(super) fn meanings(column: &ColumnCard) -> Vec<WordCard> {
-    let is_own = |card: &WordCard| {
+    let is_of_runs_csv = |card: &WordCard| {
         [RowUse::Fit, RowUse::Holdout]
             .iter()
             .any(|known| known.name() == card.word)
     };
-    if column.words.iter().all(is_own) {
+    if column.words.iter().all(is_of_runs_csv) {
         Vec::new()
     } else {
         column.words.clone()
