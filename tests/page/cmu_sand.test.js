@@ -83,10 +83,10 @@ test("measured values of the proposed runs start a calibration of all", async ()
   // Errors and evidence over different runs stand apart.
   const picture = page.locator('[data-figure*="error-drawbar"] .plot > svg');
   assert.match(await picture.locator("text").allTextContents().then((all) => all.join(" ")), /\+ 1 run/);
-  const ends = study.ledger.map((line) => line.experiment).filter((experiment, k, all) => k === 0 || experiment !== all[k - 1]).length;
+  const ends = study.ledger.map((line) => line.data_set).filter((set, k, all) => k === 0 || set !== all[k - 1]).length;
   assert.ok(ends > 1);
   assert.equal(await picture.locator(".errors path").count(), 2 * ends);
-  assert.equal(await page.getByRole("region", { name: /^Error ledger, / }).count(), new Set(study.ledger.map((line) => line.experiment)).size);
+  assert.equal(await page.getByRole("region", { name: /^Error ledger, / }).count(), new Set(study.ledger.map((line) => line.data_set)).size);
   await shot(page, "cmu-errors-more-runs");
 });
 
