@@ -86,6 +86,12 @@ test("measured values of the proposed runs start a calibration of all", async ()
   const ends = study.ledger.map((line) => line.data_set).filter((set, k, all) => k === 0 || set !== all[k - 1]).length;
   assert.ok(ends > 1);
   assert.equal(await picture.locator(".errors path").count(), 2 * ends);
+  const outside = await page.evaluate(() => [...document.querySelectorAll('[data-figure*="error-"] .plot > svg')].flatMap((svg) => {
+    const frame = svg.getBoundingClientRect();
+    const boxes = [...svg.querySelectorAll("line, path")].map((line) => line.getBoundingClientRect());
+    return boxes.filter((box) => box.left < frame.left - 1 || box.right > frame.right + 1);
+  }).length);
+  assert.equal(outside, 0, "lines leave their picture");
   assert.equal(await page.getByRole("region", { name: /^Error ledger, / }).count(), new Set(study.ledger.map((line) => line.data_set)).size);
   await shot(page, "cmu-errors-more-runs");
 });

@@ -48,7 +48,7 @@ const TESTS: [RigTest; 6] = [
         decides: &["interface_friction", "stick_slip", "adhesion"],
     },
     RigTest {
-        what: "measure the radius that the rig's encoder uses, and the flattening of the rim under load",
+        what: "the radius that the rig's encoder uses, and the flattening of the rim under load",
         decides: &["slip_radius_error", "wheel_flexibility"],
     },
 ];

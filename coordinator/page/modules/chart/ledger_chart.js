@@ -10,6 +10,8 @@ import { PADDING, tickLabels } from "./tick_labels.js";
 /** Values stand beside their points where these are so far apart [px]; the table below has them all. */
 const LEAST_STEP = 40;
 const RIGHT = 30;
+/** A straight line of a length. */
+const DASH = { draw: (/** @type {any} */ context, /** @type {number} */ length) => { context.moveTo(0, 0); context.lineTo(0, -length); } };
 
 /** @typedef {import("../words/ledger.js").LedgerLine} LedgerLine */
 
@@ -62,7 +64,8 @@ function picture({ width, lines, points, floor, baseline, title }) {
     y: { label: title, labelArrow: "none", zero: true, nice: true, grid: true },
     marks: [
       ...(floor === null ? [] : [Plot.ruleY([floor], { stroke: "var(--soft)", strokeDasharray: "2 3" })]),
-      Plot.ruleY(baseline, { y: "rmse", x1: "name", x2: "name", insetLeft: -labels.step / 2, insetRight: -labels.step / 2, stroke: "var(--prior)", strokeDasharray: "7 4" }),
+      // A rule spans the whole picture: this line is as wide as the step of its model.
+      Plot.vector(baseline, { x: "name", y: "rmse", rotate: 90, anchor: "middle", length: labels.step, shape: DASH, stroke: "var(--prior)", strokeWidth: 1.5, strokeDasharray: "7 4", className: "interpolation" }),
       Plot.ruleY([0]),
       // Lines first: none strikes through a point or a value. Each ends where the runs change.
       ...LOOKS.map((look) => Plot.lineY(points.filter((p) => p.look === look), { x: "name", y: "rmse", z: "part", stroke: look.colour, strokeWidth: 1.8, className: "errors" })),
