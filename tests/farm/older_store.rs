@@ -160,3 +160,16 @@ async fn a_study_of_before_its_members_were_stored_is_the_same_study() {
         .collect();
     assert_eq!(given, expected, "nothing is searched again");
 }
+
+#[tokio::test]
+async fn a_store_whose_new_columns_are_still_empty_can_be_read() {
+    let (_temporary, _, out) = folder("store-19", "finished.store");
+    let url = format!("sqlite://{}", out.join("grouser.db").display());
+    let mut connection = sqlx::SqliteConnection::connect(&url).await.expect("a store");
+    // A coordinator that is killed between the columns and their values leaves this.
+    let columns = sqlx::raw_sql(include_str!("../../migrations/0020_members.sql"));
+    columns.execute(&mut connection).await.expect("new columns");
+    connection.close().await.expect("closed");
+    let found = command(&["discover", "1"], &out);
+    assert!(found.contains("janosi_hanamoto"), "{found}");
+}

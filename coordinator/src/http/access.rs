@@ -132,15 +132,16 @@ impl Access {
             hash,
             access: self.clone(),
         };
-        let Some(needed) = needed(method, path).filter(|_| is_asked_for) else {
-            return Ok(caller(None, None));
-        };
-        let refused = |message| HttpError::new(ErrorKind::Unauthorized, message);
         let stated = headers.get(AUTHORIZATION).and_then(|value| value.to_str().ok());
         let stated = stated.and_then(|text| text.split_once(' '));
         let stated = stated.filter(|(scheme, _)| scheme.eq_ignore_ascii_case("bearer"));
-        let (_, stated) = stated.ok_or_else(|| refused(NEEDED))?;
-        let hash = TokenHash::of(stated.trim());
+        let hash = stated.map(|(_, token)| TokenHash::of(token.trim()));
+        let Some(needed) = needed(method, path).filter(|_| is_asked_for) else {
+            // A token that is stated before one is asked for keeps its polls and streams when the first one is.
+            return Ok(caller(None, hash));
+        };
+        let refused = |message| HttpError::new(ErrorKind::Unauthorized, message);
+        let hash = hash.ok_or_else(|| refused(NEEDED))?;
         let token = valid(&tokens, &hash).ok_or_else(|| refused(UNKNOWN))?;
         if token.role.includes(needed) {
             return Ok(caller(Some(token.name.clone()), Some(hash)));

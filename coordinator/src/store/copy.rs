@@ -161,7 +161,13 @@ async fn copy_rows(
     table: &Table,
 ) -> Result<u64, StoreError> {
     let names: Vec<&str> = table.columns.iter().map(|(name, _)| name.as_str()).collect();
-    let select = format!("SELECT {} FROM {}", names.join(", "), table.name);
+    // A row of these may refer to an earlier one of the same table.
+    let order = if FIRST.contains(&table.name.as_str()) {
+        " ORDER BY id"
+    } else {
+        ""
+    };
+    let select = format!("SELECT {} FROM {}{order}", names.join(", "), table.name);
     let rows = query(AssertSqlSafe(select)).fetch(source);
     let mut batches = rows.map_err(StoreError::from).try_chunks(ROWS);
     let mut read = 0;

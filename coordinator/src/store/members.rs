@@ -94,11 +94,13 @@ fn earlier_row(row: &Row) -> Result<EarlierRow, sqlx::Error> {
         id: row.try_get("id")?,
         study: row.try_get("study")?,
         experiment: row.try_get("on_experiment")?,
-        name: row.try_get("name")?,
+        // A row that cannot be read is reported where its calibration is asked for.
+        name: row.try_get("name").unwrap_or_default(),
         job: FileSet {
-            toml: row.try_get("toml")?,
-            // A row that cannot be read is reported where its calibration is asked for.
-            files: file_map(row.try_get("files")?).unwrap_or_default(),
+            toml: row.try_get("toml").unwrap_or_default(),
+            files: row
+                .try_get("files")
+                .map_or_else(|_| BTreeMap::new(), |files| file_map(files).unwrap_or_default()),
         },
     })
 }
@@ -143,13 +145,19 @@ fn role(row: &EarlierRow) -> Role {
     }
 }
 
-/// The search of the first calibration that has the model; of one that is no longer there, by its own job.
+/// The search of the first calibration that has the model; where no text is the same, of the one that it is named after; of one that is
+/// no longer there, by its own job.
 fn search(row: &EarlierRow, calibrations: &[&EarlierRow]) -> Filled {
     let is_searched = |other: &&&EarlierRow| {
         other.experiment == row.experiment
             && earlier_search(JOB, &other.job).is_ok_and(|search| search == row.job)
     };
-    let searched = calibrations.iter().find(is_searched);
+    let is_named = |other: &&&EarlierRow| {
+        let name = row.name.strip_suffix(" (discovery)");
+        other.experiment == row.experiment && name == Some(&other.name)
+    };
+    let by_text = calibrations.iter().find(is_searched);
+    let searched = by_text.or_else(|| calibrations.iter().rfind(is_named));
     let job = match searched {
         Some(searched) => continued_job(JOB, &searched.job),
         None => searched_model(JOB, &row.job),
@@ -328,6 +336,18 @@ mod tests {
         let toml = filled[&3].toml.clone().unwrap();
         assert_eq!(JobFile::parse(JOB, &toml).unwrap().algorithm.seed(), 7);
         assert!(toml.contains("n = 1.0"), "{toml}");
+    }
+
+    #[test]
+    fn a_search_whose_text_an_earlier_release_wrote_otherwise_is_found_by_its_name() {
+        let (base, other) = (
+            row(1, "sand", MODEL),
+            row(2, "sand+a", &format!("{MODEL}n = 1.0\n")),
+        );
+        let mut search = search_row(3, &other);
+        search.job.toml.push_str("\n# another release\n");
+        search.name = "sand+a (discovery)".into();
+        assert_eq!(memberships(&[base, other, search])[&3], Membership::search_of(2));
     }
 
     #[test]

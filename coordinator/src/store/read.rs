@@ -526,32 +526,35 @@ impl Reader {
     fn calibration_row(&self, row: &Row) -> Result<CalibrationRow, StoreError> {
         let id: i64 = row.try_get("id")?;
         let columns = || {
-            let filled = match &self.earlier_members {
-                Some(filled) => filled.get(&id).cloned().ok_or_else(|| {
-                    StoreError::Corrupt(
-                        "a program of another version has changed the store; open it again".into(),
-                    )
-                })?,
-                None => Filled {
-                    membership: membership(row)?,
+            let earlier = || self.earlier_members.as_ref()?.get(&id).cloned();
+            let filled = match membership(row)? {
+                Some(membership) => Some(Filled {
+                    membership,
                     toml: None,
-                },
+                }),
+                None => earlier(),
             };
+            let filled = filled.ok_or_else(|| StoreError::Corrupt("it has no role".into()))?;
             columns(id, row, filled)
         };
         columns().map_err(|error| error.within(&format!("calibration {id}")))
     }
 }
 
-fn membership(row: &Row) -> Result<Membership, StoreError> {
-    let role: &str = row.try_get("role")?;
+/// The stored place of a calibration in its study; `None` in a row that an earlier version wrote.
+fn membership(row: &Row) -> Result<Option<Membership>, StoreError> {
+    let role: Option<&str> = match row.try_get("role") {
+        Err(sqlx::Error::ColumnNotFound(_)) => None,
+        role => role?,
+    };
+    let Some(role) = role else { return Ok(None) };
     let change: Option<&str> = row.try_get("change")?;
     let corrupt = |e| StoreError::Corrupt(format!("change: {e}"));
-    Ok(Membership {
+    Ok(Some(Membership {
         role: Role::from_name(role).ok_or_else(|| StoreError::Corrupt(format!("role {role}")))?,
         parent: row.try_get("parent")?,
         change: change.map(serde_json::from_str).transpose().map_err(corrupt)?,
-    })
+    }))
 }
 
 fn columns(id: i64, row: &Row, filled: Filled) -> Result<CalibrationRow, StoreError> {

@@ -119,7 +119,16 @@ impl Reader {
     }
 
     async fn with_earlier_members(mut self) -> Result<Reader, StoreError> {
-        if self.has_table("calibrations").await? && !self.has_column("calibrations", "role").await? {
+        if !self.has_table("calibrations").await? {
+            return Ok(self);
+        }
+        // A program that was stopped between the new columns and their values has left them empty.
+        let is_filled = self.has_column("calibrations", "role").await? && {
+            let empty = query_scalar("SELECT count(*) FROM calibrations WHERE role IS NULL");
+            let empty: i64 = empty.fetch_one(&self.pool).await?;
+            empty == 0
+        };
+        if !is_filled {
             self.earlier_members = Some(Arc::new(filled(&self.pool).await?));
         }
         Ok(self)

@@ -21,8 +21,8 @@ const LEAST_REPEATS: usize = 3;
 ///
 /// An sd is supported by at least three repeats, or by `v` residual degrees of freedom with `1 / sqrt(2 v) <= 0.2`: the number of its data
 /// less its share of the fitted parameters. A claim that gains more than 3 nats in log-likelihood on the data of declared and supported
-/// noise alone needs no others. Checked by `tests` below and
-/// `search::an_effect_is_named_on_inferred_noise_only_with_data_or_repeats_enough`.
+/// noise alone needs no others. Checked by
+/// `inferred_noise::an_effect_is_named_on_inferred_noise_only_with_data_or_repeats_enough`.
 ///
 /// # Arguments
 /// - `base`, `best`: the fits of the base and of the explanation that would be claimed.

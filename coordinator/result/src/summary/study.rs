@@ -59,8 +59,12 @@ impl Study {
 
     /// The lines of the error ledger.
     pub(crate) fn ledger_summaries(&self, sigmas: &FixedSigmas) -> Vec<CalibrationSummary> {
-        let mut experiments: Vec<i64> = self.ledger().map(|line| line.row.experiment).collect();
-        experiments.dedup();
+        let mut experiments: Vec<i64> = Vec::new();
+        for line in self.ledger() {
+            if !experiments.contains(&line.row.experiment) {
+                experiments.push(line.row.experiment);
+            }
+        }
         let number = |id: i64| experiments.iter().position(|&other| other == id);
         let line = |calibration: &FinishedCalibration| {
             let line = calibration.calibration_summary()?;
