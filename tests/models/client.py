@@ -30,7 +30,7 @@ def simulated(worker: str, folder: Path, kind: str) -> list[float]:
     with open(folder / "runs.csv", "w", encoding="utf-8", newline="") as file:
         csv.writer(file).writerows([header, row])
     wheel = "".join(f"{key} = {value}\n" for key, value in SIZE.items())
-    noise = "[noise]\ndrawbar_pull_n = 1.0\ntorque_n_m = 0.1\nsinkage_m = 0.001\n"
+    noise = "[noise]\ndrawbar_pull_n = 1.0\ntorque_n_m = 0.1\nsinkage_m = 0.001\nlateral_force_n = 1.0\n"
     (folder / "experiment.toml").write_text(f'runs = "runs.csv"\n[wheel.w]\n{wheel}[soil.s]\n{noise}')
     (folder / "model.toml").write_text(f'kind = "{kind}"\n')
     (folder / "theta.toml").write_text("".join(f"{key} = {value}\n" for key, value in SOIL.items()))

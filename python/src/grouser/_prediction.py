@@ -78,8 +78,9 @@ def predict(
         except ProgramError as error:
             raise NoPredictionError(str(error)) from error
     runs = [row["run"] for row in tables[0]] if tables else []
+    # A channel without stated noise is blank.
     columns = {
-        channel: np.array([[float(row[column]) for row in table] for table in tables])
+        channel: np.array([[float(row[column] or "nan") for row in table] for table in tables])
         for channel, column in CHANNELS.items()
     }
     return runs, columns
