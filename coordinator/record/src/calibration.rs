@@ -3,7 +3,7 @@
 use shared::api::CalibrationState;
 use shared::file::FileSet;
 
-use crate::membership::{Membership, Role};
+use crate::membership::Membership;
 
 /// A stored experiment.
 #[derive(Debug, Clone)]
@@ -60,15 +60,15 @@ pub struct CalibrationRow {
 }
 
 impl CalibrationRow {
-    /// A finished sample that is the first of its study and has an empty job: a fixture of tests.
+    /// A finished calibration with an empty job: a fixture of tests.
     #[doc(hidden)]
-    pub fn finished_sample(name: &str) -> Self {
+    pub fn finished(id: i64, membership: Membership) -> Self {
         CalibrationRow {
-            id: 1,
+            id,
             study: 1,
             experiment: 1,
-            membership: Membership::submitted(Role::Sample),
-            name: name.to_owned(),
+            membership,
+            name: "sand".to_owned(),
             job: FileSet {
                 toml: String::new(),
                 files: Default::default(),

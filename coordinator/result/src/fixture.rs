@@ -6,8 +6,8 @@ use inference::evolution::{EvolutionSettings, GaSettings};
 use inference::point_estimate::{Generation, StopReason};
 use job::{AlgorithmSettings, Spec};
 use record::{
-    CalibrationRow, Discovery, EstimateRow, Extension, JudgedEffect, NONE, Outside, Prediction, PriorDraw,
-    RejectionReason, Repeats, Role, Sample, StageRow, Verdict, Verified,
+    CalibrationRow, Discovery, EstimateRow, Extension, JudgedEffect, Membership, NONE, Outside, Prediction,
+    PriorDraw, RejectionReason, Repeats, Role, Sample, StageRow, Verdict, Verified,
 };
 use shared::api::CalibrationState;
 use shared::experiment::Campaign;
@@ -426,7 +426,8 @@ pub(crate) fn of_files(job: FileSet, files: &FileSet) -> FinishedCalibration {
         equilibrated: Some(true),
         evaluations: Some(1000),
         rejected: Some(3),
-        ..CalibrationRow::finished_sample("<script>sand")
+        name: "<script>sand".into(),
+        ..CalibrationRow::finished(1, Membership::submitted(Role::Sample))
     };
     FinishedCalibration {
         experiment: row.name.clone(),

@@ -5,7 +5,7 @@ use record::CalibrationRow;
 
 /// The compared models that a study does not go on with: all but the one of most evidence.
 pub(super) fn passed_over(rows: &[CalibrationRow]) -> Vec<i64> {
-    let compared = &rows[..Lineage::new(rows).model_count().min(rows.len())];
+    let compared = Lineage::new(rows).compared();
     if compared.len() < 2 {
         return Vec::new();
     }

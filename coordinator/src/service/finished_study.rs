@@ -119,8 +119,9 @@ pub(super) async fn finished_study_of(
     let finished = rows.iter().filter(|r| r.state == CalibrationState::Finished);
     let calibrations: Vec<_> = finished.filter(|row| !row.membership.is_search()).collect();
     let lineage = Lineage::new(rows);
-    let models = lineage.model_count().min(rows.len());
-    let compared = |row: &CalibrationRow| models > 1 && rows[..models].iter().any(|other| other.id == row.id);
+    let models = lineage.compared().len();
+    let compared =
+        |row: &CalibrationRow| models > 1 && lineage.compared().iter().any(|other| other.id == row.id);
     let of_models: Vec<_> = calibrations.iter().filter(|row| compared(row)).collect();
     let best = most_probable(of_models.iter().map(|row| row.log_evidence)).map(|i| of_models[i]);
     // Without any, the calibration that was asked for says why there is nothing to show.

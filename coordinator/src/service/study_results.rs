@@ -135,13 +135,14 @@ fn stamp(rows: &[CalibrationRow], (disputes, quarantined): (i64, i64)) -> Option
 
 #[cfg(test)]
 mod tests {
+    use record::{Membership, Role};
+
     use super::*;
 
     fn member(id: i64, state: CalibrationState) -> CalibrationRow {
         CalibrationRow {
-            id,
             state,
-            ..CalibrationRow::finished_sample("")
+            ..CalibrationRow::finished(id, Membership::submitted(Role::Sample))
         }
     }
 

@@ -19,10 +19,11 @@ impl<'a> Lineage<'a> {
         self.rows.iter().filter(|row| !row.membership.is_search())
     }
 
-    /// How many models the study compares: its first members are of these.
-    pub fn model_count(self) -> usize {
-        let compared = |row: &&CalibrationRow| matches!(row.membership.change, Some(Change::Model(_)));
-        1 + self.rows.iter().filter(compared).count()
+    /// The calibrations of the models that the submitted job compares: the first members of the study, one where it has one model.
+    pub fn compared(self) -> &'a [CalibrationRow] {
+        let is_compared = |row: &&CalibrationRow| matches!(row.membership.change, Some(Change::Model(_)));
+        let others = self.rows.iter().skip(1).take_while(is_compared);
+        &self.rows[..self.rows.len().min(1 + others.count())]
     }
 
     /// The calibration with which a model on its measurements began: another algorithm has the model of its parent.
@@ -113,16 +114,8 @@ mod tests {
 
     use super::*;
 
-    fn row(id: i64, membership: Membership) -> CalibrationRow {
-        CalibrationRow {
-            id,
-            membership,
-            ..CalibrationRow::finished_sample("sand")
-        }
-    }
-
     fn changed(id: i64, parent: i64, change: Change) -> CalibrationRow {
-        row(id, Membership::changed(Role::Sample, parent, change))
+        CalibrationRow::finished(id, Membership::changed(Role::Sample, parent, change))
     }
 
     fn effect(name: &str) -> Extension {
@@ -132,11 +125,11 @@ mod tests {
     /// A sample with a fit beside it and its search; an extension with its search; the extension on more runs.
     fn study() -> Vec<CalibrationRow> {
         vec![
-            row(1, Membership::submitted(Role::Sample)),
+            CalibrationRow::finished(1, Membership::submitted(Role::Sample)),
             changed(2, 1, Change::Algorithm("lm".into())),
-            row(3, Membership::search_of(1)),
+            CalibrationRow::finished(3, Membership::search_of(1)),
             changed(4, 1, Change::Add(effect("janosi_hanamoto"))),
-            row(5, Membership::search_of(4)),
+            CalibrationRow::finished(5, Membership::search_of(4)),
             changed(6, 4, Change::Runs(3)),
         ]
     }
@@ -167,7 +160,7 @@ mod tests {
 
     #[test]
     fn an_effect_on_the_nodes_is_one_addition_and_goes_with_its_effect() {
-        let mut rows = vec![row(1, Membership::submitted(Role::Sample))];
+        let mut rows = vec![CalibrationRow::finished(1, Membership::submitted(Role::Sample))];
         rows.push(changed(2, 1, Change::Add(effect("janosi_hanamoto_node"))));
         assert_eq!(Lineage::new(&rows).additions(2).len(), 1);
         assert!(Lineage::new(&rows).has_added(2, "janosi_hanamoto"));

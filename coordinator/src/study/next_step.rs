@@ -51,8 +51,10 @@ pub fn next_step(
         return None;
     }
     let lineage = Lineage::new(rows);
-    let (compared, later) = rows.split_at_checked(lineage.model_count())?;
+    let compared = lineage.compared();
+    let later = &rows[compared.len()..];
     let first = match compared {
+        [] => return None,
         [only] => only,
         _ => &compared[most_probable(compared.iter().map(|row| row.log_evidence))?],
     };
@@ -86,37 +88,29 @@ mod tests {
 
     use super::*;
 
-    fn row(id: i64, membership: Membership) -> CalibrationRow {
-        CalibrationRow {
-            id,
-            membership,
-            ..CalibrationRow::finished_sample("sand")
-        }
-    }
-
     fn base(id: i64) -> CalibrationRow {
-        row(id, Membership::submitted(Role::Sample))
+        CalibrationRow::finished(id, Membership::submitted(Role::Sample))
     }
 
     fn added(id: i64, parent: i64, effect: &str) -> CalibrationRow {
         let change = Change::Add(Extension::Effect(effect.to_owned()));
-        row(id, Membership::changed(Role::Sample, parent, change))
+        CalibrationRow::finished(id, Membership::changed(Role::Sample, parent, change))
     }
 
     fn dropped(id: i64, parent: i64, effect: &str) -> CalibrationRow {
         let change = Change::Drop(vec![effect.to_owned()]);
-        row(id, Membership::changed(Role::Sample, parent, change))
+        CalibrationRow::finished(id, Membership::changed(Role::Sample, parent, change))
     }
 
     fn fit(id: i64) -> CalibrationRow {
-        row(
+        CalibrationRow::finished(
             id,
             Membership::changed(Role::Fit, 1, Change::Algorithm("ga".into())),
         )
     }
 
     fn search(id: i64, of: i64) -> CalibrationRow {
-        row(id, Membership::search_of(of))
+        CalibrationRow::finished(id, Membership::search_of(of))
     }
 
     fn found() -> Discovery {
@@ -156,7 +150,7 @@ mod tests {
             log_evidence: Some(log_evidence),
             ..match id {
                 1 => base(1),
-                _ => row(
+                _ => CalibrationRow::finished(
                     id,
                     Membership::changed(Role::Sample, 1, Change::Model(id as usize - 1)),
                 ),

@@ -76,16 +76,18 @@ mod tests {
     use crate::missing_effect::candidate::{extended, spec};
     use crate::missing_effect::fixture::read;
     use crate::missing_effect::law::dependence::dependences;
+    use job::Spec;
+
+    /// The shear stress against the normal velocity.
+    fn dependence(spec: &Spec) -> Dependence {
+        let mut all = dependences(&spec.experiment).into_iter();
+        all.find(|candidate| candidate.name() == "shear_v_n").unwrap()
+    }
 
     /// Names of the curve and of the forms that the job can add, for the shear stress against the normal velocity.
     fn addable(job: &FileSet, experiment: &FileSet) -> Option<(String, Vec<String>)> {
         let spec = spec(job, experiment).unwrap();
-        let dependences = dependences(&spec.experiment);
-        let dependence = dependences
-            .iter()
-            .find(|candidate| candidate.name() == "shear_v_n")
-            .unwrap();
-        let files = LawFiles::addable(dependence, job, &spec.fit_variant.effects)?;
+        let files = LawFiles::addable(&dependence(&spec), job, &spec.fit_variant.effects)?;
         let forms = files.forms.iter();
         let names = forms.map(|(form, law)| format!("{}: {}", form.name(), file(law)));
         Some((file(&files.curve), names.collect()))
@@ -99,13 +101,8 @@ mod tests {
     }
 
     fn law(job: &FileSet, experiment: &FileSet, form: Option<LawForm>) -> Extension {
-        let spec = spec(job, experiment).unwrap();
-        let dependences = dependences(&spec.experiment);
-        let dependence = dependences
-            .iter()
-            .find(|candidate| candidate.name() == "shear_v_n")
-            .unwrap();
-        form.map_or_else(|| dependence.curve(), |form| form.of(dependence))
+        let dependence = dependence(&spec(job, experiment).unwrap());
+        form.map_or_else(|| dependence.curve(), |form| form.of(&dependence))
             .extension
     }
 
