@@ -4,7 +4,7 @@ use crate::complaint::Complaint;
 
 /// Largest number of columns of a table: a rig has some dozens, and every one is compared with every column of runs.csv.
 pub(crate) const MAX_COLUMNS: usize = 20_000;
-/// So many cells of a row are shown where a person is to recognise it.
+/// The number of cells of a row that are shown so that a person recognises it.
 const SHOWN_CELLS: usize = 12;
 
 /// Why a table with so many columns is refused.

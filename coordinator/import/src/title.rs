@@ -8,7 +8,7 @@ use crate::number;
 use crate::table::{Cell, Form, MAX_COLUMNS, Row, Table, column_of, letter, spaced, too_wide};
 use crate::unit::{self, Unit};
 
-/// So many names are listed in a sentence.
+/// The largest number of names that a sentence lists.
 const LISTED: usize = 40;
 /// Longest title that is compared with a similar one: the comparison takes the product of both lengths.
 const NEAR_BYTES: usize = 200;

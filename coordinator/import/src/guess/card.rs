@@ -26,7 +26,7 @@ pub struct ColumnCard {
 pub struct WordCard {
     /// The word.
     pub word: String,
-    /// So many rows have it.
+    /// The number of rows that have this word.
     pub count: usize,
     /// What it means for the use of a run, as proposed; null where the file does not tell.
     pub means: Option<RowUse>,
@@ -93,6 +93,6 @@ pub struct Guess {
     pub quantities: Vec<QuantityGuess>,
     /// The decimal mark of numbers that are texts: `.` or `,`; `?` where they can be read in two ways; null where there are none.
     pub decimal: Option<String>,
-    /// What was found out about the file.
+    /// Remarks on what the reader found out about the file.
     pub remarks: Vec<String>,
 }

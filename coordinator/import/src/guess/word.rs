@@ -6,7 +6,7 @@ use super::card::{ColumnCard, WordCard};
 use crate::field::RowUse;
 use crate::table::{Row, spaced};
 
-/// Most different words of a column that are listed.
+/// The largest number of different words of a column that a proposal lists.
 const MAX_WORDS: usize = 12;
 /// Longest word that is listed, in bytes.
 const MAX_WORD_BYTES: usize = 60;

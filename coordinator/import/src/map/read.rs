@@ -15,7 +15,7 @@ use crate::read::Hints;
 
 /// Deepest nesting of brackets; a map needs three.
 const DEEPEST: usize = 16;
-/// Most columns or quantities of a map: runs.csv has some two dozen, and each is looked for among all titles.
+/// The largest number of columns or quantities in a map. A runs.csv has about two dozen, and each is looked for among all titles.
 const MAX_ENTRIES: usize = 200;
 /// Largest map `[bytes]`.
 const LARGEST: usize = 1 << 20;
