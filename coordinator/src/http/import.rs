@@ -62,16 +62,10 @@ async fn import_table(Body(asked): Body<ImportRequest>) -> Result<Json<Converted
         content_base64,
         map,
     } = asked;
-    let converted = alone(move || -> Result<Converted, HttpError> {
-        let bytes = decoded(content_base64)?;
-        let source = SourceFile {
-            name: &name,
-            bytes: &bytes,
-            is_own: false,
-        };
-        Ok(convert(&source, ("map.toml", &map), "runs"))
+    let converted = read_alone(name, content_base64, move |source| {
+        convert(source, ("map.toml", &map), "runs")
     });
-    Ok(Json(converted.await??))
+    Ok(Json(converted.await?))
 }
 
 /// Proposes a map for a table.
@@ -90,17 +84,30 @@ async fn guess_map(Body(asked): Body<GuessRequest>) -> Result<Json<Guess>, HttpE
         content_base64,
         sheet,
     } = asked;
-    let found = alone(move || -> Result<Guess, HttpError> {
-        let bytes = decoded(content_base64)?;
-        let source = SourceFile {
+    let guessed = read_alone(name, content_base64, move |source| {
+        guess(source, sheet.as_deref())
+    });
+    let guessed = guessed.await?;
+    guessed
+        .map(Json)
+        .map_err(|complaint| HttpError::new(ErrorKind::InvalidFile, complaint.to_string()))
+}
+
+/// Reads a file that was sent in base64 when its turn has come.
+async fn read_alone<T: Send + 'static>(
+    name: String,
+    content: String,
+    read: impl FnOnce(&SourceFile<'_>) -> T + Send + 'static,
+) -> Result<T, HttpError> {
+    let read = move || {
+        let bytes = decoded(content)?;
+        Ok(read(&SourceFile {
             name: &name,
             bytes: &bytes,
             is_own: false,
-        };
-        guess(&source, sheet.as_deref())
-            .map_err(|complaint| HttpError::new(ErrorKind::InvalidFile, complaint.to_string()))
-    });
-    Ok(Json(found.await??))
+        }))
+    };
+    alone(read).await?
 }
 
 /// The bytes of a file; its text is given back to the memory at once.

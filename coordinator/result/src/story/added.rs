@@ -1,8 +1,8 @@
 //! What the study added to a model, what the searches said of it, and what it bought.
 
-use record::{Discovery, NOT_IN_LIBRARY, NextRun, effect_of};
+use record::{Discovery, NOT_IN_LIBRARY, NextRun, addition_name, effect_of};
 
-use super::explanation::{Alternative, explanation_of, open, p, parts, run_words};
+use super::explanation::{Alternative, open, p, parts, run_words};
 use crate::discovery::DiscoveryRound;
 use crate::finished_calibration::FinishedCalibration;
 use crate::study::Study;
@@ -110,7 +110,7 @@ fn position(order: &[String], parts: &[String]) -> usize {
 /// The explanation, among those that a search names or leaves open, whose parts are all among these; the one with the most parts.
 fn judged(record: &Discovery, left: &[String]) -> Option<Alternative> {
     let named = record.extension.as_ref().map(|extension| {
-        let name = explanation_of(extension);
+        let name = addition_name(extension);
         let of_search = record.effects.iter().find(|e| e.name == name);
         let outside = || record.effects.iter().find(|e| e.name == NOT_IN_LIBRARY);
         let probability = of_search.or_else(outside).map_or(0.0, |e| e.probability);
@@ -167,26 +167,29 @@ fn of_search(
     }
 }
 
-/// What the parts of a model bought, where the study has the model without them.
+/// The errors without and with the parts of a model, where the study has the model without them.
 fn bought(study: &Study, calibration: &FinishedCalibration, own: &[String]) -> Option<[f64; 2]> {
     let has = study.parts(calibration);
-    let rest: Vec<&String> = has.iter().filter(|part| !own.contains(part)).collect();
-    let mut without = study.ledger().filter(|other| {
-        let parts = study.parts(other);
-        let is_same = parts.len() == rest.len() && rest.iter().all(|part| parts.contains(part));
-        is_same && other.row.experiment == calibration.row.experiment
-    });
-    errors(study, without.next()?, &has)
+    let rest: Vec<String> = has.iter().filter(|part| !own.contains(part)).cloned().collect();
+    errors(study, alike(study, calibration, &rest)?, &has)
+}
+
+/// The calibration of the same measurements whose model has these parts and no others.
+fn alike<'a>(
+    study: &'a Study,
+    measured: &FinishedCalibration,
+    parts: &[String],
+) -> Option<&'a FinishedCalibration> {
+    study.ledger().find(|line| {
+        let of_line = study.parts(line);
+        let is_same = of_line.len() == parts.len() && parts.iter().all(|part| of_line.contains(part));
+        is_same && line.row.experiment == measured.row.experiment
+    })
 }
 
 /// Errors on held-out runs of a calibration, and of that of the same measurements with these parts.
 fn errors(study: &Study, before: &FinishedCalibration, parts: &[String]) -> Option<[f64; 2]> {
-    let mut same = study.ledger().filter(|other| {
-        let of_other = study.parts(other);
-        let is_same = of_other.len() == parts.len() && parts.iter().all(|part| of_other.contains(part));
-        is_same && other.row.experiment == before.row.experiment
-    });
-    let after = same.next()?;
+    let after = alike(study, before, parts)?;
     let sigmas = study.fixed_sigmas();
     let error = |calibration: &FinishedCalibration| {
         let table = calibration.comparison().holdout.clone()?;

@@ -1,8 +1,6 @@
 //! The explanations of a search and its runs in words, and what a model has by an explanation.
 
-use record::{
-    Discovery, Extension, JudgedEffect, NONE, NOT_IN_LIBRARY, NextRun, Verdict, effect_of, parts_of_effect,
-};
+use record::{Discovery, JudgedEffect, NONE, NOT_IN_LIBRARY, NextRun, Verdict, parts_of_effect};
 
 use crate::words::number;
 
@@ -54,14 +52,6 @@ pub(super) fn split(name: &str) -> (&str, Option<&str>) {
     match name.split_once('.') {
         Some((effect, wheel)) => (effect, Some(wheel)),
         None => (name, None),
-    }
-}
-
-/// The name among the explanations of what an extension adds.
-pub(super) fn explanation_of(extension: &Extension) -> String {
-    match extension {
-        Extension::OnWheel { effect, wheel } => format!("{effect}.{wheel}"),
-        other => effect_of(other),
     }
 }
 
