@@ -12,9 +12,9 @@ use utoipa_axum::routes;
 use super::access::Caller;
 use super::error::{Body, HttpError, Id, Query};
 use super::studies::WithArchived;
-use crate::farm::Control;
 use crate::service::{Service, finished_calibration};
 use export::InferenceData;
+use farm::Control;
 use page::report::showing;
 use record::{Sample, StageRow};
 use result::{

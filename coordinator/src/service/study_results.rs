@@ -6,9 +6,9 @@ use shared::api::CalibrationState;
 
 use super::error::ServiceError;
 use super::finished_study::{finished_calibration, finished_study, finished_study_of};
-use crate::store::{Reader, StoreError, StudyResults, Writer};
 use record::CalibrationRow;
 use result::{Diagnostics, StudyFile};
+use store::{Reader, StoreError, StudyResults, Writer};
 
 /// The sources that this program was built from.
 const BUILD: &str = env!("GROUSER_BUILD");

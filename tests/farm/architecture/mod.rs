@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 
 use farm_tests::workspace::{files, root, text};
 
-const CRATES: [&str; 16] = [
+const CRATES: [&str; 20] = [
     "shared",
     "shared/formula",
     "shared/signal",
@@ -19,16 +19,20 @@ const CRATES: [&str; 16] = [
     "coordinator/inference",
     "coordinator/discovery",
     "coordinator/export",
+    "coordinator/farm",
     "coordinator/import",
     "coordinator/job",
     "coordinator/page",
     "coordinator/record",
     "coordinator/result",
+    "coordinator/search",
+    "coordinator/store",
+    "benchmark",
     "worker",
     "worker/scm",
     "tests",
 ];
-const OURS: [&str; 16] = [
+const OURS: [&str; 20] = [
     "shared",
     "formula",
     "signal",
@@ -37,11 +41,15 @@ const OURS: [&str; 16] = [
     "inference",
     "discovery",
     "export",
+    "farm",
     "import",
     "job",
     "page",
     "record",
     "result",
+    "search",
+    "store",
+    "benchmark",
     "worker",
     "scm",
     "farm-tests",
@@ -134,7 +142,7 @@ fn the_search_finds_what_is_there_and_only_that() {
     assert!(names("use scm::Soil;", "scm::") && names("    scm::simulate()", "scm::"));
     assert!(!names("use my_scm::Soil;", "scm::") && !names("crate::scm::Soil", "scm::"));
     assert!(!strays(&["coordinator/src"], &["axum::"], &[]).is_empty());
-    assert!(!strays(&["coordinator/src"], &["sqlx::"], &[]).is_empty());
+    assert!(!strays(&["coordinator/store/src"], &["sqlx::"], &[]).is_empty());
     assert!(!strays(&["worker/src"], &["reqwest::"], &[]).is_empty());
 }
 
@@ -181,6 +189,26 @@ fn manifests_keep_the_direction_of_dependencies() {
         set(&["job", "record", "result", "shared", "statistics"])
     );
     assert_eq!(
+        ours("coordinator/search"),
+        set(&[
+            "discovery",
+            "formula",
+            "inference",
+            "job",
+            "record",
+            "shared",
+            "statistics"
+        ])
+    );
+    assert_eq!(
+        ours("coordinator/farm"),
+        set(&["inference", "job", "record", "search", "shared", "statistics"])
+    );
+    assert_eq!(
+        ours("coordinator/store"),
+        set(&["inference", "job", "record", "shared", "statistics"])
+    );
+    assert_eq!(
         ours("worker"),
         set(&["formula", "scm", "shared", "signal", "statistics"])
     );
@@ -189,6 +217,7 @@ fn manifests_keep_the_direction_of_dependencies() {
         set(&[
             "discovery",
             "export",
+            "farm",
             "formula",
             "import",
             "inference",
@@ -196,14 +225,17 @@ fn manifests_keep_the_direction_of_dependencies() {
             "page",
             "record",
             "result",
+            "search",
             "shared",
             "signal",
             "statistics",
+            "store",
             "worker"
         ])
     );
     for krate in CRATES {
         assert!(!ours(krate).contains("farm-tests"), "{krate} imports the tests");
+        assert!(!ours(krate).contains("benchmark"), "{krate} imports the studies");
     }
 }
 
@@ -295,7 +327,14 @@ fn axum_sql_and_http_clients_stay_in_their_rooms() {
         &["axum::", "utoipa_axum::", "tower_http::"],
         &["coordinator/src/http/"],
     );
-    nowhere(&["coordinator/src"], &["sqlx::"], &["coordinator/src/store/"]);
+    nowhere(&["coordinator/src", "coordinator/farm/src"], &["sqlx::"], &[]);
+    for (krate, names) in [
+        ("coordinator/farm", ["axum", "sqlx", "rayon"]),
+        ("coordinator/store", ["axum", "clap", "rayon"]),
+    ] {
+        let found = names.map(|name| dependencies(krate).contains(name));
+        assert_eq!(found, [false; 3], "{krate} imports one of {names:?}");
+    }
     nowhere(
         &["coordinator/src", "worker/src"],
         &["reqwest::"],
@@ -324,18 +363,8 @@ fn axum_sql_and_http_clients_stay_in_their_rooms() {
 }
 
 #[test]
-fn http_reads_the_farm_and_rules_know_nobody() {
-    nowhere(
-        &["coordinator/src/store"],
-        &["crate::http", "crate::farm", "crate::service", "crate::command"],
-        &[],
-    );
-    nowhere(
-        &["coordinator/src/calibration", "coordinator/job/src"],
-        &["crate::http", "crate::farm"],
-        &[],
-    );
-    nowhere(&["coordinator/src/lease"], &["crate::"], &[]);
+fn the_rules_of_leases_know_nothing_else() {
+    nowhere(&["coordinator/farm/src/lease"], &["crate::"], &[]);
 }
 
 #[test]
@@ -346,12 +375,13 @@ fn pure_rooms_read_no_clock() {
         "coordinator/discovery/src",
         "shared/src",
         "shared/statistics/src",
-        "coordinator/src/calibration",
-        "coordinator/src/lease",
+        "coordinator/farm/src/calibration",
+        "coordinator/farm/src/lease",
         "coordinator/import/src",
         "coordinator/job/src",
         "coordinator/result/src",
         "coordinator/export/src",
+        "coordinator/search/src",
         "coordinator/src/effect",
     ];
     let clocks = [
@@ -362,10 +392,10 @@ fn pure_rooms_read_no_clock() {
     ];
     nowhere(&pure, &clocks, &[]);
     for file in [
-        "coordinator/src/farm/state.rs",
-        "coordinator/src/farm/leasing.rs",
-        "coordinator/src/farm/verification.rs",
-        "coordinator/src/farm/progress.rs",
+        "coordinator/farm/src/state.rs",
+        "coordinator/farm/src/leasing.rs",
+        "coordinator/farm/src/verification.rs",
+        "coordinator/farm/src/progress.rs",
     ] {
         let found = code(&root().join(file))
             .into_iter()
@@ -380,7 +410,7 @@ fn files_are_small() {
     let mut sizes: Vec<(usize, String)> = CRATES
         .iter()
         .filter(|krate| !["coordinator", "worker"].contains(krate))
-        .chain(&["coordinator/src", "coordinator/benches", "worker/src"])
+        .chain(&["coordinator/src", "worker/src"])
         .filter(|folder| root().join(folder).is_dir())
         .flat_map(|folder| files(folder, ".rs"))
         .map(|path| (text(&path).lines().count(), relative(&path)))
