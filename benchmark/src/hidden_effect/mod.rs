@@ -3,7 +3,7 @@
 //! # Layout
 //! - [`study`]: one trial: an experiment with a hidden effect, drawn, searched and scored.
 //! - [`ambiguous`]: how many further runs tell what the effect is. [`rig`]: rigs with a flaw, where no effect is missing.
-//! - [`reference`], [`changes`]: a reference campaign on the same soil, whose posterior is the prior. [`steady`]: one experiment after the other.
+//! - [`mod@reference`], [`changes`]: a reference campaign on the same soil, whose posterior is the prior. [`steady`]: one experiment after the other.
 //! - [`tmcmc`]: the evidences of the search beside those of the sampler. [`data`]: the experiments of `tests/data`.
 
 pub mod ambiguous;

@@ -13,7 +13,7 @@ use super::candidate::CandidateEffect;
 
 /// An experiment of the repository, with the job beside it.
 pub(super) fn read(folder: &str) -> (FileSet, FileSet, Experiment) {
-    let file = |name: &str| Path::new("..").join(folder).join(name);
+    let file = |name: &str| Path::new("../..").join(folder).join(name);
     let job = FileSet {
         toml: std::fs::read_to_string(file("job.toml")).unwrap(),
         ..FileSet::default()

@@ -10,7 +10,7 @@ use crate::config::CheckArguments;
 use crate::embedded::{Evaluate, LocalModels};
 use farm::calibration::{Calibration, CalibrationEngine, CalibrationIdentity, SimulationResult, result_of};
 use job::{AlgorithmSettings, Spec, confounded_orders};
-use result::{model_limits, terminal};
+use report::{model_limits, terminal};
 use search::untried::additions;
 
 /// Particles of the pilot: enough to fit what stages are drawn from, and to find their number, which hardly depends on them.

@@ -19,8 +19,9 @@ use crate::service::{FarmSettings, LEASE_MS, Service, VERIFIED_PERCENT, next_ste
 use farm::Control;
 use job::{Apply, Spec};
 use record::CalibrationRow;
+use report::{StudyFile, terminal};
+use result::DiscoveryRound;
 use result::discovery::effect_file;
-use result::{DiscoveryRound, StudyFile, terminal};
 
 /// How often the display looks.
 const LOOK: Duration = Duration::from_millis(100);

@@ -20,7 +20,7 @@ use farm::dispatch::Dispatcher;
 use farm::{Control, ControlError, Farm};
 use job::Spec;
 use record::CalibrationRow;
-use result::StudyFile;
+use report::StudyFile;
 use store::{Store, StoreError, Writer};
 
 /// So many facts may wait for the store before the service asks for patience.

@@ -12,7 +12,7 @@ use super::study_members::study_members;
 use super::study_results::study_file;
 use job::model_kind;
 use record::CalibrationRow;
-use result::{StudyFile, StudyListItem, StudyOverview};
+use report::{StudyFile, StudyListItem, StudyOverview};
 use store::StoreError;
 
 impl Service {

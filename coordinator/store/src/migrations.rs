@@ -165,8 +165,8 @@ mod tests {
 
     #[test]
     fn every_file_is_listed_under_its_number_and_name() {
-        is_listed("../migrations", &FILES);
-        is_listed("../migrations/postgres", &SERVER_FILES);
+        is_listed("../../migrations", &FILES);
+        is_listed("../../migrations/postgres", &SERVER_FILES);
         let last = SERVER_FILES[SERVER_FILES.len() - 1].0;
         assert_eq!(last, VERSION, "both databases have the same tables");
     }

@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 
 use farm_tests::workspace::{files, root, text};
 
-const CRATES: [&str; 20] = [
+const CRATES: [&str; 21] = [
     "shared",
     "shared/formula",
     "shared/signal",
@@ -24,6 +24,7 @@ const CRATES: [&str; 20] = [
     "coordinator/job",
     "coordinator/page",
     "coordinator/record",
+    "coordinator/report",
     "coordinator/result",
     "coordinator/search",
     "coordinator/store",
@@ -32,7 +33,7 @@ const CRATES: [&str; 20] = [
     "worker/scm",
     "tests",
 ];
-const OURS: [&str; 20] = [
+const OURS: [&str; 21] = [
     "shared",
     "formula",
     "signal",
@@ -46,6 +47,7 @@ const OURS: [&str; 20] = [
     "job",
     "page",
     "record",
+    "report",
     "result",
     "search",
     "store",
@@ -172,17 +174,21 @@ fn manifests_keep_the_direction_of_dependencies() {
         set(&["inference", "job", "shared", "statistics"])
     );
     assert_eq!(
-        ours("coordinator/result"),
+        ours("coordinator/report"),
         set(&[
             "formula",
             "inference",
             "job",
             "page",
             "record",
+            "result",
             "shared",
-            "signal",
             "statistics"
         ])
+    );
+    assert_eq!(
+        ours("coordinator/result"),
+        set(&["inference", "job", "record", "shared", "signal", "statistics"])
     );
     assert_eq!(
         ours("coordinator/export"),
@@ -224,6 +230,7 @@ fn manifests_keep_the_direction_of_dependencies() {
             "job",
             "page",
             "record",
+            "report",
             "result",
             "search",
             "shared",
@@ -265,6 +272,7 @@ fn pure_crates_know_no_runtime_network_database_or_chance() {
         "coordinator/job",
         "coordinator/page",
         "coordinator/record",
+        "coordinator/report",
         "coordinator/result",
     ] {
         let dependencies = dependencies(krate);
@@ -379,6 +387,7 @@ fn pure_rooms_read_no_clock() {
         "coordinator/farm/src/lease",
         "coordinator/import/src",
         "coordinator/job/src",
+        "coordinator/report/src",
         "coordinator/result/src",
         "coordinator/export/src",
         "coordinator/search/src",

@@ -282,7 +282,7 @@ mod tests {
 
     /// The ranges of an experiment of the repository.
     fn of(folder: &str) -> BTreeMap<DependsOn, VariableRange> {
-        let file = Path::new("..").join(folder).join("experiment.toml");
+        let file = Path::new("../..").join(folder).join("experiment.toml");
         let files = Experiment::read_files(&file).unwrap();
         ranges(&Experiment::parse("experiment.toml", &files).unwrap())
     }
