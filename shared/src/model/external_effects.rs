@@ -42,7 +42,7 @@ impl ExternalModel {
             return Some(why);
         }
         let uses = effect.uses();
-        if effect.hooks().any(|hook| hook == Hook::WheelLoad) && uses.meets(Variables::of(&REACTION)) {
+        if effect.hooks().any(|hook| hook == Hook::WheelLoad) && uses.meets(Variables::new(&REACTION)) {
             let why = "the load depends on what the soil answers to it, which only a model that balances it can follow";
             return Some(why.to_owned());
         }

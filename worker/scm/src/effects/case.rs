@@ -99,7 +99,7 @@ impl Active<'_> {
 
     /// Whether the load that follows pull and torque may jump with them.
     pub(crate) fn load_jumps(&self) -> bool {
-        let reaction = Variables::of(&REACTION);
+        let reaction = Variables::new(&REACTION);
         self.at(Hook::WheelLoad).any(|law| law.0.kinks().meets(reaction))
     }
 
@@ -121,7 +121,7 @@ impl Active<'_> {
 const REACTION: [Variable; 2] = [Variable::DrawbarPull, Variable::Torque];
 
 fn follows_reaction(program: &Program) -> bool {
-    program.uses().meets(Variables::of(&REACTION))
+    program.uses().meets(Variables::new(&REACTION))
 }
 
 /// Write how the wheel slides at a slip.

@@ -66,7 +66,7 @@ impl ModelForm {
     /// The variables that differ from node to node.
     fn local(self) -> Variables {
         use Variable::{BEff, J, KStar, P, Position, Tau, TauMax, Vn, Vt, Z};
-        let both = Variables::of(&[P, Z, Vn, Vt, J, Position, TauMax, Tau]);
+        let both = Variables::new(&[P, Z, Vn, Vt, J, Position, TauMax, Tau]);
         match self {
             ModelForm::QuasiStatic | ModelForm::WongReece | ModelForm::Rft | ModelForm::Outside => both,
             ModelForm::Spatial => both.with(KStar).with(BEff),

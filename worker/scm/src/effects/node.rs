@@ -79,7 +79,7 @@ impl<'a> NodeLaws<'a> {
     /// Whether stresses may jump as the contact changes.
     pub(crate) fn may_jump(&self) -> bool {
         let of_contact = [Variable::ContactLength, Variable::BEff, Variable::KStar];
-        self.are_kinked() || self.kinks.meets(Variables::of(&of_contact))
+        self.are_kinked() || self.kinks.meets(Variables::new(&of_contact))
     }
 
     /// Whether there is a formula at a hook.

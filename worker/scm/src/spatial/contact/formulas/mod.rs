@@ -88,7 +88,7 @@ struct Point {
 
 impl<'a> NodeFormulas<'a> {
     pub(crate) fn new(laws: NodeLaws<'a>, variables: [f64; Variable::COUNT], width: f64) -> Self {
-        let of_step = Variables::of(&[Variable::Vn, Variable::Vt, Variable::J]);
+        let of_step = Variables::new(&[Variable::Vn, Variable::Vt, Variable::J]);
         Self {
             may_scale: laws.only_scale_stress_by(of_step),
             scales: false,
