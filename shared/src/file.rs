@@ -17,27 +17,24 @@ pub struct FileSet {
 }
 
 impl FileSet {
-    /// The text of a file that is named in the file `by`.
-    ///
-    /// # Errors
-    /// [`FileError`] of `by`, where the file is not in the set.
+    /// The text of a file that is named in the file `by`; a [`FileError`] of `by` if the file is not in the set.
     pub fn named(&self, by: &str, file: &str) -> Result<&str, FileError> {
         let text = self.files.get(file).map(String::as_str);
         text.ok_or_else(|| FileError::whole(by, format!("file \"{file}\" is named but was not sent")))
     }
 }
 
-/// Why a file cannot be used: which file, which line, what is wrong.
+/// Why a file cannot be used: file, line and mistake.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{}", one_line(&format!("{file}{}: {message}", place(*line, *column))))]
 pub struct FileError {
     /// Name of the file as the user wrote it.
     pub file: String,
-    /// Line, counted from 1, where one is to blame.
+    /// Line, counted from 1; `None` if the whole file is to blame.
     pub line: Option<usize>,
-    /// Column, counted from 1, where one is to blame.
+    /// Column, counted from 1; `None` if no column is to blame.
     pub column: Option<usize>,
-    /// What is wrong: quantity, value, unit, bound.
+    /// The mistake: quantity, value, unit, bound.
     pub message: String,
 }
 
@@ -71,15 +68,13 @@ impl FileError {
     }
 }
 
-/// Deepest nesting of brackets; a job needs three.
+/// The maximum nesting of brackets; a job needs three.
 const DEEPEST: usize = 16;
-/// Largest TOML file `[bytes]`: the parser takes 80 ns for each of them.
+/// The maximum size of a TOML file `[bytes]`: the parser takes 80 ns per byte.
 const LARGEST_TOML: usize = 1 << 20;
 
-/// Parses TOML into `T`; an unknown key is an error that names its line and the nearest known key.
-///
-/// # Errors
-/// [`FileError`] with the line where the parser stopped.
+/// Parses TOML into `T`; an unknown key is an error that names its line and the nearest known key. A [`FileError`] names the
+/// line where the parser stopped.
 pub fn parse_toml<T: serde::de::DeserializeOwned>(file: &str, text: &str) -> Result<T, FileError> {
     if text.len() > LARGEST_TOML {
         let message = format!("{} bytes must be at most {LARGEST_TOML} bytes", text.len());
@@ -100,7 +95,7 @@ pub fn parse_toml<T: serde::de::DeserializeOwned>(file: &str, text: &str) -> Res
     })
 }
 
-/// The line, counted from 1, in which the byte at `offset` stands.
+/// The line, counted from 1, of the byte at `offset`.
 fn line_of(text: &str, offset: usize) -> usize {
     text.bytes().take(offset).filter(|&b| b == b'\n').count() + 1
 }
@@ -131,7 +126,7 @@ mod tests {
     }
 
     #[test]
-    fn a_word_near_nothing_lists_what_is_known() {
+    fn a_word_without_a_near_one_lists_the_known_ones() {
         assert_eq!(
             unknown_word("column", "zzzzzz", ["run", "slip"]),
             "unknown column \"zzzzzz\"; known are run, slip"
