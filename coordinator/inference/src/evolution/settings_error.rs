@@ -1,7 +1,6 @@
 //! Why the settings of an evolution are refused.
 
-/// Largest population: more than any farm has workers.
-const MOST_INDIVIDUALS: usize = 100_000;
+use super::settings::EvolutionSettings;
 
 /// Why settings are refused.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
@@ -10,7 +9,10 @@ pub enum EvolutionSettingsError {
     #[error("the prior has no parameters")]
     NoParameters,
     /// The population is too small or too large.
-    #[error("population = {population} is not from {least} to {MOST_INDIVIDUALS}")]
+    #[error(
+        "population = {population} is not from {least} to {}",
+        EvolutionSettings::MAX_POPULATION
+    )]
     Population {
         /// The setting.
         population: usize,
@@ -61,7 +63,7 @@ pub enum EvolutionSettingsError {
 
 /// Refuses a population out of bounds.
 pub(crate) fn check_population(population: usize, least: usize) -> Result<(), EvolutionSettingsError> {
-    if (least..=MOST_INDIVIDUALS).contains(&population) {
+    if (least..=EvolutionSettings::MAX_POPULATION).contains(&population) {
         Ok(())
     } else {
         Err(EvolutionSettingsError::Population { population, least })

@@ -46,12 +46,8 @@ impl Default for LmSettings {
     }
 }
 
-/// Most evaluations of a fit.
-const MOST_EVALUATIONS: usize = 1_000_000;
 /// Least draws: intervals are their quantiles.
 const LEAST_DRAWS: usize = 20;
-/// Longest difference: a step to one side always fits between the bounds.
-const LONGEST_DIFFERENCE: f64 = 0.5;
 
 /// A step grows with the uncertainty to at most so many times the setting.
 const LONGER: f64 = 10.0;
@@ -82,13 +78,19 @@ pub enum LmSettingsError {
         dimension: usize,
     },
     /// The budget is too large.
-    #[error("max_evaluations = {max_evaluations} is above {MOST_EVALUATIONS}")]
+    #[error(
+        "max_evaluations = {max_evaluations} is above {}",
+        LmSettings::MAX_EVALUATIONS
+    )]
     TooManyEvaluations {
         /// The setting.
         max_evaluations: usize,
     },
     /// The step of the differences is not in (0, 0.5].
-    #[error("difference_step = {value} prior widths is not above 0 and at most {LONGEST_DIFFERENCE}")]
+    #[error(
+        "difference_step = {value} prior widths is not above 0 and at most {}",
+        LmSettings::MAX_DIFFERENCE_STEP
+    )]
     DifferenceStep {
         /// The setting.
         value: f64,
@@ -116,13 +118,18 @@ pub enum LmSettingsError {
 }
 
 impl LmSettings {
+    /// Largest number of evaluations of a fit.
+    pub const MAX_EVALUATIONS: usize = 1_000_000;
+    /// Longest difference: a step to one side always fits between the bounds.
+    pub const MAX_DIFFERENCE_STEP: f64 = 0.5;
+
     /// Step of a difference along an axis with this uncertainty, if it is known; both in prior widths.
     pub(super) fn difference(&self, sides: Sides, uncertainty: Option<f64>) -> f64 {
         let share = match sides {
             Sides::One => SHARE_TO_ONE_SIDE,
             Sides::Both => 1.0,
         };
-        let longest = (LONGER * self.difference_step).min(LONGEST_DIFFERENCE);
+        let longest = (LONGER * self.difference_step).min(Self::MAX_DIFFERENCE_STEP);
         uncertainty.map_or(self.difference_step, |sd| {
             (share * sd).min(longest).max(self.difference_step)
         })
@@ -154,7 +161,7 @@ impl LmSettings {
                 dimension,
             });
         }
-        if max_evaluations > MOST_EVALUATIONS {
+        if max_evaluations > Self::MAX_EVALUATIONS {
             return Err(LmSettingsError::TooManyEvaluations { max_evaluations });
         }
         if (1..LEAST_DRAWS).contains(&self.draws) {
@@ -163,7 +170,7 @@ impl LmSettings {
         if self.draws > MAX_PARTICLES {
             return Err(LmSettingsError::TooManyDraws { draws: self.draws });
         }
-        if !(value > 0.0 && value <= LONGEST_DIFFERENCE) {
+        if !(value > 0.0 && value <= Self::MAX_DIFFERENCE_STEP) {
             return Err(LmSettingsError::DifferenceStep { value });
         }
         for (name, value) in [

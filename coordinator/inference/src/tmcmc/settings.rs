@@ -79,11 +79,6 @@ pub const MAX_PARTICLES: usize = 100_000;
 /// rests on.
 const DRAWN_PARTICLES: usize = 8;
 
-/// Most components of a mixture: a fit takes time in proportion.
-const MOST_COMPONENTS: usize = 256;
-/// Most moves in a stage.
-const MOST_MOVES: usize = 10_000;
-
 /// Why settings are refused.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum TmcmcSettingsError {
@@ -107,7 +102,10 @@ pub enum TmcmcSettingsError {
         particles: usize,
     },
     /// The moves are not 1 <= least <= most <= 10,000.
-    #[error("moves [{least}, {most}] are not 1 <= least <= most <= {MOST_MOVES}")]
+    #[error(
+        "moves [{least}, {most}] are not 1 <= least <= most <= {}",
+        TmcmcSettings::MAX_MOVES
+    )]
     Moves {
         /// Least moves.
         least: usize,
@@ -115,7 +113,7 @@ pub enum TmcmcSettingsError {
         most: usize,
     },
     /// The mixture has no components, or too many.
-    #[error("components {value} is not 1 to {MOST_COMPONENTS}")]
+    #[error("components {value} is not 1 to {}", TmcmcSettings::MAX_COMPONENTS)]
     Components {
         /// The setting.
         value: usize,
@@ -127,7 +125,7 @@ pub enum TmcmcSettingsError {
         value: usize,
     },
     /// The metamodel has more moves than a worker should take at a time.
-    #[error("metamodel_moves {value} is more than {MOST_MOVES}")]
+    #[error("metamodel_moves {value} is more than {}", TmcmcSettings::MAX_MOVES)]
     MetamodelMoves {
         /// The setting.
         value: usize,
@@ -147,6 +145,11 @@ pub enum TmcmcSettingsError {
 }
 
 impl TmcmcSettings {
+    /// Largest number of components of a mixture: a fit takes time in proportion.
+    pub const MAX_COMPONENTS: usize = 256;
+    /// Largest number of moves in a stage.
+    pub const MAX_MOVES: usize = 10_000;
+
     /// Whether stages of a problem of `dimension` parameters are drawn: small populations move from the start.
     pub(crate) fn draws(&self, dimension: usize) -> bool {
         self.stages == StageMethod::Draws
@@ -173,13 +176,13 @@ impl TmcmcSettings {
             Err(TmcmcSettingsError::TooManyParticles {
                 particles: self.particles,
             })
-        } else if fewest == 0 || fewest > most || most > MOST_MOVES {
+        } else if fewest == 0 || fewest > most || most > Self::MAX_MOVES {
             Err(TmcmcSettingsError::Moves { least: fewest, most })
-        } else if self.metamodel_moves > MOST_MOVES {
+        } else if self.metamodel_moves > Self::MAX_MOVES {
             Err(TmcmcSettingsError::MetamodelMoves {
                 value: self.metamodel_moves,
             })
-        } else if self.components == 0 || self.components > MOST_COMPONENTS {
+        } else if self.components == 0 || self.components > Self::MAX_COMPONENTS {
             Err(TmcmcSettingsError::Components {
                 value: self.components,
             })

@@ -33,12 +33,12 @@ impl Default for GaSettings {
     }
 }
 
-/// Tournaments need several members, and the elite must leave room for children.
-const LEAST_POPULATION: usize = 8;
-/// Most generations.
-const MOST_GENERATIONS: usize = 100_000;
-
 impl GaSettings {
+    /// Smallest population: tournaments need several members, and the elite must leave room for children.
+    pub const MIN_POPULATION: usize = 8;
+    /// Largest number of generations.
+    pub const MAX_GENERATIONS: usize = 100_000;
+
     /// Most evaluations, all generations together; the elite saves some.
     #[must_use]
     pub fn max_evaluations(&self) -> usize {
@@ -46,11 +46,11 @@ impl GaSettings {
     }
 
     pub(crate) fn check(&self) -> Result<(), EvolutionSettingsError> {
-        check_population(self.population, LEAST_POPULATION)?;
-        if !(2..=MOST_GENERATIONS).contains(&self.generations) {
+        check_population(self.population, Self::MIN_POPULATION)?;
+        if !(2..=Self::MAX_GENERATIONS).contains(&self.generations) {
             return Err(EvolutionSettingsError::Generations {
                 generations: self.generations,
-                most: MOST_GENERATIONS,
+                most: Self::MAX_GENERATIONS,
             });
         }
         if self.elite == 0 || 2 * self.elite > self.population {
