@@ -5,7 +5,7 @@ use std::sync::OnceLock;
 use shared::api::CalibrationState;
 
 use super::error::ServiceError;
-use super::stored_calibration::spec_of;
+use super::stored_calibration::ParsedExperiments;
 use super::study_members::study_members;
 use super::study_step::next_step_from;
 use crate::study::{Lineage, most_probable};
@@ -23,6 +23,15 @@ pub async fn finished_calibration(
     reader: &Reader,
     row: &CalibrationRow,
 ) -> Result<FinishedCalibration, ServiceError> {
+    finished_with(reader, row, &mut ParsedExperiments::default()).await
+}
+
+/// A finished calibration of a study whose experiments were parsed before.
+async fn finished_with(
+    reader: &Reader,
+    row: &CalibrationRow,
+    experiments: &mut ParsedExperiments,
+) -> Result<FinishedCalibration, ServiceError> {
     if row.state != CalibrationState::Finished {
         return Err(ServiceError::not_finished(row));
     }
@@ -30,7 +39,7 @@ pub async fn finished_calibration(
         return Err(ServiceError::Search(row.id));
     }
     let stages = reader.stages(row.id).await?;
-    let spec = spec_of(reader, row).await?;
+    let spec = experiments.spec_of(reader, row).await?;
     // Parameters and texts would be shown that the result was not computed with.
     if let Some(pinned) = &row.model_version {
         spec.check_effects(pinned)?;
@@ -126,18 +135,19 @@ pub(super) async fn finished_study_of(
     let best = most_probable(of_models.iter().map(|row| row.log_evidence)).map(|i| of_models[i]);
     // Without any, the calibration that was asked for says why there is nothing to show.
     let lead = best.or(calibrations.first()).copied().unwrap_or(row);
-    let lead = finished_calibration(reader, lead).await?;
+    let mut experiments = ParsedExperiments::default();
+    let lead = finished_with(reader, lead, &mut experiments).await?;
     let (mut others, mut point_estimates, mut extensions) = (Vec::new(), Vec::new(), Vec::new());
     for row in calibrations.into_iter().filter(|row| row.id != lead.row.id) {
         if compared(row) {
-            others.push(finished_calibration(reader, row).await?);
+            others.push(finished_with(reader, row, &mut experiments).await?);
             continue;
         }
         let beside = match lineage.model_of(row.id) == lineage.model_of(lead.row.id) {
             true => &mut point_estimates,
             false => &mut extensions,
         };
-        beside.push(finished_calibration(reader, row).await?);
+        beside.push(finished_with(reader, row, &mut experiments).await?);
     }
     let state = match unfinished {
         Some(row) => row.state,

@@ -1,6 +1,6 @@
 //! The effects of a job, their order and their parameters.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 
 use formula::catalogue::{catalogue, find};
 use formula::{Effect, Parameter, Variable};
@@ -64,7 +64,7 @@ impl EffectSet {
     /// - `file`: the name of the job in messages.
     /// - `effects`, `files`: the effects of the catalogue and the effect files that the model lists.
     /// - `names`: every parameter that the job names.
-    /// - `texts`: the texts of the files.
+    /// - `read`: reads an effect file; `None` of a file that was not sent.
     ///
     /// # Errors
     /// [`FileError`] of the effect's file with line and column, or of the job.
@@ -72,7 +72,7 @@ impl EffectSet {
         file: &str,
         (effects, files): (&[String], &[String]),
         names: impl IntoIterator<Item = &'a str>,
-        texts: &BTreeMap<String, String>,
+        read: impl Fn(&str) -> Option<Result<Effect, FileError>>,
     ) -> Result<Self, FileError> {
         let listed = effects.iter().map(String::as_str);
         let named = names.into_iter().filter_map(|name| Some(parts(name)?.0));
@@ -85,10 +85,9 @@ impl EffectSet {
             })
             .collect();
         for named in files {
-            let text = texts.get(named).ok_or_else(|| {
+            let effect = read(named).ok_or_else(|| {
                 FileError::whole(file, format!("file \"{named}\" is named but was not sent"))
-            })?;
-            let effect = own(named, text)?;
+            })??;
             if let Some(other) = chosen.iter().find(|c| c.effect.name == effect.name) {
                 let message = format!(
                     "effect {} is already in {}",
@@ -118,8 +117,15 @@ impl EffectSet {
     /// Reads the effects of a message; [`ModelError`] names the effect and the mistake in its file.
     pub fn read(texts: &[EffectText]) -> Result<Self, ModelError> {
         let read = |sent: &EffectText| {
-            let name = sent.name.clone();
-            let effect = Effect::read(&sent.text).map_err(|error| ModelError::Effect { name, error })?;
+            // The catalogue is read already.
+            let known = find(&sent.name).filter(|effect| effect.text == sent.text);
+            let effect = match known {
+                Some(effect) => effect.clone(),
+                None => Effect::read(&sent.text).map_err(|error| ModelError::Effect {
+                    name: sent.name.clone(),
+                    error,
+                })?,
+            };
             if effect.name != sent.name {
                 return Err(ModelError::EffectName {
                     in_file: effect.name,
@@ -346,6 +352,8 @@ pub fn own(file: &str, text: &str) -> Result<Effect, FileError> {
 
 #[cfg(test)]
 mod tests {
+    use std::collections::BTreeMap;
+
     use super::*;
 
     const MINE: &str = "name = \"mine\"\nsummary = \"s\"\nsource = \"s\"\nshear = \"tau * (1 - a * exp(-v_t / v_a))\"\n\
@@ -356,7 +364,8 @@ mod tests {
         let effects: Vec<String> = effects.iter().map(|&e| e.to_owned()).collect();
         let files = ["mine.toml".to_owned()];
         let texts = BTreeMap::from([("mine.toml".to_owned(), mine.to_owned())]);
-        EffectSet::choose("job.toml", (&effects, &files), names.iter().copied(), &texts)
+        let read = |name: &str| texts.get(name).map(|text| own(name, text));
+        EffectSet::choose("job.toml", (&effects, &files), names.iter().copied(), read)
             .map_err(|e| e.to_string())
     }
 

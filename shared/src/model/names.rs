@@ -243,7 +243,7 @@ mod tests {
     #[test]
     fn a_parameter_of_an_effect_has_a_unit_and_a_bound() {
         let name = "janosi_hanamoto.shear_modulus_m";
-        let effects = EffectSet::choose("job.toml", (&[], &[]), [name], &Default::default()).unwrap();
+        let effects = EffectSet::choose("job.toml", (&[], &[]), [name], |_| None).unwrap();
         let lookup = |name: &str| lookup(name, &scope(&BTreeSet::from(["w"]), &effects));
         assert_eq!(
             check_value(&lookup(name).unwrap(), name, -0.01)

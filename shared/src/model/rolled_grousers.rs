@@ -123,7 +123,7 @@ mod tests {
         let table: toml::Table = format!("{model}\n{SOIL}").parse().expect("TOML");
         let settings = ModelSettings::from_table(&table).map_err(|e| e.to_string())?;
         let named = settings.fixed.keys().map(String::as_str);
-        let effects = EffectSet::choose("job.toml", (&settings.effects, &[]), named, &Default::default());
+        let effects = EffectSet::choose("job.toml", (&settings.effects, &[]), named, |_| None);
         let effects = effects.map_err(|e| e.to_string())?;
         ModelVariant::new(&experiment, &settings, &effects, Vec::new(), &experiment.runs)
             .map_err(|e| e.to_string())

@@ -22,6 +22,7 @@ use scm::spatial::History;
 use shared::channel::Channel;
 use shared::experiment::{Experiment, NoiseSd, Scatter, ScatterSd, TestRun};
 use shared::file::{FileError, number, parse_toml};
+use shared::model::effects::own;
 use shared::model::{EffectSet, ModelSettings, ModelVariant};
 use shared::outcome::Outcome;
 use shared::text_file::{read_beside, read_text};
@@ -153,7 +154,7 @@ fn variant(
         &model_name,
         (&settings.effects, &settings.effect_files),
         names,
-        &texts,
+        |name| texts.get(name).map(|text| own(name, text)),
     )?;
     state_shapes(experiment, &effects, &mut settings.fixed, &parameters_name)?;
     ModelVariant::new(experiment, &settings, &effects, Vec::new(), runs)

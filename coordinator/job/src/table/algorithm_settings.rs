@@ -4,6 +4,8 @@ use inference::evolution::{CmaEsSettings, EvolutionSettings, EvolutionSettingsEr
 use inference::lm::{LmSettings, LmSettingsError};
 use inference::{Algorithm, TmcmcSettings, TmcmcSettingsError};
 
+use super::sampler::ALGORITHMS;
+
 /// How parameters are found.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum AlgorithmSettings {
@@ -39,41 +41,25 @@ pub enum AlgorithmSettingsError {
 
 /// An algorithm by its name in files.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[serde(into = "&str", try_from = "String")]
 pub enum AlgorithmName {
     /// Transitional Markov chain Monte Carlo.
-    #[serde(rename = "tmcmc")]
     Tmcmc,
     /// The same as published by Ching and Chen in 2007.
-    #[serde(rename = "ching-chen-2007")]
     ChingChen2007,
     /// BASIS.
-    #[serde(rename = "basis")]
     Basis,
     /// Levenberg-Marquardt.
-    #[serde(rename = "lm")]
     Lm,
     /// Genetic algorithm.
-    #[serde(rename = "ga")]
     Ga,
     /// Covariance matrix adaptation.
-    #[serde(rename = "cma-es")]
     CmaEs,
     /// Search for a missing effect.
-    #[serde(rename = "discovery")]
     Discovery,
 }
 
 impl AlgorithmName {
-    /// The algorithms that a job may state. The search for a missing effect is none of them: a study starts it by itself.
-    pub const STATED: [AlgorithmName; 6] = [
-        AlgorithmName::Tmcmc,
-        AlgorithmName::ChingChen2007,
-        AlgorithmName::Basis,
-        AlgorithmName::Lm,
-        AlgorithmName::Ga,
-        AlgorithmName::CmaEs,
-    ];
-
     /// The algorithms that find the most probable parameters, which a job may ask for beside a sample.
     pub const POINT_ESTIMATES: [AlgorithmName; 3] =
         [AlgorithmName::Lm, AlgorithmName::Ga, AlgorithmName::CmaEs];
@@ -88,6 +74,25 @@ impl AlgorithmName {
             AlgorithmName::Ga => "ga",
             AlgorithmName::CmaEs => "cma-es",
             AlgorithmName::Discovery => "discovery",
+        }
+    }
+}
+
+impl From<AlgorithmName> for &'static str {
+    fn from(algorithm: AlgorithmName) -> Self {
+        algorithm.name()
+    }
+}
+
+impl TryFrom<String> for AlgorithmName {
+    type Error = String;
+
+    fn try_from(name: String) -> Result<Self, String> {
+        let mut known = ALGORITHMS.iter().map(|algorithm| algorithm.name);
+        match known.find(|known| known.name() == name) {
+            Some(known) => Ok(known),
+            None if name == AlgorithmName::Discovery.name() => Ok(AlgorithmName::Discovery),
+            None => Err(format!("unknown algorithm \"{name}\"")),
         }
     }
 }

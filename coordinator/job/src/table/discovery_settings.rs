@@ -39,7 +39,7 @@ pub(crate) struct RawDiscovery {
     apply: String,
     max_effects: usize,
     other_kind: bool,
-    priors: toml::Table,
+    pub(crate) priors: toml::Table,
 }
 
 impl Default for RawDiscovery {
@@ -88,11 +88,11 @@ impl RawDiscovery {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::JobFile;
+    use crate::Job;
 
     fn parse(sampler: &str, discovery: &str) -> Result<DiscoverySettings, String> {
         let job = format!("[model]\nkind = \"scm\"\n[sampler]\n{sampler}\n{discovery}\n");
-        JobFile::parse("job.toml", &job)
+        Job::parse("job.toml", &job)
             .map(|job| job.discovery)
             .map_err(|e| e.to_string())
     }

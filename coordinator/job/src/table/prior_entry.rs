@@ -1,6 +1,7 @@
 //! The entries of `[priors]`.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::LazyLock;
 
 use formula::{Effect, Parameter};
 use shared::channel::Channel;
@@ -29,11 +30,24 @@ pub struct FreeParameter {
 pub struct PriorEntry {
     /// The parameter.
     pub name: String,
-    /// Line in the job file.
-    pub line: usize,
+    /// Line in the job's file; `None` of an entry that was added to the value.
+    pub line: Option<usize>,
+    /// Whether it is a table with a header of its own, `[priors.NAME]`.
+    pub(crate) has_header: bool,
     /// A number, or a table with one distribution.
     pub value: toml::Value,
 }
+
+/// The priors that models state for their parameters, by their texts.
+static USUAL_PRIORS: LazyLock<BTreeMap<&'static str, toml::Value>> = LazyLock::new(|| {
+    let value = |prior: &'static str| {
+        prior
+            .parse()
+            .unwrap_or_else(|_| toml::Value::String(prior.to_owned()))
+    };
+    let texts = parameters::of_models().filter_map(|parameter| parameter.prior);
+    texts.map(|prior| (prior, value(prior))).collect()
+});
 
 /// What an entry means.
 pub(crate) enum ParsedPrior {
@@ -42,6 +56,14 @@ pub(crate) enum ParsedPrior {
 }
 
 impl PriorEntry {
+    /// An error of this entry of a job.
+    pub(crate) fn error(&self, job: &str, message: String) -> FileError {
+        match self.line {
+            Some(line) => FileError::at(job, line, message),
+            None => FileError::whole(job, message),
+        }
+    }
+
     /// Reads the entry and checks it against the parameter's physical bounds.
     pub(crate) fn parse(&self, scope: &ParameterScope) -> Result<ParsedPrior, PriorEntryError> {
         self.check_quotes(scope.wheels, scope.effects)?;
@@ -87,17 +109,17 @@ impl PriorEntry {
 }
 
 impl ParsedPrior {
-    /// The prior of a model's own parameter that the job does not mention.
-    pub(crate) fn usual(own: &BaseParameter, prior: &str) -> Result<FreeParameter, PriorEntryError> {
-        let value: Option<toml::Value> = prior.parse().ok();
-        let quantity = ParameterBounds::from(own);
-        let value = value.unwrap_or_else(|| toml::Value::String(prior.to_owned()));
-        let marginal = marginal(&value, &quantity).map_err(|e| e.of(own.name))?;
-        Ok(FreeParameter {
-            name: own.name.to_owned(),
-            unit: quantity.unit,
+    /// The prior of a parameter of the model itself that the job does not mention; `None` where the model states none.
+    pub(crate) fn usual(parameter: &BaseParameter) -> Option<Result<FreeParameter, PriorEntryError>> {
+        let value = USUAL_PRIORS.get(parameter.prior?)?;
+        let quantity = ParameterBounds::from(parameter);
+        let free = |marginal| FreeParameter {
+            name: parameter.name.to_owned(),
+            unit: quantity.unit.clone(),
             marginal,
-        })
+        };
+        let marginal = marginal(value, &quantity).map_err(|e| e.of(parameter.name));
+        Some(marginal.map(free))
     }
 
     /// What the file of an effect says of a parameter that the job does not mention, but for its name there.

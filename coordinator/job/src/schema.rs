@@ -1,0 +1,113 @@
+//! JSON schemas of the tables of a job, derived from the types that read them.
+
+use std::collections::BTreeMap;
+
+use serde_json::{Value, json};
+
+use crate::table::algorithm_settings::AlgorithmName;
+use crate::table::sampler::ALGORITHMS;
+
+/// The schema of `[sampler]`: the keys of every algorithm in one table, as editors complete it.
+pub fn sampler_schema() -> Value {
+    let names = ALGORITHMS.map(|algorithm| algorithm.name);
+    let mut of_keys: BTreeMap<&str, Vec<(&str, Value)>> = BTreeMap::new();
+    for algorithm in &ALGORITHMS {
+        let schema = (algorithm.schema)().to_value();
+        for key in (algorithm.keys)() {
+            let property = resolved(&schema, &schema["properties"][key]);
+            of_keys
+                .entry(key)
+                .or_default()
+                .push((algorithm.name.name(), property));
+        }
+    }
+    let mut properties = json!({ "algorithm": {
+        "type": "string", "enum": names, "default": AlgorithmName::Tmcmc, "description": "how parameters are found"
+    } });
+    for (key, of_algorithms) in of_keys {
+        properties[key] = merged(&of_algorithms);
+    }
+    json!({
+        "type": "object",
+        "description": "the algorithm and its settings",
+        "properties": properties,
+        "additionalProperties": false,
+    })
+}
+
+/// A property with what it refers to in its place, and without the null that TOML does not have.
+fn resolved(schema: &Value, property: &Value) -> Value {
+    let mut whole = property.clone();
+    let parts = [&property["anyOf"], &property["allOf"]];
+    let parts = parts.into_iter().filter_map(Value::as_array).flatten();
+    for part in parts.chain([property]) {
+        let Some(name) = part["$ref"].as_str() else {
+            continue;
+        };
+        let known = schema
+            .pointer(name.trim_start_matches('#'))
+            .unwrap_or(&Value::Null);
+        for (key, value) in known.as_object().into_iter().flatten() {
+            whole[key] = value.clone();
+        }
+    }
+    if let Some(whole) = whole.as_object_mut() {
+        whole.retain(|key, value| {
+            !["$ref", "anyOf", "allOf"].contains(&key.as_str()) && !(key == "default" && value.is_null())
+        });
+        if let Some(kinds) = whole.get_mut("type")
+            && let Some(kind) = kinds
+                .as_array()
+                .and_then(|kinds| kinds.iter().find(|kind| *kind != "null"))
+        {
+            *kinds = kind.clone();
+        }
+    }
+    whole
+}
+
+/// The property of a key that several algorithms take: the widest bounds, and what differs in words.
+fn merged(of_algorithms: &[(&str, Value)]) -> Value {
+    let [(_, first), rest @ ..] = of_algorithms else {
+        return Value::Null;
+    };
+    let mut one = first.clone();
+    for (_, other) in rest {
+        for (key, is_wider) in [
+            ("minimum", f64::lt as fn(&f64, &f64) -> bool),
+            ("maximum", f64::gt),
+        ] {
+            let bounds = (one[key].as_f64(), other[key].as_f64());
+            if let (Some(now), Some(new)) = bounds
+                && is_wider(&new, &now)
+            {
+                one[key] = other[key].clone();
+            }
+        }
+    }
+    let differs = |key: &str| rest.iter().any(|(_, other)| other[key] != first[key]);
+    let words = |(name, property): &(&str, Value)| match (&property["description"], &property["default"]) {
+        (Value::String(words), Value::Null) => format!("{name}: {words}"),
+        (Value::String(words), usual) => format!("{name}: {words} Default {usual}."),
+        (_, usual) => format!("{name}: default {usual}"),
+    };
+    let is_of_all = of_algorithms.len() == ALGORITHMS.len();
+    if differs("default") || differs("description") {
+        let words: Vec<String> = of_algorithms.iter().map(words).collect();
+        one["description"] = words.join(" ").into();
+    } else if !is_of_all {
+        let names: Vec<&str> = of_algorithms.iter().map(|(name, _)| *name).collect();
+        one["description"] = format!(
+            "{}: {}",
+            names.join(", "),
+            first["description"].as_str().unwrap_or_default()
+        )
+        .into();
+    }
+    if differs("default")
+        && let Some(one) = one.as_object_mut()
+    {
+        one.remove("default");
+    }
+    one
+}
