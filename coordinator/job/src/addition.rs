@@ -11,7 +11,7 @@ use crate::model_switch::ModelSwitch;
 use crate::named_files::NamedFile;
 use crate::table::prior_entry::PriorEntry;
 
-/// What a job gets in addition.
+/// An addition to a job.
 #[derive(Debug, Clone, Default)]
 pub struct Addition {
     /// Changes of the model itself, in the order in which they are made, before everything else.

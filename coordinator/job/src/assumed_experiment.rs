@@ -30,7 +30,7 @@ pub enum SiteProperty {
 pub struct UnsaidProperty {
     /// The property.
     pub property: SiteProperty,
-    /// What is not stated, and the value that stands for it.
+    /// A sentence that says what is not stated, and which value stands for it.
     pub why: String,
     /// The line that states it.
     pub needs: String,
@@ -41,7 +41,7 @@ pub struct UnsaidProperty {
 pub struct AssumedExperiment {
     /// The experiment with those values.
     pub experiment: Experiment,
-    /// What they stand for.
+    /// The properties that they stand for.
     pub unsaid: Vec<UnsaidProperty>,
 }
 

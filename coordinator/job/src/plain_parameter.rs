@@ -15,7 +15,7 @@ use crate::table::prior_entry::marginal;
 pub struct PlainParameter {
     /// Its name in jobs.
     pub name: &'static str,
-    /// What it says of the soil if its value is another, in a line.
+    /// A line that says what holds if its value is another.
     pub summary: &'static str,
     /// Its prior where it is freed, as in a job.
     pub prior: &'static str,

@@ -111,3 +111,81 @@ fn merged(of_algorithms: &[(&str, Value)]) -> Value {
     }
     one
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The rows of the tables of a section of docs/job.md, each as its cells.
+    fn rows(section: &str) -> Vec<Vec<String>> {
+        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/job.md");
+        let text = std::fs::read_to_string(path).unwrap();
+        let (_, rest) = text.split_once(&format!("\n### {section}\n")).unwrap();
+        let lines = rest.lines().take_while(|line| !line.starts_with("###"));
+        let rows = lines.filter(|line| line.starts_with("| `"));
+        let cells = |row: &str| {
+            row.trim_matches('|')
+                .split(" | ")
+                .map(|cell| cell.trim().to_owned())
+                .collect()
+        };
+        rows.map(cells).collect()
+    }
+
+    /// A number as the documents write it: `10,000`, but `1000`.
+    fn written(number: &Value) -> String {
+        let text = number.to_string();
+        match text.len() {
+            5.. if number.is_u64() => {
+                let (head, tail) = text.split_at(text.len() - 3);
+                format!(
+                    "{},{tail}",
+                    written(&head.parse::<u64>().unwrap().into()).replace("1000", "1,000")
+                )
+            }
+            _ => text.replace(',', ", "),
+        }
+    }
+
+    #[test]
+    fn the_document_has_the_keys_defaults_and_bounds_of_the_sampler() {
+        let rows = rows("[sampler]");
+        let row = |key: &str| {
+            let row = rows.iter().find(|row| row[0] == format!("`{key}`"));
+            row.unwrap_or_else(|| panic!("no row of {key}"))
+        };
+        for algorithm in &ALGORITHMS {
+            let name = algorithm.name.name();
+            let stated = row(&format!("\"{name}\""));
+            let keys = (algorithm.keys)().iter().filter(|key| **key != "seed");
+            let keys: Vec<String> = keys.map(|key| format!("`{key}`")).collect();
+            assert_eq!(stated[2], keys.join(", "), "{name}");
+            let schema = (algorithm.schema)().to_value();
+            for key in (algorithm.keys)() {
+                let property = resolved(&schema, &schema["properties"][key]);
+                let [_, _, usual, meaning] = &row(key)[..] else {
+                    panic!("{key}")
+                };
+                if let Some(default) = property.get("default") {
+                    assert!(usual.contains(&written(default)), "{key}: {usual}, {default}");
+                }
+                for place in [&property, &property["items"]] {
+                    let bounds = [&place["minimum"], &place["maximum"]];
+                    // Whatever is counted is at least 0 or 1.
+                    let bounds = bounds
+                        .into_iter()
+                        .filter(|bound| bound.as_f64().is_some_and(|b| b != 0.0 && b != 1.0));
+                    for bound in bounds {
+                        let words = format!("{} {meaning}", row(key)[1]);
+                        assert!(words.contains(&written(bound)), "{key}: {words}, {bound}");
+                    }
+                }
+            }
+        }
+        let schema = sampler_schema();
+        let known = schema["properties"].as_object().unwrap();
+        let stated = rows.iter().map(|row| row[0].trim_matches('`'));
+        let stated: std::collections::BTreeSet<&str> = stated.filter(|key| !key.starts_with('"')).collect();
+        assert_eq!(stated, known.keys().map(String::as_str).collect());
+    }
+}

@@ -1,13 +1,10 @@
 //! The candidates of a search with their additions to the job.
 
-use std::sync::Arc;
-
 use discovery::Candidate;
 use formula::Effect;
 use job::{EffectOnNodes, FreeParameter, Job, ModelSwitch, NamedFiles, PlainParameter, Spec};
 use record::{Extension, NotTried};
 
-use shared::experiment::Experiment;
 use shared::model::ModelKind;
 use shared::parameters::{SPATIAL, of_models};
 
@@ -87,12 +84,7 @@ impl CandidateEntry {
     ///
     /// # Errors
     /// [`NotTried`] where the model with it is not valid or has other parameters.
-    pub(super) fn switch(
-        switch: &ModelSwitch,
-        base: &Spec,
-        job: &Job,
-        experiment: &Arc<Experiment>,
-    ) -> Result<Option<Self>, NotTried> {
+    pub(super) fn switch(switch: &ModelSwitch, base: &Spec, job: &Job) -> Result<Option<Self>, NotTried> {
         if switch.is_on(base) || (switch.is_kind() && !base.discovery.other_kind) {
             return Ok(None);
         }
@@ -107,7 +99,7 @@ impl CandidateEntry {
         };
         let extension = Extension::Effect(name.clone());
         let with = with_extensions(job, &[&extension], &NamedFiles::default());
-        let with = with.and_then(|with| spec(&with, experiment));
+        let with = with.and_then(|with| spec(&with, &base.experiment));
         let with = with.map_err(|e| not_tried(e.to_string()))?;
         let names = |spec: &Spec| spec.parameters.iter().map(|p| p.name.clone()).collect::<Vec<_>>();
         if names(&with) != names(base) {

@@ -17,14 +17,15 @@ use shared::model::{EffectSet, ExternalModel, ModelKind, ModelVariant, RunCondit
 use shared::outcome::Observables;
 
 use super::candidate::{
-    CandidateEffect, EXPERIMENT, ExclusionReason, JOB, candidate_of, library, spec, with_extensions,
+    CandidateEffect, EXPERIMENT, ExclusionReason, JOB, LibraryEffect, candidate_of, library, spec,
+    with_extensions,
 };
 use super::design;
 use super::entry::{CandidateEntry, LawEntry};
 use super::family::set_families;
 use super::law::dependence::{Dependence, dependences};
 use super::law::file::LawFiles;
-use super::untried::untried;
+use super::untried::{UntriedEffect, untried};
 use job::{
     EffectOnNodes, Job, MODEL_SWITCHES, NamedFile, NamedFiles, PLAIN_PARAMETERS, Spec, free_parameters,
 };
@@ -95,52 +96,26 @@ impl SearchModels {
         let external = base.model.external.iter();
         let mut not_tried: Vec<NotTried> = external.flat_map(out_of_reach).collect();
         not_tried.extend(absent(&excluded));
-        let mut entries: Vec<CandidateEntry> = effects
-            .into_iter()
-            .filter_map(|(effect, parameters)| CandidateEntry::of_library(effect, parameters, &base))
-            .collect();
-        let plain = PLAIN_PARAMETERS.iter();
-        entries.extend(plain.filter_map(|plain| CandidateEntry::plain(plain, &base)));
-        for switch in &MODEL_SWITCHES {
-            match CandidateEntry::switch(switch, &base, &job, &experiment) {
-                Ok(entry) => entries.extend(entry),
-                // A setting that the model cannot have is none of the job's alternatives; another kind was asked for.
-                Err(why) => not_tried.extend(switch.is_kind().then_some(why)),
-            }
-        }
-        for untried in untried {
-            let needing = Some(untried.record());
-            let entry = CandidateEntry::of_library(untried.effect, untried.parameters, &base);
-            entries.extend(entry.map(|entry| CandidateEntry {
-                not_tried: needing,
-                ..entry
-            }));
-        }
-        exclude_on_nodes(&mut entries);
-        set_families(&mut entries);
+        let mut library = library_entries(&job, &base, effects, untried, &mut not_tried);
+        exclude_on_nodes(&mut library);
+        set_families(&mut library);
         // A job has at most so many effects; one place is for a law beyond the best combination.
         let room = EffectSet::MOST.saturating_sub(base.fit_variant.effects.len());
         let laws = match room {
             0 | 1 => Vec::new(),
             _ => laws(&job, &base)?,
         };
-        let mut law_files = NamedFiles::default();
-        for entry in laws.iter().flat_map(LawEntry::entries) {
-            if let Extension::File { name, text } = &entry.effect.extension {
-                law_files.insert(name, NamedFile::new(text.clone()));
-            }
-        }
         let prior_means: Vec<f64> = base.parameters.iter().map(|p| p.marginal.quantile(0.5)).collect();
         Ok(Self {
             design: design::proposed(&base),
             channels: design::channels(&base, &prior_means),
-            reductions: reductions(&job, &base, &experiment),
+            reductions: reductions(&job, &base),
             job,
             assumed,
-            library: entries,
+            library,
             not_tried,
+            law_files: law_files(&laws),
             laws,
-            law_files,
             variants: BTreeMap::new(),
             keys: BTreeMap::new(),
             max_effects: max_effects.min(room.saturating_sub(1)),
@@ -332,6 +307,50 @@ impl SearchModels {
     }
 }
 
+/// The candidates of the library, those that the model itself has, and those that are weighed with typical values. Settings that were
+/// asked for and that the model cannot have join what is not tried.
+fn library_entries(
+    job: &Job,
+    base: &Spec,
+    effects: Vec<LibraryEffect>,
+    untried: Vec<UntriedEffect>,
+    not_tried: &mut Vec<NotTried>,
+) -> Vec<CandidateEntry> {
+    let effects = effects.into_iter();
+    let mut entries: Vec<CandidateEntry> = effects
+        .filter_map(|(effect, parameters)| CandidateEntry::of_library(effect, parameters, base))
+        .collect();
+    let plain = PLAIN_PARAMETERS.iter();
+    entries.extend(plain.filter_map(|plain| CandidateEntry::plain(plain, base)));
+    for switch in &MODEL_SWITCHES {
+        match CandidateEntry::switch(switch, base, job) {
+            Ok(entry) => entries.extend(entry),
+            // A setting that the model cannot have is none of the job's alternatives; another kind was asked for.
+            Err(why) => not_tried.extend(switch.is_kind().then_some(why)),
+        }
+    }
+    for untried in untried {
+        let needing = Some(untried.record());
+        let entry = CandidateEntry::of_library(untried.effect, untried.parameters, base);
+        entries.extend(entry.map(|entry| CandidateEntry {
+            not_tried: needing,
+            ..entry
+        }));
+    }
+    entries
+}
+
+/// The files of laws.
+fn law_files(laws: &[LawEntry]) -> NamedFiles {
+    let mut files = NamedFiles::default();
+    for entry in laws.iter().flat_map(LawEntry::entries) {
+        if let Extension::File { name, text } = &entry.effect.extension {
+            files.insert(name, NamedFile::new(text.clone()));
+        }
+    }
+    files
+}
+
 /// The laws outside the library that the experiment shows, as candidates.
 fn laws(job: &Job, base: &Spec) -> Result<Vec<LawEntry>, FileError> {
     let fail = |message: String| FileError::whole(JOB, message);
@@ -363,11 +382,11 @@ fn laws(job: &Job, base: &Spec) -> Result<Vec<LawEntry>, FileError> {
 }
 
 /// The base's effects without which the job is valid, each with the names of the parameters that remain.
-fn reductions(job: &Job, base: &Spec, experiment: &Arc<Experiment>) -> Vec<(String, Vec<String>)> {
+fn reductions(job: &Job, base: &Spec) -> Vec<(String, Vec<String>)> {
     let mut reductions = Vec::new();
     for effect in &base.fit_variant.effects {
         let without = job.without(JOB, std::slice::from_ref(&effect.name));
-        if let Ok(without) = without.and_then(|job| spec(&job, experiment)) {
+        if let Ok(without) = without.and_then(|job| spec(&job, &base.experiment)) {
             let names = without.parameters.into_iter().map(|p| p.name).collect();
             reductions.push((effect.name.clone(), names));
         }

@@ -20,7 +20,7 @@ pub(super) struct Fitted {
     pub(super) holdout_runs: Vec<usize>,
     pub(super) scatters: Vec<SoilScatter>,
     pub(super) likelihood: Likelihood,
-    /// Which of the observables the likelihood takes.
+    /// The observables that the likelihood takes.
     pub(super) predicted: Vec<PredictedValue>,
 }
 

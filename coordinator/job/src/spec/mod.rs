@@ -41,7 +41,7 @@ use variants::Variants;
 pub struct Spec {
     /// The measured data set.
     pub experiment: Arc<Experiment>,
-    /// Which forward model, with its fixed parameters.
+    /// The forward model with its fixed parameters.
     pub model: ModelSettings,
     /// The free parameters with their priors, in the order of every parameter vector.
     pub parameters: Vec<FreeParameter>,
@@ -57,17 +57,17 @@ pub struct Spec {
     pub holdout_runs: Vec<usize>,
     /// The fitted runs, with everything that the model says of them.
     pub fit_variant: ModelVariant,
-    /// What workers evaluate for the final draws besides: the holdout runs, if there are any.
+    /// The variant of the holdout runs, which workers evaluate for the final draws alone; `None` without holdout runs.
     pub holdout_variant: Option<ModelVariant>,
     /// The likelihood of the measurements that are fitted; runs count within [`Spec::fit_runs`].
     pub likelihood: Likelihood,
-    /// How the soil scatters from run to run and from preparation to preparation.
+    /// The scatter of the soil from run to run and from preparation to preparation.
     pub scatters: Vec<SoilScatter>,
-    /// Which of the observables the likelihood takes.
+    /// The observables that the likelihood takes.
     predicted: Vec<PredictedValue>,
     /// Values that an independent test gives for parameters. The figures alone show them.
     pub reference: BTreeMap<String, f64>,
-    /// What the job says of the errors.
+    /// The settings of the errors, as the job states them.
     pub likelihood_settings: LikelihoodSettings,
     /// The measured readings of plates and rings; all are fitted.
     pub bevameter: BevameterReadings,
@@ -85,9 +85,9 @@ pub struct Spec {
     "the effect files have changed: the calibration was started with model version {begun}, this program has {now}"
 )]
 pub struct EffectsChanged {
-    /// The version that it is pinned to.
+    /// The version that the calibration is pinned to.
     pub begun: String,
-    /// The same equations with the effects as they are now.
+    /// The same equations with the effects of this program.
     pub now: String,
 }
 
@@ -186,7 +186,7 @@ impl Spec {
             .collect()
     }
 
-    /// What workers evaluate while sampling: the fitted runs, and of them the channels that the likelihood takes.
+    /// The variant that workers evaluate while sampling: the fitted runs with the channels that the likelihood takes.
     pub fn sampled_variant(&self) -> ModelVariant {
         let fitted: BTreeSet<_> = self
             .predicted

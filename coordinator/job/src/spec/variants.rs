@@ -13,9 +13,9 @@ use crate::job::Job;
 
 /// The variants of a calibration.
 pub(super) struct Variants {
-    /// Of the fitted runs and readings.
+    /// The variant of the fitted runs and readings.
     pub(super) fit: ModelVariant,
-    /// Of the holdout runs, if there are any.
+    /// The variant of the holdout runs, if there are any.
     pub(super) holdout: Option<ModelVariant>,
 }
 
@@ -70,7 +70,7 @@ fn of_runs(
         variant.probe = of_model().map(|p| p.marginal.quantile(0.5)).collect();
     }
     let mut sensitive = fitted.likelihood.sensitive().iter();
-    variant.stiffness_sensitivity = sensitive.any(|own| own.derivative == BY_STIFFNESS);
+    variant.stiffness_sensitivity = sensitive.any(|error| error.derivative == BY_STIFFNESS);
     Ok(variant)
 }
 

@@ -4,8 +4,6 @@ use inference::evolution::{CmaEsSettings, EvolutionSettings, EvolutionSettingsEr
 use inference::lm::{LmSettings, LmSettingsError};
 use inference::{Algorithm, TmcmcSettings, TmcmcSettingsError};
 
-use super::sampler::ALGORITHMS;
-
 /// How parameters are found.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum AlgorithmSettings {
@@ -15,14 +13,14 @@ pub enum AlgorithmSettings {
     Fit(LmSettings),
     /// The most probable parameters, by generations.
     Evolve(EvolutionSettings),
-    /// What the model is missing.
+    /// A search for effects that the model misses.
     Discover {
         /// Seed of the draws.
         seed: u64,
     },
 }
 
-/// No round of a search for a missing effect has more questions.
+/// Largest number of questions in a round of a search for a missing effect.
 const DISCOVERY_WIDTH: usize = 100_000;
 
 /// Settings that do not fit the prior.
@@ -45,7 +43,7 @@ pub enum AlgorithmSettingsError {
 pub enum AlgorithmName {
     /// Transitional Markov chain Monte Carlo.
     Tmcmc,
-    /// The same as published by Ching and Chen in 2007.
+    /// TMCMC as published by Ching and Chen in 2007.
     ChingChen2007,
     /// BASIS.
     Basis,
@@ -55,11 +53,22 @@ pub enum AlgorithmName {
     Ga,
     /// Covariance matrix adaptation.
     CmaEs,
-    /// Search for a missing effect.
+    /// Search for a missing effect, which a study starts by itself: no job states it.
     Discovery,
 }
 
 impl AlgorithmName {
+    /// Every algorithm.
+    const ALL: [AlgorithmName; 7] = [
+        AlgorithmName::Tmcmc,
+        AlgorithmName::ChingChen2007,
+        AlgorithmName::Basis,
+        AlgorithmName::Lm,
+        AlgorithmName::Ga,
+        AlgorithmName::CmaEs,
+        AlgorithmName::Discovery,
+    ];
+
     /// The algorithms that find the most probable parameters, which a job may ask for beside a sample.
     pub const POINT_ESTIMATES: [AlgorithmName; 3] =
         [AlgorithmName::Lm, AlgorithmName::Ga, AlgorithmName::CmaEs];
@@ -88,12 +97,8 @@ impl TryFrom<String> for AlgorithmName {
     type Error = String;
 
     fn try_from(name: String) -> Result<Self, String> {
-        let mut known = ALGORITHMS.iter().map(|algorithm| algorithm.name);
-        match known.find(|known| known.name() == name) {
-            Some(known) => Ok(known),
-            None if name == AlgorithmName::Discovery.name() => Ok(AlgorithmName::Discovery),
-            None => Err(format!("unknown algorithm \"{name}\"")),
-        }
+        let known = AlgorithmName::ALL.into_iter().find(|known| known.name() == name);
+        known.ok_or_else(|| format!("unknown algorithm \"{name}\""))
     }
 }
 
@@ -198,7 +203,7 @@ impl AlgorithmSettings {
         }
     }
 
-    /// More proposals than this are in no round: evaluations are numbered by it.
+    /// Largest number of proposals in a round: evaluations are numbered by it.
     pub fn width(&self) -> usize {
         match self {
             AlgorithmSettings::Sample(settings) => settings.particles,
@@ -209,7 +214,7 @@ impl AlgorithmSettings {
         }
     }
 
-    /// Most evaluations, where the job says so.
+    /// Largest number of evaluations, where the settings state one.
     pub fn max_evaluations(&self) -> Option<usize> {
         match self {
             AlgorithmSettings::Sample(_) | AlgorithmSettings::Discover { .. } => None,

@@ -72,7 +72,8 @@ pub(super) fn check(table: &toml::Table) -> Result<(), TableError> {
             lower: f64::NEG_INFINITY,
             upper: f64::INFINITY,
         };
-        let fail = |e: PriorEntryError| TableError::Unknown(e.of(format!("priors: {name}")).to_string());
+        let fail =
+            |e: PriorEntryError| TableError::Unknown(e.in_parameter(format!("priors: {name}")).to_string());
         marginal(&value, &unbounded).map_err(fail)?;
     }
     Ok(())

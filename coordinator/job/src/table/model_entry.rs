@@ -9,7 +9,7 @@ use shared::parameters::of_models;
 
 use super::prior_entry::PriorEntry;
 
-/// Fewest and most models that a job compares.
+/// The numbers of models that a job can compare.
 const COMPARED: std::ops::RangeInclusive<usize> = 2..=8;
 
 /// The values of a table with their places in the text.
@@ -27,7 +27,7 @@ pub(crate) struct ModelEntry {
     pub(crate) priors: Vec<PriorEntry>,
 }
 
-/// What is read once more for the lines.
+/// The part of a job that is read once more for its lines.
 #[derive(Deserialize)]
 struct Lines {
     #[serde(default)]
@@ -99,7 +99,7 @@ fn compared_entries(
         let inherited = shared
             .iter()
             .filter(|entry| is_shared_by(settings.kind, &entry.name))
-            .filter(|entry| stated.iter().all(|own| own.name != entry.name))
+            .filter(|entry| stated.iter().all(|stated| stated.name != entry.name))
             .filter(|entry| !settings.fixed.contains_key(&entry.name));
         let priors = inherited.chain(&stated).cloned().collect();
         read.push(ModelEntry {

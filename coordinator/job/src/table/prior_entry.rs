@@ -49,7 +49,7 @@ static USUAL_PRIORS: LazyLock<BTreeMap<&'static str, toml::Value>> = LazyLock::n
     texts.map(|prior| (prior, value(prior))).collect()
 });
 
-/// What an entry means.
+/// An entry that is read: a number or a prior.
 pub(crate) enum ParsedPrior {
     Fixed(f64),
     Free(FreeParameter),
@@ -74,7 +74,7 @@ impl PriorEntry {
             }
             return Ok(ParsedPrior::Fixed(value));
         }
-        let marginal = marginal(&self.value, &quantity).map_err(|e| e.of(&self.name))?;
+        let marginal = marginal(&self.value, &quantity).map_err(|e| e.in_parameter(&self.name))?;
         Ok(ParsedPrior::Free(FreeParameter {
             name: self.name.clone(),
             unit: quantity.unit,
@@ -88,8 +88,9 @@ impl PriorEntry {
             return Ok(());
         };
         let of_effect = |key: &str| {
-            let own = effects.iter().chain(formula::catalogue::catalogue());
-            own.filter(|e| e.name == self.name)
+            let known = effects.iter().chain(formula::catalogue::catalogue());
+            known
+                .filter(|e| e.name == self.name)
                 .any(|e| e.parameter(key).is_some())
         };
         let dotted = |key: &&String| {
@@ -118,11 +119,11 @@ impl ParsedPrior {
             unit: quantity.unit.clone(),
             marginal,
         };
-        let marginal = marginal(value, &quantity).map_err(|e| e.of(parameter.name));
+        let marginal = marginal(value, &quantity).map_err(|e| e.in_parameter(parameter.name));
         Some(marginal.map(free))
     }
 
-    /// What the file of an effect says of a parameter that the job does not mention, but for its name there.
+    /// The value or prior that an effect's file states for a parameter that the job does not mention.
     pub(crate) fn of_effect(name: &str, parameter: &Parameter) -> Result<ParsedPrior, PriorEntryError> {
         if let Some(value) = number(&parameter.prior) {
             return Ok(ParsedPrior::Fixed(value));
@@ -133,7 +134,7 @@ impl ParsedPrior {
             upper: f64::INFINITY,
         };
         let marginal = marginal(&parameter.prior, &quantity)
-            .map_err(|e| e.of(format!("prior of parameter {}", parameter.name)))?;
+            .map_err(|e| e.in_parameter(format!("prior of parameter {}", parameter.name)))?;
         Ok(ParsedPrior::Free(FreeParameter {
             name: name.to_owned(),
             unit: quantity.unit,

@@ -222,7 +222,7 @@ impl Default for CmaEs {
     }
 }
 
-/// What an algorithm makes of its keys.
+/// The keys of an algorithm.
 trait Keys: DeserializeOwned + JsonSchema + Default {
     const NAME: AlgorithmName;
 

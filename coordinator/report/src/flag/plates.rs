@@ -113,10 +113,10 @@ fn against_posterior(calibration: &FinishedCalibration) -> Option<Flag> {
     };
     let text = format!(
         "{who} of the plates in {} ({} among {}): {what}, their covariance times {}{limits}: {why}",
-        joint.said.file,
+        joint.stated.file,
         p_words(p),
         number::count(tests, "test"),
-        joint.said.transfer
+        joint.stated.transfer
     );
     Some(Flag {
         p: Some(p),
