@@ -48,7 +48,9 @@ fn resolved(schema: &Value, property: &Value) -> Value {
             .pointer(name.trim_start_matches('#'))
             .unwrap_or(&Value::Null);
         for (key, value) in known.as_object().into_iter().flatten() {
-            whole[key] = value.clone();
+            if whole[key].is_null() {
+                whole[key] = value.clone();
+            }
         }
     }
     if let Some(whole) = whole.as_object_mut() {
@@ -86,30 +88,34 @@ fn merged(of_algorithms: &[(&str, Value)]) -> Value {
         }
     }
     let differs = |key: &str| rest.iter().any(|(_, other)| other[key] != first[key]);
-    let words = |(name, property): &(&str, Value)| match (&property["description"], &property["default"]) {
-        (Value::String(words), Value::Null) => format!("{name}: {words}"),
-        (Value::String(words), usual) => format!("{name}: {words} Default {usual}."),
-        (_, usual) => format!("{name}: default {usual}"),
-    };
-    let is_of_all = of_algorithms.len() == ALGORITHMS.len();
-    if differs("default") || differs("description") {
-        let words: Vec<String> = of_algorithms.iter().map(words).collect();
-        one["description"] = words.join(" ").into();
-    } else if !is_of_all {
-        let names: Vec<&str> = of_algorithms.iter().map(|(name, _)| *name).collect();
-        one["description"] = format!(
-            "{}: {}",
-            names.join(", "),
-            first["description"].as_str().unwrap_or_default()
-        )
-        .into();
-    }
-    if differs("default")
-        && let Some(one) = one.as_object_mut()
+    if let Some(table) = one.as_object_mut()
+        && differs("default")
     {
-        one.remove("default");
+        table.remove("default");
     }
+    one["description"] = words(of_algorithms, differs("default")).into();
     one
+}
+
+/// The descriptions of a key that several algorithms take, each with the algorithms that it is about.
+fn words(of_algorithms: &[(&str, Value)], with_default: bool) -> String {
+    let mut by_words: Vec<(String, Vec<&str>)> = Vec::new();
+    for (name, property) in of_algorithms {
+        let mut words = property["description"].as_str().unwrap_or_default().to_owned();
+        if let Some(default) = property.get("default").filter(|_| with_default) {
+            words += &format!(" Default {default}.");
+        }
+        match by_words.iter_mut().find(|(known, _)| *known == words) {
+            Some((_, names)) => names.push(name),
+            None => by_words.push((words, vec![name])),
+        }
+    }
+    let about = |(words, names): &(String, Vec<&str>)| match names.len() == ALGORITHMS.len() {
+        true => words.clone(),
+        false => format!("{}: {words}", names.join(", ")),
+    };
+    let words: Vec<String> = by_words.iter().map(about).collect();
+    words.join(" ")
 }
 
 #[cfg(test)]

@@ -255,7 +255,7 @@ pub(super) const EXPERIMENT: &str = "experiment.toml";
 
 /// The specification of a search's job.
 pub(super) fn spec(job: &Job, experiment: &Arc<Experiment>) -> Result<Spec, FileError> {
-    Spec::of(JOB, job.clone(), EXPERIMENT, Arc::clone(experiment))
+    Spec::from_values(JOB, job.clone(), EXPERIMENT, Arc::clone(experiment))
 }
 
 #[cfg(test)]

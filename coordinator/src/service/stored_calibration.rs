@@ -69,7 +69,7 @@ impl ParsedExperiments {
                 experiment
             }
         };
-        Ok(Spec::of(job_name, job, experiment_name, experiment)?)
+        Ok(Spec::from_values(job_name, job, experiment_name, experiment)?)
     }
 }
 

@@ -111,7 +111,7 @@ fn members(
     let point_estimates = spec.point_estimates.clone();
     let experiment = Arc::clone(&spec.experiment);
     let spec_of = |job: &FileSet| -> Result<Spec, FileError> {
-        Spec::of(
+        Spec::from_values(
             file,
             Job::read(file, job)?,
             "experiment.toml",

@@ -25,7 +25,7 @@ pub(super) struct Fitted {
 }
 
 impl Fitted {
-    pub(super) fn of(
+    pub(super) fn new(
         experiment: &Experiment,
         bevameter: &BevameterReadings,
         parameters: &[FreeParameter],

@@ -110,14 +110,14 @@ impl Spec {
     ) -> Result<Spec, FileError> {
         let job = Job::read(job_name, job)?;
         let experiment = Experiment::parse(experiment_name, files)?;
-        Spec::of(job_name, job, experiment_name, Arc::new(experiment))
+        Spec::from_values(job_name, job, experiment_name, Arc::new(experiment))
     }
 
     /// Builds and validates the specification of a job and its experiment, both as values.
     ///
     /// # Errors
     /// As those of [`Spec::new`].
-    pub fn of(
+    pub fn from_values(
         job_name: &str,
         job: Job,
         experiment_name: &str,
@@ -126,11 +126,11 @@ impl Spec {
         let in_job = |message: String| FileError::whole(job_name, message);
         let in_data = |error: DataError| FileError::whole(experiment_name, error.to_string());
         let bevameter = BevameterReadings::new(&experiment).map_err(in_data)?;
-        let parameters = Parameters::of(job_name, &job, &experiment, &bevameter)?;
-        let fitted = Fitted::of(&experiment, &bevameter, &parameters.free, job.likelihood);
+        let parameters = Parameters::new(job_name, &job, &experiment, &bevameter)?;
+        let fitted = Fitted::new(&experiment, &bevameter, &parameters.free, job.likelihood);
         let fitted = fitted.map_err(in_data)?;
         check_algorithms(&job, parameters.free.len(), fitted.predicted.len()).map_err(in_job)?;
-        let variants = Variants::of(&job, &experiment, &bevameter, &parameters, &fitted).map_err(in_job)?;
+        let variants = Variants::new(&job, &experiment, &bevameter, &parameters, &fitted).map_err(in_job)?;
         Ok(Spec {
             experiment,
             model: parameters.model,
@@ -170,7 +170,7 @@ impl Spec {
         let spec = |job: Job| {
             let (line, kind) = (job.line, job.model.kind.name());
             let job = job.beside(texts.clone());
-            let spec = Spec::of(job_name, job, experiment_name, Arc::clone(&experiment));
+            let spec = Spec::from_values(job_name, job, experiment_name, Arc::clone(&experiment));
             spec.map_err(
                 |error| match line.filter(|_| error.line.is_none() && error.file == job_name) {
                     Some(line) => {

@@ -22,7 +22,7 @@ pub(super) struct Variants {
 impl Variants {
     /// # Errors
     /// A sentence: the model cannot express the experiment.
-    pub(super) fn of(
+    pub(super) fn new(
         job: &Job,
         experiment: &Experiment,
         bevameter: &BevameterReadings,

@@ -21,12 +21,12 @@ const METAMODEL_STEPS: [usize; 2] = [3, 30];
 
 /// The algorithms that a job may state, in the order in which messages name them.
 pub(crate) const ALGORITHMS: [StatedAlgorithm; 6] = [
-    StatedAlgorithm::of::<Tmcmc>(),
-    StatedAlgorithm::of::<ChingChen2007>(),
-    StatedAlgorithm::of::<Basis>(),
-    StatedAlgorithm::of::<Lm>(),
-    StatedAlgorithm::of::<Ga>(),
-    StatedAlgorithm::of::<CmaEs>(),
+    StatedAlgorithm::new::<Tmcmc>(),
+    StatedAlgorithm::new::<ChingChen2007>(),
+    StatedAlgorithm::new::<Basis>(),
+    StatedAlgorithm::new::<Lm>(),
+    StatedAlgorithm::new::<Ga>(),
+    StatedAlgorithm::new::<CmaEs>(),
 ];
 
 /// The seed of all random numbers.
@@ -366,7 +366,7 @@ pub(crate) struct StatedAlgorithm {
 }
 
 impl StatedAlgorithm {
-    const fn of<K: Keys>() -> Self {
+    const fn new<K: Keys>() -> Self {
         StatedAlgorithm {
             name: K::NAME,
             keys: keys_of::<K>,
