@@ -69,7 +69,7 @@ struct Tmcmc {
     /// Least and most Metropolis steps per particle in a stage of moves.
     #[schemars(inner(range(min = 1, max = TmcmcSettings::MAX_MOVES)))]
     moves: Option<[usize; 2]>,
-    /// With kind = "scm": steps that a corrected quasi_static model takes between two evaluations of scm.
+    /// With `kind = "scm"`: steps that a corrected `quasi_static` model takes between two evaluations of `scm`.
     #[schemars(range(max = TmcmcSettings::MAX_MOVES))]
     metamodel_moves: usize,
     seed: Seed,
