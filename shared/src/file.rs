@@ -141,7 +141,7 @@ fn toml_error(file: &str, text: &str, error: &toml::de::Error) -> FileError {
     }
 }
 
-/// The line, counted from 1, in which the byte at `offset` stands.
+/// The line, counted from 1, of the byte at `offset`.
 fn line_of(text: &str, offset: usize) -> usize {
     text.bytes().take(offset).filter(|&b| b == b'\n').count() + 1
 }
