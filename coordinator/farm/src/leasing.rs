@@ -52,7 +52,8 @@ impl Farm {
                 turn.most = turn.most.max(1);
             }
         }
-        let asks_twice = |e: &&Entry| e.calibration.is_open() && e.calibration.second.queue.unleased() > 0;
+        let asks_twice =
+            |e: &&Entry| e.calibration.is_open() && e.calibration.witness.second.queue.unleased() > 0;
         let twice = self.calibrations.values().filter(asks_twice).map(|e| Turn {
             id: e.calibration.identity.id,
             is_second: true,
@@ -70,7 +71,7 @@ impl Farm {
         let expires_ms = now_ms + self.lease_ms;
         let mut holds = self.held_by(worker);
         let holds_suspect = |e: &Entry| {
-            let second = &e.calibration.second.queue;
+            let second = &e.calibration.witness.second.queue;
             e.calibration.queue.holds_suspect(worker) || second.holds_suspect(worker)
         };
         if want == 0 || (holds > 0 && self.calibrations.values().any(holds_suspect)) {
@@ -121,7 +122,7 @@ impl Farm {
             };
             let wanted = turn.most.min(want - leases.len());
             let queue = match turn.is_second {
-                true => &mut calibration.second.queue,
+                true => &mut calibration.witness.second.queue,
                 false => &mut calibration.queue,
             };
             let claims = queue.claim(claimant, wanted, has_other, next_lease);
@@ -134,7 +135,7 @@ impl Farm {
             for claim in claims {
                 let (lease, evaluation) = (claim.lease, claim.evaluation);
                 let question = match turn.is_second {
-                    true => calibration.second.question(evaluation),
+                    true => calibration.witness.second.question(evaluation),
                     false => calibration.question(evaluation),
                 };
                 let question = question.expect("a claimed evaluation is asked for at present");

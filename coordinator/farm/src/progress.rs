@@ -75,7 +75,7 @@ pub(super) fn status(
         CalibrationEngine::Discovery(search) => (search.round() as usize, 1.0, 0, None),
     };
     let queue = &calibration.queue;
-    let per_second = pace.per_second(calibration.simulations, now_ms);
+    let per_second = pace.per_second(calibration.cost.simulations, now_ms);
     CalibrationStatus {
         id: identity.id,
         name: identity.name.clone(),
@@ -96,8 +96,8 @@ pub(super) fn status(
             tempering_exponent,
             step: step as u32,
             acceptance: acceptance.unwrap_or(0.0),
-            evaluations: calibration.evaluations,
-            rejected: calibration.rejected,
+            evaluations: calibration.cost.evaluations,
+            rejected: calibration.cost.rejected,
             step_done: (queue.len() - queue.unleased() - queue.leased()) as u64,
             step_size: queue.len() as u64,
             evaluations_per_s: per_second,
@@ -108,7 +108,7 @@ pub(super) fn status(
 
 /// What a calibration waits for that has nothing left to evaluate.
 fn waits(calibration: &Calibration) -> Option<String> {
-    let waiting = calibration.second.waiting();
+    let waiting = calibration.witness.second.waiting();
     let message = || format!("all is evaluated; {waiting} answers wait for that of a second worker");
     calibration.is_concluded().then(message)
 }
@@ -135,6 +135,6 @@ pub(super) fn evaluations_left(calibration: &Calibration) -> Option<f64> {
     }
     let growth = (last / first).ln() / (exponents.len() - 1) as f64;
     let stages_to_go = (1.0 / last).ln() / growth.max(1e-3);
-    let cost = calibration.evaluations as f64 / exponents.len() as f64;
+    let cost = calibration.cost.evaluations as f64 / exponents.len() as f64;
     Some(stages_to_go * cost)
 }

@@ -13,7 +13,7 @@ use super::metrics::{FarmCounters, FarmMetrics};
 use super::progress::{self, Pace};
 use super::seal::{LeaseTerms, proves};
 use super::worker_record::WorkerRecord;
-use crate::calibration::{Calibration, SimulationResult};
+use crate::calibration::{Calibration, ResultError, SimulationResult};
 use crate::lease::{LeaseFailure, LeaseQueue};
 use record::SealKey;
 use record::fact::Fact;
@@ -56,8 +56,8 @@ pub(super) struct Entry {
 
 impl Entry {
     fn queues(&mut self) -> [&mut LeaseQueue; 2] {
-        let Calibration { queue, second, .. } = &mut self.calibration;
-        [queue, &mut second.queue]
+        let Calibration { queue, witness, .. } = &mut self.calibration;
+        [queue, &mut witness.second.queue]
     }
 }
 
@@ -114,10 +114,10 @@ impl Farm {
                 calibration.state = before.calibration.state;
                 calibration.message.clone_from(&before.calibration.message);
             }
-            calibration.busy_ms = before.calibration.busy_ms;
+            calibration.cost.busy_ms = before.calibration.cost.busy_ms;
         }
         self.facts.extend(facts);
-        let pace = Pace::new(calibration.simulations, now_ms);
+        let pace = Pace::new(calibration.cost.simulations, now_ms);
         let entry = Entry {
             calibration,
             key,
@@ -138,8 +138,8 @@ impl Farm {
 
     /// Numbers for the metrics page.
     pub fn metrics(&self) -> FarmMetrics {
-        let leased = |e: &Entry| e.calibration.queue.leased() + e.calibration.second.queue.leased();
-        let waiting = |e: &Entry| e.calibration.second.waiting();
+        let leased = |e: &Entry| e.calibration.queue.leased() + e.calibration.witness.second.queue.leased();
+        let waiting = |e: &Entry| e.calibration.witness.second.waiting();
         FarmMetrics {
             counters: self.counters.clone(),
             queued: self.remaining(),
@@ -153,7 +153,7 @@ impl Farm {
 
     /// Whether an exchange would give a lease to somebody.
     pub fn has_work(&self) -> bool {
-        let second = |e: &Entry| e.calibration.is_open() && e.calibration.second.queue.unleased() > 0;
+        let second = |e: &Entry| e.calibration.is_open() && e.calibration.witness.second.queue.unleased() > 0;
         self.remaining() > 0 || self.calibrations.values().any(second)
     }
 
@@ -264,120 +264,162 @@ impl Farm {
     /// Takes a result from a worker that has said which version of the equations it computes. The first that counts pins its
     /// calibration to it.
     fn take_result(&mut self, worker: &str, result: WorkResult, now_ms: u64) -> Taken {
-        let (id, lease, evaluation) = (result.calibration, result.lease, result.evaluation);
+        let (id, lease, repeated) = (result.calibration, result.lease, result.repeated);
         if let Some(closed) = self.closed(id) {
             return self.compare_late(worker, result, &closed);
         }
-        let terms = |model_version| LeaseTerms {
-            lease,
-            worker,
-            calibration: id,
-            evaluation,
-            model_version,
+        let version = match self.proven_version(worker, &result) {
+            Ok(version) => version,
+            Err(taken) => return taken,
         };
-        let Some(entry) = self.calibrations.get_mut(&id) else {
-            return Taken::Duplicate;
+        let taken = match self.complete(worker, result, now_ms) {
+            Ok((facts, true)) => {
+                self.pin(id, version);
+                self.keep(facts);
+                let repeated = repeated.map(|repeated| Fact::Repeated {
+                    calibration: id,
+                    repeated,
+                });
+                self.facts.extend(repeated);
+                self.credit(worker);
+                Taken::New
+            }
+            Ok((facts, false)) => {
+                self.keep(facts);
+                Taken::Duplicate
+            }
+            Err(error) => {
+                self.fail(id, lease, worker, &error.to_string());
+                Taken::New
+            }
         };
-        let calibration = &mut entry.calibration;
+        let entry = self.calibrations.get_mut(&id);
+        let convicted = entry.map(|entry| entry.calibration.witness.take_convicted());
+        for (worker, evaluation) in convicted.into_iter().flatten() {
+            self.convict(&worker, id, evaluation);
+        }
+        self.settle(id, now_ms);
+        taken
+    }
+
+    /// The version of the model under which the seal of a result proves that it answers a lease of its worker.
+    fn proven_version(&self, worker: &str, result: &WorkResult) -> Result<String, Taken> {
+        let Some(entry) = self.calibrations.get(&result.calibration) else {
+            return Err(Taken::Duplicate);
+        };
+        let (calibration, evaluation) = (&entry.calibration, result.evaluation);
         let record = self.workers.get(worker);
-        let Some(version) = record.and_then(|own| own.equations_for(calibration)) else {
+        let Some(version) = record.and_then(|record| record.equations_for(calibration)) else {
             // It ran the model when it took the lease; what it runs now is not known.
-            return Taken::Refused;
+            return Err(Taken::Refused);
         };
         let pinned = calibration.model_version.as_deref();
         let is_other = pinned.is_some_and(|pinned| equations_of(pinned) != equations_of(version));
         if is_other && calibration.spec.model.external.is_some() {
             // The model has become another one since the lease.
-            return Taken::Refused;
+            return Err(Taken::Refused);
         }
         let model_version = model_version(calibration, version);
+        let terms = LeaseTerms {
+            lease: result.lease,
+            worker,
+            calibration: result.calibration,
+            evaluation,
+            model_version: &model_version,
+        };
         let question = calibration.question(evaluation);
-        let question = question.or_else(|| calibration.second.question(evaluation));
-        if !proves(&result.seal, entry.key, terms(&model_version), question) {
-            return Taken::Refused;
+        let question = question.or_else(|| calibration.witness.second.question(evaluation));
+        match proves(&result.seal, entry.key, terms, question) {
+            true => Ok(model_version.into_owned()),
+            false => Err(Taken::Refused),
         }
-        let pin = calibration
-            .model_version
-            .is_none()
-            .then(|| model_version.into_owned());
-        let is_new = self
-            .workers
-            .get(worker)
-            .is_none_or(|w| w.completed < NEW_WORKER_RESULTS);
-        if let Some(age_ms) = calibration.queue.age_ms(lease, worker, now_ms) {
+    }
+
+    /// Lets a proven result take effect on its calibration. The facts to store, and whether the result counted.
+    fn complete(
+        &mut self,
+        worker: &str,
+        result: WorkResult,
+        now_ms: u64,
+    ) -> Result<(Vec<Fact>, bool), ResultError> {
+        let Some(entry) = self.calibrations.get_mut(&result.calibration) else {
+            return Ok((Vec::new(), false));
+        };
+        let calibration = &mut entry.calibration;
+        if let Some(age_ms) = calibration.queue.age_ms(result.lease, worker, now_ms) {
             entry.pace.count_lease(age_ms);
         }
-        let repeated = result.repeated;
-        let completed = SimulationResult::of(result).and_then(|computed| {
-            if is_new {
-                calibration.verify(evaluation);
-            }
-            let completed = calibration.complete(evaluation, computed, worker);
-            completed.map_err(|error| error.to_string())
-        });
-        let taken = completed.map(|(facts, counted)| {
-            if let Some(version) = pin.filter(|_| counted) {
-                let is_other = |name: &str| {
-                    let other = self.workers.get(name);
-                    let theirs = other.and_then(|other| other.equations_for(calibration));
-                    theirs.is_none_or(|theirs| equations_of(theirs) != equations_of(&version))
-                };
-                let others: Vec<&String> = self.workers.keys().filter(|name| is_other(name)).collect();
-                calibration
-                    .queue
-                    .take_back_of(|name| others.iter().any(|other| *other == name));
-                calibration.model_version = Some(version.clone());
-                let calibration = id;
-                self.facts.push(Fact::ModelVersion { calibration, version });
-            }
-            let is_confirmation = |fact: &&Fact| matches!(fact, Fact::Confirmed { .. });
-            self.counters.confirmed += facts.iter().filter(is_confirmation).count() as u64;
-            self.facts.extend(facts);
-            if let Some(repeated) = repeated.filter(|_| counted) {
-                let calibration = id;
-                self.facts.push(Fact::Repeated {
-                    calibration,
-                    repeated,
-                });
-            }
-            entry.pace.count(calibration.simulations, now_ms);
-            counted
-        });
-        let convicted = calibration.take_convicted();
-        let record = self
-            .workers
-            .get_mut(worker)
-            .expect("the worker of an exchange is on record");
-        let taken = match taken {
-            Ok(true) => {
-                record.completed += 1;
-                self.counters.completed += 1;
-                self.counters.completed_in_queues += u64::from(record.queue_job.is_some());
-                Taken::New
-            }
-            Ok(false) => Taken::Duplicate,
-            Err(message) => {
-                record.faults += 1;
-                self.counters.failed_leases += 1;
-                if let Some(failure) = calibration.queue.fail(lease) {
-                    calibration.drop_idle_seconds();
-                    self.facts.extend(calibration.lease_failed(&failure, &message));
-                } else if let Some(failure) = calibration
-                    .second
-                    .queue
-                    .fail(lease)
-                    .filter(LeaseFailure::exhausted)
-                {
-                    calibration.second.drop(failure.evaluation);
-                }
-                Taken::New
-            }
-        };
-        for (worker, evaluation) in convicted {
-            self.convict(&worker, id, evaluation);
+        let computed = SimulationResult::new(result.outcome, result.end)?;
+        let record = self.workers.get(worker);
+        if record.is_none_or(|record| record.completed < NEW_WORKER_RESULTS) {
+            calibration.verify(result.evaluation);
         }
-        self.settle(id, now_ms);
-        taken
+        let completed = calibration.complete(result.evaluation, computed, worker)?;
+        entry.pace.count(calibration.cost.simulations, now_ms);
+        Ok(completed)
+    }
+
+    /// Pins a calibration to a version of the model, unless it is pinned: leases of workers of another version come back.
+    fn pin(&mut self, id: i64, version: String) {
+        let Some(entry) = self.calibrations.get_mut(&id) else {
+            return;
+        };
+        let calibration = &mut entry.calibration;
+        if calibration.model_version.is_some() {
+            return;
+        }
+        let is_other = |worker: &WorkerRecord| {
+            let stated = worker.equations_for(calibration);
+            stated.is_none_or(|stated| equations_of(stated) != equations_of(&version))
+        };
+        let workers = self.workers.iter().filter(|(_, worker)| is_other(worker));
+        let others: Vec<&String> = workers.map(|(name, _)| name).collect();
+        let queue = &mut calibration.queue;
+        queue.take_back_of(|name| others.iter().any(|other| *other == name));
+        calibration.model_version = Some(version.clone());
+        let calibration = id;
+        self.facts.push(Fact::ModelVersion { calibration, version });
+    }
+
+    /// Hands the facts of a result to the store.
+    fn keep(&mut self, facts: Vec<Fact>) {
+        let is_confirmation = |fact: &&Fact| matches!(fact, Fact::Confirmed { .. });
+        self.counters.confirmed += facts.iter().filter(is_confirmation).count() as u64;
+        self.facts.extend(facts);
+    }
+
+    /// Counts a result of a worker.
+    fn credit(&mut self, worker: &str) {
+        let record = self.worker_mut(worker);
+        record.completed += 1;
+        let is_in_queue = record.queue_job.is_some();
+        self.counters.completed += 1;
+        self.counters.completed_in_queues += u64::from(is_in_queue);
+    }
+
+    /// Fails a lease whose worker gave no result.
+    fn fail(&mut self, id: i64, lease: u64, worker: &str, message: &str) {
+        self.worker_mut(worker).faults += 1;
+        self.counters.failed_leases += 1;
+        let Some(entry) = self.calibrations.get_mut(&id) else {
+            return;
+        };
+        let calibration = &mut entry.calibration;
+        if let Some(failure) = calibration.queue.fail(lease) {
+            calibration.drop_idle_seconds();
+            self.facts.extend(calibration.lease_failed(&failure, message));
+            return;
+        }
+        let second = &mut calibration.witness.second;
+        if let Some(failure) = second.queue.fail(lease).filter(LeaseFailure::exhausted) {
+            second.drop(failure.evaluation);
+        }
+    }
+
+    fn worker_mut(&mut self, worker: &str) -> &mut WorkerRecord {
+        self.workers
+            .get_mut(worker)
+            .expect("the worker of an exchange is on record")
     }
 
     /// Key and model version of a calibration that takes no results: it has ended, or waits for its replay, after which a result
@@ -391,7 +433,7 @@ impl Farm {
         is_closed.then(|| Ended {
             key: entry.key,
             model_version: calibration.model_version.clone().unwrap_or_default(),
-            is_rewound: entry.rewinds > 0 || calibration.is_rewound,
+            is_rewound: entry.rewinds > 0 || calibration.witness.is_rewound,
         })
     }
 
@@ -409,7 +451,8 @@ impl Farm {
             return Taken::Refused;
         }
         // After a rewind the same number may ask something else: what it asked before is not known.
-        if let Some(computed) = SimulationResult::of(result).ok().filter(|_| !closed.is_rewound) {
+        let computed = SimulationResult::new(result.outcome, result.end);
+        if let Some(computed) = computed.ok().filter(|_| !closed.is_rewound) {
             self.facts.push(Fact::Duplicate {
                 calibration,
                 evaluation,
@@ -430,15 +473,16 @@ impl Farm {
     }
 
     pub(super) fn held_by(&self, worker: &str) -> usize {
-        let held =
-            |e: &Entry| e.calibration.queue.held_by(worker) + e.calibration.second.queue.held_by(worker);
+        let held = |e: &Entry| {
+            e.calibration.queue.held_by(worker) + e.calibration.witness.second.queue.held_by(worker)
+        };
         self.calibrations.values().map(held).sum()
     }
 
     /// Advances the clock: expires leases, removes silent workers, adds up busy time.
     pub fn tick(&mut self, now_ms: u64) {
         for entry in self.calibrations.values_mut() {
-            self.counters.failed_leases += entry.calibration.second.expire(now_ms);
+            self.counters.failed_leases += entry.calibration.witness.second.expire(now_ms);
             let expired = entry.calibration.queue.expire(now_ms);
             entry.calibration.drop_idle_seconds();
             self.counters.failed_leases += expired.unstarted;
@@ -470,7 +514,7 @@ impl Farm {
             // What waits for others has not begun to cost anything.
             let calibration = &entry.calibration;
             if calibration.state == CalibrationState::Running && calibration.queue.leased() > 0 {
-                entry.calibration.busy_ms += now_ms.saturating_sub(entry.counted_ms);
+                entry.calibration.cost.busy_ms += now_ms.saturating_sub(entry.counted_ms);
             }
             entry.counted_ms = now_ms;
         }
@@ -480,7 +524,7 @@ impl Farm {
         self.ended.extend(ended.map(|(id, entry)| {
             let model_version = entry.calibration.model_version.unwrap_or_default();
             let key = entry.key;
-            let is_rewound = entry.calibration.is_rewound;
+            let is_rewound = entry.calibration.witness.is_rewound;
             let ended = Ended {
                 key,
                 model_version,

@@ -30,7 +30,7 @@ pub use estimate::EstimateRow;
 pub use evaluation_key::{EvaluationKey, HOLDOUT_RUNS_FROM, LIKELIEST, PREDICTIONS_FROM};
 pub use fact::{Dispute, EvaluationRow, Fact, Fingerprint, Kept};
 pub use membership::{Change, Membership, Role};
-pub use replay::{Stored, StoredEvaluation};
+pub use replay::Stored;
 pub use sample::{Prediction, PriorDraw, RejectionReason, Sample, StageRow, Subchains};
 pub use token::{Token, TokenHash, TokenRole};
 pub use verification::{Quarantine, Repeats, Verified};

@@ -232,7 +232,7 @@ impl Service {
                     (spec, Membership::changed(role, parent, change))
                 }
             };
-            let calibration = Calibration::of(identity, Arc::new(spec), &job, &files)?;
+            let calibration = Calibration::from_files(identity, Arc::new(spec), &job, &files)?;
             let row = NewCalibrationRow {
                 membership,
                 name,
