@@ -15,7 +15,7 @@ use shared::file::{FileSet, parse_toml};
 use shared::outcome::Observables;
 
 use result::discovery::DiscoveryRound;
-use result::finished_calibration::FinishedCalibration;
+use result::finished_calibration::{FinishedCalibration, Outcome, SampledPosterior};
 use result::study::Study;
 use result::study_member::StudyMember;
 
@@ -130,6 +130,14 @@ pub fn with_smooth_misfit() -> FinishedCalibration {
     calibration
 }
 
+/// The sample of a calibration, to be changed.
+pub fn sampled(calibration: &mut FinishedCalibration) -> &mut SampledPosterior {
+    match &mut calibration.outcome {
+        Outcome::Sampled(sampled) => sampled,
+        other => panic!("{other:?} is no sample"),
+    }
+}
+
 /// The same where the model rejected all final draws, drifted, and has no evidence.
 pub fn all_rejected() -> FinishedCalibration {
     let mut calibration = calibration();
@@ -138,7 +146,7 @@ pub fn all_rejected() -> FinishedCalibration {
         let refused = |_| Err(RejectionReason("no_support".into())).into();
         prediction.holdout = prediction.holdout.take().map(refused);
     }
-    for stage in &mut calibration.stages {
+    for stage in &mut sampled(&mut calibration).stages {
         (stage.equilibrated, stage.drift_z, stage.tempering_exponent) = (false, 1e6, 0.0);
     }
     calibration.row.equilibrated = Some(false);
@@ -181,7 +189,7 @@ pub fn fit() -> FinishedCalibration {
     let mut sd: Vec<Option<f64>> = first.theta.iter().map(|x| Some(0.1 * x)).collect();
     let mut at_bound = vec![false; sd.len()];
     (sd[1], at_bound[1]) = (None, true);
-    calibration.estimate = Some(EstimateRow {
+    calibration.outcome = Outcome::Estimated(EstimateRow {
         theta: first.theta.clone(),
         log_likelihood: -20.0,
         log_prior: -1.0,
@@ -191,11 +199,7 @@ pub fn fit() -> FinishedCalibration {
         history: Vec::new(),
     });
     calibration.predictions = vec![first];
-    calibration.posterior.clear();
-    calibration.prior_draws.clear();
-    calibration.populations.clear();
     calibration.likeliest_values = None;
-    calibration.stages.clear();
     calibration.row.log_evidence = None;
     calibration.row.log_evidence_se = None;
     calibration.row.equilibrated = None;
@@ -206,7 +210,7 @@ pub fn fit() -> FinishedCalibration {
 pub fn search() -> FinishedCalibration {
     let mut calibration = fit();
     calibration.spec.algorithm = AlgorithmSettings::Evolve(EvolutionSettings::Ga(GaSettings::default()));
-    if let Some(estimate) = &mut calibration.estimate {
+    if let Outcome::Estimated(estimate) = &mut calibration.outcome {
         estimate.sd = None;
         estimate.stop = StopReason::Generations;
         estimate.history = vec![Generation {
@@ -432,17 +436,17 @@ pub fn of_files(job: FileSet, files: &FileSet) -> FinishedCalibration {
     FinishedCalibration {
         experiment: row.name.clone(),
         row,
-        estimate: None,
-        approximated: None,
-        stages: vec![stage(1, 0.001), stage(2, 0.1), stage(3, 1.0)],
-        populations: vec![posterior.clone(); 3],
+        outcome: Outcome::Sampled(SampledPosterior {
+            stages: vec![stage(1, 0.001), stage(2, 0.1), stage(3, 1.0)],
+            populations: vec![posterior.clone(); 3],
+            draws: posterior,
+            prior_draws,
+            subchains: None,
+        }),
         likeliest_values: Some(likeliest_values),
-        posterior,
         predictions,
         simulated_histories: None,
         rejections: BTreeMap::from([("no_support".into(), 3)]),
-        subchains: None,
-        prior_draws,
         faults: BTreeMap::from([("the lease expired".into(), 1)]),
         given_up: 0,
         disputes: Vec::new(),

@@ -71,7 +71,7 @@ pub struct StagePopulation {
 
 /// Convergence of a search; `None` of a sample, and of a fit by steps, which keeps no history.
 pub(super) fn search(calibration: &FinishedCalibration) -> Option<SearchConvergence> {
-    let history = generations(&calibration.estimate.as_ref()?.history);
+    let history = generations(&calibration.estimate()?.history);
     (!history.is_empty()).then(|| SearchConvergence {
         algorithm: calibration.spec.algorithm.algorithm_name(),
         history,
@@ -88,7 +88,7 @@ struct Population<'a> {
 
 /// The populations from the prior, which is stage 0, to the posterior.
 fn all(calibration: &FinishedCalibration) -> Vec<Population<'_>> {
-    let Some((prior, later)) = calibration.populations.split_first() else {
+    let Some((prior, later)) = calibration.populations().split_first() else {
         return Vec::new();
     };
     let mut evaluations = prior.len() as u64;
@@ -98,8 +98,8 @@ fn all(calibration: &FinishedCalibration) -> Vec<Population<'_>> {
         evaluations,
         samples: prior,
     }];
-    let later = later.iter().chain([&calibration.posterior]);
-    for (row, samples) in calibration.stages.iter().zip(later) {
+    let later = later.iter().map(Vec::as_slice).chain([calibration.posterior()]);
+    for (row, samples) in calibration.stages().iter().zip(later) {
         evaluations += row.evaluations;
         populations.push(Population {
             stage: row.stage,
@@ -188,7 +188,7 @@ mod tests {
         assert_eq!(stages, [0, 1, 3]);
         assert_eq!(populations.parameters[1].unit, "deg");
         assert!(populations.stages.iter().all(|s| s.points.len() == 40));
-        calibration.populations.clear();
+        fixture::sampled(&mut calibration).populations.clear();
         assert!(super::populations(&calibration).is_none());
     }
 }

@@ -20,7 +20,7 @@ impl FinishedCalibration {
             .chain(parameters)
             .collect();
         let rows = self
-            .posterior
+            .posterior()
             .iter()
             .map(|s| {
                 let head = [s.log_likelihood.unwrap_or(f64::NEG_INFINITY), s.log_prior];
