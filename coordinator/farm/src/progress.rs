@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 
-use shared::api::{CalibrationStatus, Progress};
+use shared::api::{CalibrationStatus, Position, Progress};
 
 use crate::calibration::{Calibration, CalibrationEngine};
 
@@ -65,15 +65,6 @@ pub(super) fn status(
     now_ms: u64,
 ) -> CalibrationStatus {
     let identity = &calibration.identity;
-    let (stage, tempering_exponent, step, acceptance) = match calibration.engine() {
-        CalibrationEngine::Sampler(sampler) => {
-            let now = sampler.progress();
-            (now.stage, now.tempering_exponent, now.step, now.acceptance)
-        }
-        CalibrationEngine::Fit(fit) => (fit.steps(), 1.0, 0, None),
-        CalibrationEngine::Evolution(evolution) => (evolution.history().len(), 1.0, 0, None),
-        CalibrationEngine::Discovery(search) => (search.round() as usize, 1.0, 0, None),
-    };
     let queue = &calibration.queue;
     let per_second = pace.per_second(calibration.cost.simulations, now_ms);
     CalibrationStatus {
@@ -92,10 +83,7 @@ pub(super) fn status(
         model_version: calibration.model_version.clone(),
         progress: Some(Progress {
             algorithm: calibration.spec.algorithm.name().to_owned(),
-            stage: stage as u32,
-            tempering_exponent,
-            step: step as u32,
-            acceptance: acceptance.unwrap_or(0.0),
+            position: position(calibration.engine()),
             evaluations: calibration.cost.evaluations,
             rejected: calibration.cost.rejected,
             step_done: (queue.len() - queue.unleased() - queue.leased()) as u64,
@@ -103,6 +91,29 @@ pub(super) fn status(
             evaluations_per_s: per_second,
             remaining_s: remaining_s(calibration, per_second),
         }),
+    }
+}
+
+fn position(engine: &CalibrationEngine) -> Position {
+    match engine {
+        CalibrationEngine::Sampler(sampler) => {
+            let now = sampler.progress();
+            Position::Sampler {
+                stage: now.stage as u32,
+                tempering_exponent: now.tempering_exponent,
+                step: now.step as u32,
+                acceptance: now.acceptance,
+            }
+        }
+        CalibrationEngine::Fit(fit) => Position::Fit {
+            steps: fit.steps() as u32,
+        },
+        CalibrationEngine::Evolution(evolution) => Position::Evolution {
+            generations: evolution.history().len() as u32,
+        },
+        CalibrationEngine::Discovery(search) => Position::Search {
+            rounds: search.round() as u32,
+        },
     }
 }
 
