@@ -3,13 +3,13 @@
 use std::collections::BTreeMap;
 use std::sync::OnceLock;
 
+use inference::Particle;
 use job::Spec;
 use record::{
-    CalibrationRow, Dispute, EstimateRow, Prediction, PriorDraw, Repeats, Sample, StageRow, Subchains,
-    Verified,
+    CalibrationRow, Dispute, EstimateRow, Prediction, PriorDraw, Repeats, StageRow, Subchains, Verified,
 };
 use shared::outcome::SimulatedHistory;
-use statistics::Marginal;
+use statistics::{LogLikelihood, Marginal};
 
 use crate::table::comparison::Comparison;
 use crate::table::interpolation::Interpolations;
@@ -24,7 +24,7 @@ pub enum Outcome {
         /// The most probable parameters.
         mode: EstimateRow,
         /// The equally weighted draws.
-        draws: Vec<Sample>,
+        draws: Vec<Particle>,
     },
     /// The most probable parameters alone.
     Estimated(EstimateRow),
@@ -34,9 +34,9 @@ pub enum Outcome {
 #[derive(Debug)]
 pub struct SampledPosterior {
     /// The equally weighted draws.
-    pub draws: Vec<Sample>,
+    pub draws: Vec<Particle>,
     /// The draws from the prior, then the populations at the end of the stages before the last.
-    pub populations: Vec<Vec<Sample>>,
+    pub populations: Vec<Vec<Particle>>,
     /// The draws from the prior with what the model gave there.
     pub prior_draws: Vec<PriorDraw>,
     /// Its stages.
@@ -106,7 +106,7 @@ impl FinishedCalibration {
     }
 
     /// The equally weighted draws of the posterior, of a fit those of its normal approximation; empty of a fit without one.
-    pub fn posterior(&self) -> &[Sample] {
+    pub fn posterior(&self) -> &[Particle] {
         match &self.outcome {
             Outcome::Sampled(sampled) => &sampled.draws,
             Outcome::Approximated { draws, .. } => draws,
@@ -148,7 +148,7 @@ impl FinishedCalibration {
     }
 
     /// The draws from the prior that a sampler began with, then its populations at the end of the stages before the last.
-    pub fn populations(&self) -> &[Vec<Sample>] {
+    pub fn populations(&self) -> &[Vec<Particle>] {
         self.sampled().map_or(&[], |sampled| &sampled.populations)
     }
 
@@ -163,7 +163,7 @@ impl FinishedCalibration {
     }
 
     /// The draw of the highest likelihood; the first of equals.
-    pub fn likeliest(&self) -> Option<&Sample> {
+    pub fn likeliest(&self) -> Option<&Particle> {
         likeliest(self.posterior())
     }
 
@@ -176,15 +176,15 @@ impl FinishedCalibration {
 
     /// The most probable parameters: those that a fit with draws found, else those of the particle of the highest likelihood times
     /// prior, the first of equals.
-    pub fn most_probable(&self) -> Option<Sample> {
+    pub fn most_probable(&self) -> Option<Particle> {
         if let Some(mode) = self.approximated() {
-            return Some(Sample {
+            return Some(Particle {
                 theta: mode.theta.clone(),
-                log_likelihood: Some(mode.log_likelihood),
+                log_likelihood: LogLikelihood::new(mode.log_likelihood).ok()?,
                 log_prior: mode.log_prior,
             });
         }
-        let score = |s: &Sample| s.log_likelihood.unwrap_or(f64::NEG_INFINITY) + s.log_prior;
+        let score = |p: &Particle| p.log_likelihood.value() + p.log_prior;
         let best = |a, b| if score(b) > score(a) { b } else { a };
         self.posterior().iter().reduce(best).cloned()
     }
@@ -196,28 +196,27 @@ impl FinishedCalibration {
 }
 
 /// The population that a sampler begins with.
-pub fn first_population(spec: &Spec, draws: &[PriorDraw]) -> Vec<Sample> {
+pub fn first_population(spec: &Spec, draws: &[PriorDraw]) -> Vec<Particle> {
     let prior = spec.prior();
     let score = |draw: &PriorDraw| {
         let values = draw.result.as_ref().ok()?;
-        let scored = spec.likelihood.log_likelihood(values, &draw.theta).ok()?;
-        Some(scored.value()).filter(|value| value.is_finite())
+        spec.likelihood.log_likelihood(values, &draw.theta).ok()
     };
-    let sample = |draw: &PriorDraw| Sample {
+    let particle = |draw: &PriorDraw| Particle {
         theta: draw.theta.clone(),
-        log_likelihood: score(draw),
+        log_likelihood: score(draw).unwrap_or(LogLikelihood::Impossible),
         log_prior: prior.log_density(&draw.theta),
     };
-    draws.iter().map(sample).collect()
+    draws.iter().map(particle).collect()
 }
 
 /// The draw of the highest likelihood; the first of equals.
-pub fn likeliest(draws: &[Sample]) -> Option<&Sample> {
-    let score = |s: &Sample| s.log_likelihood.unwrap_or(f64::NEG_INFINITY);
+pub fn likeliest(draws: &[Particle]) -> Option<&Particle> {
+    let score = |p: &Particle| p.log_likelihood.value();
     let best = draws
         .iter()
-        .reduce(|best, s| if score(s) > score(best) { s } else { best });
-    best.filter(|s| s.log_likelihood.is_some())
+        .reduce(|best, p| if score(p) > score(best) { p } else { best });
+    best.filter(|p| !p.log_likelihood.is_impossible())
 }
 
 /// The mean of a prior; that of a symmetric one is integrated to zero but for rounding, which is not shown.

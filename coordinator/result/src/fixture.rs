@@ -2,17 +2,19 @@
 
 use std::collections::BTreeMap;
 
+use inference::Particle;
 use inference::evolution::{EvolutionSettings, GaSettings};
 use inference::point_estimate::{Generation, StopReason};
 use job::{AlgorithmSettings, Spec};
 use record::{
     CalibrationRow, Discovery, EstimateRow, Extension, JudgedEffect, Membership, NONE, Outside, Prediction,
-    PriorDraw, RejectionReason, Repeats, Role, Sample, StageRow, Verdict, Verified,
+    PriorDraw, RejectionReason, Repeats, Role, StageRow, Verdict, Verified,
 };
 use shared::api::CalibrationState;
 use shared::experiment::Campaign;
 use shared::file::{FileSet, parse_toml};
 use shared::outcome::Observables;
+use statistics::LogLikelihood;
 
 use result::discovery::DiscoveryRound;
 use result::finished_calibration::{FinishedCalibration, Outcome, SampledPosterior};
@@ -366,10 +368,10 @@ pub fn of_files(job: FileSet, files: &FileSet) -> FinishedCalibration {
             .map(|(i, p)| p.marginal.quantile(share(k, i)))
             .collect()
     };
-    let posterior: Vec<Sample> = (0..40)
-        .map(|k| Sample {
+    let posterior: Vec<Particle> = (0..40)
+        .map(|k| Particle {
             theta: theta(k),
-            log_likelihood: Some(-20.0 - share(k, 0)),
+            log_likelihood: LogLikelihood::new(-20.0 - share(k, 0)).unwrap(),
             log_prior: -1.0,
         })
         .collect();

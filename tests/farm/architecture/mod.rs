@@ -192,7 +192,7 @@ fn manifests_keep_the_direction_of_dependencies() {
     );
     assert_eq!(
         ours("coordinator/export"),
-        set(&["job", "record", "result", "shared", "statistics"])
+        set(&["inference", "job", "record", "result", "shared", "statistics"])
     );
     assert_eq!(
         ours("coordinator/search"),

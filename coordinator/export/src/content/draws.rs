@@ -1,6 +1,7 @@
 //! Draws of the parameters, and how they came about.
 
-use record::{Sample, StageRow};
+use inference::Particle;
+use record::StageRow;
 use result::FinishedCalibration;
 
 use crate::inference_data::VariableGroup;
@@ -61,11 +62,11 @@ pub(super) fn prior(calibration: &FinishedCalibration) -> VariableGroup {
 pub(super) fn sample_stats(calibration: &FinishedCalibration) -> VariableGroup {
     let draws = calibration.posterior();
     let dims = [("chain", CHAINS), ("draw", draws.len())];
-    let of_draw = |name: &str, meaning: &str, value: &dyn Fn(&Sample) -> f64| {
+    let of_draw = |name: &str, meaning: &str, value: &dyn Fn(&Particle) -> f64| {
         let values = draws.iter().map(value).collect();
         Variable::new(name, &dims, "", meaning, Values::Real(values))
     };
-    let log_likelihood = |draw: &Sample| draw.log_likelihood.unwrap_or(f64::NEG_INFINITY);
+    let log_likelihood = |draw: &Particle| draw.log_likelihood.value();
     let stages = calibration.stages();
     let along = [("stage", stages.len())];
     let of_stage = |name: &str, meaning: &str, value: &dyn Fn(&StageRow) -> f64| {

@@ -65,8 +65,9 @@ pub(crate) fn missed_modes(study: &Study) -> Vec<Flag> {
     let best = |calibration: &FinishedCalibration| match calibration.estimate() {
         Some(estimate) => Some(estimate.log_likelihood + estimate.log_prior),
         None => {
-            let sample = calibration.most_probable()?;
-            Some(sample.log_likelihood? + sample.log_prior)
+            let particle = calibration.most_probable()?;
+            let log_posterior = particle.log_likelihood.value() + particle.log_prior;
+            (!particle.log_likelihood.is_impossible()).then_some(log_posterior)
         }
     };
     let found: Vec<(&str, f64)> = study

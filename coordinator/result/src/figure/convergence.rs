@@ -1,8 +1,8 @@
 //! Convergence of searches and sampler: the source paper's Fig. 5.
 
+use inference::Particle;
 use inference::diagnostics;
 use job::AlgorithmName;
-use record::Sample;
 
 use super::axis_parameter::AxisParameter;
 use crate::finished_calibration::FinishedCalibration;
@@ -83,7 +83,7 @@ struct Population<'a> {
     stage: u32,
     tempering_exponent: f64,
     evaluations: u64,
-    samples: &'a [Sample],
+    samples: &'a [Particle],
 }
 
 /// The populations from the prior, which is stage 0, to the posterior.
@@ -122,8 +122,12 @@ pub(super) fn stages(calibration: &FinishedCalibration) -> Vec<StageConvergence>
     all(calibration).iter().map(stage).collect()
 }
 
-fn range(population: &[Sample]) -> Option<LogLikelihoodRange> {
-    let values: Vec<f64> = population.iter().filter_map(|s| s.log_likelihood).collect();
+fn range(population: &[Particle]) -> Option<LogLikelihoodRange> {
+    let values: Vec<f64> = population
+        .iter()
+        .map(|p| p.log_likelihood.value())
+        .filter(|value| value.is_finite())
+        .collect();
     let summary = diagnostics::summary(&values)?;
     Some(LogLikelihoodRange {
         q05: summary.q05,

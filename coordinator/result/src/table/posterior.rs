@@ -23,7 +23,7 @@ impl FinishedCalibration {
             .posterior()
             .iter()
             .map(|s| {
-                let head = [s.log_likelihood.unwrap_or(f64::NEG_INFINITY), s.log_prior];
+                let head = [s.log_likelihood.value(), s.log_prior];
                 head.into_iter().chain(s.theta.iter().copied()).collect()
             })
             .collect();
