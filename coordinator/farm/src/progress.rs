@@ -6,7 +6,7 @@ use shared::api::{CalibrationStatus, Position, Progress};
 
 use crate::calibration::{Calibration, CalibrationEngine};
 
-/// The pace is an average over so much of the past `[ms]`.
+/// The time over which the pace is averaged `[ms]`.
 const WINDOW_MS: u64 = 10_000;
 
 /// Simulations over the last seconds.
@@ -130,7 +130,7 @@ fn remaining_s(calibration: &Calibration, per_second: f64) -> Option<f64> {
     (per_second > 0.0).then_some(left / per_second)
 }
 
-/// How many evaluations a calibration still wants, roughly: exponents grow by about a constant factor a stage, so the stages to come
+/// The number of evaluations that a calibration still wants, roughly: exponents grow by about a constant factor a stage, so the stages to come
 /// follow from the growth so far; each is taken to cost as much as the mean of the stages behind. `None` before the second stage.
 pub(super) fn evaluations_left(calibration: &Calibration) -> Option<f64> {
     let exponents: Vec<f64> = calibration

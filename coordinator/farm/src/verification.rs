@@ -2,22 +2,22 @@
 
 use shared::model::equations_of;
 
-use super::state::{Entry, Farm};
+use super::farm::{Entry, Farm};
 use crate::calibration::Answer;
 use crate::lease::SlowLease;
 use record::Quarantine;
 use record::fact::Fact;
 
-/// A lease is slow that is out for so many times as long as leases of its calibration are in the mean, and
+/// A lease is slow once it is out for this many times the mean of its calibration's leases, and
 const SLOW_TIMES: u64 = 3;
-/// so much longer `[ms]`.
+/// this much longer `[ms]`.
 const SLOW_MS: u64 = 1_000;
 
-/// At the end of a calibration a second answer is waited for as long as so many leases take, and a lease's time.
+/// At the end of a calibration a second answer is waited for as long as this many leases take in the mean, and a lease's time.
 const HUNG_TIMES: u64 = 10;
 
 impl Farm {
-    /// The same, with workers that were found to compute wrongly before.
+    /// The farm with workers that were found to compute wrongly before.
     #[must_use]
     pub fn with_quarantine(mut self, quarantine: Vec<Quarantine>) -> Self {
         let reason = |q: &Quarantine| reason(&q.worker, q.calibration, q.evaluation);

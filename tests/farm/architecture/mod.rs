@@ -401,7 +401,7 @@ fn pure_rooms_read_no_clock() {
     ];
     nowhere(&pure, &clocks, &[]);
     for file in [
-        "coordinator/farm/src/state.rs",
+        "coordinator/farm/src/farm.rs",
         "coordinator/farm/src/leasing.rs",
         "coordinator/farm/src/verification.rs",
         "coordinator/farm/src/progress.rs",
