@@ -10,7 +10,7 @@ use crate::channel::Channel;
 use crate::outcome::{Observables, Outcome};
 
 /// Version of these messages; a coordinator answers any other version with 426.
-pub const PROTOCOL_VERSION: u32 = 11;
+pub const PROTOCOL_VERSION: u32 = 12;
 
 /// `POST /v1/work/exchange`: the results of finished leases, and the number of leases wanted.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]

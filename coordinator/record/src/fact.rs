@@ -172,6 +172,21 @@ pub enum Kept {
     Rejected(String),
 }
 
+impl Kept {
+    /// Whether the model rejected.
+    pub fn is_rejected(&self) -> bool {
+        matches!(self, Kept::Rejected(_))
+    }
+
+    /// The kept predicted values.
+    pub fn fitted(&self) -> Option<&[f64]> {
+        match self {
+            Kept::Fitted(values) => Some(values),
+            Kept::Scored | Kept::Whole(_) | Kept::Rejected(_) => None,
+        }
+    }
+}
+
 /// Two computations of an evaluation must have the same one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Fingerprint(pub i64);

@@ -33,17 +33,6 @@ pub struct StageRow {
     pub equilibrated: bool,
 }
 
-/// A particle of a stored population.
-#[derive(Debug, Clone, PartialEq, serde::Serialize, utoipa::ToSchema)]
-pub struct Sample {
-    /// Parameter vector.
-    pub theta: Vec<f64>,
-    /// Log-likelihood; `None` where the model rejected.
-    pub log_likelihood: Option<f64>,
-    /// Log-density of the prior.
-    pub log_prior: f64,
-}
-
 /// Why the model rejected a parameter vector: its kind, a colon, the details.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{0}")]

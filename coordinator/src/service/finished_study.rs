@@ -11,7 +11,9 @@ use super::study_step::next_step_from;
 use crate::study::{Lineage, most_probable};
 use job::AlgorithmSettings;
 use record::CalibrationRow;
-use result::{DiscoveryRound, FinishedCalibration, Study, first_population, likeliest};
+use result::{
+    DiscoveryRound, FinishedCalibration, Outcome, SampledPosterior, Study, first_population, likeliest,
+};
 use store::Reader;
 
 /// Loads a finished calibration.
@@ -38,7 +40,6 @@ async fn finished_with(
     if row.membership.is_search() {
         return Err(ServiceError::Search(row.id));
     }
-    let stages = reader.stages(row.id).await?;
     let spec = experiments.spec_of(reader, row).await?;
     // Parameters and texts would be shown that the result was not computed with.
     if let Some(pinned) = &row.model_version {
@@ -59,10 +60,6 @@ async fn finished_with(
     let posterior = match populations.pop() {
         Some(last) => last,
         None => reader.samples(row.id, None).await?,
-    };
-    let (estimate, approximated) = match posterior.is_empty() {
-        true => (estimate, None),
-        false => (None, estimate),
     };
     if let AlgorithmSettings::Sample(_) = spec.algorithm {
         populations.insert(0, first_population(&spec, &prior_draws));
@@ -85,19 +82,22 @@ async fn finished_with(
         true => reader.subchains(row.id).await?,
         false => None,
     };
+    let sampled = SampledPosterior {
+        draws: posterior,
+        populations,
+        prior_draws,
+        stages: reader.stages(row.id).await?,
+        subchains,
+    };
+    let outcome = Outcome::new(estimate, sampled);
     Ok(FinishedCalibration {
         spec,
-        estimate,
-        approximated,
-        prior_draws,
+        outcome,
         experiment: row.name.clone(),
-        posterior,
-        populations,
         likeliest_values,
         predictions: reader.predictions(row.id).await?,
         simulated_histories,
         rejections: reader.rejections(row.id).await?,
-        subchains,
         faults: reader.faults(row.id).await?,
         given_up: reader.given_up(row.id).await?,
         disputes: reader.disputes(row.id).await?,
@@ -105,7 +105,6 @@ async fn finished_with(
         repeats: reader.repeats(row.id).await?,
         interpolations: Default::default(),
         comparison: Default::default(),
-        stages,
         row: row.clone(),
     })
 }

@@ -231,7 +231,7 @@ impl Service {
             };
             let measured = Arc::new(Experiment::parse(experiment_name, &files)?);
             let spec = Spec::from_values(job_name, value, experiment_name, measured)?;
-            let calibration = Calibration::of(identity, Arc::new(spec), &job, &files)?;
+            let calibration = Calibration::from_files(identity, Arc::new(spec), &job, &files)?;
             let row = NewCalibrationRow {
                 membership,
                 name,

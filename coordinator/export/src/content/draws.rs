@@ -1,6 +1,7 @@
 //! Draws of the parameters, and how they came about.
 
-use record::{Sample, StageRow};
+use inference::Particle;
+use record::StageRow;
 use result::FinishedCalibration;
 
 use crate::inference_data::VariableGroup;
@@ -44,32 +45,35 @@ fn parameters<'a>(
 
 /// The equally weighted draws of the posterior.
 pub(super) fn posterior(calibration: &FinishedCalibration) -> VariableGroup {
-    let draws = calibration.posterior.iter().map(|sample| sample.theta.as_slice());
+    let draws = calibration
+        .posterior()
+        .iter()
+        .map(|sample| sample.theta.as_slice());
     parameters("posterior", calibration, draws)
 }
 
 /// The draws from the prior that the sampler began with; none of a normal approximation.
 pub(super) fn prior(calibration: &FinishedCalibration) -> VariableGroup {
-    let draws = calibration.prior_draws.iter().map(|draw| draw.theta.as_slice());
+    let draws = calibration.prior_draws().iter().map(|draw| draw.theta.as_slice());
     parameters("prior", calibration, draws)
 }
 
 /// The density of each draw, and the stages of the sampler.
 pub(super) fn sample_stats(calibration: &FinishedCalibration) -> VariableGroup {
-    let draws = &calibration.posterior;
+    let draws = calibration.posterior();
     let dims = [("chain", CHAINS), ("draw", draws.len())];
-    let of_draw = |name: &str, meaning: &str, value: &dyn Fn(&Sample) -> f64| {
+    let of_draw = |name: &str, meaning: &str, value: &dyn Fn(&Particle) -> f64| {
         let values = draws.iter().map(value).collect();
         Variable::new(name, &dims, "", meaning, Values::Real(values))
     };
-    let log_likelihood = |draw: &Sample| draw.log_likelihood.unwrap_or(f64::NEG_INFINITY);
-    let stages = &calibration.stages;
+    let log_likelihood = |draw: &Particle| draw.log_likelihood.value();
+    let stages = calibration.stages();
     let along = [("stage", stages.len())];
     let of_stage = |name: &str, meaning: &str, value: &dyn Fn(&StageRow) -> f64| {
         let values = stages.iter().map(value).collect();
         Variable::new(name, &along, "", meaning, Values::Real(values))
     };
-    let meaning = match calibration.approximated {
+    let meaning = match calibration.approximated() {
         Some(_) => {
             "log-likelihood of the linearised model, which the normal approximation is of; that of the model itself is in the group log_likelihood"
         }

@@ -20,7 +20,7 @@ use runs::Part;
 /// # Errors
 /// [`ExportError::NoDraws`] of a fit without draws.
 pub fn inference_data(calibration: &FinishedCalibration) -> Result<InferenceData, ExportError> {
-    if calibration.posterior.is_empty() {
+    if calibration.posterior().is_empty() {
         return Err(ExportError::NoDraws(calibration.row.id));
     }
     let fitted = Part::fitted(calibration);
@@ -79,7 +79,7 @@ fn attributes(calibration: &FinishedCalibration) -> BTreeMap<String, String> {
         ),
         (
             "posterior",
-            Some(match calibration.approximated {
+            Some(match calibration.approximated() {
                 Some(_) => "draws of a normal approximation".to_owned(),
                 None => "equally weighted draws of a sample".to_owned(),
             }),

@@ -275,7 +275,7 @@ fn error(law: ErrorLaw, [first, second]: [f64; 2]) -> f64 {
 fn places(calibration: &FinishedCalibration) -> Vec<i64> {
     let draws = calibration.predictive_draws();
     let is_same = |a: &[f64], b: &[f64]| a.iter().map(|x| x.to_bits()).eq(b.iter().map(|x| x.to_bits()));
-    let mut posterior = calibration.posterior.iter().zip(0_i64..);
+    let mut posterior = calibration.posterior().iter().zip(0_i64..);
     let place = |draw: &Prediction| {
         let found = posterior.find(|(sample, _)| is_same(&sample.theta, &draw.theta));
         found.map(|(_, place)| place)
