@@ -14,7 +14,7 @@ use statistics::rng::Stream;
 /// Stream of a stage's resampling; particles never reach this number.
 const RESAMPLING: u64 = u64::MAX;
 
-/// How the stage in progress was reached.
+/// The transition that led to the stage in progress.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Passage {
     /// Growth of the exponent.
