@@ -14,15 +14,14 @@ use crate::table::{Cell, Row};
 use crate::title::Titled;
 use crate::unit::{self, Quantity};
 
-/// A step of time may differ from the first by this share of it, as in a history.
+/// Largest deviation of a step of time from the first, as a share of it; equal to that of a history.
 const UNEVEN: f64 = 0.01;
-/// Least samples of a history.
-const LEAST_SAMPLES: usize = 3;
+/// Minimum number of samples of a history.
+const MIN_SAMPLES: usize = 3;
 
-/// The runs of a recording, and the texts of their histories by the names of their files.
+/// The runs of a recording, and the texts of their histories by file name.
 pub(crate) type Cut = (Vec<Run>, BTreeMap<String, String>);
 
-/// One row of the recording.
 struct Sample<'a> {
     row: &'a Row,
     t_s: f64,
@@ -35,14 +34,14 @@ struct Segment<'a> {
     samples: Vec<Sample<'a>>,
 }
 
-/// What is cut by what.
+/// The data of a cut.
 pub(crate) struct Knife<'a> {
     pub(crate) titled: &'a Titled,
     pub(crate) binding: &'a Binding,
     pub(crate) recording: &'a Recording,
     pub(crate) map_file: &'a str,
     pub(crate) decimal: Option<Decimal>,
-    /// What the names of the histories begin with.
+    /// Prefix of the names of histories.
     pub(crate) stem: &'a str,
 }
 
@@ -73,7 +72,7 @@ impl Knife<'_> {
         });
     }
 
-    /// The columns of time and marker, and one of the time's unit in seconds.
+    /// The columns of time and marker, and the time's unit in seconds.
     fn columns(&self, complaints: &mut Complaints) -> Option<(usize, f64, usize)> {
         let time = self.titled.column(&self.recording.time);
         let marker = self.titled.column(&self.recording.marker);
@@ -225,13 +224,13 @@ impl Knife<'_> {
             let text = if is_text(output) {
                 self.constant(output, chosen, complaints)
             } else {
-                // What is measured is averaged; what formulas make of conditions, of their averages.
+                // Measured values are averaged; formulas of conditions are computed from the averages of these.
                 let value = if is_channel(output) {
                     self.mean(output, chosen)
                 } else {
                     self.binding.value(output, &means)
                 };
-                value.map(|value| rule::of_number(&output.field, value).map(|()| shown(value)))
+                value.map(|value| rule::check_number(&output.field, value).map(|()| shown(value)))
             };
             match text {
                 Some(Ok(text)) => {
@@ -260,7 +259,7 @@ impl Knife<'_> {
         run
     }
 
-    /// The text that all samples have.
+    /// The text if it is equal in all samples.
     fn constant(
         &self,
         output: &Output,
@@ -268,14 +267,14 @@ impl Knife<'_> {
         complaints: &mut Complaints,
     ) -> Option<Result<String, String>> {
         let mut above = Above::default();
-        let mut found: Option<String> = None;
+        let mut common: Option<String> = None;
         for sample in samples {
             let text = self.binding.text(output, sample.row, &mut above);
-            match (&found, text) {
-                (None, text) => found = text,
-                (Some(known), Some(text)) if *known != text => {
+            match (&common, text) {
+                (None, text) => common = text,
+                (Some(common), Some(text)) if *common != text => {
                     let message = format!(
-                        "{} changes from \"{known}\" to \"{text}\" within a run",
+                        "{} changes from \"{common}\" to \"{text}\" within a run",
                         output.field.words
                     );
                     complaints.add_cell(self.binding.complaint(self.titled, sample.row, output, message));
@@ -284,7 +283,7 @@ impl Knife<'_> {
                 _ => {}
             }
         }
-        found.map(|text| rule::of_text(&output.field, &text))
+        common.map(|text| rule::check_text(&output.field, &text))
     }
 
     fn mean(&self, output: &Output, samples: &[Sample<'_>]) -> Option<f64> {
@@ -295,7 +294,7 @@ impl Knife<'_> {
         (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
     }
 
-    /// The history of a run: times from its beginning, each the end of its interval.
+    /// The history of a run: each time is the end of its interval, counted from the run's beginning.
     fn history(
         &self,
         segment: &Segment<'_>,
@@ -319,18 +318,18 @@ impl Knife<'_> {
                 complaints,
                 samples.first()?.row,
                 format!(
-                    "{} samples are too few for a history: at least {LEAST_SAMPLES}",
+                    "{} samples are too few for a history: at least {MIN_SAMPLES}",
                     samples.len()
                 ),
             );
             return None;
         };
-        if samples.len() < LEAST_SAMPLES {
+        if samples.len() < MIN_SAMPLES {
             complain(
                 complaints,
                 first.row,
                 format!(
-                    "{} samples are too few for a history: at least {LEAST_SAMPLES}",
+                    "{} samples are too few for a history: at least {MIN_SAMPLES}",
                     samples.len()
                 ),
             );
@@ -378,8 +377,7 @@ impl Knife<'_> {
         Some(csv(rows.into_iter()))
     }
 
-    /// A name for a history that no other has.
-    fn free_name(&self, run: &str, taken: &BTreeMap<String, String>) -> String {
+    fn free_name(&self, run: &str, used: &BTreeMap<String, String>) -> String {
         let plain: String = run
             .chars()
             .map(|c| if c.is_alphanumeric() || c == '-' { c } else { '_' })
@@ -387,11 +385,11 @@ impl Knife<'_> {
             .collect();
         let names = std::iter::once(String::new()).chain((2..).map(|number| format!("-{number}")));
         let mut names = names.map(|number| format!("{}-{plain}{number}.csv", self.stem));
-        names.find(|name| !taken.contains_key(name)).unwrap_or_default()
+        names.find(|name| !used.contains_key(name)).unwrap_or_default()
     }
 }
 
-/// Runs whose marker comes again are numbered: a marker may only count on and off.
+/// Runs whose marker recurs are numbered, because a marker may only switch between on and off.
 fn number_repeated(segments: &mut [Segment<'_>], remarks: &mut Vec<String>) {
     let mut counts: BTreeMap<String, usize> = BTreeMap::new();
     for segment in segments.iter() {
@@ -419,7 +417,6 @@ fn is_channel(output: &Output) -> bool {
         .any(|channel| channel.column() == output.field.name)
 }
 
-/// The averages of all numbers.
 fn means(samples: &[Sample<'_>]) -> Vec<Option<f64>> {
     let width = samples.first().map_or(0, |sample| sample.numbers.len());
     let mean = |input: usize| {

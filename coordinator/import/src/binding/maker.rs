@@ -1,4 +1,4 @@
-//! Entries of a map, bound to the columns of a table, with every mistake.
+//! Binds the entries of a map to the columns of a table, and collects every mistake.
 
 use formula::expression::Expression;
 use formula::unit::Unit as Dimension;
@@ -12,7 +12,7 @@ use crate::table::Cell;
 use crate::title::{Stated, Titled};
 use crate::unit::{self, Quantity, Unit};
 
-/// What the binding is made from.
+/// The input and the progress of a binding.
 pub(super) struct Maker<'a> {
     pub(super) map: &'a Map,
     pub(super) map_file: &'a str,
@@ -29,7 +29,7 @@ fn column_name(entry: &Entry) -> &str {
     }
 }
 
-/// The dimension that formulas know a quantity by.
+/// The dimension that formulas have for a quantity.
 pub(super) fn dimension(quantity: Quantity) -> Dimension {
     Dimension::parse(quantity.si()).unwrap_or(Dimension::ONE)
 }
@@ -45,7 +45,7 @@ impl<'a> Maker<'a> {
         });
     }
 
-    /// Asks for what an entry leaves open; `plain` is the question for people who see no map.
+    /// Asks for a missing answer of an entry; `plain` is the question for users who see no map.
     fn ask(&mut self, entry: &Entry, message: &str, plain: String) {
         self.complaints.add(Complaint {
             file: self.map_file.to_owned(),
@@ -57,19 +57,18 @@ impl<'a> Maker<'a> {
         });
     }
 
-    /// Words for people of a column of runs.csv.
+    /// The description of a column of runs.csv for users.
     fn words(&self, entry: &Entry) -> Option<&'a str> {
         let field = self.fields.iter().find(|field| field.name == entry.name);
         field.map(|field| field.words.as_str())
     }
 
-    /// The column of an entry.
     fn column(&mut self, entry: &Entry) -> Option<usize> {
-        let found = self.titled.column(column_name(entry));
-        found.map_err(|message| self.complain(entry, message)).ok()
+        let result = self.titled.column(column_name(entry));
+        result.map_err(|message| self.complain(entry, message)).ok()
     }
 
-    /// The unit: as the map states it, else as the title does.
+    /// The unit that the map states, otherwise that of the title.
     fn unit(
         &mut self,
         entry: &Entry,
@@ -104,13 +103,13 @@ impl<'a> Maker<'a> {
             );
             return None;
         }
-        let found = match (&entry.unit, stated, &title) {
+        let result = match (&entry.unit, stated, &title) {
             (Some(text), _, _) => read(text),
             (None, Some(stated), _) => read(stated.name),
             (None, None, Some(title)) => Err(match &title.unknown {
-                Some(said) => format!(
-                    "the title says \"{said}\"; {}; state `unit` in the map",
-                    read(said).err().unwrap_or_default()
+                Some(unknown) => format!(
+                    "the title says \"{unknown}\"; {}; state `unit` in the map",
+                    read(unknown).err().unwrap_or_default()
                 ),
                 None => format!(
                     "the title \"{}\" states no unit: state `unit` in the map, one of {}",
@@ -123,17 +122,17 @@ impl<'a> Maker<'a> {
                 choices()
             )),
         };
-        match found {
-            Ok(found) => {
+        match result {
+            Ok(result) => {
                 if let (Some(stated), Some(title)) = (stated, title)
-                    && stated.name != found.name
+                    && stated.name != result.name
                 {
                     self.remarks.push(format!(
                         "\"{}\" is read in {}, as the map says",
-                        title.text, found.name
+                        title.text, result.name
                     ));
                 }
-                Some(found)
+                Some(result)
             }
             Err(message) => {
                 self.complain(entry, message);
@@ -142,7 +141,7 @@ impl<'a> Maker<'a> {
         }
     }
 
-    /// Where a number is read, and its unit.
+    /// The column or value of a number, and its unit.
     pub(super) fn input(
         &mut self,
         entry: &Entry,
@@ -292,22 +291,22 @@ impl<'a> Maker<'a> {
             .split(|c: char| !(c.is_ascii_alphanumeric() || c == '_'))
             .collect();
         let entries = self.map.quantities.iter().chain(&self.map.columns);
-        let unbound = entries.filter(|other| {
-            words.contains(&other.name.as_str()) && !names.iter().any(|(known, _)| *known == other.name)
+        let unbound = entries.filter(|entry| {
+            words.contains(&entry.name.as_str()) && !names.iter().any(|(bound, _)| *bound == entry.name)
         });
         let unbound: Vec<&Entry> = unbound.collect();
-        if let Some(other) = unbound
+        if let Some(blocking) = unbound
             .iter()
-            .find(|other| matches!(other.origin, Origin::Formula(_)))
+            .find(|entry| matches!(entry.origin, Origin::Formula(_)))
         {
             let message = format!(
                 "formula \"{text}\": {} has a formula itself: write it out",
-                other.name
+                blocking.name
             );
             self.complain(entry, message);
         }
         if !unbound.is_empty() {
-            // What else is not bound has a complaint of its own.
+            // Other unbound names have complaints already.
             return None;
         }
         let expected = dimension(quantity);
@@ -332,7 +331,7 @@ impl<'a> Maker<'a> {
         }
     }
 
-    /// How numbers are written: as the map states, else as the texts of all columns tell.
+    /// The notation of numbers: as the map states it, otherwise as the texts of all columns show.
     pub(super) fn settle_decimals(&mut self, inputs: &mut [Input]) {
         let stated = self.map.decimal;
         let columns: Vec<usize> = inputs
@@ -351,7 +350,7 @@ impl<'a> Maker<'a> {
                     _ => None,
                 })
         };
-        let found = match stated {
+        let result = match stated {
             Some(decimal) => Some(decimal),
             None => match number::decimal_of(texts()) {
                 Evidence::Found(decimal) => Some(decimal),
@@ -359,7 +358,7 @@ impl<'a> Maker<'a> {
                 Evidence::Ambiguous => None,
             },
         };
-        if found.is_none() {
+        if result.is_none() {
             let example = texts()
                 .find(|text| text.contains([',', '.']))
                 .unwrap_or_default()
@@ -373,7 +372,7 @@ impl<'a> Maker<'a> {
         for input in inputs {
             if let From::Column { with, .. } = &mut input.from {
                 let has_thousands = self.map.has_thousands && with.stated_decimal.is_none();
-                with.writing = with.stated_decimal.or(found).map(|decimal| Writing {
+                with.writing = with.stated_decimal.or(result).map(|decimal| Writing {
                     decimal,
                     has_thousands,
                 });

@@ -5,7 +5,7 @@ use super::word;
 use crate::field::RowUse;
 use crate::table::Form;
 
-/// A text of TOML in quotes.
+/// A text in quotes, as a TOML string.
 fn quoted(text: &str) -> String {
     let escaped = text.chars().map(|c| match c {
         '"' | '\\' => format!("\\{c}"),
@@ -15,7 +15,6 @@ fn quoted(text: &str) -> String {
     format!("\"{}\"", escaped.collect::<String>())
 }
 
-/// The text of a proposed map.
 pub(super) fn text(file: &str, guess: &Guess, form: Form, rows: usize) -> String {
     let name: String = file.chars().filter(|c| !c.is_control()).collect();
     let mut text = format!("# How {name} becomes runs.csv. What is marked with \"?\" must be answered.\n");
@@ -100,7 +99,7 @@ pub(super) fn text(file: &str, guess: &Guess, form: Form, rows: usize) -> String
     text
 }
 
-/// The table of words; what the file does not tell is asked.
+/// The table of words; missing meanings become questions.
 fn meanings(words: &[WordCard]) -> String {
     let entry = |card: &WordCard| {
         let means = card.means.map_or("?", RowUse::name);
