@@ -10,23 +10,23 @@ use crate::fact::Fingerprint;
 /// Stored state of an unfinished calibration.
 #[derive(Debug, Default)]
 pub struct Stored {
-    /// The state that it was left in.
+    /// State before the restart.
     pub state: Option<CalibrationState>,
-    /// Why it was paused.
+    /// Reason for which it was paused.
     pub message: Option<String>,
     /// The pinned version of the model.
     pub model_version: Option<String>,
-    /// Wall time spent before `[ms]`.
+    /// Wall time spent before the restart `[ms]`.
     pub busy_ms: u64,
-    /// Its evaluations by number: parameter vector, log-likelihood, whether the model rejected.
+    /// Stored evaluations by number.
     pub evaluations: BTreeMap<u64, StoredEvaluation>,
-    /// Whether results of it were dropped.
+    /// Whether some of its results were dropped.
     pub is_rewound: bool,
     /// The workers of failed leases, by evaluation.
     pub failed: BTreeMap<u64, Vec<String>>,
 }
 
-/// An evaluation as far as a replay needs it.
+/// The parts of an evaluation that a replay needs.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StoredEvaluation {
     /// Parameter vector.
@@ -35,17 +35,16 @@ pub struct StoredEvaluation {
     pub log_likelihood: Option<f64>,
     /// Whether the model rejected.
     pub rejected: bool,
-    /// Who computed it; empty where it was given up after faults.
+    /// Name of the worker that computed it; empty if it was given up after faults.
     pub worker: String,
     /// Fingerprint that a second computation must reproduce.
     pub fingerprint: Fingerprint,
     /// Whether another worker has reproduced it.
     pub is_confirmed: bool,
-    /// The model's values of the fitted measurements; read back for a fit and with a metamodel, which need
-    /// them.
+    /// The model's values of the fitted measurements; read back for a fit and with a metamodel.
     pub fitted: Option<Vec<f64>>,
-    /// Those of the quasi-static model; read back with a metamodel alone.
+    /// The quasi-static model's values of the fitted measurements; read back with a metamodel only.
     pub coarse: Option<Vec<f64>>,
-    /// End of the subchain.
+    /// End of the requested subchain.
     pub end: Option<SubchainEnd>,
 }
