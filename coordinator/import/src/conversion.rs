@@ -11,7 +11,7 @@ use crate::map::{self, Map};
 use crate::read::{self, SourceFile};
 use crate::recording::Knife;
 use crate::rows;
-use crate::run::{noted, notes_csv, runs_csv};
+use crate::run::{Run, noted, notes_csv, runs_csv};
 use crate::summary;
 use crate::table::{Cell, Form, Row};
 use crate::title::{self, Titled};
@@ -123,32 +123,31 @@ fn judge(
         )));
     }
     converted.runs = Some(runs_csv(&runs, order()));
-    let kept = noted(titled, &binding.mapped);
-    if map.recording.is_none() && !kept.is_empty() {
-        let titles: Vec<String> = kept
-            .iter()
-            .map(|&column| titled.titles[column].text.clone())
-            .collect();
-        converted.remarks.push(format!(
-            "kept as notes, no columns of runs.csv: {}",
-            titles.join(", ")
-        ));
-        converted.notes = Some(notes_csv(&runs, titles));
-    } else if !kept.is_empty() {
-        let titles: Vec<&str> = kept
-            .iter()
-            .map(|&column| titled.titles[column].text.as_str())
-            .collect();
-        converted.remarks.push(format!(
-            "columns of the recording that runs.csv does not take as they are: {}",
-            titles.join(", ")
-        ));
-    }
+    keep_notes(titled, map, &binding, &runs, converted);
     if map.recording.is_none() && !map.columns.iter().any(|entry| entry.name == "run") {
         converted
             .remarks
             .push("the runs are numbered, r1 and so on: the map has no [columns.run]".into());
     }
+}
+
+/// Keeps the columns that runs.csv does not have as notes; those of a recording are only remarked.
+fn keep_notes(titled: &Titled, map: &Map, binding: &Binding, runs: &[Run], converted: &mut Converted) {
+    let kept = noted(titled, &binding.mapped);
+    if kept.is_empty() {
+        return;
+    }
+    let titles: Vec<String> = kept
+        .iter()
+        .map(|&column| titled.titles[column].text.clone())
+        .collect();
+    let listed = titles.join(", ");
+    converted.remarks.push(if map.recording.is_none() {
+        converted.notes = Some(notes_csv(runs, titles));
+        format!("kept as notes, no columns of runs.csv: {listed}")
+    } else {
+        format!("columns of the recording that runs.csv does not take as they are: {listed}")
+    });
 }
 
 /// The rows of runs or samples: not skipped, no comments.

@@ -191,22 +191,7 @@ impl Knife<'_> {
         let Some(first) = segment.samples.first() else {
             return Run::default();
         };
-        for pair in segment.samples.windows(2) {
-            if pair[1].t_s <= pair[0].t_s {
-                let message = format!(
-                    "the time {} s must lie after {} s",
-                    shown(pair[1].t_s),
-                    shown(pair[0].t_s)
-                );
-                let field = Some("recording".into());
-                complaints.add_cell(Complaint {
-                    line: Some(pair[1].row.line),
-                    field,
-                    ..self.titled.table.complaint(message)
-                });
-                break;
-            }
-        }
+        self.check_times(segment, complaints);
         let chosen = self.window(segment, complaints);
         let mut run = Run {
             line: first.row.line,
@@ -221,18 +206,7 @@ impl Knife<'_> {
             .partition(|output| !(self.recording.histories && is_channel(output)));
         kept.retain(|output| output.field.name != "run");
         for output in kept {
-            let text = if is_text(output) {
-                self.constant(output, chosen, complaints)
-            } else {
-                // Measured values are averaged; formulas of conditions are computed from the averages of these.
-                let value = if is_channel(output) {
-                    self.mean(output, chosen)
-                } else {
-                    self.binding.value(output, &means)
-                };
-                value.map(|value| rule::check_number(&output.field, value).map(|()| shown(value)))
-            };
-            match text {
+            match self.cell(output, chosen, &means, complaints) {
                 Some(Ok(text)) => {
                     run.cells.insert(output.field.name.clone(), text);
                 }
@@ -257,6 +231,43 @@ impl Knife<'_> {
             histories.insert(file, text);
         }
         run
+    }
+
+    /// Complains about the first time that does not lie after the one before.
+    fn check_times(&self, segment: &Segment<'_>, complaints: &mut Complaints) {
+        let mut pairs = segment.samples.windows(2);
+        if let Some(pair) = pairs.find(|pair| pair[1].t_s <= pair[0].t_s) {
+            let message = format!(
+                "the time {} s must lie after {} s",
+                shown(pair[1].t_s),
+                shown(pair[0].t_s)
+            );
+            complaints.add_cell(Complaint {
+                line: Some(pair[1].row.line),
+                field: Some("recording".into()),
+                ..self.titled.table.complaint(message)
+            });
+        }
+    }
+
+    /// The text of a run's cell, or a message; `None` if it is blank.
+    fn cell(
+        &self,
+        output: &Output,
+        samples: &[Sample<'_>],
+        means: &[Option<f64>],
+        complaints: &mut Complaints,
+    ) -> Option<Result<String, String>> {
+        if is_text(output) {
+            return self.constant(output, samples, complaints);
+        }
+        // Measured values are averaged; formulas of conditions are computed from the averages of these.
+        let value = if is_channel(output) {
+            self.mean(output, samples)
+        } else {
+            self.binding.value(output, means)
+        };
+        value.map(|value| rule::check_number(&output.field, value).map(|()| shown(value)))
     }
 
     /// The text if it is equal in all samples.
@@ -302,39 +313,15 @@ impl Knife<'_> {
         complaints: &mut Complaints,
     ) -> Option<String> {
         let samples = &segment.samples;
-        let complain = |complaints: &mut Complaints, row: &Row, message: String| {
-            let field = Some("recording".into());
-            complaints.add_cell(Complaint {
-                line: Some(row.line),
-                field,
-                ..self
-                    .titled
-                    .table
-                    .complaint(format!("run \"{}\": {message}", segment.name))
-            });
-        };
-        let [first, second, ..] = samples.as_slice() else {
-            complain(
-                complaints,
-                samples.first()?.row,
-                format!(
-                    "{} samples are too few for a history: at least {MIN_SAMPLES}",
-                    samples.len()
-                ),
-            );
-            return None;
-        };
+        let first = samples.first()?;
         if samples.len() < MIN_SAMPLES {
-            complain(
-                complaints,
-                first.row,
-                format!(
-                    "{} samples are too few for a history: at least {MIN_SAMPLES}",
-                    samples.len()
-                ),
+            let message = format!(
+                "{} samples are too few for a history: at least {MIN_SAMPLES}",
+                samples.len()
             );
+            self.complain_of_run(segment, first.row, &message, complaints);
         }
-        let step = second.t_s - first.t_s;
+        let step = samples.get(1)?.t_s - first.t_s;
         let uneven = samples
             .windows(2)
             .find(|pair| (pair[1].t_s - pair[0].t_s - step).abs() > UNEVEN * step);
@@ -344,7 +331,7 @@ impl Knife<'_> {
                 shown(pair[1].t_s),
                 pair[1].t_s - pair[0].t_s
             );
-            complain(complaints, pair[1].row, message);
+            self.complain_of_run(segment, pair[1].row, &message, complaints);
         }
         let header = std::iter::once("t_s".to_owned())
             .chain(channels.iter().map(|output| output.field.name.clone()))
@@ -353,28 +340,34 @@ impl Knife<'_> {
         for sample in samples {
             let mut row = vec![shown(sample.t_s - first.t_s + step)];
             for output in channels {
-                match self.binding.value(output, &sample.numbers) {
-                    Some(value) => row.push(shown(value)),
-                    None => {
-                        row.push(String::new());
-                        if !complaints.is_said(sample.row.line, &output.field.name) {
-                            let message = format!(
-                                "{} is blank within a run, and a history has no gaps",
-                                output.field.words
-                            );
-                            complaints.add_cell(self.binding.complaint(
-                                self.titled,
-                                sample.row,
-                                output,
-                                message,
-                            ));
-                        }
-                    }
+                let value = self.binding.value(output, &sample.numbers);
+                if value.is_none() {
+                    self.complain_of_gap(output, sample.row, complaints);
                 }
+                row.push(value.map(shown).unwrap_or_default());
             }
             rows.push(row);
         }
         Some(csv(rows.into_iter()))
+    }
+
+    fn complain_of_run(&self, segment: &Segment<'_>, row: &Row, message: &str, complaints: &mut Complaints) {
+        let message = format!("run \"{}\": {message}", segment.name);
+        complaints.add_cell(Complaint {
+            line: Some(row.line),
+            field: Some("recording".into()),
+            ..self.titled.table.complaint(message)
+        });
+    }
+
+    fn complain_of_gap(&self, output: &Output, row: &Row, complaints: &mut Complaints) {
+        if !complaints.is_said(row.line, &output.field.name) {
+            let message = format!(
+                "{} is blank within a run, and a history has no gaps",
+                output.field.words
+            );
+            complaints.add_cell(self.binding.complaint(self.titled, row, output, message));
+        }
     }
 
     fn free_name(&self, run: &str, used: &BTreeMap<String, String>) -> String {

@@ -114,6 +114,30 @@ fn listed(names: impl ExactSizeIterator<Item = String>, between: &str) -> String
     }
 }
 
+/// Parses the row of titles and the row of units.
+fn titles_of(titles: Option<&Row>, units: Option<&Row>, width: usize, fields: &[Field]) -> Vec<Title> {
+    // `slip` is also a unit's word, but only beside names of runs.csv with that unit.
+    let is_runs_csv = titles.is_some_and(|row| row.cells.iter().any(|cell| cell.shown() == "wheel_load_n"));
+    let fields: Vec<&Field> = fields
+        .iter()
+        .filter(|field| is_runs_csv || field.name != "slip")
+        .collect();
+    let parsed = |column: usize| {
+        let text = titles.map(|row| spaced(&row.cell(column).shown()));
+        let text = text.unwrap_or_default();
+        let text = if column == 0 {
+            text.trim_start_matches('#').trim_start()
+        } else {
+            &text
+        };
+        let below = units
+            .map(|row| row.cell(column).shown())
+            .filter(|text| !text.is_empty());
+        title(text, column, below, &fields)
+    };
+    (0..width).map(parsed).collect()
+}
+
 /// Finds the titles; `stated` are the lines of titles and units in the map, 0 for none.
 pub(crate) fn find(
     table: Table,
@@ -158,33 +182,8 @@ pub(crate) fn find(
     if width > MAX_COLUMNS {
         return Err(table.refusal(too_wide(width)));
     }
-    // `slip` is also a unit's word, but only beside names of runs.csv with that unit.
-    let is_own = at.is_some_and(|k| {
-        table.rows[k]
-            .cells
-            .iter()
-            .any(|cell| cell.shown() == "wheel_load_n")
-    });
-    let matching: Vec<&Field> = fields
-        .iter()
-        .filter(|field| is_own || field.name != "slip")
-        .collect();
-    let titles: Vec<Title> = (0..width)
-        .map(|column| {
-            let text = at
-                .map(|k| spaced(&table.rows[k].cell(column).shown()))
-                .unwrap_or_default();
-            let text = if column == 0 {
-                text.trim_start_matches('#').trim_start().to_owned()
-            } else {
-                text
-            };
-            let below = units
-                .map(|k| table.rows[k].cell(column).shown())
-                .filter(|text| !text.is_empty());
-            title(&text, column, below, &matching)
-        })
-        .collect();
+    let titles = at.map(|k| &table.rows[k]);
+    let titles = titles_of(titles, units.map(|k| &table.rows[k]), width, fields);
     let mut by_text: BTreeMap<String, Vec<usize>> = BTreeMap::new();
     for (column, title) in titles.iter().enumerate() {
         by_text.entry(title.text.clone()).or_default().push(column);

@@ -72,6 +72,8 @@ pub(super) fn sample_stats(calibration: &FinishedCalibration) -> VariableGroup {
         }
         None => "log-likelihood",
     };
+    let evaluations = stages.iter().map(|stage| stage.evaluations.cast_signed());
+    let evaluations = Values::Whole(evaluations.collect());
     let mut coords = draw_labels(numbers(draws.len()));
     let stage_numbers = stages.iter().map(|stage| i64::from(stage.stage)).collect();
     coords.push(Variable::labels("stage", Values::Whole(stage_numbers)));
@@ -98,18 +100,7 @@ pub(super) fn sample_stats(calibration: &FinishedCalibration) -> VariableGroup {
             stage_variable("log_evidence_increment", "share of the log-evidence", &|stage| {
                 stage.log_evidence_increment
             }),
-            Variable::new(
-                "evaluations",
-                &along,
-                "",
-                "evaluations spent",
-                Values::Whole(
-                    stages
-                        .iter()
-                        .map(|stage| stage.evaluations.cast_signed())
-                        .collect(),
-                ),
-            ),
+            Variable::new("evaluations", &along, "", "evaluations spent", evaluations),
         ],
     }
 }

@@ -8,7 +8,7 @@ use super::maker::{Maker, dimension};
 use super::source::{From, Input, Output, Source};
 use crate::complaint::{Complaint, Complaints};
 use crate::field::{Field, RowUse};
-use crate::map::{Map, Origin};
+use crate::map::{Entry, Map, Origin};
 use crate::number;
 use crate::table::{Cell, Row, spaced};
 use crate::title::Titled;
@@ -78,38 +78,23 @@ impl Binding {
             let source = match (&entry.origin, field.quantity()) {
                 (Origin::Formula(text), Some(quantity)) => {
                     formulas.push((field, entry, text, quantity));
-                    continue;
+                    None
                 }
                 (Origin::Formula(_), None) => {
-                    maker.complain(
-                        entry,
-                        format!("{} is no quantity: a formula cannot give it", field.name),
-                    );
-                    continue;
+                    let message = format!("{} is no quantity: a formula cannot give it", field.name);
+                    maker.complain(entry, message);
+                    None
                 }
-                (_, Some(quantity)) => match maker.input(entry, Some(quantity)) {
-                    Some((input, _)) => {
-                        names.push((field.name.clone(), dimension(quantity)));
-                        binding.inputs.push(input);
-                        Source::Input(binding.inputs.len() - 1)
-                    }
-                    None => continue,
-                },
-                (_, None) => match maker.text(entry) {
-                    Some(from) => Source::Text(from),
-                    None => continue,
-                },
+                (_, Some(quantity)) => maker.input(entry, Some(quantity)).map(|(input, _)| {
+                    names.push((field.name.clone(), dimension(quantity)));
+                    binding.inputs.push(input);
+                    Source::Input(binding.inputs.len() - 1)
+                }),
+                (_, None) => maker.text(entry).map(Source::Text),
             };
-            if let Origin::Column(title) = &entry.origin
-                && let Ok(column) = titled.column(title)
-            {
-                binding.mapped.insert(column);
+            if let Some(source) = source {
+                binding.bind(field, entry, source, titled);
             }
-            binding.outputs.push(Output {
-                field: field.clone(),
-                source,
-                words: entry.words.clone(),
-            });
         }
         for (field, entry, text, quantity) in formulas {
             if let Some(expression) = maker.formula(entry, text, quantity, &names) {
@@ -124,6 +109,19 @@ impl Binding {
         binding.outputs.sort_by_key(place);
         maker.settle_decimals(&mut binding.inputs);
         binding
+    }
+
+    fn bind(&mut self, field: &Field, entry: &Entry, source: Source, titled: &Titled) {
+        if let Origin::Column(title) = &entry.origin
+            && let Ok(column) = titled.column(title)
+        {
+            self.mapped.insert(column);
+        }
+        self.outputs.push(Output {
+            field: field.clone(),
+            source,
+            words: entry.words.clone(),
+        });
     }
 
     /// The numbers of a row in SI units, in the order of the names of formulas; `None` where the cell is blank.

@@ -9,7 +9,7 @@ use crate::field::Field;
 use crate::map::{Entry, Map, Origin, QUESTION, quantity_of};
 use crate::number::{self, Decimal, Evidence, Writing};
 use crate::table::Cell;
-use crate::title::{Stated, Titled};
+use crate::title::{Stated, Title, Titled};
 use crate::unit::{self, Quantity, Unit};
 
 /// The input and the progress of a binding.
@@ -80,29 +80,14 @@ impl<'a> Maker<'a> {
             Some(Stated::Unit(unit)) => Some(unit),
             _ => None,
         };
-        let choices = || {
-            quantity.map_or_else(
-                || "a unit".to_owned(),
-                |quantity| quantity.units().collect::<Vec<_>>().join(", "),
-            )
-        };
+        if entry.unit.as_deref() == Some(QUESTION) {
+            self.ask_unit(entry, title.as_ref(), quantity);
+            return None;
+        }
         let read = |text: &str| match quantity.or_else(|| quantity_of(text)) {
             Some(quantity) => unit::read(text, quantity),
             None => Err(format!("unknown unit \"{text}\"")),
         };
-        if entry.unit.as_deref() == Some(QUESTION) {
-            let message = format!(
-                "unit = \"?\" asks for an answer, which the file does not state: one of {}",
-                choices()
-            );
-            let what = title.map_or_else(|| "it".to_owned(), |title| format!("\"{}\"", title.text));
-            self.ask(
-                entry,
-                &message,
-                format!("In which unit is {what}? The file does not state it."),
-            );
-            return None;
-        }
         let result = match (&entry.unit, stated, &title) {
             (Some(text), _, _) => read(text),
             (None, Some(stated), _) => read(stated.name),
@@ -114,12 +99,12 @@ impl<'a> Maker<'a> {
                 None => format!(
                     "the title \"{}\" states no unit: state `unit` in the map, one of {}",
                     title.text,
-                    choices()
+                    choices(quantity)
                 ),
             }),
             (None, None, None) => Err(format!(
                 "a value needs its unit: state `unit`, one of {}",
-                choices()
+                choices(quantity)
             )),
         };
         match result {
@@ -141,37 +126,42 @@ impl<'a> Maker<'a> {
         }
     }
 
+    fn ask_unit(&mut self, entry: &Entry, title: Option<&Title>, quantity: Option<Quantity>) {
+        let message = format!(
+            "unit = \"?\" asks for an answer, which the file does not state: one of {}",
+            choices(quantity)
+        );
+        let what = title.map_or_else(|| "it".to_owned(), |title| format!("\"{}\"", title.text));
+        self.ask(
+            entry,
+            &message,
+            format!("In which unit is {what}? The file does not state it."),
+        );
+    }
+
     /// The column or value of a number, and its unit.
     pub(super) fn input(
         &mut self,
         entry: &Entry,
         quantity: Option<Quantity>,
     ) -> Option<(Input, &'static Unit)> {
-        let input = |from, fixed| Input {
-            name: entry.name.clone(),
-            from,
-            fixed,
-        };
         match &entry.origin {
             Origin::Column(_) => {
                 let column = self.column(entry)?;
                 let unit = self.unit(entry, Some(column), quantity)?;
-                let reading = Reading {
+                let with = Reading {
                     writing: None,
                     stated_decimal: entry.decimal,
                     si: unit.si,
                 };
-                Some((
-                    input(
-                        From::Column {
-                            column,
-                            fills_down: entry.fills_down,
-                            with: reading,
-                        },
-                        0.0,
-                    ),
-                    unit,
-                ))
+                let from = From::Column {
+                    column,
+                    fills_down: entry.fills_down,
+                    with,
+                };
+                let name = entry.name.clone();
+                let fixed = 0.0;
+                Some((Input { name, from, fixed }, unit))
             }
             Origin::Value(text) if text == QUESTION => {
                 let what = self.words(entry).map_or_else(
@@ -187,37 +177,7 @@ impl<'a> Maker<'a> {
                 );
                 None
             }
-            Origin::Value(text) => {
-                let unit = self.unit(entry, None, quantity);
-                // A value in TOML is a number; one in quotes may be written as in the file.
-                let decimal = entry.decimal.or(self.map.decimal).unwrap_or(Decimal::Point);
-                let value = text
-                    .parse::<f64>()
-                    .ok()
-                    .filter(|value| value.is_finite())
-                    .map_or_else(
-                        || {
-                            number::read(
-                                text,
-                                Writing {
-                                    decimal,
-                                    has_thousands: false,
-                                },
-                            )
-                        },
-                        Ok,
-                    );
-                match (unit, value) {
-                    (Some(unit), Ok(value)) => {
-                        Some((input(From::Fixed(text.clone()), value * unit.si), unit))
-                    }
-                    (_, Err(message)) => {
-                        self.complain(entry, message);
-                        None
-                    }
-                    (None, Ok(_)) => None,
-                }
-            }
+            Origin::Value(text) => self.fixed(entry, text, quantity),
             Origin::Formula(_) => {
                 self.complain(
                     entry,
@@ -226,6 +186,36 @@ impl<'a> Maker<'a> {
                 None
             }
         }
+    }
+
+    /// A value for all rows, and its unit.
+    fn fixed(
+        &mut self,
+        entry: &Entry,
+        text: &str,
+        quantity: Option<Quantity>,
+    ) -> Option<(Input, &'static Unit)> {
+        let unit = self.unit(entry, None, quantity);
+        // A value in TOML is a number; one in quotes may be written as in the file.
+        let writing = Writing {
+            decimal: entry.decimal.or(self.map.decimal).unwrap_or(Decimal::Point),
+            has_thousands: false,
+        };
+        let value = text.parse::<f64>().ok().filter(|value| value.is_finite());
+        let value = match value.map_or_else(|| number::read(text, writing), Ok) {
+            Ok(value) => value,
+            Err(message) => {
+                self.complain(entry, message);
+                return None;
+            }
+        };
+        let unit = unit?;
+        let input = Input {
+            name: entry.name.clone(),
+            from: From::Fixed(text.to_owned()),
+            fixed: value * unit.si,
+        };
+        Some((input, unit))
     }
 
     pub(super) fn quantity(&mut self, entry: &Entry) -> Option<(Input, Dimension)> {
@@ -379,4 +369,12 @@ impl<'a> Maker<'a> {
             }
         }
     }
+}
+
+/// The units of a quantity in a sentence.
+fn choices(quantity: Option<Quantity>) -> String {
+    quantity.map_or_else(
+        || "a unit".to_owned(),
+        |quantity| quantity.units().collect::<Vec<_>>().join(", "),
+    )
 }

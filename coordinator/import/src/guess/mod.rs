@@ -260,36 +260,43 @@ fn from_rotation(
     derived.question = None;
     let radius = (0..columns.len())
         .find(|&column| !used[column] && plain(&titled.titles[column].name).contains("radius"));
-    let quantity = |name: &str, words: &str, quantity: Quantity, column: Option<usize>| {
-        let unit = column.and_then(|column| match titled.titles[column].stated {
-            Stated::Unit(unit) if unit.quantity == quantity => Some(unit.name.to_owned()),
-            _ => None,
-        });
-        QuantityGuess {
-            name: name.into(),
-            words: words.into(),
-            units: quantity.units().map(str::to_owned).collect(),
-            column: column.map(|column| columns[column].name.clone()),
-            question: unit
-                .is_none()
-                .then(|| format!("what is the {words}, and in which unit")),
-            unit,
-        }
-    };
+    let column = |column: usize| (&titled.titles[column], &columns[column]);
     vec![
-        quantity(
+        quantity_guess(
             "omega",
             "rotational speed of the wheel",
             Quantity::AngularSpeed,
-            Some(turning),
+            Some(column(turning)),
         ),
-        quantity(
+        quantity_guess(
             "r",
             "radius with which the rig converts slip to rim speed",
             Quantity::Length,
-            radius,
+            radius.map(column),
         ),
     ]
+}
+
+fn quantity_guess(
+    name: &str,
+    words: &str,
+    quantity: Quantity,
+    column: Option<(&Title, &ColumnCard)>,
+) -> QuantityGuess {
+    let unit = column.and_then(|(title, _)| match title.stated {
+        Stated::Unit(unit) if unit.quantity == quantity => Some(unit.name.to_owned()),
+        _ => None,
+    });
+    QuantityGuess {
+        name: name.into(),
+        words: words.into(),
+        units: quantity.units().map(str::to_owned).collect(),
+        column: column.map(|(_, card)| card.name.clone()),
+        question: unit
+            .is_none()
+            .then(|| format!("what is the {words}, and in which unit")),
+        unit,
+    }
 }
 
 /// If no title says which runs are held out, the words of a column may.

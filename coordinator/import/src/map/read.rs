@@ -140,43 +140,56 @@ fn entries(
             ));
             continue;
         };
-        let mut keys = Keys::new(source, table, &place, Some(name));
-        let column = keys.text(complaints, "column").map(Origin::Column);
-        let value = keys.scalar(complaints, "value").map(Origin::Value);
-        let formula = keys.text(complaints, "formula").map(Origin::Formula);
-        let unit = keys.text(complaints, "unit");
-        let decimal = decimal(&mut keys, complaints);
-        let fills_down = keys.flag(complaints, "fill_down");
-        let words = if name == "use" && fields.is_some() {
-            keys.words(complaints, "words")
-        } else {
-            BTreeMap::new()
-        };
-        keys.end(complaints);
-        let mut origins = [column, value, formula].into_iter().flatten();
-        match (origins.next(), origins.next()) {
-            (Some(origin), None) if keys.is_right => {
-                let line = byte.map_or(1, |byte| source.line(byte));
-                entries.push(Entry {
-                    name: name.to_owned(),
-                    line,
-                    origin,
-                    unit,
-                    decimal,
-                    fills_down,
-                    words,
-                });
-            }
-            (Some(_), None) => {}
-            (None, _) if !keys.is_right => {}
-            _ => complaints.add(source.complaint(
+        let has_words = name == "use" && fields.is_some();
+        entries.extend(entry(source, (name, byte), table, &place, has_words, complaints));
+    }
+    entries
+}
+
+/// An entry at a byte of the map; `None` if it has a mistake.
+fn entry(
+    source: &Source<'_>,
+    (name, byte): (&str, Option<usize>),
+    table: &dyn TableLike,
+    place: &str,
+    has_words: bool,
+    complaints: &mut Complaints,
+) -> Option<Entry> {
+    let mut keys = Keys::new(source, table, place, Some(name));
+    let column = keys.text(complaints, "column").map(Origin::Column);
+    let value = keys.scalar(complaints, "value").map(Origin::Value);
+    let formula = keys.text(complaints, "formula").map(Origin::Formula);
+    let unit = keys.text(complaints, "unit");
+    let decimal = decimal(&mut keys, complaints);
+    let fills_down = keys.flag(complaints, "fill_down");
+    let words = if has_words {
+        keys.words(complaints, "words")
+    } else {
+        BTreeMap::new()
+    };
+    keys.end(complaints);
+    let mut origins = [column, value, formula].into_iter().flatten();
+    match (origins.next(), origins.next()) {
+        (Some(origin), None) if keys.is_right => Some(Entry {
+            name: name.to_owned(),
+            line: byte.map_or(1, |byte| source.line(byte)),
+            origin,
+            unit,
+            decimal,
+            fills_down,
+            words,
+        }),
+        (Some(_), None) => None,
+        (None, _) if !keys.is_right => None,
+        _ => {
+            complaints.add(source.complaint(
                 byte,
                 Some(name),
                 format!("{place} must have one of column, value and formula"),
-            )),
+            ));
+            None
         }
     }
-    entries
 }
 
 fn read_recording(

@@ -151,12 +151,13 @@ fn matrix(data: &[u8], is_big: bool, depth: usize) -> Result<(String, Value), Da
     }
     let mut parts = Elements { rest: data, is_big };
     if data.is_empty() {
+        let (rows, columns, values) = (0, 0, Vec::new());
         return Ok((
             String::new(),
             Value::Numbers {
-                rows: 0,
-                columns: 0,
-                values: Vec::new(),
+                rows,
+                columns,
+                values,
             },
         ));
     }

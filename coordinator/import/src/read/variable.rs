@@ -126,6 +126,30 @@ fn groups(variables: &Variables) -> Vec<Group> {
     all
 }
 
+/// The index of the group that is read.
+fn chosen(groups: &[Group], table: &Table, hints: &Hints) -> Result<usize, Box<Complaint>> {
+    if let Some(stated) = &hints.sheet {
+        let position = groups.iter().position(|group| group.name == *stated);
+        return position.ok_or_else(|| {
+            let names = groups.iter().map(|group| group.name.as_str());
+            table.refusal(shared::file::unknown_word("struct", stated, names))
+        });
+    }
+    let long = groups.iter().filter(|group| group.length() > 1).count();
+    if long > 1 && !hints.takes_largest {
+        let names: Vec<String> = table.sheets.iter().map(|name| format!("\"{name}\"")).collect();
+        let message = format!(
+            "several structs have columns (\"\" is outside of all): state `sheet = ` in the map, one of {}",
+            names.join(", ")
+        );
+        return Err(table.refusal(message));
+    }
+    let largest = (0..groups.len())
+        .rev()
+        .max_by_key(|&k| (groups[k].length().min(2), groups[k].columns.len()));
+    largest.ok_or_else(|| table.refusal("the file has no variable with numbers or texts: save the columns as vectors, or a struct of vectors (a MATLAB table as table2struct(t, 'ToScalar', true))"))
+}
+
 /// The table of variables of equal length; a scalar counts for every row.
 pub(super) fn table(
     file: &str,
@@ -142,31 +166,7 @@ pub(super) fn table(
     };
     let mut groups = groups(&variables.map_err(|e| table.complaint(e))?);
     table.sheets = groups.iter().map(|group| group.name.clone()).collect();
-    let chosen = match &hints.sheet {
-        Some(stated) => groups
-            .iter()
-            .position(|group| group.name == *stated)
-            .ok_or_else(|| {
-                let names = groups.iter().map(|group| group.name.as_str());
-                table.complaint(shared::file::unknown_word("struct", stated, names))
-            })?,
-        None => {
-            let long = groups.iter().filter(|group| group.length() > 1).count();
-            if long > 1 && !hints.takes_largest {
-                let names: Vec<String> = table.sheets.iter().map(|name| format!("\"{name}\"")).collect();
-                let message = format!(
-                    "several structs have columns (\"\" is outside of all): state `sheet = ` in the map, one of {}",
-                    names.join(", ")
-                );
-                return Err(table.refusal(message));
-            }
-            let largest = (0..groups.len())
-                .rev()
-                .max_by_key(|&k| (groups[k].length().min(2), groups[k].columns.len()));
-            largest.ok_or_else(|| table.complaint("the file has no variable with numbers or texts: save the columns as vectors, or a struct of vectors (a MATLAB table as table2struct(t, 'ToScalar', true))"))?
-        }
-    };
-    let mut group = groups.swap_remove(chosen);
+    let mut group = groups.swap_remove(chosen(&groups, &table, hints)?);
     table.sheet = (!group.name.is_empty()).then(|| group.name.clone());
     // The length of most columns, the longer of two; scalars are not counted.
     let lengths = |length: usize| {
