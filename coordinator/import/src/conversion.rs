@@ -112,22 +112,25 @@ fn judge(
         }
         None => rows::runs(titled, &rows, &binding, complaints),
     };
+    check_count(runs.len(), titled, complaints);
     converted.run_count = runs.len();
-    if runs.is_empty() {
-        complaints.add(titled.table.complaint("there is no row of data below the titles"));
-    }
-    if runs.len() > MAX_RUNS {
-        complaints.add(titled.table.complaint(format!(
-            "{} runs must be at most {MAX_RUNS}; for a recording of several runs the map needs [recording]",
-            runs.len()
-        )));
-    }
     converted.runs = Some(runs_csv(&runs, order()));
     keep_notes(titled, map, &binding, &runs, converted);
     if map.recording.is_none() && !map.columns.iter().any(|entry| entry.name == "run") {
         converted
             .remarks
             .push("the runs are numbered, r1 and so on: the map has no [columns.run]".into());
+    }
+}
+
+fn check_count(runs: usize, titled: &Titled, complaints: &mut Complaints) {
+    if runs == 0 {
+        complaints.add(titled.table.complaint("there is no row of data below the titles"));
+    }
+    if runs > MAX_RUNS {
+        complaints.add(titled.table.complaint(format!(
+            "{runs} runs must be at most {MAX_RUNS}; for a recording of several runs the map needs [recording]"
+        )));
     }
 }
 

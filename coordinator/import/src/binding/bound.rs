@@ -65,13 +65,7 @@ impl Binding {
             mapped: BTreeSet::new(),
             missing: map.missing.clone(),
         };
-        let mut names: Vec<(String, Dimension)> = Vec::new();
-        for entry in &map.quantities {
-            if let Some((input, dimension)) = maker.quantity(entry) {
-                names.push((entry.name.clone(), dimension));
-                binding.inputs.push(input);
-            }
-        }
+        let mut names = binding.bind_quantities(map, &mut maker);
         let by_name = |field: &Field| map.columns.iter().find(|entry| entry.name == field.name);
         let mut formulas = Vec::new();
         for (field, entry) in fields.iter().filter_map(|field| Some((field, by_name(field)?))) {
@@ -109,6 +103,18 @@ impl Binding {
         binding.outputs.sort_by_key(place);
         maker.settle_decimals(&mut binding.inputs);
         binding
+    }
+
+    /// The names of the quantities in formulas, with their dimensions.
+    fn bind_quantities(&mut self, map: &Map, maker: &mut Maker) -> Vec<(String, Dimension)> {
+        let mut names = Vec::new();
+        for entry in &map.quantities {
+            if let Some((input, dimension)) = maker.quantity(entry) {
+                names.push((entry.name.clone(), dimension));
+                self.inputs.push(input);
+            }
+        }
+        names
     }
 
     fn bind(&mut self, field: &Field, entry: &Entry, source: Source, titled: &Titled) {

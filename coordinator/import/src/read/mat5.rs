@@ -183,36 +183,40 @@ fn matrix(data: &[u8], is_big: bool, depth: usize) -> Result<(String, Value), Da
     );
     let value = match class {
         _ if size.len() > 2 => Value::Other("an array of more than two dimensions"),
-        1 => {
-            let mut texts = Vec::new();
-            while !parts.rest.is_empty() {
-                let (_, data) = parts.next()?;
-                texts.push(matrix(data, is_big, depth + 1)?.1);
-            }
-            list(texts)
-        }
+        1 => cells(&mut parts, depth)?,
         2 | 3 => fields(&mut parts, elements, depth)?,
         4 => {
             let element = parts.next()?;
             Value::Texts(lines(&characters(&parts, element)?, rows, columns))
         }
         6..=15 if is_complex => Value::Other("complex numbers"),
-        6..=15 => {
-            let element = parts.next()?;
-            let values = parts.numbers(element)?;
-            if (values.len() as f64 - elements).abs() > 0.0 {
-                return Err(cut());
-            }
-            Value::Numbers {
-                rows,
-                columns,
-                values,
-            }
-        }
+        6..=15 => numbers(&mut parts, elements, rows, columns)?,
         5 => Value::Other("a sparse matrix"),
         _ => Value::Other("an object of MATLAB"),
     };
     Ok((name, value))
+}
+
+fn cells(parts: &mut Elements, depth: usize) -> Result<Value, Damaged> {
+    let mut values = Vec::new();
+    while !parts.rest.is_empty() {
+        let (_, data) = parts.next()?;
+        values.push(matrix(data, parts.is_big, depth + 1)?.1);
+    }
+    Ok(list(values))
+}
+
+fn numbers(parts: &mut Elements, count: f64, rows: usize, columns: usize) -> Result<Value, Damaged> {
+    let element = parts.next()?;
+    let values = parts.numbers(element)?;
+    if (values.len() as f64 - count).abs() > 0.0 {
+        return Err(cut());
+    }
+    Ok(Value::Numbers {
+        rows,
+        columns,
+        values,
+    })
 }
 
 /// A cell array of texts, or of single numbers.

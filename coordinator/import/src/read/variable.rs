@@ -150,6 +150,21 @@ fn chosen(groups: &[Group], table: &Table, hints: &Hints) -> Result<usize, Box<C
     largest.ok_or_else(|| table.refusal("the file has no variable with numbers or texts: save the columns as vectors, or a struct of vectors (a MATLAB table as table2struct(t, 'ToScalar', true))"))
 }
 
+/// A row of the table; a scalar is repeated.
+fn row(columns: &[Column], index: usize) -> Row {
+    let cell = |(_, cells): &Column| {
+        cells
+            .get(index)
+            .or(cells.first().filter(|_| cells.len() == 1))
+            .cloned()
+            .unwrap_or(Cell::Blank)
+    };
+    Row {
+        line: index + 1,
+        cells: columns.iter().map(cell).collect(),
+    }
+}
+
 /// The table of variables of equal length; a scalar counts for every row.
 pub(super) fn table(
     file: &str,
@@ -202,18 +217,6 @@ pub(super) fn table(
         line: 0,
         cells: fitting.iter().map(|(name, _)| Cell::Text(name.clone())).collect(),
     });
-    for row in 0..rows {
-        let cell = |(_, cells): &Column| {
-            cells
-                .get(row)
-                .or(cells.first().filter(|_| cells.len() == 1))
-                .cloned()
-                .unwrap_or(Cell::Blank)
-        };
-        table.rows.push(Row {
-            line: row + 1,
-            cells: fitting.iter().map(cell).collect(),
-        });
-    }
+    table.rows.extend((0..rows).map(|index| row(&fitting, index)));
     Ok(table)
 }
