@@ -14,7 +14,7 @@ use worker::pull::exchange::{Coordinator, ExchangeError};
 use worker::pull::limits::WorkerLimits;
 use worker::pull::{PullSettings, run};
 
-use crate::farm::dispatch::Dispatcher;
+use farm::dispatch::Dispatcher;
 
 pub use worker::config::WorkerConfig;
 pub use worker::program::ProgramError as WorkerError;

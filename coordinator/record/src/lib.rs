@@ -6,6 +6,7 @@
 //! - `calibration`, `sample`, `estimate`: stored rows. `membership`: the place of a calibration in its study.
 //! - `replay`: rows that a restart reads back.
 //! - `verification`: how many answers of workers are verified.
+//! - `token`: bearer tokens and their roles.
 //! - `discovery`: the record of a search for a missing effect.
 
 mod calibration;
@@ -16,6 +17,7 @@ pub mod fact;
 mod membership;
 mod replay;
 mod sample;
+mod token;
 mod verification;
 
 pub use calibration::{CalibrationRow, ExperimentRow, SealKey};
@@ -30,4 +32,5 @@ pub use fact::{Dispute, EvaluationRow, Fact, Fingerprint, Kept};
 pub use membership::{Change, Membership, Role};
 pub use replay::{Stored, StoredEvaluation};
 pub use sample::{Prediction, PriorDraw, RejectionReason, Sample, StageRow, Subchains};
+pub use token::{Token, TokenHash, TokenRole};
 pub use verification::{Quarantine, Repeats, Verified};

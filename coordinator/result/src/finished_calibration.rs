@@ -62,6 +62,12 @@ pub struct FinishedCalibration {
 }
 
 impl FinishedCalibration {
+    /// Names of the effects of its model.
+    pub fn effects(&self) -> Vec<String> {
+        let effects = &self.spec.fit_variant.effects;
+        effects.iter().map(|effect| effect.name.clone()).collect()
+    }
+
     /// The draw of the highest likelihood; the first of equals.
     pub fn likeliest(&self) -> Option<&Sample> {
         likeliest(&self.posterior)
@@ -123,7 +129,7 @@ pub fn likeliest(draws: &[Sample]) -> Option<&Sample> {
 }
 
 /// The mean of a prior; that of a symmetric one is integrated to zero but for rounding, which is not shown.
-pub(crate) fn prior_mean(marginal: &Marginal) -> f64 {
+pub fn prior_mean(marginal: &Marginal) -> f64 {
     let mean = marginal.mean();
     if mean.abs() < 1e-12 * marginal.sd() {
         0.0

@@ -14,10 +14,10 @@ use shared::experiment::Campaign;
 use shared::file::{FileSet, parse_toml};
 use shared::outcome::Observables;
 
-use crate::discovery::DiscoveryRound;
-use crate::finished_calibration::FinishedCalibration;
-use crate::study::Study;
-use crate::study_member::StudyMember;
+use result::discovery::DiscoveryRound;
+use result::finished_calibration::FinishedCalibration;
+use result::study::Study;
+use result::study_member::StudyMember;
 
 const JOB: &str = r#"
 # <i>bold & brave</i>
@@ -55,7 +55,7 @@ e,a,sand,0.4,25,0.01,1.2,0.022,LAST
 ";
 
 /// A campaign whose rows were digitised.
-pub(crate) fn campaign() -> Campaign {
+pub fn campaign() -> Campaign {
     let toml = "title = \"Wheels in <i>sand</i>\"\nauthors = [\"A. Author\", \"B. Author\"]\ndate = \"2025\"\n\
                 licence = \"CC-BY-4.0\"\ndoi = \"10.1000/182\"\nsource = \"figure 5\"\ndigitised = true\n\
                 noise = \"guessed\"\ndoubts = [\"few rows\"]\n";
@@ -63,17 +63,17 @@ pub(crate) fn campaign() -> Campaign {
 }
 
 /// A calibration with a holdout run.
-pub(crate) fn calibration() -> FinishedCalibration {
+pub fn calibration() -> FinishedCalibration {
     build(&RUNS.replace("LAST", "holdout"))
 }
 
 /// The same with every run fitted.
-pub(crate) fn without_holdout() -> FinishedCalibration {
+pub fn without_holdout() -> FinishedCalibration {
     build(&RUNS.replace("LAST", "fit"))
 }
 
 /// The same with more holdout runs, whose pull lies on a line through those of the fitted ones; the model is off by this much `[N]`.
-pub(crate) fn with_held_out_runs(count: usize, error: f64) -> FinishedCalibration {
+pub fn with_held_out_runs(count: usize, error: f64) -> FinishedCalibration {
     let mut runs = RUNS.replace("LAST", "fit");
     for k in 0..count {
         let slip = 0.21 + 0.28 * k as f64 / count as f64;
@@ -98,7 +98,7 @@ pub(crate) fn with_held_out_runs(count: usize, error: f64) -> FinishedCalibratio
 
 /// Nine fitted runs over slip and two held out between them, and one at another speed; the model misses the pull by `3 sin(3 slip)`
 /// `[N]`, and each draw by 1 N more or less in every run.
-pub(crate) fn with_smooth_misfit() -> FinishedCalibration {
+pub fn with_smooth_misfit() -> FinishedCalibration {
     let mut runs =
         "run,wheel,soil,slip,wheel_load_n,sled_speed_m_s,drawbar_pull_n,sinkage_m,use\n".to_owned();
     let row = |name: &str, slip: f64, speed: f64, usage: &str| {
@@ -131,7 +131,7 @@ pub(crate) fn with_smooth_misfit() -> FinishedCalibration {
 }
 
 /// The same where the model rejected all final draws, drifted, and has no evidence.
-pub(crate) fn all_rejected() -> FinishedCalibration {
+pub fn all_rejected() -> FinishedCalibration {
     let mut calibration = calibration();
     for prediction in &mut calibration.predictions {
         prediction.fit = Err(RejectionReason("no_support".into()));
@@ -147,7 +147,7 @@ pub(crate) fn all_rejected() -> FinishedCalibration {
 }
 
 /// The same with four runs held out of which the model refuses one at every draw, one at every second and one at every fourth.
-pub(crate) fn with_refused_runs() -> FinishedCalibration {
+pub fn with_refused_runs() -> FinishedCalibration {
     let mut calibration = with_held_out_runs(4, 0.5);
     let draws = calibration.predictions.iter_mut().skip(1).enumerate();
     for (draw, prediction) in draws {
@@ -174,7 +174,7 @@ pub(crate) fn with_refused_runs() -> FinishedCalibration {
 }
 
 /// A fit of the same job, one parameter at a bound.
-pub(crate) fn fit() -> FinishedCalibration {
+pub fn fit() -> FinishedCalibration {
     let mut calibration = calibration();
     calibration.spec.algorithm = AlgorithmSettings::Fit(inference::lm::LmSettings::default());
     let first = calibration.predictions.remove(0);
@@ -203,7 +203,7 @@ pub(crate) fn fit() -> FinishedCalibration {
 }
 
 /// A search of the same job that its generations cut short.
-pub(crate) fn search() -> FinishedCalibration {
+pub fn search() -> FinishedCalibration {
     let mut calibration = fit();
     calibration.spec.algorithm = AlgorithmSettings::Evolve(EvolutionSettings::Ga(GaSettings::default()));
     if let Some(estimate) = &mut calibration.estimate {
@@ -219,7 +219,7 @@ pub(crate) fn search() -> FinishedCalibration {
 }
 
 /// A sample with a search beside it.
-pub(crate) fn study() -> Study {
+pub fn study() -> Study {
     let mut beside = search();
     beside.row.id = 2;
     Study {
@@ -229,7 +229,7 @@ pub(crate) fn study() -> Study {
 }
 
 /// A sample that was searched and extended.
-pub(crate) fn grown() -> Study {
+pub fn grown() -> Study {
     let mut extension = calibration();
     (extension.row.id, extension.experiment) = (3, "<script>sand+slip_sinkage".into());
     let mut record =
@@ -270,7 +270,7 @@ pub(crate) fn grown() -> Study {
 
 /// A study whose search found a class of two effects, extended by one of them; the extended model was searched again, and nothing was
 /// found.
-pub(crate) fn of_a_class() -> Study {
+pub fn of_a_class() -> Study {
     let mut study = grown();
     let extension = &mut study.extensions[0];
     *extension = build_with("effects = [\"slip_sinkage\"]\n", &RUNS.replace("LAST", "holdout"));
@@ -310,7 +310,7 @@ pub(crate) fn of_a_class() -> Study {
 
 /// A study of the model of a rolling wheel, extended by an effect of the displacement that is kept on the nodes of the soil, as a search
 /// named it.
-pub(crate) fn on_the_nodes() -> Study {
+pub fn on_the_nodes() -> Study {
     let rolling = |more: &str| {
         let job = JOB.replace("\"quasi_static\"\n", &format!("\"scm\"\n{more}"));
         of_job(&job, &RUNS.replace("LAST", "holdout"))
@@ -351,7 +351,7 @@ fn of_job(job: &str, runs: &str) -> FinishedCalibration {
 }
 
 /// A calibration of these files; its draws are spread over the prior.
-pub(crate) fn of_files(job: FileSet, files: &FileSet) -> FinishedCalibration {
+pub fn of_files(job: FileSet, files: &FileSet) -> FinishedCalibration {
     let spec = Spec::new("job.toml", &job, "experiment.toml", files).expect("the fixture's files are valid");
     // The golden ratio's multiples spread evenly.
     let share = |k: usize, i: usize| (0.5 + 0.618_033_988_75 * (k * (i + 1)) as f64) % 1.0;

@@ -1,64 +1,51 @@
-//! Tables, summary, flags and report of a calibration, from what the store kept.
+//! The numbers of a calibration and of a study, from what the store kept: tables, diagnostics, errors, figures.
 //!
-//! Everything here is a pure function of a [`FinishedCalibration`], or of the [`Study`] that it belongs to; the decisions it
-//! states read no holdout row.
+//! Everything here is a pure function of a [`FinishedCalibration`], or of the [`Study`] that it belongs to. No decision that it states
+//! reads a holdout row.
 //!
 //! # Layout
-//! - `finished_calibration`, `study`: what the results are made from. `study_file`: the files that a study ends with.
-//! - `table`: model against measurement, errors, intervals, the posterior's draws.
-//! - [`diagnostics`]: how far the posterior can be trusted. `flag`: warnings in words.
-//!   `diagnosis`: both, computed once.
-//! - `model_comparison`: the models that a job compares, by evidence and by prediction.
+//! - [`finished_calibration`], [`study`]: the inputs of the results. [`study_member`]: a calibration of a study; [`study_failure`]: why one failed.
+//! - [`table`]: model against measurement, errors, intervals, the posterior's draws.
+//! - [`parameter_summary`], [`point_estimate`], [`error_summary`], [`coverage_summary`]: what a line of the error ledger states.
+//! - [`diagnostics`]: how far the posterior can be trusted. [`flag`]: a warning.
+//! - [`model_comparison`]: the models that a job compares, by evidence and by prediction.
 //! - [`validation`]: the levels of a factor, each predicted from the others.
-//! - `overview`, `study_member`: a study as the page shows it. `study_failure`: why it failed.
-//! - `summary`: `summary.json`. `discovery`: its block on missing effects.
+//! - [`discovery`]: the searches for missing effects.
 //! - [`figure`]: the numbers of the source paper's figures.
-//! - `provenance`: how a calibration came about, and what it reached in sentences.
-//! - [`story`]: what is wrong, what is missing, what to do next.
-//! - [`report`]: one HTML document with everything. [`terminal`]: text for a terminal.
-//! - `words`: numbers, units, probabilities and citations as people read them.
+//! - [`words`]: numbers, units, probabilities and citations as people read them.
 
-mod diagnosis;
+pub mod coverage_summary;
 pub mod diagnostics;
 pub mod discovery;
+pub mod error_summary;
 pub mod figure;
-mod finished_calibration;
+pub mod finished_calibration;
 #[cfg(test)]
-mod fixture;
-mod flag;
-mod model_comparison;
-mod overview;
-mod provenance;
-pub mod report;
-pub mod story;
-mod study;
-mod study_failure;
-mod study_file;
-mod study_member;
-mod summary;
-mod table;
-pub mod terminal;
+extern crate self as result;
+#[cfg(test)]
+pub mod fixture;
+pub mod flag;
+pub mod model_comparison;
+pub mod parameter_summary;
+pub mod point_estimate;
+pub mod study;
+pub mod study_failure;
+pub mod study_member;
+pub mod table;
 pub mod validation;
-mod words;
+pub mod words;
 
 pub use diagnostics::Diagnostics;
 pub use discovery::{DiscoveryRound, DiscoverySummary};
 pub use figure::{CalibrationFigures, ChannelHistory, MeasuredSeries, ModelSeries};
 pub use finished_calibration::{FinishedCalibration, first_population, likeliest};
-pub use flag::kind::{Flag, FlagKind};
-pub use flag::model_limit::model_limits;
+pub use flag::{Flag, FlagKind};
 pub use model_comparison::{ComparedModel, LeftOutBy, ModelComparison};
-pub use overview::{MemberOverview, StudyFlag, StudyListItem, StudyOverview, StudyVerdict};
-pub use provenance::Provenance;
-pub use story::Story;
+pub use parameter_summary::ParameterSummary;
+pub use point_estimate::PointEstimate;
 pub use study::Study;
 pub use study_failure::StudyFailure;
-pub use study_file::StudyFile;
 pub use study_member::{Rejections, StudyMember};
-pub use summary::calibration::CalibrationSummary;
-pub use summary::parameter::ParameterSummary;
-pub use summary::point_estimate::PointEstimate;
-pub use summary::study::StudySummary;
 pub use table::comparison::Comparison;
 pub use table::errors::{ChannelError, ErrorTable};
 pub use table::fixed_sigma::{FixedSigma, FixedSigmas, SigmaSource};

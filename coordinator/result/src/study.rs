@@ -78,7 +78,7 @@ impl Study {
     }
 }
 
-#[cfg(test)]
+/// A study with one calibration and no search.
 impl From<FinishedCalibration> for Study {
     fn from(lead: FinishedCalibration) -> Self {
         Study {

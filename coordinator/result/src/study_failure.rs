@@ -19,7 +19,7 @@ pub struct StudyFailure {
 
 impl StudyFailure {
     /// Of the first member that failed; `None` where none did.
-    pub(crate) fn of<'a>(mut members: impl Iterator<Item = &'a StudyMember>) -> Option<StudyFailure> {
+    pub fn of<'a>(mut members: impl Iterator<Item = &'a StudyMember>) -> Option<StudyFailure> {
         let failed = members.find(|member| member.state == CalibrationState::Failed)?;
         let message = failed.message.as_deref().unwrap_or("no reason is stored");
         let rejections = failed.rejections.as_ref();

@@ -39,7 +39,7 @@ pub struct Rejections {
 
 impl Rejections {
     /// The most frequent kind; the first of equals.
-    pub(crate) fn usual(&self) -> Option<&str> {
+    pub fn usual(&self) -> Option<&str> {
         let kinds = self.kinds.iter().rev();
         kinds
             .max_by_key(|(_, count)| **count)
@@ -47,7 +47,7 @@ impl Rejections {
     }
 
     /// `no_support 1000, such as "the soil carries at most 80 N of the 140 N wheel load"`; `None` without any.
-    pub(crate) fn words(&self) -> Option<String> {
+    pub fn words(&self) -> Option<String> {
         let kinds = self.kinds.iter().map(|(kind, count)| format!("{kind} {count}"));
         let kinds: Vec<String> = kinds.collect();
         let first = self.first.as_ref().map(|first| format!(", such as \"{first}\""));

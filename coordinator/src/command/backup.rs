@@ -4,7 +4,7 @@ use anyhow::bail;
 
 use super::output::say;
 use crate::config::BackupArguments;
-use crate::store::{Reader, is_server, name_of};
+use store::{Reader, is_server, name_of};
 
 pub(super) async fn backup(config: &BackupArguments) -> anyhow::Result<()> {
     if is_server(&config.store.store) {

@@ -6,12 +6,12 @@ use std::time::Instant;
 
 use super::job_on_disk;
 use super::output::say;
-use crate::calibration::{Calibration, CalibrationEngine, CalibrationIdentity, SimulationResult, result_of};
 use crate::config::CheckArguments;
 use crate::embedded::{Evaluate, LocalModels};
-use crate::missing_effect::untried::additions;
+use farm::calibration::{Calibration, CalibrationEngine, CalibrationIdentity, SimulationResult, result_of};
 use job::{AlgorithmSettings, Spec, confounded_orders};
-use result::{model_limits, terminal};
+use report::{model_limits, terminal};
+use search::untried::additions;
 
 /// Particles of the pilot: enough to fit what stages are drawn from, and to find their number, which hardly depends on them.
 const PILOT_PARTICLES: usize = 300;

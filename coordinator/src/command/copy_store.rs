@@ -2,7 +2,7 @@
 
 use super::output::say;
 use crate::config::CopyStoreArguments;
-use crate::store::{copy_store, name_of};
+use store::{copy_store, name_of};
 
 pub(super) async fn copy(config: &CopyStoreArguments) -> anyhow::Result<()> {
     let tables = copy_store(&config.from, &config.to).await?;

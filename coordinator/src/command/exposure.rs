@@ -6,7 +6,7 @@ use anyhow::bail;
 
 use crate::config::ExposureArguments;
 use crate::http::{Exposure, TokenRule, tls_acceptor};
-use crate::store::{Reader, name_of};
+use store::{Reader, name_of};
 
 /// How a service shows itself at an address; refused where others reach it and no token stands between.
 pub(super) async fn exposure(

@@ -14,13 +14,14 @@ use super::progress::Display;
 use super::shutdown::{Shutdown, Stopped, stop_signal};
 use crate::config::{ExposureArguments, ModelArguments};
 use crate::embedded::{LocalModels, LocalWorkers};
-use crate::farm::Control;
 use crate::http::Exposure;
 use crate::service::{FarmSettings, LEASE_MS, Service, VERIFIED_PERCENT, next_step_of, search_rounds};
+use farm::Control;
 use job::{Apply, Spec};
 use record::CalibrationRow;
+use report::{StudyFile, terminal};
+use result::DiscoveryRound;
 use result::discovery::effect_file;
-use result::{DiscoveryRound, StudyFile, terminal};
 
 /// How often the display looks.
 const LOOK: Duration = Duration::from_millis(100);

@@ -16,8 +16,8 @@ use super::source::{CalibrationSource, ServiceClient};
 use crate::config::{AddRunsArguments, DiscoverArguments, ExtendArguments, ModelArguments};
 use crate::service::{Service, ServiceError};
 use record::{Discovery, Extension};
+use report::terminal::discovery;
 use result::discovery::effect_file;
-use result::terminal::discovery;
 
 /// How often a service is asked whether a search is over.
 const LOOK: Duration = Duration::from_millis(500);

@@ -11,7 +11,7 @@ use super::job_on_disk::{self, JobOnDisk};
 use super::output::note;
 use crate::config::RunArguments;
 use job::Spec;
-use result::model_limits;
+use report::model_limits;
 
 pub(super) async fn run(config: RunArguments) -> anyhow::Result<()> {
     let job = job_on_disk::read(&config.file, &[])?;

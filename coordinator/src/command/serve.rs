@@ -14,7 +14,7 @@ use super::shutdown::{Shutdown, stop_signal};
 use crate::config::ServeArguments;
 use crate::embedded::{LocalModels, LocalWorkers};
 use crate::service::{FarmSettings, Service, ServiceError};
-use crate::store::{StoreError, name_of};
+use store::{StoreError, name_of};
 
 /// Durations that a lease may have `[ms]`: what a network may take, to a day.
 const LEASE_MS: RangeInclusive<u64> = 100..=86_400_000;

@@ -10,8 +10,9 @@ use crate::config::{ClientArguments, SourceArguments, TargetArguments};
 use crate::service::{
     calibration_row, diagnostics, finished_calibration, leave_out_archived, stored_status, study_file,
 };
-use crate::store::Reader;
-use result::{self, Comparison, Diagnostics, FinishedCalibration, PosteriorTable, StudyFile, StudySummary};
+use report::{StudyFile, StudySummary};
+use result::{Comparison, Diagnostics, FinishedCalibration, PosteriorTable};
+use store::Reader;
 
 /// A service or a folder.
 pub(super) enum CalibrationSource {

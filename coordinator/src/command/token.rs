@@ -9,8 +9,8 @@ use shared::bearer::BearerToken;
 
 use super::output::{note, say};
 use crate::config::{StoreArguments, TokenCommand};
-use crate::store::{TokenTable, name_of};
-use crate::token::{Role, Token, TokenHash, new_token};
+use record::{Token, TokenHash, TokenRole};
+use store::{TokenTable, name_of};
 
 /// Longest name of a token.
 const LONGEST_NAME: usize = 64;
@@ -35,7 +35,7 @@ fn now_ms() -> i64 {
     i64::try_from(since.as_millis()).unwrap_or(i64::MAX)
 }
 
-async fn add(name: &str, role: Role, from: Option<&Path>, store: &StoreArguments) -> anyhow::Result<()> {
+async fn add(name: &str, role: TokenRole, from: Option<&Path>, store: &StoreArguments) -> anyhow::Result<()> {
     let is_plain = |c: char| c.is_ascii_alphanumeric() || "._-@".contains(c);
     if name.is_empty() || name.len() > LONGEST_NAME || !name.chars().all(is_plain) {
         bail!("name {name:?} must have 1 to {LONGEST_NAME} letters, digits, or any of . _ - @");
@@ -122,4 +122,27 @@ async fn revoke(name: &str, store: &StoreArguments) -> anyhow::Result<()> {
         bail!("{} has no token {name}", name_of(&store.store));
     }
     Ok(say(&format!("token {name} is revoked\n"))?)
+}
+
+/// A new token: `grouser-` and 64 hexadecimal digits, random bits of the operating system.
+///
+/// # Errors
+/// The operating system has no random bits.
+fn new_token() -> Result<String, getrandom::Error> {
+    let mut bits = [0; 32];
+    getrandom::fill(&mut bits)?;
+    let digits: String = bits.iter().map(|byte| format!("{byte:02x}")).collect();
+    Ok(format!("grouser-{digits}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_new_token_has_256_bits_and_is_another_each_time() {
+        let tokens = [new_token().unwrap(), new_token().unwrap()];
+        assert!(tokens.iter().all(|token| token.len() == "grouser-".len() + 64));
+        assert_ne!(tokens[0], tokens[1]);
+    }
 }

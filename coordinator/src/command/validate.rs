@@ -18,8 +18,9 @@ use crate::config::{ValidateArguments, ValidationFormat};
 use crate::service::{ServiceError, experiment_files, finished_calibration};
 use job::{Spec, validation_job};
 use record::CalibrationRow;
+use report::terminal;
+use result::FinishedCalibration;
 use result::validation::{LeftOutLevel, ValidatedLevel, Validation};
-use result::{FinishedCalibration, terminal};
 
 /// How job and experiment are called in messages.
 const FILES: [&str; 2] = ["job.toml", "experiment.toml"];

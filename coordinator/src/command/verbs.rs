@@ -20,7 +20,7 @@ use crate::config::{
 use crate::effect::EffectCard;
 use job::{OwnEffect, foreign_effects};
 use page::report::showing;
-use result::{self, terminal};
+use report::terminal;
 
 pub(super) async fn submit(config: &SubmitArguments) -> anyhow::Result<()> {
     let client = ServiceClient::new(&config.url, &config.client)?;

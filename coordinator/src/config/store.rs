@@ -2,7 +2,9 @@
 
 use std::path::PathBuf;
 
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Subcommand};
+use record::TokenRole;
 
 /// The store of a service.
 #[derive(Debug, Args)]
@@ -47,8 +49,8 @@ pub enum TokenCommand {
         /// Name of its holder.
         name: String,
         /// What its holder may do: read; read, submit and control; or work as a worker.
-        #[arg(long, value_enum)]
-        role: crate::token::Role,
+        #[arg(long, value_parser = role_parser())]
+        role: TokenRole,
         /// Takes the token of this file, as of a secret of Kubernetes, and prints nothing; where it is there already, nothing changes.
         #[arg(long, value_name = "FILE")]
         from: Option<PathBuf>,
@@ -66,4 +68,9 @@ pub enum TokenCommand {
         #[command(flatten)]
         store: StoreArguments,
     },
+}
+
+fn role_parser() -> impl TypedValueParser<Value = TokenRole> {
+    PossibleValuesParser::new(TokenRole::ALL.map(TokenRole::name))
+        .map(|name| TokenRole::from_name(&name).expect("the parser accepts names of roles alone"))
 }

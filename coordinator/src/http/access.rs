@@ -11,8 +11,8 @@ use tokio::sync::watch;
 
 use super::error::HttpError;
 use super::page;
-use crate::store::Reader;
-use crate::token::{Role, Token, TokenHash};
+use record::{Token, TokenHash, TokenRole};
+use store::Reader;
 
 /// A change of the tokens takes effect after this time at most.
 const LOOK: Duration = Duration::from_secs(1);
@@ -157,12 +157,12 @@ impl Access {
 }
 
 /// The role that a request needs; nobody is asked for one to see whether the service is alive, or for the files of the page.
-fn needed(method: &Method, path: &str) -> Option<Role> {
+fn needed(method: &Method, path: &str) -> Option<TokenRole> {
     match path {
         "/health" | "/" | page::DOCS_PATH => None,
         _ if path.starts_with(page::FOLDER) => None,
-        _ if path.starts_with("/v1/work/") => Some(Role::Work),
-        _ if [Method::GET, Method::HEAD].contains(method) => Some(Role::Read),
-        _ => Some(Role::Submit),
+        _ if path.starts_with("/v1/work/") => Some(TokenRole::Work),
+        _ if [Method::GET, Method::HEAD].contains(method) => Some(TokenRole::Read),
+        _ => Some(TokenRole::Submit),
     }
 }

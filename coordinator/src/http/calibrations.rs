@@ -12,14 +12,15 @@ use utoipa_axum::routes;
 use super::access::Caller;
 use super::error::{Body, HttpError, Id, Query};
 use super::studies::WithArchived;
-use crate::farm::Control;
 use crate::service::{Service, finished_calibration};
 use export::InferenceData;
+use farm::Control;
 use page::report::showing;
 use record::{Sample, StageRow};
+use report::{Provenance, StudyFile, StudySummary};
 use result::{
     CalibrationFigures, ChannelHistory, Comparison, Diagnostics, FinishedCalibration, Flag, PosteriorTable,
-    PredictionRow, Provenance, StudyFile, StudySummary,
+    PredictionRow,
 };
 
 pub(super) fn routes() -> OpenApiRouter<Service> {
@@ -329,7 +330,9 @@ async fn histories(State(service): State<Service>, Id(id): Id) -> Result<impl In
     (status = 404, body = ErrorBody),
     (status = 409, body = ErrorBody)))]
 async fn provenance(State(service): State<Service>, Id(id): Id) -> Result<Json<Provenance>, HttpError> {
-    Ok(Json(outcome(&service, id).await?.provenance()))
+    Ok(Json(report::provenance::provenance(
+        &outcome(&service, id).await?,
+    )))
 }
 
 /// What deserves attention.

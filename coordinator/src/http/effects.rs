@@ -16,9 +16,9 @@ use super::access::Caller;
 use super::error::{Body, HttpError, Name};
 use crate::effect::EffectCard;
 use crate::effect::signature::{Signature, signature};
-use crate::farm::dispatch::Stopped;
 use crate::service::Service;
-use crate::store::{EffectVersion, StoreError, StoredEffect};
+use farm::dispatch::Stopped;
+use store::{EffectVersion, StoreError, StoredEffect};
 
 pub(super) fn routes() -> OpenApiRouter<Service> {
     OpenApiRouter::new()

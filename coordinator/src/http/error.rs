@@ -10,7 +10,7 @@ use shared::api::{ErrorBody, ErrorDetail, ErrorKind};
 use shared::sentence::one_line;
 
 use crate::service::ServiceError;
-use crate::store::StoreError;
+use store::StoreError;
 
 /// An error that goes to a client.
 #[derive(Debug)]
@@ -123,8 +123,8 @@ impl From<ExportError> for HttpError {
     }
 }
 
-impl From<crate::farm::dispatch::Stopped> for HttpError {
-    fn from(error: crate::farm::dispatch::Stopped) -> Self {
+impl From<farm::dispatch::Stopped> for HttpError {
+    fn from(error: farm::dispatch::Stopped) -> Self {
         ServiceError::from(error).into()
     }
 }

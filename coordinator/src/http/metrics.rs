@@ -16,9 +16,9 @@ use utoipa_axum::routes;
 
 use super::error::HttpError;
 use super::request_metrics::RequestMetrics;
-use crate::farm::dispatch::Stopped;
 use crate::service::Service;
-use crate::store::StoreError;
+use farm::dispatch::Stopped;
+use store::StoreError;
 
 fn counter(registry: &mut Registry, name: &str, help: &str, value: u64) {
     let counter: Counter = Counter::default();

@@ -42,7 +42,7 @@ use tower_http::compression::CompressionLayer;
 use utoipa_axum::router::OpenApiRouter;
 
 use crate::service::Service;
-use crate::token::Token;
+use record::Token;
 
 use access::Access;
 pub use access::TokenRule;

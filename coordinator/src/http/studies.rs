@@ -9,7 +9,7 @@ use utoipa_axum::routes;
 use super::access::Caller;
 use super::error::{HttpError, Id, Query};
 use crate::service::Service;
-use result::{StudyListItem, StudyOverview};
+use report::{StudyListItem, StudyOverview};
 
 pub(super) fn routes() -> OpenApiRouter<Service> {
     OpenApiRouter::new()

@@ -17,8 +17,8 @@ use utoipa_axum::routes;
 
 use super::access::Caller;
 use super::error::{HttpError, Name};
-use crate::farm::WorkerRecord;
 use crate::service::Service;
+use farm::WorkerRecord;
 
 /// A poll may last so long `[ms]`.
 const LONGEST_WAIT_MS: u64 = 30_000;

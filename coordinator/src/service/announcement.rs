@@ -4,8 +4,8 @@ use shared::api::CalibrationState;
 use tokio::sync::broadcast::error::RecvError;
 
 use super::handle::Service;
-use crate::store::{StateChange, StoreError};
 use crate::webhook::Announcement;
+use store::{StateChange, StoreError};
 
 impl Service {
     /// Posts each pause and end of a calibration to the web hook of its study, until the service ends. The farm never waits for it.

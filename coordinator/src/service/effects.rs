@@ -9,10 +9,10 @@ use shared::model::effects::own;
 use super::clock::now_ms;
 use super::error::ServiceError;
 use super::handle::Service;
-use crate::farm::dispatch::Stopped;
-use crate::store::{AddedEffect, NewEffect, StoredEffect};
+use farm::dispatch::Stopped;
 use job::{EffectOnNodes, ModelSwitch, OwnEffect, PlainParameter, check_own, foreign_effects};
 use record::Extension;
+use store::{AddedEffect, NewEffect, StoredEffect};
 
 /// How an effect file and a job are called in messages.
 const EFFECT: &str = "effect.toml";

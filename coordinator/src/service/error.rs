@@ -3,13 +3,13 @@
 use shared::api::CalibrationState;
 use shared::file::FileError;
 
-use crate::calibration::{BeginError, ReplayError};
-use crate::farm::ControlError;
-use crate::farm::dispatch::Stopped;
-use crate::store::StoreError;
 use crate::webhook::WebhookError;
+use farm::ControlError;
+use farm::calibration::{BeginError, ReplayError};
+use farm::dispatch::Stopped;
 use job::EffectsChanged;
 use record::CalibrationRow;
+use store::StoreError;
 
 /// An error of the service.
 #[derive(Debug, thiserror::Error)]

@@ -8,11 +8,11 @@ use super::error::ServiceError;
 use super::stored_calibration::spec_of;
 use super::study_members::study_members;
 use super::study_step::next_step_from;
-use crate::store::Reader;
 use crate::study::{Lineage, most_probable};
 use job::AlgorithmSettings;
 use record::CalibrationRow;
 use result::{DiscoveryRound, FinishedCalibration, Study, first_population, likeliest};
+use store::Reader;
 
 /// Loads a finished calibration.
 ///

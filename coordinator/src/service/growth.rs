@@ -14,13 +14,13 @@ use super::handle::Service;
 use super::stored_calibration::{FILES, has_posterior};
 use super::study_step::next_step_of;
 use super::submission::role_of;
-use crate::calibration::{Calibration, CalibrationIdentity};
-use crate::farm::dispatch::Stopped;
-use crate::missing_effect::candidate::extended;
-use crate::store::NewCalibrationRow;
 use crate::study::{Lineage, StudyStep};
+use farm::calibration::{Calibration, CalibrationIdentity};
+use farm::dispatch::Stopped;
 use job::{Spec, continued_job, without_effects};
 use record::{CalibrationRow, Change, Extension, Membership, addition_name};
+use search::candidate::extended;
+use store::NewCalibrationRow;
 
 impl Service {
     /// Adds a calibration to the study of another: its job with an effect more; one that is there already is meant.

@@ -14,14 +14,14 @@ use super::overview_cache::Overviews;
 use super::recovery::{recover, rewind};
 use super::stored_calibration;
 use super::study_results;
-use crate::calibration::{Calibration, Verification};
-use crate::farm::dispatch::Dispatcher;
-use crate::farm::{Control, ControlError, Farm};
-use crate::store::{Store, StoreError, Writer};
 use crate::webhook::WebhookHosts;
+use farm::calibration::{Calibration, Verification};
+use farm::dispatch::Dispatcher;
+use farm::{Control, ControlError, Farm};
 use job::Spec;
 use record::CalibrationRow;
-use result::StudyFile;
+use report::StudyFile;
+use store::{Store, StoreError, Writer};
 
 /// So many facts may wait for the store before the service asks for patience.
 const BACKLOG: u64 = 200_000;

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use result::StudyOverview;
+use report::StudyOverview;
 use shared::api::CalibrationState;
 
 /// The overviews that were shown, by study: those of finished studies are computed once for each build of the program, those of others

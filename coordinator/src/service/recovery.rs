@@ -5,9 +5,9 @@ use std::sync::Arc;
 
 use super::error::ServiceError;
 use super::stored_calibration::{calibration_row, experiment_files, spec_of};
-use crate::calibration::{Calibration, CalibrationIdentity, Verification};
-use crate::farm::dispatch::{Dispatcher, Rewinds, Stopped};
-use crate::store::{Reader, Store};
+use farm::calibration::{Calibration, CalibrationIdentity, Verification};
+use farm::dispatch::{Dispatcher, Rewinds, Stopped};
+use store::{Reader, Store};
 
 /// Takes up what is not over; returns what cannot be taken up, with the reason. Nothing is written of those: another
 /// version may be able to, or a backup has the row that is bad here.

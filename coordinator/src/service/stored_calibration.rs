@@ -4,9 +4,9 @@ use shared::api::{CalibrationState, CalibrationStatus};
 use shared::file::FileSet;
 
 use super::error::ServiceError;
-use crate::store::{Reader, StoreError};
 use job::{JobFile, Spec, model_kind};
 use record::{CalibrationRow, Role};
+use store::{Reader, StoreError};
 
 /// How messages call a job and its experiment.
 pub(super) const FILES: [&str; 2] = ["job.toml", "experiment.toml"];

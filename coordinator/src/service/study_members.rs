@@ -3,10 +3,10 @@
 use shared::api::CalibrationState;
 
 use super::error::ServiceError;
-use crate::store::Reader;
 use crate::study::Lineage;
 use record::{CalibrationRow, addition_name};
 use result::{Rejections, StudyMember};
+use store::Reader;
 
 /// The members of a study, finished or not, oldest first.
 ///

@@ -10,10 +10,10 @@ use super::handle::Service;
 use super::overview_cache::{KeptOverview, MemberKey, member_key};
 use super::study_members::study_members;
 use super::study_results::study_file;
-use crate::store::StoreError;
 use job::model_kind;
 use record::CalibrationRow;
-use result::{StudyFile, StudyListItem, StudyOverview};
+use report::{StudyFile, StudyListItem, StudyOverview};
+use store::StoreError;
 
 impl Service {
     /// A study as the page shows it.

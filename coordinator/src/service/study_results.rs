@@ -6,9 +6,10 @@ use shared::api::CalibrationState;
 
 use super::error::ServiceError;
 use super::finished_study::{finished_calibration, finished_study, finished_study_of};
-use crate::store::{Reader, StoreError, StudyResults, Writer};
 use record::CalibrationRow;
-use result::{Diagnostics, StudyFile};
+use report::StudyFile;
+use result::Diagnostics;
+use store::{Reader, StoreError, StudyResults, Writer};
 
 /// The sources that this program was built from.
 const BUILD: &str = env!("GROUSER_BUILD");
@@ -31,7 +32,7 @@ pub async fn study_file(
     let doubts = reader.doubts().await?;
     let rows = reader.study(row.study).await?;
     let Some(stamp) = stamp(&rows, doubts) else {
-        return finished_study(reader, row).await?.file(file).ok_or_else(none);
+        return report::study_file::file(&finished_study(reader, row).await?, file).ok_or_else(none);
     };
     if let Some(text) = reader.result(row.study, &file.name(), &stamp).await? {
         return Ok(text);
@@ -39,10 +40,10 @@ pub async fn study_file(
     let study = finished_study_of(reader, row, &rows).await?;
     // What is decided but not yet begun is work to come: the study is about to grow.
     let Some(writer) = writer.filter(|_| study.state.is_final()) else {
-        return study.file(file).ok_or_else(none);
+        return report::study_file::file(&study, file).ok_or_else(none);
     };
-    let text = |file: StudyFile| Some((file.name(), study.file(file)?));
-    let files: Vec<StudyFile> = study.files().collect();
+    let text = |file: StudyFile| Some((file.name(), report::study_file::file(&study, file)?));
+    let files: Vec<StudyFile> = report::study_file::files(&study).collect();
     let files = if files.contains(&file) { files } else { vec![file] };
     let results = StudyResults {
         study: row.study,
@@ -69,7 +70,7 @@ pub(super) async fn diagnostics_text(
     }
     // Of what has no diagnostics this says why.
     let calibration = finished_calibration(reader, row).await?;
-    let diagnostics = calibration.diagnostics(calibration.comparison());
+    let diagnostics = report::diagnosis::diagnostics(&calibration, calibration.comparison());
     Ok(serde_json::to_string(&diagnostics).expect("results have a JSON form"))
 }
 

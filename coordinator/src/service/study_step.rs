@@ -4,10 +4,10 @@ use shared::api::CalibrationState;
 
 use super::error::ServiceError;
 use super::stored_calibration::has_posterior;
-use crate::store::Reader;
 use crate::study::{Lineage, StudyFindings, StudyStep, next_step};
 use job::{Apply, JobFile};
 use record::{CalibrationRow, Discovery};
+use store::Reader;
 
 /// The next step of a study.
 ///

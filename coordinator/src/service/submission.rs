@@ -9,14 +9,14 @@ use shared::file::{FileError, FileSet};
 use super::clock::now_ms;
 use super::error::ServiceError;
 use super::handle::Service;
-use crate::calibration::{Calibration, CalibrationIdentity};
-use crate::farm::dispatch::Stopped;
-use crate::store::{NewCalibrationRow, NewStudy, StudyIds};
+use farm::calibration::{Calibration, CalibrationIdentity};
+use farm::dispatch::Stopped;
 use job::{
     AlgorithmSettings, JobFile, OwnEffect, Spec, check_accepted, model_job, point_job, with_own_effects,
     without_own_effects,
 };
 use record::{Change, Membership, Role};
+use store::{NewCalibrationRow, NewStudy, StudyIds};
 
 /// Longest name of a calibration `[bytes]`.
 const LONGEST_NAME: usize = 200;

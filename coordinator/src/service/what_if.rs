@@ -5,7 +5,7 @@ use shared::experiment::Experiment;
 
 use super::error::ServiceError;
 use super::handle::Service;
-use crate::farm::dispatch::Stopped;
+use farm::dispatch::Stopped;
 use job::{Spec, searched_job};
 
 /// Most runs that a name lists.

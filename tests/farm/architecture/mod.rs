@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 
 use farm_tests::workspace::{files, root, text};
 
-const CRATES: [&str; 16] = [
+const CRATES: [&str; 21] = [
     "shared",
     "shared/formula",
     "shared/signal",
@@ -19,16 +19,21 @@ const CRATES: [&str; 16] = [
     "coordinator/inference",
     "coordinator/discovery",
     "coordinator/export",
+    "coordinator/farm",
     "coordinator/import",
     "coordinator/job",
     "coordinator/page",
     "coordinator/record",
+    "coordinator/report",
     "coordinator/result",
+    "coordinator/search",
+    "coordinator/store",
+    "benchmark",
     "worker",
     "worker/scm",
     "tests",
 ];
-const OURS: [&str; 16] = [
+const OURS: [&str; 21] = [
     "shared",
     "formula",
     "signal",
@@ -37,11 +42,16 @@ const OURS: [&str; 16] = [
     "inference",
     "discovery",
     "export",
+    "farm",
     "import",
     "job",
     "page",
     "record",
+    "report",
     "result",
+    "search",
+    "store",
+    "benchmark",
     "worker",
     "scm",
     "farm-tests",
@@ -134,7 +144,7 @@ fn the_search_finds_what_is_there_and_only_that() {
     assert!(names("use scm::Soil;", "scm::") && names("    scm::simulate()", "scm::"));
     assert!(!names("use my_scm::Soil;", "scm::") && !names("crate::scm::Soil", "scm::"));
     assert!(!strays(&["coordinator/src"], &["axum::"], &[]).is_empty());
-    assert!(!strays(&["coordinator/src"], &["sqlx::"], &[]).is_empty());
+    assert!(!strays(&["coordinator/store/src"], &["sqlx::"], &[]).is_empty());
     assert!(!strays(&["worker/src"], &["reqwest::"], &[]).is_empty());
 }
 
@@ -164,21 +174,45 @@ fn manifests_keep_the_direction_of_dependencies() {
         set(&["inference", "job", "shared", "statistics"])
     );
     assert_eq!(
-        ours("coordinator/result"),
+        ours("coordinator/report"),
         set(&[
             "formula",
             "inference",
             "job",
             "page",
             "record",
+            "result",
             "shared",
-            "signal",
             "statistics"
         ])
     );
     assert_eq!(
+        ours("coordinator/result"),
+        set(&["inference", "job", "record", "shared", "signal", "statistics"])
+    );
+    assert_eq!(
         ours("coordinator/export"),
         set(&["job", "record", "result", "shared", "statistics"])
+    );
+    assert_eq!(
+        ours("coordinator/search"),
+        set(&[
+            "discovery",
+            "formula",
+            "inference",
+            "job",
+            "record",
+            "shared",
+            "statistics"
+        ])
+    );
+    assert_eq!(
+        ours("coordinator/farm"),
+        set(&["inference", "job", "record", "search", "shared", "statistics"])
+    );
+    assert_eq!(
+        ours("coordinator/store"),
+        set(&["inference", "job", "record", "shared", "statistics"])
     );
     assert_eq!(
         ours("worker"),
@@ -189,21 +223,26 @@ fn manifests_keep_the_direction_of_dependencies() {
         set(&[
             "discovery",
             "export",
+            "farm",
             "formula",
             "import",
             "inference",
             "job",
             "page",
             "record",
+            "report",
             "result",
+            "search",
             "shared",
             "signal",
             "statistics",
+            "store",
             "worker"
         ])
     );
     for krate in CRATES {
         assert!(!ours(krate).contains("farm-tests"), "{krate} imports the tests");
+        assert!(!ours(krate).contains("benchmark"), "{krate} imports the studies");
     }
 }
 
@@ -233,6 +272,7 @@ fn pure_crates_know_no_runtime_network_database_or_chance() {
         "coordinator/job",
         "coordinator/page",
         "coordinator/record",
+        "coordinator/report",
         "coordinator/result",
     ] {
         let dependencies = dependencies(krate);
@@ -295,7 +335,14 @@ fn axum_sql_and_http_clients_stay_in_their_rooms() {
         &["axum::", "utoipa_axum::", "tower_http::"],
         &["coordinator/src/http/"],
     );
-    nowhere(&["coordinator/src"], &["sqlx::"], &["coordinator/src/store/"]);
+    nowhere(&["coordinator/src", "coordinator/farm/src"], &["sqlx::"], &[]);
+    for (krate, names) in [
+        ("coordinator/farm", ["axum", "sqlx", "rayon"]),
+        ("coordinator/store", ["axum", "clap", "rayon"]),
+    ] {
+        let found = names.map(|name| dependencies(krate).contains(name));
+        assert_eq!(found, [false; 3], "{krate} imports one of {names:?}");
+    }
     nowhere(
         &["coordinator/src", "worker/src"],
         &["reqwest::"],
@@ -324,18 +371,8 @@ fn axum_sql_and_http_clients_stay_in_their_rooms() {
 }
 
 #[test]
-fn http_reads_the_farm_and_rules_know_nobody() {
-    nowhere(
-        &["coordinator/src/store"],
-        &["crate::http", "crate::farm", "crate::service", "crate::command"],
-        &[],
-    );
-    nowhere(
-        &["coordinator/src/calibration", "coordinator/job/src"],
-        &["crate::http", "crate::farm"],
-        &[],
-    );
-    nowhere(&["coordinator/src/lease"], &["crate::"], &[]);
+fn the_rules_of_leases_know_nothing_else() {
+    nowhere(&["coordinator/farm/src/lease"], &["crate::"], &[]);
 }
 
 #[test]
@@ -346,12 +383,14 @@ fn pure_rooms_read_no_clock() {
         "coordinator/discovery/src",
         "shared/src",
         "shared/statistics/src",
-        "coordinator/src/calibration",
-        "coordinator/src/lease",
+        "coordinator/farm/src/calibration",
+        "coordinator/farm/src/lease",
         "coordinator/import/src",
         "coordinator/job/src",
+        "coordinator/report/src",
         "coordinator/result/src",
         "coordinator/export/src",
+        "coordinator/search/src",
         "coordinator/src/effect",
     ];
     let clocks = [
@@ -362,10 +401,10 @@ fn pure_rooms_read_no_clock() {
     ];
     nowhere(&pure, &clocks, &[]);
     for file in [
-        "coordinator/src/farm/state.rs",
-        "coordinator/src/farm/leasing.rs",
-        "coordinator/src/farm/verification.rs",
-        "coordinator/src/farm/progress.rs",
+        "coordinator/farm/src/state.rs",
+        "coordinator/farm/src/leasing.rs",
+        "coordinator/farm/src/verification.rs",
+        "coordinator/farm/src/progress.rs",
     ] {
         let found = code(&root().join(file))
             .into_iter()
@@ -380,7 +419,7 @@ fn files_are_small() {
     let mut sizes: Vec<(usize, String)> = CRATES
         .iter()
         .filter(|krate| !["coordinator", "worker"].contains(krate))
-        .chain(&["coordinator/src", "coordinator/benches", "worker/src"])
+        .chain(&["coordinator/src", "worker/src"])
         .filter(|folder| root().join(folder).is_dir())
         .flat_map(|folder| files(folder, ".rs"))
         .map(|path| (text(&path).lines().count(), relative(&path)))

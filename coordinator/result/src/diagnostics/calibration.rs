@@ -8,7 +8,7 @@ use super::residuals::ResidualDiagnostics;
 use super::sampler::SamplerDiagnostics;
 use super::trends::TrendDiagnostics;
 use super::verification::VerificationDiagnostics;
-use crate::flag::kind::Flag;
+use crate::flag::Flag;
 
 /// How far a calibration can be trusted, and where its model fails. What a fit or a search cannot determine is null or empty.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]

@@ -116,7 +116,7 @@ impl CoverageCount {
 }
 
 /// The channels that have fitted data.
-pub(crate) fn channels(
+pub fn channels(
     calibration: &FinishedCalibration,
     comparison: &Comparison,
     posterior: &[PredictedDraw],
@@ -165,7 +165,7 @@ pub(crate) fn channels(
 }
 
 /// The chi-square of some of the data.
-pub(crate) fn chi_square(
+pub fn chi_square(
     calibration: &FinishedCalibration,
     posterior: &[PredictedDraw],
     keep: impl Fn(usize) -> bool,

@@ -6,7 +6,7 @@ use statistics::Datum;
 use crate::words::data_channel::{BevameterTest, DataChannel};
 
 /// The channels with fitted data and their indices in the likelihood, in the order of all tables.
-pub(crate) fn fitted_channels(spec: &Spec) -> Vec<(usize, DataChannel)> {
+pub fn fitted_channels(spec: &Spec) -> Vec<(usize, DataChannel)> {
     let has = |index: &usize| spec.likelihood.data().iter().any(|d| d.channel == *index);
     (0..=RING)
         .filter(has)
@@ -15,7 +15,7 @@ pub(crate) fn fitted_channels(spec: &Spec) -> Vec<(usize, DataChannel)> {
 }
 
 /// The run of a datum, or the test of a reading.
-pub(crate) fn run_name<'a>(spec: &'a Spec, datum: &Datum) -> &'a str {
+pub fn run_name<'a>(spec: &'a Spec, datum: &Datum) -> &'a str {
     match DataChannel::of(datum.channel) {
         DataChannel::Wheel(_) => &spec.experiment.runs[spec.fit_runs[datum.run]].name,
         DataChannel::Bevameter(BevameterTest::Plates) => &spec.bevameter.plates[datum.run].test,

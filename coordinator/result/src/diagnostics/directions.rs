@@ -13,7 +13,7 @@ const NARROW: f64 = 0.5;
 const UNKNOWN: f64 = 0.95;
 
 /// Most directions in a list of the worst known.
-pub(crate) const WORST_KNOWN: usize = 3;
+pub const WORST_KNOWN: usize = 3;
 /// Components below are left out of a list.
 const LEAST_LOADING: f64 = 0.2;
 
@@ -37,7 +37,7 @@ pub struct Loading {
 
 impl DirectionDiagnostics {
     /// `n +0.80, kappa -0.60`: the components that matter.
-    pub(crate) fn words(&self) -> String {
+    pub fn words(&self) -> String {
         let mut named: Vec<_> = self
             .loadings
             .iter()
@@ -54,7 +54,7 @@ impl DirectionDiagnostics {
 
 /// The principal directions, the worst known first; none of a fit, and none where the prior itself is correlated, since
 /// the data need not cause its correlations.
-pub(crate) fn directions(calibration: &FinishedCalibration) -> Vec<DirectionDiagnostics> {
+pub fn directions(calibration: &FinishedCalibration) -> Vec<DirectionDiagnostics> {
     if calibration.spec.prior().is_correlated() {
         return Vec::new();
     }
@@ -97,10 +97,7 @@ fn whitened(calibration: &FinishedCalibration, parameters: &[usize]) -> Vec<Vec<
 }
 
 /// A sentence on the worst-known direction.
-pub(crate) fn worst_known(
-    calibration: &FinishedCalibration,
-    directions: &[DirectionDiagnostics],
-) -> Option<String> {
+pub fn worst_known(calibration: &FinishedCalibration, directions: &[DirectionDiagnostics]) -> Option<String> {
     let worst = directions.first()?;
     let mut named: Vec<usize> = (0..worst.loadings.len())
         .filter(|&i| worst.loadings[i].loading.powi(2) >= LEAST_SHARE)

@@ -13,16 +13,16 @@
 //! The statistics are [`inference::diagnostics`]'s. Nothing here but the coverage of holdout rows, which decides nothing,
 //! reads a holdout row.
 
-pub(crate) mod calibration;
-pub(crate) mod channels;
-pub(crate) mod data_channel;
-pub(crate) mod directions;
-pub(crate) mod parameters;
-pub(crate) mod rejections;
-pub(crate) mod residuals;
-pub(crate) mod sampler;
-pub(crate) mod trends;
-pub(crate) mod verification;
+pub mod calibration;
+pub mod channels;
+pub mod data_channel;
+pub mod directions;
+pub mod parameters;
+pub mod rejections;
+pub mod residuals;
+pub mod sampler;
+pub mod trends;
+pub mod verification;
 
 pub use calibration::Diagnostics;
 pub use channels::{ChannelDiagnostics, ChiSquareTest, CoverageCount};
@@ -33,3 +33,19 @@ pub use residuals::ResidualDiagnostics;
 pub use sampler::SamplerDiagnostics;
 pub use trends::{TrendDiagnostics, TrendVariable};
 pub use verification::VerificationDiagnostics;
+
+use inference::diagnostics::PredictedDraw;
+
+use crate::finished_calibration::FinishedCalibration;
+
+/// The final draws with the values that the likelihood takes.
+pub fn posterior_draws(calibration: &FinishedCalibration) -> Vec<PredictedDraw> {
+    let draws = calibration.predictive_draws().iter();
+    let predicted = draws.filter_map(|draw| {
+        Some(PredictedDraw {
+            theta: draw.theta.clone(),
+            values: calibration.spec.predicted_values(draw.fit.as_ref().ok()?),
+        })
+    });
+    predicted.collect()
+}

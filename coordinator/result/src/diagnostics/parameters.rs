@@ -36,9 +36,7 @@ pub struct PriorConflict {
 const CUT: f64 = 0.05;
 
 /// Every parameter, in the order of the job, and all of them together.
-pub(crate) fn parameters(
-    calibration: &FinishedCalibration,
-) -> (Vec<ParameterDiagnostics>, Option<PriorConflict>) {
+pub fn parameters(calibration: &FinishedCalibration) -> (Vec<ParameterDiagnostics>, Option<PriorConflict>) {
     let draws: Vec<&[f64]> = calibration.posterior.iter().map(|s| s.theta.as_slice()).collect();
     let accepted: Vec<&[f64]> = calibration
         .prior_draws

@@ -82,7 +82,7 @@ pub struct RegionSide {
 }
 
 /// Counts of the draws from the prior.
-pub(crate) fn rejections(calibration: &FinishedCalibration) -> RejectionDiagnostics {
+pub fn rejections(calibration: &FinishedCalibration) -> RejectionDiagnostics {
     let draws = &calibration.prior_draws;
     // Noise standard deviations do not enter the model that rejects.
     let free = &calibration.spec.parameters[..calibration.spec.fit_variant.parameters.len()];

@@ -32,10 +32,7 @@ pub struct ResidualDiagnostics {
 }
 
 /// In the order of the likelihood's data; empty of a fit.
-pub(crate) fn residuals(
-    calibration: &FinishedCalibration,
-    posterior: &[PredictedDraw],
-) -> Vec<ResidualDiagnostics> {
+pub fn residuals(calibration: &FinishedCalibration, posterior: &[PredictedDraw]) -> Vec<ResidualDiagnostics> {
     let likelihood = &calibration.spec.likelihood;
     // These values were already scored by the sampler; a draw that cannot be scored is no final draw.
     let rows = diagnostics::residuals(likelihood, posterior).unwrap_or_default();
@@ -58,7 +55,7 @@ pub(crate) fn residuals(
 }
 
 /// The most improbable residuals; those that cannot be judged are left out.
-pub(crate) fn largest(all: &[ResidualDiagnostics]) -> Vec<&ResidualDiagnostics> {
+pub fn largest(all: &[ResidualDiagnostics]) -> Vec<&ResidualDiagnostics> {
     let mut judged: Vec<(f64, &ResidualDiagnostics)> = all.iter().filter_map(|r| Some((r.p?, r))).collect();
     judged.sort_by(|a, b| a.0.total_cmp(&b.0));
     judged.into_iter().map(|(_, r)| r).take(LARGEST).collect()

@@ -22,7 +22,7 @@ pub struct SamplerDiagnostics {
 }
 
 /// None of a fit.
-pub(crate) fn sampler(calibration: &FinishedCalibration) -> Option<SamplerDiagnostics> {
+pub fn sampler(calibration: &FinishedCalibration) -> Option<SamplerDiagnostics> {
     let bits = |theta: &[f64]| theta.iter().map(|x| x.to_bits()).collect::<Vec<u64>>();
     let distinct: BTreeSet<Vec<u64>> = calibration.posterior.iter().map(|s| bits(&s.theta)).collect();
     calibration.estimate.is_none().then(|| SamplerDiagnostics {

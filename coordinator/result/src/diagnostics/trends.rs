@@ -106,10 +106,7 @@ pub struct TrendDiagnostics {
 }
 
 /// Every channel against every condition that its fitted runs vary and that the fit does not absorb; empty of a fit.
-pub(crate) fn trends(
-    calibration: &FinishedCalibration,
-    posterior: &[PredictedDraw],
-) -> Vec<TrendDiagnostics> {
+pub fn trends(calibration: &FinishedCalibration, posterior: &[PredictedDraw]) -> Vec<TrendDiagnostics> {
     let spec = &calibration.spec;
     // These values were already scored by the sampler.
     let Ok(Some(test)) = TrendTest::new(&spec.likelihood, &spec.prior(), posterior) else {

@@ -27,7 +27,7 @@ impl From<&Verified> for VerificationDiagnostics {
 
 impl VerificationDiagnostics {
     /// In words.
-    pub(crate) fn words(&self) -> String {
+    pub fn words(&self) -> String {
         match (self.confirmed, self.workers) {
             (0, 0 | 1) => "no result was verified: there was one worker".into(),
             (0, _) => "no result was verified by a second worker".into(),

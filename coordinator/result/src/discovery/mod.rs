@@ -9,7 +9,7 @@ mod numerical_noise;
 mod round;
 mod summary;
 
-pub(crate) use numerical_noise::numerical_noise;
+pub use numerical_noise::numerical_noise;
 pub use round::{DiscoveryRound, effect_file};
-pub(crate) use round::{arguments, word};
+pub use round::{arguments, word};
 pub use summary::DiscoverySummary;

@@ -6,7 +6,7 @@ use shared::channel::Channel;
 use crate::words::data_channel::ShownUnit;
 
 /// The scatter of each channel and what lowers it; `None` where it is negligible.
-pub(crate) fn numerical_noise(record: &Discovery) -> Option<String> {
+pub fn numerical_noise(record: &Discovery) -> Option<String> {
     let of = |channel: &Channel| {
         let sd = *record.numerical_noise.get(channel.column())?;
         Some(format!(

@@ -13,7 +13,7 @@ pub struct DiscoveryRound {
 }
 
 /// A verdict as `summary.json` has it.
-pub(crate) fn word(verdict: Verdict) -> &'static str {
+pub fn word(verdict: Verdict) -> &'static str {
     match verdict {
         Verdict::NothingDetectable => "nothing_detectable",
         Verdict::Named => "named",
@@ -34,7 +34,7 @@ pub fn effect_file(record: &Discovery) -> Option<(String, String)> {
 }
 
 /// The arguments of the command that adds the named effect; `folder` is that of its effect file.
-pub(crate) fn arguments(record: &Discovery, folder: &std::path::Path) -> Option<String> {
+pub fn arguments(record: &Discovery, folder: &std::path::Path) -> Option<String> {
     Some(match record.extension.as_ref()? {
         Extension::Effect(effect) => format!("--effect {effect}"),
         Extension::OnWheel { effect, wheel } => format!("--effect {effect} --wheel {wheel}"),

@@ -43,7 +43,7 @@ pub struct DiscoverySummary {
 impl DiscoverySummary {
     /// The block of a study; `added` are the effects of its best calibration that the first one did not have.
     /// `None` where nothing was searched.
-    pub(crate) fn of(rounds: &[DiscoveryRound], added: Vec<String>) -> Option<DiscoverySummary> {
+    pub fn of(rounds: &[DiscoveryRound], added: Vec<String>) -> Option<DiscoverySummary> {
         let records: Vec<Discovery> = rounds
             .iter()
             .map(|round| round.record.clone().without_curves())

@@ -6,7 +6,7 @@ use record::Sample;
 
 use super::axis_parameter::AxisParameter;
 use crate::finished_calibration::FinishedCalibration;
-use crate::summary::point_estimate::{GenerationSummary, generations};
+use crate::point_estimate::{GenerationSummary, generations};
 
 /// More points than this only make a picture heavy.
 const POINTS: usize = 400;

@@ -7,7 +7,7 @@ use super::axis_parameter::AxisParameter;
 use super::reference;
 use super::thinned::{five_digits, thinned_draws};
 use crate::finished_calibration::FinishedCalibration;
-use crate::summary::parameter::ParameterSummary;
+use crate::parameter_summary::ParameterSummary;
 
 /// Points of the grid.
 const GRID: usize = 96;

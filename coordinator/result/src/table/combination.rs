@@ -13,7 +13,7 @@ use crate::study::Study;
 impl Study {
     /// The measurements that the current model is compared with, as the ledger's models of the same measurements predict them
     /// together; of a fit without draws, which stands in no ledger, by that fit alone.
-    pub(crate) fn combined(&self) -> &[CombinedRow] {
+    pub fn combined(&self) -> &[CombinedRow] {
         self.combined.get_or_init(|| self.combine())
     }
 

@@ -20,13 +20,13 @@ const TO_Q95: f64 = 1.644_853_626_951_472_7;
 #[derive(Debug, Clone)]
 pub struct CombinedRow {
     /// The run and channel, with the prediction of the current model.
-    pub(crate) row: ComparisonRow,
+    pub row: ComparisonRow,
     /// Weighted mean of the corrected predictions [channel's unit]; `None` where no model has one.
-    pub(crate) mean: Option<f64>,
+    pub mean: Option<f64>,
     /// 5 % and 95 % quantile of a new measurement; `None` without intervals of all.
-    pub(crate) interval: Option<[f64; 2]>,
+    pub interval: Option<[f64; 2]>,
     /// How many models it averages.
-    pub(crate) models: usize,
+    pub models: usize,
 }
 
 impl CombinedRow {
@@ -56,7 +56,7 @@ impl CombinedRow {
     }
 
     /// Whether the measurement lies in its 90 % interval.
-    pub(crate) fn covered(&self) -> Option<bool> {
+    pub fn covered(&self) -> Option<bool> {
         let [q05, q95] = self.interval?;
         Some((q05..=q95).contains(&self.row.measured))
     }

@@ -19,7 +19,7 @@ use crate::finished_calibration::FinishedCalibration;
 
 impl FinishedCalibration {
     /// The held-out measurements as interpolated from the fitted ones.
-    pub(crate) fn interpolations(&self) -> &Interpolations {
+    pub fn interpolations(&self) -> &Interpolations {
         self.interpolations
             .get_or_init(|| Interpolations::of(&self.spec.experiment))
     }
@@ -103,7 +103,7 @@ impl FinishedCalibration {
     ///
     /// # Arguments
     /// - `run`: position in the experiment.
-    pub(crate) fn refusal(&self, run: usize) -> Option<Refusal> {
+    pub fn refusal(&self, run: usize) -> Option<Refusal> {
         let spec = &self.spec;
         let draws = self.predictive_draws();
         let held_out = spec.holdout_runs.iter().position(|&r| r == run);

@@ -2,9 +2,9 @@
 
 /// A prediction with the discrepancy that the fitted conditions show.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Corrected {
+pub struct Corrected {
     /// Mean of the model, and of the discrepancy [channel's unit].
-    pub(crate) mean: f64,
+    pub mean: f64,
     /// 5 % and 95 % quantile of a new measurement; `None` of a fit, which has no distribution.
-    pub(crate) interval: Option<[f64; 2]>,
+    pub interval: Option<[f64; 2]>,
 }

@@ -9,26 +9,26 @@ const EXPECTED: f64 = 0.95;
 
 /// Measurements inside their interval, of those that have one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Coverage {
+pub struct Coverage {
     /// Inside.
-    pub(crate) inside: usize,
+    pub inside: usize,
     /// With an interval.
-    pub(crate) of: usize,
+    pub of: usize,
 }
 
 impl Coverage {
     /// Counts rows; `None` where no row has an interval.
-    pub(crate) fn count<'a>(rows: impl Iterator<Item = &'a ComparisonRow>) -> Option<Self> {
+    pub fn count<'a>(rows: impl Iterator<Item = &'a ComparisonRow>) -> Option<Self> {
         Self::of(rows.filter_map(ComparisonRow::covered))
     }
 
     /// The same by the intervals of the corrected predictions.
-    pub(crate) fn count_corrected<'a>(rows: impl Iterator<Item = &'a ComparisonRow>) -> Option<Self> {
+    pub fn count_corrected<'a>(rows: impl Iterator<Item = &'a ComparisonRow>) -> Option<Self> {
         Self::of(rows.filter_map(ComparisonRow::covered_corrected))
     }
 
     /// Counts which of them are inside; `None` of none.
-    pub(crate) fn of(covered: impl Iterator<Item = bool>) -> Option<Self> {
+    pub fn of(covered: impl Iterator<Item = bool>) -> Option<Self> {
         let covered: Vec<bool> = covered.collect();
         let inside = covered.iter().filter(|c| **c).count();
         (!covered.is_empty()).then_some(Coverage {
@@ -39,13 +39,13 @@ impl Coverage {
 
     /// The counts that right intervals would give 95 % of the time, if the rows were independent: the central
     /// range of the binomial distribution.
-    pub(crate) fn expected(self) -> [usize; 2] {
+    pub fn expected(self) -> [usize; 2] {
         let tail = 0.5 * (1.0 - EXPECTED);
         [quantile(self.of, tail), quantile(self.of, 1.0 - tail)]
     }
 
     /// `42 of 48 (44 to 47 expected)`.
-    pub(crate) fn words(self) -> String {
+    pub fn words(self) -> String {
         let [low, high] = self.expected();
         format!("{} of {} ({low} to {high} expected)", self.inside, self.of)
     }

@@ -7,7 +7,7 @@ use crate::finished_calibration::FinishedCalibration;
 const LEAST_SHOWN: f64 = 0.0005;
 
 /// Sentences on the error model, with the posterior of an unknown discrepancy.
-pub(crate) fn error_model(calibration: &FinishedCalibration) -> Vec<String> {
+pub fn error_model(calibration: &FinishedCalibration) -> Vec<String> {
     let mut words = calibration.spec.likelihood_settings.words();
     for (channel, after) in discrepancy_posterior(calibration) {
         let probable = after.iter().filter(|(_, p)| *p >= LEAST_SHOWN);

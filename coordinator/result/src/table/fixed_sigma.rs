@@ -60,7 +60,7 @@ impl FixedSigmas {
     }
 
     /// By name of the channel.
-    pub(crate) fn by_name(&self) -> BTreeMap<String, FixedSigma> {
+    pub fn by_name(&self) -> BTreeMap<String, FixedSigma> {
         let named = self
             .0
             .iter()
@@ -69,7 +69,7 @@ impl FixedSigmas {
     }
 
     /// `pull 1.2 N (declared), sinkage 0.58 mm (from repeats of a condition)`.
-    pub(crate) fn words(&self) -> String {
+    pub fn words(&self) -> String {
         let words = self.0.iter().map(|(&channel, sigma)| {
             let unit = ShownUnit::of(channel);
             let sd = number::significant(sigma.sd * unit.factor, 2);

@@ -60,7 +60,7 @@ pub struct GroupError {
 
 impl ErrorGroup {
     /// `slip 0.050`, `load 60.0 to 61.2 N`, `wheel w`.
-    pub(crate) fn words(&self) -> String {
+    pub fn words(&self) -> String {
         let (what, scale, decimals, unit) = match self.by {
             GroupBy::WheelLoad => ("load", 1.0, 1, " N"),
             GroupBy::SledSpeed => ("speed", 1000.0, 2, " mm/s"),
@@ -78,13 +78,13 @@ impl ErrorGroup {
 
 impl GroupError {
     /// `1.23 (+0.41) 6`: root mean square, mean, rows.
-    pub(crate) fn words(&self) -> String {
+    pub fn words(&self) -> String {
         format!("{:.2} ({:+.2}) {}", self.rmse_sigma, self.mean_sigma, self.runs)
     }
 }
 
 /// Fitted rows, then the others, each by slip, load, speed, slip angle and wheel; conditions on one level only are left out.
-pub(crate) fn error_groups(rows: &[ComparisonRow]) -> Vec<ErrorGroup> {
+pub fn error_groups(rows: &[ComparisonRow]) -> Vec<ErrorGroup> {
     let conditions: [(GroupBy, Condition); 4] = [
         (GroupBy::Slip, |r| r.slip),
         (GroupBy::WheelLoad, |r| r.wheel_load_n),
@@ -195,22 +195,6 @@ mod tests {
         for expected in ["load 75.0 N", "speed 20.00 mm/s", "wheel b"] {
             assert!(words.contains(&expected.to_owned()), "{expected} in {words:?}");
         }
-    }
-
-    #[test]
-    fn the_terminal_shows_a_line_for_each_group() {
-        let calibration = fixture::calibration();
-        let comparison = calibration.comparison();
-        let text = crate::terminal::groups(comparison);
-        assert_eq!(text.lines().count(), 2 + comparison.groups.len());
-        let line = text.lines().find(|line| line.starts_with("holdout  slip 0.400"));
-        let pull = comparison
-            .groups
-            .iter()
-            .find(|g| g.usage == RunUse::Holdout)
-            .unwrap()
-            .channels["drawbar_pull"];
-        assert!(line.unwrap().contains(&pull.words()), "{text}");
     }
 
     #[test]

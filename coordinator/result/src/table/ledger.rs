@@ -15,22 +15,25 @@ use crate::words::number;
 const WORSE: f64 = 1.05;
 
 /// A calibration of the ledger.
-pub(crate) struct LedgerLine<'a> {
-    pub(crate) calibration: &'a FinishedCalibration,
+pub struct LedgerLine<'a> {
+    /// The calibration that the line is about.
+    pub calibration: &'a FinishedCalibration,
     /// `base`, or what it has, and its runs where there are more.
-    pub(crate) model: String,
+    pub model: String,
     /// Fitted runs, then those held out.
-    pub(crate) rows: Vec<LedgerRow>,
+    pub rows: Vec<LedgerRow>,
 }
 
 /// The errors of a calibration on fitted runs, or on others.
-pub(crate) struct LedgerRow {
-    pub(crate) usage: RunUse,
+pub struct LedgerRow {
+    /// Whether the runs were fitted or held out.
+    pub usage: RunUse,
     /// In SI units, and in the noise sds of the study.
-    pub(crate) errors: ErrorTable,
+    pub errors: ErrorTable,
     /// Channels whose error is more than 5 % above that of the line before, on the same measurements.
-    pub(crate) worse: Vec<Channel>,
-    pub(crate) coverage: Option<Coverage>,
+    pub worse: Vec<Channel>,
+    /// How many 90 % intervals contain their measurement.
+    pub coverage: Option<Coverage>,
 }
 
 impl Study {
@@ -40,7 +43,7 @@ impl Study {
     }
 
     /// The ledger, line by line.
-    pub(crate) fn ledger_lines(&self) -> Vec<LedgerLine<'_>> {
+    pub fn ledger_lines(&self) -> Vec<LedgerLine<'_>> {
         let sigmas = self.fixed_sigmas();
         let mut lines: Vec<LedgerLine> = Vec::new();
         for calibration in self.ledger() {

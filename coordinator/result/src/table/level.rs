@@ -9,29 +9,29 @@ const MOST: usize = 12;
 
 /// Values of a condition that count as one, from the least to the largest.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Level {
+pub struct Level {
     /// Least value.
-    pub(crate) from: f64,
+    pub from: f64,
     /// Largest value.
-    pub(crate) to: f64,
+    pub to: f64,
 }
 
 impl Level {
     /// Whether a value belongs to it.
-    pub(crate) fn holds(self, value: f64) -> bool {
+    pub fn holds(self, value: f64) -> bool {
         (self.from..=self.to).contains(&value)
     }
 }
 
 /// The levels of some values, the least first: a level spans less than 2 % of the range, or all values where they differ by less than 1 %.
-pub(crate) fn levels(values: impl IntoIterator<Item = f64>) -> Vec<Level> {
+pub fn levels(values: impl IntoIterator<Item = f64>) -> Vec<Level> {
     let mut sorted: Vec<f64> = values.into_iter().collect();
     sorted.sort_by(f64::total_cmp);
     within(&sorted, TOLERANCE)
 }
 
 /// The same for a table: where conditions scatter so much that there are more than twelve, wider ones.
-pub(crate) fn few_levels(values: impl IntoIterator<Item = f64>) -> Vec<Level> {
+pub fn few_levels(values: impl IntoIterator<Item = f64>) -> Vec<Level> {
     let mut sorted: Vec<f64> = values.into_iter().collect();
     sorted.sort_by(f64::total_cmp);
     let mut tolerance = TOLERANCE;

@@ -88,7 +88,7 @@ impl PredictionRow {
 
 impl Study {
     /// Every measurement that the current model is compared with.
-    pub(crate) fn predictions(&self) -> Vec<PredictionRow> {
+    pub fn predictions(&self) -> Vec<PredictionRow> {
         self.combined().iter().map(PredictionRow::of).collect()
     }
 }
@@ -119,7 +119,7 @@ const COLUMNS: [&str; 21] = [
 ];
 
 /// The content of `predictions.csv`; without rows, its title line.
-pub(crate) fn to_csv(rows: &[PredictionRow]) -> String {
+pub fn to_csv(rows: &[PredictionRow]) -> String {
     let mut writer = csv::WriterBuilder::new()
         .has_headers(false)
         .from_writer(Vec::new());

@@ -53,7 +53,7 @@ fn noise_source(calibration: &FinishedCalibration, run: usize, channel: Channel)
 
 /// The predictive distribution of a run and channel; `None` where every draw was rejected, of a held-out run half of them
 /// or more.
-pub(crate) fn predictive(
+pub fn predictive(
     calibration: &FinishedCalibration,
     levels: &Levels,
     run: usize,
@@ -175,10 +175,11 @@ pub(super) fn soil_scatter(
 
 /// Of each final draw and channel, the values of the discrepancy with their posterior probabilities; m = 0 without one.
 #[derive(Debug)]
-pub(crate) struct Levels(Vec<[Vec<(f64, f64)>; 4]>);
+pub struct Levels(Vec<[Vec<(f64, f64)>; 4]>);
 
 impl Levels {
-    pub(crate) fn of(calibration: &FinishedCalibration) -> Self {
+    /// The values of every final draw of a calibration.
+    pub fn of(calibration: &FinishedCalibration) -> Self {
         let draws = calibration.predictive_draws().iter();
         Levels(draws.map(|draw| Self::at(&calibration.spec, draw)).collect())
     }
@@ -211,7 +212,7 @@ fn widened(sd: f64, others: [f64; 2]) -> f64 {
 }
 
 /// Of each fitted channel with an unknown discrepancy the posterior probabilities of its values, averaged over the final draws.
-pub(crate) fn discrepancy_posterior(calibration: &FinishedCalibration) -> Vec<(Channel, Vec<(f64, f64)>)> {
+pub fn discrepancy_posterior(calibration: &FinishedCalibration) -> Vec<(Channel, Vec<(f64, f64)>)> {
     let spec = &calibration.spec;
     let is_fitted = |channel: &Channel| {
         let mut data = spec.likelihood.data().iter();

@@ -10,22 +10,22 @@ use crate::words::number;
 
 /// Errors of the model against the readings of plates, or of rings.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct ReadingError {
+pub struct ReadingError {
     /// What was measured.
-    pub(crate) test: BevameterTest,
+    pub test: BevameterTest,
     /// Tests.
-    pub(crate) tests: usize,
+    pub tests: usize,
     /// Readings.
-    pub(crate) readings: usize,
+    pub readings: usize,
     /// Root mean square of ln(measured / predicted), predicted being the posterior's mean logarithm.
-    pub(crate) rms_ln: f64,
+    pub rms_ln: f64,
     /// The same after each test's own mean is taken off.
-    pub(crate) rms_ln_within: f64,
+    pub rms_ln_within: f64,
 }
 
 impl ReadingError {
     /// `60 readings in 6 tests of plates: ...`.
-    pub(crate) fn words(&self) -> String {
+    pub fn words(&self) -> String {
         format!(
             "{} in {} of {}: root mean square error {:.1} %, {:.1} % within tests",
             number::count(self.readings, "reading"),
@@ -38,7 +38,7 @@ impl ReadingError {
 }
 
 /// The errors of plates and of rings, where there are any.
-pub(crate) fn reading_errors(calibration: &FinishedCalibration) -> Vec<ReadingError> {
+pub fn reading_errors(calibration: &FinishedCalibration) -> Vec<ReadingError> {
     let bevameter = &calibration.spec.bevameter;
     let plates = bevameter.plates.iter().map(|r| &*r.test).collect();
     let rings = bevameter.rings.iter().map(|r| &*r.test).collect();

@@ -21,7 +21,7 @@ impl Refusal {
     }
 
     /// `20 of 20 final draws (no_support: ...)`.
-    pub(crate) fn words(&self) -> String {
+    pub fn words(&self) -> String {
         format!("{} of {} final draws ({})", self.draws, self.of, self.reason)
     }
 }
@@ -82,29 +82,5 @@ mod tests {
         // What the other draws say is told all the same: it judges nothing.
         let told = new.at(place.unwrap(), shared::channel::Channel::DrawbarPull);
         assert_eq!(told.len(), 9);
-    }
-
-    #[test]
-    fn the_flag_the_story_and_the_terminal_name_what_is_refused() {
-        let refused = fixture::with_refused_runs();
-        let comparison = refused.comparison();
-        let flags = refused.diagnostics(comparison).flags;
-        let flag = flags.iter().find(|f| f.text.contains("held-out")).unwrap();
-        assert_eq!(
-            flag.text,
-            "the model refuses 3 of 4 held-out runs: h1 at 19 of 19 final draws (no_support: condition 0: z = 0.11 m), h2 at 10 of 19 \
-             final draws (no_support: condition 0: z = 0.11 m) and h3 at 5 of 19 final draws (no_support: condition 0: z = 0.11 m); \
-             they lie outside its validity; 2 of them, refused at half of the draws or more, are not judged, and errors and coverage \
-             are over the other 2 held-out runs"
-        );
-        let text = crate::terminal::comparison(comparison);
-        for words in [
-            "\nh1: the model refuses it at 19 of 19 final draws (no_support",
-            ": not judged\n",
-            "\nwithout 2 measurements of holdout runs that the model refuses at half of the draws or more\n",
-            "90 % intervals contain 2 of 2 (",
-        ] {
-            assert!(text.contains(words), "{words} in {text}");
-        }
     }
 }

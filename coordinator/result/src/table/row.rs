@@ -70,7 +70,7 @@ impl ComparisonRow {
     }
 
     /// The corrected prediction.
-    pub(crate) fn corrected_prediction(&self) -> Option<Corrected> {
+    pub fn corrected_prediction(&self) -> Option<Corrected> {
         Some(Corrected {
             mean: self.corrected?,
             interval: self
@@ -81,12 +81,12 @@ impl ComparisonRow {
     }
 
     /// Whether the measurement lies in the 90 % interval of the corrected prediction.
-    pub(crate) fn covered_corrected(&self) -> Option<bool> {
+    pub fn covered_corrected(&self) -> Option<bool> {
         Some((self.corrected_q05?..=self.corrected_q95?).contains(&self.measured))
     }
 
     /// Whether the model and interpolation both predict it, so that their errors compare; interpolation without extrapolating.
-    pub(crate) fn is_interpolated(&self) -> bool {
+    pub fn is_interpolated(&self) -> bool {
         let is_within = self
             .interpolated_over
             .is_some_and(|over| over != InterpolatedOver::Extrapolation);
@@ -95,6 +95,6 @@ impl ComparisonRow {
 }
 
 /// The rows of the fitted runs, or of the holdout runs.
-pub(crate) fn rows_of(rows: &[ComparisonRow], usage: RunUse) -> impl Iterator<Item = &ComparisonRow> + Clone {
+pub fn rows_of(rows: &[ComparisonRow], usage: RunUse) -> impl Iterator<Item = &ComparisonRow> + Clone {
     rows.iter().filter(move |row| row.usage == usage)
 }

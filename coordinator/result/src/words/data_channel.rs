@@ -27,11 +27,11 @@ pub enum BevameterTest {
 
 /// The unit in which values are shown.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct ShownUnit {
+pub struct ShownUnit {
     /// Shown value over SI value.
-    pub(crate) factor: f64,
+    pub factor: f64,
     /// Name of the unit.
-    pub(crate) name: &'static str,
+    pub name: &'static str,
 }
 
 impl BevameterTest {
@@ -46,7 +46,7 @@ impl BevameterTest {
 
 impl DataChannel {
     /// The channel of an index of the likelihood.
-    pub(crate) fn of(index: usize) -> Self {
+    pub fn of(index: usize) -> Self {
         match index {
             PLATE => DataChannel::Bevameter(BevameterTest::Plates),
             RING => DataChannel::Bevameter(BevameterTest::Rings),
@@ -71,7 +71,7 @@ impl DataChannel {
     }
 
     /// SI unit.
-    pub(crate) fn si_unit(self) -> &'static str {
+    pub fn si_unit(self) -> &'static str {
         match self {
             DataChannel::Wheel(channel) => channel.unit(),
             DataChannel::Bevameter(_) => "1",
@@ -79,7 +79,7 @@ impl DataChannel {
     }
 
     /// The unit in which it is shown: percent of a stress.
-    pub(crate) fn shown(self) -> ShownUnit {
+    pub fn shown(self) -> ShownUnit {
         match self {
             DataChannel::Wheel(channel) => ShownUnit::of(channel),
             DataChannel::Bevameter(_) => ShownUnit {
@@ -92,7 +92,7 @@ impl DataChannel {
 
 impl ShownUnit {
     /// The unit in which a channel of the wheel is shown: sinkage in millimetres, everything else in SI.
-    pub(crate) fn of(channel: Channel) -> Self {
+    pub fn of(channel: Channel) -> Self {
         let (factor, name) = match channel {
             Channel::Sinkage => (1000.0, "mm"),
             other => (1.0, other.unit()),
@@ -101,13 +101,13 @@ impl ShownUnit {
     }
 
     /// A size to two digits: `20 N m`, `0.58 mm`, `12 %`.
-    pub(crate) fn size(self, si: f64) -> String {
+    pub fn size(self, si: f64) -> String {
         format!("{} {}", number::significant(self.factor * si, 2), self.name)
     }
 }
 
 /// A word for a narrow column: `pull`.
-pub(crate) fn short_name(channel: Channel) -> &'static str {
+pub fn short_name(channel: Channel) -> &'static str {
     match channel {
         Channel::DrawbarPull => "pull",
         Channel::Torque => "torque",

@@ -1,14 +1,14 @@
 //! Numbers in words, with as many digits as are significant.
 
 /// Stands where there is no number.
-pub(crate) const NONE: &str = "\u{2013}";
+pub const NONE: &str = "\u{2013}";
 
 /// Beyond these sizes a number is written with an exponent.
 const LARGE: f64 = 1e7;
 const DECIMALS: i32 = 7;
 
 /// A number to so many significant digits.
-pub(crate) fn significant(x: f64, digits: i32) -> String {
+pub fn significant(x: f64, digits: i32) -> String {
     if !x.is_finite() {
         return NONE.into();
     }
@@ -24,7 +24,7 @@ pub(crate) fn significant(x: f64, digits: i32) -> String {
 }
 
 /// A number to the digit in which its spread has its second figure.
-pub(crate) fn to_spread(x: f64, spread: f64) -> String {
+pub fn to_spread(x: f64, spread: f64) -> String {
     if !x.is_finite() {
         return NONE.into();
     }
@@ -41,7 +41,7 @@ pub(crate) fn to_spread(x: f64, spread: f64) -> String {
 }
 
 /// A number that may be missing, in words of the page.
-pub(crate) fn or_none<T>(value: Option<T>, words: impl FnOnce(T) -> String) -> String {
+pub fn or_none<T>(value: Option<T>, words: impl FnOnce(T) -> String) -> String {
     value.map_or_else(|| NONE.into(), words)
 }
 
@@ -56,7 +56,7 @@ pub fn plain(x: f64) -> String {
 }
 
 /// Four significant digits, for a column.
-pub(crate) fn four_digits(x: f64) -> String {
+pub fn four_digits(x: f64) -> String {
     if x.abs() < f64::MIN_POSITIVE {
         "0".into()
     } else if (1e-3..1e5).contains(&x.abs()) {
@@ -68,7 +68,7 @@ pub(crate) fn four_digits(x: f64) -> String {
 }
 
 /// A number with its spread: `2.76 ± 0.40`.
-pub(crate) fn with_spread(x: f64, spread: f64) -> String {
+pub fn with_spread(x: f64, spread: f64) -> String {
     format!(
         "{}\u{a0}\u{b1}\u{a0}{}",
         to_spread(x, spread),
@@ -77,7 +77,7 @@ pub(crate) fn with_spread(x: f64, spread: f64) -> String {
 }
 
 /// So many decimals (negative: whole tens, hundreds), and no negative zero.
-pub(crate) fn fixed(x: f64, decimals: i32) -> String {
+pub fn fixed(x: f64, decimals: i32) -> String {
     let x = match decimals {
         0.. => x,
         _ => (x / 10f64.powi(-decimals)).round() * 10f64.powi(-decimals),
@@ -91,7 +91,7 @@ pub(crate) fn fixed(x: f64, decimals: i32) -> String {
 }
 
 /// A number as its author wrote it, as far as that can be known.
-pub(crate) fn as_written(x: f64) -> String {
+pub fn as_written(x: f64) -> String {
     let size = x.abs();
     if size < f64::MIN_POSITIVE {
         "0".into()
@@ -103,12 +103,12 @@ pub(crate) fn as_written(x: f64) -> String {
 }
 
 /// A count with its noun: `1 run`, `2 runs`.
-pub(crate) fn count(n: usize, noun: &str) -> String {
+pub fn count(n: usize, noun: &str) -> String {
     format!("{n} {noun}{}", if n == 1 { "" } else { "s" })
 }
 
 /// Words joined as in a sentence: `a, b and c`.
-pub(crate) fn list(words: &[String]) -> String {
+pub fn list(words: &[String]) -> String {
     match words {
         [] => String::new(),
         [one] => one.clone(),
@@ -117,7 +117,7 @@ pub(crate) fn list(words: &[String]) -> String {
 }
 
 /// Seconds, minutes or hours.
-pub(crate) fn duration(seconds: f64) -> String {
+pub fn duration(seconds: f64) -> String {
     if seconds < 120.0 {
         format!("{seconds:.1} s")
     } else if seconds < 7200.0 {
@@ -128,7 +128,7 @@ pub(crate) fn duration(seconds: f64) -> String {
 }
 
 /// Power of ten of the first digit.
-pub(crate) fn magnitude(x: f64) -> i32 {
+pub fn magnitude(x: f64) -> i32 {
     x.abs().log10().floor() as i32
 }
 

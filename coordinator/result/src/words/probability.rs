@@ -3,10 +3,10 @@
 use super::number;
 
 /// A test with a smaller probability raises a flag.
-pub(crate) const LEVEL: f64 = 0.01;
+pub const LEVEL: f64 = 0.01;
 
 /// A probability: `0.012`, `3e-7`, `< 1e-12`.
-pub(crate) fn probability(p: f64) -> String {
+pub fn probability(p: f64) -> String {
     if p < 1e-12 {
         "< 1e-12".into()
     } else if p < 1e-3 {
@@ -17,7 +17,7 @@ pub(crate) fn probability(p: f64) -> String {
 }
 
 /// The same in a sentence: `p = 0.012`, `p < 1e-12`.
-pub(crate) fn p_words(p: f64) -> String {
+pub fn p_words(p: f64) -> String {
     let value = probability(p);
     let relation = if value.starts_with('<') { "p" } else { "p =" };
     format!("{relation} {value}")

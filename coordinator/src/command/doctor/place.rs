@@ -10,7 +10,7 @@ use tokio::net::TcpListener;
 
 use super::finding::Finding;
 use super::service;
-use crate::store::{Reader, StoreError, file_of, is_server, name_of};
+use store::{Reader, StoreError, file_of, is_server, name_of};
 
 /// A disk takes longer than this for one record where it is slow: every acknowledged result waits for it.
 const SLOW: Duration = Duration::from_millis(100);

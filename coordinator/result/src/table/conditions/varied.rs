@@ -10,7 +10,7 @@ use crate::words::number;
 #[derive(Debug)]
 pub(crate) struct Conditions {
     /// Those that vary.
-    pub(crate) axes: Vec<Axis>,
+    pub axes: Vec<Axis>,
     held: Vec<Axis>,
     runs: Vec<TestRun>,
 }

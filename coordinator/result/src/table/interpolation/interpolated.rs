@@ -2,11 +2,11 @@
 
 /// A held-out measurement as interpolated from the fitted ones.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Interpolated {
+pub struct Interpolated {
     /// The value [channel's unit].
-    pub(crate) value: f64,
+    pub value: f64,
     /// What it is interpolated over.
-    pub(crate) over: InterpolatedOver,
+    pub over: InterpolatedOver,
 }
 
 /// What a measurement is interpolated over.

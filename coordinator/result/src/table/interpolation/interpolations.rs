@@ -40,17 +40,17 @@ impl Interpolations {
     }
 
     /// That of a run and channel; `None` where it was fitted or there is none.
-    pub(crate) fn at(&self, run: usize, channel: Channel) -> Option<Interpolated> {
+    pub fn at(&self, run: usize, channel: Channel) -> Option<Interpolated> {
         self.values.get(&(run, channel)).copied()
     }
 
     /// Why that of a run and channel is missing; `None` where it is not.
-    pub(crate) fn missing_at(&self, run: usize, channel: Channel) -> Option<&str> {
+    pub fn missing_at(&self, run: usize, channel: Channel) -> Option<&str> {
         self.missing.get(&(run, channel)).map(String::as_str)
     }
 
     /// Why some are missing, each reason once.
-    pub(crate) fn missing(&self) -> Vec<String> {
+    pub fn missing(&self) -> Vec<String> {
         let reasons: BTreeSet<&String> = self.missing.values().collect();
         reasons.into_iter().cloned().collect()
     }

@@ -1,0 +1,55 @@
+//! One campaign, continued by one strategy until something is named.
+
+use super::campaign::{Answer, Campaign};
+use super::strategy::Strategy;
+use crate::hidden_effect::study::error::StudyError;
+
+/// How a campaign went on.
+pub struct Story {
+    /// After so many further runs the truth's class was named.
+    pub right_after: Option<usize>,
+    /// Something else was named.
+    pub is_wrong: bool,
+    pub line: String,
+}
+
+impl Story {
+    /// # Arguments
+    /// - `first`: what is said before the first further run.
+    pub fn new(strategy: Strategy, campaign: &Campaign, first: &Answer) -> Result<Self, StudyError> {
+        let mut campaign = campaign.clone();
+        let mut story = Self {
+            right_after: None,
+            is_wrong: false,
+            line: String::new(),
+        };
+        let mut order = strategy.order(&campaign, &first.possible, first);
+        for count in strategy.counts() {
+            let mut made = 0;
+            for condition in order {
+                if made == strategy.at_once() {
+                    break;
+                }
+                if campaign.measure(&condition)? {
+                    made += 1;
+                    story.line += &format!(
+                        " -> slip {} load {} N sled {:.4} m/s",
+                        condition.slip, condition.wheel_load_n, condition.sled_speed_m_s
+                    );
+                }
+            }
+            if made == 0 {
+                break;
+            }
+            let answer = campaign.search()?;
+            story.line += &format!(" {answer}");
+            if let Some(is_right) = answer.is_right() {
+                story.right_after = is_right.then_some(count);
+                story.is_wrong = !is_right;
+                break;
+            }
+            order = strategy.order(&campaign, &first.possible, &answer);
+        }
+        Ok(story)
+    }
+}

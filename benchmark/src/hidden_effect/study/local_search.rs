@@ -1,0 +1,136 @@
+//! The search of the farm on this thread.
+
+use std::collections::BTreeMap;
+
+use coordinator::embedded::Evaluate;
+use discovery::{
+    Conclusion, DiscoverySearch, EffectRanking, EffectRequest, EffectSearch, QueriedModel, Query,
+};
+use search::SearchModels;
+use shared::file::FileSet;
+use shared::model::RunCondition;
+use shared::outcome::{Observables, Outcome};
+use statistics::Likelihood;
+
+use super::error::StudyError;
+
+/// The models of a job and an experiment.
+pub struct LocalSearch {
+    pub models: SearchModels,
+    evaluates: BTreeMap<String, Evaluate>,
+}
+
+impl LocalSearch {
+    /// # Arguments
+    /// - `max_effects`: most effects in a combination.
+    pub fn new(job: &FileSet, experiment: &FileSet, max_effects: usize) -> Result<Self, StudyError> {
+        Ok(Self {
+            models: SearchModels::new(job, experiment, max_effects)?,
+            evaluates: BTreeMap::new(),
+        })
+    }
+
+    /// The predicted values; `None` where the model rejects the parameters.
+    fn ask(&mut self, query: &Query) -> Result<Option<Vec<f64>>, StudyError> {
+        let (hash, variant) = self.models.variant(query)?.clone();
+        let theta = self.models.model_theta(query, &variant);
+        if !self.evaluates.contains_key(&hash) {
+            self.evaluates.insert(hash.clone(), Evaluate::new(&variant)?);
+        }
+        Ok(match self.evaluates[&hash].evaluate(&theta) {
+            Outcome::Evaluated(observables) => Some(self.models.values(query, &observables)),
+            Outcome::Rejected(_) | Outcome::Fault(_) => None,
+        })
+    }
+
+    /// The predictions of a model with effects under other conditions; `None` where it rejects the parameters.
+    pub fn predict(
+        &mut self,
+        effects: &[usize],
+        conditions: &[RunCondition],
+        thetas: &[Vec<f64>],
+    ) -> Result<Vec<Option<Observables>>, StudyError> {
+        let query = |theta: &Vec<f64>| Query {
+            model: QueriedModel::With(effects.to_vec()),
+            is_proposed: false,
+            is_companion: false,
+            theta: theta.clone(),
+        };
+        let Some(first) = thetas.first() else {
+            return Ok(Vec::new());
+        };
+        let own = self.models.variant(&query(first))?;
+        let mut variant = own.1.clone();
+        // The soil's density is there only if an effect of this variant needs it; the first run of its series has its order.
+        let first = variant.conditions.first();
+        let (density_kg_m3, order) = (first.and_then(|c| c.density_kg_m3), first.and_then(|c| c.order));
+        variant.conditions = conditions.to_vec();
+        for condition in &mut variant.conditions {
+            condition.density_kg_m3 = density_kg_m3;
+            condition.order = order;
+        }
+        let evaluate = Evaluate::new(&variant)?;
+        let predicted = thetas.iter().map(|theta| {
+            match evaluate.evaluate(&self.models.model_theta(&query(theta), &variant)) {
+                Outcome::Evaluated(observables) => Some(observables),
+                Outcome::Rejected(_) | Outcome::Fault(_) => None,
+            }
+        });
+        Ok(predicted.collect())
+    }
+
+    /// Searches what the model is missing.
+    pub fn run(&mut self) -> Result<Conclusion, StudyError> {
+        let mut search = DiscoverySearch::new(self.models.task())?;
+        loop {
+            if let Some(conclusion) = search.conclusion() {
+                return Ok(conclusion.clone());
+            }
+            if let Some(failure) = search.failure() {
+                return Err(failure.to_string().into());
+            }
+            for index in 0..search.pending().len() {
+                let query = search.query(index).cloned().ok_or("no query is pending")?;
+                let values = self.ask(&query)?;
+                search.tell(index, values.as_deref())?;
+            }
+        }
+    }
+
+    /// Searches one effect with other data of the same runs.
+    pub fn library(&mut self, likelihood: Likelihood) -> Result<EffectRanking, StudyError> {
+        let task = self.models.task();
+        let search = EffectSearch::new(&task.prior, likelihood, &task.library, &task.settings)?;
+        run(search, |request| {
+            self.ask(&Query {
+                model: QueriedModel::With(request.candidate.into_iter().collect()),
+                is_proposed: false,
+                is_companion: request.is_companion,
+                theta: request.theta.clone(),
+            })
+        })
+    }
+}
+
+/// Runs a search to its end.
+///
+/// # Arguments
+/// - `ask`: the values of the base, or of the base with a candidate, at a parameter vector.
+pub fn run(
+    mut search: EffectSearch,
+    mut ask: impl FnMut(&EffectRequest) -> Result<Option<Vec<f64>>, StudyError>,
+) -> Result<EffectRanking, StudyError> {
+    loop {
+        if let Some(ranking) = search.ranking() {
+            return Ok(ranking.clone());
+        }
+        let pending: Vec<_> = search.pending().collect();
+        if pending.is_empty() {
+            return Err("the search neither ends nor has pending requests".into());
+        }
+        for (index, request) in pending.iter().enumerate() {
+            let values = ask(request)?;
+            search.tell(index, values.as_deref())?;
+        }
+    }
+}

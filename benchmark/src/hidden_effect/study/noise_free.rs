@@ -1,0 +1,82 @@
+//! How well noise-free measurements determine the truth.
+
+use coordinator::embedded::Evaluate;
+use discovery::{EffectRanking, EffectSearch, SearchSettings, Starts};
+use record::Extension;
+use search::candidate::extended;
+use shared::file::FileSet;
+use shared::outcome::Outcome;
+use statistics::{Likelihood, LogLikelihood};
+
+use super::case::{SyntheticCase, spec};
+use super::error::StudyError;
+use super::local_search::{LocalSearch, run};
+
+/// Nats by which the truth must beat a rival for a trial to count.
+pub const LEAST_SEPARATION: f64 = 10.0;
+
+/// The log-likelihood of the truth without noise, the maximum.
+fn perfect(likelihood: &Likelihood) -> Result<f64, StudyError> {
+    let values: Vec<f64> = likelihood.data().iter().map(|d| d.value).collect();
+    match likelihood.log_likelihood(&values, &[]) {
+        Ok(LogLikelihood::Finite(nats)) => Ok(nats.get()),
+        other => Err(format!("noise-free values are impossible: {other:?}").into()),
+    }
+}
+
+/// Nats by which the base with some of the effects falls short of the truth without noise, fitted from the truth.
+pub fn shortfall(case: &SyntheticCase, effects: &[&Extension]) -> Result<f64, StudyError> {
+    let job = extended("job.toml", &case.plan.job(), effects)?;
+    let truth = spec(&case.truth_job, &case.noise_free())?.parameters;
+    let own = spec(&job, &case.noise_free())?.parameters;
+    let place = |name: &String| truth.iter().position(|p| p.name == *name);
+    let start = own.iter().filter_map(|p| Some(case.theta[place(&p.name)?]));
+    shortfall_of(&job, &case.noise_free(), start.collect())
+}
+
+/// Nats by which a job falls short of noise-free measurements, fitted from these parameters.
+pub fn shortfall_of(job: &FileSet, noise_free: &FileSet, start: Vec<f64>) -> Result<f64, StudyError> {
+    let spec = spec(job, noise_free)?;
+    let settings = SearchSettings {
+        starts: Starts::Draws(vec![start]),
+        ..SearchSettings::default()
+    };
+    let prior = spec.prior();
+    let search = EffectSearch::new(&prior, spec.likelihood.clone(), &[], &settings)?;
+    let evaluate = Evaluate::new(&spec.fit_variant)?;
+    let ranking = run(search, |request| {
+        Ok(match evaluate.evaluate(&request.theta) {
+            Outcome::Evaluated(observables) => Some(spec.predicted_values(&observables)),
+            Outcome::Rejected(_) | Outcome::Fault(_) => None,
+        })
+    })?;
+    Ok(perfect(&spec.likelihood)? - ranking.effects[0].log_likelihood)
+}
+
+/// The library searched without noise.
+pub struct NoiseFree {
+    ranking: EffectRanking,
+    perfect: f64,
+}
+
+impl NoiseFree {
+    pub fn new(case: &SyntheticCase, local: &mut LocalSearch) -> Result<Self, StudyError> {
+        let likelihood = spec(&case.plan.job(), &case.noise_free())?.likelihood;
+        Ok(Self {
+            perfect: perfect(&likelihood)?,
+            ranking: local.library(likelihood)?,
+        })
+    }
+
+    /// Nats by which the base falls short.
+    pub fn over_base(&self) -> f64 {
+        self.perfect - self.ranking.effects[0].log_likelihood
+    }
+
+    /// Nats by which the best rival outside the class of an effect falls short; of `None`, the best of all.
+    pub fn separation(&self, effect: Option<usize>) -> f64 {
+        let own = effect.and_then(|k| self.ranking.of(Some(k))).map(|j| j.class);
+        let rivals = self.ranking.effects.iter().filter(|j| Some(j.class) != own);
+        self.perfect - rivals.map(|j| j.log_likelihood).fold(f64::NEG_INFINITY, f64::max)
+    }
+}

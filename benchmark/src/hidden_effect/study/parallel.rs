@@ -1,0 +1,45 @@
+//! Independent pieces of work on all threads of the machine.
+
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use super::error::StudyError;
+
+/// The threads of the machine.
+pub fn threads() -> usize {
+    std::thread::available_parallelism().map_or(1, usize::from)
+}
+
+/// The results of pieces of work, in their order; which thread does which piece changes nothing.
+pub fn each<T: Send>(count: u64, work: impl Fn(u64) -> T + Sync) -> Result<Vec<T>, StudyError> {
+    each_on(threads(), count, work)
+}
+
+/// As [`each`], on so many threads.
+pub fn each_on<T: Send>(
+    threads: usize,
+    count: u64,
+    work: impl Fn(u64) -> T + Sync,
+) -> Result<Vec<T>, StudyError> {
+    let next = AtomicU64::new(0);
+    let run = || {
+        let mut done = Vec::new();
+        loop {
+            let number = next.fetch_add(1, Ordering::Relaxed);
+            if number >= count {
+                return done;
+            }
+            done.push((number, work(number)));
+        }
+    };
+    let parts = std::thread::scope(|scope| {
+        let started: Vec<_> = (0..threads).map(|_| scope.spawn(run)).collect();
+        let joined = started.into_iter().map(|thread| thread.join());
+        joined.collect::<Vec<_>>()
+    });
+    let mut all = Vec::new();
+    for part in parts {
+        all.extend(part.map_err(|_| "a thread panicked")?);
+    }
+    all.sort_by_key(|(number, _)| *number);
+    Ok(all.into_iter().map(|(_, made)| made).collect())
+}

@@ -1,0 +1,105 @@
+//! A calibration on this thread, by the sampler or by a fit with the normal density about it.
+
+use std::sync::Arc;
+
+use coordinator::embedded::Evaluate;
+use farm::calibration::{Calibration, CalibrationIdentity, CalibrationResult, result_of};
+use shared::file::FileSet;
+
+use super::case::spec;
+use super::error::StudyError;
+
+/// A sample of the posterior.
+#[derive(Debug, Clone)]
+pub struct PosteriorSample {
+    pub log_evidence: f64,
+    parameters: Vec<String>,
+    draws: Vec<Vec<f64>>,
+    log_likelihoods: Vec<f64>,
+}
+
+impl PosteriorSample {
+    /// The highest ln p(data | theta) among the draws.
+    pub fn highest(&self) -> f64 {
+        let all = self.log_likelihoods.iter().copied();
+        all.fold(f64::NEG_INFINITY, f64::max)
+    }
+
+    /// The name of each parameter, the mean of its draws and their sd.
+    pub fn moments(&self) -> impl Iterator<Item = (&str, f64, f64)> {
+        let count = self.draws.len() as f64;
+        self.parameters.iter().enumerate().map(move |(k, name)| {
+            let mean = self.draws.iter().map(|draw| draw[k]).sum::<f64>() / count;
+            let squares: f64 = self.draws.iter().map(|draw| (draw[k] - mean).powi(2)).sum();
+            (name.as_str(), mean, (squares / (count - 1.0)).sqrt())
+        })
+    }
+
+    /// As `posterior.csv` has the draws.
+    pub fn csv(&self) -> String {
+        let mut text = self.parameters.join(",");
+        for draw in &self.draws {
+            let cells: Vec<String> = draw.iter().map(|x| format!("{x:?}")).collect();
+            text += "\n";
+            text += &cells.join(",");
+        }
+        text + "\n"
+    }
+}
+
+/// Calibrates a job.
+///
+/// # Arguments
+/// - `sampler`: the table `[sampler]` but its seed.
+pub fn sample(
+    job: &FileSet,
+    experiment: &FileSet,
+    sampler: &str,
+    seed: u64,
+) -> Result<PosteriorSample, StudyError> {
+    let job = FileSet {
+        toml: format!("{}{sampler}seed = {seed}\n", job.toml),
+        files: job.files.clone(),
+    };
+    let spec = spec(&job, experiment)?;
+    let parameters = spec.parameters.iter().map(|p| p.name.clone()).collect();
+    let model = Evaluate::new(&spec.fit_variant)?;
+    let identity = CalibrationIdentity {
+        id: 0,
+        name: "hidden effect".into(),
+        study: 0,
+        experiment: 0,
+    };
+    let mut calibration = Calibration::new(identity, Arc::new(spec))?;
+    loop {
+        let found = match calibration.engine().finding() {
+            Some(CalibrationResult::Posterior(posterior)) => {
+                Some((posterior.log_evidence, &posterior.particles))
+            }
+            Some(CalibrationResult::Estimate(estimate)) => {
+                let normal = estimate.approximation.as_ref();
+                let normal = normal.ok_or("the fit gives no draws")?;
+                Some((normal.log_evidence, &normal.draws))
+            }
+            Some(CalibrationResult::Discovery(_)) | None => None,
+        };
+        if let Some((log_evidence, particles)) = found {
+            return Ok(PosteriorSample {
+                log_evidence,
+                parameters,
+                draws: particles.iter().map(|p| p.theta.clone()).collect(),
+                log_likelihoods: particles.iter().map(|p| p.log_likelihood.value()).collect(),
+            });
+        }
+        if let Some(message) = &calibration.message {
+            return Err(message.clone().into());
+        }
+        for evaluation in calibration.queue.asked() {
+            let Some(question) = calibration.question(evaluation) else {
+                break;
+            };
+            let outcome = result_of(model.evaluate(question.theta))?;
+            calibration.complete(evaluation, outcome, "hidden effect")?;
+        }
+    }
+}

@@ -1,0 +1,75 @@
+//! Shares with their uncertainty.
+
+use std::fmt;
+
+/// Two-sided 95 % of a normal distribution.
+const Z: f64 = 1.959_963_984_540_054;
+
+/// A number of cases among all.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Rate {
+    pub count: usize,
+    pub of: usize,
+}
+
+impl Rate {
+    /// The cases that hold among all.
+    pub fn new(all: impl IntoIterator<Item = bool>) -> Self {
+        let (mut count, mut of) = (0, 0);
+        for holds in all {
+            count += usize::from(holds);
+            of += 1;
+        }
+        Self { count, of }
+    }
+
+    pub fn share(self) -> f64 {
+        self.count as f64 / self.of.max(1) as f64
+    }
+
+    /// Wilson's 95 % interval; from 0 to 1 of nothing.
+    ///
+    /// # Source
+    /// Wilson 1927, "Probable inference, the law of succession, and statistical inference", J. Am. Stat. Assoc. 22.
+    pub fn interval(self) -> [f64; 2] {
+        if self.of == 0 {
+            return [0.0, 1.0];
+        }
+        let (n, p) = (self.of as f64, self.share());
+        let middle = p + Z * Z / (2.0 * n);
+        let half = Z * (p * (1.0 - p) / n + Z * Z / (4.0 * n * n)).sqrt();
+        let whole = 1.0 + Z * Z / n;
+        [
+            ((middle - half) / whole).max(0.0),
+            ((middle + half) / whole).min(1.0),
+        ]
+    }
+}
+
+impl fmt::Display for Rate {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [low, high] = self.interval();
+        write!(
+            f,
+            "{} of {} ({:.3}, {low:.3} to {high:.3})",
+            self.count,
+            self.of,
+            self.share()
+        )
+    }
+}
+
+/// Mean and standard error; 0 of nothing.
+pub fn mean(values: &[f64]) -> [f64; 2] {
+    let n = values.len().max(1) as f64;
+    let mean = values.iter().sum::<f64>() / n;
+    let squares: f64 = values.iter().map(|x| (x - mean) * (x - mean)).sum();
+    [mean, (squares / (n - 1.0).max(1.0) / n).sqrt()]
+}
+
+/// The middle one; 0 of nothing.
+pub fn median(values: &[f64]) -> f64 {
+    let mut values = values.to_vec();
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied().unwrap_or(0.0)
+}

@@ -1,0 +1,226 @@
+//! The score of one trial: the conclusion against the truth.
+
+use std::fmt;
+
+use discovery::{Conclusion, SearchTask, SearchVerdict};
+
+use super::case::SyntheticCase;
+use super::held_out::HeldOut;
+use super::kind::HiddenKind;
+use super::noise_free::LEAST_SEPARATION;
+
+/// The class of an explanation.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum TrialClass {
+    /// Effects of the library that the data cannot distinguish; 0: nothing is missing.
+    Library(usize),
+    Outside,
+}
+
+/// The score of one trial.
+#[derive(Debug, Clone)]
+pub struct TrialScore {
+    pub kind: HiddenKind,
+    /// Nats by which the best rival outside the truth's class falls short without noise, and the base; infinite of several effects,
+    /// which were drawn so.
+    pub separation: f64,
+    pub over_base: f64,
+    /// An effect, a class or a law is claimed.
+    pub is_claimed: bool,
+    pub verdict: SearchVerdict,
+    /// The most probable class is the truth's; one of the two most probable is.
+    pub is_right: bool,
+    pub is_in_two: bool,
+    /// Whether the truth is alone in its class, and the most probable effect.
+    pub is_alone: bool,
+    pub is_named: bool,
+    /// The claim is right.
+    pub claim_is_right: bool,
+    /// Probability of the most probable class.
+    pub stated: f64,
+    /// The 95 % set contains the truth's class; its size.
+    pub is_covered: bool,
+    pub set_size: usize,
+    /// Of a law: the quantity is right; the quantity and the variable are.
+    pub quantity: bool,
+    pub dependence: bool,
+    /// The best combination is the truth, up to classes.
+    pub is_exact: bool,
+    pub held_out: HeldOut,
+    /// Candidates, and evaluations.
+    pub candidates: usize,
+    pub to_name: usize,
+    pub to_confirm: usize,
+    pub evaluations: usize,
+    pub seconds: f64,
+    /// The trial in one line.
+    pub line: String,
+}
+
+/// The facts of a trial beside its conclusion.
+pub struct TrialFacts {
+    pub separation: f64,
+    pub over_base: f64,
+    pub held_out: HeldOut,
+    pub seconds: f64,
+}
+
+/// The probability of each class, the most probable first.
+fn by_class(conclusion: &Conclusion) -> Vec<(TrialClass, f64)> {
+    let classes = conclusion
+        .ranking
+        .effects
+        .iter()
+        .map(|j| j.class)
+        .max()
+        .unwrap_or(0);
+    let own = |class: usize| {
+        conclusion
+            .ranking
+            .effects
+            .iter()
+            .filter(move |j| j.class == class)
+    };
+    let mut all: Vec<(TrialClass, f64)> = (0..=classes)
+        .map(|class| {
+            (
+                TrialClass::Library(class),
+                own(class).map(|j| j.probability).sum(),
+            )
+        })
+        .collect();
+    all.extend(conclusion.not_in_library.map(|(_, p)| (TrialClass::Outside, p)));
+    all.sort_by(|a, b| b.1.total_cmp(&a.1));
+    all
+}
+
+fn class_of(conclusion: &Conclusion, candidate: Option<usize>) -> Option<TrialClass> {
+    let judged = conclusion
+        .ranking
+        .effects
+        .iter()
+        .find(|j| j.candidate == candidate)?;
+    Some(TrialClass::Library(judged.class))
+}
+
+/// Whether two combinations have as many effects of each class.
+fn is_same(conclusion: &Conclusion, mut a: Vec<Option<usize>>, mut b: Vec<Option<usize>>) -> bool {
+    let classes = |set: &mut Vec<Option<usize>>| {
+        let own = set.iter().map(|k| match class_of(conclusion, *k) {
+            Some(TrialClass::Library(class)) if k.is_some() => Some(class),
+            _ => None,
+        });
+        let mut own: Vec<Option<usize>> = own.collect();
+        own.sort_unstable();
+        own
+    };
+    let (a, b) = (classes(&mut a), classes(&mut b));
+    a == b && !a.contains(&None)
+}
+
+impl TrialScore {
+    /// # Arguments
+    /// - `law`: quantity and variable of a hidden law.
+    pub fn new(
+        kind: HiddenKind,
+        case: &SyntheticCase,
+        task: &SearchTask,
+        conclusion: &Conclusion,
+        law: Option<&str>,
+        facts: TrialFacts,
+    ) -> Self {
+        let place = |name: &String| task.library.iter().position(|c| c.name == *name);
+        let hidden: Vec<Option<usize>> = case.hidden.iter().map(place).collect();
+        let truth = match (kind, hidden.as_slice()) {
+            (HiddenKind::Outside, _) => Some(TrialClass::Outside),
+            (_, []) => Some(TrialClass::Library(0)),
+            (_, [Some(k)]) => class_of(conclusion, Some(*k)),
+            _ => None,
+        };
+        let ranked = by_class(conclusion);
+        let is_truth = |class: TrialClass| Some(class) == truth;
+        let (best, stated) = ranked[0];
+        let mut held = 0.0;
+        let credible = ranked.iter().take_while(|(_, p)| {
+            let is_in = held < 0.95;
+            held += p;
+            is_in
+        });
+        let credible: Vec<TrialClass> = credible.map(|(class, _)| *class).collect();
+        let effects = conclusion
+            .ranking
+            .effects
+            .iter()
+            .filter(|j| j.candidate.is_some());
+        let first = effects.reduce(|a, b| if b.probability > a.probability { b } else { a });
+        let claimed = match conclusion.verdict {
+            SearchVerdict::Named(k) => class_of(conclusion, Some(k)),
+            SearchVerdict::Class(class) => Some(TrialClass::Library(class)),
+            SearchVerdict::NotInLibrary => Some(TrialClass::Outside),
+            SearchVerdict::NothingDetectable | SearchVerdict::Undecided => None,
+        };
+        let found = conclusion
+            .outside
+            .as_ref()
+            .map(|o| task.laws[o.law].curve.name.as_str());
+        let quantity = |law: &str| match law.split('_').next() {
+            Some("drawbar") => "drawbar".to_owned(),
+            first => first.unwrap_or_default().to_owned(),
+        };
+        let members = conclusion
+            .ranking
+            .effects
+            .iter()
+            .filter(|j| is_truth(TrialClass::Library(j.class)));
+        Self {
+            kind,
+            separation: facts.separation,
+            over_base: facts.over_base,
+            is_claimed: claimed.is_some(),
+            verdict: conclusion.verdict,
+            is_right: is_truth(best),
+            is_in_two: ranked.iter().take(2).any(|(class, _)| is_truth(*class)),
+            is_alone: members.count() == 1,
+            is_named: first.is_some_and(|j| hidden == [j.candidate]),
+            claim_is_right: claimed.is_some() && claimed == truth,
+            stated,
+            is_covered: credible.iter().any(|class| is_truth(*class)),
+            set_size: credible.len(),
+            quantity: found.zip(law).is_some_and(|(a, b)| quantity(a) == quantity(b)),
+            dependence: found.is_some() && found == law,
+            is_exact: is_same(
+                conclusion,
+                hidden.clone(),
+                conclusion.combination.iter().map(|k| Some(*k)).collect(),
+            ),
+            held_out: facts.held_out,
+            candidates: task.library.len(),
+            to_name: conclusion.ranking.evaluations.to_name(),
+            to_confirm: conclusion.ranking.evaluations.to_confirm(),
+            evaluations: conclusion.evaluations,
+            seconds: facts.seconds,
+            line: String::new(),
+        }
+    }
+
+    /// Whether a law outside the library is claimed.
+    pub fn is_outside(&self) -> bool {
+        self.verdict == SearchVerdict::NotInLibrary
+    }
+
+    /// Whether the result is as good as it can be: an effect that is not distinguishable from a rival may be confused with it.
+    pub fn is_good(&self) -> bool {
+        match self.kind {
+            HiddenKind::None => !self.is_claimed,
+            HiddenKind::Two | HiddenKind::Three => self.is_exact,
+            HiddenKind::Outside => self.dependence || self.separation < LEAST_SEPARATION,
+            HiddenKind::One | HiddenKind::Spatial => self.is_right || self.separation < LEAST_SEPARATION,
+        }
+    }
+}
+
+impl fmt::Display for TrialScore {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.line)
+    }
+}

@@ -1,0 +1,151 @@
+//! One trial: an experiment whose truth is known, drawn and searched.
+
+use std::time::Instant;
+
+use job::EffectOnNodes;
+use record::Extension;
+use search::candidate::{CandidateEffect, library};
+use statistics::rng::Stream;
+
+use super::case::{SyntheticCase, blank};
+use super::design::Plan;
+use super::error::StudyError;
+use super::held_out::HeldOut;
+use super::kind::HiddenKind;
+use super::laws::LAWS;
+use super::line::line;
+use super::local_search::LocalSearch;
+use super::noise_free::{LEAST_SEPARATION, NoiseFree, shortfall};
+use super::score::{TrialFacts, TrialScore};
+
+/// Random streams of the choice of effects that act together.
+const STAGE: u64 = 1 << 44;
+/// Combinations of effects that are drawn until each effect is detectable.
+const MOST_DRAWN: u64 = 1000;
+/// Most effects in a combination of the search.
+const MAX_EFFECTS: usize = 3;
+
+/// Searches an experiment without its truth, and scores the result.
+pub fn search(kind: HiddenKind, case: &SyntheticCase, number: u64) -> Result<TrialScore, StudyError> {
+    let most = if kind == HiddenKind::Spatial {
+        1
+    } else {
+        MAX_EFFECTS
+    };
+    let mut local = LocalSearch::new(&case.plan.job(), &case.experiment(), most)?;
+    let begin = Instant::now();
+    let conclusion = local.run()?;
+    let seconds = begin.elapsed().as_secs_f64();
+    let task = local.models.task();
+    let own = |name: &String| task.library.iter().position(|c| c.name == *name);
+    let (separation, over_base) = match kind {
+        HiddenKind::One | HiddenKind::Spatial => {
+            let noise_free = NoiseFree::new(case, &mut local)?;
+            (
+                noise_free.separation(own(&case.hidden[0])),
+                noise_free.over_base(),
+            )
+        }
+        HiddenKind::Outside => {
+            let noise_free = NoiseFree::new(case, &mut local)?;
+            (noise_free.separation(None), noise_free.over_base())
+        }
+        HiddenKind::None | HiddenKind::Two | HiddenKind::Three => (f64::INFINITY, f64::INFINITY),
+    };
+    let facts = TrialFacts {
+        separation,
+        over_base,
+        held_out: HeldOut::new(case, &mut local, &conclusion)?,
+        seconds,
+    };
+    let law = LAWS.iter().find(|law| case.hidden == [law.name]);
+    let mut score = TrialScore::new(
+        kind,
+        case,
+        &task,
+        &conclusion,
+        law.map(|law| law.dependence),
+        facts,
+    );
+    score.line = line(&score, case, &task, &conclusion, number);
+    Ok(score)
+}
+
+/// Draws a truth and measures it.
+pub fn draw(kind: HiddenKind, seed: u64, number: u64) -> Result<SyntheticCase, StudyError> {
+    // Each kind has truths of its own.
+    let number_of_all = 10_000 * kind as u64 + number;
+    let turn = |count: usize| (number % count as u64) as usize;
+    let draw = |plan: Plan, hidden: &[(String, Extension)]| {
+        SyntheticCase::draw(plan, hidden, seed, number_of_all, 0)
+    };
+    match kind {
+        HiddenKind::None => draw(Plan::Full, &[]),
+        HiddenKind::One => {
+            let known = expressible(Plan::Full);
+            let own = &known[turn(known.len())];
+            draw(Plan::of(&own.0), std::slice::from_ref(own))
+        }
+        HiddenKind::Outside => draw(Plan::Full, &[LAWS[turn(LAWS.len())].hidden()]),
+        HiddenKind::Two => draw_detectable(Plan::Full, 2, seed, number_of_all),
+        HiddenKind::Three => draw_detectable(Plan::Full, 3, seed, number_of_all),
+        HiddenKind::Spatial => draw_detectable(Plan::Spatial, 1, seed, number_of_all),
+    }
+}
+
+/// Draws effects of the catalogue at random until each of them is detectable without noise.
+pub fn draw_detectable(
+    plan: Plan,
+    count: usize,
+    seed: u64,
+    number: u64,
+) -> Result<SyntheticCase, StudyError> {
+    draw_of(plan, &expressible(plan), count, seed, number)
+}
+
+/// Draws some of these effects at random until each of them is detectable without noise.
+pub fn draw_of(
+    plan: Plan,
+    known: &[(String, Extension)],
+    count: usize,
+    seed: u64,
+    number: u64,
+) -> Result<SyntheticCase, StudyError> {
+    for attempt in 0..MOST_DRAWN {
+        let mut stream = Stream::new(seed, STAGE, number, attempt);
+        let mut rest = known.to_vec();
+        let mut hidden = Vec::new();
+        for _ in 0..count {
+            hidden.push(rest.swap_remove(stream.below(rest.len())));
+        }
+        // Some effects are incompatible.
+        let Ok(case) = SyntheticCase::draw(plan, &hidden, seed, number, attempt) else {
+            continue;
+        };
+        if each_is_detectable(&case, &hidden)? {
+            return Ok(case);
+        }
+    }
+    Err(format!("each of {MOST_DRAWN} combinations of {count} effects has one that is not detectable").into())
+}
+
+/// The effects of the catalogue that a plan can have, each with its addition to the job.
+fn expressible(plan: Plan) -> Vec<(String, Extension)> {
+    let (candidates, _) = library(&plan.job(), &blank(&plan.rows()));
+    // Effects on one wheel alone are left out, and those on the nodes of the soil.
+    let is_plain = |e: &CandidateEffect| !e.name.contains('.') && EffectOnNodes::find(&e.name).is_none();
+    let own = candidates.into_iter().filter(is_plain);
+    own.map(|e| (e.name, e.extension)).collect()
+}
+
+/// Whether the model falls short by enough without any one of the effects.
+fn each_is_detectable(case: &SyntheticCase, hidden: &[(String, Extension)]) -> Result<bool, StudyError> {
+    for left_out in 0..hidden.len() {
+        let others = hidden.iter().enumerate().filter(|(k, _)| *k != left_out);
+        let others: Vec<&Extension> = others.map(|(_, (_, extension))| extension).collect();
+        if shortfall(case, &others)? < LEAST_SEPARATION {
+            return Ok(false);
+        }
+    }
+    Ok(true)
+}

@@ -1,0 +1,105 @@
+//! The search's log Bayes factors beside those of full evidences by the sampler.
+
+use coordinator::embedded::Evaluate;
+use record::Extension;
+use search::candidate::extended;
+use shared::file::FileSet;
+use shared::outcome::Outcome;
+
+use crate::hidden_effect::study::case::{SyntheticCase, spec};
+use crate::hidden_effect::study::error::StudyError;
+use crate::hidden_effect::study::kind::HiddenKind;
+use crate::hidden_effect::study::local_search::LocalSearch;
+use crate::hidden_effect::study::parallel::each;
+use crate::hidden_effect::study::posterior::{PosteriorSample, sample};
+use crate::hidden_effect::study::rate::{mean, median};
+use crate::hidden_effect::study::trial::draw;
+
+/// Fewer particles or moves scatter from seed to seed by more than the differences that the bench reads.
+const SAMPLER: &str = "[sampler]\nparticles = 1000\nmoves = [5, 10]\n";
+/// Largest difference that counts as none \[nats\], and the least share of such.
+const CLOSE: f64 = 1.0;
+const LEAST_SHARE: f64 = 0.97;
+/// No truth may fall short by more \[nats\].
+const MOST_SHORT: f64 = 3.0;
+/// The truths are others than those of the other kinds.
+const FIRST: u64 = 2_000_000;
+
+/// The truth of one experiment, and what both say of it: nats.
+struct Compared {
+    search: f64,
+    sampler: f64,
+}
+
+/// Compares so many, every effect in turn, and prints the differences.
+pub fn run(count: u64, seed: u64) -> Result<(), StudyError> {
+    let compared = each(count, |number| one(seed, number))?;
+    let compared: Vec<Compared> = compared.into_iter().collect::<Result<_, StudyError>>()?;
+    let differences: Vec<f64> = compared.iter().map(|c| c.search - c.sampler).collect();
+    let [bias, error] = mean(&differences);
+    let sd = error * (differences.len() as f64).sqrt();
+    let close = differences.iter().filter(|d| d.abs() <= CLOSE).count();
+    let lowest = differences.iter().copied().fold(f64::INFINITY, f64::min);
+    println!(
+        "search less sampler: mean {bias:.2} ± {error:.2} nats, sd {sd:.2}, median {:.2}, least {lowest:.2}; {close} of {count} within \
+         {CLOSE}",
+        median(&differences)
+    );
+    if (close as f64) < LEAST_SHARE * count as f64 || lowest < -MOST_SHORT {
+        return Err(format!("less than {LEAST_SHARE} within {CLOSE}, or one below -{MOST_SHORT}").into());
+    }
+    Ok(())
+}
+
+fn one(seed: u64, number: u64) -> Result<Compared, StudyError> {
+    let case = draw(HiddenKind::One, seed, FIRST + number)?;
+    let name = &case.hidden[0];
+    let mut local = LocalSearch::new(&case.plan.job(), &case.experiment(), 1)?;
+    let conclusion = local.run()?;
+    let task = local.models.task();
+    let truth = task.library.iter().position(|c| c.name == *name);
+    let truth = conclusion
+        .ranking
+        .of(Some(truth.ok_or("the truth is no candidate")?));
+    let truth = truth.ok_or("the model rejected the truth")?;
+    let base = sampled(&case, &case.plan.job(), seed)?;
+    let added = Extension::Effect(name.clone());
+    let job = extended("job.toml", &case.plan.job(), &[&added])?;
+    let with = sampled(&case, &job, seed)?;
+    let compared = Compared {
+        search: truth.stated_log_bayes_factor,
+        sampler: with.log_evidence - base.log_evidence,
+    };
+    println!(
+        "tmcmc {number} {name}: search {:.2} ({:?}, {:.1} prior sds), sampler {:.2}; highest ln L of the base {:.1} and {:.1}, with it {:.1} \
+         and {:.1}",
+        compared.search,
+        truth.method,
+        truth.prior_sds,
+        compared.sampler,
+        log_likelihood(&case, &case.plan.job(), conclusion.base.draws.first())?,
+        base.highest(),
+        log_likelihood(&case, &job, Some(&truth.theta))?,
+        with.highest()
+    );
+    Ok(compared)
+}
+
+fn sampled(case: &SyntheticCase, job: &FileSet, seed: u64) -> Result<PosteriorSample, StudyError> {
+    sample(job, &case.experiment(), SAMPLER, seed)
+}
+
+/// ln p(data | theta) where the search ended; NaN where it ended elsewhere.
+fn log_likelihood(case: &SyntheticCase, job: &FileSet, theta: Option<&Vec<f64>>) -> Result<f64, StudyError> {
+    let spec = spec(job, &case.experiment())?;
+    let Some(theta) = theta else {
+        return Ok(f64::NAN);
+    };
+    let Outcome::Evaluated(seen) = Evaluate::new(&spec.fit_variant)?.evaluate(spec.model_theta(theta)) else {
+        return Ok(f64::NAN);
+    };
+    let scored = spec
+        .likelihood
+        .log_likelihood(&spec.predicted_values(&seen), theta);
+    Ok(scored?.value())
+}

@@ -1,0 +1,134 @@
+//! Some trials of the bench `hidden_effect`: a hidden effect is found, and without one nothing is claimed.
+
+use discovery::SearchVerdict;
+
+use benchmark::hidden_effect::reference;
+use benchmark::hidden_effect::rig::untryable::{self, Said};
+use benchmark::hidden_effect::rig::{self, Flaw};
+use benchmark::hidden_effect::study::error::StudyError;
+use benchmark::hidden_effect::study::kind::HiddenKind;
+use benchmark::hidden_effect::study::noise_free::LEAST_SEPARATION;
+use benchmark::hidden_effect::study::parallel::each;
+use benchmark::hidden_effect::study::score::TrialScore;
+use benchmark::hidden_effect::study::tally::Tally;
+use benchmark::hidden_effect::study::trial::{draw, search};
+
+const SEED: u64 = 1;
+/// Slip-sinkage, pressure by rate, displacement of shear, hardening by passes, the sled's tare, its drag.
+const ONE: [u64; 6] = [2, 4, 21, 45, 113, 34];
+/// Air in the pores, a wave over slip, a peak of shear over slip.
+const OUTSIDE: [u64; 3] = [2, 5, 10];
+/// A reference velocity with slip-softened pressure, and the pressure's peak with the rim's friction.
+const TWO: [u64; 2] = [3, 15];
+
+fn scores(kind: HiddenKind, numbers: &[u64]) -> Vec<TrialScore> {
+    let one = |place: u64| {
+        let number = numbers[place as usize];
+        let case = draw(kind, SEED, number)?;
+        search(kind, &case, number)
+    };
+    let scores = each(numbers.len() as u64, one).expect("no thread panics");
+    let scores: Result<Vec<TrialScore>, StudyError> = scores.into_iter().collect();
+    scores.expect("every experiment is searched")
+}
+
+fn count(scores: &[TrialScore], holds: impl Fn(&TrialScore) -> bool) -> usize {
+    scores.iter().filter(|score| holds(score)).count()
+}
+
+#[test]
+fn an_effect_is_named_and_the_error_falls() {
+    let scores = scores(HiddenKind::One, &ONE);
+    let shown = Tally(&scores).to_string();
+    assert!(scores.iter().all(|f| f.separation >= LEAST_SEPARATION), "{shown}");
+    assert!(count(&scores, |f| f.is_right && f.is_covered) >= 5, "{shown}");
+    assert!(scores.iter().all(|f| f.is_in_two), "{shown}");
+    assert_eq!(
+        count(&scores, |f| f.is_claimed && !f.claim_is_right),
+        0,
+        "{shown}"
+    );
+    for score in &scores {
+        assert!(score.held_out.after < 0.5 * score.held_out.before, "{score}");
+        // The mean is two thirds of it; sampling doubtful evidences costs most where several effects are.
+        assert!(score.to_name <= 900 && score.to_confirm <= 4000, "{score}");
+    }
+}
+
+#[test]
+fn where_nothing_is_missing_nothing_is_claimed() {
+    let scores = scores(HiddenKind::None, &[0, 1, 2, 3, 4, 5]);
+    let shown = Tally(&scores).to_string();
+    assert_eq!(count(&scores, |f| f.is_claimed), 0, "{shown}");
+    assert!(
+        count(&scores, |f| f.verdict == SearchVerdict::NothingDetectable) >= 5,
+        "{shown}"
+    );
+}
+
+#[test]
+fn noise_stated_too_small_is_not_taken_for_nothing_missing() {
+    let mut case = draw(HiddenKind::None, SEED, 0).expect("the model takes a draw");
+    case.sds = case.sds.map(|sd| sd / 3.0);
+    let score = search(HiddenKind::None, &case, 0).expect("it is searched");
+    assert_ne!(score.verdict, SearchVerdict::NothingDetectable, "{score}");
+}
+
+#[test]
+fn a_law_of_no_library_is_said_to_be_outside() {
+    let scores = scores(HiddenKind::Outside, &OUTSIDE);
+    let shown = Tally(&scores).to_string();
+    assert!(count(&scores, TrialScore::is_outside) >= 2, "{shown}");
+    assert!(count(&scores, |f| f.quantity) >= 2, "{shown}");
+}
+
+#[test]
+fn of_two_effects_both_are_named() {
+    let scores = scores(HiddenKind::Two, &TWO);
+    let shown = Tally(&scores).to_string();
+    assert!(count(&scores, |f| f.is_exact) >= 1, "{shown}");
+    assert_eq!(count(&scores, |f| f.is_outside()), 0, "{shown}");
+}
+
+#[test]
+fn a_truth_that_is_swapped_for_another_is_not_found() {
+    let mut case = draw(HiddenKind::One, SEED, ONE[0]).expect("the model takes a draw");
+    case.hidden = draw(HiddenKind::One, SEED, ONE[1])
+        .expect("the model takes a draw")
+        .hidden;
+    let score = search(HiddenKind::One, &case, ONE[0]).expect("it is searched");
+    assert!(!score.is_right && !score.claim_is_right, "{score}");
+}
+
+#[test]
+fn a_rig_that_states_its_order_and_preparations_is_not_taken_for_physics() {
+    for flaw in [
+        Flaw::SortedDrift,
+        Flaw::RandomDrift,
+        Flaw::Preparations,
+        Flaw::Understated,
+    ] {
+        let tally = rig::stated(flaw, 0..2, SEED).expect("every campaign is searched");
+        assert_eq!(tally.false_claims(), 0, "{tally}");
+    }
+}
+
+#[test]
+fn where_the_truth_cannot_be_tried_no_stand_in_is_named() {
+    for number in 0..2 {
+        let (said, line) = untryable::one(SEED, number).expect("it is searched");
+        assert_ne!(said, Said::StandIn, "{line}");
+    }
+}
+
+#[test]
+fn what_changed_since_a_reference_campaign_is_named_and_nothing_else() {
+    let said = |number| {
+        let compared = reference::one(SEED, number).expect("both campaigns are searched");
+        (compared.is_right(), compared.line(number))
+    };
+    let (changed, line) = said(1);
+    assert_eq!(changed, Some(true), "{line}");
+    let (unchanged, line) = said(3);
+    assert_eq!(unchanged, None, "{line}");
+}

@@ -1,0 +1,5 @@
+//! A small part of each study.
+
+mod fuzz;
+mod hidden_effect;
+mod sbc;

@@ -1,0 +1,50 @@
+//! A slice of the bench `sbc`: ranks of the truth are uniform, and a mistake in the noise shows.
+
+use benchmark::sbc::{Study, Verdict, binomial_p, judge};
+
+/// Twenty ranks fill no more bins.
+const BINS: usize = 4;
+const LEAST_P: f64 = 1e-3;
+
+fn verdicts(noise_factor: f64) -> Vec<Verdict> {
+    let study = Study {
+        sets: 20,
+        particles: 100,
+        seed: 7,
+        noise_factor,
+    };
+    let fates = study.run().expect("every data set is calibrated");
+    assert_eq!(fates.len(), study.sets);
+    let flagged = fates.iter().filter(|f| !f.equilibrated).count();
+    assert!(flagged <= 4, "{flagged} flagged");
+    assert!(fates.iter().all(|f| f.refused < 10));
+    judge(&study.parameters().expect("the job is valid"), &fates, BINS)
+}
+
+#[test]
+fn the_truth_is_one_more_draw_of_its_posterior() {
+    let verdicts = verdicts(1.0);
+    let judged: Vec<&str> = verdicts.iter().map(|v| v.parameter.as_str()).collect();
+    assert_eq!(judged.len(), 5, "{judged:?}");
+    for v in &verdicts {
+        assert!(v.p > LEAST_P && v.coverage_p > LEAST_P, "{v:?}");
+        assert!(v.coverage >= 0.6, "{v:?}");
+        assert_eq!(v.counts.iter().sum::<usize>(), 20);
+    }
+}
+
+#[test]
+fn noise_that_the_likelihood_does_not_know_of_shows() {
+    let verdicts = verdicts(4.0);
+    let found = verdicts.iter().any(|v| v.p < LEAST_P || v.coverage_p < LEAST_P);
+    assert!(found, "{verdicts:?}");
+}
+
+#[test]
+fn tails_have_their_tabulated_values() {
+    // ten of ten: 0.9^10; with what is rarer, 0.9^10 is not the mode, so counts of 7 and fewer come along
+    let all = binomial_p(9, 10, 0.9);
+    assert!((all - 1.0).abs() < 1e-9, "{all}");
+    let seven = binomial_p(7, 10, 0.9);
+    assert!((seven - 0.070_190_826_4).abs() < 1e-9, "{seven}");
+}

@@ -1,0 +1,347 @@
+//! The calibrations that are simulated, each with everything that it gives when nothing goes wrong.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use farm::calibration::{Calibration, CalibrationIdentity, Question, SimulationResult, result_of};
+use inference::{Particle, PosteriorSample, StageRecord};
+use job::Spec;
+use record::{EvaluationRow, Fact};
+use shared::file::FileSet;
+use shared::model::ModelVariant;
+use shared::outcome::{Observables, Outcome, ParameterRejection, SimulatedHistory};
+use statistics::{Subchain, SubchainEnd};
+
+/// The version of the equations that calibrations are pinned to.
+pub(crate) const EQUATIONS: &str = "scm-7";
+
+const EXPERIMENT: &str = "runs = \"runs.csv\"\n[wheel.w]\nradius_m = 0.125\nwidth_m = 0.112\n[soil.s]\n[noise]\ndrawbar_pull_n = 0.15\n";
+const HEAD: &str = "run,wheel,soil,slip,wheel_load_n,sled_speed_m_s,drawbar_pull_n,use\n";
+const FITTED: &str = "a,w,s,0.2,100,0.008,5.1,fit\n";
+const HELD_OUT: &str = "b,w,s,0.4,100,0.008,5.2,holdout\n";
+/// Held out as well; a refusing model refuses it at some draws.
+const STEEP: &str = "c,w,s,0.9,100,0.008,5.2,holdout\n";
+/// Jobs of each kind, which differ in their seeds.
+const SEEDS: u64 = 3;
+/// Numbers of the poisonous evaluation of the kinds that have one: a draw from the prior, and one of a later round.
+const POISON: [u64; 2] = [2, 55];
+
+/// What sort of calibration.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Kind {
+    /// TMCMC by moves, with a run held out.
+    Sample,
+    /// The same of a model that refuses a part of the prior, and beyond it one of two held-out runs.
+    Refusing,
+    /// The same with an evaluation that ends every worker: it pauses, and a user skips it.
+    Poisoned,
+    /// Fifty particles, so that such an evaluation is given up without a pause.
+    Crowded,
+    /// Subchains by a metamodel between evaluations of the three-dimensional model.
+    Metamodel,
+    /// A fit by steps, which is told predicted values.
+    Fit,
+}
+
+/// What a job asks under a number, and what is answered.
+#[derive(Debug)]
+pub(crate) struct Answered {
+    pub(crate) variant: String,
+    pub(crate) theta: Vec<f64>,
+    pub(crate) subchain: Option<Subchain>,
+    pub(crate) outcome: Option<Outcome>,
+    pub(crate) end: Option<SubchainEnd>,
+    /// What the store keeps of it.
+    pub(crate) row: EvaluationRow,
+}
+
+/// A job and everything that it gives when nothing goes wrong.
+#[derive(Debug)]
+pub(crate) struct Case {
+    pub(crate) kind: Kind,
+    pub(crate) spec: Arc<Spec>,
+    pub(crate) answers: BTreeMap<u64, Answered>,
+    /// The evaluation that ends every worker.
+    pub(crate) poison: Option<u64>,
+    /// The bits of each stage.
+    pub(crate) stages: Vec<Vec<u64>>,
+    /// The bits of the posterior, or the text of the estimate.
+    pub(crate) result: CaseResult,
+}
+
+/// What a calibration ends with, to the bit.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) enum CaseResult {
+    Posterior(Vec<u64>),
+    Estimate(String),
+}
+
+impl Kind {
+    /// The kinds with their shares of the schedules `[%]`.
+    pub(crate) const SHARES: [(Kind, usize); 6] = [
+        (Kind::Sample, 46),
+        (Kind::Refusing, 20),
+        (Kind::Poisoned, 16),
+        (Kind::Crowded, 2),
+        (Kind::Metamodel, 8),
+        (Kind::Fit, 8),
+    ];
+
+    fn job(self, seed: u64) -> String {
+        let (kind, sampler) = match self {
+            Kind::Sample | Kind::Poisoned => (
+                "quasi_static",
+                "particles = 5\nstages = \"moves\"\nmoves = [1, 2]",
+            ),
+            Kind::Refusing => (
+                "quasi_static",
+                "particles = 8\nstages = \"moves\"\nmoves = [1, 2]",
+            ),
+            Kind::Crowded => (
+                "quasi_static",
+                "particles = 50\nstages = \"moves\"\nmoves = [1, 2]",
+            ),
+            Kind::Metamodel => ("scm", "particles = 6\nmoves = [1, 2]\nmetamodel_moves = 3"),
+            Kind::Fit => (
+                "quasi_static",
+                "algorithm = \"lm\"\nparticles = 0\nstarts = 2\nmax_evaluations = 30",
+            ),
+        };
+        format!(
+            "[model]\nkind = \"{kind}\"\n[priors]\nlog10_p_ref = 5.0\nkappa = 0.0\nn = {{ uniform = [0.8, 1.4] }}\nfriction_angle_deg = 30.0\n[sampler]\nseed = {seed}\n{sampler}\n"
+        )
+    }
+
+    fn poison(self) -> Option<u64> {
+        match self {
+            Kind::Poisoned => Some(POISON[0]),
+            Kind::Crowded => Some(POISON[1]),
+            Kind::Sample | Kind::Refusing | Kind::Metamodel | Kind::Fit => None,
+        }
+    }
+
+    /// Observables of a model that is nothing but a line; of a refusing one, not everywhere.
+    fn evaluate(self, variant: &ModelVariant, theta: &[f64]) -> Outcome {
+        let is_steep = variant.conditions.iter().any(|condition| condition.slip > 0.8);
+        if self == Kind::Refusing && theta[0] > if is_steep { 1.0 } else { 1.25 } {
+            return Outcome::Rejected(ParameterRejection {
+                kind: "no_support".into(),
+                condition: 0,
+                message: "simulated".into(),
+            });
+        }
+        let runs = variant.conditions.len();
+        let values = vec![4.0 + theta[0]; runs];
+        let samples = vec![0.25; 2];
+        let history = SimulatedHistory {
+            drawbar_pull_n: samples.clone(),
+            torque_n_m: samples.clone(),
+            sinkage_m: samples.clone(),
+            lateral_force_n: samples,
+        };
+        let mut observables = Observables {
+            drawbar_pull_n: values.clone(),
+            torque_n_m: values.clone(),
+            sinkage_m: values.clone(),
+            lateral_force_n: values.clone(),
+            b_eff_m: values.clone(),
+            contact_length_m: values.clone(),
+            residual_load_n: values.clone(),
+            nodes_in_contact: vec![1; runs],
+            simulated_travel_m: values.clone(),
+            coarse: variant.companion.as_ref().map(|_| coarse(theta, values.len())),
+            histories: vec![history; if variant.histories { runs } else { 0 }],
+            ..Observables::default()
+        };
+        if !variant.channels.is_empty() {
+            observables.keep_only(&variant.channels);
+        }
+        Outcome::Evaluated(observables)
+    }
+
+    /// What a worker answers to a question.
+    fn answer(self, variant: &ModelVariant, question: Question) -> (Option<Outcome>, Option<SubchainEnd>) {
+        let metamodel = variant.companion.as_ref().and_then(|c| c.metamodel.as_ref());
+        let Some((subchain, metamodel)) = question.subchain.zip(metamodel) else {
+            return (Some(self.evaluate(variant, question.theta)), None);
+        };
+        let runs = variant.conditions.len();
+        let end = metamodel
+            .run(&subchain, question.theta, |theta| Some(coarse(theta, runs)))
+            .expect("the simulated values can be scored");
+        let outcome = (end.accepted > 0).then(|| self.evaluate(variant, &end.theta));
+        (outcome, Some(end))
+    }
+}
+
+/// The quasi-static values beside the three-dimensional ones.
+fn coarse(theta: &[f64], values: usize) -> Vec<f64> {
+    vec![4.1 + 0.9 * theta[0]; values]
+}
+
+impl Case {
+    /// Every job that schedules draw from, by kind.
+    ///
+    /// # Errors
+    /// What is wrong with a job.
+    pub(crate) fn all() -> Result<Vec<Vec<Case>>, String> {
+        let of_kind = |(kind, _)| (1..=SEEDS).map(|seed| Case::new(kind, seed)).collect();
+        Kind::SHARES.into_iter().map(of_kind).collect()
+    }
+
+    fn new(kind: Kind, seed: u64) -> Result<Case, String> {
+        let held_out = match kind {
+            Kind::Sample => HELD_OUT.to_owned(),
+            Kind::Refusing => format!("{HELD_OUT}{STEEP}"),
+            Kind::Poisoned | Kind::Crowded | Kind::Metamodel | Kind::Fit => String::new(),
+        };
+        let files = FileSet {
+            toml: EXPERIMENT.into(),
+            files: [("runs.csv".into(), format!("{HEAD}{FITTED}{held_out}"))].into(),
+        };
+        let job = FileSet {
+            toml: kind.job(seed),
+            files: BTreeMap::new(),
+        };
+        let spec = Spec::new("job.toml", &job, "experiment.toml", &files).map_err(|e| e.to_string())?;
+        Case::run(kind, Arc::new(spec))
+    }
+
+    /// Runs a job without a farm.
+    fn run(kind: Kind, spec: Arc<Spec>) -> Result<Case, String> {
+        let poison = kind.poison();
+        let mut calibration = begin(0, &spec)?;
+        let (mut answers, mut stages, mut result) = (BTreeMap::new(), Vec::new(), None);
+        while !calibration.state.is_final() {
+            for evaluation in calibration.queue.asked() {
+                let question = calibration
+                    .question(evaluation)
+                    .ok_or("an evaluation asks nothing")?;
+                let variant = calibration
+                    .variant(question.variant)
+                    .ok_or("a variant is missing")?;
+                let (outcome, end) = kind.answer(variant, question);
+                let mut answered = (
+                    question.variant.to_owned(),
+                    question.theta.to_vec(),
+                    question.subchain,
+                );
+                let (computed, worker) = if poison == Some(evaluation) {
+                    (SimulationResult::from(Err("fault: given up".to_owned())), "")
+                } else {
+                    let outcome = outcome.clone().map(result_of).transpose()?;
+                    let end = end.clone();
+                    (SimulationResult { end, outcome }, "w")
+                };
+                let (facts, _) = calibration
+                    .complete(evaluation, computed, worker)
+                    .map_err(|e| e.to_string())?;
+                for fact in facts {
+                    match fact {
+                        Fact::Evaluated { row, .. } => {
+                            let (variant, theta, subchain) = std::mem::take(&mut answered);
+                            let answered = Answered {
+                                variant,
+                                theta,
+                                subchain,
+                                outcome: outcome.clone(),
+                                end: end.clone(),
+                                row,
+                            };
+                            answers.insert(evaluation, answered);
+                        }
+                        Fact::Stage { record, .. } => stages.push(stage_bits(&record)),
+                        Fact::Posterior { posterior, .. } => {
+                            result = Some(CaseResult::Posterior(posterior_bits(&posterior)));
+                        }
+                        Fact::Estimate { estimate, .. } => {
+                            result = Some(CaseResult::Estimate(format!("{estimate:?}")));
+                        }
+                        _ => {}
+                    }
+                }
+                if calibration.state.is_final() {
+                    break;
+                }
+            }
+        }
+        Ok(Case {
+            kind,
+            spec,
+            answers,
+            poison,
+            stages,
+            result: result.ok_or_else(|| format!("{kind:?} ended as {:?}", calibration.message))?,
+        })
+    }
+
+    /// The calibration before its first lease.
+    ///
+    /// # Errors
+    /// What is wrong with the job.
+    pub(crate) fn begin(&self, id: i64) -> Result<Calibration, String> {
+        begin(id, &self.spec)
+    }
+}
+
+fn begin(id: i64, spec: &Arc<Spec>) -> Result<Calibration, String> {
+    let identity = CalibrationIdentity {
+        id,
+        name: String::new(),
+        study: id,
+        experiment: 1,
+    };
+    Calibration::new(identity, spec.clone()).map_err(|e| e.to_string())
+}
+
+fn particle_bits(particles: &[Particle]) -> impl Iterator<Item = u64> {
+    particles.iter().flat_map(|p| {
+        let numbers = [p.log_likelihood.value(), p.log_prior];
+        p.theta.iter().copied().chain(numbers).map(f64::to_bits)
+    })
+}
+
+/// Everything that a stage says.
+pub(crate) fn stage_bits(s: &StageRecord) -> Vec<u64> {
+    let numbers = [
+        s.tempering_exponent,
+        s.acceptance,
+        s.drift_z,
+        s.weight_drift_z,
+        s.correlation,
+        s.log_evidence_increment,
+        s.weight_cov,
+        s.ess,
+        s.scale,
+    ];
+    let counts = [
+        s.stage as u64,
+        s.steps as u64,
+        s.evaluations,
+        u64::from(s.equilibrated),
+    ];
+    let numbers = numbers.into_iter().map(f64::to_bits);
+    numbers
+        .chain(counts)
+        .chain(particle_bits(&s.population))
+        .collect()
+}
+
+/// Everything that a posterior says.
+pub(crate) fn posterior_bits(p: &PosteriorSample) -> Vec<u64> {
+    let numbers = [p.log_evidence, p.log_evidence_se, p.drift_z, p.weight_drift_z];
+    let counts = [u64::from(p.equilibrated), p.evaluations, p.rejected];
+    let numbers = numbers.into_iter().map(f64::to_bits);
+    numbers.chain(counts).chain(particle_bits(&p.particles)).collect()
+}
+
+/// Whether two rows agree to the bit, whoever computed them.
+pub(crate) fn same_row(a: &EvaluationRow, b: &EvaluationRow) -> bool {
+    let bits = |values: &[f64]| values.iter().map(|x| x.to_bits()).collect::<Vec<_>>();
+    bits(&a.theta) == bits(&b.theta)
+        && a.log_likelihood.map(f64::to_bits) == b.log_likelihood.map(f64::to_bits)
+        && a.coarse.as_deref().map(bits) == b.coarse.as_deref().map(bits)
+        && a.fingerprint == b.fingerprint
+        && a.kept == b.kept
+        && a.end == b.end
+}

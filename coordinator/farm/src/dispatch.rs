@@ -1,0 +1,400 @@
+//! The thread of the farm: receives messages one by one, sends answers and facts.
+//!
+//! The thread owns all state, so there is no lock, and a simulation of thousands of proposals never runs on
+//! the async runtime. Requests that wait for work are parked here and served in the order of their arrival.
+
+use std::collections::{BTreeMap, VecDeque};
+use std::sync::mpsc;
+use std::time::{Duration, Instant};
+
+use shared::api::{CalibrationState, CalibrationStatus, WorkDemand};
+use shared::exchange::{ExchangeRequest, ExchangeResponse};
+use shared::model::ModelVariant;
+use tokio::sync::mpsc::{UnboundedReceiver, UnboundedSender, unbounded_channel};
+use tokio::sync::oneshot;
+
+use super::control::{Control, ControlError};
+use super::metrics::FarmMetrics;
+use super::pulse::{Heart, Pulse};
+use super::state::Farm;
+use super::worker_record::WorkerRecord;
+use crate::calibration::Calibration;
+use record::SealKey;
+use record::fact::Fact;
+
+/// Stores facts in order; returns the number of the last fact so far, or `None` after the store has failed.
+type FactSink = Box<dyn FnMut(Vec<Fact>) -> Option<u64> + Send>;
+
+/// How often time passes for leases `[ms]`.
+const TICK: Duration = Duration::from_millis(250);
+
+/// An answer together with the number of the fact that must be stored before it may be given.
+pub type Durable<T> = (T, u64);
+
+/// Calibrations to replay from the store, as soon as their facts are stored: results of theirs were dropped.
+pub type Rewinds = UnboundedReceiver<Durable<i64>>;
+/// Where an exchange is answered.
+type ExchangeReply = oneshot::Sender<Durable<ExchangeResponse>>;
+/// A question to the farm at a time `[ms]`.
+type Look = Box<dyn FnOnce(&Farm, u64) + Send>;
+/// What a command led to.
+pub type Controlled = Result<Durable<CalibrationState>, ControlError>;
+
+enum Message {
+    Exchange {
+        request: ExchangeRequest,
+        reply: ExchangeReply,
+    },
+    Add {
+        calibration: Box<Calibration>,
+        key: SealKey,
+        facts: Vec<Fact>,
+        reply: oneshot::Sender<()>,
+    },
+    Control {
+        id: i64,
+        control: Control,
+        reply: oneshot::Sender<Controlled>,
+    },
+    RewindFailed {
+        id: i64,
+        reason: String,
+    },
+    Look {
+        look: Look,
+    },
+    Stop,
+}
+
+/// A handle on the farm's thread; clones are cheap.
+#[derive(Debug, Clone)]
+pub struct Dispatcher {
+    sender: mpsc::Sender<Message>,
+    pulse: Pulse,
+}
+
+/// The farm's thread has ended: the coordinator is going down.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[error("the coordinator is shutting down")]
+pub struct Stopped;
+
+impl Dispatcher {
+    /// Starts the farm's thread. Facts go to `sink`; when the store fails, the thread ends. Whoever holds the store replays what the
+    /// other end of the pair asks for, and gives it back by [`Dispatcher::add`].
+    ///
+    /// # Errors
+    /// The operating system refuses a thread.
+    pub fn start(
+        farm: Farm,
+        sink: impl FnMut(Vec<Fact>) -> Option<u64> + Send + 'static,
+    ) -> std::io::Result<(Dispatcher, Rewinds)> {
+        let sink: FactSink = Box::new(sink);
+        let (sender, receiver) = mpsc::channel();
+        let (rewinds, asked) = unbounded_channel();
+        let heart = Heart::begin();
+        let pulse = heart.pulse();
+        std::thread::Builder::new().name("farm".into()).spawn(move || {
+            Thread {
+                farm,
+                sink,
+                rewinds,
+                parked: VecDeque::new(),
+                parked_until_ms: u64::MAX,
+                began: Instant::now(),
+            }
+            .run(&receiver, &heart);
+        })?;
+        Ok((Dispatcher { sender, pulse }, asked))
+    }
+
+    /// What the thread is doing.
+    pub fn pulse(&self) -> &Pulse {
+        &self.pulse
+    }
+
+    fn send(&self, message: Message) -> Result<(), Stopped> {
+        self.sender.send(message).map_err(|_| Stopped)
+    }
+
+    /// Sends a message and waits for its reply.
+    async fn reply<T>(&self, message: impl FnOnce(oneshot::Sender<T>) -> Message) -> Result<T, Stopped> {
+        let (reply, answer) = oneshot::channel();
+        self.send(message(reply))?;
+        answer.await.map_err(|_| Stopped)
+    }
+
+    /// A worker's exchange; parked until there is work or its patience ends.
+    ///
+    /// # Errors
+    /// [`Stopped`].
+    pub async fn exchange(&self, request: ExchangeRequest) -> Result<Durable<ExchangeResponse>, Stopped> {
+        self.reply(|reply| Message::Exchange { request, reply }).await
+    }
+
+    /// Adds a calibration, with facts of its replay that may have been lost.
+    ///
+    /// # Errors
+    /// [`Stopped`].
+    pub async fn add(&self, calibration: Calibration, key: SealKey, facts: Vec<Fact>) -> Result<(), Stopped> {
+        let calibration = Box::new(calibration);
+        let add = |reply| Message::Add {
+            calibration,
+            key,
+            facts,
+            reply,
+        };
+        self.reply(add).await
+    }
+
+    /// Says that a replay which was asked for failed.
+    ///
+    /// # Errors
+    /// [`Stopped`].
+    pub fn rewind_failed(&self, id: i64, reason: String) -> Result<(), Stopped> {
+        self.send(Message::RewindFailed { id, reason })
+    }
+
+    /// A user's command on a calibration.
+    ///
+    /// # Errors
+    /// [`Stopped`]; inside, [`ControlError`].
+    pub async fn control(&self, id: i64, control: Control) -> Result<Controlled, Stopped> {
+        self.reply(|reply| Message::Control { id, control, reply }).await
+    }
+
+    /// The status of a calibration in progress; `None` if it is over or unknown.
+    ///
+    /// # Errors
+    /// [`Stopped`].
+    pub async fn status(&self, id: i64) -> Result<Option<CalibrationStatus>, Stopped> {
+        self.look(move |farm, now| farm.status(id, now)).await
+    }
+
+    /// The status of every calibration in progress, by id.
+    ///
+    /// # Errors
+    /// [`Stopped`].
+    pub async fn statuses(&self) -> Result<BTreeMap<i64, CalibrationStatus>, Stopped> {
+        self.look(|farm, now| {
+            farm.ids()
+                .into_iter()
+                .filter_map(|id| Some((id, farm.status(id, now)?)))
+                .collect()
+        })
+        .await
+    }
+
+    /// The known workers.
+    ///
+    /// # Errors
+    /// [`Stopped`].
+    pub async fn workers(&self) -> Result<BTreeMap<String, WorkerRecord>, Stopped> {
+        self.look(|farm, now| farm.workers(now)).await
+    }
+
+    /// The variant of a hash.
+    ///
+    /// # Errors
+    /// [`Stopped`].
+    pub async fn variant(&self, hash: String) -> Result<Option<ModelVariant>, Stopped> {
+        self.look(move |farm, _| farm.variant(&hash)).await
+    }
+
+    /// How much work there is.
+    ///
+    /// # Errors
+    /// [`Stopped`].
+    pub async fn demand(&self) -> Result<WorkDemand, Stopped> {
+        self.look(|farm, _| farm.demand()).await
+    }
+
+    /// Numbers for the metrics page.
+    ///
+    /// # Errors
+    /// [`Stopped`].
+    pub async fn metrics(&self) -> Result<FarmMetrics, Stopped> {
+        self.look(|farm, _| farm.metrics()).await
+    }
+
+    async fn look<T: Send + 'static>(
+        &self,
+        look: impl FnOnce(&Farm, u64) -> T + Send + 'static,
+    ) -> Result<T, Stopped> {
+        let message = |reply: oneshot::Sender<T>| {
+            let look = move |farm: &Farm, now| {
+                // The asker may have gone away meanwhile; nobody misses the answer then.
+                let _ = reply.send(look(farm, now));
+            };
+            Message::Look { look: Box::new(look) }
+        };
+        self.reply(message).await
+    }
+
+    /// Ends the farm's thread; parked workers are told nothing and try again.
+    pub fn stop(&self) {
+        let _ = self.sender.send(Message::Stop);
+    }
+}
+
+struct Parked {
+    /// What the worker asked for, without what has been taken of it.
+    request: ExchangeRequest,
+    until_ms: u64,
+    reply: ExchangeReply,
+}
+
+struct Thread {
+    farm: Farm,
+    sink: FactSink,
+    rewinds: UnboundedSender<Durable<i64>>,
+    parked: VecDeque<Parked>,
+    /// When the first of them has waited long enough.
+    parked_until_ms: u64,
+    began: Instant,
+}
+
+impl Thread {
+    fn run(mut self, receiver: &mpsc::Receiver<Message>, heart: &Heart) {
+        let mut next_tick = self.began + TICK;
+        loop {
+            let message = match receiver.recv_timeout(next_tick.saturating_duration_since(Instant::now())) {
+                Ok(Message::Stop) | Err(mpsc::RecvTimeoutError::Disconnected) => return,
+                Ok(message) => Some(message),
+                Err(mpsc::RecvTimeoutError::Timeout) => None,
+            };
+            heart.step_begins();
+            let mut now_ms = self.now_ms();
+            if let Some(message) = message {
+                self.handle(message, now_ms);
+            }
+            if Instant::now() >= next_tick {
+                // Renewals may have come in during a long step of a sampler: they count before time passes.
+                while let Ok(message) = receiver.try_recv() {
+                    if matches!(message, Message::Stop) {
+                        return;
+                    }
+                    now_ms = self.now_ms();
+                    self.handle(message, now_ms);
+                }
+                next_tick = Instant::now() + TICK;
+                self.farm.tick(now_ms);
+            }
+            if self.flush().is_none() {
+                tracing::error!("the store no longer accepts facts; the coordinator stops");
+                return;
+            }
+            self.serve_parked(now_ms);
+            heart.rests();
+        }
+    }
+
+    fn now_ms(&self) -> u64 {
+        u64::try_from(self.began.elapsed().as_millis()).unwrap_or(u64::MAX)
+    }
+
+    /// Hands the new facts to the store; the number of the last fact so far.
+    fn flush(&mut self) -> Option<u64> {
+        let fact = (self.sink)(self.farm.take_facts())?;
+        for id in self.farm.take_rewinds() {
+            // Without a listener the coordinator is going down: the next start replays it.
+            let _ = self.rewinds.send((id, fact));
+        }
+        Some(fact)
+    }
+
+    fn handle(&mut self, message: Message, now_ms: u64) {
+        match message {
+            Message::Exchange { request, reply } => self.exchange(request, reply, now_ms),
+            Message::Add {
+                calibration,
+                key,
+                facts,
+                reply,
+            } => {
+                self.farm.add(*calibration, key, facts, now_ms);
+                let _ = reply.send(());
+            }
+            Message::Control { id, control, reply } => {
+                let result = self.farm.control(id, control, now_ms);
+                let Some(fact) = self.flush() else { return };
+                let _ = reply.send(result.map(|state| (state, fact)));
+            }
+            Message::RewindFailed { id, reason } => self.farm.rewind_failed(id, &reason),
+            Message::Look { look } => look(&self.farm, now_ms),
+            Message::Stop => {}
+        }
+    }
+
+    fn exchange(&mut self, request: ExchangeRequest, reply: ExchangeReply, now_ms: u64) {
+        let question = ExchangeRequest {
+            worker: request.worker.clone(),
+            model_version: request.model_version.clone(),
+            models: request.models.clone(),
+            queue_job: request.queue_job.clone(),
+            threads: request.threads,
+            evaluation_s: request.evaluation_s,
+            results: Vec::new(),
+            holding: Vec::new(),
+            returned: Vec::new(),
+            started: Vec::new(),
+            ..request
+        };
+        let until_ms = now_ms + request.wait_ms;
+        let response = self.farm.exchange(request, now_ms);
+        let Some(fact) = self.flush() else { return };
+        let may_wait = question.want > 0 && until_ms > now_ms;
+        if response.leases.is_empty() && may_wait && response.refused.is_none() {
+            self.parked_until_ms = self.parked_until_ms.min(until_ms);
+            self.parked.push_back(Parked {
+                request: question,
+                until_ms,
+                reply,
+            });
+        } else {
+            self.answer(&question.worker, reply, (response, fact), now_ms);
+        }
+    }
+
+    /// Gives work, or the news that there is none, to those whose turn it is. Thousands may be parked: without work nobody looks at
+    /// them before the first has waited long enough.
+    fn serve_parked(&mut self, now_ms: u64) {
+        if !self.farm.has_work() && now_ms < self.parked_until_ms {
+            return;
+        }
+        self.serve_each(now_ms);
+        let until_ms = self.parked.iter().map(|parked| parked.until_ms);
+        self.parked_until_ms = until_ms.min().unwrap_or(u64::MAX);
+    }
+
+    fn serve_each(&mut self, now_ms: u64) {
+        for _ in 0..self.parked.len() {
+            let Some(parked) = self.parked.pop_front() else {
+                return;
+            };
+            if parked.reply.is_closed() {
+                continue;
+            }
+            if !self.farm.has_work() && parked.until_ms > now_ms {
+                self.parked.push_back(parked);
+                continue;
+            }
+            let response = self.farm.exchange(parked.request.clone(), now_ms);
+            if response.leases.is_empty() && parked.until_ms > now_ms && response.refused.is_none() {
+                self.parked.push_back(parked);
+                continue;
+            }
+            let Some(fact) = self.flush() else { return };
+            self.answer(&parked.request.worker, parked.reply, (response, fact), now_ms);
+        }
+    }
+
+    /// Answers; leases for a worker that has gone away meanwhile are taken back at once.
+    fn answer(&mut self, worker: &str, reply: ExchangeReply, answer: Durable<ExchangeResponse>, now_ms: u64) {
+        if let Err((response, _)) = reply.send(answer) {
+            for lease in response.leases {
+                self.farm.give_back(lease.lease, worker);
+            }
+            self.farm.tick(now_ms);
+        }
+    }
+}

@@ -1,0 +1,237 @@
+//! Who gets which lease, in a farm without network and store.
+
+use farm::calibration::result_of;
+use farm::{Control, Farm};
+use record::{Fact, SealKey};
+use shared::api::CalibrationState;
+use shared::exchange::{ExchangeRequest, ExchangeResponse, Lease, PROTOCOL_VERSION, WorkResult};
+use shared::outcome::{Fault, Outcome};
+
+use super::simulation::world::case::{Case, EQUATIONS};
+
+const LEASE_MS: u64 = 1_000;
+
+/// A farm with the first job of some kinds, numbered from 1.
+fn farm(kinds: &[usize]) -> (Farm, Vec<Vec<Case>>) {
+    let cases = Case::all().expect("the jobs are valid");
+    let mut farm = Farm::new(1, LEASE_MS);
+    for (k, &kind) in kinds.iter().enumerate() {
+        let id = k as i64 + 1;
+        let calibration = cases[kind][0].begin(id).expect("the job is valid");
+        farm.add(calibration, SealKey([id as u8; 16]), Vec::new(), 0);
+    }
+    (farm, cases)
+}
+
+fn request(worker: &str, want: u32) -> ExchangeRequest {
+    ExchangeRequest {
+        worker: worker.into(),
+        protocol: PROTOCOL_VERSION,
+        model_version: EQUATIONS.into(),
+        models: Default::default(),
+        queue_job: None,
+        threads: 1,
+        evaluation_s: None,
+        results: Vec::new(),
+        holding: Vec::new(),
+        returned: Vec::new(),
+        started: Vec::new(),
+        received: u64::MAX,
+        want,
+        wait_ms: 0,
+    }
+}
+
+/// How many leases of each of the first two calibrations.
+fn counts(response: &ExchangeResponse) -> [usize; 2] {
+    [1, 2].map(|id| response.leases.iter().filter(|l| l.calibration == id).count())
+}
+
+fn answer(lease: &Lease, outcome: Option<Outcome>) -> WorkResult {
+    WorkResult {
+        lease: lease.lease,
+        calibration: lease.calibration,
+        evaluation: lease.evaluation,
+        seal: lease.seal.clone(),
+        end: None,
+        outcome,
+        repeated: None,
+    }
+}
+
+fn fault() -> Option<Outcome> {
+    let message = "out of memory".into();
+    Some(Outcome::Fault(Fault { message }))
+}
+
+/// Kinds of [`Case::all`]: fifty particles, five.
+const LARGE: usize = 3;
+const SMALL: usize = 0;
+
+#[test]
+fn a_small_calibration_does_not_wait_for_a_large_one() {
+    let (mut farm, _) = farm(&[LARGE, SMALL]);
+    let first = farm.exchange(request("a", 40), 0);
+    assert_eq!(counts(&first), [35, 5], "its share is more than it has");
+    let (mut farm, _) = self::farm(&[LARGE, LARGE]);
+    assert_eq!(counts(&farm.exchange(request("a", 9), 0)), [5, 4]);
+    assert_eq!(counts(&farm.exchange(request("b", 5), 0)), [2, 3]);
+    // What one leaves, the other takes.
+    farm.control(1, Control::Pause, 0).expect("it runs");
+    assert_eq!(counts(&farm.exchange(request("c", 5), 0)), [0, 5]);
+}
+
+#[test]
+fn a_suspect_is_alone_in_the_hands_of_its_worker_whatever_else_waits() {
+    let (mut farm, _) = farm(&[SMALL, SMALL]);
+    let leases = farm.exchange(request("a", 1), 0).leases;
+    let failed = ExchangeRequest {
+        results: vec![answer(&leases[0], fault())],
+        ..request("a", 0)
+    };
+    farm.exchange(failed, 0);
+    let suspect = farm.exchange(request("b", 4), 0);
+    assert_eq!(counts(&suspect), [1, 0]);
+    assert!(suspect.leases[0].announce);
+    assert_eq!(
+        counts(&farm.exchange(request("b", 4), 0)),
+        [0, 0],
+        "it holds a suspect"
+    );
+    assert_eq!(counts(&farm.exchange(request("c", 4), 0)), [2, 2]);
+}
+
+#[test]
+fn a_suspect_of_a_younger_calibration_waits_for_no_other() {
+    let (mut farm, _) = farm(&[LARGE, SMALL]);
+    let leases = farm.exchange(request("a", 2), 0).leases;
+    let young = leases.iter().find(|l| l.calibration == 2).expect("they share");
+    let failed = ExchangeRequest {
+        results: vec![answer(young, fault())],
+        ..request("a", 0)
+    };
+    farm.exchange(failed, 0);
+    let suspect = farm.exchange(request("b", 4), 0);
+    assert_eq!(counts(&suspect), [0, 1]);
+}
+
+#[test]
+fn a_result_pins_the_version_and_a_lease_does_not() {
+    let (mut farm, cases) = farm(&[SMALL]);
+    let wrong = ExchangeRequest {
+        model_version: "no-such-version".into(),
+        ..request("wrong", 3)
+    };
+    let theirs = farm.exchange(wrong.clone(), 0).leases;
+    let leases = farm.exchange(request("a", 1), 0).leases;
+    assert_eq!((theirs.len(), leases.len()), (3, 1));
+    let outcome = |lease: &Lease| cases[SMALL][0].answers[&lease.evaluation].outcome.clone();
+    let answered = ExchangeRequest {
+        results: vec![answer(&leases[0], outcome(&leases[0]))],
+        ..request("a", 0)
+    };
+    farm.take_facts();
+    farm.exchange(answered, 0);
+    let facts = farm.take_facts();
+    let [Fact::ModelVersion { version, .. }, Fact::Evaluated { .. }] = &facts[..] else {
+        panic!("{facts:?}");
+    };
+    assert_eq!(version, EQUATIONS);
+    let late = ExchangeRequest {
+        results: vec![answer(&theirs[0], outcome(&theirs[0]))],
+        ..wrong
+    };
+    let told = farm.exchange(late, 0);
+    assert_eq!((told.leases.len(), told.duplicates), (0, 1));
+    assert!(told.refused.is_some());
+    assert!(farm.take_facts().is_empty());
+    let again: Vec<u64> = farm
+        .exchange(request("a", 9), 0)
+        .leases
+        .iter()
+        .map(|l| l.evaluation)
+        .collect();
+    assert_eq!(
+        again,
+        [0, 1, 2, 4],
+        "what the wrong one held is leased at once, and is not suspected"
+    );
+}
+
+#[test]
+fn a_suspect_does_not_wait_for_a_worker_that_has_become_another() {
+    let (mut farm, _) = farm(&[SMALL]);
+    // The name is heard first with the version of this calibration, and computes another ever since.
+    farm.exchange(request("other", 0), 0);
+    let leases = farm.exchange(request("a", 1), 0).leases;
+    let other = ExchangeRequest {
+        model_version: "scm-5".into(),
+        ..request("other", 0)
+    };
+    farm.exchange(other, 0);
+    let failed = ExchangeRequest {
+        results: vec![answer(&leases[0], fault())],
+        ..request("a", 1)
+    };
+    let again = farm.exchange(failed, 0).leases;
+    assert_eq!(again[0].evaluation, leases[0].evaluation, "there is no other");
+}
+
+#[test]
+fn late_results_of_a_calibration_that_ends_in_its_replay_are_compared() {
+    let (mut before, cases) = farm(&[SMALL]);
+    let case = &cases[SMALL][0];
+    let lease = before.exchange(request("a", 1), 0).leases.remove(0);
+    let mut calibration = case.begin(1).expect("the job is valid");
+    calibration.model_version = Some(EQUATIONS.into());
+    while !calibration.state.is_final() {
+        for evaluation in calibration.queue.asked() {
+            let outcome = case.answers[&evaluation].outcome.clone().expect("no subchains");
+            let computed = result_of(outcome).expect("no faults");
+            calibration.complete(evaluation, computed, "a").expect("it fits");
+        }
+    }
+    let mut after = Farm::new(2, LEASE_MS);
+    after.add(calibration, SealKey([1; 16]), Vec::new(), 0);
+    let late = ExchangeRequest {
+        results: vec![answer(&lease, case.answers[&1].outcome.clone())],
+        ..request("a", 1)
+    };
+    assert!(after.exchange(late, 0).leases.is_empty());
+    let facts = after.take_facts();
+    assert!(
+        matches!(facts[..], [Fact::Duplicate { evaluation: 0, .. }]),
+        "{facts:?}"
+    );
+}
+
+#[test]
+fn an_evaluation_that_nobody_begins_pauses_its_calibration() {
+    let (mut farm, _) = farm(&[SMALL]);
+    let mut now_ms = 0;
+    for lost in 1..=20 {
+        let running = farm.status(1, now_ms).expect("it is in progress").state;
+        assert_ne!(running, CalibrationState::Paused, "after {lost} leases");
+        let mut leases = 0;
+        // Each worker takes one suspect, or everything, and is never heard of again.
+        while !farm
+            .exchange(request(&format!("w{lost}-{leases}"), 9), now_ms)
+            .leases
+            .is_empty()
+        {
+            leases += 1;
+        }
+        now_ms += LEASE_MS;
+        farm.tick(now_ms);
+    }
+    let status = farm.status(1, now_ms).expect("it is in progress");
+    assert_eq!(status.state, CalibrationState::Paused);
+    let message = status.message.expect("it says why");
+    assert!(
+        message.contains("was leased 20 times in a row") && message.contains("resume"),
+        "{message}"
+    );
+    farm.control(1, Control::Resume { skip_faults: false }, now_ms)
+        .expect("it is paused");
+    assert!(!farm.exchange(request("cured", 9), now_ms).leases.is_empty());
+}

@@ -1,0 +1,128 @@
+//! The report of a study: one document that opens offline, with the pictures of the page and their numbers.
+//!
+//! It carries what a service would answer to the page, by the paths of the REST interface: whatever the page shows of a study, the
+//! report shows too. Without scripts it has the text of the terminal.
+
+use serde_json::{Map, Value};
+
+use page::report::{Report, report};
+use shared::api::CalibrationState;
+
+use crate::diagnosis::diagnostics;
+use crate::overview::overview;
+use crate::provenance::provenance;
+use crate::terminal;
+use result::study::Study;
+
+/// The report, which shows the current model first.
+pub fn document(study: &Study) -> String {
+    let shown = study.current().unwrap_or(&study.lead);
+    report(&Report {
+        title: &format!("Calibration report: {}", study.lead.experiment),
+        text: &terminal::study(study),
+        study: shown.row.study,
+        calibration: shown.row.id,
+        answers: &answers(study),
+    })
+}
+
+/// What a service answers of a study, by path.
+pub fn answers(study: &Study) -> Map<String, Value> {
+    let overview = overview(study);
+    let mut answers = Map::new();
+    let mut add = |path: String, answer: Value| {
+        answers.insert(format!("/v1/{path}"), answer);
+    };
+    add(format!("studies/{}", overview.id), json(&overview));
+    for calibration in study.calibrations() {
+        let path = |what: &str| format!("calibrations/{}/{what}", calibration.row.id);
+        let comparison = calibration.comparison();
+        let diagnostics = diagnostics(calibration, comparison);
+        add(path("comparison"), json(comparison));
+        add(path("diagnostics"), json(&diagnostics));
+        add(path("figures"), json(&study.figures_of(calibration)));
+        add(path("histories"), json(&calibration.histories()));
+        add(path("provenance"), json(&provenance(calibration)));
+        add(path("stages"), json(&calibration.stages));
+    }
+    for round in &study.rounds {
+        // One that was cancelled or failed before it has no record.
+        let search = study
+            .members
+            .iter()
+            .rfind(|m| m.searches == Some(round.calibration) && m.state == CalibrationState::Finished);
+        if let Some(search) = search {
+            add(
+                format!("calibrations/{}/discovery", search.id),
+                json(&round.record),
+            );
+        }
+    }
+    answers
+}
+
+fn json(answer: &impl serde::Serialize) -> Value {
+    serde_json::to_value(answer).expect("results have a JSON form")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fixture;
+
+    #[test]
+    fn every_calibration_and_every_search_is_in_the_report() {
+        let study = fixture::grown();
+        let answers = answers(&study);
+        let count = |what: &str| answers.keys().filter(|path| path.ends_with(what)).count();
+        assert_eq!(count("/discovery"), study.rounds.len());
+        assert_eq!(count("/comparison"), study.calibrations().count());
+    }
+
+    #[test]
+    fn the_models_that_a_job_compares_are_in_the_report() {
+        let mut other = fixture::calibration();
+        other.row.id = 2;
+        let study = Study {
+            models: 2,
+            others: vec![other],
+            ..Study::from(fixture::calibration())
+        };
+        let answers = answers(&study);
+        let models = &answers[&format!("/v1/studies/{}", study.lead.row.study)]["models"];
+        assert_eq!(models["best"], study.lead.row.id);
+        assert_eq!(models["models"].as_array().map(Vec::len), Some(2));
+        assert_eq!(
+            answers
+                .keys()
+                .filter(|path| path.ends_with("/comparison"))
+                .count(),
+            2
+        );
+    }
+
+    #[test]
+    fn names_of_users_are_escaped() {
+        let document = document(&fixture::study());
+        assert!(document.contains("\\u003cscript>") && document.contains("&lt;script&gt;"));
+        assert!(!document.contains("<script>alert"));
+    }
+
+    #[test]
+    fn equal_studies_give_equal_reports() {
+        assert_eq!(document(&fixture::study()), document(&fixture::study()));
+    }
+
+    #[test]
+    fn every_study_has_a_report() {
+        for calibration in [
+            fixture::without_holdout(),
+            fixture::all_rejected(),
+            fixture::fit(),
+            fixture::search(),
+        ] {
+            let document = document(&Study::from(calibration));
+            assert!(document.ends_with("</html>\n"));
+        }
+    }
+}

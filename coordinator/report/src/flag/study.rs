@@ -1,0 +1,145 @@
+//! Flags of a study: those of its calibrations, and calibrations that missed a mode.
+
+use crate::diagnosis::diagnostics;
+use crate::flag::interpolation::interpolation_beats;
+use result::finished_calibration::FinishedCalibration;
+use result::flag::{Flag, FlagKind};
+use result::study::Study;
+use result::words::number;
+use result::words::probability::p_words;
+
+/// Difference of log-posteriors beyond which a calibration missed a mode `[nats]`: the best of a thousand draws lies a few nats
+/// below the mode, more in many dimensions.
+const MISSED_NATS: f64 = 15.0;
+
+/// All flags: of a point estimate with the name of its algorithm, of an extension with its own name.
+pub fn flags(study: &Study) -> Vec<Flag> {
+    flags_by_calibration(study)
+        .into_iter()
+        .map(|(_, flag)| flag)
+        .collect()
+}
+
+/// The same, each with the calibration that it is about; `None` where that is several.
+pub(crate) fn flags_by_calibration(study: &Study) -> Vec<(Option<i64>, Flag)> {
+    let of = |calibration: &FinishedCalibration| diagnostics(calibration, calibration.comparison()).flags;
+    let mut flags: Vec<_> = missed_modes(study).into_iter().map(|flag| (None, flag)).collect();
+    let lead = Some(study.lead.row.id);
+    flags.extend(of(&study.lead).into_iter().map(|flag| (lead, flag)));
+    let beside = study.point_estimates.iter().map(|o| (o.spec.algorithm.name(), o));
+    let extensions = study.extensions.iter().map(|o| (o.experiment.as_str(), o));
+    for (name, calibration) in beside.chain(extensions) {
+        let named = |flag: Flag| Flag {
+            text: format!("{name}: {}", flag.text),
+            ..flag
+        };
+        let own = of(calibration).into_iter();
+        flags.extend(own.map(|flag| (Some(calibration.row.id), named(flag))));
+    }
+    let current = study.current().map(|calibration| calibration.row.id);
+    flags.extend(interpolation_beats(study).into_iter().map(|flag| (current, flag)));
+    let searched = study.rounds.last().map(|round| round.calibration);
+    flags.extend(incomplete(study).map(|flag| (searched, flag)));
+    flags
+}
+
+/// The flag of a last search whose best explanation contradicts the data.
+fn incomplete(study: &Study) -> Option<Flag> {
+    let record = &study.rounds.last()?.record;
+    let chi2 = record.chi2_best;
+    let value = chi2.value.filter(|_| record.complete == Some(false))?;
+    let text = format!(
+        "the search is incomplete: with the best explanation the squares of the residuals still sum to {} noise variances where {} are expected ({}): more is missing, or the declared errors are too small",
+        number::significant(value, 3),
+        number::significant(chi2.degrees_of_freedom, 3),
+        number::or_none(chi2.p, p_words)
+    );
+    Some(Flag {
+        p: chi2.p,
+        ..Flag::plain(FlagKind::Incomplete, text)
+    })
+}
+
+/// Flags of the calibrations whose best parameters are far less probable than those that another one of the study found.
+pub(crate) fn missed_modes(study: &Study) -> Vec<Flag> {
+    let best = |calibration: &FinishedCalibration| match &calibration.estimate {
+        Some(estimate) => Some(estimate.log_likelihood + estimate.log_prior),
+        None => {
+            let sample = calibration.most_probable()?;
+            Some(sample.log_likelihood? + sample.log_prior)
+        }
+    };
+    let found: Vec<(&str, f64)> = study
+        .submitted()
+        .filter_map(|calibration| Some((calibration.spec.algorithm.name(), best(calibration)?)))
+        .collect();
+    let Some(&(winner, highest)) = found.iter().max_by(|a, b| a.1.total_cmp(&b.1)) else {
+        return Vec::new();
+    };
+    found
+        .iter()
+        .filter(|(_, log_posterior)| highest - log_posterior > MISSED_NATS)
+        .map(|(name, log_posterior)| {
+            let text = format!(
+                "{name} missed a mode that {winner} found, with a log-posterior {:.0} nats higher: do not use the result of {name}",
+                highest - log_posterior
+            );
+            Flag::plain(FlagKind::NotEquilibrated, text)
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fixture;
+
+    #[test]
+    fn a_search_that_leaves_misfit_is_flagged() {
+        let record = |complete: bool| {
+            let mut record: record::Discovery =
+                serde_json::from_str(include_str!("../../../record/discovery.json")).unwrap();
+            record.complete = Some(complete);
+            record
+        };
+        let flagged = |complete: bool| {
+            let study = result::study::Study {
+                rounds: vec![result::discovery::DiscoveryRound {
+                    calibration: 1,
+                    record: record(complete),
+                }],
+                ..fixture::study()
+            };
+            let flags = flags(&study);
+            flags
+                .iter()
+                .filter(|f| f.kind == super::FlagKind::Incomplete)
+                .count()
+        };
+        assert_eq!((flagged(true), flagged(false)), (0, 1));
+    }
+
+    #[test]
+    fn a_calibration_that_missed_a_mode_found_by_another_is_flagged() {
+        let mut study = fixture::study();
+        let missed = |study: &super::Study| {
+            let flags = flags(study);
+            let found = flags.iter().filter(|f| f.text.contains("missed a mode that"));
+            found.map(|f| f.text.clone()).collect::<Vec<String>>()
+        };
+        assert_eq!(missed(&study), Vec::<String>::new());
+        if let Some(estimate) = &mut study.point_estimates[0].estimate {
+            estimate.log_likelihood += 100.0;
+        }
+        let texts = missed(&study);
+        assert!(
+            texts.len() == 1 && texts[0].starts_with("tmcmc missed a mode that ga found"),
+            "{texts:?}"
+        );
+        assert_eq!(
+            flags(&study)[0].text,
+            texts[0],
+            "it stands before what it casts doubt on"
+        );
+    }
+}

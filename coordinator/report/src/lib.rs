@@ -1,0 +1,32 @@
+//! What a study says, from the numbers of `result`: flags, story, `summary.json`, report, text for a terminal.
+//!
+//! Everything here is a pure function of a [`result::FinishedCalibration`], or of the [`result::Study`] that it belongs to.
+//!
+//! # Layout
+//! - [`diagnosis`]: diagnostics with their flags, computed once. [`flag`]: warnings in words.
+//! - [`provenance`]: how a calibration came about, and what it reached in sentences.
+//! - [`story`]: what is wrong, what is missing, what to do next.
+//! - [`summary`]: `summary.json`. [`overview`]: a study as the page shows it.
+//! - [`terminal`]: text for a terminal. [`document`]: one HTML document with everything.
+//! - [`study_file`]: the files that a study ends with.
+
+pub mod diagnosis;
+pub mod document;
+#[cfg(test)]
+#[path = "../../result/src/fixture.rs"]
+pub mod fixture;
+pub mod flag;
+pub mod overview;
+pub mod provenance;
+pub mod story;
+pub mod study_file;
+pub mod summary;
+pub mod terminal;
+
+pub use flag::model_limit::model_limits;
+pub use overview::{MemberOverview, StudyFlag, StudyListItem, StudyOverview, StudyVerdict};
+pub use provenance::Provenance;
+pub use story::Story;
+pub use study_file::StudyFile;
+pub use summary::calibration::CalibrationSummary;
+pub use summary::study::StudySummary;

@@ -1,0 +1,312 @@
+//! What the study added to a model, what the searches said of it, and what it bought.
+
+use record::{Discovery, NOT_IN_LIBRARY, NextRun, addition_name, effect_of};
+
+use super::explanation::{Alternative, open, p, parts, run_words};
+use result::discovery::DiscoveryRound;
+use result::finished_calibration::FinishedCalibration;
+use result::study::Study;
+use result::words::number;
+
+/// An effect that the study added.
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
+pub struct AddedEffect {
+    /// Its name, as the search calls it where one judged it.
+    pub name: String,
+    /// The probability that a search gave it; null where none named it or left it open.
+    pub probability: Option<f64>,
+    /// The calibration whose search that was.
+    pub searched: Option<i64>,
+    /// The explanations that this search could not exclude beside it, by falling probability; empty where it named the effect.
+    pub rivals: Vec<Alternative>,
+    /// The run that tells it from its rivals best; null without rivals, and where the search found none.
+    pub deciding_run: Option<NextRun>,
+    /// Error on held-out runs before and after, in the noise sds of the study; null where no held-out run was measured, or where the
+    /// study has no model that differs in this effect alone.
+    pub held_out_noise_sds: Option<[f64; 2]>,
+}
+
+impl AddedEffect {
+    /// `slip_sinkage was missing (P 0.96) and is added: held-out error from 2.1 to 0.9 times the noise`.
+    pub(super) fn words(&self) -> String {
+        let name = &self.name;
+        let mut text = match (self.probability, self.rivals.is_empty()) {
+            (Some(probability), true) => format!("{name} was missing ({}) and is added", p(probability)),
+            (Some(probability), false) => format!("{name} ({}) is added", p(probability)),
+            (None, _) => format!("{name} was added by hand"),
+        };
+        if let Some([before, after]) = self.held_out_noise_sds {
+            text += &format!(
+                ": held-out error from {} to {} times the noise",
+                number::significant(before, 2),
+                number::significant(after, 2)
+            );
+        }
+        match self.open_question() {
+            Some(question) => format!("{text}; {question}"),
+            None => text,
+        }
+    }
+
+    /// `slip_softened_pressure (P 0.32) in place of slip_sinkage cannot be excluded; slip 0.60 under 80.0 N at 20.0 mm/s would tell`;
+    /// `None` without rivals.
+    pub(crate) fn open_question(&self) -> Option<String> {
+        let rivals: Vec<String> = self.rivals.iter().map(Alternative::words).collect();
+        let run = self.deciding_run.as_ref();
+        let run = run.map(|run| format!("; {} would tell", run_words(run)));
+        (!rivals.is_empty()).then(|| {
+            format!(
+                "{} in place of {} cannot be excluded{}",
+                number::list(&rivals),
+                self.name,
+                run.unwrap_or_default()
+            )
+        })
+    }
+}
+
+/// What the study added to the model of a calibration, in the order of the model.
+pub(crate) fn added(study: &Study, calibration: &FinishedCalibration) -> Vec<AddedEffect> {
+    let had = study.lead.effects();
+    let has = study.parts(calibration);
+    let mut left: Vec<String> = has.iter().filter(|part| !had.contains(part)).cloned().collect();
+    let order = left.clone();
+    let mut found = Vec::new();
+    // The newest search comes first: further runs may have decided what an earlier one left open.
+    for round in study.rounds.iter().rev() {
+        let Some(before) = study.calibrations().find(|own| own.row.id == round.calibration) else {
+            continue;
+        };
+        let is_ancestor = study.parts(before).iter().all(|part| has.contains(part));
+        while let Some(judged) = judged(&round.record, &left).filter(|_| is_ancestor) {
+            let own = parts(&judged.name);
+            left.retain(|part| !own.contains(part));
+            let effect = of_search(study, round, before, &judged, &has);
+            found.push((position(&order, &own), effect));
+        }
+    }
+    let by_hand = left.into_iter().map(|name| {
+        let own = [name.clone()];
+        let effect = AddedEffect {
+            held_out_noise_sds: bought(study, calibration, &own),
+            name,
+            probability: None,
+            searched: None,
+            rivals: Vec::new(),
+            deciding_run: None,
+        };
+        (position(&order, &own), effect)
+    });
+    found.extend(by_hand);
+    found.sort_by_key(|(position, _)| *position);
+    found.into_iter().map(|(_, effect)| effect).collect()
+}
+
+fn position(order: &[String], parts: &[String]) -> usize {
+    let place = order.iter().position(|part| parts.contains(part));
+    place.unwrap_or(order.len())
+}
+
+/// The explanation, among those that a search names or leaves open, whose parts are all among these; the one with the most parts.
+fn judged(record: &Discovery, left: &[String]) -> Option<Alternative> {
+    let named = record.extension.as_ref().map(|extension| {
+        let name = addition_name(extension);
+        let of_search = record.effects.iter().find(|e| e.name == name);
+        let outside = || record.effects.iter().find(|e| e.name == NOT_IN_LIBRARY);
+        let probability = of_search.or_else(outside).map_or(0.0, |e| e.probability);
+        // An effect on one wheel of several keeps its wheel; a law outside the library has the name in its file.
+        let name = if of_search.is_some() {
+            name
+        } else {
+            effect_of(extension)
+        };
+        Alternative { name, probability }
+    });
+    let is_there = |own: &Alternative| {
+        let parts = parts(&own.name);
+        !parts.is_empty() && parts.iter().all(|part| left.contains(part))
+    };
+    let explanations = named
+        .into_iter()
+        .chain(open(record).into_iter().map(Alternative::from));
+    let there: Vec<Alternative> = explanations.filter(is_there).collect();
+    let largest = there.iter().map(|own| parts(&own.name).len()).max()?;
+    there.into_iter().find(|own| parts(&own.name).len() == largest)
+}
+
+fn of_search(
+    study: &Study,
+    round: &DiscoveryRound,
+    before: &FinishedCalibration,
+    judged: &Alternative,
+    has: &[String],
+) -> AddedEffect {
+    let own = parts(&judged.name);
+    let is_rival = |rival: &Alternative| {
+        let parts = parts(&rival.name);
+        parts != own && !parts.iter().all(|part| has.contains(part))
+    };
+    let rivals: Vec<Alternative> = open(&round.record)
+        .into_iter()
+        .map(Alternative::from)
+        .filter(is_rival)
+        .collect();
+    let extended = [study.parts(before), own].concat();
+    AddedEffect {
+        name: judged.name.clone(),
+        probability: Some(judged.probability),
+        searched: Some(round.calibration),
+        deciding_run: round
+            .record
+            .next_runs
+            .first()
+            .filter(|_| !rivals.is_empty())
+            .cloned(),
+        rivals,
+        held_out_noise_sds: errors(study, before, &extended),
+    }
+}
+
+/// The errors without and with the parts of a model, where the study has the model without them.
+fn bought(study: &Study, calibration: &FinishedCalibration, own: &[String]) -> Option<[f64; 2]> {
+    let has = study.parts(calibration);
+    let rest: Vec<String> = has.iter().filter(|part| !own.contains(part)).cloned().collect();
+    errors(study, alike(study, calibration, &rest)?, &has)
+}
+
+/// The calibration of the same measurements whose model has these parts and no others.
+fn alike<'a>(
+    study: &'a Study,
+    measured: &FinishedCalibration,
+    parts: &[String],
+) -> Option<&'a FinishedCalibration> {
+    study.ledger().find(|line| {
+        let of_line = study.parts(line);
+        let is_same = of_line.len() == parts.len() && parts.iter().all(|part| of_line.contains(part));
+        is_same && line.row.experiment == measured.row.experiment
+    })
+}
+
+/// Errors on held-out runs of a calibration, and of that of the same measurements with these parts.
+fn errors(study: &Study, before: &FinishedCalibration, parts: &[String]) -> Option<[f64; 2]> {
+    let after = alike(study, before, parts)?;
+    let sigmas = study.fixed_sigmas();
+    let error = |calibration: &FinishedCalibration| {
+        let table = calibration.comparison().holdout.clone()?;
+        let table = table.in_fixed_sigmas(&sigmas);
+        Some((table.all.unpredicted, table.all.rmse_fixed_sigma?))
+    };
+    let ((before_lacks, before), (after_lacks, after)) = (error(before)?, error(after)?);
+    // Errors of models that refuse different runs do not compare.
+    (before_lacks == after_lacks).then_some([before, after])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::overview::overview;
+    use crate::story::Story;
+    use crate::{document, fixture, terminal};
+
+    const RIVAL: &str = "slip_softened_pressure (P 0.30) in place of slip_sinkage cannot be excluded";
+    const RUN: &str = "slip 0.60 under 80.0 N at 20.0 mm/s";
+
+    #[test]
+    fn a_member_of_a_class_keeps_its_rivals_and_the_run_that_decides_wherever_the_verdict_is_told() {
+        let study = fixture::of_a_class();
+        let story = Story::current(&study);
+        assert_eq!(story.calibration, 3);
+        let missing = &story.missing;
+        let added = &missing.already_added[0];
+        assert_eq!((added.probability, added.searched), (Some(0.68), Some(1)));
+        for words in [
+            "slip_sinkage (P 0.68) is added",
+            RIVAL,
+            RUN,
+            "beyond that, nothing",
+        ] {
+            assert!(missing.text.contains(words), "{words} in {}", missing.text);
+        }
+        let first = &story.next.steps[0];
+        assert_eq!(first.command.as_deref(), Some("add-runs 1 new-runs.csv"));
+        assert_eq!((first.runs.len(), first.calibration), (1, Some(1)));
+        assert!(first.text.contains(RUN), "{first:?}");
+        let verdict = overview(&study).verdict.unwrap();
+        assert_eq!(verdict.calibration, 3);
+        assert!(
+            verdict.text.contains(RIVAL) && verdict.text.contains(RUN),
+            "{verdict:?}"
+        );
+        let home = overview(&study).list_item(None).verdict.unwrap().open.unwrap();
+        assert!(home.starts_with(RIVAL) && home.contains(RUN), "{home}");
+        let printed = terminal::story(&story, std::path::Path::new("out/sand"), true);
+        let printed = printed.split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(printed.contains(RIVAL) && printed.contains(RUN), "{printed}");
+        assert!(document::document(&study).contains(RIVAL));
+    }
+
+    #[test]
+    fn a_rival_that_is_added_too_is_none_and_a_newer_search_that_names_one_settles_it() {
+        let mut study = fixture::of_a_class();
+        let mut named = study.rounds[0].clone();
+        named.record.verdict = record::Verdict::Named;
+        named.record.extension = Some(record::Extension::Effect("slip_sinkage".into()));
+        study.rounds.push(named);
+        let story = Story::current(&study);
+        assert!(story.missing.already_added[0].rivals.is_empty());
+        assert!(
+            story
+                .missing
+                .text
+                .starts_with("slip_sinkage was missing (P 0.68) and is added")
+        );
+        assert_eq!(overview(&study).verdict.unwrap().open, None);
+    }
+
+    #[test]
+    fn an_effect_on_the_nodes_that_a_search_named_was_not_added_by_hand() {
+        let study = fixture::on_the_nodes();
+        let extension = &study.extensions[0];
+        assert_eq!(study.parts(extension), ["janosi_hanamoto", "displacement_node"]);
+        let added = added(&study, extension);
+        assert_eq!(added.len(), 1, "{added:?}");
+        assert_eq!(
+            (added[0].name.as_str(), added[0].probability),
+            ("janosi_hanamoto_node", Some(0.96))
+        );
+        let text = Story::of(&study, extension).missing.text;
+        assert!(
+            text.starts_with("janosi_hanamoto_node was missing (P 0.96) and is added"),
+            "{text}"
+        );
+        assert!(!text.contains("by hand"), "{text}");
+        // Nor is it advised again.
+        let next = Story::of(&study, &study.lead).next;
+        assert!(next.steps.iter().all(|step| step.effect.is_none()), "{next:?}");
+    }
+
+    #[test]
+    fn what_an_effect_bought_on_held_out_runs_stands_beside_it() {
+        let mut study = fixture::of_a_class();
+        for prediction in &mut study.lead.predictions {
+            if let Some(Ok(held)) = prediction.holdout.as_mut().map(|own| &mut own.together) {
+                held.drawbar_pull_n.iter_mut().for_each(|pull| *pull += 5.0);
+            }
+        }
+        let [before, after] = added(&study, &study.extensions[0])[0].held_out_noise_sds.unwrap();
+        let error = |calibration: &FinishedCalibration| {
+            let table = calibration.comparison().holdout.clone().unwrap();
+            table
+                .in_fixed_sigmas(&study.fixed_sigmas())
+                .all
+                .rmse_fixed_sigma
+                .unwrap()
+        };
+        assert!(before > after);
+        assert!((before - error(&study.lead)).abs() < 1e-12);
+        assert!((after - error(&study.extensions[0])).abs() < 1e-12);
+        let words = format!("held-out error from {} to", number::significant(before, 2));
+        let text = Story::current(&study).missing.text;
+        assert!(text.contains(&words), "{text}");
+    }
+}

@@ -1,0 +1,112 @@
+//! The explanations of a search and its runs in words, and what a model has by an explanation.
+
+use record::{Discovery, JudgedEffect, NONE, NOT_IN_LIBRARY, NextRun, Verdict, parts_of_effect};
+
+use result::words::number;
+
+/// Least probability of an explanation that is worth its name.
+pub(super) const LEAST: f64 = 0.01;
+
+/// An explanation of a search.
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
+pub struct Alternative {
+    /// The effect, `EFFECT.WHEEL` on one wheel of several; or `none`, or `not_in_library`.
+    pub name: String,
+    /// Its probability.
+    pub probability: f64,
+}
+
+impl From<&JudgedEffect> for Alternative {
+    fn from(effect: &JudgedEffect) -> Self {
+        Alternative {
+            name: effect.name.clone(),
+            probability: effect.probability,
+        }
+    }
+}
+
+impl Alternative {
+    /// `slip_sinkage (P 0.68)`.
+    pub(super) fn words(&self) -> String {
+        let name = match self.name.as_str() {
+            NONE => "nothing",
+            NOT_IN_LIBRARY => "a law outside the library",
+            effect => effect,
+        };
+        format!("{name} ({})", p(self.probability))
+    }
+}
+
+/// `P 0.96`; never a certainty.
+pub(super) fn p(probability: f64) -> String {
+    match probability {
+        p if p > 0.999 => "P > 0.999".into(),
+        p if p < 0.001 => "P < 0.001".into(),
+        p if p > 0.99 => format!("P {p:.3}"),
+        p => format!("P {p:.2}"),
+    }
+}
+
+/// The effect and the wheel of `EFFECT.WHEEL`.
+pub(super) fn split(name: &str) -> (&str, Option<&str>) {
+    match name.split_once('.') {
+        Some((effect, wheel)) => (effect, Some(wheel)),
+        None => (name, None),
+    }
+}
+
+/// What a model has by an explanation, as the parts of a model are named.
+pub(super) fn parts(explanation: &str) -> Vec<String> {
+    parts_of_effect(split(explanation).0)
+}
+
+/// The members of the class that a search names; empty with another verdict.
+pub(super) fn class(record: &Discovery) -> impl Iterator<Item = &JudgedEffect> {
+    let class = record.effects.iter().find(|e| e.class != 0).map(|e| e.class);
+    let is_class = record.verdict == Verdict::Class;
+    let members = record.effects.iter();
+    members.filter(move |e| is_class && Some(e.class) == class && e.probability > LEAST)
+}
+
+/// What a search leaves open: with a class its members, where it is undecided the 95 % set; nothing where it names one.
+pub(super) fn open(record: &Discovery) -> Vec<&JudgedEffect> {
+    match record.verdict {
+        Verdict::Class => class(record).collect(),
+        Verdict::Undecided => {
+            let set = record.effects.iter().filter(|e| e.in_credible_set);
+            set.filter(|e| e.probability > LEAST).collect()
+        }
+        Verdict::Named | Verdict::NotInLibrary | Verdict::NothingDetectable => Vec::new(),
+    }
+}
+
+/// `slip 0.60 under 80.0 N at 20.0 mm/s`.
+pub(super) fn run_words(run: &NextRun) -> String {
+    format!(
+        "slip {:.2} under {} N at {} mm/s",
+        run.slip,
+        number::significant(run.wheel_load_n, 3),
+        number::significant(1000.0 * run.sled_speed_m_s, 3)
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_probability_is_a_certainty() {
+        assert_eq!(p(1.0), "P > 0.999");
+        assert_eq!(p(0.992), "P 0.992");
+        assert_eq!(p(0.641), "P 0.64");
+    }
+
+    #[test]
+    fn an_effect_on_the_nodes_is_an_effect_and_a_setting() {
+        assert_eq!(
+            parts("janosi_hanamoto_node"),
+            ["janosi_hanamoto", "displacement_node"]
+        );
+        assert_eq!(parts("slip_sinkage.left"), ["slip_sinkage"]);
+    }
+}

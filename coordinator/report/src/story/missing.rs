@@ -1,0 +1,320 @@
+//! What a model misses, and how sure that is.
+
+use job::effect_name;
+use record::{Discovery, Extension, NONE, NOT_IN_LIBRARY, Verdict, effect_of};
+
+use super::added::{AddedEffect, added};
+use super::explanation::{Alternative, LEAST, class, p, split};
+use result::finished_calibration::FinishedCalibration;
+use result::study::Study;
+use result::words::number;
+
+/// Most alternatives.
+const ALTERNATIVES: usize = 3;
+/// Most names of effects that were not judged.
+const NOT_JUDGED: usize = 3;
+
+/// The answer of the search of a model.
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
+pub struct Missing {
+    /// The verdict; null where the model was not searched.
+    pub verdict: Option<Verdict>,
+    /// What the verdict names: one effect, or the members of a class.
+    pub named: Vec<NamedEffect>,
+    /// Probability of what is named, together; that nothing is missing where nothing is; of the leading explanation where it is
+    /// undecided.
+    pub probability: Option<f64>,
+    /// Other explanations, at most three: what the verdict does not name, where it is undecided what is outside its 95 % set.
+    pub alternatives: Vec<Alternative>,
+    /// Effects that need what the experiment does not state, without those that the verdict or the alternatives name.
+    pub not_tried: Vec<String>,
+    /// Effects that the study added to the model.
+    pub already_added: Vec<AddedEffect>,
+    /// The same in a sentence.
+    pub text: String,
+}
+
+/// An effect that a search names.
+#[derive(Debug, Clone, PartialEq, Eq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
+pub struct NamedEffect {
+    /// Its name.
+    pub name: String,
+    /// The wheel that alone has it; null where all have.
+    pub wheel: Option<String>,
+}
+
+/// The search of a calibration's model; of several the last.
+pub(super) fn search_of<'a>(study: &'a Study, calibration: &FinishedCalibration) -> Option<&'a Discovery> {
+    let mut rounds = study.rounds.iter().rev();
+    let of_it = rounds.find(|round| round.calibration == calibration.row.id)?;
+    Some(&of_it.record)
+}
+
+impl Missing {
+    pub(super) fn of(study: &Study, calibration: &FinishedCalibration) -> Missing {
+        let already_added = added(study, calibration);
+        let mut text: Vec<String> = already_added.iter().map(AddedEffect::words).collect();
+        let Some(record) = search_of(study, calibration) else {
+            text.push("this model was not searched".into());
+            return Missing {
+                verdict: None,
+                named: Vec::new(),
+                probability: None,
+                alternatives: Vec::new(),
+                not_tried: Vec::new(),
+                already_added,
+                text: text.join("; "),
+            };
+        };
+        let named = named(record);
+        let probability = probability(record, &named);
+        let alternatives = alternatives(record, &named);
+        let not_tried = not_tried(record, &named, &alternatives);
+        text.push(finding(record, probability, !already_added.is_empty()));
+        text.extend(less_probable(record, &alternatives));
+        text.extend(not_judged(record, &not_tried));
+        Missing {
+            verdict: Some(record.verdict),
+            named,
+            probability,
+            alternatives,
+            not_tried,
+            already_added,
+            text: text.join("; "),
+        }
+    }
+}
+
+/// The probability of the verdict.
+fn probability(record: &Discovery, named: &[NamedEffect]) -> Option<f64> {
+    let effects = record.effects.iter();
+    let of = |name: &str| {
+        let mut effects = record.effects.iter();
+        effects.find(|e| e.name == name).map(|e| e.probability)
+    };
+    match record.verdict {
+        Verdict::NothingDetectable => of(NONE),
+        Verdict::NotInLibrary => of(NOT_IN_LIBRARY),
+        Verdict::Undecided => Some(effects.fold(0.0, |most, e| f64::max(most, e.probability))),
+        Verdict::Named | Verdict::Class => {
+            let of_named = effects.filter(|e| named.iter().any(|own| label(own) == e.name));
+            Some(of_named.map(|e| e.probability).sum())
+        }
+    }
+}
+
+/// The explanations that the verdict does not say itself, by falling probability.
+fn alternatives(record: &Discovery, named: &[NamedEffect]) -> Vec<Alternative> {
+    let leader = record.effects.iter().map(|e| e.probability).fold(0.0, f64::max);
+    let is_said = |name: &str| match record.verdict {
+        Verdict::NothingDetectable => name == NONE,
+        Verdict::NotInLibrary => name == NOT_IN_LIBRARY,
+        Verdict::Named | Verdict::Class => named.iter().any(|own| label(own) == name),
+        Verdict::Undecided => false,
+    };
+    let others = record.effects.iter().filter(|effect| {
+        let is_open = record.verdict == Verdict::Undecided && effect.in_credible_set;
+        effect.probability > LEAST && effect.probability < leader && !is_open && !is_said(&effect.name)
+    });
+    others.take(ALTERNATIVES).map(Alternative::from).collect()
+}
+
+/// The alternatives in words; where nothing is missing they are no news.
+fn less_probable(record: &Discovery, alternatives: &[Alternative]) -> Option<String> {
+    if record.verdict == Verdict::NothingDetectable || alternatives.is_empty() {
+        return None;
+    }
+    let words: Vec<String> = alternatives.iter().map(Alternative::words).collect();
+    Some(format!("less probable: {}", words.join(", ")))
+}
+
+/// The verdict in words.
+fn finding(record: &Discovery, probability: Option<f64>, is_extended: bool) -> String {
+    match record.verdict {
+        Verdict::NothingDetectable => format!(
+            "{} that these data can show ({} that nothing is missing)",
+            if is_extended {
+                "beyond that, nothing"
+            } else {
+                "nothing"
+            },
+            number::or_none(probability, p)
+        ),
+        _ => record.text.trim_end_matches('.').to_owned(),
+    }
+}
+
+/// What the search could not judge: the names of a few, the number of more.
+fn not_judged(record: &Discovery, not_tried: &[String]) -> Vec<String> {
+    let mut text = Vec::new();
+    if !not_tried.is_empty() {
+        let names = match not_tried.len() > NOT_JUDGED {
+            true => number::count(not_tried.len(), "effect"),
+            false => not_tried.join(", "),
+        };
+        text.push(format!("not judged for want of data on the rig: {names}"));
+    }
+    let outside = record.not_tried.iter().filter(|effect| !effect.lacks_data());
+    let outside = outside.count();
+    if outside > 0 {
+        text.push(format!(
+            "not judged: {}, of whose cause this model shows nothing",
+            number::count(outside, "effect")
+        ));
+    }
+    text
+}
+
+fn named(record: &Discovery) -> Vec<NamedEffect> {
+    match (record.verdict, &record.extension) {
+        (Verdict::Named, Some(Extension::OnWheel { effect, wheel })) => vec![NamedEffect {
+            name: effect.clone(),
+            wheel: Some(wheel.clone()),
+        }],
+        (Verdict::Named, Some(extension)) => vec![NamedEffect {
+            name: effect_of(extension),
+            wheel: None,
+        }],
+        (Verdict::Class, _) => {
+            let member = |name: &str| {
+                let (effect, wheel) = split(name);
+                NamedEffect {
+                    name: effect.into(),
+                    wheel: wheel.map(str::to_owned),
+                }
+            };
+            class(record).map(|e| member(&e.name)).collect()
+        }
+        (Verdict::NotInLibrary, _) => {
+            let file = record
+                .outside
+                .as_ref()
+                .and_then(|law| effect_name(&law.effect_file));
+            file.map(|name| NamedEffect { name, wheel: None })
+                .into_iter()
+                .collect()
+        }
+        _ => Vec::new(),
+    }
+}
+
+fn label(effect: &NamedEffect) -> String {
+    match &effect.wheel {
+        Some(wheel) => format!("{}.{wheel}", effect.name),
+        None => effect.name.clone(),
+    }
+}
+
+/// The effects that were not tried, without the wheels, and without those that the verdict speaks of: these were weighed.
+fn not_tried(record: &Discovery, named: &[NamedEffect], alternatives: &[Alternative]) -> Vec<String> {
+    let is_said = |name: &str| {
+        let mut of_set = record.effects.iter().filter(|e| e.in_credible_set);
+        match record.verdict {
+            Verdict::NothingDetectable => false,
+            Verdict::Undecided if of_set.any(|e| split(&e.name).0 == name) => true,
+            _ => {
+                let mut others = alternatives.iter().map(|own| split(&own.name).0);
+                named.iter().any(|own| own.name == name) || others.any(|own| own == name)
+            }
+        }
+    };
+    let mut names: Vec<String> = Vec::new();
+    for effect in record.not_tried.iter().filter(|effect| effect.lacks_data()) {
+        let (name, _) = split(&effect.name);
+        if !names.iter().any(|own| own == name) && !is_said(name) {
+            names.push(name.to_owned());
+        }
+    }
+    names
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fixture;
+    use result::discovery::DiscoveryRound;
+
+    #[test]
+    fn a_model_without_a_search_says_so() {
+        let study = fixture::study();
+        let missing = Missing::of(&study, &study.lead);
+        assert_eq!((missing.verdict, missing.probability), (None, None));
+        assert_eq!(missing.text, "this model was not searched");
+    }
+
+    #[test]
+    fn a_named_effect_has_its_probability_and_its_alternatives() {
+        let study = fixture::grown();
+        let missing = Missing::of(&study, &study.lead);
+        assert_eq!(missing.verdict, Some(Verdict::Named));
+        assert_eq!(missing.named[0].name, "slip_sinkage");
+        assert_eq!(missing.probability, Some(0.96));
+        assert_eq!(missing.alternatives.len(), 1, "{missing:?}");
+        assert!(
+            missing.text.contains("less probable: bulldozing (P 0.03)"),
+            "{}",
+            missing.text
+        );
+    }
+
+    #[test]
+    fn what_the_sentence_has_said_is_not_said_again_as_less_probable() {
+        let mut study = fixture::grown();
+        let record = &mut study.rounds[0].record;
+        record.verdict = Verdict::Undecided;
+        record.text = "something is missing, and these data do not decide what: the 95 % set is slip_sinkage (0.60), bulldozing (0.36)".into();
+        for (effect, (probability, is_open)) in
+            record
+                .effects
+                .iter_mut()
+                .zip([(0.60, true), (0.36, true), (0.03, false), (0.01, false)])
+        {
+            (effect.probability, effect.in_credible_set) = (probability, is_open);
+        }
+        record.not_tried = ["bulldozing", "end_wall"]
+            .map(|name| record::NotTried {
+                name: name.into(),
+                why: "the density is not stated".into(),
+                needs: "density_kg_m3".into(),
+            })
+            .into();
+        let missing = Missing::of(&study, &study.lead);
+        let names: Vec<&str> = missing.alternatives.iter().map(|a| a.name.as_str()).collect();
+        assert_eq!(names, [NOT_IN_LIBRARY], "{missing:?}");
+        assert!(
+            missing
+                .text
+                .contains("; less probable: a law outside the library (P 0.03); "),
+            "{}",
+            missing.text
+        );
+        // What is in the set was judged.
+        assert_eq!(missing.not_tried, ["end_wall"]);
+        let class = fixture::of_a_class();
+        let class = Missing::of(&class, &class.lead);
+        let names: Vec<&str> = class.alternatives.iter().map(|a| a.name.as_str()).collect();
+        assert_eq!(names, ["bulldozing"]);
+    }
+
+    #[test]
+    fn a_model_that_is_searched_again_says_what_is_left() {
+        let mut study = fixture::grown();
+        let record = Discovery {
+            verdict: Verdict::NothingDetectable,
+            extension: None,
+            ..study.rounds[0].record.clone()
+        };
+        study.rounds.push(DiscoveryRound {
+            calibration: 3,
+            record,
+        });
+        let missing = Missing::of(&study, &study.extensions[0]);
+        assert_eq!(missing.verdict, Some(Verdict::NothingDetectable));
+        assert!(
+            missing.named.is_empty() && missing.text.contains("that nothing is missing"),
+            "{missing:?}"
+        );
+        // The first search still speaks of the first model.
+        assert_eq!(Missing::of(&study, &study.lead).verdict, Some(Verdict::Named));
+    }
+}

@@ -1,0 +1,483 @@
+//! What to do next, with the command of each step.
+
+use std::collections::BTreeSet;
+
+use record::{Discovery, Extension, NextRun, Verdict, effect_of, parts_of};
+
+use super::added::AddedEffect;
+use super::explanation::run_words;
+use crate::story::missing::search_of;
+use result::discovery::effect_file;
+use result::finished_calibration::FinishedCalibration;
+use result::study::Study;
+use result::words::number;
+
+/// File of the draws in the command that writes them.
+const POSTERIOR: &str = "posterior.csv";
+
+/// The steps, the first one first; at least one.
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
+pub struct Next {
+    /// The steps.
+    pub steps: Vec<NextStep>,
+    /// The first step in a sentence.
+    pub text: String,
+}
+
+/// A step.
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
+pub struct NextStep {
+    /// Its kind.
+    pub kind: StepKind,
+    /// What to do, in a sentence.
+    pub text: String,
+    /// Verb and arguments of the program `coordinator`, without the place of the study; null of what no command does.
+    pub command: Option<String>,
+    /// The effect to add, or that its runs would tell apart.
+    pub effect: Option<String>,
+    /// The wheel that alone has it.
+    pub wheel: Option<String>,
+    /// The effect file to add.
+    pub effect_file: Option<EffectFile>,
+    /// The runs to make.
+    pub runs: Vec<NextRun>,
+    /// The calibration that the runs are added to; null of a step without runs.
+    pub calibration: Option<i64>,
+}
+
+/// Kind of a step.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum StepKind {
+    /// Add an effect of the catalogue.
+    AddEffect,
+    /// Add the effect of a file.
+    AddEffectFile,
+    /// Search for a missing effect.
+    Discover,
+    /// Widen a prior of the job.
+    WidenPrior,
+    /// Make test runs.
+    MakeRuns,
+    /// Make a test without a rolling wheel, or runs in conditions that no run had.
+    MeasureOther,
+    /// State in the experiment what it lacks.
+    StateInExperiment,
+    /// Use the posterior.
+    Predict,
+}
+
+/// An effect file.
+#[derive(Debug, Clone, PartialEq, Eq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
+pub struct EffectFile {
+    /// Its name.
+    pub name: String,
+    /// Its text.
+    pub text: String,
+}
+
+impl NextStep {
+    fn new(kind: StepKind, text: impl Into<String>, command: Option<String>) -> Self {
+        NextStep {
+            kind,
+            text: text.into(),
+            command,
+            effect: None,
+            wheel: None,
+            effect_file: None,
+            runs: Vec::new(),
+            calibration: None,
+        }
+    }
+}
+
+/// What the steps follow from, beside the search.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Known<'a> {
+    /// Whether noise alone explains the errors of every channel.
+    pub(super) is_within_noise: bool,
+    /// What the study added to the model.
+    pub(super) added: &'a [AddedEffect],
+}
+
+impl Next {
+    pub(super) fn of(study: &Study, calibration: &FinishedCalibration, known: Known<'_>) -> Next {
+        let steps = steps(study, calibration, known);
+        let text = steps.first().map_or_else(String::new, |step| step.text.clone());
+        Next { steps, text }
+    }
+}
+
+fn steps(study: &Study, calibration: &FinishedCalibration, known: Known<'_>) -> Vec<NextStep> {
+    let id = calibration.row.id;
+    if let Some(current) = study.current().filter(|current| current.row.id != id) {
+        let text = format!(
+            "go on with calibration {} ({}), the current model of the study",
+            current.row.id, current.experiment
+        );
+        let command = format!("report {}", current.row.id);
+        return vec![NextStep::new(StepKind::Predict, text, Some(command))];
+    }
+    let predict = |text: &str| {
+        let command = format!("export {id} --output {POSTERIOR}");
+        NextStep::new(StepKind::Predict, text, Some(command))
+    };
+    let deciding = known.added.iter().filter_map(deciding);
+    let Some(record) = search_of(study, calibration) else {
+        let text = "search the library for the effect that the model is missing";
+        let mut steps = vec![NextStep::new(
+            StepKind::Discover,
+            text,
+            Some(format!("discover {id}")),
+        )];
+        if known.is_within_noise {
+            steps.push(predict(
+                "predict with the posterior: its errors are within the noise",
+            ));
+        }
+        steps.extend(deciding);
+        return steps;
+    };
+    let add = record
+        .extension
+        .as_ref()
+        .filter(|extension| !is_made(study, calibration, &parts_of(extension)))
+        .map(|extension| addition(id, record, extension));
+    let runs = (!record.next_runs.is_empty()).then(|| runs(id, &record.next_runs));
+    let widen = record.implausible.as_ref().map(|own| {
+        let text = format!(
+            "widen the prior of {} in the job (one from a posterior by a larger transfer), and calibrate and search again",
+            own.name
+        );
+        NextStep::new(StepKind::WidenPrior, text, None)
+    });
+    let mut steps: Vec<NextStep> = match record.verdict {
+        // Runs decide before a guess is added.
+        Verdict::Undecided => widen
+            .into_iter()
+            .chain(noise(record))
+            .chain(runs)
+            .chain(add)
+            .collect(),
+        _ => add.into_iter().chain(runs).collect(),
+    };
+    if steps.is_empty() && known.is_within_noise {
+        steps.push(predict(
+            "predict with the posterior: the model explains the runs to within the noise",
+        ));
+    }
+    // Which of several effects it is matters more than anything that the model with one of them leaves open.
+    steps.splice(0..0, deciding);
+    let tests = record.other_tests.iter();
+    steps.extend(tests.map(|test| NextStep::new(StepKind::MeasureOther, format!("measure {test}"), None)));
+    let lacking = record.not_tried.iter().filter(|effect| effect.lacks_data());
+    let needs: BTreeSet<(&str, bool)> = lacking
+        .map(|effect| (effect.needs.as_str(), effect.lacks_runs()))
+        .collect();
+    steps.extend(needs.into_iter().map(|(needs, are_runs)| {
+        let own = record.not_tried.iter().filter(|effect| effect.needs == needs);
+        let mut names: Vec<String> = own.map(|effect| effect.name.clone()).collect();
+        names.dedup();
+        let names = number::list(&names);
+        match are_runs {
+            true => NextStep::new(
+                StepKind::MeasureOther,
+                format!("measure {needs}, so that {names} can be judged"),
+                None,
+            ),
+            false => NextStep::new(
+                StepKind::StateInExperiment,
+                format!("state {needs} in the experiment, so that {names} can be judged"),
+                None,
+            ),
+        }
+    }));
+    if steps.is_empty() {
+        steps.push(predict(
+            "predict with the posterior, within the errors above: these data show no more",
+        ));
+    }
+    steps
+}
+
+/// What makes a claim possible where the noise is inferred from too little; `None` where it is not.
+fn noise(record: &Discovery) -> Option<NextStep> {
+    let channels = record.unsupported_noise.iter();
+    let channels: Vec<String> = channels
+        .map(|name| name.trim_start_matches("noise.").to_owned())
+        .collect();
+    (!channels.is_empty()).then(|| {
+        let text = format!(
+            "state the sd of {} under [noise] in the experiment, or repeat at least three runs, and calibrate and search again",
+            number::list(&channels)
+        );
+        NextStep::new(StepKind::StateInExperiment, text, None)
+    })
+}
+
+/// Whether the study has a calibration of the same measurements with all that this one has, and these parts.
+fn is_made(study: &Study, calibration: &FinishedCalibration, added: &[String]) -> bool {
+    let parts = [study.parts(calibration).as_slice(), added].concat();
+    let same = study
+        .line()
+        .filter(|other| other.row.experiment == calibration.row.experiment);
+    let mut others = same.map(|other| study.parts(other));
+    others.any(|other| parts.iter().all(|part| other.contains(part)))
+}
+
+/// The run that tells an added effect from what the data do not exclude in its place. It is added to the model without the effect,
+/// which is then searched again with it.
+fn deciding(added: &AddedEffect) -> Option<NextStep> {
+    let (run, searched) = (added.deciding_run.clone()?, added.searched?);
+    let rivals = added.rivals.iter().map(|rival| rival.name.clone());
+    let names: Vec<String> = std::iter::once(added.name.clone()).chain(rivals).collect();
+    let text = format!(
+        "run the wheel at {}, which tells {} apart, and add the row to calibration {searched}, which is then searched again",
+        run_words(&run),
+        number::list(&names)
+    );
+    Some(NextStep {
+        runs: vec![run],
+        calibration: Some(searched),
+        ..NextStep::new(
+            StepKind::MakeRuns,
+            text,
+            Some(format!("add-runs {searched} new-runs.csv")),
+        )
+    })
+}
+
+fn addition(id: i64, record: &Discovery, extension: &Extension) -> NextStep {
+    let effect = effect_of(extension);
+    let hedge = match record.verdict {
+        Verdict::Undecided => "try",
+        _ => "add",
+    };
+    match extension {
+        Extension::Effect(_) => {
+            let text = format!("{hedge} {effect} and calibrate again");
+            let command = format!("extend {id} --effect {effect}");
+            NextStep {
+                effect: Some(effect),
+                ..NextStep::new(StepKind::AddEffect, text, Some(command))
+            }
+        }
+        Extension::OnWheel { wheel, .. } => {
+            let text = format!("{hedge} {effect} on wheel {wheel} and calibrate again");
+            let command = format!("extend {id} --effect {effect} --wheel {wheel}");
+            NextStep {
+                effect: Some(effect),
+                wheel: Some(wheel.clone()),
+                ..NextStep::new(StepKind::AddEffect, text, Some(command))
+            }
+        }
+        Extension::File { name, text } => {
+            let (name, text) = effect_file(record).unwrap_or_else(|| (name.clone(), text.clone()));
+            let words = format!("{hedge} the law that was found, {effect}, and calibrate again");
+            let command = format!("extend {id} --effect-file {name}");
+            NextStep {
+                effect: Some(effect),
+                effect_file: Some(EffectFile { name, text }),
+                ..NextStep::new(StepKind::AddEffectFile, words, Some(command))
+            }
+        }
+    }
+}
+
+fn runs(id: i64, runs: &[NextRun]) -> NextStep {
+    let mut separates: Vec<String> = runs.iter().flat_map(|run| run.separates.clone()).collect();
+    separates.sort();
+    separates.dedup();
+    let words: Vec<String> = runs.iter().map(run_words).collect();
+    let text = format!(
+        "run the wheel at {}, which tells {} apart, and add the rows",
+        words.join(", then "),
+        number::list(&separates)
+    );
+    NextStep {
+        runs: runs.to_vec(),
+        calibration: Some(id),
+        ..NextStep::new(
+            StepKind::MakeRuns,
+            text,
+            Some(format!("add-runs {id} new-runs.csv")),
+        )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use record::{ImplausibleParameter, NotTried};
+
+    use super::*;
+    use crate::fixture;
+
+    /// Errors beyond the noise, or within it.
+    fn open() -> Known<'static> {
+        Known {
+            is_within_noise: false,
+            added: &[],
+        }
+    }
+
+    fn closed() -> Known<'static> {
+        Known {
+            is_within_noise: true,
+            ..open()
+        }
+    }
+
+    fn kinds(next: &Next) -> Vec<StepKind> {
+        next.steps.iter().map(|step| step.kind).collect()
+    }
+
+    /// A searched study without the extension.
+    fn searched() -> Study {
+        let mut study = fixture::grown();
+        study.extensions.clear();
+        study
+    }
+
+    #[test]
+    fn what_was_not_searched_is_searched_next() {
+        let study = fixture::study();
+        let next = Next::of(&study, &study.lead, open());
+        assert_eq!(kinds(&next), [StepKind::Discover]);
+        assert_eq!(next.steps[0].command.as_deref(), Some("discover 1"));
+        assert_eq!(
+            kinds(&Next::of(&study, &study.lead, closed()))[1],
+            StepKind::Predict
+        );
+    }
+
+    #[test]
+    fn a_named_effect_is_added_before_runs_are_made_and_an_open_one_after() {
+        let mut study = searched();
+        let next = Next::of(&study, &study.lead, open());
+        assert_eq!(
+            kinds(&next),
+            [StepKind::AddEffect, StepKind::MakeRuns, StepKind::MeasureOther]
+        );
+        assert_eq!(
+            next.steps[0].command.as_deref(),
+            Some("extend 1 --effect slip_sinkage")
+        );
+        assert!(
+            next.steps[1].text.contains("slip 0.60 under 80.0 N at 20.0 mm/s"),
+            "{next:?}"
+        );
+        study.rounds[0].record.verdict = Verdict::Undecided;
+        let open = Next::of(&study, &study.lead, open());
+        assert_eq!(kinds(&open)[..2], [StepKind::MakeRuns, StepKind::AddEffect]);
+    }
+
+    #[test]
+    fn a_contradicted_prior_is_widened_before_runs_are_made() {
+        let mut study = searched();
+        let record = &mut study.rounds[0].record;
+        record.verdict = Verdict::Undecided;
+        record.extension = None;
+        record.implausible = Some(ImplausibleParameter {
+            name: "n".into(),
+            prior_sds: -7.1,
+        });
+        let next = Next::of(&study, &study.lead, open());
+        assert_eq!(kinds(&next)[..2], [StepKind::WidenPrior, StepKind::MakeRuns]);
+        assert!(next.text.starts_with("widen the prior of n"), "{}", next.text);
+    }
+
+    #[test]
+    fn an_inferred_noise_that_supports_no_claim_is_stated_before_runs_are_made() {
+        let mut study = searched();
+        let record = &mut study.rounds[0].record;
+        record.verdict = Verdict::Undecided;
+        record.extension = None;
+        record.unsupported_noise = vec!["noise.torque_n_m".into(), "noise.sinkage_m".into()];
+        let next = Next::of(&study, &study.lead, open());
+        assert_eq!(
+            kinds(&next)[..2],
+            [StepKind::StateInExperiment, StepKind::MakeRuns]
+        );
+        assert!(
+            next.text
+                .starts_with("state the sd of torque_n_m and sinkage_m under [noise]"),
+            "{}",
+            next.text
+        );
+    }
+
+    #[test]
+    fn an_extension_that_the_study_has_made_is_not_advised_again() {
+        let mut study = fixture::grown();
+        let advises =
+            |study: &Study| kinds(&Next::of(study, &study.lead, open())).contains(&StepKind::AddEffect);
+        study.rounds[0].record.extension = Some(Extension::Effect("cohesion_pa".into()));
+        assert!(advises(&study));
+        study.extensions[0].spec.parameters[0].name = "cohesion_pa".into();
+        assert_eq!(study.parts(&study.extensions[0]), ["cohesion_pa"]);
+        assert!(!advises(&study));
+        // With runs more it is another question.
+        study.lead.row.experiment += 1;
+        assert!(advises(&study));
+    }
+
+    #[test]
+    fn a_superseded_model_sends_to_the_current_one() {
+        let mut study = fixture::grown();
+        study.extensions[0].row.log_evidence = Some(10.0);
+        let next = Next::of(&study, &study.lead, open());
+        assert_eq!(kinds(&next), [StepKind::Predict]);
+        assert_eq!(next.steps[0].command.as_deref(), Some("report 3"));
+    }
+
+    #[test]
+    fn a_law_that_was_found_is_added_by_its_file() {
+        let mut study = searched();
+        study.rounds[0].record.extension = Some(Extension::File {
+            name: "anything.toml".into(),
+            text: "name = \"shear_slip_step\"\n".into(),
+        });
+        let next = Next::of(&study, &study.lead, open());
+        assert_eq!(next.steps[0].kind, StepKind::AddEffectFile);
+        let file = next.steps[0].effect_file.as_ref().unwrap();
+        assert_eq!(file.name, "shear_slip_step.toml");
+    }
+
+    #[test]
+    fn where_nothing_is_left_the_model_predicts_and_what_is_not_stated_is_asked_for() {
+        let mut study = searched();
+        let record = &mut study.rounds[0].record;
+        record.verdict = Verdict::NothingDetectable;
+        record.extension = None;
+        record.next_runs.clear();
+        record.other_tests.clear();
+        record.not_tried = vec![NotTried {
+            name: "end_wall".into(),
+            why: "the length of the bin is not stated".into(),
+            needs: "bin_length_m under [rig]".into(),
+        }];
+        let next = Next::of(&study, &study.lead, closed());
+        assert_eq!(kinds(&next), [StepKind::Predict, StepKind::StateInExperiment]);
+        assert!(next.steps[1].text.contains("bin_length_m under [rig]"));
+    }
+
+    #[test]
+    fn runs_that_an_effect_needs_are_measured_and_not_stated() {
+        let mut study = searched();
+        let record = &mut study.rounds[0].record;
+        record.not_tried = vec![NotTried {
+            name: "side_drag".into(),
+            why: "it changes nothing at the slips and slip angles of the fitted runs".into(),
+            needs: "runs at a slip angle".into(),
+        }];
+        let next = Next::of(&study, &study.lead, closed());
+        let step = next.steps.last().unwrap();
+        assert_eq!(
+            (step.kind, step.text.as_str()),
+            (
+                StepKind::MeasureOther,
+                "measure runs at a slip angle, so that side_drag can be judged"
+            )
+        );
+    }
+}

@@ -1,0 +1,7 @@
+//! `summary.json`.
+//!
+//! # Layout
+//! - `study`: the whole file. `calibration`: a line of the error ledger.
+
+pub mod calibration;
+pub mod study;

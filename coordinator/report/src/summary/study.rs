@@ -1,0 +1,162 @@
+//! `summary.json`: the contract's summary of a study.
+
+use std::collections::BTreeMap;
+
+use shared::experiment::Campaign;
+
+use super::calibration::CalibrationSummary;
+use crate::flag::study::flags;
+use crate::summary::calibration::calibration_summary;
+use result::discovery::DiscoverySummary;
+use result::error_summary::CombinedSummary;
+use result::finished_calibration::FinishedCalibration;
+use result::flag::Flag;
+use result::model_comparison::ModelComparison;
+use result::point_estimate::PointEstimate;
+use result::study::Study;
+use result::table::fixed_sigma::{FixedSigma, FixedSigmas};
+
+/// The summary of a study; what does not apply is null.
+#[derive(Debug, Clone, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
+pub struct StudySummary {
+    /// Name of the experiment.
+    pub experiment: String,
+    /// Where the measurements come from; null where the experiment does not say it.
+    pub campaign: Option<Campaign>,
+    /// Seed of the job.
+    pub seed: u64,
+    /// Version of the equations and the effects.
+    pub model_version: String,
+    /// Kind of the model; of several that are compared, the most probable.
+    pub model_kind: String,
+    /// State of the study.
+    pub status: String,
+    /// The error ledger: base first, then each extension. Empty for a search by generations, and for a fit without draws.
+    pub calibrations: Vec<CalibrationSummary>,
+    /// What the ledger's models predict together; null where nothing is corrected.
+    pub combined: Option<CombinedSummary>,
+    /// The noise sd of each channel that `rmse_fixed_sigma` is in, by name.
+    pub fixed_sigma: BTreeMap<String, FixedSigma>,
+    /// Deterministic fits.
+    pub point_estimates: Vec<PointEstimate>,
+    /// The models that the job compares; null where it has one, and until all are finished.
+    pub models: Option<ModelComparison>,
+    /// The flags.
+    pub flags: Vec<Flag>,
+    /// Missing effects; null where no search is finished.
+    pub discovery: Option<DiscoverySummary>,
+}
+
+/// Effects that the first calibration did not have, of the line of the ledger with the most evidence on the newest data.
+fn added(study: &Study) -> Vec<String> {
+    let had = study.lead.effects();
+    study
+        .current()
+        .map(|best| study.parts(best))
+        .unwrap_or_default()
+        .into_iter()
+        .filter(|effect| !had.contains(effect))
+        .collect()
+}
+
+/// The lines of the error ledger.
+pub(crate) fn ledger_summaries(study: &Study, sigmas: &FixedSigmas) -> Vec<CalibrationSummary> {
+    let mut experiments: Vec<i64> = Vec::new();
+    for line in study.ledger() {
+        if !experiments.contains(&line.row.experiment) {
+            experiments.push(line.row.experiment);
+        }
+    }
+    let number = |id: i64| experiments.iter().position(|&other| other == id);
+    let line = |calibration: &FinishedCalibration| {
+        let line = calibration_summary(calibration)?;
+        let effects = study.parts(calibration);
+        Some(CalibrationSummary {
+            effects,
+            data_set: 1 + number(calibration.row.experiment).unwrap_or_default(),
+            ..line.in_fixed_sigmas(sigmas)
+        })
+    };
+    study.ledger().filter_map(line).collect()
+}
+
+/// The point estimates of every model.
+pub(crate) fn point_estimate_summaries(study: &Study, sigmas: &FixedSigmas) -> Vec<PointEstimate> {
+    study
+        .line()
+        .filter_map(|calibration| Some(calibration.point_estimate()?.in_fixed_sigmas(sigmas)))
+        .collect()
+}
+
+/// What the models of the ledger predict together; `None` where nothing is corrected.
+pub(crate) fn combined_summary(study: &Study, sigmas: &FixedSigmas) -> Option<CombinedSummary> {
+    CombinedSummary::of(study.combined(), sigmas)
+}
+
+/// `summary.json`.
+pub fn summary(study: &Study) -> StudySummary {
+    let lead = &study.lead;
+    let sigmas = study.fixed_sigmas();
+    StudySummary {
+        experiment: lead.experiment.clone(),
+        campaign: lead.spec.experiment.campaign.clone(),
+        seed: lead.spec.algorithm.seed(),
+        model_version: lead.row.model_version.clone().unwrap_or_default(),
+        model_kind: lead.spec.model.kind.name().to_owned(),
+        status: study.state.name().to_owned(),
+        calibrations: ledger_summaries(study, &sigmas),
+        point_estimates: point_estimate_summaries(study, &sigmas),
+        combined: combined_summary(study, &sigmas),
+        fixed_sigma: sigmas.by_name(),
+        models: study.model_comparison(),
+        flags: flags(study),
+        discovery: DiscoverySummary::of(&study.rounds, added(study)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fixture;
+
+    #[test]
+    fn a_line_of_the_ledger_says_over_which_runs_it_is() {
+        let mut study = fixture::grown();
+        study.extensions[0] = fixture::with_held_out_runs(5, 0.5);
+        study.extensions[0].row.experiment += 1;
+        let lines = summary(&study).calibrations;
+        let runs: Vec<_> = lines
+            .iter()
+            .map(|line| (line.data_set, line.fitted_runs, line.held_out_runs))
+            .collect();
+        assert_eq!(runs, [(1, 3, 1), (2, 4, 5)]);
+    }
+
+    #[test]
+    fn a_sample_is_in_the_ledger_and_a_search_among_the_point_estimates() {
+        let summary = summary(&fixture::study());
+        let algorithms: Vec<&str> = summary.calibrations.iter().map(|c| c.algorithm.name()).collect();
+        assert_eq!(algorithms, ["tmcmc"]);
+        let estimates: Vec<&str> = summary
+            .point_estimates
+            .iter()
+            .map(|e| e.algorithm.name())
+            .collect();
+        assert_eq!(estimates, ["ga"]);
+        let of_search = summary.flags.iter().filter(|f| f.text.starts_with("ga: "));
+        assert!(of_search.count() > 0, "{:?}", summary.flags);
+    }
+
+    #[test]
+    fn every_compared_model_has_its_files_and_stands_in_the_summary() {
+        let mut other = fixture::calibration();
+        (other.row.id, other.row.log_evidence) = (2, Some(-12.0));
+        let study = Study {
+            models: 2,
+            others: vec![other],
+            ..fixture::calibration().into()
+        };
+        assert!(crate::study_file::file(&study, crate::StudyFile::Comparison(2)).is_some());
+        assert_eq!(summary(&study).models, study.model_comparison());
+    }
+}

@@ -1,0 +1,87 @@
+//! A study in a few lines: what casts doubt on it, the models that it compares, its error ledger.
+
+use super::calibration::headline;
+use super::campaign::digitised;
+use super::ledger::brief_ledger;
+use super::models::models;
+use crate::diagnosis::diagnostics;
+use crate::flag::study::missed_modes;
+use result::flag::FlagKind;
+use result::study::Study;
+
+/// Cautions, the models that the job compares, the error ledger, and a line for each calibration that has none in it.
+pub fn brief(study: &Study) -> String {
+    let is_in_ledger = |id: i64| study.ledger().any(|line| line.row.id == id);
+    let beside = study.line().filter(|own| !is_in_ledger(own.row.id));
+    let mut text: String = beside.map(|own| headline(own) + "\n").collect();
+    text += &cautions(study);
+    text += &models(study);
+    text + &brief_ledger(study)
+}
+
+/// Where the measurements were read off figures, and why the numbers themselves may be wrong: of the study and of its current model.
+pub(super) fn cautions(study: &Study) -> String {
+    let campaign = study.lead.spec.experiment.campaign.as_ref();
+    let digitised = campaign.map_or_else(String::new, digitised);
+    let current = study.current().unwrap_or(&study.lead);
+    let flags = diagnostics(current, current.comparison()).flags;
+    let of_numbers = flags
+        .into_iter()
+        .filter(|flag| matches!(flag.kind, FlagKind::NotEquilibrated | FlagKind::Worker));
+    let doubts = missed_modes(study).into_iter().chain(of_numbers);
+    let doubts = doubts.map(|flag| format!("caution: {}\n", flag.text));
+    digitised + &doubts.collect::<String>()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{fixture, terminal};
+
+    #[test]
+    fn a_study_is_its_ledger_without_the_cost_of_its_calibrations_and_without_tables() {
+        let text = brief(&fixture::grown());
+        let ledger = text.find("root mean sq. error").expect("a ledger");
+        for (words, is_there) in [
+            ("base ", true),
+            ("<script>sand: 3 stages", false),
+            ("search:", false),
+            ("noise:", false),
+            ("90 % interval", false),
+        ] {
+            assert_eq!(text[ledger..].contains(words), is_there, "{words} in\n{text}");
+        }
+    }
+
+    #[test]
+    fn what_has_no_line_in_the_ledger_has_one_before_it() {
+        let text = brief(&fixture::study());
+        assert!(
+            text.starts_with("<script>sand: ga stopped by generations"),
+            "{text}"
+        );
+        let text = brief(&fixture::fit().into());
+        assert!(text.starts_with("<script>sand: lm stopped by"), "{text}");
+    }
+
+    #[test]
+    fn digitised_rows_are_called_so() {
+        let mut calibration = fixture::calibration();
+        calibration.spec.experiment.campaign = Some(fixture::campaign());
+        let study = calibration.into();
+        for text in [brief(&study), terminal::study(&study)] {
+            assert!(
+                text.contains("digitised, not as recorded by the rig: figure 5"),
+                "{text}"
+            );
+        }
+        assert!(!brief(&fixture::calibration().into()).contains("digitised"));
+    }
+
+    #[test]
+    fn a_sampler_that_drifted_is_a_caution() {
+        let text = brief(&fixture::all_rejected().into());
+        assert!(text.contains("caution: "), "{text}");
+        assert!(!brief(&fixture::calibration().into()).contains("caution"));
+    }
+}

@@ -1,0 +1,173 @@
+//! Tables for a terminal.
+
+use std::fmt::Write;
+
+use job::FreeParameter;
+use record::EstimateRow;
+
+use super::column::{cell, width};
+use super::comparison::comparison;
+use super::diagnostics::{findings, flags};
+use crate::diagnosis::diagnostics;
+use crate::flag::unsettled_run::unsettled;
+use result::finished_calibration::{FinishedCalibration, prior_mean};
+use result::point_estimate::fitted;
+use result::table::error_model::error_model;
+use result::table::readings::reading_errors;
+use result::words::number;
+
+/// `hidden-effect: 14 stages, 16658 evaluations (3 rejected by the model), 1.5 s, log-evidence -1347.66`.
+pub(super) fn headline(calibration: &FinishedCalibration) -> String {
+    let row = &calibration.row;
+    let how = match fit_of(calibration) {
+        Some(estimate) => format!(
+            "{} stopped by {}",
+            calibration.spec.algorithm.name(),
+            estimate.stop.name()
+        ),
+        None => number::count(calibration.stages.len(), "stage"),
+    };
+    let rejected = match row.rejected {
+        None | Some(0) => String::new(),
+        Some(n) => format!(" ({n} rejected by the model)"),
+    };
+    let evidence = row.log_evidence.map(|z| format!(", log-evidence {z:.2}"));
+    format!(
+        "{}: {how}, {}{rejected}, {}{}",
+        calibration.experiment,
+        number::count(row.evaluations.unwrap_or(0) as usize, "evaluation"),
+        number::duration(row.busy_ms as f64 / 1000.0),
+        evidence.unwrap_or_default()
+    )
+}
+
+/// The fit behind a point or a normal approximation.
+fn fit_of(calibration: &FinishedCalibration) -> Option<&EstimateRow> {
+    calibration
+        .estimate
+        .as_ref()
+        .or(calibration.approximated.as_ref())
+}
+
+/// The result of a calibration: model against measurement, errors, parameters, findings, flags.
+pub(super) fn summary(calibration: &FinishedCalibration) -> String {
+    let compared = calibration.comparison();
+    let mut text = headline(calibration) + "\n";
+    let row = &calibration.row;
+    let fit = fit_of(calibration);
+    if let Some(metamodel) = &calibration.subchains {
+        let _ = writeln!(
+            text,
+            "metamodel: {} of quasi_static in {}, {} of which moved and were evaluated",
+            number::count(metamodel.moves as usize, "move"),
+            number::count(metamodel.subchains as usize, "subchain"),
+            metamodel.moved
+        );
+    }
+    if calibration.approximated.is_some() {
+        let _ = writeln!(
+            text,
+            "normal approximation: {} about the most probable parameters",
+            number::count(calibration.posterior.len(), "draw")
+        );
+    }
+    match (row.log_evidence, row.log_evidence_se) {
+        (Some(z), Some(se)) => drop(writeln!(text, "log-evidence {z:.2} +- {se:.2}")),
+        (Some(z), None) => drop(writeln!(text, "log-evidence {z:.2} by the normal approximation")),
+        (None, _) => {}
+    }
+    if !calibration.spec.fit_variant.effects.is_empty() {
+        let _ = writeln!(text, "model {}", calibration.spec.model_words());
+    }
+    if let Some(estimate) = fit {
+        let _ = writeln!(text, "log-posterior {:.2}", estimate.log_posterior());
+    }
+    for words in error_model(calibration) {
+        let _ = writeln!(text, "{words}");
+    }
+    text.push('\n');
+    if !calibration.spec.experiment.runs.is_empty() {
+        text.push_str(&comparison(compared));
+    }
+    for error in reading_errors(calibration) {
+        let _ = writeln!(text, "{}", error.words());
+    }
+    text.push_str(&match &calibration.estimate {
+        Some(estimate) => point(calibration, estimate),
+        None => parameters(calibration),
+    });
+    let diagnostics = diagnostics(calibration, compared);
+    for words in [findings(&diagnostics), flags(&diagnostics)] {
+        if !words.is_empty() {
+            let _ = write!(text, "\n{words}");
+        }
+    }
+    if let Some(note) = unsettled(calibration) {
+        let _ = writeln!(text, "\nnote: {note}");
+    }
+    text
+}
+
+/// The most probable parameters, with their standard deviations after Laplace where they are known.
+fn point(calibration: &FinishedCalibration, estimate: &EstimateRow) -> String {
+    let width = width(calibration.spec.parameters.iter().map(|p| &p.name));
+    let mut text = format!(
+        "\n{:<width$} {:>10} {:>10}  {:<12} prior\n",
+        "parameter", "best", "sd", "unit"
+    );
+    for p in fitted(estimate, &calibration.spec.parameters) {
+        let _ = writeln!(
+            text,
+            "{:<width$} {:>10} {:>10}  {:<12} {}{}",
+            p.free.name,
+            match p.sd {
+                Some(sd) => number::to_spread(p.value, sd),
+                None => number::four_digits(p.value),
+            },
+            cell(p.sd, |sd| number::to_spread(sd, sd)),
+            p.free.unit,
+            prior(p.free),
+            if p.at_bound { "  AT BOUND" } else { "" }
+        );
+    }
+    text
+}
+
+fn prior(free: &FreeParameter) -> String {
+    let sd = free.marginal.sd();
+    format!(
+        "{} +- {}",
+        number::to_spread(prior_mean(&free.marginal), sd),
+        number::to_spread(sd, sd)
+    )
+}
+
+/// The parameters after and before the data.
+fn parameters(calibration: &FinishedCalibration) -> String {
+    let mut text = String::new();
+    let width = width(calibration.spec.parameters.iter().map(|p| &p.name));
+    let _ = writeln!(
+        text,
+        "\n{:<width$} {:>10} {:>10} {:>10} {:>10} {:>10}  {:<12} prior",
+        "parameter", "mean", "sd", "5 %", "95 %", "best", "unit"
+    );
+    for ((name, p), free) in calibration
+        .parameter_summaries()
+        .iter()
+        .zip(&calibration.spec.parameters)
+    {
+        let prior = prior(free);
+        let bound = if p.at_bound { "  AT BOUND" } else { "" };
+        let _ = writeln!(
+            text,
+            "{name:<width$} {:>10} {:>10} {:>10} {:>10} {:>10}  {:<12} {prior}{bound}",
+            number::to_spread(p.mean, p.sd),
+            number::to_spread(p.sd, p.sd),
+            number::to_spread(p.q05, p.sd),
+            number::to_spread(p.q95, p.sd),
+            number::to_spread(p.map, p.sd),
+            free.unit
+        );
+    }
+    text
+}

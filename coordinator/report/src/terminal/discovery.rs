@@ -1,0 +1,208 @@
+//! A search for a missing effect as text.
+
+use std::collections::BTreeMap;
+use std::fmt::Write;
+use std::path::Path;
+
+use record::{ChiSquare, Discovery, JudgedSet};
+
+use super::column::{cell, width};
+use result::discovery::{arguments, effect_file, numerical_noise, word};
+use result::words::probability::p_words;
+
+/// Most explanations that are shown.
+const SHOWN: usize = 8;
+/// Most names in a list of effects.
+const LISTED: usize = 20;
+
+/// The result of a search, and the command that adds it to the model.
+///
+/// # Arguments
+/// - `calibration`: the searched one. `place`: the argument that locates it. `folder`: of effect files.
+pub fn text(record: &Discovery, calibration: i64, place: &str, folder: &Path) -> String {
+    let mut text = format!("discovery: {}\n{}\n\n", word(record.verdict), record.text);
+    let width = width(record.effects.iter().map(|e| &e.name));
+    let _ = writeln!(
+        text,
+        "{:<width$} {:>9} {:>11} {:>6} {:>9} {:>9}  strength prior",
+        "explanation", "ln BF", "probability", "class", "95 % set", "prior sds"
+    );
+    for effect in record.effects.iter().take(SHOWN) {
+        let _ = writeln!(
+            text,
+            "{:<width$} {:>9.2} {:>11.4} {:>6} {:>9} {:>9}  {}",
+            effect.name,
+            effect.log_bayes_factor,
+            effect.probability,
+            effect.class,
+            if effect.in_credible_set { "in" } else { "-" },
+            cell(effect.prior_sds, |sds| format!("{sds:.1}")),
+            effect.strength_prior.as_deref().unwrap_or("-")
+        );
+    }
+    if let Some(more) = record.effects.len().checked_sub(SHOWN).filter(|&more| more > 0) {
+        let _ = writeln!(text, "and {more} less probable ones");
+    }
+    text += &sets(record);
+    let _ = writeln!(
+        text,
+        "\nchi-square {} as the model is, {} with the best explanation",
+        chi_square(record.chi2),
+        chi_square(record.chi2_best)
+    );
+    if let Some(said) = numerical_noise(record) {
+        let _ = writeln!(text, "{said}");
+    }
+    if let Some(outside) = &record.outside {
+        let _ = writeln!(
+            text,
+            "outside the library: {} depends on {} ({}), ln BF {:.2}",
+            outside.acts_on, outside.depends_on, outside.form, outside.log_bayes_factor
+        );
+    }
+    if let Some((name, _)) = effect_file(record) {
+        let _ = writeln!(text, "its effect file: {}", folder.join(name).display());
+    }
+    for (words, effects) in [
+        ("no longer improves the evidence", &record.drop),
+        ("not detectable at the usual strength", &record.cannot_exclude),
+        ("rejected by the model at every strength", &record.refused),
+    ] {
+        if !effects.is_empty() {
+            let effects = folded(effects);
+            let more = effects.len().saturating_sub(LISTED);
+            let shown = effects[..effects.len() - more].join(", ");
+            let rest = if more > 0 {
+                format!(" and {more} more")
+            } else {
+                String::new()
+            };
+            let _ = writeln!(text, "{words}: {shown}{rest}");
+        }
+    }
+    let mut untried: BTreeMap<(&str, &str), Vec<String>> = BTreeMap::new();
+    for effect in &record.not_tried {
+        let same = untried.entry((&effect.needs, &effect.why)).or_default();
+        same.push(effect.name.clone());
+    }
+    for ((needs, why), effects) in untried {
+        let effects = folded(&effects).join(", ");
+        let _ = writeln!(
+            text,
+            "not tried as the experiment is: {effects}: {why} (needs {needs})"
+        );
+    }
+    for (place, run) in record.next_runs.iter().enumerate() {
+        let _ = writeln!(
+            text,
+            "{}: slip {:.2}, {:.1} N, {:.4} m/s distinguishes {} ({} {:.2} nats)",
+            if place == 0 { "next run" } else { "and then" },
+            run.slip,
+            run.wheel_load_n,
+            run.sled_speed_m_s,
+            run.separates.join(", "),
+            if place == 0 { "tells" } else { "adds" },
+            run.information_nats
+        );
+    }
+    for test in &record.other_tests {
+        let _ = writeln!(text, "other test: {test}");
+    }
+    let _ = writeln!(
+        text,
+        "{} evaluations, {} until the verdict",
+        record.evaluations, record.evaluations_to_name
+    );
+    if let Some(arguments) = arguments(record, folder) {
+        let _ = writeln!(
+            text,
+            "\nto add it: coordinator extend {calibration} {arguments} {place}"
+        );
+    }
+    text
+}
+
+/// The sets behind the probabilities, where several effects act together or left-out levels were predicted.
+fn sets(record: &Discovery) -> String {
+    let is_shown = |set: &JudgedSet| set.members.len() > 1 || set.predictive.is_some();
+    if !record.sets.iter().any(is_shown) {
+        return String::new();
+    }
+    let shown = || record.sets.iter().take(SHOWN);
+    let names: Vec<String> = shown().map(|set| set.members.join(" + ")).collect();
+    let width = width(names.iter());
+    let mut text = format!(
+        "\n{:<width$} {:>9} {:>9} {:>11} {:>20}\n",
+        "set", "ln BF", "prior", "probability", "prediction, nats"
+    );
+    for (name, set) in names.iter().zip(shown()) {
+        let _ = writeln!(
+            text,
+            "{name:<width$} {:>9.2} {:>9.4} {:>11.4} {:>20}",
+            set.log_bayes_factor,
+            set.prior,
+            set.probability,
+            cell(set.predictive, |nats| format!("{nats:+.1}"))
+        );
+    }
+    text
+}
+
+/// Names without `EFFECT.WHEEL` where `EFFECT` is in the list.
+fn folded(names: &[String]) -> Vec<&str> {
+    let is_own = |name: &&String| match name.split_once('.') {
+        Some((effect, _)) => !names.iter().any(|other| other == effect),
+        None => true,
+    };
+    names.iter().filter(is_own).map(String::as_str).collect()
+}
+
+/// `210.0 with 68 degrees of freedom (p 1e-9)`.
+fn chi_square(chi2: ChiSquare) -> String {
+    let value = chi2.value.map_or("unknown".into(), |value| format!("{value:.1}"));
+    let p = chi2.p.map_or(String::new(), |p| format!(" ({})", p_words(p)));
+    format!(
+        "{value} with {:.0} degrees of freedom{p}",
+        chi2.degrees_of_freedom
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use record::Extension;
+
+    use super::*;
+
+    fn record() -> Discovery {
+        serde_json::from_str(include_str!("../../../record/discovery.json")).unwrap()
+    }
+
+    #[test]
+    fn the_text_of_a_search_has_its_result_and_the_command_that_adds_it() {
+        let text = text(&record(), 7, "--out out/sand", Path::new("out/sand"));
+        for words in [
+            "discovery: named\nThe data name slip_sinkage.",
+            "slip_sinkage                     40.00      0.9600      1        in       1.2  half_normal 0.2",
+            "slip_sinkage + bulldozing        40.00    0.0030      0.0600                +28.0",
+            "not detectable at the usual strength: moisture",
+            "next run: slip 0.60, 80.0 N, 0.0200 m/s distinguishes slip_sinkage, bulldozing (tells 0.40 nats)",
+            "other test: a plate test at 80 N",
+            "to add it: coordinator extend 7 --effect slip_sinkage --out out/sand",
+        ] {
+            assert!(text.contains(words), "{words} in\n{text}");
+        }
+    }
+
+    #[test]
+    fn a_file_is_added_by_its_path_and_without_an_extension_there_is_no_command() {
+        let mut record = record();
+        record.extension = Some(Extension::File {
+            name: "anything.toml".into(),
+            text: "name = \"shear_slip_step\"\n".into(),
+        });
+        let with = |record: &Discovery| text(record, 1, "--out o", Path::new("o"));
+        assert!(with(&record).contains("extend 1 --effect-file o/shear_slip_step.toml --out o"));
+        record.extension = None;
+        assert!(!with(&record).contains("to add it"));
+    }
+}

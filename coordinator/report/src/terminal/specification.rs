@@ -1,0 +1,120 @@
+//! A job before it runs, as text.
+
+use std::fmt::Write;
+
+use job::{JointPrior, Spec};
+use shared::experiment::{AveragingProtocol, MeasuredHistory};
+
+use super::campaign::campaign;
+use super::column::width;
+use result::finished_calibration::prior_mean;
+use result::words::number;
+
+/// Data, model, algorithm and priors of a job.
+pub fn specification(spec: &Spec) -> String {
+    let mut text = spec
+        .experiment
+        .campaign
+        .as_ref()
+        .map(campaign)
+        .unwrap_or_default();
+    let holdout = spec.experiment.runs.len() - spec.fit_runs.len();
+    let _ = writeln!(
+        text,
+        "{} with {}, {}; model {}; {}, seed {}",
+        number::count(spec.fit_runs.len(), "fit run"),
+        number::count(spec.wheel_data(), "measurement"),
+        number::count(holdout, "holdout run"),
+        spec.model_words(),
+        spec.algorithm.words(),
+        spec.algorithm.seed()
+    );
+    let bevameter = &spec.bevameter;
+    for (readings, what) in [
+        (bevameter.plates.len(), "plates"),
+        (bevameter.rings.len(), "rings"),
+    ] {
+        if readings > 0 {
+            let _ = writeln!(text, "{} of {what}", number::count(readings, "reading"));
+        }
+    }
+    for run in &spec.experiment.runs {
+        if let Some(history) = &run.history {
+            let _ = writeln!(
+                text,
+                "{}",
+                averaging(&run.name, history, &spec.experiment.protocol)
+            );
+        }
+    }
+    for words in spec.joint_prior.iter().flat_map(JointPrior::words) {
+        let _ = writeln!(text, "{words}");
+    }
+    for words in spec
+        .likelihood_settings
+        .words()
+        .into_iter()
+        .chain(spec.scatter_words())
+    {
+        let _ = writeln!(text, "{words}");
+    }
+    text.push('\n');
+    let fixed = &spec.fit_variant.fixed;
+    let width = width(spec.parameters.iter().map(|p| &p.name).chain(fixed.keys()));
+    let _ = writeln!(
+        text,
+        "{:<width$} {:>12} {:>12} {:>12} {:>12}  unit",
+        "parameter", "prior mean", "prior sd", "lower", "upper"
+    );
+    for p in &spec.parameters {
+        let (lower, upper) = p.marginal.support();
+        let _ = writeln!(
+            text,
+            "{:<width$} {:>12} {:>12} {:>12} {:>12}  {}",
+            p.name,
+            number::four_digits(prior_mean(&p.marginal)),
+            number::four_digits(p.marginal.sd()),
+            number::four_digits(lower),
+            number::four_digits(upper),
+            p.unit
+        );
+    }
+    for (name, value) in fixed {
+        let _ = writeln!(
+            text,
+            "{name:<width$} {:>12} {:>12}",
+            number::four_digits(*value),
+            "fixed"
+        );
+    }
+    text
+}
+
+/// The part of a run's recording that is averaged: samples, periods.
+fn averaging(run: &str, history: &MeasuredHistory, protocol: &AveragingProtocol) -> String {
+    let filter = match protocol.lowpass_hz {
+        0.0 => "not filtered".to_owned(),
+        cutoff => format!("low-pass {cutoff} Hz"),
+    };
+    let (samples, step_s) = (history.t_s.len(), history.interval_s);
+    let cut = (history.transient_s / step_s).round();
+    let mut text = format!(
+        "run {run}: {samples} samples of {step_s:.3} s in {}; {filter}, the first {cut:.0} ({} s) cut",
+        history.file, history.transient_s
+    );
+    for (channel, recorded) in history.channels() {
+        let over = match recorded.periods {
+            0 => "all".to_owned(),
+            1 => "1 grouser period of".to_owned(),
+            periods => format!("{periods} grouser periods of"),
+        };
+        let _ = write!(
+            text,
+            "\n    {} {} over {over} the last {:.2} s",
+            channel.column(),
+            number::four_digits(recorded.average),
+            recorded.covered_s
+        );
+    }
+    text
+}

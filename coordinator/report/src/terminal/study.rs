@@ -1,0 +1,66 @@
+//! The results of a study as text.
+
+use std::fmt::Write;
+
+use record::{Verdict, effect_of};
+
+use super::brief::cautions;
+use super::calibration::{headline, summary};
+use super::campaign::campaign;
+use super::ledger::ledger;
+use super::models::models;
+use crate::flag::interpolation::interpolation_beats;
+use crate::flag::study::missed_modes;
+use result::discovery::word;
+use result::study::Study;
+use result::words::number;
+
+/// Where the measurements of a study come from, its tables and flags, one calibration after the other, then its calibrations and
+/// searches, a line each, and the error ledger.
+pub fn study(study: &Study) -> String {
+    let results: Vec<String> = study.calibrations().map(summary).collect();
+    let of_lead = study.lead.spec.experiment.campaign.as_ref();
+    let mut text = of_lead.map_or_else(String::new, |own| campaign(own) + "\n") + &results.join("\n");
+    for flag in missed_modes(study).into_iter().chain(interpolation_beats(study)) {
+        let _ = writeln!(text, "\nflag {}: {}", flag.kind.name(), flag.text);
+    }
+    text.push('\n');
+    text + &calibrations(study) + &cautions(study) + &models(study) + "\n" + &ledger(study)
+}
+
+/// The calibrations with their searches, a line each.
+fn calibrations(study: &Study) -> String {
+    let mut text = String::new();
+    for calibration in study.calibrations() {
+        let _ = writeln!(text, "{}", headline(calibration));
+        let own = |id| id == calibration.row.id;
+        for round in study.rounds.iter().filter(|round| own(round.calibration)) {
+            let found = match (round.record.verdict, &round.record.extension) {
+                (Verdict::Named, Some(extension)) => format!("{} named", effect_of(extension)),
+                (verdict, _) => word(verdict).replace('_', " "),
+            };
+            let cost = number::count(round.record.evaluations as usize, "evaluation");
+            let _ = writeln!(text, "  search: {found}, {cost}");
+        }
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fixture;
+
+    #[test]
+    fn every_calibration_and_search_has_a_line_with_its_cost() {
+        let text = study(&fixture::grown());
+        for words in [
+            "\n<script>sand: 3 stages, 1000 evaluations",
+            "\n  search: slip_sinkage named, 4000 evaluations",
+            "\nroot mean sq. error",
+            "\nnoise:",
+        ] {
+            assert!(text.contains(words), "{words} in\n{text}");
+        }
+    }
+}

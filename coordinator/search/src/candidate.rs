@@ -1,0 +1,514 @@
+//! Candidate effects as additions to a job, and those of the library.
+
+use std::collections::BTreeSet;
+
+use formula::catalogue::{catalogue, find};
+use formula::slip::variables;
+use formula::{Effect, Parameter};
+use shared::experiment::RunUse;
+use shared::file::{FileError, FileSet, unknown_word};
+use shared::model::effects::parameter_name;
+
+use job::{
+    EffectOnNodes, ModelSwitch, PlainParameter, Spec, candidate_priors, extended_job, with_free, with_setting,
+};
+use record::Extension;
+
+/// A candidate effect as an addition to a job.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct CandidateEffect {
+    /// Its name: that of the effect, `EFFECT.WHEEL` on one wheel of several, `EFFECT_node` with the displacement on the soil,
+    /// `pressure_z` of a curve, `pressure_z_power` of a form.
+    pub name: String,
+    /// The addition to the job.
+    pub extension: Extension,
+}
+
+/// Why an effect of the library is not a candidate.
+#[derive(Debug, thiserror::Error)]
+pub enum ExclusionReason {
+    /// The model cannot express it in this experiment.
+    #[error(transparent)]
+    File(#[from] FileError),
+    /// Its strength is fixed.
+    #[error("no strength is free")]
+    NoFreeStrength,
+    /// It changes nothing at the conditions of the fitted runs.
+    #[error("it changes nothing at the slips and slip angles of the fitted runs")]
+    AbsentEverywhere,
+}
+
+/// The job with further effects.
+///
+/// Effects of the catalogue join those under `[model]`, where a setting is turned; a plain parameter of the model gets its prior under
+/// `[priors]`; effect files come with the job; and an effect on one wheel is a line under `[priors]` for each of its strengths, with the
+/// prior of the effect's file. A prior under `[discovery.priors]` replaces that of the catalogue.
+///
+/// # Errors
+/// [`FileError`] of the job: an effect is unknown, a file or a line exists already, the text is not a job. Whether the model can
+/// express the result is checked by [`Spec::new`].
+pub fn extended(name: &str, job: &FileSet, extensions: &[&Extension]) -> Result<FileSet, FileError> {
+    let fail = |message: String| FileError::whole(name, message);
+    let (mut effects, mut named, mut priors) = (Vec::new(), Vec::new(), Vec::new());
+    let mut files = job.files.clone();
+    let mut toml = job.toml.clone();
+    let stated = candidate_priors(&job.toml);
+    for extension in extensions {
+        match extension {
+            Extension::Effect(effect) => {
+                if let Some((prior, _)) = PlainParameter::find(effect).and_then(PlainParameter::prior) {
+                    toml = with_free(name, &toml, effect, stated.get(effect).unwrap_or(&prior))?;
+                } else if let Some(switch) = ModelSwitch::find(effect) {
+                    toml = with_setting(name, &toml, switch)?;
+                } else {
+                    let mut effect = effect;
+                    if let Some(on_nodes) = EffectOnNodes::find(effect) {
+                        toml = with_setting(name, &toml, on_nodes.setting)?;
+                        effect = &on_nodes.effect.name;
+                    }
+                    // On the rim and on the nodes together, an effect is on the nodes.
+                    if effects.contains(effect) {
+                        continue;
+                    }
+                    let own = stated
+                        .iter()
+                        .filter(|(name, _)| name.split_once('.').is_some_and(|(of, _)| of == effect));
+                    priors.extend(own.map(|(name, prior)| (name.clone(), prior.clone())));
+                    effects.push(effect.clone());
+                }
+            }
+            Extension::OnWheel { effect, wheel } => {
+                let known = find(effect).ok_or_else(|| {
+                    let known = catalogue().iter().map(|e| e.name.as_str());
+                    fail(unknown_word("effect", effect, known))
+                })?;
+                let strengths = known.parameters.iter().filter(|p| p.neutral.is_some());
+                let prior = |p: &Parameter| {
+                    stated
+                        .get(&parameter_name(known, p, None))
+                        .unwrap_or(&p.prior)
+                        .clone()
+                };
+                priors.extend(strengths.map(|p| (parameter_name(known, p, Some(wheel)), prior(p))));
+            }
+            Extension::File { name: file, text } => {
+                if files.insert(file.clone(), text.clone()).is_some() {
+                    return Err(fail(format!("file \"{file}\" exists already")));
+                }
+                named.push(file.clone());
+            }
+        }
+    }
+    let toml = extended_job(name, &toml, &effects, &named, &priors)?;
+    Ok(FileSet { toml, files })
+}
+
+/// The candidate effects of the library for an experiment.
+///
+/// First every effect of the catalogue that the job does not have, in the order of the catalogue; then, where fitted runs have
+/// several wheels, each on each of these wheels alone; then those of the shear displacement with that on the nodes of the soil. Checked by
+/// `tests::of_several_wheels_each_may_have_an_effect_alone` and `tests::an_effect_of_the_displacement_may_be_on_the_nodes`.
+///
+/// # Returns
+/// The candidates, and the names of the effects that are excluded here with the reason.
+pub fn library(
+    job: &FileSet,
+    experiment: &FileSet,
+) -> (Vec<CandidateEffect>, Vec<(String, ExclusionReason)>) {
+    let (mut had, mut wheels, mut fitted) = (BTreeSet::new(), BTreeSet::new(), Vec::new());
+    let mut on_nodes = Vec::new();
+    // An invalid job excludes every effect, each with the reason.
+    if let Ok(base) = spec(job, experiment) {
+        on_nodes.extend(EffectOnNodes::all_of(&base));
+        had.extend(base.fit_variant.effects.into_iter().map(|e| e.name));
+        fitted = base.experiment.runs;
+        fitted.retain(|run| run.usage == RunUse::Fit);
+        wheels.extend(fitted.iter().map(|run| run.wheel.clone()));
+    }
+    let acts = |effect: &Effect, wheel: Option<&str>| {
+        let mut own = fitted
+            .iter()
+            .filter(|run| wheel.is_none_or(|wheel| run.wheel == wheel));
+        fitted.is_empty()
+            || own.any(|run| !effect.is_absent_at(&variables(run.slip, run.slip_angle_deg.to_radians())))
+    };
+    let missing = || catalogue().iter().filter(|e| !had.contains(&e.name));
+    let everywhere = missing().map(|effect| (effect, None));
+    let on_one = missing()
+        .flat_map(|effect| wheels.iter().map(move |wheel| (effect, Some(wheel.as_str()))))
+        .filter(|_| wheels.len() > 1);
+    let (mut candidates, mut excluded) = (Vec::new(), Vec::new());
+    for (effect, wheel) in everywhere.chain(on_one) {
+        let candidate = candidate(effect, wheel);
+        // A mechanism alone may be one that the model does not have: then runs of no kind would show it.
+        let is_mechanism = effect.hooks().next().is_none();
+        let able = match acts(effect, wheel) {
+            true => check(job, experiment, &candidate.extension, effect, wheel),
+            false if is_mechanism => check(job, experiment, &candidate.extension, effect, wheel)
+                .and(Err(ExclusionReason::AbsentEverywhere)),
+            false => Err(ExclusionReason::AbsentEverywhere),
+        };
+        match able {
+            Ok(()) => candidates.push(candidate),
+            Err(reason) => excluded.push((candidate.name, reason)),
+        }
+    }
+    for on_nodes in on_nodes {
+        let candidate = named(on_nodes.name());
+        // Where it cannot be on the rim, that has been said.
+        if check(job, experiment, &candidate.extension, on_nodes.effect, None).is_ok() {
+            candidates.push(candidate);
+        }
+    }
+    (candidates, excluded)
+}
+
+/// The candidate of a name, with its effect; `None` for a name that is not in the catalogue.
+pub(super) fn candidate_of(name: &str) -> Option<(&'static Effect, CandidateEffect)> {
+    if let Some(on_nodes) = EffectOnNodes::find(name) {
+        return Some((on_nodes.effect, named(name.to_owned())));
+    }
+    let (effect, wheel) = match name.split_once('.') {
+        Some((effect, wheel)) => (effect, Some(wheel)),
+        None => (name, None),
+    };
+    let effect = find(effect)?;
+    Some((effect, candidate(effect, wheel)))
+}
+
+fn candidate(effect: &Effect, wheel: Option<&str>) -> CandidateEffect {
+    let effect = effect.name.clone();
+    match wheel {
+        None => named(effect),
+        Some(wheel) => CandidateEffect {
+            name: format!("{effect}.{wheel}"),
+            extension: Extension::OnWheel {
+                effect,
+                wheel: wheel.to_owned(),
+            },
+        },
+    }
+}
+
+/// A candidate that a job gets by its name.
+fn named(name: String) -> CandidateEffect {
+    CandidateEffect {
+        extension: Extension::Effect(name.clone()),
+        name,
+    }
+}
+
+/// Whether the job can have an effect with a free strength.
+pub(super) fn check(
+    job: &FileSet,
+    experiment: &FileSet,
+    extension: &Extension,
+    effect: &Effect,
+    wheel: Option<&str>,
+) -> Result<(), ExclusionReason> {
+    let spec = spec(&extended(JOB, job, &[extension])?, experiment)?;
+    let strengths = effect.parameters.iter().filter(|p| p.neutral.is_some());
+    let mut strengths = strengths.map(|p| parameter_name(effect, p, wheel));
+    let is_free = |name: String| spec.parameters.iter().any(|p| p.name == name);
+    if strengths.any(is_free) {
+        Ok(())
+    } else {
+        Err(ExclusionReason::NoFreeStrength)
+    }
+}
+
+/// Names of job and experiment in messages.
+pub(super) const JOB: &str = "job.toml";
+pub(super) const EXPERIMENT: &str = "experiment.toml";
+
+/// Parses a job and its experiment as the search of that job's model.
+pub(super) fn spec(job: &FileSet, experiment: &FileSet) -> Result<Spec, FileError> {
+    Spec::of_search(JOB, job, EXPERIMENT, experiment)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::SearchModels;
+    use crate::fixture::read;
+
+    #[test]
+    fn the_library_is_the_catalogue_less_what_the_job_has_and_the_model_cannot_say() {
+        let (mut job, files, _) = read("tests/data/shear-mobilisation");
+        job.toml = job
+            .toml
+            .replacen("[model]\n", "[model]\neffects = [\"sled_tare\"]\n", 1);
+        let (candidates, excluded) = library(&job, &files);
+        assert_eq!(candidates.len() + excluded.len(), catalogue().len() - 1);
+        let names: Vec<&str> = candidates.iter().map(|e| e.name.as_str()).collect();
+        assert!(names.contains(&"janosi_hanamoto") && !names.contains(&"sled_tare"));
+        // one wheel: none on a wheel of several
+        assert!(names.iter().all(|name| !name.contains('.')), "{names:?}");
+        let reason = |name: &str| excluded.iter().find(|(n, _)| n == name).unwrap().1.to_string();
+        assert!(
+            reason("end_wall").contains("bin_length_m"),
+            "{}",
+            reason("end_wall")
+        );
+    }
+
+    #[test]
+    fn a_prior_that_the_job_states_for_a_candidate_replaces_the_catalogue_s() {
+        let (mut job, files, _) = read("tests/data/shear-mobilisation");
+        job.toml += "\n[discovery.priors]\nslip_sinkage.exponent_per_slip = { half_normal = 2.5 }\ncohesion_pa = { half_normal = 90.0 }\n";
+        let width = |job: &FileSet, effect: &str, parameter: &str| {
+            let added = Extension::Effect(effect.to_owned());
+            let with = spec(&extended("job.toml", job, &[&added]).unwrap(), &files).unwrap();
+            let place = with.parameters.iter().position(|p| p.name == parameter).unwrap();
+            with.parameters[place].marginal.quantile(0.5)
+        };
+        // The median of a half-normal is 0.6745 of its scale.
+        let median = |scale: f64| 0.674_489_750_196 * scale;
+        for (effect, parameter, scale) in [
+            ("slip_sinkage", "slip_sinkage.exponent_per_slip", 2.5),
+            ("cohesion_pa", "cohesion_pa", 90.0),
+        ] {
+            let given = width(&job, effect, parameter);
+            assert!((given / median(scale) - 1.0).abs() < 1e-6, "{effect}: {given}");
+        }
+        // What follows from the job, its search too, keeps them.
+        let next = job::continued_job("job.toml", &job).unwrap();
+        assert_eq!(candidate_priors(&next.toml), candidate_priors(&job.toml));
+    }
+
+    #[test]
+    fn of_several_wheels_each_may_have_an_effect_alone() {
+        let (job, files, _) = read("examples/cmu-sand");
+        let (candidates, excluded) = library(&job, &files);
+        assert_eq!(candidates.len() + excluded.len(), 3 * catalogue().len());
+        let of = |name: &str| candidates.iter().find(|e| e.name == name);
+        let digging = of("slip_sinkage.grousered").unwrap();
+        let with = extended("job.toml", &job, &[&digging.extension]).unwrap();
+        assert!(
+            with.toml
+                .contains("\"slip_sinkage.exponent_per_slip.grousered\" = { half_normal = 0.5 }\n"),
+            "{}",
+            with.toml
+        );
+        let with = spec(&with, &files).unwrap();
+        assert_eq!(with.effects_on_wheels(), ["slip_sinkage.grousered"]);
+        let everywhere = extended("job.toml", &job, &[&of("slip_sinkage").unwrap().extension]).unwrap();
+        let everywhere = spec(&everywhere, &files).unwrap();
+        assert_eq!(everywhere.effects_on_wheels(), ["slip_sinkage"]);
+        let names = with.parameters;
+        assert!(
+            names
+                .iter()
+                .any(|p| p.name == "slip_sinkage.exponent_per_slip.grousered")
+        );
+        assert!(
+            names
+                .iter()
+                .all(|p| p.name != "slip_sinkage.exponent_per_slip.smooth")
+        );
+        let smooth = excluded.iter().find(|(name, _)| name == "lug_thrust.smooth");
+        assert!(smooth.is_some_and(|(_, reason)| reason.to_string().contains("needs a wheel with grousers")));
+    }
+
+    #[test]
+    fn where_grousers_roll_a_springy_soil_or_rim_is_excluded_with_the_reason() {
+        let (mut job, files, _) = read("examples/cmu-sand");
+        let kind = "kind = \"quasi_static\"\n";
+        job.toml = job
+            .toml
+            .replacen(kind, &format!("{kind}grousers = \"rolled\"\n"), 1);
+        let (candidates, excluded) = library(&job, &files);
+        for effect in ["elastic_rebound", "wheel_flexibility"] {
+            let smooth = format!("{effect}.smooth");
+            assert!(candidates.iter().any(|c| c.name == smooth), "{smooth}");
+            for name in [effect.to_owned(), format!("{effect}.grousered")] {
+                let reason = excluded.iter().find(|(n, _)| *n == name).unwrap().1.to_string();
+                assert!(
+                    reason.contains("grousers = \"rolled\": effect "),
+                    "{name}: {reason}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn an_effect_of_the_displacement_may_be_on_the_nodes() {
+        let (mut job, files, _) = read("tests/data/shear-mobilisation");
+        let on_nodes = |job: &FileSet| -> Vec<CandidateEffect> {
+            let (candidates, _) = library(job, &files);
+            candidates
+                .into_iter()
+                .filter(|c| c.name.ends_with("_node"))
+                .collect()
+        };
+        // No terrain, no nodes.
+        assert!(on_nodes(&job).is_empty());
+        job.toml = job.toml.replace("quasi_static", "scm");
+        let found = on_nodes(&job);
+        let names: Vec<&str> = found.iter().map(|c| c.name.as_str()).collect();
+        assert_eq!(names, ["janosi_hanamoto_node", "stretched_mobilisation_node"]);
+        let with = extended("job.toml", &job, &[&found[0].extension]).unwrap();
+        let own = spec(&with, &files).unwrap();
+        let displacement = own.model.spatial.map(|spatial| spatial.displacement);
+        assert_eq!(
+            displacement,
+            Some(shared::model::spatial::DisplacementFrame::Node)
+        );
+        assert_eq!(own.freed(), ["displacement_node", "kind_scm"]);
+        // Together with the same on the rim it is one effect; a job that has one is asked where it keeps the displacement.
+        let rim = Extension::Effect("janosi_hanamoto".into());
+        let both = extended("job.toml", &job, &[&rim, &found[0].extension]).unwrap();
+        assert_eq!(spec(&both, &files).unwrap().fit_variant.effects.len(), 1);
+        // The search therefore combines none on the nodes with another effect of the displacement.
+        let models = SearchModels::new(&job, &files, 2).unwrap();
+        let excluded = |name: &str| -> Vec<String> {
+            let library = models.task().library;
+            library.into_iter().find(|c| c.name == name).unwrap().excludes
+        };
+        assert_eq!(
+            excluded("janosi_hanamoto_node"),
+            [
+                "janosi_hanamoto",
+                "stretched_mobilisation",
+                "stretched_mobilisation_node"
+            ]
+        );
+        assert!(excluded("janosi_hanamoto").is_empty());
+        let mobilised = extended("job.toml", &job, &[&rim]).unwrap();
+        assert!(on_nodes(&mobilised).is_empty());
+    }
+
+    #[test]
+    fn what_no_fitted_run_shows_is_no_candidate() {
+        let (job, straight, _) = read("examples/cmu-sand");
+        let mut at_an_angle = straight.clone();
+        let runs = at_an_angle.files.get_mut("runs.csv").unwrap();
+        *runs = runs
+            .lines()
+            .map(|line| match line.starts_with("grousered") {
+                true => line.replacen(",0,1,", ",15,1,", 1) + "\n",
+                false => line.to_owned() + "\n",
+            })
+            .collect();
+        let names = |files: &FileSet| -> Vec<String> {
+            let (candidates, _) = library(&job, files);
+            candidates.into_iter().map(|c| c.name).collect()
+        };
+        let of = |names: &[String], effect: &str| -> Vec<String> {
+            let own = names.iter().filter(|name| name.split('.').next() == Some(effect));
+            own.cloned().collect()
+        };
+        let (without, with) = (names(&straight), names(&at_an_angle));
+        for effect in ["lateral_slip_sinkage", "side_bulldozing", "side_drag"] {
+            assert!(of(&without, effect).is_empty(), "{effect}");
+            assert_eq!(
+                of(&with, effect),
+                [effect.to_owned(), format!("{effect}.grousered")]
+            );
+        }
+        // The sand was driven over in skid, too.
+        assert_eq!(of(&without, "skid_sinkage").len(), 3);
+        let models = SearchModels::new(&job, &straight, 1).unwrap();
+        let said: Vec<_> = models.not_tried().filter(|own| own.name == "side_drag").collect();
+        assert_eq!(said.len(), 1);
+        assert_eq!(said[0].needs, "runs at a slip angle");
+        // Runs in drive alone show nothing of a law of skid.
+        let mut driven = straight;
+        let runs = driven.files.get_mut("runs.csv").unwrap();
+        *runs = runs
+            .lines()
+            .filter(|line| !line.contains(",-"))
+            .map(|line| line.to_owned() + "\n")
+            .collect();
+        let models = SearchModels::new(&job, &driven, 1).unwrap();
+        let needs = |name: &str| -> Vec<String> {
+            let own = models.not_tried().filter(|own| own.name == name);
+            own.map(|own| own.needs.clone()).collect()
+        };
+        assert_eq!(needs("skid_sinkage"), ["runs in skid"]);
+        assert_eq!(needs("lateral_slip_sinkage"), ["runs at a slip angle"]);
+    }
+
+    #[test]
+    fn a_plain_parameter_is_freed_with_its_prior() {
+        let (job, files, _) = read("examples/hidden-effect");
+        let free = |name: &str| {
+            let with = extended(JOB, &job, &[&Extension::Effect(name.into())]).unwrap();
+            spec(&with, &files).map(|spec| spec.freed())
+        };
+        assert_eq!(free("cohesion_pa").unwrap(), ["cohesion_pa", "kind_quasi_static"]);
+        // the job holds it under [model]
+        assert_eq!(
+            free("shear_velocity_m_s").unwrap(),
+            ["shear_velocity_m_s", "kind_quasi_static"]
+        );
+        assert_eq!(free("kind_scm").unwrap(), ["kind_scm"]);
+        let message = free("flow_fraction").unwrap_err().to_string();
+        assert!(message.contains("quasi_static has no terrain"), "{message}");
+    }
+
+    #[test]
+    fn settings_of_a_job_s_model_are_candidates_and_the_other_kind_where_it_is_asked_for() {
+        let (job, files, _) = read("examples/hidden-effect");
+        let switches = |toml: String| -> Vec<String> {
+            let job = FileSet { toml, ..job.clone() };
+            let models = SearchModels::new(&job, &files, 1).unwrap();
+            let candidates = models.task().library.into_iter();
+            let switches = candidates.filter(|c| c.parameters.is_empty());
+            switches.map(|c| c.name).collect()
+        };
+        assert!(switches(job.toml.clone()).is_empty());
+        let asked = job
+            .toml
+            .replace("[discovery]\n", "[discovery]\nother_kind = true\n");
+        assert_eq!(switches(asked.clone()), ["kind_scm"]);
+        // A free parameter that the other kind does not have leaves no job of that kind, which is said.
+        let bound = asked.replace("quasi_static", "scm").replace(
+            "[priors]\n",
+            "[priors]\nflow_fraction = { uniform = [0.0, 1.0] }\n",
+        );
+        let bound = FileSet {
+            toml: bound,
+            ..job.clone()
+        };
+        let models = SearchModels::new(&bound, &files, 1).unwrap();
+        let other = models
+            .not_tried()
+            .find(|own| own.name == "kind_quasi_static")
+            .unwrap();
+        assert!(other.why.contains("flow_fraction"), "{other:?}");
+        let spatial = job.toml.replace("quasi_static", "scm");
+        assert_eq!(switches(spatial.clone()), ["pressure_direction_vertical"]);
+        // Without a shear displacement it makes no difference where it is kept.
+        let mobilised = spatial.replacen("[model]\n", "[model]\neffects = [\"janosi_hanamoto\"]\n", 1);
+        assert_eq!(
+            switches(mobilised),
+            ["pressure_direction_vertical", "displacement_node"]
+        );
+    }
+
+    #[test]
+    fn several_effects_join_a_job_and_none_twice() {
+        let (job, files, _) = read("examples/cmu-sand");
+        let file = Extension::File {
+            name: "mine.toml".into(),
+            text: "name = \"mine\"\nsummary = \"s\"\nsource = \"s\"\nshear = \"tau * (1 + a)\"\n[parameters.a]\n\
+                   unit = \"1\"\nneutral = 0.0\nprior = { normal = [0.0, 0.1] }\n"
+                .into(),
+        };
+        let on_wheel = |effect: &str| Extension::OnWheel {
+            effect: effect.into(),
+            wheel: "smooth".into(),
+        };
+        let (tare, digging) = (Extension::Effect("sled_tare".into()), on_wheel("slip_sinkage"));
+        let with = extended("job.toml", &job, &[&tare, &file, &digging]).unwrap();
+        let effects = spec(&with, &files).unwrap().fit_variant.effects;
+        let names: Vec<&str> = effects.iter().map(|e| e.name.as_str()).collect();
+        assert_eq!(names, ["slip_sinkage", "sled_tare", "mine"]);
+        let twice = extended("job.toml", &with, &[&file]).unwrap_err();
+        assert_eq!(twice.to_string(), "job.toml: file \"mine.toml\" exists already");
+        assert!(extended("job.toml", &with, &[&digging]).is_err());
+        let unknown = extended("job.toml", &job, &[&on_wheel("slip_sinkage_")]).unwrap_err();
+        assert!(unknown.to_string().contains("slip_sinkage"), "{unknown}");
+    }
+}

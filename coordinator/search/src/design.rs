@@ -1,0 +1,198 @@
+//! The design of an experiment: its levels, and the runs that the rig could make next.
+
+use shared::channel::Channel;
+use shared::experiment::{TestRun, rim_speed_m_s};
+use shared::model::RunCondition;
+use statistics::Likelihood;
+
+use job::{PLATE, Spec, levels_of};
+
+/// Least levels of a variable for the cross-validation: fewer do not determine an extrapolation.
+const LEAST_LEVELS: usize = 3;
+/// Slips of proposed runs.
+const SLIPS: [f64; 7] = [0.05, 0.1, 0.2, 0.3, 0.45, 0.6, 0.8];
+/// Slip of a braked run, proposed where the rig has made one.
+const BRAKED: f64 = -0.2;
+/// A rig reaches further than one campaign: half to twice its median load and rim speed, and all that it has measured.
+const REACH: f64 = 2.0;
+/// Number of loads, and of rim speeds.
+const LEVELS: usize = 3;
+
+/// The data of each level of slip, wheel load and rim speed, of the variables with enough levels.
+pub(super) fn levels(spec: &Spec) -> Vec<Vec<usize>> {
+    let runs: Vec<&TestRun> = spec.fit_runs.iter().map(|&i| &spec.experiment.runs[i]).collect();
+    let variables: [fn(&TestRun) -> f64; 3] = [
+        |run| run.slip,
+        |run| run.wheel_load_n,
+        |run| rim_speed_m_s(run.slip, run.sled_speed_m_s),
+    ];
+    let mut levels = Vec::new();
+    for variable in variables {
+        let values: Vec<f64> = runs.iter().map(|run| variable(run)).collect();
+        let own = levels_of(&values);
+        let count = own.iter().max().map_or(0, |most| most + 1);
+        if count >= LEAST_LEVELS {
+            levels.extend((0..count).map(|level| of_runs(&spec.likelihood, |run| own[run] == level)));
+        }
+    }
+    levels
+}
+
+/// The data of each condition of the fitted runs.
+pub(super) fn conditions(spec: &Spec) -> Vec<Vec<usize>> {
+    let conditions = job::conditions(&spec.experiment, &spec.fit_runs).into_iter();
+    conditions
+        .map(|runs| of_runs(&spec.likelihood, |run| runs.contains(&run)))
+        .collect()
+}
+
+/// The wheel data of some runs.
+fn of_runs(likelihood: &Likelihood, is_in: impl Fn(usize) -> bool) -> Vec<usize> {
+    let data = likelihood.data().iter().enumerate();
+    data.filter(|(_, d)| d.channel < PLATE && is_in(d.run))
+        .map(|(i, _)| i)
+        .collect()
+}
+
+/// The measured wheel loads, and rim speeds above 0.
+fn measured(conditions: &[RunCondition]) -> [Vec<f64>; 2] {
+    let rims = conditions.iter().map(|c| rim_speed_m_s(c.slip, c.sled_speed_m_s));
+    [
+        conditions.iter().map(|c| c.wheel_load_n).collect(),
+        rims.filter(|speed| *speed > 0.0).collect(),
+    ]
+}
+
+/// Least and greatest of some values.
+fn range(values: &[f64]) -> [f64; 2] {
+    [
+        values.iter().copied().fold(f64::INFINITY, f64::min),
+        values.iter().copied().fold(0.0, f64::max),
+    ]
+}
+
+/// Values that the rig can set, equal ratios apart. The reach follows the median, so that it does not grow when a proposed run at its
+/// end is added to the campaign.
+fn reach(values: &[f64]) -> Vec<f64> {
+    let mut ascending = values.to_vec();
+    ascending.sort_by(f64::total_cmp);
+    let median = ascending[ascending.len() / 2];
+    let [least, greatest] = range(values);
+    let (least, greatest) = (least.min(median / REACH), greatest.max(median * REACH));
+    let share = |k: usize| k as f64 / (LEVELS - 1) as f64;
+    (0..LEVELS)
+        .map(|k| two_digits(least * libm::pow(greatest / least, share(k))))
+        .collect()
+}
+
+/// How far each run lies beyond the measured range of wheel load and rim speed: the logarithm of the ratio, 0 within the range.
+pub(super) fn beyond(spec: &Spec, design: &[RunCondition]) -> Vec<f64> {
+    let ranges = measured(&spec.fit_variant.conditions).map(|values| range(&values));
+    let of_run = |condition: &RunCondition| {
+        let own = [
+            condition.wheel_load_n,
+            rim_speed_m_s(condition.slip, condition.sled_speed_m_s),
+        ];
+        let beyond = own
+            .iter()
+            .zip(&ranges)
+            .map(|(x, [least, greatest])| libm::log((least / x).max(x / greatest).max(1.0)));
+        beyond.fold(0.0, f64::max)
+    };
+    design.iter().map(of_run).collect()
+}
+
+/// Runs that the rig could make, with wheel and soil of the first fitted run: each slip at each load and rim speed.
+pub(super) fn proposed(spec: &Spec) -> Vec<RunCondition> {
+    let conditions = &spec.fit_variant.conditions;
+    let Some(first) = conditions.first() else {
+        return Vec::new();
+    };
+    let [loads, rims] = measured(conditions);
+    if rims.is_empty() {
+        return Vec::new();
+    }
+    let (loads, rims) = (reach(&loads), reach(&rims));
+    let braked = conditions.iter().any(|c| c.slip < -0.05);
+    let mut proposed = Vec::new();
+    for slip in SLIPS.into_iter().chain(braked.then_some(BRAKED)) {
+        for &wheel_load_n in &loads {
+            for &rim in &rims {
+                let sled_speed_m_s = two_digits(if slip < 0.0 {
+                    rim / (1.0 + slip)
+                } else {
+                    rim * (1.0 - slip)
+                });
+                proposed.push(RunCondition {
+                    slip,
+                    wheel_load_n,
+                    sled_speed_m_s,
+                    slip_angle_deg: 0.0,
+                    pass: 1,
+                    ..first.clone()
+                });
+            }
+        }
+    }
+    proposed
+}
+
+/// The measured channels with the mean noise sd of each.
+pub(super) fn channels(spec: &Spec, theta: &[f64]) -> Vec<(Channel, f64)> {
+    let data = spec.likelihood.data();
+    let of = |channel: &Channel| {
+        let own = data.iter().filter(|d| d.channel == channel.index());
+        let sds: Vec<f64> = own
+            .filter_map(|d| match d.sd {
+                statistics::ErrorSd::Known(sd) => Some(sd),
+                statistics::ErrorSd::Inferred { parameter } => theta.get(parameter).copied(),
+            })
+            .collect();
+        inference::diagnostics::mean(&sds).map(|sd| (*channel, sd))
+    };
+    Channel::ALL.iter().filter_map(of).collect()
+}
+
+/// Rounded to two digits, as set on a rig.
+fn two_digits(x: f64) -> f64 {
+    format!("{x:.1e}").parse().unwrap_or(x)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_reach_does_not_grow_with_a_run_at_its_end() {
+        let campaign = [90.0; 6];
+        assert_eq!(reach(&campaign), [45.0, 90.0, 180.0]);
+        assert_eq!(
+            reach(&[&campaign[..], &[180.0, 45.0]].concat()),
+            [45.0, 90.0, 180.0]
+        );
+        // What has been measured is within reach.
+        assert_eq!(reach(&[10.0, 100.0, 100.0, 400.0]), [10.0, 63.0, 400.0]);
+    }
+
+    #[test]
+    fn a_run_lies_beyond_what_was_measured_by_the_greater_of_its_ratios() {
+        let (job, files, _) = crate::fixture::read("examples/hidden-effect");
+        let spec = super::super::candidate::spec(&job, &files).unwrap();
+        let [loads, rims] = measured(&spec.fit_variant.conditions).map(|values| range(&values));
+        let run = |load: f64, rim: f64| RunCondition {
+            slip: 0.2,
+            wheel_load_n: load,
+            sled_speed_m_s: 0.8 * rim,
+            ..spec.fit_variant.conditions[0].clone()
+        };
+        let runs = [
+            run(loads[0], rims[1]),
+            run(2.0 * loads[1], rims[0]),
+            run(2.0 * loads[1], rims[0] / 3.0),
+        ];
+        let found = beyond(&spec, &runs);
+        for (own, ratio) in found.iter().zip([1.0, 2.0, 3.0]) {
+            assert!((own - libm::log(ratio)).abs() < 1e-12, "{found:?}");
+        }
+    }
+}

@@ -1,0 +1,272 @@
+//! The result of a search as it is stored.
+
+use std::collections::BTreeMap;
+
+use discovery::{
+    Conclusion, EvidenceMethod, FitChiSquare, OutsideLaw, RankedEffect, SearchVerdict, WeighedSet,
+};
+use job::{PlainParameter, candidate_priors};
+use record::{
+    ChiSquare, Discovery, Extension, ImplausibleParameter, JudgedEffect, JudgedSet, NONE, NOT_IN_LIBRARY,
+    NextRun, Outside, RunInformation, Verdict,
+};
+use shared::channel::Channel;
+
+use super::bench_measurement;
+use super::candidate::{CandidateEffect, candidate_of};
+use super::curves::curves;
+use super::entry::CandidateEntry;
+use super::law::curve;
+use super::law::file::free_name;
+use super::models::SearchModels;
+use super::narrative::sentence;
+use super::remaining_misfit::remaining_misfit;
+
+/// A law outside the library with more probability is in the credible set.
+const LEAST_CREDIBLE: f64 = 0.05;
+
+/// The record of a conclusion.
+pub(super) fn discovery_record(models: &SearchModels, conclusion: &Conclusion) -> Discovery {
+    let names = |indices: &[usize]| -> Vec<String> { indices.iter().map(|&k| models.name(k)).collect() };
+    let effects = effects(models, conclusion);
+    let (outside, law) = match &conclusion.outside {
+        Some(law) => outside(models, law).unzip(),
+        None => (None, None),
+    };
+    let (verdict, extension) = match conclusion.verdict {
+        SearchVerdict::NothingDetectable => (Verdict::NothingDetectable, None),
+        SearchVerdict::Named(k) => match models.entry(k) {
+            // it cannot be added before the experiment states what it needs
+            Some(entry) if entry.not_tried.is_some() => (Verdict::Undecided, None),
+            entry => (Verdict::Named, entry.map(|entry| entry.effect.extension.clone())),
+        },
+        SearchVerdict::Class(_) => (Verdict::Class, None),
+        SearchVerdict::NotInLibrary => (Verdict::NotInLibrary, law),
+        SearchVerdict::Undecided => {
+            let entry = conclusion
+                .agreed
+                .and_then(|k| models.entry(k))
+                .filter(|entry| entry.not_tried.is_none());
+            (
+                Verdict::Undecided,
+                entry.map(|entry| entry.effect.extension.clone()),
+            )
+        }
+    };
+    let open: Vec<&str> = effects
+        .iter()
+        .filter(|e| e.in_credible_set && e.name != NONE && e.name != NOT_IN_LIBRARY)
+        .map(|e| e.name.as_str())
+        .collect();
+    let next_runs = conclusion.next_runs.iter().filter_map(|run| {
+        let condition = models.design.get(run.run)?;
+        let words = |effects: &Vec<usize>| match effects.as_slice() {
+            [] => NONE.to_owned(),
+            [k] if *k >= models.library.len() => NOT_IN_LIBRARY.to_owned(),
+            effects => names(effects).join(" + "),
+        };
+        Some(NextRun {
+            slip: condition.slip,
+            wheel_load_n: condition.wheel_load_n,
+            sled_speed_m_s: condition.sled_speed_m_s,
+            separates: run.separates.iter().map(words).collect(),
+            information_nats: run.information_nats,
+        })
+    });
+    let information = conclusion.information.iter().filter_map(|&(run, nats)| {
+        let condition = models.design.get(run)?;
+        Some(RunInformation {
+            slip: condition.slip,
+            wheel_load_n: condition.wheel_load_n,
+            sled_speed_m_s: condition.sled_speed_m_s,
+            nats,
+        })
+    });
+    let given = models.base.fit_variant.effects.iter();
+    Discovery {
+        given: given.map(|effect| effect.name.clone()).collect(),
+        verdict,
+        text: sentence(models, conclusion, &effects, outside.as_ref()),
+        implausible: conclusion.implausible.and_then(|(k, prior_sds)| {
+            let name = models.base.parameters.get(k)?.name.clone();
+            Some(ImplausibleParameter { name, prior_sds })
+        }),
+        unsupported_noise: unsupported_noise(models, conclusion),
+        extension,
+        // Evidences tell too little where a prior is contradicted.
+        drop: conclusion
+            .redundant()
+            .filter(|_| conclusion.implausible.is_none())
+            .map(|k| models.reductions[k].0.clone())
+            .collect(),
+        other_tests: bench_measurement::deciding(&open, verdict),
+        effects,
+        sets: sets(models, conclusion),
+        misfit: conclusion.misfit,
+        complete: conclusion.complete,
+        explained: conclusion.explained,
+        outside,
+        cannot_exclude: names(&conclusion.ranking.cannot_exclude),
+        refused: names(&conclusion.ranking.refused),
+        not_tried: models.not_tried().cloned().collect(),
+        next_runs: next_runs.collect(),
+        information: information.collect(),
+        curves: curves(models, conclusion),
+        remaining: remaining_misfit(models, &conclusion.remaining),
+        numerical_noise: numerical_noise(&conclusion.numerical_noise_sds),
+        chi2: chi_square(conclusion.chi_square, models),
+        chi2_best: chi_square(conclusion.chi_square_best, models),
+        evaluations_to_name: conclusion.ranking.evaluations.to_name() as u64,
+        evaluations: conclusion.evaluations as u64,
+    }
+}
+
+/// The inferred noise sds that support no claim, by their names.
+fn unsupported_noise(models: &SearchModels, conclusion: &Conclusion) -> Vec<String> {
+    let sds = conclusion.unsupported_noise.iter();
+    sds.filter_map(|&k| Some(models.base.parameters.get(k)?.name.clone()))
+        .collect()
+}
+
+/// The channels that scatter, by their columns.
+fn numerical_noise(sds: &[f64]) -> BTreeMap<String, f64> {
+    let own = Channel::ALL
+        .iter()
+        .filter_map(|channel| Some((channel.column().to_owned(), *sds.get(channel.index())?)));
+    own.filter(|(_, sd)| *sd > 0.0).collect()
+}
+
+fn chi_square(chi: Option<FitChiSquare>, models: &SearchModels) -> ChiSquare {
+    let data = models.base.likelihood.data().len() as f64;
+    ChiSquare {
+        value: chi.map(|chi| chi.value),
+        degrees_of_freedom: chi.map_or(data, |chi| chi.degrees_of_freedom),
+        p: chi.map(|chi| chi.p()),
+    }
+}
+
+/// Most probable values by the names of the parameters.
+fn parameters(entry: &CandidateEntry, values: &[f64]) -> BTreeMap<String, f64> {
+    entry.names.iter().cloned().zip(values.iter().copied()).collect()
+}
+
+/// Units by the names of the parameters.
+fn units(entry: &CandidateEntry) -> BTreeMap<String, String> {
+    entry
+        .names
+        .iter()
+        .cloned()
+        .zip(entry.units.iter().cloned())
+        .collect()
+}
+
+/// Every explanation by falling probability.
+fn effects(models: &SearchModels, conclusion: &Conclusion) -> Vec<JudgedEffect> {
+    let base = models.base.parameters.len();
+    let judged = |effect: &RankedEffect| {
+        let entry = effect.candidate.and_then(|k| models.entry(k));
+        JudgedEffect {
+            name: entry.map_or(NONE.to_owned(), |entry| entry.effect.name.clone()),
+            log_bayes_factor: effect.stated_log_bayes_factor,
+            prior_sds: entry
+                .filter(|entry| !entry.candidate.strengths.is_empty())
+                .map(|_| effect.prior_sds),
+            probability: effect.probability,
+            class: effect.class as u32,
+            in_credible_set: effect.is_credible,
+            strength_prior: entry.and_then(|entry| strength_prior(&entry.effect, models)),
+            parameters: entry.map_or(BTreeMap::new(), |entry| parameters(entry, &effect.theta[base..])),
+            units: entry.map(units).unwrap_or_default(),
+            method: method(effect.method).to_owned(),
+        }
+    };
+    let ranked = &conclusion.ranking.effects;
+    let mut effects: Vec<JudgedEffect> = ranked.iter().map(judged).collect();
+    let classes = effects.iter().map(|e| e.class).max().unwrap_or(0);
+    if let Some((log_bayes_factor, probability)) = conclusion.not_in_library {
+        effects.push(JudgedEffect {
+            name: NOT_IN_LIBRARY.to_owned(),
+            log_bayes_factor,
+            prior_sds: None,
+            probability,
+            class: classes + 1,
+            in_credible_set: probability > LEAST_CREDIBLE,
+            strength_prior: None,
+            parameters: BTreeMap::new(),
+            units: BTreeMap::new(),
+            method: method(EvidenceMethod::Polished).to_owned(),
+        });
+    }
+    let by_factor = |a: &JudgedEffect, b: &JudgedEffect| b.log_bayes_factor.total_cmp(&a.log_bayes_factor);
+    effects.sort_by(|a, b| b.probability.total_cmp(&a.probability).then(by_factor(a, b)));
+    effects
+}
+
+/// Every model that was compared.
+fn sets(models: &SearchModels, conclusion: &Conclusion) -> Vec<JudgedSet> {
+    let set = |set: &WeighedSet| JudgedSet {
+        members: match set.effects.as_deref() {
+            None => vec![NOT_IN_LIBRARY.to_owned()],
+            Some([]) => vec![NONE.to_owned()],
+            Some(effects) => effects.iter().map(|&k| models.name(k)).collect(),
+        },
+        log_bayes_factor: set.log_bayes_factor,
+        prior: set.prior,
+        probability: set.probability,
+        predictive: set.predictive,
+    };
+    conclusion.sets.iter().map(set).collect()
+}
+
+fn method(method: EvidenceMethod) -> &'static str {
+    match method {
+        EvidenceMethod::Screen => "screen",
+        EvidenceMethod::RankOne => "rank_one",
+        EvidenceMethod::Polished => "polished",
+        EvidenceMethod::Confirmed => "confirmed",
+        EvidenceMethod::Sampled => "sampled",
+    }
+}
+
+/// As it stands under `[discovery.priors]`, or else in the catalogue.
+fn strength_prior(candidate: &CandidateEffect, models: &SearchModels) -> Option<String> {
+    let stated = candidate_priors(&models.job.toml);
+    if let Some(plain) = PlainParameter::find(&candidate.name) {
+        let prior = stated
+            .get(plain.name)
+            .map_or(plain.prior.to_owned(), ToString::to_string);
+        return Some(format!("{} = {prior}", plain.name));
+    }
+    let (effect, _) = candidate_of(&candidate.name)?;
+    let strength = effect.parameters.iter().find(|p| p.neutral.is_some())?;
+    let name = format!("{}.{}", effect.name, strength.name);
+    let prior = stated.get(&name).unwrap_or(&strength.prior);
+    Some(format!("{name} = {prior}"))
+}
+
+/// The law with its curve, and its file as an extension.
+fn outside(models: &SearchModels, found: &OutsideLaw) -> Option<(Outside, Extension)> {
+    let law = models.laws.get(found.law)?;
+    let entry = models.entry(found.candidate)?;
+    let mut forms = law.forms.iter();
+    let form = forms.find(|(_, own)| own.effect.name == entry.effect.name);
+    let Extension::File { text, .. } = &entry.effect.extension else {
+        return None;
+    };
+    let best = parameters(entry, &found.parameters);
+    let effect_file = curve::with_values(text, &best);
+    let outside = Outside {
+        acts_on: law.dependence.acts_on.name().to_owned(),
+        depends_on: law.dependence.depends_on.name().to_owned(),
+        form: form.map_or("spline", |(form, _)| form.name()).to_owned(),
+        log_bayes_factor: found.log_bayes_factor,
+        curve: curve::curve(text, &best, &law.dependence).unwrap_or_default(),
+        effect_file: effect_file.clone(),
+        left_out_nats: found.left_out_nats,
+    };
+    let extension = Extension::File {
+        name: free_name(&entry.effect.name, &models.job),
+        text: effect_file,
+    };
+    Some((outside, extension))
+}

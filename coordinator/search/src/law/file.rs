@@ -1,0 +1,136 @@
+//! The files of a law that a job can take beside those that it has.
+
+use job::effect_name;
+use record::Extension;
+use shared::file::FileSet;
+use shared::model::EffectText;
+
+use super::dependence::Dependence;
+use super::form::LawForm;
+use crate::candidate::CandidateEffect;
+
+/// The curve of a dependence and its forms.
+#[derive(Debug)]
+pub(crate) struct LawFiles {
+    pub(crate) curve: CandidateEffect,
+    pub(crate) forms: Vec<(LawForm, CandidateEffect)>,
+}
+
+impl LawFiles {
+    /// What a job can add of a dependence; `None` where the job has its curve.
+    ///
+    /// A law that the job has is fitted again with the job, so the same law is not offered a second time: two of one form only share
+    /// the strength of one. A curve has every form within it. Another form is offered: what the first one leaves may have it. Checked
+    /// by `tests::a_law_that_a_job_has_is_not_offered_again`.
+    ///
+    /// # Arguments
+    /// - `effects`: those of the job.
+    pub(crate) fn addable(
+        dependence: &Dependence,
+        job: &FileSet,
+        effects: &[EffectText],
+    ) -> Option<LawFiles> {
+        let is_new = |law: &CandidateEffect| {
+            let Extension::File { text, .. } = &law.extension else {
+                return true;
+            };
+            let name = effect_name(text);
+            effects.iter().all(|effect| Some(&effect.name) != name.as_ref())
+        };
+        let forms = LawForm::ALL.iter().map(|form| (*form, form.of(dependence)));
+        let forms = forms.filter(|(_, law)| is_new(law));
+        Some(LawFiles {
+            curve: beside(dependence.curve(), job),
+            forms: forms.map(|(form, law)| (form, beside(law, job))).collect(),
+        })
+        .filter(|files| is_new(&files.curve))
+    }
+}
+
+/// The law in a file that the job does not have yet.
+fn beside(law: CandidateEffect, job: &FileSet) -> CandidateEffect {
+    match law.extension {
+        Extension::File { name, text } => CandidateEffect {
+            extension: Extension::File {
+                name: free_name(name.trim_end_matches(".toml"), job),
+                text,
+            },
+            ..law
+        },
+        _ => law,
+    }
+}
+
+/// `NAME.toml`, or with a number where the job has such a file of another effect.
+pub(crate) fn free_name(name: &str, job: &FileSet) -> String {
+    let numbered = (2..).map(|number| format!("{name}-{number}.toml"));
+    let mut names = std::iter::once(format!("{name}.toml")).chain(numbered);
+    names
+        .find(|name| !job.files.contains_key(name))
+        .unwrap_or_default()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::candidate::{extended, spec};
+    use crate::fixture::read;
+    use crate::law::dependence::dependences;
+    use job::Spec;
+
+    /// The shear stress against the normal velocity.
+    fn dependence(spec: &Spec) -> Dependence {
+        let mut all = dependences(&spec.experiment).into_iter();
+        all.find(|candidate| candidate.name() == "shear_v_n").unwrap()
+    }
+
+    /// Names of the curve and of the forms that the job can add, for the shear stress against the normal velocity.
+    fn addable(job: &FileSet, experiment: &FileSet) -> Option<(String, Vec<String>)> {
+        let spec = spec(job, experiment).unwrap();
+        let files = LawFiles::addable(&dependence(&spec), job, &spec.fit_variant.effects)?;
+        let forms = files.forms.iter();
+        let names = forms.map(|(form, law)| format!("{}: {}", form.name(), file(law)));
+        Some((file(&files.curve), names.collect()))
+    }
+
+    fn file(law: &CandidateEffect) -> String {
+        match &law.extension {
+            Extension::File { name, .. } => name.clone(),
+            other => panic!("{other:?}"),
+        }
+    }
+
+    fn law(job: &FileSet, experiment: &FileSet, form: Option<LawForm>) -> Extension {
+        let dependence = dependence(&spec(job, experiment).unwrap());
+        form.map_or_else(|| dependence.curve(), |form| form.of(&dependence))
+            .extension
+    }
+
+    #[test]
+    fn a_law_that_a_job_has_is_not_offered_again() {
+        let (job, experiment, _) = read("tests/data/shear-mobilisation");
+        let (curve, forms) = addable(&job, &experiment).unwrap();
+        assert_eq!((curve.as_str(), forms.len()), ("scan_shear_v_n.toml", 7));
+        let form = law(&job, &experiment, Some(LawForm::Power));
+        let with_form = extended("job.toml", &job, &[&form]).unwrap();
+        let (curve, others) = addable(&with_form, &experiment).unwrap();
+        assert_eq!(curve, "scan_shear_v_n.toml");
+        assert_eq!(others, forms[1..], "the power is the first form");
+        let curve = law(&job, &experiment, None);
+        let with_curve = extended("job.toml", &job, &[&curve]).unwrap();
+        assert_eq!(addable(&with_curve, &experiment), None);
+    }
+
+    #[test]
+    fn a_file_of_another_effect_keeps_its_name() {
+        let (mut job, experiment, _) = read("tests/data/shear-mobilisation");
+        let Extension::File { name, text } = law(&job, &experiment, Some(LawForm::Power)) else {
+            panic!("a law is a file");
+        };
+        let text = text.replace("name = \"shear_v_n_power\"", "name = \"mine\"");
+        job = extended("job.toml", &job, &[&Extension::File { name, text }]).unwrap();
+        let (_, forms) = addable(&job, &experiment).unwrap();
+        assert_eq!(forms[0], "power: shear_v_n_power-2.toml");
+        assert_eq!(forms[1], "saturation: shear_v_n_saturation.toml");
+    }
+}

@@ -1,0 +1,30 @@
+//! The search for a missing effect on the farm: its models as jobs, and its result in names and sentences.
+//!
+//! # Layout
+//! - [`candidate`]: candidate effects as additions to a job, and those of the library. `law`: laws outside the library as effect files.
+//! - [`untried`]: effects that need what the experiment does not state.
+//! - `models`: the models of a search, made when they are queried; `entry`: their candidates, `family`: those that are tried together.
+//!   `design`: levels of the design, and
+//!   runs that the rig could make.
+//! - `search`: a search in progress, as leases take it.
+//! - `discovery_record`: its result as stored; `curves`: what its explanations predict; `narrative`: in one sentence; `remaining_misfit`: what it leaves.
+//! - `bench_measurement`: measurements without a rolling wheel that tell explanations apart.
+
+mod bench_measurement;
+pub mod candidate;
+mod curves;
+mod design;
+mod discovery_record;
+mod entry;
+mod family;
+#[cfg(test)]
+mod fixture;
+mod law;
+mod models;
+mod narrative;
+mod remaining_misfit;
+mod search;
+pub mod untried;
+
+pub use models::SearchModels;
+pub use search::{DiscoveryError, RunningDiscovery};

@@ -1,0 +1,521 @@
+//! The models of a search, made when they are queried.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use discovery::{
+    LawCandidate, ProposedRuns, QueriedModel, Query, Reduction, Roughness, SearchSettings, SearchTask, Starts,
+};
+use formula::catalogue::{catalogue, find};
+use formula::slip::variables;
+use formula::{Effect, Variable};
+use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
+use shared::channel::Channel;
+use shared::experiment::Experiment;
+use shared::file::{FileError, FileSet};
+use shared::model::{EffectSet, ExternalModel, ModelKind, ModelVariant, RunCondition};
+use shared::outcome::Observables;
+
+use super::candidate::{
+    CandidateEffect, EXPERIMENT, ExclusionReason, JOB, candidate_of, extended, library, spec,
+};
+use super::design;
+use super::entry::{CandidateEntry, LawEntry};
+use super::family::set_families;
+use super::law::dependence::{Dependence, dependences};
+use super::law::file::LawFiles;
+use super::untried::untried;
+use job::{
+    EffectOnNodes, FreeParameter, JobFile, MODEL_SWITCHES, PLAIN_PARAMETERS, Spec, free_parameters,
+    without_effects,
+};
+use record::{Extension, NotTried};
+
+/// Position in the series of the campaign from which a rig goes on.
+const LAST_IN_SERIES: f64 = 0.5;
+/// Starts of the base's fit.
+const STARTS: usize = 32;
+
+/// What decides the variant of a query.
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
+struct VariantKey {
+    model: QueriedModel,
+    is_proposed: bool,
+    is_companion: bool,
+}
+
+impl VariantKey {
+    fn of(query: &Query) -> Self {
+        Self {
+            model: sorted(&query.model),
+            is_proposed: query.is_proposed,
+            is_companion: query.is_companion,
+        }
+    }
+}
+
+/// The models of a search.
+#[derive(Debug)]
+pub struct SearchModels {
+    pub(super) job: FileSet,
+    /// The experiment with typical values for what it leaves unsaid.
+    assumed: Experiment,
+    pub(super) base: Spec,
+    pub(super) library: Vec<CandidateEntry>,
+    /// The other kind of model, where the job asks for it and cannot have it, and effects inside the contact of a model that does not
+    /// show it.
+    not_tried: Vec<NotTried>,
+    pub(super) laws: Vec<LawEntry>,
+    /// The base's own effects, each with the names of the parameters that remain without it.
+    pub(super) reductions: Vec<(String, Vec<String>)>,
+    /// Proposed runs.
+    pub(super) design: Vec<RunCondition>,
+    /// The measured channels with their noise sds.
+    channels: Vec<(Channel, f64)>,
+    /// Hash and variant of what was asked.
+    variants: BTreeMap<VariantKey, (String, ModelVariant)>,
+    /// Key of each variant by its hash.
+    keys: BTreeMap<String, VariantKey>,
+    max_effects: usize,
+}
+
+impl SearchModels {
+    /// # Arguments
+    /// - `job`: of the base model, with its effects. `max_effects`: most effects in a combination, as far as a job has room for them.
+    ///
+    /// # Errors
+    /// [`FileError`] of job or experiment.
+    pub fn new(job: &FileSet, experiment: &FileSet, max_effects: usize) -> Result<Self, FileError> {
+        let base = spec(job, experiment)?;
+        let fail = |message: String| FileError::whole(JOB, message);
+        let (effects, excluded) = library(job, experiment);
+        let (untried, assumed) = untried(job, experiment, base.model.is_smooth(), &excluded)?;
+        let known = |name: &str| base.parameters.iter().any(|p| p.name == name);
+        let entry = |own: CandidateEffect, experiment: &FileSet| {
+            let with = spec(&extended(JOB, job, &[&own.extension])?, experiment)?;
+            let free: Vec<FreeParameter> = with.parameters.into_iter().filter(|p| !known(&p.name)).collect();
+            let effect = candidate_of(&own.name).map(|(effect, _)| effect);
+            Ok::<_, FileError>(effect.and_then(|effect| CandidateEntry::new(own, effect, free, false)))
+        };
+        let mut entries = Vec::new();
+        for own in effects {
+            entries.extend(entry(own, experiment)?);
+        }
+        entries.extend(
+            PLAIN_PARAMETERS
+                .iter()
+                .filter_map(|plain| CandidateEntry::plain(plain, &base)),
+        );
+        let external = base.model.external.iter();
+        let mut not_tried: Vec<NotTried> = external.flat_map(out_of_reach).collect();
+        not_tried.extend(absent(&excluded));
+        for switch in &MODEL_SWITCHES {
+            match CandidateEntry::switch(switch, &base, job, experiment) {
+                Ok(own) => entries.extend(own),
+                // A setting that the model cannot have is none of the job's alternatives; another kind was asked for.
+                Err(why) => not_tried.extend(switch.is_kind().then_some(why)),
+            }
+        }
+        for own in untried {
+            let needing = Some(own.record());
+            let own = entry(own.effect, &assumed)?;
+            entries.extend(own.map(|own| CandidateEntry {
+                not_tried: needing,
+                ..own
+            }));
+        }
+        exclude_on_nodes(&mut entries);
+        set_families(&mut entries);
+        let of_file = |law: CandidateEffect| -> Result<CandidateEntry, FileError> {
+            let name = law.name.clone();
+            let Extension::File { text, .. } = &law.extension else {
+                return Err(fail(format!("{name} is not an effect file")));
+            };
+            let effect = Effect::read(text).map_err(|e| fail(format!("{name}: {e}")))?;
+            let free = free_parameters(&effect).map_err(|e| fail(e.to_string()))?;
+            let entry = CandidateEntry::new(law, &effect, free, true);
+            entry.ok_or_else(|| fail(format!("{name} has no strength")))
+        };
+        // A job has at most so many effects; one place is for a law beyond the best combination.
+        let room = EffectSet::MOST.saturating_sub(base.fit_variant.effects.len());
+        let mut laws = Vec::new();
+        let of_model = |dependence: &Dependence| dependence.is_shown_by(base.model.external.as_ref());
+        let dependences = dependences(&base.experiment).into_iter().filter(of_model);
+        for dependence in dependences.take_while(|_| room > 1) {
+            let Some(LawFiles { curve, forms }) =
+                LawFiles::addable(&dependence, job, &base.fit_variant.effects)
+            else {
+                continue;
+            };
+            let forms = forms.into_iter().map(|(form, file)| Ok((form, of_file(file)?)));
+            laws.push(LawEntry {
+                curve: of_file(curve)?,
+                forms: forms.collect::<Result<_, FileError>>()?,
+                dependence,
+            });
+        }
+        let own: Vec<String> = base.fit_variant.effects.iter().map(|e| e.name.clone()).collect();
+        let mut reductions = Vec::new();
+        for effect in own {
+            // An effect stays without which the job is invalid.
+            if let Ok(without) = spec(
+                &without_effects(JOB, job, std::slice::from_ref(&effect))?,
+                experiment,
+            ) {
+                let names = without.parameters.into_iter().map(|p| p.name).collect();
+                reductions.push((effect, names));
+            }
+        }
+        let prior_means: Vec<f64> = base.parameters.iter().map(|p| p.marginal.quantile(0.5)).collect();
+        Ok(Self {
+            design: design::proposed(&base),
+            channels: design::channels(&base, &prior_means),
+            job: job.clone(),
+            assumed: Experiment::parse(EXPERIMENT, &assumed)?,
+            library: entries,
+            not_tried,
+            laws,
+            reductions,
+            variants: BTreeMap::new(),
+            keys: BTreeMap::new(),
+            max_effects: max_effects.min(room.saturating_sub(1)),
+            base,
+        })
+    }
+
+    /// What is not tried: effects that need what the experiment does not state, those that need what a model that is not ours does not
+    /// show, and another kind that the job cannot have.
+    pub fn not_tried(&self) -> impl Iterator<Item = &NotTried> {
+        let effects = self.library.iter().filter_map(|entry| entry.not_tried.as_ref());
+        effects.chain(&self.not_tried)
+    }
+
+    /// The task of the search.
+    pub fn task(&self) -> SearchTask {
+        let base = &self.base;
+        let place = |name: &String| base.parameters.iter().position(|p| p.name == *name);
+        let reduction = |(_, names): &(String, Vec<String>)| Reduction {
+            parameters: names.iter().filter_map(place).collect(),
+        };
+        let law = |law: &LawEntry| LawCandidate {
+            curve: law.curve.candidate.clone(),
+            forms: law.forms.iter().map(|(_, form)| form.candidate.clone()).collect(),
+            is_description: law.dependence.acts_on.channel().is_some(),
+        };
+        SearchTask {
+            prior: base.prior(),
+            likelihood: base.likelihood.clone(),
+            library: self.library.iter().map(|entry| entry.candidate.clone()).collect(),
+            laws: self.laws.iter().map(law).collect(),
+            reductions: self.reductions.iter().map(reduction).collect(),
+            levels: design::levels(base),
+            conditions: design::conditions(base),
+            proposed: ProposedRuns {
+                runs: self.design.len(),
+                beyond: design::beyond(base, &self.design),
+                channels: self.channels.iter().map(|(channel, _)| channel.index()).collect(),
+                noise_sds: self.channels.iter().map(|(_, sd)| *sd).collect(),
+            },
+            max_effects: self.max_effects,
+            settings: SearchSettings {
+                starts: Starts::Even(STARTS),
+                seed: base.algorithm.seed(),
+                roughness: match base.model.kind {
+                    ModelKind::QuasiStatic | ModelKind::WongReece | ModelKind::Rft => Roughness::Smooth,
+                    // Fine as its grid may be, its evaluations are dear.
+                    ModelKind::Scm => Roughness::Rough,
+                    // Whether another model has a grid, nobody has said.
+                    ModelKind::Command | ModelKind::Umbridge => Roughness::Unknown,
+                },
+                has_numerical_noise: base.model.kind != ModelKind::QuasiStatic,
+                has_companion: base.model.kind == ModelKind::Scm && base.fit_variant.coarse().is_ok(),
+            },
+        }
+    }
+
+    /// The candidate of an index: the library, then the curve and the forms of each law.
+    pub(super) fn entry(&self, index: usize) -> Option<&CandidateEntry> {
+        let of_laws = self.laws.iter().flat_map(|law| {
+            let forms = law.forms.iter().map(|(_, entry)| entry);
+            std::iter::once(&law.curve).chain(forms)
+        });
+        self.library.iter().chain(of_laws).nth(index)
+    }
+
+    /// The name of a candidate; empty without one.
+    pub(super) fn name(&self, index: usize) -> String {
+        let entry = self.entry(index);
+        entry.map_or(String::new(), |entry| entry.effect.name.clone())
+    }
+
+    /// Makes the variants of queries that were not asked before; hundreds in a round of a search, so on all cores.
+    ///
+    /// # Errors
+    /// [`FileError`] where the effects are incompatible.
+    pub fn make<'q>(&mut self, queries: impl Iterator<Item = &'q Query>) -> Result<(), FileError> {
+        let keys: BTreeSet<VariantKey> = queries.map(VariantKey::of).collect();
+        let unknown = keys.into_iter().filter(|key| !self.variants.contains_key(key));
+        let unknown: Vec<VariantKey> = unknown.collect();
+        let one = |key: &VariantKey| {
+            let mut variant = self.of_fitted_runs(&key.model)?;
+            if key.is_proposed {
+                variant = self.of_proposed_runs(variant);
+            }
+            if key.is_companion {
+                let coarse = variant.coarse();
+                variant = coarse.map_err(|e| FileError::whole(JOB, e.to_string()))?;
+            }
+            Ok((variant.hash(), variant))
+        };
+        let made: Vec<Result<(String, ModelVariant), FileError>> = unknown.par_iter().map(one).collect();
+        // The first error in the order of the models, whichever came first in time.
+        let made: Vec<(String, ModelVariant)> = made.into_iter().collect::<Result<_, _>>()?;
+        let keys = made
+            .iter()
+            .map(|(hash, _)| hash.clone())
+            .zip(unknown.iter().cloned());
+        self.keys.extend(keys);
+        self.variants.extend(unknown.into_iter().zip(made));
+        Ok(())
+    }
+
+    /// The variant of a query, with its hash.
+    ///
+    /// # Errors
+    /// [`FileError`] where the effects are incompatible.
+    pub fn variant(&mut self, query: &Query) -> Result<&(String, ModelVariant), FileError> {
+        self.make(std::iter::once(query))?;
+        Ok(&self.variants[&VariantKey::of(query)])
+    }
+
+    /// The variant of a query that was made before, with its hash.
+    pub fn made(&self, query: &Query) -> Option<&(String, ModelVariant)> {
+        self.variants.get(&VariantKey::of(query))
+    }
+
+    /// The variant of a hash that was made before.
+    pub fn of_hash(&self, hash: &str) -> Option<&ModelVariant> {
+        let key = self.keys.get(hash)?;
+        self.variants.get(key).map(|(_, variant)| variant)
+    }
+
+    /// The same model on the proposed runs.
+    fn of_proposed_runs(&self, mut variant: ModelVariant) -> ModelVariant {
+        // The soil's density is there only if an effect of this variant needs it, and so is the place in the series: proposed runs
+        // follow its end.
+        let density_kg_m3 = variant.conditions.first().and_then(|c| c.density_kg_m3);
+        let drifts = variant.conditions.iter().any(|c| c.order.is_some());
+        variant.conditions.clone_from(&self.design);
+        for condition in &mut variant.conditions {
+            condition.density_kg_m3 = density_kg_m3;
+            condition.order = drifts.then_some(LAST_IN_SERIES);
+        }
+        variant.stiffness_sensitivity = false;
+        variant.plates.clear();
+        variant.rings.clear();
+        variant
+    }
+
+    fn of_fitted_runs(&self, model: &QueriedModel) -> Result<ModelVariant, FileError> {
+        let (job, experiment) = match model {
+            QueriedModel::With(effects) => {
+                let entries: Vec<&CandidateEntry> = effects.iter().filter_map(|&k| self.entry(k)).collect();
+                let extensions: Vec<&Extension> = entries.iter().map(|e| &e.effect.extension).collect();
+                let is_assumed = entries.iter().any(|e| e.not_tried.is_some());
+                let experiment = if is_assumed {
+                    &self.assumed
+                } else {
+                    &self.base.experiment
+                };
+                (extended(JOB, &self.job, &extensions)?, experiment)
+            }
+            QueriedModel::Without(k) => {
+                let job = without_effects(JOB, &self.job, std::slice::from_ref(&self.reductions[*k].0))?;
+                (job, &self.base.experiment)
+            }
+        };
+        let parsed = JobFile::parse(JOB, &job.toml)?.into_search();
+        let spec = Spec::measured(JOB, parsed, &job.files, EXPERIMENT, experiment.clone())?;
+        Ok(spec.fit_variant)
+    }
+
+    /// The parameters of a query in the order of its variant.
+    pub fn model_theta(&self, query: &Query, variant: &ModelVariant) -> Vec<f64> {
+        let names: Vec<&str> = match &query.model {
+            QueriedModel::With(effects) => {
+                let base = self.base.parameters.iter().map(|p| p.name.as_str());
+                let own = effects.iter().filter_map(|&k| self.entry(k));
+                base.chain(own.flat_map(|entry| entry.names.iter().map(String::as_str)))
+                    .collect()
+            }
+            QueriedModel::Without(k) => self.reductions[*k].1.iter().map(String::as_str).collect(),
+        };
+        let value = |name: &String| {
+            let place = names.iter().position(|own| own == name);
+            place.map_or(f64::NAN, |i| query.theta[i])
+        };
+        variant.parameters.iter().map(value).collect()
+    }
+
+    /// The values that answer a query.
+    pub fn values(&self, query: &Query, observables: &Observables) -> Vec<f64> {
+        if !query.is_proposed {
+            return self.base.predicted_values(observables);
+        }
+        let channel = |run: usize| {
+            let channels = self.channels.iter();
+            channels.map(move |(channel, _)| observables.channel(*channel)[run])
+        };
+        (0..self.design.len()).flat_map(channel).collect()
+    }
+}
+
+/// An effect with the displacement on the nodes puts that of all others there, too: it makes no combination with them.
+fn exclude_on_nodes(entries: &mut [CandidateEntry]) {
+    let uses_displacement = |own: &&CandidateEntry| {
+        let effect = candidate_of(&own.effect.name);
+        effect.is_some_and(|(effect, _)| effect.uses().contains(Variable::J))
+    };
+    let names = entries
+        .iter()
+        .filter(uses_displacement)
+        .map(|own| own.effect.name.clone());
+    let names: Vec<String> = names.collect();
+    for own in entries {
+        if EffectOnNodes::find(&own.effect.name).is_some() {
+            let others = names.iter().filter(|other| **other != own.effect.name);
+            own.candidate.excludes = others.cloned().collect();
+        }
+    }
+}
+
+/// The effects that change nothing at the conditions of any fitted run.
+fn absent(excluded: &[(String, ExclusionReason)]) -> impl Iterator<Item = NotTried> {
+    let everywhere = excluded.iter().filter(|(name, reason)| {
+        let is_on_one_wheel = name.contains('.');
+        matches!(reason, ExclusionReason::AbsentEverywhere) && !is_on_one_wheel
+    });
+    everywhere.map(|(name, reason)| NotTried {
+        name: name.clone(),
+        why: reason.to_string(),
+        needs: format!("{}{}", NotTried::RUNS, where_it_acts(name)),
+    })
+}
+
+/// The conditions in which an effect of the catalogue changes something, the simplest that do.
+fn where_it_acts(name: &str) -> String {
+    const SLIP: f64 = 0.3;
+    const ANGLE_RAD: f64 = 0.26;
+    let acts = |slip: f64, angle: f64| find(name).is_some_and(|e| !e.is_absent_at(&variables(slip, angle)));
+    let straight = [("in drive", SLIP), ("in skid", -SLIP)];
+    let mut found: Vec<String> = straight
+        .into_iter()
+        .filter(|(_, slip)| acts(*slip, 0.0))
+        .map(|(words, _)| words.to_owned())
+        .collect();
+    // An angle alone matters where it shows what straight runs of that slip do not.
+    let at_angle: Vec<&str> = straight
+        .into_iter()
+        .filter(|(_, slip)| acts(*slip, ANGLE_RAD) && !acts(*slip, 0.0))
+        .map(|(words, _)| words)
+        .collect();
+    match at_angle.as_slice() {
+        [] => {}
+        [one] if found.is_empty() => found.push(format!("at a slip angle {one}")),
+        _ => found.push("at a slip angle".to_owned()),
+    }
+    found.join(" or ")
+}
+
+/// The effects of the catalogue that cannot act around a model that is not ours.
+fn out_of_reach(model: &ExternalModel) -> impl Iterator<Item = NotTried> {
+    let record = |effect: &Effect| {
+        Some(NotTried {
+            name: effect.name.clone(),
+            why: model.why_not(effect)?,
+            needs: NotTried::OUR_MODEL.to_owned(),
+        })
+    };
+    catalogue().iter().filter_map(record)
+}
+
+/// The model with its effects in the order of the candidates.
+fn sorted(model: &QueriedModel) -> QueriedModel {
+    match model {
+        QueriedModel::With(effects) => {
+            let mut effects = effects.clone();
+            effects.sort_unstable();
+            QueriedModel::With(effects)
+        }
+        without @ QueriedModel::Without(_) => without.clone(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fixture::read;
+
+    #[test]
+    fn the_companion_of_every_candidate_is_a_quasi_static_variant() {
+        let (mut job, files, _) = read("examples/cmu-sand");
+        let smooth = SearchModels::new(&job, &files, 2).unwrap().task();
+        assert!(!smooth.settings.has_companion);
+        job.toml = job.toml.replacen("kind = \"quasi_static\"", "kind = \"scm\"", 1);
+        let mut models = SearchModels::new(&job, &files, 2).unwrap();
+        let task = models.task();
+        assert!(task.settings.has_companion);
+        let candidates = task.candidates();
+        for name in [
+            "displacement_node",
+            "pressure_direction_vertical",
+            "flow_fraction",
+            "janosi_hanamoto_node",
+        ] {
+            let own = candidates.iter().filter(|own| own.name == name);
+            assert!(own.clone().all(|own| !own.has_companion), "{name}");
+        }
+        for (k, candidate) in candidates.iter().enumerate().filter(|(_, own)| own.has_companion) {
+            for is_proposed in [false, true] {
+                let query = Query {
+                    model: QueriedModel::With(vec![k]),
+                    is_proposed,
+                    is_companion: true,
+                    theta: Vec::new(),
+                };
+                let variant = models.variant(&query).map(|(_, variant)| variant.kind);
+                assert_eq!(variant.unwrap(), ModelKind::QuasiStatic, "{}", candidate.name);
+            }
+        }
+    }
+
+    #[test]
+    fn a_search_asks_for_no_more_effects_than_a_job_may_have() {
+        let (job, files, _) = read("examples/cmu-sand");
+        let task = |count: usize| {
+            let effects = [
+                "slip_sinkage",
+                "skid_sinkage",
+                "hard_pan",
+                "janosi_hanamoto",
+                "adhesion",
+                "stick_slip",
+                "load_scale",
+                "reece_pressure",
+                "edge_loss",
+                "moisture",
+            ];
+            let line = format!("kind = \"quasi_static\"\neffects = {:?}\n", &effects[..count]);
+            let mut job = job.clone();
+            job.toml = job.toml.replacen("kind = \"quasi_static\"\n", &line, 1);
+            SearchModels::new(&job, &files, 3).unwrap().task()
+        };
+        let room = |count: usize| {
+            let task = task(count);
+            (task.max_effects, task.laws.is_empty())
+        };
+        assert_eq!(room(0), (3, false));
+        assert_eq!(room(7), (2, false), "a law beyond two effects is the tenth");
+        assert_eq!(room(9), (0, true));
+        assert_eq!(room(10), (0, true));
+    }
+}

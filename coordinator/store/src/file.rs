@@ -1,0 +1,151 @@
+//! The file of a store: its name, its options, its lock, and what is refused as one.
+
+use std::io::Read;
+use std::os::unix::fs::{MetadataExt, OpenOptionsExt};
+use std::path::Path;
+
+use sqlx::sqlite::{SqliteConnectOptions, SqliteJournalMode, SqlitePoolOptions, SqliteSynchronous};
+use sqlx::{Connection as _, SqliteConnection, SqlitePool};
+
+use super::error::StoreError;
+use super::health::PATIENCE;
+use super::migrations;
+use super::sql::Connection;
+
+/// The file's name without the scheme.
+pub fn file_of(path: &str) -> &str {
+    path.strip_prefix("sqlite://").unwrap_or(path)
+}
+
+pub(super) fn options(path: &str) -> SqliteConnectOptions {
+    // By file name, not by URL: a name may hold a `%` or a `?`.
+    SqliteConnectOptions::new()
+        .filename(file_of(path))
+        .foreign_keys(true)
+        .busy_timeout(PATIENCE)
+}
+
+/// Refuses a database that somebody else has made, or a later version of this program.
+pub(super) async fn recognise(connection: &mut SqliteConnection, path: &str) -> Result<(), StoreError> {
+    let wrap = |source| StoreError::of(path, source);
+    let ours = "SELECT count(*) FROM sqlite_schema WHERE name = '_sqlx_migrations' OR name = 'calibrations'";
+    let known: i64 = sqlx::query_scalar(ours)
+        .fetch_one(&mut *connection)
+        .await
+        .map_err(wrap)?;
+    let all: i64 = sqlx::query_scalar("SELECT count(*) FROM sqlite_schema")
+        .fetch_one(&mut *connection)
+        .await
+        .map_err(wrap)?;
+    if all == 0 {
+        return Ok(());
+    }
+    if known != 2 {
+        return Err(StoreError::Unfit {
+            path: file_of(path).into(),
+            reason: "the database was not created by Grouser".into(),
+        });
+    }
+    let found: Option<i64> = sqlx::query_scalar("SELECT max(version) FROM _sqlx_migrations")
+        .fetch_one(connection)
+        .await
+        .map_err(wrap)?;
+    let (found, known) = (found.unwrap_or_default(), migrations::VERSION);
+    if found > known {
+        let path = file_of(path).into();
+        return Err(StoreError::Newer { path, found, known });
+    }
+    Ok(())
+}
+
+/// A connection that may write.
+pub(super) async fn connect(path: &str, may_create: bool) -> Result<Connection, StoreError> {
+    let options = writing(path).create_if_missing(may_create);
+    let connected = SqliteConnection::connect_with(&options).await;
+    let mut connection = connected.map_err(|source| StoreError::of(path, source))?;
+    recognise(&mut connection, path).await?;
+    Ok(Connection::Sqlite(connection))
+}
+
+fn writing(path: &str) -> SqliteConnectOptions {
+    options(path)
+        .journal_mode(SqliteJournalMode::Wal)
+        .synchronous(SqliteSynchronous::Full)
+}
+
+pub(super) async fn pool(options: SqliteConnectOptions) -> Result<SqlitePool, sqlx::Error> {
+    SqlitePoolOptions::new()
+        .max_connections(4)
+        .connect_with(options)
+        .await
+}
+
+/// Refuses what cannot be a store before anything is written beside it.
+pub(super) fn examine(path: &str) -> Result<(), StoreError> {
+    let file = Path::new(file_of(path));
+    if path.contains(":memory:") {
+        return Ok(());
+    }
+    let unfit = |reason: String| {
+        Err(StoreError::Unfit {
+            path: file.display().to_string(),
+            reason,
+        })
+    };
+    let folder = file
+        .parent()
+        .filter(|f| !f.as_os_str().is_empty())
+        .unwrap_or(Path::new("."));
+    match std::fs::File::open(file) {
+        Ok(open) if !open.metadata().is_ok_and(|m| m.is_file()) => unfit("this is no file".into()),
+        Ok(mut open) => {
+            let mut head = Vec::new();
+            match open.by_ref().take(16).read_to_end(&mut head) {
+                Ok(_) if head.is_empty() || head == b"SQLite format 3\0" => Ok(()),
+                Ok(_) => unfit("the file is not an SQLite database".into()),
+                Err(error) => unfit(error.to_string()),
+            }
+        }
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound && folder.is_dir() => Ok(()),
+        Err(error) => unfit(error.to_string()),
+    }
+}
+
+/// Takes the lock file beside the store; it is released when the returned file is dropped, or at any death.
+///
+/// It is named after the file itself, whatever symlinks lead there. A file with several names is refused: SQLite names
+/// the write-ahead log after the file, so what was acknowledged under one name would be missing under the other.
+pub(super) fn lock(path: &str) -> Result<Option<std::fs::File>, StoreError> {
+    let file = file_of(path);
+    if file.contains(":memory:") {
+        return Ok(None);
+    }
+    let io = |e: std::io::Error| StoreError::Database {
+        path: file.into(),
+        source: sqlx::Error::Io(e),
+    };
+    // A store holds hashes of tokens, the keys of seals and unpublished measurements: it is its owner's alone. SQLite gives the files
+    // beside it the same mode. Whoever has opened a store to others keeps it so.
+    let make = |name: &str| {
+        let mut options = std::fs::OpenOptions::new();
+        options.create(true).append(true).mode(0o600).open(name)
+    };
+    // A link may lead to a file that is not there yet. One that is there is not opened: closing it would end locks of this process.
+    let found = std::fs::metadata(file).or_else(|_| make(file).and_then(|made| made.metadata()));
+    let names = found.map_err(io)?.nlink();
+    if names > 1 {
+        return Err(StoreError::Unfit {
+            path: file.into(),
+            reason: format!(
+                "the file has {names} names (hard links), and each would have a write-ahead log of its own; keep one of them"
+            ),
+        });
+    }
+    let own = std::fs::canonicalize(file).map_err(io)?;
+    let lock = make(&format!("{}.lock", own.display())).map_err(io)?;
+    match lock.try_lock() {
+        Ok(()) => Ok(Some(lock)),
+        Err(std::fs::TryLockError::WouldBlock) => Err(StoreError::InUse(file.into())),
+        Err(std::fs::TryLockError::Error(e)) => Err(io(e)),
+    }
+}

@@ -1,0 +1,161 @@
+//! Everything that is kept, in an SQLite file or in a PostgreSQL server: the only place that knows SQL.
+//!
+//! One task writes (`writer`); everybody else reads through a pool of their own. Statements are written once, in the SQL that both
+//! databases have (`sql`); what only one has stands in `file` and `server`. What the tables mean stands in `migrations/README.md`.
+
+mod backup;
+mod blob;
+mod change;
+mod copy;
+mod damage;
+mod effects;
+mod error;
+mod facts;
+mod file;
+#[cfg(test)]
+mod fixture;
+mod health;
+mod insert;
+mod json;
+mod members;
+mod migrations;
+mod opening;
+mod place;
+mod prior;
+mod read;
+mod reader;
+mod recovery;
+mod removal;
+mod repeats;
+mod results;
+mod server;
+mod sql;
+mod theta;
+mod tokens;
+mod verification;
+mod writer;
+
+use std::path::PathBuf;
+
+pub use backup::BackupError;
+pub use change::StateChange;
+pub use copy::copy_store;
+pub use effects::{AddedEffect, EffectVersion, NewEffect, StoredEffect};
+pub use error::StoreError;
+pub use file::file_of;
+use file::options;
+pub use health::StoreHealth;
+pub use insert::{NewCalibrationRow, NewStudy, StudyIds};
+pub use place::{is_server, name_of};
+pub use read::{StoredStudy, StoredWebhook};
+pub use reader::Reader;
+pub use results::StudyResults;
+use sql::{Connection, Pool, query_scalar};
+pub use tokens::TokenTable;
+pub use writer::Writer;
+
+/// The store: a pool of readers and the way to the one writer.
+#[derive(Debug, Clone)]
+pub struct Store {
+    reader: Reader,
+    writer: Writer,
+    /// The file of one that stands in a file.
+    file: Option<PathBuf>,
+    epoch: u64,
+    is_read_only: bool,
+}
+
+impl Store {
+    /// Opens it, makes it if need be, brings its tables up to date, starts the writer and a new epoch.
+    ///
+    /// # Errors
+    /// [`StoreError`] with the store and the database's reason; [`StoreError::InUse`] where another coordinator holds it.
+    pub async fn open(path: &str, now_ms: i64) -> Result<Store, StoreError> {
+        let wrap = |source| StoreError::of(path, source);
+        let (mut connection, lock) = opening::to_write(path).await?;
+        let epoch = begin_epoch(&mut connection, now_ms).await.map_err(wrap)?;
+        let pool = match is_server(path) {
+            true => Pool::Postgres(server::pool(path).await?),
+            false => Pool::Sqlite(file::pool(options(path)).await.map_err(wrap)?),
+        };
+        let writer = Writer::start(connection, lock);
+        Ok(Store {
+            reader: Reader::of(pool),
+            writer,
+            file: (!is_server(path)).then(|| file_of(path).into()),
+            epoch,
+            is_read_only: false,
+        })
+    }
+
+    /// Opens it for reading alone, also beside a coordinator that writes to it; whatever is told is refused.
+    ///
+    /// # Errors
+    /// [`StoreError`]; damage is no error, but a warning of the log.
+    pub async fn open_read_only(path: &str) -> Result<Store, StoreError> {
+        let reader = Reader::open(path).await?;
+        if let Pool::Sqlite(pool) = &reader.pool {
+            let mut connection = pool.acquire().await?;
+            if let Err(error) = damage::check(&mut connection, path).await {
+                tracing::warn!(%error, "what can be read is shown");
+            }
+        }
+        Ok(Store {
+            reader,
+            writer: Writer::none(),
+            file: (!is_server(path)).then(|| file_of(path).into()),
+            epoch: 0,
+            is_read_only: true,
+        })
+    }
+
+    /// Whether the file is opened for reading alone.
+    pub fn is_read_only(&self) -> bool {
+        self.is_read_only
+    }
+
+    /// The way to the writer.
+    pub fn writer(&self) -> &Writer {
+        &self.writer
+    }
+
+    /// Stores what was told before and closes the file.
+    pub async fn close(&self) {
+        // Readers first: the last connection folds the write-ahead log into the file.
+        self.reader.pool.close().await;
+        self.writer.close().await;
+    }
+
+    /// Sizes of the file and of its write-ahead log `[bytes]`; a server measures its own.
+    pub fn sizes_bytes(&self) -> Option<[u64; 2]> {
+        let file = self.file.as_ref()?;
+        let log = PathBuf::from(format!("{}-wal", file.display()));
+        Some([file, &log].map(|file| std::fs::metadata(file).map_or(0, |file| file.len())))
+    }
+
+    /// Number of the present start of the coordinator on this store.
+    pub fn epoch(&self) -> u64 {
+        self.epoch
+    }
+
+    /// What can be read.
+    pub fn reader(&self) -> Reader {
+        self.reader.clone()
+    }
+}
+
+/// Seconds from 1970 to 2026.
+const EPOCHS_FROM_S: i64 = 1_767_225_600;
+
+/// Numbers this start by the clock, but above every start before.
+async fn begin_epoch(connection: &mut Connection, now_ms: i64) -> Result<u64, sqlx::Error> {
+    let epoch: i64 = query_scalar(
+        "INSERT INTO epochs (epoch, started_at_ms)
+         VALUES (max(?, 1 + (SELECT coalesce(max(epoch), 0) FROM epochs)), ?) RETURNING epoch",
+    )
+    .bind(now_ms / 1000 - EPOCHS_FROM_S)
+    .bind(now_ms)
+    .fetch_one(connection)
+    .await?;
+    Ok(epoch.unsigned_abs())
+}

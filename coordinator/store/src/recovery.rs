@@ -1,0 +1,226 @@
+//! What a restart needs of an unfinished calibration.
+
+use std::collections::BTreeMap;
+
+use shared::api::CalibrationState;
+use statistics::SubchainEnd;
+
+use super::blob;
+use super::error::StoreError;
+use super::reader::Reader;
+use super::sql::{Row, query, query_scalar};
+use super::theta::theta;
+use record::{Fingerprint, SealKey, Stored, StoredEvaluation};
+
+/// Most evaluations that one statement reads: a long calibration has hundreds of thousands.
+const PAGE: usize = 2_000;
+
+impl Reader {
+    /// Ids of the calibrations that are not over, oldest first.
+    ///
+    /// # Errors
+    /// [`StoreError`].
+    pub async fn unfinished(&self) -> Result<Vec<i64>, StoreError> {
+        let ids = query_scalar(
+            "SELECT id FROM calibrations WHERE state NOT IN ('finished', 'failed', 'cancelled') ORDER BY id",
+        )
+        .fetch_all(&self.pool)
+        .await?;
+        Ok(ids)
+    }
+
+    /// The key that seals the leases of a calibration.
+    ///
+    /// # Errors
+    /// [`StoreError`]; [`StoreError::Corrupt`] where the key does not have 16 bytes.
+    pub async fn seal_key(&self, calibration: i64) -> Result<SealKey, StoreError> {
+        let key: Option<Vec<u8>> = query_scalar("SELECT seal_key FROM calibrations WHERE id = ?")
+            .bind(calibration)
+            .fetch_one(&self.pool)
+            .await?;
+        let bytes = key.and_then(|key| key.try_into().ok());
+        let corrupt = || {
+            StoreError::Corrupt(format!(
+                "the seal key of calibration {calibration} is not 16 bytes"
+            ))
+        };
+        bytes.map(SealKey).ok_or_else(corrupt)
+    }
+
+    /// Everything a replay needs; with `fitted`, also the models' values, which a fit is told and a metamodel
+    /// learns from.
+    ///
+    /// # Errors
+    /// [`StoreError`].
+    pub async fn stored(&self, calibration: i64, fitted: bool) -> Result<Stored, StoreError> {
+        // One view of the store: results may be dropped meanwhile.
+        let mut view = self.pool.view().await?;
+        let row = query(
+            "SELECT state, message, model_version, busy_ms,
+             EXISTS (SELECT 1 FROM rewinds WHERE calibration = ?1 AND results > 0) AS is_rewound
+             FROM calibrations WHERE id = ?1",
+        )
+        .bind(calibration)
+        .fetch_one(&mut view)
+        .await?;
+        let mut evaluations = BTreeMap::new();
+        loop {
+            let after = evaluations
+                .last_key_value()
+                .map_or(-1, |(&number, _)| number as i64);
+            let rows = query(
+                "SELECT evaluation, theta, log_likelihood, rejection IS NOT NULL AS rejected, worker, fingerprint,
+                 confirmed_by IS NOT NULL AS is_confirmed,
+                 CASE WHEN ?2 THEN fitted END AS fitted, CASE WHEN ?2 THEN coarse END AS coarse, subchain
+                 FROM evaluations WHERE calibration = ?1 AND evaluation > ?3 ORDER BY evaluation LIMIT ?4",
+            )
+            .bind(calibration)
+            .bind(fitted)
+            .bind(after)
+            .bind(PAGE as i64)
+            .fetch_all(&mut view)
+            .await?;
+            for row in &rows {
+                let number = row.try_get::<i64>("evaluation")?.unsigned_abs();
+                let named = |error: StoreError| {
+                    error.within(&format!("calibration {calibration}, evaluation {number}"))
+                };
+                evaluations.insert(number, stored_evaluation(row).map_err(named)?);
+            }
+            if rows.len() < PAGE {
+                break;
+            }
+        }
+        let faults =
+            query("SELECT evaluation, attempt, worker FROM faults WHERE calibration = ? ORDER BY id")
+                .bind(calibration)
+                .fetch_all(&mut view)
+                .await?;
+        view.close().await?;
+        let mut failed: BTreeMap<u64, Vec<String>> = BTreeMap::new();
+        for fault in &faults {
+            let workers = failed
+                .entry(fault.try_get::<i64>("evaluation")?.unsigned_abs())
+                .or_default();
+            match fault.try_get::<i64>("attempt")? {
+                // a user granted new attempts
+                0 => workers.clear(),
+                _ => workers.push(fault.try_get("worker")?),
+            }
+        }
+        failed.retain(|_, workers| !workers.is_empty());
+        Ok(Stored {
+            state: CalibrationState::from_name(row.try_get("state")?),
+            message: row.try_get("message")?,
+            model_version: row.try_get("model_version")?,
+            busy_ms: row.try_get::<i64>("busy_ms")?.unsigned_abs(),
+            evaluations,
+            is_rewound: row.try_get("is_rewound")?,
+            failed,
+        })
+    }
+}
+
+fn stored_evaluation(row: &Row) -> Result<StoredEvaluation, StoreError> {
+    let values = |column: &str| {
+        let bytes: Option<&[u8]> = row.try_get(column)?;
+        bytes.map(blob::decode_values).transpose()
+    };
+    let end: Option<&str> = row.try_get("subchain")?;
+    Ok(StoredEvaluation {
+        theta: theta(row)?,
+        log_likelihood: row.try_get("log_likelihood")?,
+        rejected: row.try_get("rejected")?,
+        worker: row.try_get("worker")?,
+        fingerprint: Fingerprint(row.try_get("fingerprint")?),
+        is_confirmed: row.try_get("is_confirmed")?,
+        fitted: values("fitted")?,
+        coarse: values("coarse")?,
+        end: end.map(subchain_end).transpose()?,
+    })
+}
+
+fn subchain_end(json: &str) -> Result<SubchainEnd, StoreError> {
+    serde_json::from_str(json).map_err(|e| StoreError::Corrupt(format!("subchain {json}: {e}")))
+}
+
+#[cfg(test)]
+mod tests {
+    use record::{EvaluationRow, Fact, HOLDOUT_RUNS_FROM, Kept, PREDICTIONS_FROM};
+
+    use super::*;
+    use crate::fixture;
+
+    fn row(evaluation: u64, theta: Vec<f64>, kept: Kept) -> EvaluationRow {
+        EvaluationRow {
+            evaluation,
+            theta,
+            log_likelihood: (!matches!(kept, Kept::Rejected(_))).then_some(-0.1 * evaluation as f64),
+            kept,
+            coarse: None,
+            end: None,
+            fingerprint: Fingerprint(-1),
+            worker: "worker".into(),
+        }
+    }
+
+    #[tokio::test]
+    async fn every_evaluation_comes_back_to_the_bit_from_several_pages_and_in_both_forms_of_theta() {
+        let (_folder, store, calibration) = fixture::store().await;
+        let theta = |number: u64| vec![f64::from_bits(0x3fb9_9999_9999_999a + number), -0.0, 1e-300];
+        let kept = |number: u64| match number % 3 {
+            0 => Kept::Scored,
+            1 => Kept::Fitted(vec![number as f64, 0.1]),
+            _ => Kept::Rejected("no_support: condition 0: toy".into()),
+        };
+        let last = PAGE as u64 + 7;
+        // They arrive in any order.
+        let facts = (0..=last).rev().map(|number| Fact::Evaluated {
+            calibration,
+            row: row(number, theta(number), kept(number)),
+        });
+        let fact = (store.writer().sink())(facts.collect()).unwrap();
+        store.writer().durable(fact).await.unwrap();
+        query(
+            "INSERT INTO evaluations (calibration, evaluation, theta, log_likelihood, fitted, fingerprint, worker)
+             VALUES (?, ?, '[0.1,1e-300]', -1.5, x'', 0, 'older')",
+        )
+        .bind(calibration)
+        .bind(last as i64 + 1)
+        .execute(&store.reader.pool)
+        .await
+        .unwrap();
+        let stored = store
+            .reader()
+            .stored(calibration, true)
+            .await
+            .unwrap()
+            .evaluations;
+        assert_eq!(stored.len() as u64, last + 2);
+        let bits = |theta: &[f64]| theta.iter().map(|x| x.to_bits()).collect::<Vec<_>>();
+        for (&number, evaluation) in stored.iter().take(last as usize + 1) {
+            assert_eq!(bits(&evaluation.theta), bits(&theta(number)));
+            assert_eq!(evaluation.rejected, number % 3 == 2);
+            let values = evaluation.fitted.as_deref();
+            assert_eq!(values == Some(&[number as f64, 0.1]), number % 3 == 1);
+        }
+        assert_eq!(bits(&stored[&(last + 1)].theta), bits(&[0.1, 1e-300]));
+        store.close().await;
+    }
+
+    #[tokio::test]
+    async fn refusals_of_final_draws_are_not_counted_as_parameter_vectors() {
+        let (_folder, store, calibration) = fixture::store().await;
+        let rejected = || Kept::Rejected("no_support: condition 0: toy".into());
+        let numbers = [4, PREDICTIONS_FROM + 1, HOLDOUT_RUNS_FROM + 3];
+        let facts = numbers.map(|number| Fact::Evaluated {
+            calibration,
+            row: row(number, vec![0.1], rejected()),
+        });
+        let fact = (store.writer().sink())(facts.into()).unwrap();
+        store.writer().durable(fact).await.unwrap();
+        let refused = store.reader().rejections(calibration).await.unwrap();
+        assert_eq!(refused, [("no_support".to_owned(), 1)].into());
+        store.close().await;
+    }
+}

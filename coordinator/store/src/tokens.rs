@@ -1,0 +1,142 @@
+//! Tokens in the store, which the command line changes while a coordinator may be running.
+
+use super::error::StoreError;
+use super::opening;
+use super::reader::Reader;
+use super::sql::{Connection, Row, query};
+use record::{Token, TokenHash, TokenRole};
+
+const TOKENS: &str = "SELECT name, role, hash, created_at_ms, revoked_at_ms FROM tokens ORDER BY id";
+
+impl Reader {
+    /// Every token that was ever made, oldest first. A store of before migration 14 has none.
+    ///
+    /// # Errors
+    /// [`StoreError`].
+    pub async fn tokens(&self) -> Result<Vec<Token>, StoreError> {
+        if !self.has_table("tokens").await? {
+            return Ok(Vec::new());
+        }
+        let rows = query(TOKENS).fetch_all(&self.pool).await?;
+        rows.iter().map(token).collect()
+    }
+}
+
+fn token(row: &Row) -> Result<Token, StoreError> {
+    let (role, hash): (String, Vec<u8>) = (row.get("role"), row.get("hash"));
+    let corrupt = |what: &str| StoreError::Corrupt(format!("tokens: {what}"));
+    Ok(Token {
+        name: row.get("name"),
+        role: TokenRole::from_name(&role).ok_or_else(|| corrupt("unknown role"))?,
+        hash: TokenHash(
+            hash.try_into()
+                .map_err(|_| corrupt("a hash is not of 32 bytes"))?,
+        ),
+        created_at_ms: row.get("created_at_ms"),
+        is_revoked: row.get::<Option<i64>>("revoked_at_ms").is_some(),
+    })
+}
+
+/// Inserts a token unless its name is in use; how many rows that made.
+async fn insert_token(connection: &mut Connection, token: &Token) -> Result<u64, sqlx::Error> {
+    query("INSERT INTO tokens (name, role, hash, created_at_ms) VALUES (?, ?, ?, ?) ON CONFLICT DO NOTHING")
+        .bind(&token.name)
+        .bind(token.role.name())
+        .bind(token.hash.0.to_vec())
+        .bind(token.created_at_ms)
+        .execute(connection)
+        .await
+}
+
+/// The tokens of a store, for changing them.
+///
+/// This is the one way to write to a store beside its coordinator: each change is one short transaction of SQLite, for
+/// which the coordinator's writer waits.
+#[derive(Debug)]
+pub struct TokenTable {
+    connection: Connection,
+    path: String,
+    /// Keeps a coordinator from starting meanwhile; none where one is running.
+    _lock: Option<std::fs::File>,
+}
+
+impl TokenTable {
+    /// Opens a store, also one in use; makes it or brings it up to date where no coordinator holds it.
+    ///
+    /// # Errors
+    /// [`StoreError`].
+    pub async fn open(path: &str) -> Result<TokenTable, StoreError> {
+        let (connection, lock) = opening::beside(path).await?;
+        Ok(TokenTable {
+            connection,
+            path: path.into(),
+            _lock: lock,
+        })
+    }
+
+    fn failed(&self, source: sqlx::Error) -> StoreError {
+        StoreError::of(&self.path, source)
+    }
+
+    /// Every token that was ever made, oldest first.
+    ///
+    /// # Errors
+    /// [`StoreError`].
+    pub async fn all(&mut self) -> Result<Vec<Token>, StoreError> {
+        let rows = query(TOKENS).fetch_all(&mut self.connection).await;
+        rows.map_err(|e| self.failed(e))?.iter().map(token).collect()
+    }
+
+    /// Adds a token; whether its name was free.
+    ///
+    /// # Errors
+    /// [`StoreError`].
+    pub async fn add(&mut self, token: &Token) -> Result<bool, StoreError> {
+        let added = insert_token(&mut self.connection, token).await;
+        Ok(added.map_err(|e| self.failed(e))? == 1)
+    }
+
+    /// Adds a token in place of the one of its name, unless that is the same.
+    ///
+    /// # Errors
+    /// [`StoreError`].
+    pub async fn replace(&mut self, token: &Token) -> Result<(), StoreError> {
+        let replaced = async {
+            self.connection.begin().await?;
+            query(
+                "UPDATE tokens SET revoked_at_ms = ? WHERE name = ? AND revoked_at_ms IS NULL AND hash <> ?",
+            )
+            .bind(token.created_at_ms)
+            .bind(&token.name)
+            .bind(token.hash.0.to_vec())
+            .execute(&mut self.connection)
+            .await?;
+            insert_token(&mut self.connection, token).await?;
+            self.connection.commit().await
+        };
+        replaced.await.map_err(|source| self.failed(source))
+    }
+
+    /// Revokes the token of a name; whether there was one in use.
+    ///
+    /// # Errors
+    /// [`StoreError`].
+    pub async fn revoke(&mut self, name: &str, now_ms: i64) -> Result<bool, StoreError> {
+        let revoked = query("UPDATE tokens SET revoked_at_ms = ? WHERE name = ? AND revoked_at_ms IS NULL")
+            .bind(now_ms)
+            .bind(name)
+            .execute(&mut self.connection)
+            .await;
+        Ok(revoked.map_err(|e| self.failed(e))? == 1)
+    }
+
+    /// Closes the store.
+    ///
+    /// # Errors
+    /// [`StoreError`].
+    pub async fn close(self) -> Result<(), StoreError> {
+        let TokenTable { connection, path, .. } = self;
+        let closed = connection.close().await;
+        closed.map_err(|source| StoreError::of(&path, source))
+    }
+}

@@ -1,7 +1,0 @@
-//! The coordinator's parts together, without HTTP and store.
-
-mod fuzz;
-mod hidden_effect;
-mod leasing;
-mod sbc;
-mod simulation;
