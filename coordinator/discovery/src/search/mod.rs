@@ -16,7 +16,7 @@
 //!    `further_curves`, `after_scan`.
 //! 9. **Predictions** (12): the leading sets predict left-out levels; `predictions`.
 //! 10. **Next runs** (13): the expected information of runs that the rig could make selects those that discriminate best;
-//!    `next_runs`. `Conclusion::new` derives probabilities and verdict.
+//!     `next_runs`. `Conclusion::new` derives probabilities and verdict.
 //!
 //! # Layout
 //! - `discovery`: the interface. `query`: a request to the model. `branch`: a search for one effect that is part of this one.

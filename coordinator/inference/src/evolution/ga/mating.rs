@@ -24,8 +24,8 @@ pub(super) struct MatingPair<'a> {
 /// Two children, not yet within the bounds.
 ///
 /// Half of the crossed pairs have one spread factor for all coordinates, so that children lie on the line through their parents and keep
-/// correlations; the others have one for each coordinate. For the same reason some children move along the difference of two members, N(0,
-/// 1) times as far. Every coordinate mutates with probability 1 / dimension, a child that is not crossed in at least one: N(0, s^2) with ln
+/// correlations; the others have one for each coordinate. For the same reason some children move along the difference of two members,
+/// N(0, 1) times as far. Every coordinate mutates with probability 1 / dimension, a child that is not crossed in at least one: N(0, s^2) with ln
 /// s uniform over six decades, which serves exploration and convergence alike.
 pub(super) fn children(pair: &MatingPair, stream: &mut Stream) -> [Vec<f64>; 2] {
     let MatingPair { first, second, .. } = pair;
