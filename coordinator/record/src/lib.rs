@@ -1,11 +1,11 @@
 //! Stored rows of a calibration: the types between calibration, store and results.
 //!
 //! # Layout
-//! - [`fact`]: what must survive a restart, in order of occurrence.
+//! - [`fact`]: facts that must survive a restart, in order of occurrence.
 //! - `evaluation_key`: the permanent number of an evaluation.
 //! - `calibration`, `sample`, `estimate`: stored rows. `membership`: the place of a calibration in its study.
 //! - `replay`: rows that a restart reads back.
-//! - `verification`: how far the answers of workers are verified.
+//! - `verification`: how many answers of workers are verified.
 //! - `token`: bearer tokens and their roles.
 //! - `discovery`: the record of a search for a missing effect.
 

@@ -9,20 +9,20 @@ use crate::fact::EvaluationRow;
 /// Stored state of an unfinished calibration.
 #[derive(Debug, Default)]
 pub struct Stored {
-    /// The state that it was left in.
+    /// State before the restart.
     pub state: Option<CalibrationState>,
-    /// Why it was paused.
+    /// Reason for which it was paused.
     pub message: Option<String>,
     /// The pinned version of the model.
     pub model_version: Option<String>,
-    /// Wall time spent before `[ms]`.
+    /// Wall time spent before the restart `[ms]`.
     pub busy_ms: u64,
-    /// Its evaluations by number, as far as a replay needs them: values of fitted measurements are read back where an engine is told
-    /// them, observables never.
+    /// Stored evaluations by number, without what no replay needs: values of fitted measurements are read back only where an engine
+    /// is told them, observables never.
     pub evaluations: BTreeMap<u64, EvaluationRow>,
     /// The evaluations whose answer another worker has reproduced.
     pub confirmed: BTreeSet<u64>,
-    /// Whether results of it were dropped.
+    /// Whether some of its results were dropped.
     pub is_rewound: bool,
     /// The workers of failed leases, by evaluation.
     pub failed: BTreeMap<u64, Vec<String>>,

@@ -1,4 +1,4 @@
-//! Draws of the parameters, and how they came about.
+//! Draws of the parameters, and statistics of the sampler.
 
 use inference::Particle;
 use record::StageRow;
@@ -7,10 +7,9 @@ use result::FinishedCalibration;
 use crate::inference_data::VariableGroup;
 use crate::variable::{Values, Variable};
 
-/// Chains of a population: its draws are exchangeable.
+/// Number of chains of a population: its draws are exchangeable.
 const CHAINS: usize = 1;
 
-/// The labels of chain and draw.
 pub(super) fn draw_labels(draws: Vec<i64>) -> Vec<Variable> {
     vec![
         Variable::labels("chain", Values::Whole(vec![0])),
@@ -18,12 +17,10 @@ pub(super) fn draw_labels(draws: Vec<i64>) -> Vec<Variable> {
     ]
 }
 
-/// Numbers from 0.
 pub(super) fn numbers(count: usize) -> Vec<i64> {
     (0_i64..).take(count).collect()
 }
 
-/// One variable for each parameter.
 fn parameters<'a>(
     name: &str,
     calibration: &FinishedCalibration,
@@ -52,7 +49,7 @@ pub(super) fn posterior(calibration: &FinishedCalibration) -> VariableGroup {
     parameters("posterior", calibration, draws)
 }
 
-/// The draws from the prior that the sampler began with; none of a normal approximation.
+/// The draws from the prior with which the sampler began; none for a normal approximation.
 pub(super) fn prior(calibration: &FinishedCalibration) -> VariableGroup {
     let draws = calibration.prior_draws().iter().map(|draw| draw.theta.as_slice());
     parameters("prior", calibration, draws)
@@ -62,14 +59,14 @@ pub(super) fn prior(calibration: &FinishedCalibration) -> VariableGroup {
 pub(super) fn sample_stats(calibration: &FinishedCalibration) -> VariableGroup {
     let draws = calibration.posterior();
     let dims = [("chain", CHAINS), ("draw", draws.len())];
-    let of_draw = |name: &str, meaning: &str, value: &dyn Fn(&Particle) -> f64| {
+    let draw_variable = |name: &str, meaning: &str, value: &dyn Fn(&Particle) -> f64| {
         let values = draws.iter().map(value).collect();
         Variable::new(name, &dims, "", meaning, Values::Real(values))
     };
     let log_likelihood = |draw: &Particle| draw.log_likelihood.value();
     let stages = calibration.stages();
     let along = [("stage", stages.len())];
-    let of_stage = |name: &str, meaning: &str, value: &dyn Fn(&StageRow) -> f64| {
+    let stage_variable = |name: &str, meaning: &str, value: &dyn Fn(&StageRow) -> f64| {
         let values = stages.iter().map(value).collect();
         Variable::new(name, &along, "", meaning, Values::Real(values))
     };
@@ -79,6 +76,8 @@ pub(super) fn sample_stats(calibration: &FinishedCalibration) -> VariableGroup {
         }
         None => "log-likelihood",
     };
+    let evaluations = stages.iter().map(|stage| stage.evaluations.cast_signed());
+    let evaluations = Values::Whole(evaluations.collect());
     let mut coords = draw_labels(numbers(draws.len()));
     let stage_numbers = stages.iter().map(|stage| i64::from(stage.stage)).collect();
     coords.push(Variable::labels("stage", Values::Whole(stage_numbers)));
@@ -86,37 +85,26 @@ pub(super) fn sample_stats(calibration: &FinishedCalibration) -> VariableGroup {
         name: "sample_stats".to_owned(),
         coords,
         data_vars: vec![
-            of_draw(
+            draw_variable(
                 "lp",
                 "log-density of the posterior, without its constant",
                 &|draw| log_likelihood(draw) + draw.log_prior,
             ),
-            of_draw("log_likelihood", meaning, &log_likelihood),
-            of_draw("log_prior", "log-density of the prior", &|draw| draw.log_prior),
-            of_stage("tempering_exponent", "power of the likelihood", &|stage| {
+            draw_variable("log_likelihood", meaning, &log_likelihood),
+            draw_variable("log_prior", "log-density of the prior", &|draw| draw.log_prior),
+            stage_variable("tempering_exponent", "power of the likelihood", &|stage| {
                 stage.tempering_exponent
             }),
-            of_stage(
+            stage_variable(
                 "acceptance",
                 "acceptance rate of the moves; of independent draws, their effective share",
                 &|stage| stage.acceptance,
             ),
-            of_stage("ess", "effective sample size of the weights", &|stage| stage.ess),
-            of_stage("log_evidence_increment", "share of the log-evidence", &|stage| {
+            stage_variable("ess", "effective sample size of the weights", &|stage| stage.ess),
+            stage_variable("log_evidence_increment", "share of the log-evidence", &|stage| {
                 stage.log_evidence_increment
             }),
-            Variable::new(
-                "evaluations",
-                &along,
-                "",
-                "evaluations spent",
-                Values::Whole(
-                    stages
-                        .iter()
-                        .map(|stage| stage.evaluations.cast_signed())
-                        .collect(),
-                ),
-            ),
+            Variable::new("evaluations", &along, "", "evaluations spent", evaluations),
         ],
     }
 }

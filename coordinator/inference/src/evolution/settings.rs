@@ -26,7 +26,7 @@ impl EvolutionSettings {
         }
     }
 
-    /// Most evaluations, all generations together.
+    /// Maximum number of evaluations of all generations together.
     #[must_use]
     pub fn max_evaluations(&self) -> usize {
         match self {

@@ -6,12 +6,11 @@ use crate::evolution::settings_error::{EvolutionSettingsError, check_population}
 /// Settings of CMA-ES.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CmaEsSettings {
-    /// Individuals of a generation of the first run; `None`: 4 + floor(3 ln d) for d parameters. More
-    /// individuals keep more workers busy.
+    /// Individuals of a generation of the first run; `None`: 4 + floor(3 ln d) for d parameters. More individuals keep more workers busy.
     pub population: Option<usize>,
-    /// Most evaluations, all runs together.
+    /// Maximum number of evaluations of all runs together.
     pub max_evaluations: usize,
-    /// Most restarts, each with twice the population of the last.
+    /// Maximum number of restarts, each with twice the population of the last.
     pub restarts: usize,
     /// Seed of all random numbers.
     pub seed: u64,
@@ -49,18 +48,18 @@ impl CmaEsSettings {
     pub(crate) fn check(&self, dimension: usize) -> Result<(), EvolutionSettingsError> {
         let population = self.first_population(dimension);
         check_population(population, Self::MIN_POPULATION)?;
-        let least = 2 * population;
-        if !(least..=Self::MAX_EVALUATIONS).contains(&self.max_evaluations) {
+        let min = 2 * population;
+        if !(min..=Self::MAX_EVALUATIONS).contains(&self.max_evaluations) {
             return Err(EvolutionSettingsError::Evaluations {
                 max_evaluations: self.max_evaluations,
-                least,
-                most: Self::MAX_EVALUATIONS,
+                min,
+                max: Self::MAX_EVALUATIONS,
             });
         }
         if self.restarts > Self::MAX_RESTARTS {
             return Err(EvolutionSettingsError::Restarts {
                 restarts: self.restarts,
-                most: Self::MAX_RESTARTS,
+                max: Self::MAX_RESTARTS,
             });
         }
         Ok(())
