@@ -15,7 +15,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use coordinator::embedded::Evaluate;
-use farm::calibration::{Calibration, CalibrationIdentity, CalibrationResult, result_of};
+use farm::calibration::{Calibration, CalibrationIdentity, CalibrationResult, SimulationResult};
 use inference::diagnostics::chi_square_tail;
 use inference::diagnostics::quantile;
 use job::Spec;
@@ -182,9 +182,9 @@ impl Study {
                 let Some(question) = calibration.question(evaluation) else {
                     break;
                 };
-                let outcome = result_of(model.evaluate(question.theta))?;
-                calibration
-                    .complete(evaluation, outcome, "sbc")
+                let outcome = model.evaluate(question.theta);
+                SimulationResult::new(Some(outcome), None)
+                    .and_then(|computed| calibration.complete(evaluation, computed, "sbc"))
                     .map_err(|e| e.to_string())?;
             }
         }

@@ -1,4 +1,4 @@
-//! A file that is added is embedded, too.
+//! Embeds the files of the page, including new ones.
 
 fn main() {
     for folder in ["modules", "shell", "style", "vendor"] {

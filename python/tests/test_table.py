@@ -54,6 +54,24 @@ def test_progress_is_read_from_the_lines_of_the_program() -> None:
 
 
 @pytest.mark.parametrize(
+    ("position", "words"),
+    [
+        (
+            {"kind": "sampler", "stage": 5, "tempering_exponent": 0.0123, "step": 1, "acceptance": None},
+            "stage 5, tempering exponent 0.012",
+        ),
+        ({"kind": "fit", "steps": 4}, "fit, step 4"),
+        ({"kind": "evolution", "generations": 7}, "generation 7"),
+        ({"kind": "search", "rounds": 2}, "search for a missing effect"),
+    ],
+)
+def test_progress_says_where_each_kind_of_algorithm_is(position: dict[str, object], words: str) -> None:
+    live = {"algorithm": "any", "position": position, "evaluations": 2300, "remaining_s": 12.0}
+    told = _progress.of_status({"name": "sand", "state": "running", "progress": live})
+    assert told.text == f"sand: {words}, 2300 evaluations, about 12 s left"
+
+
+@pytest.mark.parametrize(
     ("prior", "low", "median", "high"),
     [
         ({"uniform": [4.0, 5.6]}, 4.0, 4.8, 5.6),

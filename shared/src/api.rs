@@ -227,17 +227,11 @@ pub struct CalibrationStatus {
 pub struct Progress {
     /// The algorithm, as the job names it.
     pub algorithm: String,
-    /// The present stage; 0 draws from the prior. Of a fit: the steps taken so far.
-    pub stage: u32,
-    /// The present tempering exponent; of a fit 1, the whole likelihood.
-    pub tempering_exponent: f64,
-    /// Metropolis-Hastings step within the stage; of a fit 0.
-    pub step: u32,
-    /// Acceptance rate of the present stage; of a fit 0.
-    pub acceptance: f64,
+    /// Where the algorithm is.
+    pub position: Position,
     /// Parameter vectors evaluated, over all stages; of final draws their fitted runs, held-out runs not counted again.
     pub evaluations: u64,
-    /// Of these, rejected by the model.
+    /// The number of these that the model rejected.
     pub rejected: u64,
     /// Evaluations of the present step that are done.
     pub step_done: u64,
@@ -247,6 +241,38 @@ pub struct Progress {
     pub evaluations_per_s: f64,
     /// Estimated remaining time `[s]`; `None` while it is not known.
     pub remaining_s: Option<f64>,
+}
+
+/// Where an algorithm is, by the kind of the algorithm.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(tag = "kind", rename_all = "snake_case")]
+pub enum Position {
+    /// A sampler goes through stages.
+    Sampler {
+        /// The present stage; 0 draws from the prior.
+        stage: u32,
+        /// The present tempering exponent.
+        tempering_exponent: f64,
+        /// Metropolis-Hastings step within the stage.
+        step: u32,
+        /// Acceptance rate of the present stage; `None` before its first step, and while it draws.
+        acceptance: Option<f64>,
+    },
+    /// A fit goes in steps.
+    Fit {
+        /// The steps taken so far.
+        steps: u32,
+    },
+    /// An evolution goes in generations.
+    Evolution {
+        /// The generations so far.
+        generations: u32,
+    },
+    /// A search for missing effects asks in rounds.
+    Search {
+        /// The rounds so far.
+        rounds: u32,
+    },
 }
 
 /// `GET /v1/work/demand`: how much work there is, for whatever starts workers.

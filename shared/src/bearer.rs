@@ -13,22 +13,20 @@ pub struct BearerToken(String);
 /// Why there is no token.
 #[derive(Debug, thiserror::Error)]
 pub enum BearerTokenError {
-    /// Its file cannot be read.
+    /// The file of the token cannot be read.
     #[error(transparent)]
     File(#[from] FileError),
-    /// It cannot stand in a request.
+    /// The token cannot be sent in a request.
     #[error("{source_name}: the token must be one line of printable ASCII characters without spaces")]
     Form {
-        /// The file, or the variable of the environment.
+        /// The file, or the environment variable.
         source_name: String,
     },
 }
 
 impl BearerToken {
-    /// The token of a file, or else of `GROUSER_TOKEN`; space around it does not count.
-    ///
-    /// # Errors
-    /// [`BearerTokenError`] names the file or the variable, never the token.
+    /// Reads the token from a file, or else from `GROUSER_TOKEN`, without the space around it. [`BearerTokenError`] names
+    /// the file or the variable, never the token.
     pub fn find(
         file: Option<&Path>,
         environment: Option<String>,
@@ -63,12 +61,12 @@ mod tests {
 
     #[test]
     fn a_token_is_one_line_and_is_not_shown() {
-        let of = |text: &str| BearerToken::find(None, Some(text.to_owned()));
-        let token = of(" abc-1\n").unwrap().unwrap();
+        let find = |text: &str| BearerToken::find(None, Some(text.to_owned()));
+        let token = find(" abc-1\n").unwrap().unwrap();
         assert_eq!(token.expose(), "abc-1");
         assert!(!format!("{token:?}").contains("abc"));
         for wrong in ["", " ", "two words", "two\nlines", "naïve"] {
-            let message = of(wrong).unwrap_err().to_string();
+            let message = find(wrong).unwrap_err().to_string();
             assert!(message.starts_with("GROUSER_TOKEN: "), "{message}");
             assert!(
                 !message.contains("two") && !message.contains("naïve"),

@@ -10,9 +10,9 @@ use crate::channel::Channel;
 use crate::outcome::{Observables, Outcome};
 
 /// Version of these messages; a coordinator answers any other version with 426.
-pub const PROTOCOL_VERSION: u32 = 11;
+pub const PROTOCOL_VERSION: u32 = 12;
 
-/// `POST /v1/work/exchange`: results of finished leases, and how many more are wanted.
+/// `POST /v1/work/exchange`: the results of finished leases, and the number of leases wanted.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ExchangeRequest {
@@ -22,14 +22,13 @@ pub struct ExchangeRequest {
     pub protocol: u32,
     /// Version of the equations that the worker computes.
     pub model_version: String,
-    /// The models that are not ours that the worker runs: the version of each by its name, see
-    /// [`ExternalSource::name`](crate::model::ExternalSource::name).
+    /// The versions of the external models that the worker runs, by [`ExternalSource::name`](crate::model::ExternalSource::name).
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub models: BTreeMap<String, String>,
-    /// The job of a queue that started the worker, as in `slurm 1234_5`.
+    /// The queue's job that started the worker, such as `slurm 1234_5`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub queue_job: Option<String>,
-    /// Threads that simulate.
+    /// Number of threads that simulate.
     pub threads: u32,
     /// Mean time of its evaluations so far `[s]`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -40,14 +39,15 @@ pub struct ExchangeRequest {
     pub holding: Vec<u64>,
     /// Leases given back unevaluated.
     pub returned: Vec<u64>,
-    /// Leases whose evaluation has begun and has no result yet; renewed too. Only of these does a loss count as a failed attempt.
+    /// Leases whose evaluation has begun and has no result yet; renewed too. Only the loss of a started lease counts as a
+    /// failed attempt.
     pub started: Vec<u64>,
-    /// The highest lease number that has reached this worker, 0 before the first: what was given to it above was lost on the way.
-    /// `u64::MAX` while another answer is under way.
+    /// The highest lease number that this worker has received, 0 before the first: leases given to it above this number were
+    /// lost on the way. `u64::MAX` while another answer is under way.
     pub received: u64,
-    /// Most leases that the worker takes now.
+    /// The maximum number of leases that the worker takes now.
     pub want: u32,
-    /// How long the coordinator may wait for work before it answers `[ms]`.
+    /// The time that the coordinator may wait for work before it answers `[ms]`.
     pub wait_ms: u64,
 }
 
@@ -63,51 +63,52 @@ pub struct WorkResult {
     pub evaluation: u64,
     /// The seal of the lease, as it came.
     pub seal: String,
-    /// Where the subchain of the lease ended, if it asked for one.
+    /// The end of the subchain, if the lease asked for one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(value_type = Option<Object>)]
     pub end: Option<SubchainEnd>,
-    /// The outcome; of a subchain, at its end. Absent where none of its moves was accepted, so that there was nothing to evaluate.
+    /// The outcome; for a subchain, at its end. Absent if none of its moves was accepted, because then there was nothing to
+    /// evaluate.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub outcome: Option<Outcome>,
-    /// How far a second answer of the same worker differs from the outcome, where a model that is not ours was asked twice.
+    /// Difference between the outcome and a second answer of the same worker, if an external model was asked twice.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub repeated: Option<RepeatedAnswer>,
 }
 
-/// How far two answers of a model to one question differ: the largest difference over the runs.
+/// The difference between two answers of a model to one question: the largest absolute difference over the runs.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RepeatedAnswer {
-    /// Of the drawbar pull `[N]`.
+    /// Difference of the drawbar pull `[N]`.
     pub drawbar_pull_n: f64,
-    /// Of the torque \[N m\].
+    /// Difference of the torque \[N m\].
     pub torque_n_m: f64,
-    /// Of the sinkage `[m]`.
+    /// Difference of the sinkage `[m]`.
     pub sinkage_m: f64,
-    /// Of the lateral force `[N]`.
+    /// Difference of the lateral force `[N]`.
     pub lateral_force_n: f64,
-    /// Whether the model refused the second time.
+    /// True if the model refused the second time.
     pub is_refused: bool,
 }
 
 impl RepeatedAnswer {
     /// Compares two answers of the same shape.
     pub fn new(first: &Observables, second: &Observables) -> Self {
-        let of = |channel: Channel| {
+        let difference = |channel: Channel| {
             let pairs = first.channel(channel).iter().zip(second.channel(channel));
             pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
         };
         RepeatedAnswer {
-            drawbar_pull_n: of(Channel::DrawbarPull),
-            torque_n_m: of(Channel::Torque),
-            sinkage_m: of(Channel::Sinkage),
-            lateral_force_n: of(Channel::LateralForce),
+            drawbar_pull_n: difference(Channel::DrawbarPull),
+            torque_n_m: difference(Channel::Torque),
+            sinkage_m: difference(Channel::Sinkage),
+            lateral_force_n: difference(Channel::LateralForce),
             is_refused: false,
         }
     }
 
-    /// The model refused the second time.
+    /// Records that the model refused the second time.
     pub fn refused() -> Self {
         RepeatedAnswer {
             is_refused: true,
@@ -125,12 +126,12 @@ impl RepeatedAnswer {
         }
     }
 
-    /// Whether the answers differ.
+    /// Returns whether the answers differ.
     pub fn differs(&self) -> bool {
         self.is_refused || Channel::ALL.iter().any(|&channel| self.channel(channel) > 0.0)
     }
 
-    /// Whether every difference is a finite number, not below 0.
+    /// Returns whether every difference is a finite number, not below 0.
     pub fn is_valid(&self) -> bool {
         Channel::ALL.iter().all(|&channel| {
             let difference = self.channel(channel);
@@ -139,13 +140,13 @@ impl RepeatedAnswer {
     }
 }
 
-/// The answer: results are durable, and here is more work.
+/// The answer: results are durable, and more work is given.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ExchangeResponse {
     /// New leases, at most as many as wanted.
     pub leases: Vec<Lease>,
-    /// How long a lease lasts without renewal `[ms]`.
+    /// The time that a lease lasts without renewal `[ms]`.
     pub lease_ms: u64,
     /// Evaluations not yet leased in the active calibrations; bounds the next `want`.
     pub remaining: u64,
@@ -153,9 +154,9 @@ pub struct ExchangeResponse {
     pub in_hand: u64,
     /// Workers active recently; bounds the next `want`.
     pub workers: u32,
-    /// Results that changed nothing: late duplicates, of a calibration that ended, or refused for their seal.
+    /// Number of results without effect: late duplicates, results of an ended calibration, or results refused for their seal.
     pub duplicates: u32,
-    /// Why the worker got no lease although a calibration is waiting, if so.
+    /// The reason why the worker got no lease although a calibration is waiting.
     pub refused: Option<String>,
 }
 
@@ -165,19 +166,20 @@ pub struct ExchangeResponse {
 pub struct Lease {
     /// Fencing token: grows with every lease, across restarts too.
     pub lease: u64,
-    /// The calibration.
+    /// Number of the calibration.
     pub calibration: i64,
     /// The evaluation within the calibration.
     pub evaluation: u64,
-    /// Proves what was asked of whom; a result without it is refused. Nothing that a worker need understand.
+    /// Proves which evaluation was leased to which worker; a result without it is refused. A worker returns it unread.
     pub seal: String,
     /// Hash of the variant to evaluate; `GET /v1/work/variants/HASH`.
     pub variant: String,
-    /// Parameter vector in the variant's order; of a subchain, the whole one that the sampler has, noise included.
+    /// Parameter vector in the variant's order; for a subchain, the sampler's whole vector with the noise parameters.
     pub theta: Vec<f64>,
-    /// Whether the lease is to be reported as started, and that answered, before its evaluation begins: it was lost before.
+    /// True if the worker must report the lease as started and wait for the answer before it evaluates, because the
+    /// evaluation was lost before.
     pub announce: bool,
-    /// The moves to take from there by the variant's metamodel, before the model is evaluated at their end.
+    /// The moves of the variant's metamodel to take from `theta` before the model is evaluated at their end.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(value_type = Option<Object>)]
     pub subchain: Option<Subchain>,

@@ -1,6 +1,10 @@
 //! Text files by name, and errors that name file, line and the nearest known word.
 
 use std::collections::BTreeMap;
+use std::ops::Range;
+
+use serde::de::DeserializeOwned;
+use toml::de::{DeTable, DeValue, ValueDeserializer};
 
 pub use formula::word::unknown_word;
 
@@ -17,27 +21,24 @@ pub struct FileSet {
 }
 
 impl FileSet {
-    /// The text of a file that is named in the file `by`.
-    ///
-    /// # Errors
-    /// [`FileError`] of `by`, where the file is not in the set.
+    /// The text of a file that is named in the file `by`; a [`FileError`] of `by` if the file is not in the set.
     pub fn named(&self, by: &str, file: &str) -> Result<&str, FileError> {
         let text = self.files.get(file).map(String::as_str);
         text.ok_or_else(|| FileError::whole(by, format!("file \"{file}\" is named but was not sent")))
     }
 }
 
-/// Why a file cannot be used: which file, which line, what is wrong.
+/// Why a file cannot be used: file, line and mistake.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{}", one_line(&format!("{file}{}: {message}", place(*line, *column))))]
 pub struct FileError {
     /// Name of the file as the user wrote it.
     pub file: String,
-    /// Line, counted from 1, where one is to blame.
+    /// Line, counted from 1; `None` if the whole file is to blame.
     pub line: Option<usize>,
-    /// Column, counted from 1, where one is to blame.
+    /// Column, counted from 1; `None` if no column is to blame.
     pub column: Option<usize>,
-    /// What is wrong: quantity, value, unit, bound.
+    /// The mistake: quantity, value, unit, bound.
     pub message: String,
 }
 
@@ -71,36 +72,76 @@ impl FileError {
     }
 }
 
-/// Deepest nesting of brackets; a job needs three.
+/// The maximum nesting of brackets; a job needs three.
 const DEEPEST: usize = 16;
-/// Largest TOML file `[bytes]`: the parser takes 80 ns for each of them.
+/// The maximum size of a TOML file `[bytes]`: the parser takes 80 ns per byte.
 const LARGEST_TOML: usize = 1 << 20;
 
-/// Parses TOML into `T`; an unknown key is an error that names its line and the nearest known key.
-///
-/// # Errors
-/// [`FileError`] with the line where the parser stopped.
-pub fn parse_toml<T: serde::de::DeserializeOwned>(file: &str, text: &str) -> Result<T, FileError> {
-    if text.len() > LARGEST_TOML {
-        let message = format!("{} bytes must be at most {LARGEST_TOML} bytes", text.len());
-        return Err(FileError::whole(file, message));
-    }
-    if let Some(byte) = formula::nesting::too_deep(text, DEEPEST) {
-        let message = format!("brackets must be nested at most {DEEPEST} deep");
-        return Err(FileError::at(file, line_of(text, byte), message));
-    }
-    toml::from_str(text).map_err(|e| {
-        let line = e.span().map(|span| line_of(text, span.start));
-        FileError {
-            file: file.to_owned(),
-            line,
-            column: None,
-            message: plain(text, e.span(), e.message()),
-        }
-    })
+/// A TOML file that is parsed and keeps the place of every value, so that its tables can be read one by one.
+#[derive(Debug)]
+pub struct TomlFile<'t> {
+    name: &'t str,
+    text: &'t str,
+    root: toml::Spanned<DeTable<'t>>,
 }
 
-/// The line, counted from 1, in which the byte at `offset` stands.
+impl<'t> TomlFile<'t> {
+    /// Parses a file; `name` is how messages call it. A [`FileError`] names the line where the parser stopped.
+    pub fn parse(name: &'t str, text: &'t str) -> Result<Self, FileError> {
+        if text.len() > LARGEST_TOML {
+            let message = format!("{} bytes must be at most {LARGEST_TOML} bytes", text.len());
+            return Err(FileError::whole(name, message));
+        }
+        if let Some(byte) = formula::nesting::too_deep(text, DEEPEST) {
+            let message = format!("brackets must be nested at most {DEEPEST} deep");
+            return Err(FileError::at(name, line_of(text, byte), message));
+        }
+        let root = DeTable::parse(text).map_err(|e| toml_error(name, text, &e))?;
+        Ok(TomlFile { name, text, root })
+    }
+
+    /// The value of a key of the file's root.
+    pub fn get(&self, key: &str) -> Option<&toml::Spanned<DeValue<'t>>> {
+        self.root.get_ref().get(key)
+    }
+
+    /// Reads one value of the file. A [`FileError`] names the line of a value that does not fit `T`.
+    pub fn read<T: DeserializeOwned>(&self, value: toml::Spanned<DeValue<'t>>) -> Result<T, FileError> {
+        T::deserialize(ValueDeserializer::from(value)).map_err(|e| toml_error(self.name, self.text, &e))
+    }
+
+    /// Reads the whole file. A [`FileError`] names the line of a value that does not fit `T`.
+    pub fn read_all<T: DeserializeOwned>(self) -> Result<T, FileError> {
+        T::deserialize(toml::Deserializer::from(self.root)).map_err(|e| toml_error(self.name, self.text, &e))
+    }
+
+    /// An error in the line of a place of the file.
+    pub fn error_at(&self, place: &Range<usize>, message: impl Into<String>) -> FileError {
+        FileError::at(self.name, line_of(self.text, place.start), message)
+    }
+
+    /// An error of the file as a whole.
+    pub fn error(&self, message: impl Into<String>) -> FileError {
+        FileError::whole(self.name, message)
+    }
+}
+
+/// Parses TOML into `T`; an unknown key is an error that names its line and the nearest known key. A [`FileError`] names the
+/// line where the parser stopped.
+pub fn parse_toml<T: DeserializeOwned>(file: &str, text: &str) -> Result<T, FileError> {
+    TomlFile::parse(file, text)?.read_all()
+}
+
+fn toml_error(file: &str, text: &str, error: &toml::de::Error) -> FileError {
+    FileError {
+        file: file.to_owned(),
+        line: error.span().map(|span| line_of(text, span.start)),
+        column: None,
+        message: plain(text, error.span(), error.message()),
+    }
+}
+
+/// The line, counted from 1, of the byte at `offset`.
 fn line_of(text: &str, offset: usize) -> usize {
     text.bytes().take(offset).filter(|&b| b == b'\n').count() + 1
 }
@@ -131,7 +172,7 @@ mod tests {
     }
 
     #[test]
-    fn a_word_near_nothing_lists_what_is_known() {
+    fn a_word_without_a_near_one_lists_the_known_ones() {
         assert_eq!(
             unknown_word("column", "zzzzzz", ["run", "slip"]),
             "unknown column \"zzzzzz\"; known are run, slip"

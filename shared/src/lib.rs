@@ -1,20 +1,21 @@
 //! The vocabulary that coordinator and worker share, and the wire between them.
 //!
 //! # Layout
-//! - [`channel`]: what a test rig measures: drawbar pull, torque, sinkage, lateral force.
-//! - [`limit`]: which values a quantity can have, and which are usual.
+//! - [`channel`]: the channels of a test rig: drawbar pull, torque, sinkage, lateral force.
+//! - [`limit`]: the possible and the usual values of a quantity.
 //! - [`parameters`]: the names, units and physical bounds of the parameters.
-//! - [`experiment`]: an experiment as its files describe it: wheels, rig, noise, protocol, test runs.
-//! - [`model`]: which forward model is meant ([`model::ModelSettings`]) and the self-contained
-//!   [`model::ModelVariant`] that a worker evaluates.
+//! - [`experiment`]: an experiment with its files: wheels, rig, noise, protocol, test runs.
+//! - [`model`]: the settings of a forward model ([`model::ModelSettings`]) and the self-contained [`model::ModelVariant`]
+//!   that a worker evaluates.
 //! - [`outcome`]: the outcome of an evaluation: observables, a rejection of the parameters, or a fault.
-//! - [`predicted`]: which of the observables a likelihood takes.
+//! - [`predicted`]: the observables that a likelihood uses.
 //! - [`exchange`]: the messages between worker and coordinator.
 //! - [`wire`]: their two forms in bytes.
 //! - [`api`]: the messages between a user and the service.
 //! - [`bearer`]: the token that a client shows to the service.
-//! - [`sentence`]: an error and its causes in one sentence.
-//! - [`mod@file`]: files by name, and errors that name file, line and the nearest known word; `toml_message`: what is wrong with TOML.
+//! - [`sentence`]: joins an error and its causes into one sentence.
+//! - [`mod@file`]: files by name, and errors that name file, line and the nearest known word; `toml_message`: messages of
+//!   TOML mistakes.
 //! - [`text_file`]: text files on disk.
 //!
 //! The crate only parses and validates: no clock, no network, no database.

@@ -1,19 +1,19 @@
-//! Which values a quantity can have and which are usual: what lies outside was mostly typed in another unit.
+//! The possible and the usual values of quantities: a value outside was probably typed in another unit.
 //!
-//! Bounds are wide: wheels from a pebble's to a mining truck's, soils from regolith to clay, gravity from an asteroid's to a centrifuge's.
-//! They say nothing of a soil; they tell a number in kN from one in N.
+//! Bounds are wide: wheels from a pebble's to a mining truck's, soils from regolith to clay, gravity from an asteroid's to a
+//! centrifuge's. They do not describe a soil; they distinguish a number in kN from one in N.
 
 /// The bounds of a quantity.
 #[derive(Debug)]
 pub struct Limit {
-    /// Column of a file, key of a table, or parameter.
+    /// Name of a column, a key or a parameter.
     pub name: &'static str,
     unit: &'static str,
-    /// No rig has a value outside.
+    /// The physical limits: no rig has a value outside.
     possible: [f64; 2],
-    /// A value outside is asked about.
+    /// The usual range: a value outside is questioned.
     usual: [f64; 2],
-    /// Units that are often typed instead, with their size in that of the quantity.
+    /// Units that are often typed instead, with their size in the unit of the quantity.
     mistaken: &'static [(&'static str, f64)],
 }
 
@@ -110,7 +110,7 @@ pub fn of(name: &str) -> Option<&'static Limit> {
     LIMITS.iter().find(|limit| limit.name == name)
 }
 
-/// What is wrong with a value that no rig has: `125 m must be at most 10 m: was it typed in mm (0.125 m)?`.
+/// Returns the message about a value that no rig has: `125 m must be at most 10 m: was it typed in mm (0.125 m)?`.
 pub fn impossible(name: &str, value: f64) -> Option<String> {
     let limit = of(name)?;
     let outside = limit.outside(limit.possible, value)?;
@@ -118,12 +118,12 @@ pub fn impossible(name: &str, value: f64) -> Option<String> {
 }
 
 impl Limit {
-    /// What is odd about a value: `0.06 N must be at least 1 N …`; none of a usual one.
+    /// Returns the message about an unusual value: `0.06 N must be at least 1 N …`; `None` for a usual one.
     pub fn unusual(&self, value: f64) -> Option<String> {
-        let [least, most] = self.usual;
+        let [least, greatest] = self.usual;
         let side = match value {
             value if value < least => format!("below {}", self.amount(least)),
-            value if value > most => format!("above {}", self.amount(most)),
+            value if value > greatest => format!("above {}", self.amount(greatest)),
             _ => return None,
         };
         Some(format!(
@@ -133,16 +133,16 @@ impl Limit {
         ))
     }
 
-    /// Whether any value between two is usual.
+    /// Returns whether any value between two is usual.
     pub fn is_usual_within(&self, low: f64, high: f64) -> bool {
-        let [least, most] = self.usual;
-        low <= most && high >= least
+        let [least, greatest] = self.usual;
+        low <= greatest && high >= least
     }
 
-    fn outside(&self, [least, most]: [f64; 2], value: f64) -> Option<String> {
+    fn outside(&self, [least, greatest]: [f64; 2], value: f64) -> Option<String> {
         let bound = match value {
             value if value < least => format!("at least {}", self.amount(least)),
-            value if value > most => format!("at most {}", self.amount(most)),
+            value if value > greatest => format!("at most {}", self.amount(greatest)),
             _ => return None,
         };
         Some(format!("{} must be {bound}", self.amount(value)))
@@ -155,13 +155,13 @@ impl Limit {
         }
     }
 
-    /// The units that were probably typed: those in which the value is a usual one.
+    /// Asks whether another unit was typed: the units in which the value is usual.
     fn question(&self, value: f64) -> String {
-        let [least, most] = self.usual;
+        let [least, greatest] = self.usual;
         let typed: Vec<String> = self
             .mistaken
             .iter()
-            .filter(|(_, size)| (least..=most).contains(&(value * size)))
+            .filter(|(_, size)| (least..=greatest).contains(&(value * size)))
             .map(|(unit, size)| format!("{unit} ({})", self.amount(value * size)))
             .collect();
         match typed.is_empty() {
@@ -171,7 +171,7 @@ impl Limit {
     }
 }
 
-/// A number with at most six figures, without an exponent where it is short.
+/// Formats a number with at most six digits, without an exponent if that is short.
 pub fn number(value: f64) -> String {
     let rounded: f64 = format!("{value:.5e}").parse().unwrap_or(value);
     match rounded.abs() {
@@ -226,10 +226,10 @@ mod tests {
     }
 
     #[test]
-    fn what_is_usual_is_possible() {
+    fn usual_values_are_possible() {
         for (place, limit) in LIMITS.iter().enumerate() {
-            let ([least, most], [low, high]) = (limit.possible, limit.usual);
-            assert!(least <= low && low < high && high <= most, "{}", limit.name);
+            let ([least, greatest], [low, high]) = (limit.possible, limit.usual);
+            assert!(least <= low && low < high && high <= greatest, "{}", limit.name);
             assert!(LIMITS[..place].iter().all(|other| other.name != limit.name));
         }
     }

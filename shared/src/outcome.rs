@@ -21,10 +21,10 @@ pub enum Outcome {
     Fault(Fault),
 }
 
-/// Averages of every run, one vector per channel and per diagnostic, in the order of the conditions; channels and diagnostics
-/// that the variant does not ask for are empty.
+/// Averages of every run, one vector per channel and per diagnostic, in the order of the conditions; channels and
+/// diagnostics that the variant does not request are empty.
 ///
-/// Numbers are finite: a simulation that yields another one is a rejection.
+/// Numbers are finite: a simulation that yields any other number is a rejection.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Observables {
@@ -52,15 +52,15 @@ pub struct Observables {
     /// Nodes, or quadrature points, in contact.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub nodes_in_contact: Vec<u32>,
-    /// Travel that was simulated `[m]`.
+    /// Simulated travel `[m]`.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub simulated_travel_m: Vec<f64>,
-    /// What the averages, relative to their scales, still had to go when each run of a `steady` protocol ended; empty for
+    /// Remaining relative change of the averages towards their limit when each run of a `steady` protocol ended; empty for
     /// models and protocols that do not wait for averages to settle.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub settled_to: Vec<f64>,
-    /// Change of the drawbar pull `[N]` with ln k*, k* the stiffness of the soil. This and the three next are empty unless
-    /// the variant asks for them.
+    /// Change of the drawbar pull `[N]` with ln k*, k* the stiffness of the soil. This vector and the next three are empty
+    /// unless the variant requests them.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub d_drawbar_pull_n: Vec<f64>,
     /// Change of the torque \[N m\] with ln k*.
@@ -78,15 +78,15 @@ pub struct Observables {
     /// Shear stress under each ring of the variant `[Pa]`.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub shear_stress_pa: Vec<f64>,
-    /// The predicted values of the companion, the quasi-static model; `None` where there is none, or it rejects.
+    /// The predicted values of the low-fidelity quasi-static model; `None` if there is none, or it rejects the parameters.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub coarse: Option<Vec<f64>>,
-    /// Time histories of the runs; empty unless the variant asks for them.
+    /// Time histories of the runs; empty unless the variant requests them.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub histories: Vec<SimulatedHistory>,
 }
 
-/// Time histories of a simulated run: means over intervals of 0.1 s from its beginning, transients included, unfiltered.
+/// Time histories of a simulated run: means over intervals of 0.1 s from the start, with transients, unfiltered.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SimulatedHistory {
@@ -113,7 +113,7 @@ impl SimulatedHistory {
 }
 
 impl Observables {
-    /// Room for a number of runs.
+    /// Allocates vectors for a number of runs.
     pub fn with_capacity(runs: usize) -> Self {
         let room = || Vec::with_capacity(runs);
         Observables {
@@ -140,7 +140,7 @@ impl Observables {
         }
     }
 
-    /// The same, to be filled.
+    /// Values of a channel, writable.
     pub fn channel_mut(&mut self, channel: Channel) -> &mut Vec<f64> {
         match channel {
             Channel::DrawbarPull => &mut self.drawbar_pull_n,
@@ -150,7 +150,7 @@ impl Observables {
         }
     }
 
-    /// Change of a channel with ln k*, by run; empty unless the variant asks for it.
+    /// Change of a channel with ln k*, by run; empty unless the variant requests it.
     pub fn sensitivity(&self, channel: Channel) -> &[f64] {
         match channel {
             Channel::DrawbarPull => &self.d_drawbar_pull_n,
@@ -160,7 +160,7 @@ impl Observables {
         }
     }
 
-    /// Leaves these channels and their changes with ln k*, and no diagnostics of the contact.
+    /// Removes the channels outside this list with their changes by ln k*, and the diagnostics of the contact.
     pub fn keep_only(&mut self, channels: &[Channel]) {
         for (channel, values) in [
             (Channel::DrawbarPull, &mut self.drawbar_pull_n),
@@ -192,14 +192,14 @@ impl Observables {
         fnv(bits.chain(counts).chain(coarse))
     }
 
-    /// Whether every number is finite.
+    /// Returns whether every number is finite.
     pub fn is_finite(&self) -> bool {
         self.numbers()
             .chain(self.coarse.iter().flatten().copied())
             .all(f64::is_finite)
     }
 
-    /// Every number but the counts and the companion's values.
+    /// Every number except the counts and the low-fidelity values.
     fn numbers(&self) -> impl Iterator<Item = f64> {
         let vectors = [
             &self.drawbar_pull_n,
@@ -235,8 +235,8 @@ impl Observables {
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ParameterRejection {
-    /// Stable word: `no_support`, `no_convergence`, `not_finite`, `energy_gained`, `protocol`, `formula`, `invalid_parameter`; of a model that is
-    /// not ours `not_finite`, `model`, `model_error`, `time_limit`, too.
+    /// Stable word: `no_support`, `no_convergence`, `not_finite`, `energy_gained`, `protocol`, `formula`,
+    /// `invalid_parameter`; for an external model also `model`, `model_error`, `time_limit`.
     pub kind: String,
     /// Position of the rejected condition; plates are counted after the runs, and rings after the plates.
     pub condition: u32,
@@ -244,11 +244,11 @@ pub struct ParameterRejection {
     pub message: String,
 }
 
-/// What went wrong on a machine.
+/// A failure of a machine.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Fault {
-    /// What the machine said.
+    /// The machine's message.
     pub message: String,
 }
 

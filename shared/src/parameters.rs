@@ -1,27 +1,26 @@
 //! The names, units and physical bounds of the parameters.
 //!
-//! A parameter of one wheel of several carries the wheel's name behind a dot (`wheel_radius_m.smooth`);
-//! a noise standard deviation that is inferred is `noise.` and the channel's column
-//! (`noise.drawbar_pull_n`). An effect's parameter is `EFFECT.PARAMETER`, or `EFFECT.PARAMETER.WHEEL`: what is known of
-//! it stands in the effect's file ([`EffectSet`](crate::model::EffectSet)).
+//! A parameter of one wheel among several has the wheel's name after a dot (`wheel_radius_m.smooth`); an inferred noise standard
+//! deviation is `noise.` and the channel's column (`noise.drawbar_pull_n`). An effect's parameter is `EFFECT.PARAMETER`, or
+//! `EFFECT.PARAMETER.WHEEL`, and is described in the effect's file ([`EffectSet`](crate::model::EffectSet)).
 
 use crate::channel::Channel;
 use crate::experiment::Scatter;
 
-/// What is known of a base parameter of the wheel-soil models.
+/// The description of a base parameter of the wheel-soil models.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BaseParameter {
-    /// Name at every boundary, with its unit where it has one.
+    /// Name in files, messages and results, with its unit if it has one.
     pub name: &'static str,
     /// Unit for tables and axes.
     pub unit: &'static str,
-    /// Least admissible value.
+    /// Smallest admissible value.
     pub lower: f64,
     /// Largest admissible value.
     pub upper: f64,
-    /// Value where the job gives none.
+    /// Default value; `None` if the job must state a prior or a value.
     pub default: Option<f64>,
-    /// Prior where the job gives none, as a line of `[priors]`; without default and prior the job must say something.
+    /// Default prior as a line of `[priors]`; without default value and prior the job must state one.
     pub prior: Option<&'static str>,
 }
 
@@ -78,9 +77,8 @@ pub const SPATIAL: [BaseParameter; 3] = [
 
 /// Parameters of `wong_reece` that other models lack or hold at another value.
 ///
-/// Priors: c1 and c2 of published sands lie in 0.18 to 0.43 and
-/// 0.32 to 0.41 (Wong & Reece 1967), shear moduli of sands from 5 to 25 mm. gamma and the law of the slip velocity are no part of it
-/// unless a job asks for them.
+/// Priors: c1 and c2 of published sands lie in 0.18 to 0.43 and 0.32 to 0.41 (Wong & Reece 1967), shear moduli of sands from
+/// 5 to 25 mm. gamma and the law of the slip velocity are inactive unless a job uses them.
 pub const WONG_REECE: [BaseParameter; 5] = [
     inferred(
         "c1",
@@ -107,8 +105,8 @@ pub const WONG_REECE: [BaseParameter; 5] = [
     base("gamma_exponent", "1", 0.0, 100.0, Some(0.0)),
 ];
 
-/// Parameters of `rft`, which has those of no other model but the wheel's radius. Priors: `xi_n` from loose to dense dry sand, by far;
-/// friction from polished metal to glued sand.
+/// Parameters of `rft`, which shares only the wheel's radius with other models. Priors: `xi_n` covers loose to dense dry
+/// sand with a wide margin; friction covers polished metal to glued sand.
 pub const RFT: [BaseParameter; 2] = [
     inferred("xi_n_pa_m", "Pa/m", 1.0, 1e12, "{ loguniform = [1e4, 1e8] }"),
     inferred("surface_friction", "1", 0.0, 10.0, "{ uniform = [0.1, 0.9] }"),
@@ -117,7 +115,7 @@ pub const RFT: [BaseParameter; 2] = [
 /// The one base parameter that every model has.
 pub const WHEEL_RADIUS: &str = "wheel_radius_m";
 
-/// The parameters of every model; one that two of them hold at different values appears twice.
+/// The parameters of every model; a parameter that two models hold at different values appears twice.
 pub fn of_models() -> impl Iterator<Item = &'static BaseParameter> + Clone {
     BASE.iter().chain(&SPATIAL).chain(&WONG_REECE).chain(&RFT)
 }
@@ -127,7 +125,7 @@ pub fn of_models() -> impl Iterator<Item = &'static BaseParameter> + Clone {
 pub struct ParameterBounds {
     /// Unit for tables and axes.
     pub unit: String,
-    /// Least admissible value.
+    /// Smallest admissible value.
     pub lower: f64,
     /// Largest admissible value.
     pub upper: f64,
@@ -143,13 +141,13 @@ impl From<&BaseParameter> for ParameterBounds {
     }
 }
 
-/// Whether a name already has a meaning in jobs, so that no effect may have it.
+/// Returns whether a name already has a meaning in jobs, so that no effect may have it.
 pub(crate) fn is_taken(name: &str) -> bool {
     // "none" is the absence of effects in results
     ["none", "noise", "bevameter"].contains(&name) || of_models().any(|p| p.name == name)
 }
 
-/// Natural logarithm of the ratio of tan(phi) under a ring to tan(phi) under the wheel, which share all else; a
+/// Natural logarithm of the ratio of tan(phi) under a ring to tan(phi) under the wheel, which share the other parameters; a
 /// parameter of a calibration with readings of a ring.
 pub const RING_TRANSFER: &str = "bevameter.ln_transfer";
 
@@ -193,34 +191,31 @@ pub fn behind(unit: &str) -> String {
 /// Why a parameter cannot have a value.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum BoundsError {
-    /// It is not a finite number.
+    /// The value is not a finite number.
     #[error("{name} = {value} is not a finite number")]
     NotFinite {
-        /// The parameter.
+        /// Name of the parameter.
         name: String,
-        /// The value.
+        /// The refused value.
         value: f64,
     },
-    /// It lies outside the physical bounds.
+    /// The value lies outside the physical bounds.
     #[error("{name} = {value}{unit} lies outside [{lower}, {upper}]{unit}")]
     Outside {
-        /// The parameter.
+        /// Name of the parameter.
         name: String,
-        /// The value.
+        /// The refused value.
         value: f64,
-        /// Its unit with a space in front, or nothing.
+        /// The unit after a space, or nothing.
         unit: String,
-        /// The least admissible value.
+        /// Smallest admissible value.
         lower: f64,
-        /// The largest admissible value.
+        /// Largest admissible value.
         upper: f64,
     },
 }
 
-/// Checks one value against the physical bounds of its parameter.
-///
-/// # Errors
-/// [`BoundsError`] with the name, the value, the unit and the bounds.
+/// Checks one value against the physical bounds of its parameter; [`BoundsError`] has the name, the value, the unit and the bounds.
 pub fn check_value(quantity: &ParameterBounds, name: &str, value: f64) -> Result<(), BoundsError> {
     let ParameterBounds { unit, lower, upper } = quantity;
     if !value.is_finite() {

@@ -1,4 +1,4 @@
-//! The values that a likelihood takes from the observables.
+//! The values that a likelihood uses from the observables.
 
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
@@ -18,7 +18,7 @@ pub enum PredictedValue {
         /// Position of the run.
         run: usize,
     },
-    /// Its change with ln k*, k* the stiffness of the soil.
+    /// The change of a channel with ln k*, k* the stiffness of the soil.
     Sensitivity {
         /// The channel.
         #[schema(value_type = String)]
@@ -26,9 +26,11 @@ pub enum PredictedValue {
         /// Position of the run.
         run: usize,
     },
-    /// Its change with the logarithm of the soil's shear strength, at a fixed sinkage: the torque changes by itself, and the
-    /// drawbar pull by the torque over the wheel's radius. Neglected are that the load rests a little more on shear, and that
-    /// the shear stress is inclined; the sinkage has none.
+    /// The change of a channel with the logarithm of the soil's shear strength, at a fixed sinkage: the torque changes in
+    /// proportion, and the drawbar pull by the torque over the wheel's radius.
+    ///
+    /// Neglected are the slightly larger share of the load on shear, and the inclination of the shear stress; the sinkage
+    /// does not change.
     Strength {
         /// Drawbar pull, torque or lateral force.
         #[schema(value_type = String)]
@@ -51,7 +53,7 @@ pub enum PredictedValue {
 }
 
 impl PredictedValue {
-    /// The channel of a wheel that it is made from; `None` of a plate or a ring.
+    /// The wheel's channel that it is computed from; `None` for a plate or a ring.
     pub fn channel(self) -> Option<Channel> {
         match self {
             PredictedValue::Average { channel, .. } | PredictedValue::Sensitivity { channel, .. } => {
@@ -66,7 +68,7 @@ impl PredictedValue {
         }
     }
 
-    /// The value in `observables`, which must cover the variant that this was made for.
+    /// The value in `observables`, which must cover the variant of this prediction.
     pub fn of(self, observables: &Observables) -> f64 {
         match self {
             PredictedValue::Average { channel, run } => observables.channel(channel)[run],

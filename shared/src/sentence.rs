@@ -1,14 +1,14 @@
-//! Messages: an error and its causes in one sentence, and a stranger's text in one line.
+//! Messages: an error and its causes in one sentence, and untrusted text in one line.
 
 use std::borrow::Cow;
 
-/// Longest message that is shown whole `[bytes]`; of a longer one the middle is left out.
+/// The maximum length of a message shown whole `[bytes]`; a longer one loses its middle.
 const LONGEST: usize = 1500;
-/// What is shown of the end of such a message, where bounds stand `[bytes]`.
+/// Length of the end that is kept, because bounds stand there `[bytes]`.
 const END: usize = 300;
 
-/// A text as one line of bounded length. Control characters become escapes, so that it moves no cursor and sets no colour; the middle of
-/// a long text is left out.
+/// Returns a text as one line of bounded length. Control characters become escapes, so that it cannot move the cursor or set
+/// a colour; a long text loses its middle.
 pub fn one_line(text: &str) -> Cow<'_, str> {
     let mut line = Cow::Borrowed(text);
     if text.contains(char::is_control) {
@@ -26,7 +26,7 @@ pub fn one_line(text: &str) -> Cow<'_, str> {
     line
 }
 
-/// Joins an error and its causes, from the outermost in; a cause that the text already contains is not repeated.
+/// Joins an error and its causes, outermost first; a cause that the text already contains is not repeated.
 pub fn of_causes(causes: impl Iterator<Item = impl ToString>) -> String {
     causes
         .map(|cause| cause.to_string())
@@ -57,7 +57,7 @@ mod tests {
     }
 
     #[test]
-    fn every_cause_is_said_once() {
+    fn every_cause_is_stated_once() {
         let causes = ["store: file is locked", "file is locked", "code 5"];
         assert_eq!(of_causes(causes.into_iter()), "store: file is locked: code 5");
         assert_eq!(of_causes(std::iter::empty::<&str>()), "");

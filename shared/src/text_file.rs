@@ -1,17 +1,15 @@
-//! Text files on disk: what should be text and is not is called by name.
+//! Text files on disk; the error for a file that is no text names its format.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use crate::file::{FileError, unknown_word};
 
-/// How a table of another form becomes one that can be read.
+/// The advice for a table in another format.
 pub(crate) const CONVERT: &str = "coordinator import converts it";
 
-/// Reads a text file whole.
-///
-/// # Errors
-/// Names the path, and what the file is instead, or the nearest file that is there, or the operating system's reason.
+/// Reads a text file whole. The error names the path with the actual format, the nearest existing file, or the operating
+/// system's reason.
 pub fn read_text(path: &Path) -> Result<String, FileError> {
     let fail = |message: String| FileError::whole(&path.display().to_string(), message);
     let bytes = std::fs::read(path).map_err(|e| match e.kind() {
@@ -45,16 +43,13 @@ pub fn sibling(beside: &Path, name: &str) -> PathBuf {
     beside.parent().unwrap_or(Path::new("")).join(name)
 }
 
-/// Reads the files that the file `beside` names, by their names in it.
-///
-/// # Errors
-/// Names the path and the operating system's reason.
+/// Reads the files that the file `beside` names, by their names in it. The error names the path and the operating system's reason.
 pub fn read_beside(beside: &Path, names: &[String]) -> Result<BTreeMap<String, String>, FileError> {
     let read = |name: &String| Ok((name.clone(), read_text(&sibling(beside, name))?));
     names.iter().map(read).collect()
 }
 
-/// What a file is by its first bytes, where that is known and no text.
+/// Returns the format of a file by its first bytes, if it is known and not text.
 fn form(bytes: &[u8]) -> Option<&'static str> {
     let forms: [(&[u8], &str); 7] = [
         (b"PK\x03\x04", "a workbook (.xlsx, .ods) or another ZIP archive"),
@@ -71,7 +66,7 @@ fn form(bytes: &[u8]) -> Option<&'static str> {
         .map(|(_, form)| *form)
 }
 
-/// What is said of a file that is not there: the nearest name in its folder.
+/// Returns the message about a missing file: the nearest name in its folder.
 fn absent(path: &Path) -> String {
     let stem = |path: &Path| path.file_stem().map(|stem| stem.to_string_lossy().into_owned());
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
@@ -102,7 +97,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_file_that_is_no_text_is_called_what_it_is() {
+    fn a_file_that_is_no_text_is_named_by_its_format() {
         let folder = tempfile::tempdir().unwrap();
         let message = |content: &[u8]| {
             let path = folder.path().join("runs.csv");
@@ -128,7 +123,7 @@ mod tests {
     }
 
     #[test]
-    fn a_file_that_is_not_there_is_told_from_the_nearest() {
+    fn a_missing_file_is_named_with_the_nearest_existing_one() {
         let folder = tempfile::tempdir().unwrap();
         std::fs::write(folder.path().join("experiment.toml"), "").unwrap();
         let message = |name: &str| read_text(&folder.path().join(name)).unwrap_err().message;

@@ -1,38 +1,38 @@
-//! What the TOML parser and serde say, in the words of a user: key, value, what is expected, and the nearest remedy.
+//! Messages of the TOML parser and serde, reworded for users: key, value, expected value, and the nearest correction.
 
 use std::ops::Range;
 
 use formula::word::unknown_word;
 
-/// A longer value is shown by its beginning \[characters\].
+/// The maximum length of a value shown whole \[characters\].
 const LONGEST: usize = 60;
 
-/// The message of a mistake; `span` is the passage of the file that is to blame.
+/// Rewords the message of a mistake; `span` is the offending passage of the file.
 pub(crate) fn plain(text: &str, span: Option<Range<usize>>, message: &str) -> String {
     let mut lines = message.trim_end().lines();
     let first = lines.next().unwrap_or_default();
-    // Without a span, the key stands in a line of its own.
+    // Without a span, the message has the key on a separate line.
     let named = lines.find_map(|line| line.strip_prefix("in `")?.strip_suffix('`'));
-    let place = Place::of(text, span, named);
+    let place = Place::new(text, span, named);
     let quoted =
         |text: &str| -> Vec<String> { text.split('`').skip(1).step_by(2).map(str::to_owned).collect() };
     let words = quoted(first);
-    let known = || words[1..].iter().map(String::as_str);
+    let expected_words = || words[1..].iter().map(String::as_str);
     if first.starts_with("unknown field") && !words.is_empty() {
-        return unknown_word("key", &words[0], known());
+        return unknown_word("key", &words[0], expected_words());
     }
     if first.starts_with("unknown variant") && !words.is_empty() {
-        return unknown_word(&format!("value of {}", place.key()), &words[0], known());
+        return unknown_word(&format!("value of {}", place.key()), &words[0], expected_words());
     }
     if first.starts_with("missing field") && !words.is_empty() {
         return format!("the key \"{}\" is missing", words[0]);
     }
     for kind in ["invalid type: ", "invalid value: ", "invalid length "] {
-        if let Some((found, expected)) = first
+        if let Some((actual, expected)) = first
             .strip_prefix(kind)
             .and_then(|rest| rest.rsplit_once(", expected "))
         {
-            return place.must_be(found, expected);
+            return place.must_be(actual, expected);
         }
     }
     if first.starts_with("data did not match any variant") {
@@ -53,7 +53,7 @@ pub(crate) fn plain(text: &str, span: Option<Range<usize>>, message: &str) -> St
     }
 }
 
-/// Where a mistake stands: its key, and the value as written.
+/// The place of a mistake: its key, and the value as written.
 struct Place<'a> {
     key: Option<&'a str>,
     value: Option<String>,
@@ -62,7 +62,7 @@ struct Place<'a> {
 }
 
 impl<'a> Place<'a> {
-    fn of(text: &'a str, span: Option<Range<usize>>, named: Option<&'a str>) -> Place<'a> {
+    fn new(text: &'a str, span: Option<Range<usize>>, named: Option<&'a str>) -> Place<'a> {
         let start = span.as_ref().map_or(0, |span| span.start.min(text.len()));
         let before = text.get(..start).unwrap_or_default();
         let from = before.rfind('\n').map_or(0, |newline| newline + 1);
@@ -90,8 +90,8 @@ impl<'a> Place<'a> {
         }
     }
 
-    /// `particles = "60" must be a whole number >= 0: write 60`.
-    fn must_be(&self, found: &str, expected: &str) -> String {
+    /// Returns `particles = "60" must be a whole number >= 0: write 60`.
+    fn must_be(&self, actual: &str, expected: &str) -> String {
         let what = match expected {
             "u8" | "u16" | "u32" | "u64" | "usize" => "a whole number >= 0".into(),
             "i8" | "i16" | "i32" | "i64" | "isize" => "a whole number".into(),
@@ -107,11 +107,11 @@ impl<'a> Place<'a> {
             },
         };
         let is_number = what.contains("number");
-        let unquoted = found
+        let unquoted = actual
             .strip_prefix("string \"")
             .and_then(|rest| rest.strip_suffix('"'));
         let quoted = unquoted.and_then(|text| text.parse::<f64>().ok().map(|_| text.to_owned()));
-        let pointed = found
+        let pointed = actual
             .strip_prefix("floating point `")
             .and_then(|rest| rest.strip_suffix('`'));
         let whole = pointed
@@ -122,13 +122,13 @@ impl<'a> Place<'a> {
             _ => String::new(),
         };
         let assignment = match (&self.value, self.key) {
-            (None, Some(key)) => format!("{key}, which is {},", found.replace('`', "")),
+            (None, Some(key)) => format!("{key}, which is {},", actual.replace('`', "")),
             _ => self.assignment(),
         };
         format!("{assignment} must be {what}{remedy}")
     }
 
-    /// `width_m = 0,112: a number has a point: write 0.112`.
+    /// Returns `width_m = 0,112: a number has a point: write 0.112`.
     fn decimal_comma(&self) -> Option<String> {
         let (key, rest) = self.line.split_once('=')?;
         let value = rest.split('#').next()?.trim();
@@ -141,7 +141,7 @@ impl<'a> Place<'a> {
     }
 }
 
-/// The number at the end of `an array of length 2` and its kin.
+/// The number at the end of `an array of length 2` and similar texts.
 fn length(expected: &str) -> Option<&str> {
     let last = expected.rsplit(' ').next()?;
     let is_list = expected.starts_with("an array of length") || expected.starts_with("a tuple of size");

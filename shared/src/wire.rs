@@ -1,4 +1,4 @@
-//! The messages of an exchange in bytes: MessagePack between our programs, JSON for whoever reads along.
+//! The messages of an exchange in bytes: MessagePack between the programs, JSON for human readers.
 //!
 //! Both forms have the same keys. MessagePack keeps the bits of every number and costs a fraction of JSON's digits.
 
@@ -21,21 +21,21 @@ pub enum WireForm {
     MessagePack,
 }
 
-/// Why bytes are no message.
+/// Why bytes are not a message.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum WireError {
-    /// They are malformed, or another message.
+    /// The bytes are malformed, or another message.
     #[error("the body is no such message in {form}: {reason}")]
     Malformed {
-        /// The form that they are said to have.
+        /// The declared form.
         form: WireForm,
-        /// What is wrong.
+        /// The parser's reason.
         reason: String,
     },
-    /// A number that no outcome has.
+    /// The message holds a number that is not finite.
     #[error("the result of lease {lease} holds a number that is not finite")]
     NotFinite {
-        /// The lease.
+        /// Number of the lease.
         lease: u64,
     },
 }
@@ -44,17 +44,17 @@ impl WireForm {
     /// Every form.
     pub const ALL: [WireForm; 2] = [WireForm::Json, WireForm::MessagePack];
 
-    /// The word for it: `json`, `msgpack`.
+    /// The name of the form: `json`, `msgpack`.
     pub fn name(self) -> &'static str {
         ["json", "msgpack"][self as usize]
     }
 
-    /// Its media type.
+    /// The media type of the form.
     pub fn media_type(self) -> &'static str {
         ["application/json", "application/vnd.msgpack"][self as usize]
     }
 
-    /// The form of a media type, whose parameters do not count.
+    /// Finds the form of a media type, ignoring its parameters.
     pub fn of_media_type(text: &str) -> Option<Self> {
         let essence = text.split(';').next().unwrap_or_default().trim();
         let named = |form: &Self| essence.eq_ignore_ascii_case(form.media_type());
@@ -106,21 +106,15 @@ impl FromStr for WireForm {
     }
 }
 
-// Not generic, so that they are compiled here, where they are fully optimised.
+// These functions are not generic, so that they are compiled in this crate with full optimisation.
 
 impl ExchangeRequest {
-    /// The bytes of the message.
-    ///
-    /// # Errors
-    /// [`WireError::Malformed`]: the message cannot be written.
+    /// Encodes the message; [`WireError::Malformed`] if it cannot be written.
     pub fn to_bytes(&self, form: WireForm) -> Result<Vec<u8>, WireError> {
         form.write(self)
     }
 
-    /// Reads a message.
-    ///
-    /// # Errors
-    /// [`WireError`]: the bytes are none, or a result holds NaN or an infinity.
+    /// Decodes a message; [`WireError`] if the bytes are malformed, or a result holds NaN or an infinity.
     pub fn from_bytes(bytes: &[u8], form: WireForm) -> Result<Self, WireError> {
         let request: Self = form.read(bytes)?;
         for result in &request.results {
@@ -137,18 +131,12 @@ impl ExchangeRequest {
 }
 
 impl ExchangeResponse {
-    /// The bytes of the message.
-    ///
-    /// # Errors
-    /// [`WireError::Malformed`]: the message cannot be written.
+    /// Encodes the message; [`WireError::Malformed`] if it cannot be written.
     pub fn to_bytes(&self, form: WireForm) -> Result<Vec<u8>, WireError> {
         form.write(self)
     }
 
-    /// Reads a message.
-    ///
-    /// # Errors
-    /// [`WireError::Malformed`]: the bytes are none.
+    /// Decodes a message; [`WireError::Malformed`] if the bytes are malformed.
     pub fn from_bytes(bytes: &[u8], form: WireForm) -> Result<Self, WireError> {
         form.read(bytes)
     }
@@ -160,7 +148,7 @@ mod tests {
     use crate::exchange::{Lease, PROTOCOL_VERSION, WorkResult};
     use crate::outcome::Observables;
 
-    /// Numbers whose digits or bits are easily lost.
+    /// Numbers whose digits or bits are easily lost in conversion.
     const AWKWARD: [f64; 8] = [
         -0.0,
         5e-324,
@@ -246,7 +234,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_cut_or_continued_is_no_message() {
+    fn truncated_or_extended_bytes_are_no_message() {
         for form in WireForm::ALL {
             let whole = request(&AWKWARD).to_bytes(form).unwrap();
             for end in 0..whole.len() {
@@ -255,8 +243,8 @@ mod tests {
                     "{form} {end}"
                 );
             }
-            let more = [whole.as_slice(), &[0x01]].concat();
-            assert!(ExchangeRequest::from_bytes(&more, form).is_err(), "{form}");
+            let extended = [whole.as_slice(), &[0x01]].concat();
+            assert!(ExchangeRequest::from_bytes(&extended, form).is_err(), "{form}");
         }
     }
 

@@ -94,7 +94,12 @@ fn killing_coordinator_and_workers_at_random_moments_changes_no_byte() {
             assert_ne!(status["state"], "paused", "{status}");
             let progress = &status["progress"];
             let evaluations = progress["evaluations"].as_u64()?;
-            (evaluations >= least).then(|| (evaluations, progress["stage"].as_u64().unwrap_or_default()))
+            (evaluations >= least).then(|| {
+                (
+                    evaluations,
+                    progress["position"]["stage"].as_u64().unwrap_or_default(),
+                )
+            })
         });
         std::thread::sleep(Duration::from_millis(random.below(20)));
         let last = kills.len() as u64 == KILLS;

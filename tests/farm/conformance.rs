@@ -5,7 +5,8 @@ use farm_tests::job::{FIT_RUNS, Job};
 use farm_tests::service::Service;
 use serde_json::{Value, json};
 use shared::api::{
-    CalibrationState, CalibrationStatus, ErrorBody, ErrorDetail, ErrorKind, NewCalibration, Progress,
+    CalibrationState, CalibrationStatus, ErrorBody, ErrorDetail, ErrorKind, NewCalibration, Position,
+    Progress,
 };
 use shared::channel::Channel;
 use shared::exchange::{ExchangeRequest, ExchangeResponse, Lease, RepeatedAnswer, WorkResult};
@@ -343,10 +344,12 @@ fn a_status_has_one_form() {
         model_version: Some("1".into()),
         progress: Some(Progress {
             algorithm: "tmcmc".into(),
-            stage: 4,
-            tempering_exponent: 0.25,
-            step: 2,
-            acceptance: 0.5,
+            position: Position::Sampler {
+                stage: 4,
+                tempering_exponent: 0.25,
+                step: 2,
+                acceptance: Some(0.5),
+            },
             evaluations: 1000,
             rejected: 10,
             step_done: 30,
@@ -360,8 +363,9 @@ fn a_status_has_one_form() {
         &json!({
             "id": 3, "name": "sand", "study": 2, "experiment": 1, "state": "running", "message": null,
             "model_kind": "quasi_static", "model_version": "1",
-            "progress": {"algorithm": "tmcmc", "stage": 4, "tempering_exponent": 0.25, "step": 2, "acceptance": 0.5, "evaluations": 1000,
-                         "rejected": 10, "step_done": 30, "step_size": 60, "evaluations_per_s": 500.0, "remaining_s": null},
+            "progress": {"algorithm": "tmcmc",
+                         "position": {"kind": "sampler", "stage": 4, "tempering_exponent": 0.25, "step": 2, "acceptance": 0.5},
+                         "evaluations": 1000, "rejected": 10, "step_done": 30, "step_size": 60, "evaluations_per_s": 500.0, "remaining_s": null},
         }),
     );
     let names: Vec<&str> = CalibrationState::ALL.iter().map(|s| s.name()).collect();

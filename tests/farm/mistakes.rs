@@ -7,7 +7,7 @@ use farm_tests::job::{GAIN, Job};
 use farm_tests::programs::{coordinator, run};
 use farm_tests::service::Service;
 use farm_tests::workspace;
-use job::{JobFile, Spec, questions};
+use job::{Spec, questions};
 use serde::Deserialize;
 use shared::experiment::Experiment;
 use shared::file::FileSet;
@@ -262,7 +262,7 @@ fn the_examples_raise_no_question() {
     ] {
         let path = workspace::root().join("examples").join(job);
         let toml = read_text(&path).unwrap();
-        let parsed = JobFile::parse(job, &toml).unwrap();
+        let parsed = job::Job::parse(job, &toml).unwrap();
         let experiment =
             Experiment::read_files(&sibling(&path, &parsed.experiment.clone().unwrap())).unwrap();
         let files = read_beside(&path, &parsed.named_files()).unwrap();

@@ -64,7 +64,7 @@ def map_body(context, body):
     if not isinstance(body, dict) or dice.random() < 0.5:
         return body
     if path == "/v1/work/exchange":
-        body |= {"protocol": 11, "wait_ms": 0}
+        body |= {"protocol": 12, "wait_ms": 0}
     elif path == "/v1/experiments":
         body |= {"toml": nearly(EXPERIMENT, dice), "files": {"runs.csv": nearly(RUNS, dice)}}
     elif path == "/v1/calibrations":

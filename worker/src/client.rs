@@ -13,7 +13,7 @@ use shared::wire::WireForm;
 
 use crate::pull::exchange::{Coordinator, ExchangeError};
 
-/// A coordinator at a URL.
+/// An HTTP client of one coordinator.
 #[derive(Debug)]
 pub struct HttpCoordinator {
     client: Client,
@@ -22,18 +22,18 @@ pub struct HttpCoordinator {
     token: Option<BearerToken>,
 }
 
-/// Why a coordinator cannot be reached at all.
+/// Why an HTTP client cannot be set up.
 #[derive(Debug, thiserror::Error)]
 pub enum ClientError {
-    /// The URL, and what is wrong with it.
+    /// The URL is not usable, for the stated reason.
     #[error("coordinator URL \"{0}\": {1}")]
     Url(String, String),
     /// The certificate of an authority cannot be used.
     #[error("certificate {file}: {message}")]
     Certificate {
-        /// Its file.
+        /// Path of the certificate.
         file: String,
-        /// What is wrong with it.
+        /// The reason.
         message: String,
     },
     /// The HTTP client cannot be set up.
@@ -41,16 +41,16 @@ pub enum ClientError {
     Client(reqwest::Error),
 }
 
-/// Longer than the longest poll; a connection that is silent for so long is dead.
+/// The timeout of a request, longer than the longest poll: a connection that is silent for so long is dead.
 const TIMEOUT: Duration = Duration::from_secs(60);
 
 impl HttpCoordinator {
-    /// A client of the coordinator at `url`, as in `http://host:7070`, that exchanges messages in this form, with the token
-    /// that the coordinator asks for, if it does. An https URL is trusted by the certificates of this machine, or by those of a
-    /// PEM file in their place.
+    /// Creates a client of the coordinator at `url`, such as `http://host:7070`, for messages in this form, with a token if
+    /// the coordinator requires one.
     ///
-    /// # Errors
-    /// [`ClientError`] names the URL or the file and what is wrong with it.
+    /// An https URL is trusted by the certificates of this machine, or by a PEM file in their place.
+    ///
+    /// [`ClientError`] names the URL or the file, and the mistake.
     pub fn new(
         url: &str,
         ca_certificate: Option<&Path>,
@@ -60,7 +60,7 @@ impl HttpCoordinator {
         let owned = || url.to_owned();
         let parsed = reqwest::Url::parse(url).map_err(|e| ClientError::Url(owned(), e.to_string()))?;
         let client = match (parsed.scheme(), ca_certificate) {
-            // Without TLS no certificate is read: a machine may have none.
+            // Without TLS no certificate is read, because a machine may have none.
             ("http", _) => Client::builder().tls_certs_only([]),
             ("https", None) => Client::builder(),
             ("https", Some(file)) => Client::builder().tls_certs_only(authorities(file)?),
@@ -120,7 +120,7 @@ impl HttpCoordinator {
             Ok(body) => body.error.message,
             Err(_) => format!("status {status}"),
         };
-        // only a client's error is permanent; a busy or broken coordinator may recover
+        // only a client error is permanent; a busy or broken coordinator may recover
         if status.is_client_error() && status != StatusCode::TOO_MANY_REQUESTS {
             Err(ExchangeError::Refused(message))
         } else {
@@ -129,7 +129,7 @@ impl HttpCoordinator {
     }
 }
 
-/// The certificates of a PEM file.
+/// Reads the certificates of a PEM file.
 fn authorities(file: &Path) -> Result<Vec<Certificate>, ClientError> {
     let failed = |message| ClientError::Certificate {
         file: file.display().to_string(),
@@ -167,7 +167,7 @@ impl Coordinator for HttpCoordinator {
             .text()
             .await
             .map_err(|e| ExchangeError::Away(root_cause(&e)))?;
-        // a complete answer that cannot be read will not be readable the next time either
+        // a complete answer that cannot be parsed now cannot be parsed on the next attempt either
         serde_json::from_str(&text)
             .map(Some)
             .map_err(|e| ExchangeError::Refused(format!("variant {hash} cannot be read: {e}")))

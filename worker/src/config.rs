@@ -11,15 +11,15 @@ use tracing_subscriber::filter::{LevelFilter, Targets};
 #[derive(Debug, clap::Parser)]
 #[command(version, args_conflicts_with_subcommands = true)]
 pub struct WorkerConfig {
-    /// What to do besides serving a coordinator.
+    /// The command, if the worker does not serve a coordinator.
     #[command(subcommand)]
     pub command: Option<WorkerCommand>,
-    /// How to serve a coordinator.
+    /// The arguments for serving a coordinator.
     #[command(flatten)]
     pub serve: Option<PullArguments>,
 }
 
-/// How to serve a coordinator.
+/// The arguments for serving a coordinator.
 #[derive(Debug, clap::Args)]
 pub struct PullArguments {
     /// The coordinator, as in `http://host:7070` or `https://farm.example`.
@@ -61,16 +61,16 @@ pub struct PullArguments {
     pub max_memory_mb: Option<u64>,
 }
 
-/// A time in seconds, 0 to 10 years.
+/// Parses a time in seconds, 0 to 10 years.
 fn seconds(text: &str) -> Result<Duration, String> {
-    const MOST_S: f64 = 315_360_000.0;
+    const MAX_S: f64 = 315_360_000.0;
     match text.parse::<f64>() {
-        Ok(seconds) if (0.0..=MOST_S).contains(&seconds) => Ok(Duration::from_secs_f64(seconds)),
-        _ => Err(format!("must be a number of seconds in [0, {MOST_S}]")),
+        Ok(seconds) if (0.0..=MAX_S).contains(&seconds) => Ok(Duration::from_secs_f64(seconds)),
+        _ => Err(format!("must be a number of seconds in [0, {MAX_S}]")),
     }
 }
 
-/// Variables by which queues tell a job its number: name of the queue, number of the job, number within an array.
+/// Variables in which queues give the number of a job: name of the queue, number of the job, number within an array.
 const QUEUES: [(&str, &str, &str); 4] = [
     ("slurm", "SLURM_JOB_ID", ""),
     ("hq", "HQ_JOB_ID", "HQ_TASK_ID"),
@@ -79,14 +79,14 @@ const QUEUES: [(&str, &str, &str); 4] = [
 ];
 
 impl PullArguments {
-    /// The job of a queue that this process is part of, as in `slurm 1234_5`.
+    /// The queue's job that this process belongs to, such as `slurm 1234_5`.
     pub fn queue_job(&self) -> Option<String> {
         queue_job(|name| std::env::var(name).ok())
     }
 
-    /// When it ends by itself: after its lifetime, or before the end of its job of Slurm.
+    /// The time until the worker ends by itself: after its lifetime, or before the end of its Slurm job.
     pub fn ends_in(&self) -> Option<Duration> {
-        /// Slurm's first signal may come so long before the end; a worker needs 5 s.
+        /// Slurm's first signal may come this long before the end; a worker needs 5 s.
         const EARLY: Duration = Duration::from_secs(30);
         self.max_lifetime.or_else(|| {
             let end: u64 = std::env::var("SLURM_JOB_END_TIME").ok()?.parse().ok()?;
@@ -95,16 +95,13 @@ impl PullArguments {
         })
     }
 
-    /// The token: of the file, or else of the environment.
-    ///
-    /// # Errors
-    /// The file cannot be read, or the token has no form.
+    /// Reads the token from the file, or else from the environment; an error if the file cannot be read or the token is malformed.
     pub fn token(&self) -> Result<Option<BearerToken>, BearerTokenError> {
         BearerToken::find(self.token_file.as_deref(), std::env::var("GROUSER_TOKEN").ok())
     }
 }
 
-/// The job of a queue, of the variables of a process.
+/// Finds the queue's job among the variables of a process.
 fn queue_job(variable: impl Fn(&str) -> Option<String>) -> Option<String> {
     let told = |name: &str| variable(name).filter(|value| !value.is_empty());
     if let (Some(array), Some(task)) = (told("SLURM_ARRAY_JOB_ID"), told("SLURM_ARRAY_TASK_ID")) {
@@ -122,7 +119,7 @@ fn queue_job(variable: impl Fn(&str) -> Option<String>) -> Option<String> {
     })
 }
 
-/// What a worker does besides serving a coordinator.
+/// A command of the worker besides serving a coordinator.
 #[derive(Debug, clap::Subcommand)]
 pub enum WorkerCommand {
     /// Forward runs of an experiment, without a coordinator.
@@ -150,7 +147,7 @@ pub struct ServeModels {
     /// Port to listen on; 0 takes a free one, which is printed.
     #[arg(long, default_value_t = 4242)]
     pub port: u16,
-    /// Address to listen on; whoever reaches it may have models evaluated.
+    /// Address to listen on; anyone who reaches it may have models evaluated.
     #[arg(long, default_value = "127.0.0.1")]
     pub address: std::net::IpAddr,
     /// Threads that simulate; by default, one for each core.
@@ -177,13 +174,13 @@ pub struct Simulate {
     /// Folder for the time histories of each run, RUN.csv at 10 Hz (kind = "scm").
     #[arg(long, requires = "out")]
     pub histories: Option<PathBuf>,
-    /// Where to write the averages of the wheel's runs, with the columns of runs.csv.
+    /// Writes the averages of the wheel's runs to this file, with the columns of runs.csv.
     #[arg(long, value_name = "CSV")]
     pub out: Option<PathBuf>,
-    /// Where to write the pressures under the experiment's plates, with the columns of plates.csv.
+    /// Writes the pressures under the experiment's plates to this file, with the columns of plates.csv.
     #[arg(long, value_name = "CSV")]
     pub plates: Option<PathBuf>,
-    /// Runs this model, if it is that of the job: the file of a program, or the URL of a UM-Bridge server.
+    /// Runs this model if the job names it: the file of a program, or the URL of a UM-Bridge server.
     #[arg(
         long,
         value_name = "FILE_OR_URL",
@@ -191,12 +188,12 @@ pub struct Simulate {
         value_delimiter = ','
     )]
     pub allow_model: Vec<String>,
-    /// Where to write the shear stresses under the experiment's rings, with the columns of shear.csv.
+    /// Writes the shear stresses under the experiment's rings to this file, with the columns of shear.csv.
     #[arg(long, value_name = "CSV")]
     pub shear: Option<PathBuf>,
 }
 
-/// What is logged: `RUST_LOG`, as a level or as `target=level` between commas, else `info`.
+/// The log filter: `RUST_LOG`, a level or comma-separated `target=level`, else `info`.
 pub fn log_filter() -> Targets {
     let stated = std::env::var("RUST_LOG").ok().and_then(|text| text.parse().ok());
     stated.unwrap_or_else(|| Targets::new().with_default(LevelFilter::INFO))
@@ -207,23 +204,23 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_job_of_each_queue_is_told() {
-        let of = |variables: &[(&str, &str)]| {
-            let found = |name: &str| variables.iter().find(|(own, _)| *own == name);
-            queue_job(|name| found(name).map(|(_, value)| (*value).to_owned()))
+    fn the_job_of_each_queue_is_recognised() {
+        let job_of = |variables: &[(&str, &str)]| {
+            let variable = |name: &str| variables.iter().find(|(candidate, _)| *candidate == name);
+            queue_job(|name| variable(name).map(|(_, value)| (*value).to_owned()))
         };
         let job = |text: &str| Some(text.to_owned());
-        assert_eq!(of(&[("SLURM_JOB_ID", "7")]), job("slurm 7"));
+        assert_eq!(job_of(&[("SLURM_JOB_ID", "7")]), job("slurm 7"));
         let array = [
             ("SLURM_JOB_ID", "9"),
             ("SLURM_ARRAY_JOB_ID", "7"),
             ("SLURM_ARRAY_TASK_ID", "2"),
         ];
-        assert_eq!(of(&array), job("slurm 7_2"));
-        assert_eq!(of(&[("HQ_JOB_ID", "3"), ("HQ_TASK_ID", "0")]), job("hq 3_0"));
+        assert_eq!(job_of(&array), job("slurm 7_2"));
+        assert_eq!(job_of(&[("HQ_JOB_ID", "3"), ("HQ_TASK_ID", "0")]), job("hq 3_0"));
         let pod = [("KUBERNETES_SERVICE_HOST", "10.0.0.1"), ("HOSTNAME", "worker-x")];
-        assert_eq!(of(&pod), job("kubernetes worker-x"));
-        assert_eq!(of(&[("HOSTNAME", "h"), ("PBS_JOBID", "")]), None);
+        assert_eq!(job_of(&pod), job("kubernetes worker-x"));
+        assert_eq!(job_of(&[("HOSTNAME", "h"), ("PBS_JOBID", "")]), None);
     }
 
     #[test]

@@ -12,7 +12,7 @@ use tokio::sync::Notify;
 
 use crate::model::CompiledVariant;
 
-/// Of so many evaluations of a model that is not ours, one is asked for twice: whether it gives the same again, nobody else knows.
+/// One in this many evaluations of an external model is repeated, because only a repetition shows whether the answers agree.
 const REPEATED: u64 = 20;
 
 /// Time and number of evaluations, over all threads.
@@ -28,7 +28,7 @@ impl SimulationClock {
         self.simulated_ns.load(Ordering::Relaxed) as f64 * 1e-9
     }
 
-    /// Evaluations done.
+    /// Number of completed evaluations.
     pub fn evaluations(&self) -> u64 {
         self.evaluations.load(Ordering::Relaxed)
     }
@@ -40,15 +40,15 @@ impl SimulationClock {
     }
 }
 
-/// What the threads share with the loop.
+/// State that the threads share with the loop.
 #[derive(Debug, Default)]
 struct Bench {
     results: Mutex<Vec<WorkResult>>,
     /// Leases that are being evaluated.
     started: Mutex<BTreeSet<u64>>,
-    /// Evaluations started and not done.
+    /// Number of evaluations that are queued or running.
     outstanding: AtomicUsize,
-    /// The loop is woken when so many are left, and when none is: waking it for every result would cost more
+    /// The loop is woken when this many evaluations are left, and when none is: waking it for every result would cost more
     /// than a short simulation.
     wake_at: AtomicUsize,
     wake: Notify,
@@ -64,10 +64,7 @@ pub struct Evaluator {
 }
 
 impl Evaluator {
-    /// A pool of `threads` threads.
-    ///
-    /// # Errors
-    /// The operating system refuses the threads.
+    /// Creates a pool of `threads` threads; an error if the operating system refuses them.
     pub fn new(threads: usize, clock: Arc<SimulationClock>) -> Result<Self, rayon::ThreadPoolBuildError> {
         let pool = rayon::ThreadPoolBuilder::new()
             .num_threads(threads)
@@ -80,19 +77,19 @@ impl Evaluator {
         })
     }
 
-    /// Queues evaluations behind those that wait; a panic of the model becomes a fault.
+    /// Queues evaluations; a panic of the model becomes a fault.
     pub fn start(&self, batch: Vec<(Lease, Arc<CompiledVariant>)>) {
         let outstanding = self.bench.outstanding.fetch_add(batch.len(), Ordering::AcqRel) + batch.len();
         self.bench.wake_at.store(outstanding / 2, Ordering::Release);
         for (lease, variant) in batch {
             let (bench, clock) = (self.bench.clone(), self.clock.clone());
             self.pool.spawn_fifo(move || {
-                // once the worker stops, evaluations that have not begun are given back instead
+                // after the worker stops, evaluations that have not begun are given back
                 if !bench.cancelled.load(Ordering::Acquire) {
                     let number = lease.lease;
                     lock(&bench.started).insert(number);
                     let result = evaluate(lease, &variant, &clock);
-                    // With the result first, no lease is in neither list.
+                    // The result is stored first, so that a lease is always in at least one list.
                     lock(&bench.results).push(result);
                     lock(&bench.started).remove(&number);
                 }
@@ -104,22 +101,22 @@ impl Evaluator {
         }
     }
 
-    /// Ready when half of the last batch is left, and when nothing is.
+    /// Waits until half of the last batch is left, or nothing.
     pub async fn woken(&self) {
         self.bench.wake.notified().await;
     }
 
-    /// The results since the last call, in the order in which they were done.
+    /// Takes the results since the last call, in the order of completion.
     pub fn take(&self) -> Vec<WorkResult> {
         std::mem::take(&mut *lock(&self.bench.results))
     }
 
-    /// Leases that are being evaluated.
+    /// Numbers of the leases that are being evaluated.
     pub fn started(&self) -> Vec<u64> {
         lock(&self.bench.started).iter().copied().collect()
     }
 
-    /// Drops the evaluations that have not begun, and waits for the others.
+    /// Drops the evaluations that have not begun, and waits for the rest.
     pub async fn cancel(&self) {
         self.bench.cancelled.store(true, Ordering::Release);
         self.bench.wake_at.store(0, Ordering::Release);
@@ -142,11 +139,11 @@ fn evaluate(lease: Lease, variant: &CompiledVariant, clock: &SimulationClock) ->
         };
         (Some(Outcome::Fault(fault)), None)
     });
-    // Chosen by its number, so that it does not matter who evaluates it.
+    // The number decides, so that the choice does not depend on the worker.
     let is_repeated = lease.subchain.is_none() && lease.evaluation.is_multiple_of(REPEATED);
-    let again = AssertUnwindSafe(|| variant.repeat(&lease.theta, outcome.as_ref()?));
+    let repeat = AssertUnwindSafe(|| variant.repeat(&lease.theta, outcome.as_ref()?));
     let repeated = match is_repeated {
-        true => std::panic::catch_unwind(again).unwrap_or_default(),
+        true => std::panic::catch_unwind(repeat).unwrap_or_default(),
         false => None,
     };
     let elapsed = u64::try_from(began.elapsed().as_nanos()).unwrap_or(u64::MAX);

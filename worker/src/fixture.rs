@@ -31,13 +31,13 @@ pub(crate) fn variant() -> ModelVariant {
     .unwrap()
 }
 
-/// The same with each run at so many wheel loads, by hash.
+/// Returns variants of this run at `loads` wheel loads, by hash.
 pub(crate) fn under_loads(loads: usize) -> Vec<(String, ModelVariant)> {
     let one = variant();
     let under = |k: usize| {
-        let mut own = one.clone();
-        own.conditions[0].wheel_load_n += 0.01 * k as f64;
-        (own.hash(), own)
+        let mut variant = one.clone();
+        variant.conditions[0].wheel_load_n += 0.01 * k as f64;
+        (variant.hash(), variant)
     };
     (0..loads).map(under).collect()
 }

@@ -1,14 +1,14 @@
-//! A stateless worker: pulls parameter vectors, simulates, posts observables.
+//! A stateless worker: it fetches parameter vectors, simulates, and posts observables.
 //!
 //! # Layout
 //! - [`model`]: a variant compiled for evaluation.
-//! - [`external`]: models that are not ours, as far as the operator allows them.
+//! - [`external`]: external models that the operator allows.
 //! - [`evaluator`]: a pool of threads that evaluates leases and counts the time it simulates.
 //! - [`pull`]: the loop of a worker: exchange, evaluate, resend, renew, give back.
 //! - [`client`]: HTTP client of the coordinator.
 //! - [`simulate`]: forward runs of an experiment without a coordinator.
-//! - [`serve`]: our models by UM-Bridge.
-//! - [`processor`]: whether this machine can run what was built.
+//! - [`serve`]: the built-in models by UM-Bridge.
+//! - [`processor`]: the check that this machine can run the build.
 //! - [`program`]: the command line, executed.
 //! - [`config`]: command line and environment. [`shell`]: completions and man pages.
 

@@ -10,11 +10,11 @@ use tracing_subscriber::util::SubscriberInitExt as _;
 use worker::config::WorkerConfig;
 
 fn main() -> std::process::ExitCode {
-    // First of all: the processor may lack the instructions of whatever comes next.
+    // This check is first, because the processor may lack the instructions of any later code.
     if let Err(error) = worker::processor::check() {
         return refuse(error);
     }
-    // The cryptography of every connection; only a second call would fail.
+    // This selects the cryptography of every connection; only a second call would fail.
     let _ = rustls::crypto::ring::default_provider().install_default();
     run()
 }
@@ -37,7 +37,7 @@ async fn run() -> std::process::ExitCode {
     }
 }
 
-/// Says why the program ends; where nothing can be written, as on a full disk, it ends all the same.
+/// Reports why the program ends; it also ends if nothing can be written, as on a full disk.
 fn refuse(error: impl std::fmt::Display) -> std::process::ExitCode {
     let _ = writeln!(std::io::stderr(), "error: {error}");
     std::process::ExitCode::FAILURE

@@ -3,7 +3,7 @@
 /// The features of x86-64-v3 beyond those of every x86-64 processor since 2009, as named by Linux; `abm` has LZCNT.
 const NEEDED: [&str; 8] = ["avx", "avx2", "bmi1", "bmi2", "f16c", "fma", "abm", "movbe"];
 
-/// This machine's processor lacks what the build asks for.
+/// The processor of this machine lacks features that the build needs.
 #[derive(Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
     "this program was built for processors with AVX2 (x86-64-v3); this machine lacks {0}: build with \
@@ -11,22 +11,20 @@ const NEEDED: [&str; 8] = ["avx", "avx2", "bmi1", "bmi2", "f16c", "fma", "abm", 
 )]
 pub struct ProcessorError(&'static str);
 
-/// Checks the processor; otherwise the first vector instruction would end the program without a message.
-///
-/// # Errors
-/// [`ProcessorError`] says how to build for this machine.
+/// Checks the processor; otherwise the first vector instruction would end the program without a message. [`ProcessorError`]
+/// says how to build for this machine.
 pub fn check() -> Result<(), ProcessorError> {
     if !cfg!(target_feature = "avx2") {
         return Ok(());
     }
-    // `is_x86_feature_detected!` answers what the build assumes, not what the machine has.
+    // `is_x86_feature_detected!` reports the assumptions of the build, not the features of the machine.
     match std::fs::read("/proc/cpuinfo") {
         Ok(text) => check_flags(&text),
-        Err(_) => Ok(()), // not Linux: nothing to ask
+        Err(_) => Ok(()), // without Linux the features are unknown
     }
 }
 
-/// Compares bytes one by one: iterators over texts are set up in vector registers, which this asks about.
+/// Compares bytes one by one, because iterators over texts use vector registers, whose presence is in question.
 fn check_flags(cpuinfo: &[u8]) -> Result<(), ProcessorError> {
     let Some(flags) = cpuinfo
         .split(|&byte| byte == b'\n')
@@ -50,7 +48,7 @@ mod tests {
     use super::{NEEDED, check_flags};
 
     #[test]
-    fn what_a_processor_lacks_is_named() {
+    fn missing_processor_features_are_named() {
         let whole = "model name\t: x\nflags\t\t: fpu avx avx2 bmi1 bmi2 f16c fma abm movbe\n";
         assert_eq!(check_flags(whole.as_bytes()), Ok(()));
         for feature in NEEDED {

@@ -1,4 +1,4 @@
-//! What the program `worker` does with its command line, for that program and for the verb of the coordinator.
+//! Execution of the command line of `worker`, for that program and for the verb of the coordinator.
 
 use std::io::{self, Write as _};
 use std::net::SocketAddr;
@@ -18,30 +18,30 @@ use crate::pull::{PullSettings, run};
 use crate::shell;
 use crate::simulate::{SimulateError, simulate};
 
-/// `EX_UNAVAILABLE` of sysexits(3): the coordinator refuses this worker, and would again.
+/// `EX_UNAVAILABLE` of sysexits(3): the coordinator refuses this worker permanently.
 const REFUSED: u8 = 69;
-/// `EX_TEMPFAIL`: another process may go on.
+/// `EX_TEMPFAIL`: another process may continue.
 const TRY_AGAIN: u8 = 75;
 
 /// Why the program ends early.
 #[derive(Debug, thiserror::Error)]
 pub enum ProgramError {
-    /// It is not said whom to serve.
+    /// The URL of the coordinator is missing.
     #[error("--coordinator URL is missing")]
     NoCoordinator,
-    /// There is no token.
+    /// The token cannot be read.
     #[error(transparent)]
     Token(#[from] BearerTokenError),
     /// The coordinator cannot be addressed.
     #[error(transparent)]
     Client(#[from] ClientError),
-    /// The signals that stop it cannot be heard.
+    /// The handlers of stop signals cannot be installed.
     #[error("signals")]
     Signals(#[source] io::Error),
     /// The coordinator refuses the worker.
     #[error("worker")]
     Exchange(#[from] ExchangeError),
-    /// Its process has grown; what it had not finished is given back.
+    /// The process exceeds its memory limit; unfinished work is given back.
     #[error("the process holds more than --max-memory-mb {0} MB")]
     Memory(u64),
     /// Completions cannot be written.
@@ -50,13 +50,13 @@ pub enum ProgramError {
     /// The man pages cannot be written.
     #[error("{folder}")]
     Man {
-        /// Where they should stand.
+        /// Path of the folder.
         folder: String,
-        /// Why not.
+        /// The operating system's reason.
         #[source]
         cause: io::Error,
     },
-    /// A model that is not ours cannot be run.
+    /// An external model cannot be run.
     #[error(transparent)]
     Model(#[from] AllowedModelError),
     /// Models cannot be served.
@@ -67,20 +67,20 @@ pub enum ProgramError {
     Port {
         /// Address and port.
         address: SocketAddr,
-        /// Why not.
+        /// The operating system's reason.
         #[source]
         cause: io::Error,
     },
     /// The thread of the forward runs ended early.
     #[error("forward runs")]
     Thread(#[source] tokio::task::JoinError),
-    /// There are no forward runs.
+    /// The forward runs failed.
     #[error(transparent)]
     Simulate(#[from] SimulateError),
 }
 
 impl ProgramError {
-    /// The exit status of a program that ends so.
+    /// The exit status for this error.
     pub fn status(&self) -> u8 {
         match self {
             ProgramError::Exchange(ExchangeError::Refused(_)) => REFUSED,
@@ -90,10 +90,7 @@ impl ProgramError {
     }
 }
 
-/// Serves a coordinator until a signal or a limit ends it, or simulates.
-///
-/// # Errors
-/// [`ProgramError`].
+/// Serves a coordinator until a signal or a limit ends it, or executes the command.
 pub async fn execute(config: WorkerConfig) -> Result<(), ProgramError> {
     match (config.command, config.serve) {
         (Some(WorkerCommand::Simulate(command)), _) => {
@@ -120,7 +117,7 @@ async fn serve(command: &ServeModels) -> Result<(), ProgramError> {
     let listener = tokio::net::TcpListener::bind(address).await.map_err(on_port)?;
     let cores = std::thread::available_parallelism().map_or(1, Into::into);
     let threads = command.threads.map_or(cores, Into::into);
-    // A script that asked for a free port reads it here.
+    // A script that requested a free port reads its number here.
     let bound = listener.local_addr().map_err(on_port)?;
     writeln!(io::stdout(), "http://{bound}").map_err(ProgramError::Output)?;
     let stop = stop_signal().map_err(ProgramError::Signals)?;
@@ -166,7 +163,7 @@ async fn pull(serve: &PullArguments) -> Result<(), ProgramError> {
     }
 }
 
-/// Host, process and time: fresh for every process, so a dead worker's leases are never taken for a new one's.
+/// Builds a name from host, process and time: fresh for every process, so that a new worker never inherits a dead worker's leases.
 fn name() -> String {
     let host = std::fs::read_to_string("/etc/hostname").unwrap_or_default();
     let host = host.trim();
@@ -180,7 +177,7 @@ fn name() -> String {
     )
 }
 
-/// Ready at ^C, SIGTERM, or SIGUSR1, by which sites have Slurm announce the end of a job.
+/// Ready at ^C, SIGTERM, or SIGUSR1, which sites configure as Slurm's signal before the end of a job.
 fn stop_signal() -> io::Result<impl Future<Output = ()>> {
     use tokio::signal::unix::{SignalKind, signal};
     let mut terminate = signal(SignalKind::terminate())?;

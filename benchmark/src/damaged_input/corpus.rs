@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use formula::catalogue::catalogue;
-use job::JobFile;
+use job::Job;
 use shared::exchange::{ExchangeRequest, PROTOCOL_VERSION, WorkResult};
 use shared::experiment::Experiment;
 use shared::file::{FileError, FileSet};
@@ -80,7 +80,7 @@ fn jobs(folder: &Path, found: &mut Vec<PathBuf>) {
 
 fn campaign(path: &Path) -> Result<Campaign, FileError> {
     let toml = read_text(path)?;
-    let job = JobFile::parse("job.toml", &toml)?;
+    let job = Job::parse("job.toml", &toml)?;
     let experiment = job.experiment.as_deref().unwrap_or_default();
     let experiment = Experiment::read_files(&sibling(path, experiment))?;
     let files = read_beside(path, &job.named_files())?;

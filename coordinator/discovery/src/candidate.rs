@@ -5,36 +5,36 @@ use statistics::prior::Marginal;
 /// An effect that may be missing from the model.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Candidate {
-    /// Its name.
+    /// Name, by which other candidates exclude it.
     pub name: String,
     /// The priors of its parameters, which follow the base's in theta.
     pub parameters: Vec<Marginal>,
-    /// Which of them are strengths; the others shape the effect. Several are the knots of a curve. A candidate without parameters is a
-    /// switch: another model with the same parameters.
+    /// Indices of the parameters that are strengths; the others shape the effect. Several strengths are the knots of a curve. A
+    /// candidate without parameters is a switch: another model with the same parameters.
     pub strengths: Vec<usize>,
     /// The value of every strength at which the effect is absent.
     pub neutral: f64,
     /// Names of the candidates with which it makes no combination.
     pub excludes: Vec<String>,
-    /// Candidates of one family are laws of one quantity, each for other conditions: they may explain together what none does alone.
+    /// Name of the family. Its candidates are laws of one quantity under different conditions, and may explain together what none
+    /// explains alone.
     pub family: Option<String>,
-    /// Whether the model's companion has a form of it.
+    /// Whether the low-fidelity model has this candidate.
     pub has_companion: bool,
 }
 
 impl Candidate {
-    /// Whether it is another model with the same parameters.
+    /// Whether the candidate is another model with the same parameters.
     #[must_use]
     pub fn is_switch(&self) -> bool {
         self.parameters.is_empty()
     }
 
-    /// Whether the two make a combination.
-    pub(crate) fn combines_with(&self, other: &Self) -> bool {
-        !self.excludes.contains(&other.name) && !other.excludes.contains(&self.name)
+    pub(crate) fn combines_with(&self, candidate: &Self) -> bool {
+        !self.excludes.contains(&candidate.name) && !candidate.excludes.contains(&self.name)
     }
 
-    /// Checks strengths and neutral value.
+    /// Checks the strengths and the neutral value.
     pub(crate) fn check(&self) -> Result<(), CandidateError> {
         let name = || self.name.clone();
         let parameters = self.parameters.len();
@@ -61,19 +61,19 @@ pub enum CandidateError {
     /// A candidate has no strength, or a strength that is not among its parameters.
     #[error("candidate {name}: strengths are parameters {strengths:?} of {parameters}")]
     NoStrength {
-        /// The candidate.
+        /// Name of the candidate.
         name: String,
         /// Indices of the strengths.
         strengths: Vec<usize>,
-        /// Number of its parameters.
+        /// Number of parameters of the candidate.
         parameters: usize,
     },
     /// The neutral strength is NaN or infinite.
     #[error("candidate {name}: neutral strength {value} is not finite")]
     Neutral {
-        /// The candidate.
+        /// Name of the candidate.
         name: String,
-        /// The strength.
+        /// The neutral strength as given.
         value: f64,
     },
     /// The base model has no free parameter.

@@ -16,15 +16,15 @@ pub(crate) const OUTSIDE_LAW: f64 = 0.05;
 /// Squared residuals in units of the noise, and their degrees of freedom.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FitChiSquare {
-    /// Their sum.
+    /// Sum of the squared residuals.
     pub value: f64,
     /// Number of data minus the effective number of fitted parameters.
     pub degrees_of_freedom: f64,
 }
 
 impl FitChiSquare {
-    /// Of a fit; `None` with inferred noise, heavy tails or a model discrepancy.
-    pub(crate) fn of(fit: &LaplaceFit, likelihood: &Likelihood) -> Option<Self> {
+    /// The chi-square of a fit; `None` with inferred noise, heavy tails or a model discrepancy.
+    pub(crate) fn of_fit(fit: &LaplaceFit, likelihood: &Likelihood) -> Option<Self> {
         let unknown = |sd: ErrorSd| matches!(sd, ErrorSd::Inferred { .. });
         let is_known = likelihood.law() == ErrorLaw::Gaussian
             && !likelihood.data().iter().any(|d| unknown(d.sd))
@@ -37,7 +37,7 @@ impl FitChiSquare {
         }
         let theta = fit.theta();
         let whitening = likelihood.whitening(&fit.point.values, &theta).ok()?;
-        // The effective number of a parameter is 1 - posterior variance over prior variance.
+        // The effective number of parameters is 1 - posterior variance over prior variance, summed.
         let uncertainty = fit.quadratic(likelihood).uncertainty();
         let fitted: f64 = uncertainty.iter().flatten().map(|sd| 1.0 - sd * sd).sum();
         Some(Self {
@@ -46,17 +46,17 @@ impl FitChiSquare {
         })
     }
 
-    /// As [`of`](Self::of); with a model discrepancy, of the declared noise alone.
-    pub(crate) fn of_known_noise(fit: &LaplaceFit, likelihood: &Likelihood) -> Option<Self> {
-        Self::of(fit, likelihood).or_else(|| {
+    /// The chi-square of a fit; with a model discrepancy, by the declared noise alone.
+    pub(crate) fn of_declared_noise(fit: &LaplaceFit, likelihood: &Likelihood) -> Option<Self> {
+        Self::of_fit(fit, likelihood).or_else(|| {
             let declared = Likelihood::new(likelihood.data().to_vec()).ok()?;
             let is_declared =
                 declared.values() == likelihood.values() && likelihood.law() == ErrorLaw::Gaussian;
-            is_declared.then(|| Self::of(fit, &declared))?
+            is_declared.then(|| Self::of_fit(fit, &declared))?
         })
     }
 
-    /// p-value.
+    /// p-value of the fit.
     #[must_use]
     pub fn p(&self) -> f64 {
         chi_square_tail(self.value, self.degrees_of_freedom).unwrap_or(1.0)
@@ -74,12 +74,11 @@ impl FitChiSquare {
         self.p() >= INCOMPLETE
     }
 
-    /// Over the degrees of freedom, at least 1.
+    /// The chi-square over its degrees of freedom, at least 1.
     pub(crate) fn ratio(&self) -> f64 {
         (self.value / self.degrees_of_freedom.max(1.0)).max(1.0)
     }
 
-    /// The excess over its expectation.
     pub(crate) fn excess(&self) -> f64 {
         self.value - self.degrees_of_freedom
     }

@@ -1,8 +1,10 @@
-//! Discovery of what a model is missing, by ask and tell.
+//! Discovery of missing effects, by ask and tell.
 //!
 //! Nothing here runs a model. A search lists the parameter vectors of a round, and takes the predicted values in any order.
-//! - [`EffectSearch`]: which one effect of a library is missing.
-//! - [`DiscoverySearch`]: combinations of effects, laws outside the library, and the runs to make next.
+//! - [`EffectSearch`] finds which single effect of a library is missing: base, screen, extensions, refinement, confirmation. The
+//!   page of `effect_search` describes these phases.
+//! - [`DiscoverySearch`] begins with that search and adds combinations of effects, laws outside the library and the runs to make
+//!   next. The page of `search` describes its stages.
 //!
 //! The evidence of a model is Laplace's approximation, in coordinates in which every prior is standard normal or, for a strength of
 //! one sign, half-normal; the truncation is integrated exactly.

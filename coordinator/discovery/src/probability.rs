@@ -4,17 +4,15 @@ use crate::laplace::evidence::log_sum_exp;
 
 /// A log Bayes factor above this is a detection; an effect of the model with a smaller one is dropped \[nats\].
 pub const DETECTED: f64 = 3.0;
-/// Prior probability that nothing is missing.
 const PRIOR_OF_NONE: f64 = 0.5;
-/// Probability of the credible set.
 const CREDIBLE: f64 = 0.95;
 
 /// The evidence for one explanation: nothing is missing, or one effect is.
 #[derive(Debug)]
 pub(crate) struct Explanation {
-    /// Effects that the data cannot distinguish share a class; 0: nothing is missing.
+    /// Number of the class, in which the data cannot distinguish effects; 0: nothing is missing.
     pub(crate) class: usize,
-    /// Over the base.
+    /// Log evidence over that of the base.
     pub(crate) log_bayes_factor: f64,
     /// Log Bayes factor and log prior cost of each combination of effects that counts for this explanation.
     pub(crate) combinations: Vec<(f64, f64)>,
@@ -23,9 +21,8 @@ pub(crate) struct Explanation {
 /// One model: an explanation alone, or one of the combinations that count for it.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct ModelProbability {
-    /// The explanation, by its place.
     pub(crate) explanation: usize,
-    /// The combination, by its place among those of the explanation; `None`: the explanation alone.
+    /// Index among the combinations of the explanation; `None`: the explanation alone.
     pub(crate) combination: Option<usize>,
     pub(crate) prior: f64,
     pub(crate) posterior: f64,
@@ -34,21 +31,20 @@ pub(crate) struct ModelProbability {
 /// Posterior probabilities.
 #[derive(Debug)]
 pub(crate) struct Probabilities {
-    /// Of each explanation: the sum over its models.
-    pub(crate) of_each: Vec<f64>,
-    /// Of each model.
-    pub(crate) of_models: Vec<ModelProbability>,
+    /// Probability of each explanation, the sum over its models.
+    pub(crate) explanations: Vec<f64>,
+    pub(crate) models: Vec<ModelProbability>,
     /// Prior probability of a law outside the library; `None`: not searched.
     pub(crate) outside_prior: Option<f64>,
-    /// Of a law outside the library.
+    /// Posterior probability of a law outside the library.
     pub(crate) outside: Option<f64>,
-    /// The smallest set of classes with 95 % probability, the most probable first; `None`: the law outside the library.
+    /// The smallest set of classes with 95 % probability, the most probable first; `None` in it is the law outside the library.
     pub(crate) credible: Vec<Option<usize>>,
 }
 
 impl Probabilities {
-    /// The prior is 1/2 for nothing missing; the rest is equal over the classes and the law outside the library, and within a class
-    /// over its members.
+    /// The prior is 1/2 for nothing missing. The rest is shared equally by the classes and the law outside the library, and within
+    /// a class by its members.
     ///
     /// # Arguments
     /// - `outside`: log Bayes factor of a law outside the library; `None`: not searched.
@@ -72,11 +68,11 @@ impl Probabilities {
         // Log prior and log weight of the explanation alone, then of its combinations.
         let models = |explanation: &Explanation| -> Vec<(f64, f64)> {
             let log_prior = libm::log(prior(explanation.class));
-            let own = std::iter::once((log_prior, log_prior + explanation.log_bayes_factor / misfit));
+            let alone = (log_prior, log_prior + explanation.log_bayes_factor / misfit);
             let combinations = explanation.combinations.iter();
-            let others =
+            let combinations =
                 combinations.map(|(factor, cost)| (log_prior - cost, log_prior + factor / misfit - cost));
-            own.chain(others).collect()
+            std::iter::once(alone).chain(combinations).collect()
         };
         let models: Vec<Vec<(f64, f64)>> = explanations.iter().map(models).collect();
         let weight = |models: &Vec<(f64, f64)>| log_sum_exp(models.iter().map(|(_, weight)| *weight));
@@ -84,8 +80,8 @@ impl Probabilities {
         let outside_prior = outside.map(|_| each);
         let outside = outside.map(|factor| libm::log(each) + factor / misfit);
         let sum = log_sum_exp(weights.iter().copied().chain(outside));
-        let of_each: Vec<f64> = weights.iter().map(|w| libm::exp(w - sum)).collect();
-        let of_models = models.iter().enumerate().flat_map(|(explanation, models)| {
+        let each_probability: Vec<f64> = weights.iter().map(|w| libm::exp(w - sum)).collect();
+        let weighed = models.iter().enumerate().flat_map(|(explanation, models)| {
             models
                 .iter()
                 .enumerate()
@@ -96,31 +92,36 @@ impl Probabilities {
                     posterior: libm::exp(weight - sum),
                 })
         });
-        let of_models = of_models.collect();
+        let models = weighed.collect();
         let outside = outside.map(|w| libm::exp(w - sum));
-        let of_class = |class: usize| -> f64 {
-            let own = explanations.iter().zip(&of_each);
-            own.filter(|(e, _)| e.class == class).map(|(_, p)| p).sum()
+        let class_probability = |class: usize| -> f64 {
+            let members = explanations.iter().zip(&each_probability);
+            members.filter(|(e, _)| e.class == class).map(|(_, p)| p).sum()
         };
         let mut by_class: Vec<(Option<usize>, f64)> = (0..=classes)
-            .map(|class| (Some(class), of_class(class)))
+            .map(|class| (Some(class), class_probability(class)))
             .collect();
         by_class.extend(outside.map(|p| (None, p)));
-        by_class.sort_by(|a, b| b.1.total_cmp(&a.1));
-        let mut held = 0.0;
-        let credible = by_class.into_iter().take_while(|(_, probability)| {
-            let is_open = held < CREDIBLE;
-            held += probability;
-            is_open
-        });
         Self {
-            credible: credible.map(|(class, _)| class).collect(),
-            of_each,
-            of_models,
+            credible: credible(by_class),
+            explanations: each_probability,
+            models,
             outside_prior,
             outside,
         }
     }
+}
+
+/// The smallest set of classes with 95 % probability, from the probability of each class.
+fn credible(mut by_class: Vec<(Option<usize>, f64)>) -> Vec<Option<usize>> {
+    by_class.sort_by(|a, b| b.1.total_cmp(&a.1));
+    let mut sum = 0.0;
+    let credible = by_class.into_iter().take_while(|(_, probability)| {
+        let is_open = sum < CREDIBLE;
+        sum += probability;
+        is_open
+    });
+    credible.map(|(class, _)| class).collect()
 }
 
 #[cfg(test)]
@@ -167,8 +168,8 @@ mod tests {
         let sum = log_sum_exp(weights.iter().copied());
         let expected: Vec<u64> = weights.iter().map(|w| libm::exp(w - sum).to_bits()).collect();
         let probabilities = Probabilities::new(&all, None, 1.0);
-        let given: Vec<u64> = probabilities.of_each.iter().map(|p| p.to_bits()).collect();
-        assert_eq!(given, expected);
+        let computed: Vec<u64> = probabilities.explanations.iter().map(|p| p.to_bits()).collect();
+        assert_eq!(computed, expected);
     }
 
     #[test]
@@ -181,14 +182,14 @@ mod tests {
         ];
         let probabilities = Probabilities::new(&all, Some(4.0), 1.0);
         assert_eq!(probabilities.credible, [None, Some(1), Some(2)]);
-        let total = probabilities.of_each.iter().sum::<f64>() + probabilities.outside.unwrap();
+        let total = probabilities.explanations.iter().sum::<f64>() + probabilities.outside.unwrap();
         assert!((total - 1.0).abs() < 1e-12);
     }
 
     #[test]
     fn without_an_alternative_nothing_is_missing() {
         assert_eq!(
-            Probabilities::new(&[explanation(0, 0.0)], None, 1.0).of_each,
+            Probabilities::new(&[explanation(0, 0.0)], None, 1.0).explanations,
             [1.0]
         );
     }
@@ -197,7 +198,7 @@ mod tests {
     fn a_misfit_brings_explanations_closer() {
         let all = [explanation(0, 0.0), explanation(1, 12.0), explanation(2, 4.0)];
         let odds = |misfit: f64| {
-            let p = Probabilities::new(&all, None, misfit).of_each;
+            let p = Probabilities::new(&all, None, misfit).explanations;
             libm::log(p[1] / p[2])
         };
         assert!((odds(1.0) - 8.0).abs() < 1e-9 && (odds(4.0) - 2.0).abs() < 1e-9);
@@ -208,13 +209,13 @@ mod tests {
         let mut all = [explanation(0, 0.0), explanation(1, 3.0)];
         all[1].combinations = vec![(9.0, 3.5), (2.0, 3.5)];
         let probabilities = Probabilities::new(&all, Some(1.0), 1.0);
-        let own = probabilities.of_models.iter().filter(|m| m.explanation == 1);
-        let sum: f64 = own.clone().map(|m| m.posterior).sum();
-        assert!((sum - probabilities.of_each[1]).abs() < 1e-12);
-        let places: Vec<Option<usize>> = own.map(|m| m.combination).collect();
+        let models = probabilities.models.iter().filter(|m| m.explanation == 1);
+        let sum: f64 = models.clone().map(|m| m.posterior).sum();
+        assert!((sum - probabilities.explanations[1]).abs() < 1e-12);
+        let places: Vec<Option<usize>> = models.map(|m| m.combination).collect();
         assert_eq!(places, [None, Some(0), Some(1)]);
         // The printed priors and Bayes factors give the printed odds.
-        let models = &probabilities.of_models;
+        let models = &probabilities.models;
         let odds = models[2].posterior / models[0].posterior;
         let expected = models[2].prior / models[0].prior * libm::exp(9.0);
         assert!((odds / expected - 1.0).abs() < 1e-12);

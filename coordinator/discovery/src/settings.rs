@@ -1,52 +1,52 @@
 //! Settings of a search.
 
-/// Where the fit of the base begins.
+/// The starts of the base's fit.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Starts {
-    /// At the best of these parameter vectors, for example draws of a posterior.
+    /// The best of these parameter vectors, for example draws of a posterior.
     Draws(Vec<Vec<f64>>),
-    /// At the best of so many points that fill the prior evenly.
+    /// The best of this number of points that fill the prior evenly.
     Even(usize),
 }
 
-/// How a model's predictions follow its parameters.
+/// Whether a model's predictions are a smooth function of its parameters, or carry numerical noise.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Roughness {
-    /// Smoothly.
+    /// The predictions are smooth.
     Smooth,
-    /// In jumps, as on a grid that the contact crosses node by node.
+    /// The predictions jump, as on a grid whose nodes enter and leave the contact.
     Rough,
-    /// As the scatter says where it is measured: smoothly where that is negligible beside the noise of all data, in jumps otherwise.
+    /// The measured scatter decides: the model is smooth if it is negligible beside the noise of all data.
     Unknown,
 }
 
 impl Roughness {
-    /// Shortest finite difference, in standard deviations of the prior; shorter ones show the jumps.
-    pub(crate) fn least_difference(self) -> f64 {
+    /// Shortest finite difference, in standard deviations of the prior; shorter ones resolve the jumps.
+    pub(crate) fn min_difference(self) -> f64 {
         match self {
             Self::Smooth => 0.03,
             Self::Rough | Self::Unknown => 0.15,
         }
     }
 
-    /// A step of a fit that is predicted to gain less ends its trials \[nats\]: the log-likelihood of a rough model scatters by more.
-    pub(crate) fn least_gain(self) -> f64 {
+    /// A fit ends its trial steps when the predicted gain is smaller \[nats\]; the log-likelihood of a rough model has more noise.
+    pub(crate) fn min_gain(self) -> f64 {
         match self {
             Self::Smooth => 0.01,
             Self::Rough | Self::Unknown => 0.2,
         }
     }
 
-    /// A step that gains less is taken and counts as rejected \[nats\].
-    pub(crate) fn least_counted_gain(self) -> f64 {
+    /// A step that gains less is accepted, but counts as rejected \[nats\].
+    pub(crate) fn min_counted_gain(self) -> f64 {
         match self {
             Self::Smooth => 0.0,
-            Self::Rough | Self::Unknown => self.least_gain(),
+            Self::Rough | Self::Unknown => self.min_gain(),
         }
     }
 
-    /// Rejected steps in a row that end the trials.
-    pub(crate) fn most_failures(self) -> usize {
+    /// Number of consecutive rejected steps that ends the trials.
+    pub(crate) fn max_failures(self) -> usize {
         match self {
             Self::Smooth => 4,
             Self::Rough | Self::Unknown => 3,
@@ -57,15 +57,15 @@ impl Roughness {
 /// Settings of a search.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SearchSettings {
-    /// Where the fit of the base begins.
+    /// The starts of the base's fit.
     pub starts: Starts,
-    /// Seed of the draws.
+    /// Seed of all random draws.
     pub seed: u64,
-    /// How the model's predictions follow its parameters: a rough model is searched by long differences and fewer fits.
+    /// Whether the model is rough; a rough model is searched with longer differences and fewer fits.
     pub roughness: Roughness,
-    /// Whether the scatter of the model's predictions is measured, and counted as noise.
+    /// Whether the numerical noise is measured and added to the noise of the data.
     pub has_numerical_noise: bool,
-    /// Whether a rough model has a companion: a cheap, smooth one of the same parameters, whose differences stand for the model's.
+    /// Whether a rough model has a low-fidelity model: a cheap, smooth one with the same parameters, used as a control variate.
     pub has_companion: bool,
 }
 

@@ -11,7 +11,7 @@ use statistics::prior::Prior;
 pub struct SearchTask {
     /// Prior of the model's parameters; inferred noise sds are among them.
     pub prior: Prior,
-    /// The data.
+    /// The data with their error model.
     pub likelihood: Likelihood,
     /// The effects that may be missing.
     pub library: Vec<Candidate>,
@@ -21,13 +21,13 @@ pub struct SearchTask {
     pub reductions: Vec<Reduction>,
     /// The data of each level of the design, left out together in the cross-validation.
     pub levels: Vec<Vec<usize>>,
-    /// The data of each condition of the rig; those of runs that repeat it stand together.
+    /// The data of each condition of the rig; repeated runs are one condition.
     pub conditions: Vec<Vec<usize>>,
     /// Runs that the rig could make.
     pub proposed: ProposedRuns,
-    /// Most effects in a combination.
+    /// Maximum number of effects in a combination.
     pub max_effects: usize,
-    /// Starts, seed and differences.
+    /// Starts, seed and properties of the model.
     pub settings: SearchSettings,
 }
 
@@ -38,7 +38,7 @@ pub struct LawCandidate {
     pub curve: Candidate,
     /// The dependence in simple forms.
     pub forms: Vec<Candidate>,
-    /// Whether it changes a measured channel and not a stress: a description, which yields to an explanation.
+    /// Whether the law changes a measured channel instead of a stress. Such a law describes the data, and yields to one that explains them.
     pub is_description: bool,
 }
 
@@ -52,7 +52,7 @@ pub struct Reduction {
 /// Runs that could be made next.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct ProposedRuns {
-    /// Their number.
+    /// Number of the runs.
     pub runs: usize,
     /// How far each run lies beyond the measured range of wheel load and rim speed: the logarithm of the ratio, 0 within the range.
     pub beyond: Vec<f64>,
@@ -70,7 +70,7 @@ impl ProposedRuns {
 }
 
 impl SearchTask {
-    /// Every candidate: the library, then the curve and the forms of each law. A candidate is named by its index here.
+    /// All candidates: the library, then the curve and the forms of each law. Other items name a candidate by its index in this list.
     #[must_use]
     pub fn candidates(&self) -> Vec<Candidate> {
         let outside = self
@@ -80,18 +80,15 @@ impl SearchTask {
         self.library.iter().chain(outside).cloned().collect()
     }
 
-    /// The coordinates of the base.
     pub(crate) fn frame(&self) -> NormalFrame {
-        NormalFrame::base(&self.prior, self.settings.roughness).beside(self.settings.has_companion)
+        NormalFrame::base(&self.prior, self.settings.roughness).with_low_fidelity(self.settings.has_companion)
     }
 
-    /// The index of a law's curve among the candidates.
     pub(crate) fn curve(&self, law: usize) -> usize {
         let before = self.laws[..law].iter().map(|law| 1 + law.forms.len());
         self.library.len() + before.sum::<usize>()
     }
 
-    /// The indices of a law's forms among the candidates.
     pub(crate) fn forms(&self, law: usize) -> std::ops::Range<usize> {
         let first = self.curve(law) + 1;
         first..first + self.laws[law].forms.len()

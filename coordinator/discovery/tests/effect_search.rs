@@ -67,7 +67,7 @@ fn search(values: &[f64], candidates: &[Candidate], columns: &[usize], backwards
     search_from(&base(), values, candidates, columns, backwards)
 }
 
-/// The same with another prior of the base.
+/// Searches with another prior of the base.
 fn search_from(
     prior: &Prior,
     values: &[f64],
@@ -86,10 +86,10 @@ fn search_from(
         for index in order {
             let request = &pending[index];
             let predict = |i: usize| {
-                let own = request.candidate.map_or(0.0, |k| {
+                let change = request.candidate.map_or(0.0, |k| {
                     request.theta.get(2).unwrap_or(&1.0) * column(columns[k], i)
                 });
-                request.theta[0] * column(0, i) + request.theta[1] * column(1, i) + own
+                request.theta[0] * column(0, i) + request.theta[1] * column(1, i) + change
             };
             let predicted: Vec<f64> = (0..DATA).map(predict).collect();
             search.tell(index, Some(&predicted)).unwrap();
@@ -102,8 +102,8 @@ fn search_from(
 fn log_evidence(values: &[f64], columns: &[(usize, f64)]) -> f64 {
     let covariance = DMatrix::from_fn(DATA, DATA, |i, j| {
         let noise = if i == j { SD * SD } else { 0.0 };
-        let of = |&(k, scale): &(usize, f64)| scale * scale * column(k, i) * column(k, j);
-        noise + columns.iter().map(of).sum::<f64>()
+        let term = |&(k, scale): &(usize, f64)| scale * scale * column(k, i) * column(k, j);
+        noise + columns.iter().map(term).sum::<f64>()
     });
     normal_log_density(values, covariance)
 }
@@ -131,7 +131,7 @@ fn fitted(given: f64, expected: f64) {
 
 const BASE: [(usize, f64); 2] = [(0, 1.0), (1, 1.0)];
 
-/// The evidence where a strength's prior has another width with a fifth of the probability each.
+/// The evidence where each of three other widths of a strength's prior has a fifth of the probability.
 fn mixed(evidence: impl Fn(f64) -> f64) -> f64 {
     let parts = [(0.4, 1.0), (0.2, 4.0), (0.2, 0.25), (0.2, 0.0625)];
     libm::log(
@@ -174,8 +174,8 @@ fn correlations_of_the_prior_count() {
             let noise = if i == j { SD * SD } else { 0.0 };
             let first = |i: usize| column(0, i) - 0.8 * column(1, i);
             let second = |i: usize| 0.6 * column(1, i);
-            let of = |&(k, scale): &(usize, f64)| scale * scale * column(k, i) * column(k, j);
-            noise + first(i) * first(j) + second(i) * second(j) + strength.iter().map(of).sum::<f64>()
+            let term = |&(k, scale): &(usize, f64)| scale * scale * column(k, i) * column(k, j);
+            noise + first(i) * first(j) + second(i) * second(j) + strength.iter().map(term).sum::<f64>()
         });
         normal_log_density(&values, covariance)
     };
@@ -267,9 +267,13 @@ fn four() -> ([Candidate; 4], [usize; 4]) {
 
 /// The classes of the credible set, the most probable first.
 fn credible(ranking: &EffectRanking) -> Vec<usize> {
-    let own = ranking.effects.iter().filter(|e| e.is_credible);
-    let mut classes: Vec<usize> = own.map(|e| e.class).collect();
-    classes.sort_by(|a, b| ranking.of_class(*b).total_cmp(&ranking.of_class(*a)));
+    let credible = ranking.effects.iter().filter(|e| e.is_credible);
+    let mut classes: Vec<usize> = credible.map(|e| e.class).collect();
+    classes.sort_by(|a, b| {
+        ranking
+            .class_probability(*b)
+            .total_cmp(&ranking.class_probability(*a))
+    });
     classes.dedup();
     classes
 }
@@ -291,8 +295,8 @@ fn probabilities_sum_to_one_and_follow_the_prior_over_classes() {
         libm::exp(square.log_bayes_factor) / 6.0,
     );
     let credible = credible(&ranking);
-    let held: f64 = credible.iter().map(|c| ranking.of_class(*c)).sum();
-    let without_last = held - ranking.of_class(*credible.last().unwrap());
+    let held: f64 = credible.iter().map(|c| ranking.class_probability(*c)).sum();
+    let without_last = held - ranking.class_probability(*credible.last().unwrap());
     assert!(held >= 0.95 && without_last < 0.95, "{held} {without_last}");
 }
 
@@ -304,7 +308,7 @@ fn effects_that_the_data_cannot_distinguish_form_one_class_and_the_truth_is_foun
     let class = |k: usize| ranking.of(Some(k)).unwrap().class;
     assert_eq!(class(0), class(2));
     assert!(class(0) != class(1) && class(1) != class(3) && class(0) != 0);
-    assert!(ranking.of_class(class(0)) > 0.9);
+    assert!(ranking.class_probability(class(0)) > 0.9);
     assert_eq!(credible(&ranking), [class(0)]);
 }
 
@@ -344,8 +348,8 @@ fn a_candidate_that_the_model_always_rejects_is_listed_and_not_ranked() {
     .unwrap();
     while search.ranking().is_none() {
         for (index, request) in search.pending().collect::<Vec<_>>().iter().enumerate() {
-            let own = |i: usize| request.candidate.map_or(0.0, |_| request.theta[2] * column(2, i));
-            let line = |i: usize| request.theta[0] + request.theta[1] * column(1, i) + own(i);
+            let change = |i: usize| request.candidate.map_or(0.0, |_| request.theta[2] * column(2, i));
+            let line = |i: usize| request.theta[0] + request.theta[1] * column(1, i) + change(i);
             let predicted: Vec<f64> = (0..DATA).map(line).collect();
             let answer = (request.candidate != Some(1)).then_some(predicted);
             search.tell(index, answer.as_deref()).unwrap();

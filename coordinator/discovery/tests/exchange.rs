@@ -5,18 +5,18 @@ use statistics::rng::Stream;
 
 use crate::search::{CONSTANT, SQUARE, WIDTH, answer, measured, run, task};
 
-/// In the place of the constant: the width over again.
+/// The width again, in place of the constant.
 const TWIN: usize = CONSTANT;
 const SCATTER: f64 = 0.03;
 
-/// Square and twin together are refused far from the truth, so that no step of a search leads there.
+/// The model refuses square and twin together far from the truth, so that no step of a search leads there.
 fn refused(effects: &[usize], theta: &[f64]) -> bool {
-    let strength = |wanted: usize| Some(theta[2 + effects.iter().position(|k| *k == wanted)?]);
+    let strength = |candidate: usize| Some(theta[2 + effects.iter().position(|k| *k == candidate)?]);
     let pair = strength(SQUARE).zip(strength(TWIN));
     pair.is_some_and(|(square, twin)| !(0.55..0.97).contains(&square) || !(0.5..0.95).contains(&twin))
 }
 
-fn found(scatter: f64) -> Conclusion {
+fn conclude(scatter: f64) -> Conclusion {
     let mut task = task(&measured(|x, w| 0.3 + 0.8 * x * x + 0.7 * w * x));
     task.laws = Vec::new();
     task.library[TWIN].name = "twin".into();
@@ -50,17 +50,17 @@ fn found(scatter: f64) -> Conclusion {
 
 #[test]
 fn an_effect_of_the_best_set_s_class_is_fitted_in_its_place() {
-    let nats = |found: &Conclusion, wanted: [usize; 2]| {
-        let mut sets = found.sets.iter();
-        let is_wanted = |own: &Vec<usize>| own.len() == 2 && wanted.iter().all(|k| own.contains(k));
-        let set = sets.find(|set| set.effects.as_ref().is_some_and(is_wanted));
+    let nats = |conclusion: &Conclusion, pair: [usize; 2]| {
+        let mut sets = conclusion.sets.iter();
+        let is_pair = |effects: &Vec<usize>| effects.len() == 2 && pair.iter().all(|k| effects.contains(k));
+        let set = sets.find(|set| set.effects.as_ref().is_some_and(is_pair));
         set.map(|set| set.log_bayes_factor)
     };
-    let rough = found(SCATTER);
+    let rough = conclude(SCATTER);
     let [best, twin] = [WIDTH, TWIN].map(|k| nats(&rough, [SQUARE, k]).unwrap());
     assert!((best - twin).abs() < 5.0, "{best} and {twin}");
-    // A model that does not scatter has no luck to make up for.
-    let smooth = found(0.0);
+    // A model without numerical noise needs no exchanges.
+    let smooth = conclude(0.0);
     assert!(nats(&smooth, [SQUARE, WIDTH]).is_some());
     assert_eq!(nats(&smooth, [SQUARE, TWIN]), None);
 }

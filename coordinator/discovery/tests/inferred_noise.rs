@@ -11,8 +11,8 @@ const NOISE: usize = 2;
 /// The search for a square on every second datum, 12 in all.
 ///
 /// # Arguments
-/// - `is_known`: whether the sd of a datum, by its number among the twelve, is declared. `conditions`: of the twelve.
-fn found(is_known: impl Fn(usize) -> bool, conditions: Vec<Vec<usize>>) -> Conclusion {
+/// - `is_known`: whether the sd of a datum, by its number among the twelve, is declared. `conditions`: the data of each condition.
+fn conclude(is_known: impl Fn(usize) -> bool, conditions: Vec<Vec<usize>>) -> Conclusion {
     let values = measured(|x, _| 0.3 + 0.5 * x + 0.8 * x * x);
     let whole = task(&values);
     let sd = Distribution::Lognormal {
@@ -52,7 +52,7 @@ fn found(is_known: impl Fn(usize) -> bool, conditions: Vec<Vec<usize>>) -> Concl
 fn an_effect_is_named_on_inferred_noise_only_with_data_or_repeats_enough() {
     // Twelve data less three fitted parameters leave the sd uncertain by 24 %.
     let alone: Vec<Vec<usize>> = (0..12).map(|place| vec![place]).collect();
-    let few = found(|_| false, alone.clone());
+    let few = conclude(|_| false, alone.clone());
     assert_eq!(few.verdict, SearchVerdict::Undecided);
     assert_eq!(few.unsupported_noise, [NOISE]);
     assert_eq!(few.agreed, None);
@@ -68,7 +68,7 @@ fn an_effect_is_named_on_inferred_noise_only_with_data_or_repeats_enough() {
             conditions[place] = vec![place, 11 - place];
             conditions[11 - place].clear();
         }
-        found(|_| false, conditions)
+        conclude(|_| false, conditions)
     };
     assert_eq!(repeated(2).verdict, SearchVerdict::Undecided);
     let named = repeated(3);
@@ -79,10 +79,10 @@ fn an_effect_is_named_on_inferred_noise_only_with_data_or_repeats_enough() {
 #[test]
 fn data_of_declared_noise_support_what_they_show_by_themselves() {
     let alone: Vec<Vec<usize>> = (0..12).map(|place| vec![place]).collect();
-    let half = found(|place| place % 2 == 0, alone.clone());
+    let half = conclude(|place| place % 2 == 0, alone.clone());
     assert_eq!(half.verdict, SearchVerdict::Named(SQUARE));
-    // In the middle of the range, where a square is a constant, declared noise shows nothing of it.
-    let middle = found(|place| place == 5 || place == 6, alone);
+    // In the middle of the range a square is nearly constant, so declared noise there shows nothing of it.
+    let middle = conclude(|place| place == 5 || place == 6, alone);
     assert_eq!(middle.verdict, SearchVerdict::Undecided);
     assert_eq!(middle.unsupported_noise, [NOISE]);
 }

@@ -11,17 +11,17 @@ use statistics::{
 };
 
 const DATA: usize = 24;
-/// The difference of these two is what the model lacks; either alone is nearly the same parabola, which it does not lack.
+/// The model lacks the difference of these two; either alone is nearly the same parabola, which the model has.
 const WAVY: usize = 0;
 const PLAIN: usize = 1;
-/// Steps that the data have.
+/// Number of steps in the data.
 const STEPS: usize = 3;
 
 fn x(i: usize) -> f64 {
     i as f64 / (DATA - 1) as f64 * 2.0 - 1.0
 }
 
-/// What a unit of a candidate's strength adds at x; beyond the two, steps that explain a little each.
+/// The change at x by a unit of a candidate's strength; candidates beyond the two are steps that explain a little each.
 fn added(wave: f64, k: usize, x: f64) -> f64 {
     let parabola = x * x - 0.36;
     match k {
@@ -55,14 +55,14 @@ fn predict(wave: f64, query: &Query) -> Vec<f64> {
     };
     let theta = &query.theta;
     let at = |i: usize| {
-        let own = effects.iter().zip(&theta[2..]);
-        theta[0] + theta[1] * x(i) + own.map(|(&k, s)| s * added(wave, k, x(i))).sum::<f64>()
+        let strengths = effects.iter().zip(&theta[2..]);
+        theta[0] + theta[1] * x(i) + strengths.map(|(&k, s)| s * added(wave, k, x(i))).sum::<f64>()
     };
     (0..DATA).map(at).collect()
 }
 
 /// Searches data of both effects at opposite strengths, and of the three steps.
-fn found(wave: f64, sd: f64, has_discrepancy: bool) -> Conclusion {
+fn conclude(wave: f64, sd: f64, has_discrepancy: bool) -> Conclusion {
     found_in(library(STEPS), wave, sd, has_discrepancy)
 }
 
@@ -103,8 +103,8 @@ fn found_in(library: Vec<Candidate>, wave: f64, sd: f64, has_discrepancy: bool) 
     })
     .unwrap();
     loop {
-        if let Some(found) = search.conclusion() {
-            return found.clone();
+        if let Some(conclusion) = search.conclusion() {
+            return conclusion.clone();
         }
         for index in 0..search.pending().len() {
             let values = predict(wave, search.query(index).unwrap());
@@ -113,27 +113,27 @@ fn found_in(library: Vec<Candidate>, wave: f64, sd: f64, has_discrepancy: bool) 
     }
 }
 
-fn effects(found: &Conclusion) -> Vec<usize> {
-    let mut effects = found.combination.clone();
+fn effects(conclusion: &Conclusion) -> Vec<usize> {
+    let mut effects = conclusion.combination.clone();
     effects.sort_unstable();
     effects
 }
 
 #[test]
 fn two_effects_that_do_little_alone_are_found_together() {
-    let found = found(0.15, 0.1, false);
+    let conclusion = conclude(0.15, 0.1, false);
     for k in [WAVY, PLAIN] {
-        let alone = found.ranking.of(Some(k)).unwrap().log_bayes_factor;
+        let alone = conclusion.ranking.of(Some(k)).unwrap().log_bayes_factor;
         assert!(alone < DETECTED, "{k}: {alone}");
     }
-    assert_eq!(effects(&found), [WAVY, PLAIN]);
+    assert_eq!(effects(&conclusion), [WAVY, PLAIN]);
 }
 
 #[test]
 fn an_unknown_discrepancy_does_not_hide_what_two_effects_explain() {
-    // Alone, one of them takes up nothing, little, or much of what the discrepancy would.
+    // Alone, one effect absorbs nothing, little, or much of the discrepancy.
     for wave in [0.15, 0.5, 0.8] {
-        assert_eq!(effects(&found(wave, 0.01, true)), [WAVY, PLAIN], "{wave}");
+        assert_eq!(effects(&conclude(wave, 0.01, true)), [WAVY, PLAIN], "{wave}");
     }
 }
 

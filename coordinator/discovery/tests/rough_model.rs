@@ -1,4 +1,4 @@
-//! The search of a rough model, whose evaluations are dear, beside that of the same model without its jumps.
+//! The search of a rough model, whose evaluations are expensive, compared with the same model without its jumps.
 
 use discovery::{
     Candidate, EffectRanking, EffectRequest, EffectSearch, EvidenceMethod, RankedEffect, Roughness,
@@ -38,7 +38,7 @@ fn predicted(theta: &[f64], effect: Option<usize>, roughness: Roughness) -> Vec<
     let jumps = Stream::new(1, 0, key, 0).normals(DATA);
     let value = |i: usize| {
         let x = 2.0 * i as f64 / (DATA - 1) as f64 - 1.0;
-        let own = effect.map_or(0.0, |k| {
+        let change = effect.map_or(0.0, |k| {
             let shape = libm::cos((1.0 + 0.3 * k as f64) * (x + 1.0) + k as f64);
             theta[2] / (1.0 + 0.1 * theta[2]) * shape
         });
@@ -46,7 +46,7 @@ fn predicted(theta: &[f64], effect: Option<usize>, roughness: Roughness) -> Vec<
             Roughness::Smooth => 0.0,
             Roughness::Rough | Roughness::Unknown => SCATTER * jumps[i],
         };
-        theta[0] + theta[1] * x + own + jump
+        theta[0] + theta[1] * x + change + jump
     };
     (0..DATA).map(value).collect()
 }
@@ -71,11 +71,11 @@ fn searched(likelihood: Likelihood, roughness: Roughness) -> EffectRanking {
     searched_as(likelihood, roughness, roughness)
 }
 
-/// The search of a model of a roughness that is told another one.
-fn searched_as(likelihood: Likelihood, roughness: Roughness, told: Roughness) -> EffectRanking {
+/// The search of a model of one roughness with the settings of another.
+fn searched_as(likelihood: Likelihood, roughness: Roughness, declared: Roughness) -> EffectRanking {
     let settings = SearchSettings {
-        roughness: told,
-        has_numerical_noise: told != Roughness::Smooth,
+        roughness: declared,
+        has_numerical_noise: declared != Roughness::Smooth,
         ..SearchSettings::default()
     };
     run(likelihood, &settings, |request| {
@@ -84,7 +84,7 @@ fn searched_as(likelihood: Likelihood, roughness: Roughness, told: Roughness) ->
     })
 }
 
-/// The search of a rough model beside a companion.
+/// The search of a rough model with a low-fidelity model.
 fn beside(truth: usize, companion: impl Fn(&EffectRequest) -> Option<Vec<f64>>) -> EffectRanking {
     let settings = SearchSettings {
         roughness: Roughness::Rough,
@@ -99,7 +99,7 @@ fn beside(truth: usize, companion: impl Fn(&EffectRequest) -> Option<Vec<f64>>) 
     })
 }
 
-/// A companion whose predictions are a share of the model's, without its jumps, and with an error of their own.
+/// A low-fidelity model whose predictions are a share of the model's, without its jumps and with an error of their own.
 fn biased(theta: &[f64], effect: Option<usize>) -> Vec<f64> {
     let smooth = predicted(theta, effect, Roughness::Smooth);
     smooth.iter().map(|value| 0.3 + 0.8 * value).collect()
@@ -131,7 +131,7 @@ fn leader(ranking: &EffectRanking) -> &RankedEffect {
 fn a_rough_model_is_searched_with_fewer_evaluations_and_names_the_same() {
     let (mut sparing, mut thorough) = (0, 0);
     for truth in [5, 7, 13, 22, 29] {
-        let [smooth, rough] = [Roughness::Smooth, Roughness::Rough].map(|of| search(truth, of));
+        let [smooth, rough] = [Roughness::Smooth, Roughness::Rough].map(|roughness| search(truth, roughness));
         assert_eq!(
             leader(&smooth).class,
             smooth.of(Some(truth)).unwrap().class,
@@ -142,8 +142,9 @@ fn a_rough_model_is_searched_with_fewer_evaluations_and_names_the_same() {
             rough.of(Some(truth)).unwrap().class,
             "{truth}"
         );
-        // Beside the measurement of its scatter.
-        let of_effects = |own: &EffectRanking| own.evaluations.to_confirm() - own.evaluations.base;
+        // The measurement of the scatter is counted separately.
+        let of_effects =
+            |ranking: &EffectRanking| ranking.evaluations.to_confirm() - ranking.evaluations.base;
         sparing += of_effects(&rough);
         thorough += of_effects(&smooth);
     }
@@ -185,7 +186,7 @@ fn a_rough_model_that_contradicts_the_data_is_confirmed_thoroughly_with_a_discre
 #[test]
 fn what_is_out_of_reach_is_screened_alone_and_its_probability_is_small_by_either_search() {
     let truth = 13;
-    let [smooth, rough] = [Roughness::Smooth, Roughness::Rough].map(|of| search(truth, of));
+    let [smooth, rough] = [Roughness::Smooth, Roughness::Rough].map(|roughness| search(truth, roughness));
     let screened = || {
         rough
             .effects
@@ -194,13 +195,13 @@ fn what_is_out_of_reach_is_screened_alone_and_its_probability_is_small_by_either
     };
     assert!(screened().count() > EFFECTS / 2, "{}", screened().count());
     assert!(smooth.effects.iter().all(|e| e.method > EvidenceMethod::Screen));
-    for own in screened() {
-        let thorough = smooth.of(own.candidate).unwrap();
+    for effect in screened() {
+        let thorough = smooth.of(effect.candidate).unwrap();
         assert!(
-            own.probability < 1e-4 && thorough.probability < 1e-4,
+            effect.probability < 1e-4 && thorough.probability < 1e-4,
             "{:?}: {} and {}",
-            own.candidate,
-            own.probability,
+            effect.candidate,
+            effect.probability,
             thorough.probability
         );
     }
@@ -208,16 +209,17 @@ fn what_is_out_of_reach_is_screened_alone_and_its_probability_is_small_by_either
 
 #[test]
 fn a_model_of_unknown_roughness_is_searched_as_its_scatter_says() {
-    let of = |roughness, told| searched_as(Likelihood::new(data(13)).unwrap(), roughness, told);
-    let rough = of(Roughness::Rough, Roughness::Unknown);
-    assert_eq!(rough, of(Roughness::Rough, Roughness::Rough));
-    let [smooth, thorough] = [Roughness::Unknown, Roughness::Smooth].map(|told| of(Roughness::Smooth, told));
+    let ranking = |roughness, declared| searched_as(Likelihood::new(data(13)).unwrap(), roughness, declared);
+    let rough = ranking(Roughness::Rough, Roughness::Unknown);
+    assert_eq!(rough, ranking(Roughness::Rough, Roughness::Rough));
+    let [smooth, thorough] =
+        [Roughness::Unknown, Roughness::Smooth].map(|declared| ranking(Roughness::Smooth, declared));
     assert!(smooth.evaluations.to_confirm() > rough.evaluations.to_confirm());
-    for own in &smooth.effects {
-        let known = thorough.of(own.candidate).unwrap();
-        assert_eq!(own.method, known.method, "{:?}", own.candidate);
-        let difference = own.log_bayes_factor - known.log_bayes_factor;
-        assert!(difference.abs() < 0.1, "{:?}: {difference}", own.candidate);
+    for effect in &smooth.effects {
+        let reference = thorough.of(effect.candidate).unwrap();
+        assert_eq!(effect.method, reference.method, "{:?}", effect.candidate);
+        let difference = effect.log_bayes_factor - reference.log_bayes_factor;
+        assert!(difference.abs() < 0.1, "{:?}: {difference}", effect.candidate);
     }
 }
 

@@ -89,17 +89,17 @@ fn hat(k: usize, x: f64) -> f64 {
     (1.0 - 2.0 * (x - knot).abs()).max(0.0)
 }
 
-/// What a candidate adds at x and w.
-fn added(k: usize, own: &[f64], x: f64, w: f64) -> f64 {
+/// The change that a candidate makes at x and w.
+fn added(k: usize, parameters: &[f64], x: f64, w: f64) -> f64 {
     match k {
-        SQUARE => own[0] * x * x,
-        CUBE => own[0] * x * x * x,
-        WIDTH => own[0] * w * x,
-        CONSTANT => own[0],
-        OVER_X => (0..5).map(|j| own[j] * hat(j, x)).sum(),
-        STEP => own[0] * f64::from(u8::from(x > own[1])),
-        OVER_W => (0..5).map(|j| own[j] * hat(j, w)).sum(),
-        _ => own[0] * w,
+        SQUARE => parameters[0] * x * x,
+        CUBE => parameters[0] * x * x * x,
+        WIDTH => parameters[0] * w * x,
+        CONSTANT => parameters[0],
+        OVER_X => (0..5).map(|j| parameters[j] * hat(j, x)).sum(),
+        STEP => parameters[0] * f64::from(u8::from(x > parameters[1])),
+        OVER_W => (0..5).map(|j| parameters[j] * hat(j, w)).sum(),
+        _ => parameters[0] * w,
     }
 }
 
@@ -114,10 +114,10 @@ fn length(k: usize) -> usize {
 /// The prediction of a model with these effects.
 fn predict(effects: &[usize], theta: &[f64], x: f64, w: f64) -> f64 {
     let mut value = theta[0] + theta[1] * x;
-    let mut own = &theta[2..];
+    let mut parameters = &theta[2..];
     for &k in effects {
-        value += added(k, own, x, w);
-        own = &own[length(k)..];
+        value += added(k, parameters, x, w);
+        parameters = &parameters[length(k)..];
     }
     value
 }
@@ -179,7 +179,7 @@ fn search(task: SearchTask, backwards: bool, answer: impl Fn(&Query) -> Vec<f64>
     run(task, backwards, |query| Some(answer(query)))
 }
 
-/// The same of a model that may refuse.
+/// Runs a search of a model that may refuse parameters.
 pub(crate) fn run(
     task: SearchTask,
     backwards: bool,
@@ -187,8 +187,8 @@ pub(crate) fn run(
 ) -> Conclusion {
     let mut search = DiscoverySearch::new(task).unwrap();
     loop {
-        if let Some(found) = search.conclusion() {
-            return found.clone();
+        if let Some(conclusion) = search.conclusion() {
+            return conclusion.clone();
         }
         let queries: Vec<Query> = (0..search.pending().len())
             .map(|i| search.query(i).unwrap().clone())
@@ -204,67 +204,70 @@ pub(crate) fn run(
     }
 }
 
-fn found(truth: impl Fn(f64, f64) -> f64) -> Conclusion {
+fn conclude(truth: impl Fn(f64, f64) -> f64) -> Conclusion {
     search(task(&measured(truth)), false, answer)
 }
 
 #[test]
 fn a_law_beyond_an_effect_is_found_beside_it() {
     let line_over_w = OVER_W + 1;
-    let found = found(|x, w| 0.3 + 0.5 * x + 1.2 * x * x + 0.8 * w);
-    assert_eq!(found.verdict, SearchVerdict::Named(SQUARE));
-    assert_eq!(found.combination, [SQUARE, line_over_w]);
-    assert_eq!(found.sets[0].effects.as_deref(), Some(&[SQUARE, line_over_w][..]));
-    assert_eq!(found.complete, Some(true));
-    assert!(found.explained.unwrap() > 0.99 && found.remaining.is_empty());
+    let conclusion = conclude(|x, w| 0.3 + 0.5 * x + 1.2 * x * x + 0.8 * w);
+    assert_eq!(conclusion.verdict, SearchVerdict::Named(SQUARE));
+    assert_eq!(conclusion.combination, [SQUARE, line_over_w]);
+    assert_eq!(
+        conclusion.sets[0].effects.as_deref(),
+        Some(&[SQUARE, line_over_w][..])
+    );
+    assert_eq!(conclusion.complete, Some(true));
+    assert!(conclusion.explained.unwrap() > 0.99 && conclusion.remaining.is_empty());
 }
 
 #[test]
 fn what_nothing_explains_is_left() {
     // Neither an effect nor a law follows a zigzag.
     let zigzag = |x: f64, w: f64| if libm::cos(20.0 * x * w) > 0.0 { 0.5 } else { -0.5 };
-    let found = found(|x, w| 0.3 + 0.5 * x + 1.2 * x * x + zigzag(x, w));
-    assert_eq!(found.complete, Some(false));
-    assert_eq!(found.remaining.len(), DATA);
-    let squares: f64 = found.remaining.iter().map(|r| r * r).sum();
-    assert!((squares - found.chi_square_best.unwrap().value).abs() < 1e-6 * squares);
+    let conclusion = conclude(|x, w| 0.3 + 0.5 * x + 1.2 * x * x + zigzag(x, w));
+    assert_eq!(conclusion.complete, Some(false));
+    assert_eq!(conclusion.remaining.len(), DATA);
+    let squares: f64 = conclusion.remaining.iter().map(|r| r * r).sum();
+    assert!((squares - conclusion.chi_square_best.unwrap().value).abs() < 1e-6 * squares);
 }
 
 #[test]
 fn where_nothing_is_hidden_nothing_is_claimed_and_no_law_is_searched() {
-    let found = found(|x, _| 0.3 + 0.5 * x);
-    assert_eq!(found.verdict, SearchVerdict::NothingDetectable);
-    assert!(found.not_in_library.is_none() && found.outside.is_none());
-    assert!(found.next_runs.is_empty());
-    assert_eq!(found.ranking.cannot_exclude, [CONSTANT]);
+    let conclusion = conclude(|x, _| 0.3 + 0.5 * x);
+    assert_eq!(conclusion.verdict, SearchVerdict::NothingDetectable);
+    assert!(conclusion.not_in_library.is_none() && conclusion.outside.is_none());
+    assert!(conclusion.next_runs.is_empty());
+    assert_eq!(conclusion.ranking.cannot_exclude, [CONSTANT]);
 }
 
 #[test]
 fn one_effect_is_named() {
-    let found = found(|x, _| 0.3 + 0.5 * x + 0.8 * x * x);
-    assert_eq!(found.verdict, SearchVerdict::Named(SQUARE));
-    assert_eq!(found.combination, [SQUARE]);
-    assert!(found.chi_square.unwrap().p() < 0.001 && found.chi_square_best.unwrap().p() > 0.05);
+    let conclusion = conclude(|x, _| 0.3 + 0.5 * x + 0.8 * x * x);
+    assert_eq!(conclusion.verdict, SearchVerdict::Named(SQUARE));
+    assert_eq!(conclusion.combination, [SQUARE]);
+    assert!(conclusion.chi_square.unwrap().p() < 0.001 && conclusion.chi_square_best.unwrap().p() > 0.05);
 }
 
 #[test]
 fn where_the_prior_all_but_excludes_the_best_fit_nothing_is_claimed() {
     let values = measured(|x, _| 0.3 + 0.5 * x + 0.8 * x * x);
-    let found = |slope: Distribution| {
+    let conclude = |slope: Distribution| {
         let mut task = task(&values);
         task.prior = Prior::new(vec![normal(1.0), Marginal::new(slope, None).unwrap()]);
-        // What could take the slope's place beside the square.
+        // A substitute for the slope beside the square.
         task.laws = Vec::new();
         task.library[CUBE].excludes = vec![task.library[SQUARE].name.clone()];
         search(task, false, answer)
     };
-    let narrow = found(Distribution::Normal { mean: 0.0, sd: 0.03 });
+    let narrow = conclude(Distribution::Normal { mean: 0.0, sd: 0.03 });
     assert_eq!(narrow.verdict, SearchVerdict::Undecided);
     assert!(narrow.agreed.is_none());
     let (parameter, sds) = narrow.implausible.unwrap();
     assert!(parameter == 1 && sds > 6.5, "{parameter} {sds}");
-    // The end of a range is where its user wants it.
-    let bounded = found(Distribution::Uniform {
+    // The support of a range ends where the user declared it.
+    let bounded = conclude(Distribution::Uniform {
         lower: -1.0,
         upper: 0.45,
     });
@@ -274,8 +277,8 @@ fn where_the_prior_all_but_excludes_the_best_fit_nothing_is_claimed() {
 
 #[test]
 fn every_explanation_has_its_predicted_values() {
-    let found = found(|x, _| 0.3 + 0.5 * x + 0.8 * x * x);
-    for effect in &found.ranking.effects {
+    let conclusion = conclude(|x, _| 0.3 + 0.5 * x + 0.8 * x * x);
+    for effect in &conclusion.ranking.effects {
         let query = Query {
             model: QueriedModel::With(effect.candidate.into_iter().collect()),
             is_proposed: false,
@@ -290,17 +293,17 @@ fn every_explanation_has_its_predicted_values() {
 
 #[test]
 fn two_effects_are_found_together() {
-    let found = found(|x, w| 0.3 + 0.8 * x * x + 0.7 * w * x);
-    let mut best = found.combination.clone();
+    let conclusion = conclude(|x, w| 0.3 + 0.8 * x * x + 0.7 * w * x);
+    let mut best = conclusion.combination.clone();
     best.sort_unstable();
     assert_eq!(best, [SQUARE, WIDTH]);
     assert!(
-        matches!(found.verdict, SearchVerdict::Named(SQUARE | WIDTH)),
+        matches!(conclusion.verdict, SearchVerdict::Named(SQUARE | WIDTH)),
         "{:?}",
-        found.verdict
+        conclusion.verdict
     );
-    let sum: f64 = found.ranking.effects.iter().map(|j| j.probability).sum();
-    let outside = found.not_in_library.map_or(0.0, |(_, p)| p);
+    let sum: f64 = conclusion.ranking.effects.iter().map(|j| j.probability).sum();
+    let outside = conclusion.not_in_library.map_or(0.0, |(_, p)| p);
     assert!((sum + outside - 1.0).abs() < 1e-9, "{sum} {outside}");
 }
 
@@ -308,16 +311,16 @@ fn two_effects_are_found_together() {
 fn candidates_that_exclude_each_other_make_no_combination() {
     let mut task = task(&measured(|x, w| 0.3 + 0.8 * x * x + 0.7 * w * x));
     task.library[WIDTH].excludes = vec![task.library[SQUARE].name.clone()];
-    let found = search(task, false, answer);
+    let conclusion = search(task, false, answer);
     let both = |effects: &[usize]| effects.contains(&SQUARE) && effects.contains(&WIDTH);
-    assert!(!both(&found.combination), "{:?}", found.combination);
+    assert!(!both(&conclusion.combination), "{:?}", conclusion.combination);
 }
 
 #[test]
 fn a_step_outside_the_library_is_found_with_its_form() {
-    let found = found(|x, _| 0.3 + 0.5 * x + if x > 0.3 { 0.9 } else { 0.0 });
-    assert_eq!(found.verdict, SearchVerdict::NotInLibrary);
-    let law = found.outside.unwrap();
+    let conclusion = conclude(|x, _| 0.3 + 0.5 * x + if x > 0.3 { 0.9 } else { 0.0 });
+    assert_eq!(conclusion.verdict, SearchVerdict::NotInLibrary);
+    let law = conclusion.outside.unwrap();
     assert_eq!((law.law, law.candidate), (0, STEP));
     assert!((law.parameters[0] - 0.9).abs() < 0.15, "{:?}", law.parameters);
     assert!(
@@ -329,25 +332,30 @@ fn a_step_outside_the_library_is_found_with_its_form() {
 
 #[test]
 fn a_law_that_every_good_explanation_has_is_claimed() {
-    // What neither an effect nor a law follows leaves room for effects beside the step.
+    // A zigzag, which no effect or law follows, leaves room for effects beside the step.
     let zigzag = |x: f64, w: f64| if libm::cos(20.0 * x * w) > 0.0 { 1.0 } else { -1.0 };
     // The step alone is the most probable explanation; then the step beside two effects is.
     for (step, cube, rough) in [(2.5, 0.0, 0.1), (2.5, 0.3, 0.15)] {
         let at = |x: f64| if x > 0.3 { step } else { 0.0 };
-        let found = found(|x, w| 0.3 + 0.5 * x + cube * x * x * x + at(x) + rough * zigzag(x, w));
-        let beside = found.sets.iter().find(|set| set.effects.is_some()).unwrap();
+        let conclusion = conclude(|x, w| 0.3 + 0.5 * x + cube * x * x * x + at(x) + rough * zigzag(x, w));
+        let beside = conclusion.sets.iter().find(|set| set.effects.is_some()).unwrap();
         assert!(beside.effects.as_ref().unwrap().contains(&STEP) && beside.probability > 0.1);
-        assert_eq!(found.verdict, SearchVerdict::NotInLibrary, "{:?}", found.sets);
-        assert_eq!(found.outside.unwrap().candidate, STEP);
+        assert_eq!(
+            conclusion.verdict,
+            SearchVerdict::NotInLibrary,
+            "{:?}",
+            conclusion.sets
+        );
+        assert_eq!(conclusion.outside.unwrap().candidate, STEP);
     }
 }
 
 #[test]
 fn a_law_that_fails_the_cross_validation_is_not_claimed() {
     // One level is off by itself: a curve follows it, and predicts nothing.
-    let found = found(|x, _| 0.3 + 0.5 * x + if (x - 1.0 / 7.0).abs() < 0.01 { 1.2 } else { 0.0 });
-    assert_eq!(found.verdict, SearchVerdict::Undecided);
-    assert!(found.outside.is_none() && found.not_in_library.is_some());
+    let conclusion = conclude(|x, _| 0.3 + 0.5 * x + if (x - 1.0 / 7.0).abs() < 0.01 { 1.2 } else { 0.0 });
+    assert_eq!(conclusion.verdict, SearchVerdict::Undecided);
+    assert!(conclusion.outside.is_none() && conclusion.not_in_library.is_some());
 }
 
 #[test]
@@ -362,10 +370,10 @@ fn cross_validations_ask_nothing_of_the_base_twice() {
         }
         answer(query)
     });
-    // The refits begin where the base's fit ended, with the differences that it asked for, the shortest. Without a memory each of the
-    // eight levels would ask for them again, for each law: 25 times in all.
-    let most = asked.into_inner().into_values().max();
-    assert_eq!(most, Some(2));
+    // The refits begin where the base's fit ended, with the shortest differences that it asked for. Without reuse each of the eight
+    // levels would ask for them again, for each law: 25 times in all.
+    let highest = asked.into_inner().into_values().max();
+    assert_eq!(highest, Some(2));
 }
 
 /// Searches the data on x >= 0 alone.
@@ -387,30 +395,30 @@ fn found_on_half(truth: impl Fn(f64, f64) -> f64) -> Conclusion {
 
 #[test]
 fn open_effects_are_distinguished_by_the_run_where_their_predictions_differ() {
-    // Square and cube are hard to tell apart on x >= 0 alone.
-    let found = found_on_half(|x, _| 0.3 + 0.5 * x + 2.0 * x * x);
+    // On x >= 0 alone, square and cube are hard to distinguish.
+    let conclusion = found_on_half(|x, _| 0.3 + 0.5 * x + 2.0 * x * x);
     assert!(!matches!(
-        found.verdict,
+        conclusion.verdict,
         SearchVerdict::NothingDetectable | SearchVerdict::NotInLibrary
     ));
-    let first = found.next_runs.first().expect("something is open");
-    assert_eq!(first.run, 1, "{:?}", found.next_runs);
-    let alone = found.information.iter().find(|(run, _)| *run == first.run);
+    let first = conclusion.next_runs.first().expect("something is open");
+    assert_eq!(first.run, 1, "{:?}", conclusion.next_runs);
+    let alone = conclusion.information.iter().find(|(run, _)| *run == first.run);
     assert_eq!(alone.map(|(_, nats)| *nats), Some(first.information_nats));
-    let least = found
+    let lowest = conclusion
         .information
         .iter()
         .map(|(_, nats)| *nats)
         .fold(f64::INFINITY, f64::min);
-    assert!(least < first.information_nats, "{:?}", found.information);
+    assert!(lowest < first.information_nats, "{:?}", conclusion.information);
     assert!(first.information_nats > 0.1 && first.separates.len() > 1);
 }
 
 #[test]
 fn an_open_effect_is_compared_by_the_set_that_it_leads() {
     // The width acts beside either; without it neither explains the data.
-    let found = found_on_half(|x, w| 0.3 + 0.5 * x + 2.0 * x * x + x * x * x + 0.3 * w * x);
-    let first = found.next_runs.first().expect("something is open");
+    let conclusion = found_on_half(|x, w| 0.3 + 0.5 * x + 2.0 * x * x + x * x * x + 0.3 * w * x);
+    let first = conclusion.next_runs.first().expect("something is open");
     let sets: Vec<Vec<usize>> = first
         .separates
         .iter()
@@ -434,10 +442,10 @@ fn an_effect_of_the_model_without_evidence_is_redundant() {
         task.reductions = vec![Reduction {
             parameters: vec![0, 1],
         }];
-        let found = search(task, false, |query| {
+        let conclusion = search(task, false, |query| {
             let value = |i: usize| {
                 let t = &query.theta;
-                let own = match &query.model {
+                let effect = match &query.model {
                     QueriedModel::Without(_) => 0.0,
                     QueriedModel::With(effects) => {
                         let shifted: Vec<usize> = effects.iter().map(|k| k + 1).collect();
@@ -445,7 +453,7 @@ fn an_effect_of_the_model_without_evidence_is_redundant() {
                         t[2] * x(i) * x(i) + extra
                     }
                 };
-                t[0] + t[1] * x(i) + own
+                t[0] + t[1] * x(i) + effect
             };
             if query.is_proposed {
                 vec![0.0; 2]
@@ -453,8 +461,8 @@ fn an_effect_of_the_model_without_evidence_is_redundant() {
                 (0..DATA).map(value).collect()
             }
         });
-        let gain = found.gains[0].unwrap();
-        let redundant: Vec<usize> = found.redundant().collect();
+        let gain = conclusion.gains[0].unwrap();
+        let redundant: Vec<usize> = conclusion.redundant().collect();
         assert_eq!(redundant, if gain < DETECTED { vec![0] } else { Vec::new() });
         gain
     };
@@ -483,14 +491,14 @@ fn inferred_noise_is_fitted_too() {
         ..*d
     });
     task.likelihood = Likelihood::new(data.collect()).unwrap();
-    let found = search(task, false, |query| {
+    let conclusion = search(task, false, |query| {
         let mut query = query.clone();
         query.theta.remove(2);
         answer(&query)
     });
-    assert_eq!(found.verdict, SearchVerdict::Named(SQUARE));
+    assert_eq!(conclusion.verdict, SearchVerdict::Named(SQUARE));
     assert!(
-        found.chi_square.is_none(),
+        conclusion.chi_square.is_none(),
         "the noise was inferred from the misfit"
     );
 }

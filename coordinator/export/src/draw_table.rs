@@ -16,16 +16,16 @@ pub struct DrawTable {
 /// A column of real numbers.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DrawColumn {
-    /// Its name.
+    /// Name of the column.
     pub name: String,
-    /// Its unit.
+    /// Unit of the values.
     pub unit: String,
     /// One value for each draw.
     pub values: Vec<f64>,
 }
 
 impl DrawTable {
-    /// The draws of inference data.
+    /// Tabulates the draws of inference data.
     ///
     /// # Errors
     /// [`ExportError::Group`] where there is no posterior.

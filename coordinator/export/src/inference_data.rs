@@ -8,13 +8,13 @@ use utoipa::ToSchema;
 use crate::error::ExportError;
 use crate::variable::Variable;
 
-/// A calibration as ArviZ takes it: groups of variables with named dimensions.
+/// A calibration as ArviZ represents it: groups of variables with named dimensions.
 ///
-/// Names of groups, of the dimensions `chain` and `draw`, and where what belongs follow the schema of ArviZ
+/// The names of groups and of the dimensions `chain` and `draw`, and the contents of groups, follow the schema of ArviZ
 /// (<https://python.arviz.org/en/stable/schema/schema.html>).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct InferenceData {
-    /// What is said of the whole: calibration, model, evidence.
+    /// Attributes of the whole: calibration, model, evidence.
     pub attrs: BTreeMap<String, String>,
     /// The groups.
     pub groups: Vec<VariableGroup>,
@@ -23,11 +23,11 @@ pub struct InferenceData {
 /// Variables that belong together.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct VariableGroup {
-    /// Its name, as `posterior`.
+    /// Name, for example `posterior`.
     pub name: String,
-    /// The labels of its dimensions.
+    /// Variables that label the dimensions.
     pub coords: Vec<Variable>,
-    /// Its variables.
+    /// Variables with data.
     pub data_vars: Vec<Variable>,
 }
 
@@ -42,17 +42,16 @@ impl InferenceData {
     /// The group of a name.
     ///
     /// # Errors
-    /// [`ExportError::Group`].
+    /// [`ExportError::Group`] if it is missing.
     pub fn group(&self, name: &'static str) -> Result<&VariableGroup, ExportError> {
-        let found = self.groups.iter().find(|group| group.name == name);
-        found.ok_or(ExportError::Group(name))
+        let group = self.groups.iter().find(|group| group.name == name);
+        group.ok_or(ExportError::Group(name))
     }
 
-    /// Checks that every variable has a value for each place, and that no name leads out of a folder; what a service has sent may be
-    /// anything.
+    /// Checks that every variable has a value for each place, and that no name leads out of a folder; the data may come from any service.
     ///
     /// # Errors
-    /// [`ExportError::Shape`], [`ExportError::Name`].
+    /// [`ExportError::Shape`] or [`ExportError::Name`].
     pub fn check(&self) -> Result<(), ExportError> {
         let variables = || self.groups.iter().flat_map(VariableGroup::variables);
         let names = variables().map(|variable| &variable.name);

@@ -1,14 +1,14 @@
 //! A finished calibration for other programs: as the inference data of ArviZ, and as a table of draws.
 //!
-//! Everything here is a pure function of a [`result::FinishedCalibration`]; files are bytes, which somebody else writes.
+//! Everything here is a pure function of a [`result::FinishedCalibration`]; files are bytes, which the caller writes.
 //!
 //! # Layout
 //! - `inference_data`: groups of variables with named dimensions; also the form of the REST answer.
-//! - `variable`: one of these variables, its values and what is checked of them.
-//! - `content`: what a calibration has to say, group by group.
+//! - `variable`: one of these variables, its values and their checks.
+//! - `content`: the content of an export, group by group.
 //! - `draw_table`: the draws of the posterior, one row each.
 //! - [`format`](mod@format): inference data as Zarr and NetCDF, the table as Arrow and Parquet.
-//! - `error`: why there is nothing to write.
+//! - `error`: the reasons for which nothing is written.
 
 mod content;
 mod draw_table;

@@ -8,17 +8,17 @@ use crate::error::ExportError;
 /// Values over named dimensions, the last one varying fastest.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Variable {
-    /// Its name; that of a dimension where it labels one.
+    /// Name; that of a dimension if the variable labels one.
     pub name: String,
-    /// Names of its dimensions.
+    /// Names of the dimensions.
     pub dims: Vec<String>,
-    /// Lengths of its dimensions.
+    /// Lengths of the dimensions.
     pub shape: Vec<usize>,
     /// Unit of the values; empty where they have none.
     pub unit: String,
-    /// What it is.
+    /// Meaning in words.
     pub meaning: String,
-    /// The values.
+    /// Values, the last dimension varying fastest.
     pub values: Values,
 }
 
@@ -26,7 +26,7 @@ pub struct Variable {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Values {
-    /// Real numbers; null in JSON and NaN elsewhere where there is none.
+    /// Real numbers; a missing one is null in JSON and NaN elsewhere.
     #[serde(with = "nullable")]
     #[schema(value_type = Vec<Option<f64>>)]
     Real(Vec<f64>),
@@ -58,17 +58,17 @@ impl Variable {
     /// Checks that there is a value for each place.
     ///
     /// # Errors
-    /// [`ExportError::Shape`].
+    /// [`ExportError::Shape`] if their numbers differ.
     pub fn check(&self) -> Result<(), ExportError> {
         let expected = self.shape.iter().product();
-        let found = self.values.len();
-        if found == expected && self.dims.len() == self.shape.len() {
+        let actual = self.values.len();
+        if actual == expected && self.dims.len() == self.shape.len() {
             return Ok(());
         }
         Err(ExportError::Shape {
             name: self.name.clone(),
             shape: self.shape.clone(),
-            found,
+            actual,
             expected,
         })
     }
@@ -90,7 +90,7 @@ impl Values {
     }
 }
 
-/// Numbers that JSON has no word for, as null.
+/// Serialises numbers that JSON cannot express as null.
 mod nullable {
     use serde::{Deserialize, Deserializer, Serializer};
 

@@ -2,8 +2,8 @@
 
 use shared::api::WorkDemand;
 
+use super::farm::Farm;
 use super::progress;
-use super::state::Farm;
 
 impl Farm {
     /// The work of all calibrations that are neither over nor paused.
@@ -21,8 +21,8 @@ impl Farm {
             // One result counts as much as another, whoever computed it.
             Some((worker.evaluation_s?, worker.completed.max(1) as f64))
         });
-        let (time_s, count) = timed.fold((0.0, 0.0), |(time_s, count), (mean_s, own)| {
-            (time_s + mean_s * own, count + own)
+        let (time_s, count) = timed.fold((0.0, 0.0), |(time_s, count), (mean_s, results)| {
+            (time_s + mean_s * results, count + results)
         });
         let left = |calibration| progress::evaluations_left(calibration).unwrap_or_default() as u64;
         WorkDemand {

@@ -14,9 +14,9 @@ use tokio::sync::mpsc::{UnboundedReceiver, UnboundedSender, unbounded_channel};
 use tokio::sync::oneshot;
 
 use super::control::{Control, ControlError};
+use super::farm::Farm;
 use super::metrics::FarmMetrics;
 use super::pulse::{Heart, Pulse};
-use super::state::Farm;
 use super::worker_record::WorkerRecord;
 use crate::calibration::Calibration;
 use record::SealKey;
@@ -33,7 +33,7 @@ pub type Durable<T> = (T, u64);
 
 /// Calibrations to replay from the store, as soon as their facts are stored: results of theirs were dropped.
 pub type Rewinds = UnboundedReceiver<Durable<i64>>;
-/// Where an exchange is answered.
+/// The way to the worker that waits for an answer.
 type ExchangeReply = oneshot::Sender<Durable<ExchangeResponse>>;
 /// A question to the farm at a time `[ms]`.
 type Look = Box<dyn FnOnce(&Farm, u64) + Send>;

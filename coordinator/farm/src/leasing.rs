@@ -4,11 +4,12 @@ use shared::api::CalibrationState;
 use shared::exchange::Lease;
 use shared::model::equations_of;
 
+use super::farm::{Entry, Farm};
 use super::seal::{LeaseTerms, seal};
 use super::share::deal;
-use super::state::{Entry, Farm, model_version};
+use super::work_result::model_version;
 use crate::calibration::Calibration;
-use crate::lease::Claimant;
+use crate::lease::{Claimant, NewClaim};
 
 /// A calibration that may lease to a worker.
 #[derive(Debug, Clone, Copy)]
@@ -16,8 +17,8 @@ struct Turn {
     id: i64,
     /// Whether it leases what is asked for twice.
     is_second: bool,
-    /// The most leases.
-    most: usize,
+    /// The largest number of leases.
+    max_leases: usize,
 }
 
 impl Farm {
@@ -36,10 +37,10 @@ impl Farm {
             .map(|c| (c.queue.leased(), c.queue.unleased()))
             .collect();
         let ids = waiting.iter().map(|c| c.identity.id);
-        let first = |(id, most)| Turn {
+        let first = |(id, max_leases)| Turn {
             id,
             is_second: false,
-            most,
+            max_leases,
         };
         let mut turns: Vec<Turn> = ids.clone().zip(deal(&queues, want)).map(first).collect();
         let mut suspected = 0;
@@ -49,14 +50,15 @@ impl Farm {
             suspected = turns.iter().filter(|turn| is_suspected(turn)).count();
             // A suspect goes to empty hands, however many leases of its calibration are out.
             if let Some(turn) = turns.first_mut().filter(|_| suspected > 0) {
-                turn.most = turn.most.max(1);
+                turn.max_leases = turn.max_leases.max(1);
             }
         }
-        let asks_twice = |e: &&Entry| e.calibration.is_open() && e.calibration.second.queue.unleased() > 0;
+        let asks_twice =
+            |e: &&Entry| e.calibration.is_open() && e.calibration.witness.second.queue.unleased() > 0;
         let twice = self.calibrations.values().filter(asks_twice).map(|e| Turn {
             id: e.calibration.identity.id,
             is_second: true,
-            most: want,
+            max_leases: want,
         });
         turns.splice(suspected..suspected, twice);
         turns.extend(ids.map(|id| first((id, want))));
@@ -70,48 +72,19 @@ impl Farm {
         let expires_ms = now_ms + self.lease_ms;
         let mut holds = self.held_by(worker);
         let holds_suspect = |e: &Entry| {
-            let second = &e.calibration.second.queue;
+            let second = &e.calibration.witness.second.queue;
             e.calibration.queue.holds_suspect(worker) || second.holds_suspect(worker)
         };
         if want == 0 || (holds > 0 && self.calibrations.values().any(holds_suspect)) {
             return (leases, refused);
         }
         for turn in self.turns(want, holds) {
-            let id = turn.id;
-            let Some(entry) = self.calibrations.get_mut(&id) else {
-                continue;
-            };
-            let calibration = &mut entry.calibration;
-            let record = self.workers.get(worker);
-            let Some(version) = record
-                .and_then(|own| own.equations_for(calibration))
-                .map(str::to_owned)
-            else {
-                let external = calibration.spec.model.external.as_ref();
-                let model = external.map(|model| model.source.name()).unwrap_or_default();
-                refused = Some(format!(
-                    "calibration {id} is of the model {model}, which worker {worker} does not run: its operator allows it by --allow-model, and it must answer"
-                ));
-                continue;
-            };
-            // The files of effects travel with the variant: a worker need not know them.
-            let pinned = calibration.model_version.as_deref().map(equations_of);
-            if let Some(pinned) = pinned.filter(|pinned| *pinned != equations_of(&version)) {
-                refused = Some(format!(
-                    "calibration {id} was begun with model version {pinned}, worker {worker} computes {version}"
-                ));
-                continue;
-            }
-            let external = calibration.spec.model.external.as_ref().map(|m| m.source.name());
-            let lease_numbers = &mut self.lease_numbers;
-            let next_lease = || lease_numbers.next_number();
-            let (workers, quarantine) = (&self.workers, &self.quarantine);
-            let has_other = |failed: &[String]| {
-                workers.iter().any(|(name, other)| {
-                    let theirs = other.equations_of_model(external.as_deref());
-                    let is_able = theirs.map(equations_of) == Some(equations_of(&version));
-                    is_able && !failed.contains(name) && !quarantine.contains_key(name)
-                })
+            let version = match self.version_for(worker, turn.id) {
+                Ok(version) => version,
+                Err(reason) => {
+                    refused = Some(reason);
+                    continue;
+                }
             };
             let claimant = Claimant {
                 worker,
@@ -119,44 +92,17 @@ impl Farm {
                 now_ms,
                 expires_ms,
             };
-            let wanted = turn.most.min(want - leases.len());
-            let queue = match turn.is_second {
-                true => &mut calibration.second.queue,
-                false => &mut calibration.queue,
-            };
-            let claims = queue.claim(claimant, wanted, has_other, next_lease);
+            let max_leases = turn.max_leases.min(want - leases.len());
+            let claims = self.claim(turn, claimant, max_leases, &version);
             holds += claims.len();
-            self.counters.leased += claims.len() as u64;
-            if !claims.is_empty() && calibration.state == CalibrationState::Queued {
-                calibration.change_state(CalibrationState::Running, None, &mut self.facts);
-            }
-            let is_alone = claims.iter().any(|claim| claim.suspect);
-            for claim in claims {
-                let (lease, evaluation) = (claim.lease, claim.evaluation);
-                let question = match turn.is_second {
-                    true => calibration.second.question(evaluation),
-                    false => calibration.question(evaluation),
-                };
-                let question = question.expect("a claimed evaluation is asked for at present");
-                let terms = LeaseTerms {
-                    lease,
-                    worker,
-                    calibration: id,
-                    evaluation,
-                    model_version: &model_version(calibration, &version),
-                };
-                leases.push(Lease {
-                    lease,
-                    calibration: id,
-                    evaluation,
-                    seal: seal(entry.key, terms, question),
-                    variant: question.variant.to_owned(),
-                    theta: question.theta.to_vec(),
-                    announce: claim.suspect,
-                    subchain: question.subchain,
-                });
-            }
-            if is_alone {
+            let has_suspect = claims.iter().any(|claim| claim.suspect);
+            let entry = &self.calibrations[&turn.id];
+            leases.extend(
+                claims
+                    .into_iter()
+                    .map(|claim| sealed(entry, turn, worker, &version, claim)),
+            );
+            if has_suspect {
                 break;
             }
         }
@@ -164,5 +110,85 @@ impl Farm {
             record.given = last.lease;
         }
         (leases, refused)
+    }
+
+    /// The version of the model that a worker computes a calibration with.
+    ///
+    /// # Errors
+    /// Why the worker cannot compute it.
+    fn version_for(&self, worker: &str, id: i64) -> Result<String, String> {
+        let calibration = &self.calibrations[&id].calibration;
+        let record = self.workers.get(worker);
+        let Some(version) = record.and_then(|record| record.equations_for(calibration)) else {
+            let external = calibration.spec.model.external.as_ref();
+            let model = external.map(|model| model.source.name()).unwrap_or_default();
+            return Err(format!(
+                "calibration {id} is of the model {model}, which worker {worker} does not run: its operator allows it by --allow-model, and it must answer"
+            ));
+        };
+        // The files of effects travel with the variant: a worker need not know them.
+        let pinned = calibration.model_version.as_deref().map(equations_of);
+        match pinned.filter(|pinned| *pinned != equations_of(version)) {
+            None => Ok(version.to_owned()),
+            Some(pinned) => Err(format!(
+                "calibration {id} was begun with model version {pinned}, worker {worker} computes {version}"
+            )),
+        }
+    }
+
+    /// Claims evaluations of a calibration for a worker of a version of the model.
+    fn claim(&mut self, turn: Turn, claimant: Claimant, max_leases: usize, version: &str) -> Vec<NewClaim> {
+        let Some(entry) = self.calibrations.get_mut(&turn.id) else {
+            return Vec::new();
+        };
+        let calibration = &mut entry.calibration;
+        let external = calibration.spec.model.external.as_ref().map(|m| m.source.name());
+        let (workers, quarantine) = (&self.workers, &self.quarantine);
+        let has_other = |failed: &[String]| {
+            workers.iter().any(|(name, other)| {
+                let stated = other.equations_of_model(external.as_deref());
+                let is_able = stated.map(equations_of) == Some(equations_of(version));
+                is_able && !failed.contains(name) && !quarantine.contains_key(name)
+            })
+        };
+        let queue = match turn.is_second {
+            true => &mut calibration.witness.second.queue,
+            false => &mut calibration.queue,
+        };
+        let lease_numbers = &mut self.lease_numbers;
+        let claims = queue.claim(claimant, max_leases, has_other, || lease_numbers.next_number());
+        self.counters.leased += claims.len() as u64;
+        if !claims.is_empty() && calibration.state == CalibrationState::Queued {
+            calibration.change_state(CalibrationState::Running, None, &mut self.facts);
+        }
+        claims
+    }
+}
+
+/// The lease of a claim, with its seal.
+fn sealed(entry: &Entry, turn: Turn, worker: &str, version: &str, claim: NewClaim) -> Lease {
+    let calibration = &entry.calibration;
+    let (lease, evaluation) = (claim.lease, claim.evaluation);
+    let question = match turn.is_second {
+        true => calibration.witness.second.question(evaluation),
+        false => calibration.question(evaluation),
+    };
+    let question = question.expect("a claimed evaluation is asked for at present");
+    let terms = LeaseTerms {
+        lease,
+        worker,
+        calibration: turn.id,
+        evaluation,
+        model_version: &model_version(calibration, version),
+    };
+    Lease {
+        lease,
+        calibration: turn.id,
+        evaluation,
+        seal: seal(entry.key, terms, question),
+        variant: question.variant.to_owned(),
+        theta: question.theta.to_vec(),
+        announce: claim.suspect,
+        subchain: question.subchain,
     }
 }

@@ -3,8 +3,8 @@
 //! # Layout
 //! - [`calibration`]: a calibration in progress: the one place where sampler, likelihood and leases meet. Pure.
 //! - [`lease`]: the rules of leasing. Pure.
-//! - `state`: [`Farm`]. Pure: the clock comes as an argument and facts go out as a list.
-//! - `leasing`: what a worker is given.
+//! - `farm`: [`Farm`]. Pure: the clock comes as an argument and facts go out as a list.
+//! - `leasing`: what a worker is given. `work_result`: what becomes of its results.
 //! - `verification`: what follows where workers disagree, and who is asked beside a slow one.
 //! - [`dispatch`]: gives it a thread. `pulse`: what that thread is doing.
 //! - `control`: the commands of a user on a calibration.
@@ -19,6 +19,7 @@ pub mod calibration;
 mod control;
 mod demand;
 pub mod dispatch;
+mod farm;
 pub mod lease;
 mod lease_numbers;
 mod leasing;
@@ -27,11 +28,11 @@ mod progress;
 mod pulse;
 mod seal;
 mod share;
-mod state;
 mod verification;
+mod work_result;
 mod worker_record;
 
 pub use control::{Control, ControlError};
+pub use farm::Farm;
 pub use metrics::{FarmCounters, FarmMetrics};
-pub use state::Farm;
 pub use worker_record::WorkerRecord;

@@ -5,7 +5,7 @@
 pub struct FarmCounters {
     /// Results that counted.
     pub completed: u64,
-    /// Of these, by workers that are part of a queue's job.
+    /// The number of these by workers that are part of a queue's job.
     pub completed_in_queues: u64,
     /// Results that changed nothing.
     pub duplicates: u64,

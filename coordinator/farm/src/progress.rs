@@ -2,11 +2,11 @@
 
 use std::collections::VecDeque;
 
-use shared::api::{CalibrationStatus, Progress};
+use shared::api::{CalibrationStatus, Position, Progress};
 
 use crate::calibration::{Calibration, CalibrationEngine};
 
-/// The pace is an average over so much of the past `[ms]`.
+/// The time over which the pace is averaged `[ms]`.
 const WINDOW_MS: u64 = 10_000;
 
 /// Simulations over the last seconds.
@@ -65,17 +65,8 @@ pub(super) fn status(
     now_ms: u64,
 ) -> CalibrationStatus {
     let identity = &calibration.identity;
-    let (stage, tempering_exponent, step, acceptance) = match calibration.engine() {
-        CalibrationEngine::Sampler(sampler) => {
-            let now = sampler.progress();
-            (now.stage, now.tempering_exponent, now.step, now.acceptance)
-        }
-        CalibrationEngine::Fit(fit) => (fit.steps(), 1.0, 0, None),
-        CalibrationEngine::Evolution(evolution) => (evolution.history().len(), 1.0, 0, None),
-        CalibrationEngine::Discovery(search) => (search.round() as usize, 1.0, 0, None),
-    };
     let queue = &calibration.queue;
-    let per_second = pace.per_second(calibration.simulations, now_ms);
+    let per_second = pace.per_second(calibration.cost.simulations, now_ms);
     CalibrationStatus {
         id: identity.id,
         name: identity.name.clone(),
@@ -92,12 +83,9 @@ pub(super) fn status(
         model_version: calibration.model_version.clone(),
         progress: Some(Progress {
             algorithm: calibration.spec.algorithm.name().to_owned(),
-            stage: stage as u32,
-            tempering_exponent,
-            step: step as u32,
-            acceptance: acceptance.unwrap_or(0.0),
-            evaluations: calibration.evaluations,
-            rejected: calibration.rejected,
+            position: position(calibration.engine()),
+            evaluations: calibration.cost.evaluations,
+            rejected: calibration.cost.rejected,
             step_done: (queue.len() - queue.unleased() - queue.leased()) as u64,
             step_size: queue.len() as u64,
             evaluations_per_s: per_second,
@@ -106,9 +94,32 @@ pub(super) fn status(
     }
 }
 
+fn position(engine: &CalibrationEngine) -> Position {
+    match engine {
+        CalibrationEngine::Sampler(sampler) => {
+            let now = sampler.progress();
+            Position::Sampler {
+                stage: now.stage as u32,
+                tempering_exponent: now.tempering_exponent,
+                step: now.step as u32,
+                acceptance: now.acceptance,
+            }
+        }
+        CalibrationEngine::Fit(fit) => Position::Fit {
+            steps: fit.steps() as u32,
+        },
+        CalibrationEngine::Evolution(evolution) => Position::Evolution {
+            generations: evolution.history().len() as u32,
+        },
+        CalibrationEngine::Discovery(search) => Position::Search {
+            rounds: search.round() as u32,
+        },
+    }
+}
+
 /// What a calibration waits for that has nothing left to evaluate.
 fn waits(calibration: &Calibration) -> Option<String> {
-    let waiting = calibration.second.waiting();
+    let waiting = calibration.witness.second.waiting();
     let message = || format!("all is evaluated; {waiting} answers wait for that of a second worker");
     calibration.is_concluded().then(message)
 }
@@ -119,7 +130,7 @@ fn remaining_s(calibration: &Calibration, per_second: f64) -> Option<f64> {
     (per_second > 0.0).then_some(left / per_second)
 }
 
-/// How many evaluations a calibration still wants, roughly: exponents grow by about a constant factor a stage, so the stages to come
+/// The number of evaluations that a calibration still wants, roughly: exponents grow by about a constant factor a stage, so the stages to come
 /// follow from the growth so far; each is taken to cost as much as the mean of the stages behind. `None` before the second stage.
 pub(super) fn evaluations_left(calibration: &Calibration) -> Option<f64> {
     let exponents: Vec<f64> = calibration
@@ -135,6 +146,6 @@ pub(super) fn evaluations_left(calibration: &Calibration) -> Option<f64> {
     }
     let growth = (last / first).ln() / (exponents.len() - 1) as f64;
     let stages_to_go = (1.0 / last).ln() / growth.max(1e-3);
-    let cost = calibration.evaluations as f64 / exponents.len() as f64;
+    let cost = calibration.cost.evaluations as f64 / exponents.len() as f64;
     Some(stages_to_go * cost)
 }

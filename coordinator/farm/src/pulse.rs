@@ -22,7 +22,7 @@ pub struct Pulse {
 pub(super) struct Heart(Pulse);
 
 impl Heart {
-    /// That of a thread which begins now.
+    /// The heart of a thread that begins now.
     pub(super) fn begin() -> Heart {
         Heart(Pulse {
             began: Instant::now(),

@@ -2,22 +2,22 @@
 
 use shared::model::equations_of;
 
-use super::state::{Entry, Farm};
+use super::farm::{Entry, Farm};
 use crate::calibration::Answer;
 use crate::lease::SlowLease;
 use record::Quarantine;
 use record::fact::Fact;
 
-/// A lease is slow that is out for so many times as long as leases of its calibration are in the mean, and
+/// A lease is slow once it is out for this many times the mean of its calibration's leases, and
 const SLOW_TIMES: u64 = 3;
-/// so much longer `[ms]`.
+/// this much longer `[ms]`.
 const SLOW_MS: u64 = 1_000;
 
-/// At the end of a calibration a second answer is waited for as long as so many leases take, and a lease's time.
+/// At the end of a calibration a second answer is waited for as long as this many leases take in the mean, and a lease's time.
 const HUNG_TIMES: u64 = 10;
 
 impl Farm {
-    /// The same, with workers that were found to compute wrongly before.
+    /// The farm with workers that were found to compute wrongly before.
     #[must_use]
     pub fn with_quarantine(mut self, quarantine: Vec<Quarantine>) -> Self {
         let reason = |q: &Quarantine| reason(&q.worker, q.calibration, q.evaluation);
@@ -59,10 +59,10 @@ impl Farm {
             .iter_mut()
             .filter(|(_, entry)| !entry.calibration.state.is_final());
         for (&id, entry) in in_progress {
-            let rests = entry.calibration.rests_on(worker);
+            let rests = entry.calibration.witness.rests_on(worker);
             if !rests {
                 entry.calibration.queue.take_back_of(|name| name == worker);
-                entry.calibration.second.forget(worker);
+                entry.calibration.witness.second.forget(worker);
             }
             if rests || id == calibration {
                 self.facts.push(Fact::Rewound {
@@ -73,7 +73,7 @@ impl Farm {
             }
             if rests {
                 entry.calibration.queue = Default::default();
-                entry.calibration.second = Default::default();
+                entry.calibration.witness.second = Default::default();
                 // A replay that is under way has read what is dropped now.
                 entry.rewinds += 1;
                 self.rewinds.push(id);
@@ -109,7 +109,10 @@ impl Farm {
         };
         let mean_ms = entry.pace.mean_lease_ms().unwrap_or_default();
         let hung_ms = HUNG_TIMES * mean_ms + self.lease_ms;
-        self.counters.unanswered += calibration.second.drop_hopeless(can_answer, hung_ms, now_ms);
+        self.counters.unanswered += calibration
+            .witness
+            .second
+            .drop_hopeless(can_answer, hung_ms, now_ms);
         calibration.settle(&mut self.facts);
     }
 
@@ -128,7 +131,9 @@ impl Farm {
             let slow: Vec<(u64, SlowLease)> = calibration
                 .queue
                 .older_than(SLOW_TIMES * mean_ms + SLOW_MS, now_ms)
-                .filter(|(e, _)| !calibration.second.contains(*e) && !calibration.queue.is_suspect(*e))
+                .filter(|(e, _)| {
+                    !calibration.witness.second.contains(*e) && !calibration.queue.is_suspect(*e)
+                })
                 .collect();
             for (evaluation, lease) in slow {
                 calibration.ask_second(evaluation, Some(&lease));

@@ -48,7 +48,7 @@ impl WorkerRecord {
         self.equations_of_model(external.map(|model| model.source.name()).as_deref())
     }
 
-    /// The same of a model by its name; without one, of ours.
+    /// Version that it computes of a model that is not ours, by the name of the model; without a name, of our equations.
     pub(super) fn equations_of_model(&self, external: Option<&str>) -> Option<&str> {
         match external {
             None => Some(self.model_version.as_str()),

@@ -1,6 +1,6 @@
 //! Who gets which lease, in a farm without network and store.
 
-use farm::calibration::result_of;
+use farm::calibration::SimulationResult;
 use farm::{Control, Farm};
 use record::{Fact, SealKey};
 use shared::api::CalibrationState;
@@ -186,8 +186,8 @@ fn late_results_of_a_calibration_that_ends_in_its_replay_are_compared() {
     calibration.model_version = Some(EQUATIONS.into());
     while !calibration.state.is_final() {
         for evaluation in calibration.queue.asked() {
-            let outcome = case.answers[&evaluation].outcome.clone().expect("no subchains");
-            let computed = result_of(outcome).expect("no faults");
+            let outcome = case.answers[&evaluation].outcome.clone();
+            let computed = SimulationResult::new(outcome, None).expect("no faults");
             calibration.complete(evaluation, computed, "a").expect("it fits");
         }
     }

@@ -1,5 +1,5 @@
-//! Print what a proposal for a table costs, by its number of columns: the time should grow as they do, and a table that is too wide
-//! should be refused at once.
+//! Prints the time of a proposal by the number of a table's columns. The time should be proportional to it, and a table that is too
+//! wide should be refused at once.
 //!
 //! `cargo bench -p import --bench width`
 
@@ -7,7 +7,7 @@ use std::time::Instant;
 
 use import::{SourceFile, guess};
 
-/// A table with so many columns, each with a title of its own, and two rows.
+/// A table with this many columns, each with a different title, and two rows.
 fn wide(columns: usize) -> String {
     let line = |cell: &dyn Fn(usize) -> String| (0..columns).map(cell).collect::<Vec<_>>().join(";") + "\n";
     line(&|k| format!("force {k} [N]")) + &line(&|k| k.to_string()) + &line(&|k| format!("{k},5"))
@@ -23,11 +23,11 @@ fn main() {
             is_own: false,
         };
         let begin = Instant::now();
-        let found = guess(&source, None);
+        let proposal = guess(&source, None);
         let ms = 1e3 * begin.elapsed().as_secs_f64();
-        let words = found.map_or_else(
+        let words = proposal.map_or_else(
             |refusal| refusal.message,
-            |found| format!("{} read", found.columns.len()),
+            |proposal| format!("{} read", proposal.columns.len()),
         );
         println!("{columns:>9}  {ms:>7.1}  {words}");
     }

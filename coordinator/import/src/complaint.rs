@@ -1,27 +1,27 @@
-//! What is wrong with a file or a map: where, what was expected, and the nearest fix.
+//! A mistake in a file or a map: its place, the expectation, and the nearest fix.
 
 use serde::Serialize;
 use shared::sentence::one_line;
 
-/// Most complaints about the cells of one column; the rest are counted.
-const MOST_OF_A_COLUMN: usize = 10;
+/// Maximum number of complaints about the cells of one column; the rest are counted.
+const MAX_OF_A_COLUMN: usize = 10;
 
-/// What removes a mistake without a look into the file.
+/// A change of the map that removes a mistake without a change of the file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, utoipa::ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Fix {
-    /// The row of `line` is left out, by `skip` of the map.
+    /// Leaves out the row of `line`, by `skip` of the map.
     Skip,
-    /// A blank cell of `field` has the value of the cell above, by `fill_down` of the map.
+    /// Fills a blank cell of `field` from the cell above, by `fill_down` of the map.
     FillDown,
 }
 
 /// One mistake of a file or of its map.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, utoipa::ToSchema)]
 pub struct Complaint {
-    /// The file, as the user wrote it.
+    /// Name of the file as the user wrote it.
     pub file: String,
-    /// The sheet, of a file with sheets.
+    /// Name of the sheet, if the file has sheets.
     pub sheet: Option<String>,
     /// The line of a text, or the row of a variable, counted from 1.
     pub line: Option<usize>,
@@ -31,13 +31,13 @@ pub struct Complaint {
     pub column: Option<String>,
     /// The column of runs.csv, or the name of the map's table, that is concerned.
     pub field: Option<String>,
-    /// What is wrong, what was expected, and the nearest fix.
+    /// The mistake, the expectation, and the nearest fix.
     pub message: String,
-    /// The same for people who see no map, where `message` names its keys; else null.
+    /// The message for users who see no map, if `message` names keys of it; else null.
     pub plain: Option<String>,
-    /// What removes the mistake, where one change of the map does.
+    /// The fix, if one change of the map suffices.
     pub fix: Option<Fix>,
-    /// The cells of the row that the fix leaves out, the first of them.
+    /// The first cells of the row that the fix leaves out.
     pub row: Vec<String>,
 }
 
@@ -63,8 +63,8 @@ impl std::fmt::Display for Complaint {
 #[derive(Debug, Default)]
 pub(crate) struct Complaints {
     all: Vec<Complaint>,
-    /// By field: how many cells, and where the last one that is shown stands.
-    of_cells: Vec<(Option<String>, usize, Complaint)>,
+    /// For each field: number of complaints, and the last complaint shown.
+    by_field: Vec<(Option<String>, usize, Complaint)>,
     /// The cells of the last row that has any, by its line and the field.
     last_cells: Vec<(usize, Option<String>)>,
 }
@@ -74,53 +74,52 @@ impl Complaints {
         self.all.push(complaint);
     }
 
-    /// Adds a complaint about a cell.
     pub(crate) fn add_cell(&mut self, complaint: Complaint) {
         let line = complaint.line.unwrap_or(0);
         self.last_cells.retain(|(last, _)| *last == line);
         self.last_cells.push((line, complaint.field.clone()));
         let key = (&complaint.field, &complaint.column);
-        let known = self
-            .of_cells
+        let entry = self
+            .by_field
             .iter_mut()
             .find(|(field, _, last)| (field, &last.column) == key);
-        let count = match known {
+        let count = match entry {
             Some((_, count, _)) => {
                 *count += 1;
                 *count
             }
             None => {
-                self.of_cells
+                self.by_field
                     .push((complaint.field.clone(), 1, complaint.clone()));
                 1
             }
         };
-        if count <= MOST_OF_A_COLUMN {
+        if count <= MAX_OF_A_COLUMN {
             self.all.push(complaint);
         }
     }
 
-    /// Those about the fields of the map that are known to be wrong.
+    /// The complaints about the fields of the map that are known to be wrong.
     pub(crate) fn concerns(&self, field: &str) -> bool {
         self.all
             .iter()
             .any(|complaint| complaint.field.as_deref() == Some(field))
     }
 
-    /// Whether the last complaints are about a row's cell of a column.
+    /// Whether the last complaints concern a row's cell of a column.
     pub(crate) fn is_said(&self, line: usize, field: &str) -> bool {
         self.last_cells
             .iter()
             .any(|(at, name)| *at == line && name.as_deref() == Some(field))
     }
 
-    /// All of them, and how many more there are of a column.
+    /// All complaints, with the number that is left out for each column.
     pub(crate) fn into_all(mut self) -> Vec<Complaint> {
-        for (_, count, first) in self.of_cells {
-            if count > MOST_OF_A_COLUMN {
+        for (_, count, first) in self.by_field {
+            if count > MAX_OF_A_COLUMN {
                 let message = format!(
                     "{} more cells of this column have mistakes",
-                    count - MOST_OF_A_COLUMN
+                    count - MAX_OF_A_COLUMN
                 );
                 self.all.push(Complaint {
                     message,

@@ -11,36 +11,34 @@ use crate::map::{self, Map};
 use crate::read::{self, SourceFile};
 use crate::recording::Knife;
 use crate::rows;
-use crate::run::{noted, notes_csv, runs_csv};
+use crate::run::{Run, noted, notes_csv, runs_csv};
 use crate::summary;
 use crate::table::{Cell, Form, Row};
 use crate::title::{self, Titled};
 
-/// Most runs, as runs.csv may have.
-const MOST_RUNS: usize = 10_000;
+const MAX_RUNS: usize = 10_000;
 
-/// What comes of an import.
+/// The result of an import.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct Converted {
     /// The text of runs.csv; null where there are complaints.
     pub runs: Option<String>,
-    /// The columns that runs.csv does not have, by run, as CSV; null where there are none.
+    /// The columns of the file that runs.csv does not have, by run, as CSV; null without any.
     pub notes: Option<String>,
-    /// The texts of the histories, by the names that runs.csv has.
+    /// The texts of the histories by their names in runs.csv.
     pub histories: BTreeMap<String, String>,
-    /// How many runs there are.
+    /// Number of runs.
     pub run_count: usize,
-    /// What a user should know: what was found out, left out, or read otherwise than the file says.
+    /// Remarks for the user: detected properties of the file, omissions, and readings that differ from the file.
     pub remarks: Vec<String>,
-    /// Everything that is wrong.
+    /// All mistakes.
     pub complaints: Vec<Complaint>,
 }
 
 /// Converts a file by a map.
 ///
-/// `map` is the name and the text of the map; `stem` is what the names of histories begin with, as that of runs.csv. Nothing is
-/// written unless nothing is wrong. Mistakes of the map do not hide those of cells, where both can be judged.
-/// Checked by `tests/mistakes.rs`.
+/// `map` is the name and the text of the map; `stem` is the prefix of the names of histories, equal to that of runs.csv. Nothing is written
+/// if there is a mistake. Mistakes of the map do not hide those of cells that can be judged without it. Checked by `tests/mistakes.rs`.
 pub fn convert(source: &SourceFile<'_>, map: (&str, &str), stem: &str) -> Converted {
     let mut complaints = Complaints::default();
     let mut converted = Converted::default();
@@ -114,38 +112,10 @@ fn judge(
         }
         None => rows::runs(titled, &rows, &binding, complaints),
     };
+    check_count(runs.len(), titled, complaints);
     converted.run_count = runs.len();
-    if runs.is_empty() {
-        complaints.add(titled.table.complaint("there is no row of data below the titles"));
-    }
-    if runs.len() > MOST_RUNS {
-        complaints.add(titled.table.complaint(format!(
-            "{} runs must be at most {MOST_RUNS}; for a recording of several runs the map needs [recording]",
-            runs.len()
-        )));
-    }
     converted.runs = Some(runs_csv(&runs, order()));
-    let kept = noted(titled, &binding.mapped);
-    if map.recording.is_none() && !kept.is_empty() {
-        let titles: Vec<String> = kept
-            .iter()
-            .map(|&column| titled.titles[column].text.clone())
-            .collect();
-        converted.remarks.push(format!(
-            "kept as notes, no columns of runs.csv: {}",
-            titles.join(", ")
-        ));
-        converted.notes = Some(notes_csv(&runs, titles));
-    } else if !kept.is_empty() {
-        let titles: Vec<&str> = kept
-            .iter()
-            .map(|&column| titled.titles[column].text.as_str())
-            .collect();
-        converted.remarks.push(format!(
-            "columns of the recording that runs.csv does not take as they are: {}",
-            titles.join(", ")
-        ));
-    }
+    keep_notes(titled, map, &binding, &runs, converted);
     if map.recording.is_none() && !map.columns.iter().any(|entry| entry.name == "run") {
         converted
             .remarks
@@ -153,16 +123,46 @@ fn judge(
     }
 }
 
-/// The rows that are runs or samples: not skipped, no comments.
+fn check_count(runs: usize, titled: &Titled, complaints: &mut Complaints) {
+    if runs == 0 {
+        complaints.add(titled.table.complaint("there is no row of data below the titles"));
+    }
+    if runs > MAX_RUNS {
+        complaints.add(titled.table.complaint(format!(
+            "{runs} runs must be at most {MAX_RUNS}; for a recording of several runs the map needs [recording]"
+        )));
+    }
+}
+
+/// Keeps the columns that runs.csv does not have as notes; those of a recording are only remarked.
+fn keep_notes(titled: &Titled, map: &Map, binding: &Binding, runs: &[Run], converted: &mut Converted) {
+    let kept = noted(titled, &binding.mapped);
+    if kept.is_empty() {
+        return;
+    }
+    let titles: Vec<String> = kept
+        .iter()
+        .map(|&column| titled.titles[column].text.clone())
+        .collect();
+    let listed = titles.join(", ");
+    converted.remarks.push(if map.recording.is_none() {
+        converted.notes = Some(notes_csv(runs, titles));
+        format!("kept as notes, no columns of runs.csv: {listed}")
+    } else {
+        format!("columns of the recording that runs.csv does not take as they are: {listed}")
+    });
+}
+
+/// The rows of runs or samples: not skipped, no comments.
 fn chosen<'a>(
     titled: &'a Titled,
     (map_file, map): (&str, &Map),
     converted: &mut Converted,
     complaints: &mut Complaints,
 ) -> Vec<&'a Row> {
-    let known: BTreeSet<usize> = titled.data().map(|row| row.line).collect();
+    let data_lines: BTreeSet<usize> = titled.data().map(|row| row.line).collect();
     for line in &map.skip {
-        if !known.contains(line) {
+        if !data_lines.contains(line) {
             let message = format!(
                 "skip has {line}, and {} is no row of data",
                 titled.table.place(*line)
@@ -204,7 +204,7 @@ fn lines(numbers: impl Iterator<Item = usize>) -> String {
         .join(", ")
 }
 
-/// Rows of a text that have more or fewer fields than there are titles.
+/// The rows of a text with more or fewer fields than titles.
 fn check_width(titled: &Titled, rows: &[&Row], complaints: &mut Complaints) {
     if titled.table.form != Form::Lines || titled.title_line == 0 {
         return;
@@ -230,7 +230,7 @@ fn check_width(titled: &Titled, rows: &[&Row], complaints: &mut Complaints) {
     }
 }
 
-/// Columns that runs.csv needs and the map does not have.
+/// The columns that runs.csv needs and the map lacks.
 fn complain_of_missing(
     titled: &Titled,
     (map_file, map): (&str, &Map),
@@ -243,12 +243,10 @@ fn complain_of_missing(
         .filter(|field| field.is_needed && !has(&field.name) && !complaints.concerns(&field.name))
         .collect::<Vec<_>>()
     {
-        let near = titled.titles.iter().find(|title| {
-            field
-                .titles
-                .iter()
-                .any(|known| *known == title.name.to_lowercase())
-        });
+        let near = titled
+            .titles
+            .iter()
+            .find(|title| field.titles.iter().any(|name| *name == title.name.to_lowercase()));
         let fix = near.map_or_else(
             || format!("add `[columns.{}]` with column, value or formula", field.name),
             |near| {

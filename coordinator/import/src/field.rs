@@ -1,16 +1,16 @@
-//! The columns of runs.csv, as an import fills them.
+//! The columns of runs.csv that an import fills.
 
 use serde::Serialize;
 use shared::channel::Channel;
 
 use crate::unit::Quantity;
 
-/// What a column of runs.csv holds.
+/// The content of a column of runs.csv.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Kind {
-    /// A name, as it is.
+    /// A name.
     Name,
-    /// A whole number of at least so much.
+    /// A whole number with this minimum.
     Whole(i64),
     /// `fit` or `holdout`.
     Use,
@@ -18,13 +18,13 @@ pub(crate) enum Kind {
     Measured(Quantity),
 }
 
-/// What becomes of a row, as a word of one of its columns says.
+/// The use of a row, by a word of one of its columns.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, utoipa::ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum RowUse {
     /// The run is fitted.
     Fit,
-    /// The run is never fitted, and judges the prediction.
+    /// The run is not fitted, and judges the prediction.
     Holdout,
     /// The row is no run, and is left out.
     Skip,
@@ -33,7 +33,7 @@ pub enum RowUse {
 impl RowUse {
     pub(crate) const ALL: [RowUse; 3] = [RowUse::Fit, RowUse::Holdout, RowUse::Skip];
 
-    /// Its word in a map; the first two are those of runs.csv.
+    /// Its word in a map; the first two are also those of runs.csv.
     pub(crate) fn name(self) -> &'static str {
         match self {
             RowUse::Fit => "fit",
@@ -47,16 +47,16 @@ impl RowUse {
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Field {
     pub(crate) name: String,
-    /// Words for people.
+    /// Description for users.
     pub(crate) words: String,
     pub(crate) kind: Kind,
     pub(crate) is_needed: bool,
-    /// What the title of its column begins with, or has as a word, in lower case.
+    /// Words with which the title of the column begins, or which it contains, in lower case.
     pub(crate) titles: Vec<String>,
 }
 
 impl Field {
-    /// One of the column's unit in SI units.
+    /// One of the column's units in SI units.
     pub(crate) fn si_per_unit(&self) -> f64 {
         match self.kind {
             Kind::Measured(Quantity::Angle) => std::f64::consts::PI / 180.0,
@@ -72,7 +72,7 @@ impl Field {
     }
 }
 
-/// Name, words, kind, whether it is needed, titles.
+/// Name, description, kind, whether it is needed, titles.
 type Entry = (&'static str, &'static str, Kind, bool, &'static [&'static str]);
 
 const CONDITIONS: [Entry; 8] = [
@@ -177,7 +177,7 @@ const OTHERS: [Entry; 4] = [
     ),
 ];
 
-/// What the titles of a channel's column are, in the order of [`Channel::ALL`].
+/// Titles of a channel's column, in the order of [`Channel::ALL`].
 const CHANNEL_TITLES: [&[&str]; 4] = [
     &["drawbar pull", "drawbar", "pull", "zugkraft", "dp", "fx"],
     &["torque", "wheel torque", "drehmoment", "moment", "antriebsmoment"],
@@ -192,12 +192,12 @@ const CHANNEL_TITLES: [&[&str]; 4] = [
     ],
 ];
 
-/// The columns of runs.csv that a map may fill, in the order of the file: name, and words for people.
+/// Name and description of each column of runs.csv that a map may fill, in the order of the file.
 pub fn columns() -> impl Iterator<Item = (String, String)> {
     fields().into_iter().map(|field| (field.name, field.words))
 }
 
-/// The same with what an import knows of them.
+/// The columns of runs.csv that a map may fill, in the order of the file.
 pub(crate) fn fields() -> Vec<Field> {
     let entry = |&(name, words, kind, is_needed, titles): &Entry| Field {
         name: name.into(),
@@ -253,7 +253,7 @@ mod tests {
 
     #[test]
     fn every_field_is_a_column_of_runs_csv() {
-        // What the program reads complains about no column of a file that has them all.
+        // A file with all these columns is accepted without a complaint.
         let header: Vec<String> = fields().into_iter().map(|field| field.name).collect();
         let files = shared::file::FileSet {
             toml: "runs = \"runs.csv\"\n[wheel.w]\nradius_m = 0.1\nwidth_m = 0.1\n[soil.s]\n".into(),

@@ -2,15 +2,15 @@
 //!
 //! # Layout
 //! - `read`: the bytes of a file (text, spreadsheet, MATLAB) to a `table` of cells with their places.
-//! - `title`: where the titles of a table stand, and the units that they state.
-//! - `map`: what a map states; `binding`: a map bound to a table.
-//! - `summary`: rows that are no runs, as means and totals.
+//! - `title`: the titles of a table, and the units that they state.
+//! - `map`: the statements of a map; `binding`: a map bound to a table.
+//! - `summary`: rows of means and totals, which are no runs.
 //! - `rows`: a run from every row; `recording`: runs cut from one long recording; `run`: the files that are written.
-//! - `number`, `unit`: numbers and units as people write them; `field`, `rule`: the columns of runs.csv and what they must hold.
+//! - `number`, `unit`: numbers and units in common notations; `field`, `rule`: the columns of runs.csv and their valid values.
 //! - `guess`: a map proposed from the titles, and from the words of columns.
-//! - `conversion`: all of it, with every mistake at once. [`Complaint`]: a mistake and its place.
+//! - `conversion`: the whole import, with every mistake at once. [`Complaint`]: a mistake and its place.
 //!
-//! The crate is pure: bytes and a map in, texts and complaints out. No bytes make it panic.
+//! The crate is pure: bytes and a map are the input, texts and complaints the output. No input makes it panic.
 
 mod binding;
 mod complaint;

@@ -1,6 +1,6 @@
-//! Numbers as people type them: decimal commas, thousands, signs of typesetters.
+//! Numbers in the notations of users: decimal commas, separators of thousands, typographic signs.
 
-/// What stands before the decimals.
+/// The decimal mark.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Decimal {
     Point,
@@ -15,8 +15,8 @@ impl Decimal {
         }
     }
 
-    /// The mark that the other convention has for decimals, and this one between thousands.
-    fn other(self) -> char {
+    /// The mark that separates thousands, which is the decimal mark of the other convention.
+    fn thousands_mark(self) -> char {
         match self {
             Decimal::Point => ',',
             Decimal::Comma => '.',
@@ -30,7 +30,7 @@ impl Decimal {
         }
     }
 
-    pub(crate) fn of(mark: &str) -> Option<Decimal> {
+    pub(crate) fn from_mark(mark: &str) -> Option<Decimal> {
         match mark {
             "." => Some(Decimal::Point),
             "," => Some(Decimal::Comma),
@@ -39,11 +39,11 @@ impl Decimal {
     }
 }
 
-/// How the numbers of a column are written.
+/// The notation of a column's numbers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Writing {
     pub(crate) decimal: Decimal,
-    /// Whether the map states that the other mark stands between thousands: `1,234` alone could be either.
+    /// Whether the map states that the other mark separates thousands: `1,234` alone is ambiguous.
     pub(crate) has_thousands: bool,
 }
 
@@ -51,7 +51,7 @@ fn is_gap(c: char) -> bool {
     matches!(c, ' ' | '\u{a0}' | '\u{2009}' | '\u{202f}' | '\'' | '\u{2019}')
 }
 
-/// The parts of a number: sign, digits in their groups, the marks between these, what follows the decimal mark.
+/// The parts of a number: sign, groups of digits, the marks between them, and the rest after the decimal mark.
 struct Parts {
     is_negative: bool,
     /// Digits and marks of the mantissa.
@@ -78,14 +78,16 @@ fn parts(text: &str) -> Option<Parts> {
         ),
         None => (rest, None),
     };
-    let known = |c: char| c.is_ascii_digit() || c == '.' || c == ',' || is_gap(c);
+    let is_expected = |c: char| c.is_ascii_digit() || c == '.' || c == ',' || is_gap(c);
     let begins = mantissa
         .chars()
         .next()
         .is_some_and(|c| c.is_ascii_digit() || c == '.' || c == ',');
     let ends = mantissa.chars().next_back().is_some_and(|c| !is_gap(c));
-    let is_number =
-        begins && ends && mantissa.chars().all(known) && mantissa.contains(|c: char| c.is_ascii_digit());
+    let is_number = begins
+        && ends
+        && mantissa.chars().all(is_expected)
+        && mantissa.contains(|c: char| c.is_ascii_digit());
     is_number.then_some(Parts {
         is_negative,
         mantissa,
@@ -93,7 +95,7 @@ fn parts(text: &str) -> Option<Parts> {
     })
 }
 
-/// A number, or in words what was expected and the nearest fix.
+/// The number, or the expectation and the nearest fix in words.
 pub(crate) fn read(text: &str, writing: Writing) -> Result<f64, String> {
     let Writing {
         decimal,
@@ -114,22 +116,25 @@ pub(crate) fn read(text: &str, writing: Writing) -> Result<f64, String> {
     if decimals.is_some_and(|digits| !digits.chars().all(|c| c.is_ascii_digit())) {
         return Err(no_number(text, decimal));
     }
-    let (mark, other) = (decimal.mark(), decimal.other());
-    let groups: Vec<&str> = whole.split(|c: char| c == other || is_gap(c)).collect();
+    let (mark, thousands) = (decimal.mark(), decimal.thousands_mark());
+    let groups: Vec<&str> = whole.split(|c: char| c == thousands || is_gap(c)).collect();
     let are_thousands = groups.len() == 1
         || (groups[1..].iter().all(|group| group.len() == 3) && (1..=3).contains(&groups[0].len()));
     if !are_thousands {
-        let swapped: String = text.chars().map(|c| if c == other { mark } else { c }).collect();
+        let swapped: String = text
+            .chars()
+            .map(|c| if c == thousands { mark } else { c })
+            .collect();
         return Err(format!(
-            "\"{text}\" has a \"{other}\" where the numbers have a {}: write {swapped}, or state `decimal` of this column in the map",
+            "\"{text}\" has a \"{thousands}\" where the numbers have a {}: write {swapped}, or state `decimal` of this column in the map",
             decimal.words()
         ));
     }
-    if groups.len() == 2 && decimals.is_none() && whole.contains(other) && !has_thousands {
-        let plain: String = whole.chars().filter(|&c| c != other).collect();
-        let swapped = whole.replace(other, &mark.to_string());
+    if groups.len() == 2 && decimals.is_none() && whole.contains(thousands) && !has_thousands {
+        let plain: String = whole.chars().filter(|&c| c != thousands).collect();
+        let swapped = whole.replace(thousands, &mark.to_string());
         return Err(format!(
-            "\"{text}\" can mean {plain} or {swapped}: write it without \"{other}\", or state `thousands = \"{other}\"` in the map"
+            "\"{text}\" can mean {plain} or {swapped}: write it without \"{thousands}\", or state `thousands = \"{thousands}\"` in the map"
         ));
     }
     let digits = groups.concat();
@@ -153,7 +158,7 @@ fn no_number(text: &str, decimal: Decimal) -> String {
         Decimal::Point => "1.5",
         Decimal::Comma => "1,5",
     };
-    // Letters that people type for digits, or a unit or remark behind the number.
+    // The text has letters that look like digits, or a unit or remark behind the number.
     let mended: String = text
         .chars()
         .map(|c| match c {
@@ -177,14 +182,14 @@ fn no_number(text: &str, decimal: Decimal) -> String {
     format!("\"{text}\" is no number: a number like {expected} is expected{fix}")
 }
 
-/// What the texts of a file tell about their decimal mark.
+/// The evidence of a file's texts on their decimal mark.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Evidence {
-    /// Nothing is written with either mark.
+    /// No number has either mark.
     None,
-    /// Every number with a mark can be read both ways, as `1,234`.
+    /// Every number with a mark is ambiguous, as `1,234` is.
     Ambiguous,
-    /// This one; of some numbers with each, that of the most.
+    /// The mark of the unambiguous numbers; if they differ, of their majority.
     Found(Decimal),
 }
 
@@ -201,7 +206,7 @@ pub(crate) fn decimal_of<'a>(texts: impl Iterator<Item = &'a str>) -> Evidence {
         let (before, after) = (&mantissa[..at], &mantissa[at + 1..]);
         let is_comma = mark == ",";
         if before.contains(mark) {
-            // 1.234.567: the mark stands between thousands.
+            // In 1.234.567 the mark separates thousands.
             if is_comma { points += 1 } else { commas += 1 }
         } else if before.contains(['.', ','])
             || after.len() != 3
@@ -277,7 +282,7 @@ mod tests {
 
     #[test]
     fn what_could_mean_two_things_is_refused() {
-        for (said, part) in [
+        for (error, part) in [
             (point("1,234"), "can mean 1234 or 1.234"),
             (comma("1.234"), "can mean 1234 or 1,234"),
             (comma("2.5"), "write 2,5, or state `decimal`"),
@@ -288,19 +293,19 @@ mod tests {
             (point("1e999"), "beyond"),
             (point("1 2"), "write"),
         ] {
-            let said = said.unwrap_err();
-            assert!(said.contains(part), "{said}");
+            let error = error.unwrap_err();
+            assert!(error.contains(part), "{error}");
         }
     }
 
     #[test]
     fn the_decimal_mark_is_found_or_left_open() {
-        let found = |texts: &[&str]| decimal_of(texts.iter().copied());
-        assert_eq!(found(&["1,5", "1,234"]), Evidence::Found(Decimal::Comma));
-        assert_eq!(found(&["0,125"]), Evidence::Found(Decimal::Comma));
-        assert_eq!(found(&["1.234,5"]), Evidence::Found(Decimal::Comma));
-        assert_eq!(found(&["1,234,567"]), Evidence::Found(Decimal::Point));
-        assert_eq!(found(&["1,234", "5,678"]), Evidence::Ambiguous);
-        assert_eq!(found(&["12", "x"]), Evidence::None);
+        let evidence = |texts: &[&str]| decimal_of(texts.iter().copied());
+        assert_eq!(evidence(&["1,5", "1,234"]), Evidence::Found(Decimal::Comma));
+        assert_eq!(evidence(&["0,125"]), Evidence::Found(Decimal::Comma));
+        assert_eq!(evidence(&["1.234,5"]), Evidence::Found(Decimal::Comma));
+        assert_eq!(evidence(&["1,234,567"]), Evidence::Found(Decimal::Point));
+        assert_eq!(evidence(&["1,234", "5,678"]), Evidence::Ambiguous);
+        assert_eq!(evidence(&["12", "x"]), Evidence::None);
     }
 }

@@ -14,15 +14,14 @@ use crate::table::{Cell, Row};
 use crate::title::Titled;
 use crate::unit::{self, Quantity};
 
-/// A step of time may differ from the first by this share of it, as in a history.
+/// Largest deviation of a step of time from the first, as a share of it; equal to that of a history.
 const UNEVEN: f64 = 0.01;
-/// Least samples of a history.
-const LEAST_SAMPLES: usize = 3;
+/// Minimum number of samples of a history.
+const MIN_SAMPLES: usize = 3;
 
-/// The runs of a recording, and the texts of their histories by the names of their files.
+/// The runs of a recording, and the texts of their histories by file name.
 pub(crate) type Cut = (Vec<Run>, BTreeMap<String, String>);
 
-/// One row of the recording.
 struct Sample<'a> {
     row: &'a Row,
     t_s: f64,
@@ -35,14 +34,14 @@ struct Segment<'a> {
     samples: Vec<Sample<'a>>,
 }
 
-/// What is cut by what.
+/// The data of a cut.
 pub(crate) struct Knife<'a> {
     pub(crate) titled: &'a Titled,
     pub(crate) binding: &'a Binding,
     pub(crate) recording: &'a Recording,
     pub(crate) map_file: &'a str,
     pub(crate) decimal: Option<Decimal>,
-    /// What the names of the histories begin with.
+    /// Prefix of the names of histories.
     pub(crate) stem: &'a str,
 }
 
@@ -73,7 +72,7 @@ impl Knife<'_> {
         });
     }
 
-    /// The columns of time and marker, and one of the time's unit in seconds.
+    /// The columns of time and marker, and the time's unit in seconds.
     fn columns(&self, complaints: &mut Complaints) -> Option<(usize, f64, usize)> {
         let time = self.titled.column(&self.recording.time);
         let marker = self.titled.column(&self.recording.marker);
@@ -192,22 +191,7 @@ impl Knife<'_> {
         let Some(first) = segment.samples.first() else {
             return Run::default();
         };
-        for pair in segment.samples.windows(2) {
-            if pair[1].t_s <= pair[0].t_s {
-                let message = format!(
-                    "the time {} s must lie after {} s",
-                    shown(pair[1].t_s),
-                    shown(pair[0].t_s)
-                );
-                let field = Some("recording".into());
-                complaints.add_cell(Complaint {
-                    line: Some(pair[1].row.line),
-                    field,
-                    ..self.titled.table.complaint(message)
-                });
-                break;
-            }
-        }
+        self.check_times(segment, complaints);
         let chosen = self.window(segment, complaints);
         let mut run = Run {
             line: first.row.line,
@@ -222,18 +206,7 @@ impl Knife<'_> {
             .partition(|output| !(self.recording.histories && is_channel(output)));
         kept.retain(|output| output.field.name != "run");
         for output in kept {
-            let text = if is_text(output) {
-                self.constant(output, chosen, complaints)
-            } else {
-                // What is measured is averaged; what formulas make of conditions, of their averages.
-                let value = if is_channel(output) {
-                    self.mean(output, chosen)
-                } else {
-                    self.binding.value(output, &means)
-                };
-                value.map(|value| rule::of_number(&output.field, value).map(|()| shown(value)))
-            };
-            match text {
+            match self.cell(output, chosen, &means, complaints) {
                 Some(Ok(text)) => {
                     run.cells.insert(output.field.name.clone(), text);
                 }
@@ -260,7 +233,44 @@ impl Knife<'_> {
         run
     }
 
-    /// The text that all samples have.
+    /// Complains about the first time that does not lie after the one before.
+    fn check_times(&self, segment: &Segment<'_>, complaints: &mut Complaints) {
+        let mut pairs = segment.samples.windows(2);
+        if let Some(pair) = pairs.find(|pair| pair[1].t_s <= pair[0].t_s) {
+            let message = format!(
+                "the time {} s must lie after {} s",
+                shown(pair[1].t_s),
+                shown(pair[0].t_s)
+            );
+            complaints.add_cell(Complaint {
+                line: Some(pair[1].row.line),
+                field: Some("recording".into()),
+                ..self.titled.table.complaint(message)
+            });
+        }
+    }
+
+    /// The text of a run's cell, or a message; `None` if it is blank.
+    fn cell(
+        &self,
+        output: &Output,
+        samples: &[Sample<'_>],
+        means: &[Option<f64>],
+        complaints: &mut Complaints,
+    ) -> Option<Result<String, String>> {
+        if is_text(output) {
+            return self.constant(output, samples, complaints);
+        }
+        // Measured values are averaged; formulas of conditions are computed from the averages of these.
+        let value = if is_channel(output) {
+            self.mean(output, samples)
+        } else {
+            self.binding.value(output, means)
+        };
+        value.map(|value| rule::check_number(&output.field, value).map(|()| shown(value)))
+    }
+
+    /// The text if it is equal in all samples.
     fn constant(
         &self,
         output: &Output,
@@ -268,14 +278,14 @@ impl Knife<'_> {
         complaints: &mut Complaints,
     ) -> Option<Result<String, String>> {
         let mut above = Above::default();
-        let mut found: Option<String> = None;
+        let mut common: Option<String> = None;
         for sample in samples {
             let text = self.binding.text(output, sample.row, &mut above);
-            match (&found, text) {
-                (None, text) => found = text,
-                (Some(known), Some(text)) if *known != text => {
+            match (&common, text) {
+                (None, text) => common = text,
+                (Some(common), Some(text)) if *common != text => {
                     let message = format!(
-                        "{} changes from \"{known}\" to \"{text}\" within a run",
+                        "{} changes from \"{common}\" to \"{text}\" within a run",
                         output.field.words
                     );
                     complaints.add_cell(self.binding.complaint(self.titled, sample.row, output, message));
@@ -284,7 +294,7 @@ impl Knife<'_> {
                 _ => {}
             }
         }
-        found.map(|text| rule::of_text(&output.field, &text))
+        common.map(|text| rule::check_text(&output.field, &text))
     }
 
     fn mean(&self, output: &Output, samples: &[Sample<'_>]) -> Option<f64> {
@@ -295,7 +305,7 @@ impl Knife<'_> {
         (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
     }
 
-    /// The history of a run: times from its beginning, each the end of its interval.
+    /// The history of a run: each time is the end of its interval, counted from the run's beginning.
     fn history(
         &self,
         segment: &Segment<'_>,
@@ -303,39 +313,15 @@ impl Knife<'_> {
         complaints: &mut Complaints,
     ) -> Option<String> {
         let samples = &segment.samples;
-        let complain = |complaints: &mut Complaints, row: &Row, message: String| {
-            let field = Some("recording".into());
-            complaints.add_cell(Complaint {
-                line: Some(row.line),
-                field,
-                ..self
-                    .titled
-                    .table
-                    .complaint(format!("run \"{}\": {message}", segment.name))
-            });
-        };
-        let [first, second, ..] = samples.as_slice() else {
-            complain(
-                complaints,
-                samples.first()?.row,
-                format!(
-                    "{} samples are too few for a history: at least {LEAST_SAMPLES}",
-                    samples.len()
-                ),
+        let first = samples.first()?;
+        if samples.len() < MIN_SAMPLES {
+            let message = format!(
+                "{} samples are too few for a history: at least {MIN_SAMPLES}",
+                samples.len()
             );
-            return None;
-        };
-        if samples.len() < LEAST_SAMPLES {
-            complain(
-                complaints,
-                first.row,
-                format!(
-                    "{} samples are too few for a history: at least {LEAST_SAMPLES}",
-                    samples.len()
-                ),
-            );
+            self.complain_of_run(segment, first.row, &message, complaints);
         }
-        let step = second.t_s - first.t_s;
+        let step = samples.get(1)?.t_s - first.t_s;
         let uneven = samples
             .windows(2)
             .find(|pair| (pair[1].t_s - pair[0].t_s - step).abs() > UNEVEN * step);
@@ -345,7 +331,7 @@ impl Knife<'_> {
                 shown(pair[1].t_s),
                 pair[1].t_s - pair[0].t_s
             );
-            complain(complaints, pair[1].row, message);
+            self.complain_of_run(segment, pair[1].row, &message, complaints);
         }
         let header = std::iter::once("t_s".to_owned())
             .chain(channels.iter().map(|output| output.field.name.clone()))
@@ -354,32 +340,37 @@ impl Knife<'_> {
         for sample in samples {
             let mut row = vec![shown(sample.t_s - first.t_s + step)];
             for output in channels {
-                match self.binding.value(output, &sample.numbers) {
-                    Some(value) => row.push(shown(value)),
-                    None => {
-                        row.push(String::new());
-                        if !complaints.is_said(sample.row.line, &output.field.name) {
-                            let message = format!(
-                                "{} is blank within a run, and a history has no gaps",
-                                output.field.words
-                            );
-                            complaints.add_cell(self.binding.complaint(
-                                self.titled,
-                                sample.row,
-                                output,
-                                message,
-                            ));
-                        }
-                    }
+                let value = self.binding.value(output, &sample.numbers);
+                if value.is_none() {
+                    self.complain_of_gap(output, sample.row, complaints);
                 }
+                row.push(value.map(shown).unwrap_or_default());
             }
             rows.push(row);
         }
         Some(csv(rows.into_iter()))
     }
 
-    /// A name for a history that no other has.
-    fn free_name(&self, run: &str, taken: &BTreeMap<String, String>) -> String {
+    fn complain_of_run(&self, segment: &Segment<'_>, row: &Row, message: &str, complaints: &mut Complaints) {
+        let message = format!("run \"{}\": {message}", segment.name);
+        complaints.add_cell(Complaint {
+            line: Some(row.line),
+            field: Some("recording".into()),
+            ..self.titled.table.complaint(message)
+        });
+    }
+
+    fn complain_of_gap(&self, output: &Output, row: &Row, complaints: &mut Complaints) {
+        if !complaints.is_said(row.line, &output.field.name) {
+            let message = format!(
+                "{} is blank within a run, and a history has no gaps",
+                output.field.words
+            );
+            complaints.add_cell(self.binding.complaint(self.titled, row, output, message));
+        }
+    }
+
+    fn free_name(&self, run: &str, used: &BTreeMap<String, String>) -> String {
         let plain: String = run
             .chars()
             .map(|c| if c.is_alphanumeric() || c == '-' { c } else { '_' })
@@ -387,11 +378,11 @@ impl Knife<'_> {
             .collect();
         let names = std::iter::once(String::new()).chain((2..).map(|number| format!("-{number}")));
         let mut names = names.map(|number| format!("{}-{plain}{number}.csv", self.stem));
-        names.find(|name| !taken.contains_key(name)).unwrap_or_default()
+        names.find(|name| !used.contains_key(name)).unwrap_or_default()
     }
 }
 
-/// Runs whose marker comes again are numbered: a marker may only count on and off.
+/// Runs whose marker recurs are numbered, because a marker may only switch between on and off.
 fn number_repeated(segments: &mut [Segment<'_>], remarks: &mut Vec<String>) {
     let mut counts: BTreeMap<String, usize> = BTreeMap::new();
     for segment in segments.iter() {
@@ -419,7 +410,6 @@ fn is_channel(output: &Output) -> bool {
         .any(|channel| channel.column() == output.field.name)
 }
 
-/// The averages of all numbers.
 fn means(samples: &[Sample<'_>]) -> Vec<Option<f64>> {
     let width = samples.first().map_or(0, |sample| sample.numbers.len());
     let mean = |input: usize| {

@@ -2,14 +2,13 @@
 
 use std::collections::BTreeMap;
 
-use crate::binding::{Above, Binding, Output, is_text, of_cell};
+use crate::binding::{Above, Binding, Output, cell_complaint, is_text};
 use crate::complaint::{Complaint, Complaints, Fix};
 use crate::rule;
 use crate::run::{Run, noted, notes_of, repeated, shown};
 use crate::table::Row;
 use crate::title::Titled;
 
-/// The run of every row.
 pub(crate) fn runs(
     titled: &Titled,
     rows: &[&Row],
@@ -38,10 +37,10 @@ pub(crate) fn runs(
             let text = if is_text(output) {
                 binding
                     .text(output, row, &mut above)
-                    .map(|text| rule::of_text(field, &text))
+                    .map(|text| rule::check_text(field, &text))
             } else {
                 let value = binding.value(output, &numbers);
-                value.map(|value| rule::of_number(field, value).map(|()| shown(value)))
+                value.map(|value| rule::check_number(field, value).map(|()| shown(value)))
             };
             match text {
                 Some(Ok(text)) if field.name == "run" => run.name = text,
@@ -49,7 +48,7 @@ pub(crate) fn runs(
                     run.cells.insert(field.name.clone(), text);
                 }
                 Some(Err(message)) => complaints.add_cell(binding.complaint(titled, row, output, message)),
-                // A cell that cannot be read has its own complaint.
+                // A cell that cannot be read has a complaint already.
                 None if (field.is_needed || field.name == "run")
                     && !complaints.is_said(row.line, &field.name) =>
                 {
@@ -68,17 +67,17 @@ pub(crate) fn runs(
     runs
 }
 
-/// What to do about blank cells that every run needs.
+/// The treatment of blank cells that every run needs.
 struct Blanks<'a> {
     titled: &'a Titled,
     rows: &'a [&'a Row],
     binding: &'a Binding,
-    /// By column, the first line from which on a blank cell may stand for the cell above; `None` where it never may.
+    /// For each column, the first line from which a blank cell may repeat the cell above; `None` if it never may.
     blocks: BTreeMap<usize, Option<usize>>,
 }
 
 impl Blanks<'_> {
-    /// The complaint about a column of runs.csv that a row does not give; `None` where a cell that cannot be read is the reason.
+    /// The complaint about a missing value of a row; `None` if the reason is a cell that cannot be read.
     fn complaint(&mut self, output: &Output, row: &Row) -> Option<Complaint> {
         let field = &output.field;
         let (name, column) = self.binding.blank(output, row)?;
@@ -88,7 +87,7 @@ impl Blanks<'_> {
             format!(", because {name} is")
         };
         let plain = format!("{} is blank{because}: every run needs it", field.words);
-        // No two runs have one name, so none comes from the row above.
+        // Names of runs differ, so none comes from the row above.
         let (fix, advice) = if field.name != "run" && self.is_of_a_block(column, row) {
             (
                 Fix::FillDown,
@@ -108,12 +107,12 @@ impl Blanks<'_> {
                 Fix::Skip => row.beginning(),
                 Fix::FillDown => Vec::new(),
             },
-            ..of_cell(self.titled, row, column, name, message)
+            ..cell_complaint(self.titled, row, column, name, message)
         })
     }
 
-    /// Whether a blank cell may stand for the cell above: a column that states its values once for a block of rows has at least a third
-    /// of its cells blank, and the first one filled.
+    /// Whether a blank cell may repeat the cell above. A column that states its values once for a block of rows has at least a
+    /// third of its cells blank, and the first one filled.
     fn is_of_a_block(&mut self, column: usize, row: &Row) -> bool {
         let rows = self.rows;
         let begin = self.blocks.entry(column).or_insert_with(|| {

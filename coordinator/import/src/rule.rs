@@ -1,10 +1,10 @@
-//! What a value of runs.csv must be, wherever it comes from.
+//! The valid values of runs.csv.
 
 use crate::field::{Field, Kind};
 use crate::unit::Quantity;
 
-/// What is wrong with a number for a column, in words.
-pub(crate) fn of_number(field: &Field, value: f64) -> Result<(), String> {
+/// Checks a number for a column; the error is a message.
+pub(crate) fn check_number(field: &Field, value: f64) -> Result<(), String> {
     let name = field.name.as_str();
     if !value.is_finite() {
         return Err(format!(
@@ -37,15 +37,15 @@ pub(crate) fn of_number(field: &Field, value: f64) -> Result<(), String> {
     }
 }
 
-/// The text of a column without unit as runs.csv has it, or what is wrong with it.
-pub(crate) fn of_text(field: &Field, text: &str) -> Result<String, String> {
+/// The text of a column without unit as runs.csv has it, or a message.
+pub(crate) fn check_text(field: &Field, text: &str) -> Result<String, String> {
     match field.kind {
-        Kind::Whole(least) => match text.parse::<f64>() {
-            Ok(value) if value.fract().abs() <= 0.0 && value >= least as f64 && value.abs() < 1e9 => {
+        Kind::Whole(min) => match text.parse::<f64>() {
+            Ok(value) if value.fract().abs() <= 0.0 && value >= min as f64 && value.abs() < 1e9 => {
                 Ok(format!("{value:.0}"))
             }
-            _ if least > 0 => Err(format!(
-                "{} \"{text}\" must be a whole number of at least {least}",
+            _ if min > 0 => Err(format!(
+                "{} \"{text}\" must be a whole number of at least {min}",
                 field.name
             )),
             _ => Err(format!("{} \"{text}\" must be a whole number", field.name)),

@@ -1,4 +1,4 @@
-//! Runs as they come out of an import, and the files that are written from them.
+//! The runs of an import, and the files that are written from them.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -6,28 +6,27 @@ use crate::complaint::Complaint;
 use crate::table::Row;
 use crate::title::Titled;
 
-/// Significant digits of a converted number: the product with a factor may be off in the sixteenth.
+/// Significant digits of a converted number: the product with a factor may be wrong in the sixteenth.
 const DIGITS: usize = 12;
 
 /// One row of runs.csv.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Run {
-    /// The row of the file that it comes from, or begins with.
+    /// The row of the file that contains it, or with which it begins.
     pub(crate) line: usize,
     pub(crate) name: String,
-    /// By column of runs.csv; a blank one is absent.
+    /// Values by column of runs.csv; a blank one is absent.
     pub(crate) cells: BTreeMap<String, String>,
     /// Cells of the columns that runs.csv does not have, in the order of the file.
     pub(crate) notes: Vec<String>,
 }
 
-/// A number as it is written.
 pub(crate) fn shown(value: f64) -> String {
     let rounded = format!("{value:.*e}", DIGITS - 1).parse::<f64>().unwrap_or(value);
     rounded.to_string()
 }
 
-/// The columns of the file that runs.csv does not have and that hold something.
+/// The columns of the file that runs.csv does not have and that are not blank.
 pub(crate) fn noted(titled: &Titled, mapped: &BTreeSet<usize>) -> Vec<usize> {
     let is_filled = |column: &usize| titled.data().any(|row| !row.cell(*column).is_blank());
     (0..titled.titles.len())
@@ -40,7 +39,7 @@ pub(crate) fn notes_of(row: &Row, columns: &[usize]) -> Vec<String> {
     columns.iter().map(|&column| row.cell(column).shown()).collect()
 }
 
-/// Two runs of one name.
+/// Complaints about runs of the same name.
 pub(crate) fn repeated(titled: &Titled, runs: &[Run]) -> Vec<Complaint> {
     let mut first: BTreeMap<&str, usize> = BTreeMap::new();
     let mut complaints = Vec::new();
@@ -63,7 +62,7 @@ pub(crate) fn repeated(titled: &Titled, runs: &[Run]) -> Vec<Complaint> {
     complaints
 }
 
-/// A field of CSV; what begins like a comment is quoted.
+/// A field of CSV; a field that would look like a comment is quoted.
 fn field(text: &str) -> String {
     if text.contains([',', '"', '\n', '\r', '#']) {
         format!("\"{}\"", text.replace('"', "\"\""))
@@ -72,13 +71,12 @@ fn field(text: &str) -> String {
     }
 }
 
-/// The text of a CSV file.
 pub(crate) fn csv(rows: impl Iterator<Item = Vec<String>>) -> String {
     let line = |row: Vec<String>| row.iter().map(|text| field(text)).collect::<Vec<_>>().join(",") + "\n";
     rows.map(line).collect()
 }
 
-/// The text of runs.csv: the columns of `order` that any run has.
+/// The text of runs.csv, with the columns of `order` that any run has.
 pub(crate) fn runs_csv(runs: &[Run], order: impl Iterator<Item = String>) -> String {
     let columns: Vec<String> = order
         .filter(|name| name == "run" || runs.iter().any(|run| run.cells.contains_key(name)))
@@ -96,7 +94,7 @@ pub(crate) fn runs_csv(runs: &[Run], order: impl Iterator<Item = String>) -> Str
     csv(std::iter::once(columns.clone()).chain(rows))
 }
 
-/// The text of the notes: the name of each run, and what runs.csv does not have of its row.
+/// The text of the notes: the name of each run, and the columns of its row that runs.csv does not have.
 pub(crate) fn notes_csv(runs: &[Run], titles: Vec<String>) -> String {
     let header = std::iter::once("run".to_owned()).chain(titles).collect();
     let rows = runs.iter().map(|run| {

@@ -1,11 +1,11 @@
-//! Rows that are no runs but say something about all of them: means, totals.
+//! Rows that summarise runs: means, totals.
 
 use crate::binding::Binding;
 use crate::complaint::{Complaint, Complaints, Fix};
 use crate::table::{Cell, Row};
 use crate::title::Titled;
 
-/// What the first word of a row of means or totals is, in lower case.
+/// First words of a row of means or totals, in lower case.
 const WORDS: [&str; 24] = [
     "mean",
     "means",
@@ -32,7 +32,7 @@ const WORDS: [&str; 24] = [
     "ø",
     "∅",
 ];
-/// The same, where nothing follows: a remark may begin so.
+/// Further first words, which count only if nothing follows: a remark may begin so.
 const WHOLE: [&str; 8] = [
     "min",
     "max",
@@ -44,7 +44,7 @@ const WHOLE: [&str; 8] = [
     "std. dev.",
 ];
 
-/// The text by which a row says that it is one of means or totals: the first text in it.
+/// The text that marks a row of means or totals: the first text in it.
 fn label(row: &Row) -> Option<&str> {
     let text = row.cells.iter().find_map(|cell| match cell {
         Cell::Text(text) if !crate::number::is_number(text) => Some(text.as_str()),
@@ -58,8 +58,8 @@ fn label(row: &Row) -> Option<&str> {
     is_label.then_some(text)
 }
 
-/// The rows that can be runs. A row that is labelled as one of means, and lacks what every run needs, is complained about; one that
-/// lacks nothing is taken as a run, with a remark.
+/// The rows that can be runs. A row marked as means or totals is a mistake if it lacks a value that every run needs; otherwise it
+/// counts as a run, with a remark.
 pub(crate) fn without<'a>(
     titled: &Titled,
     rows: Vec<&'a Row>,
@@ -102,7 +102,7 @@ mod tests {
     #[test]
     fn a_row_of_means_is_told_by_its_first_text() {
         let labelled = |cells: &[&str]| {
-            let cells = cells.iter().map(|text| Cell::of_text(text)).collect();
+            let cells = cells.iter().map(|text| Cell::from_text(text)).collect();
             label(&Row { line: 1, cells }).map(str::to_owned)
         };
         for first in [

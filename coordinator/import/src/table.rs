@@ -1,37 +1,37 @@
-//! A table of cells with their places, as every kind of file gives it.
+//! A table of cells with their places, from a file of any format.
 
 use crate::complaint::Complaint;
 
-/// Largest number of columns of a table: a rig has some dozens, and every one is compared with every column of runs.csv.
+/// Maximum number of columns of a table: a rig has some dozens, and each is compared with every column of runs.csv.
 pub(crate) const MAX_COLUMNS: usize = 20_000;
-/// The number of cells of a row that are shown so that a person recognises it.
+/// Number of cells of a row that are shown to identify it.
 const SHOWN_CELLS: usize = 12;
 
-/// Why a table with so many columns is refused.
+/// The message that refuses a table with this many columns.
 pub(crate) fn too_wide(columns: usize) -> String {
     format!(
         "{columns} columns must be at most {MAX_COLUMNS}: a table has a column for each quantity, and a row for each run"
     )
 }
 
-/// A text with its spaces and line breaks counted as one each.
+/// A text with every run of spaces and line breaks reduced to one space.
 pub(crate) fn spaced(text: &str) -> String {
     text.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
-/// What a cell holds.
+/// The content of a cell.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Cell {
     Blank,
     Number(f64),
     Text(String),
-    /// A formula whose result the file does not have.
+    /// A formula without a stored result.
     NoResult,
 }
 
 impl Cell {
     /// A cell of a text without the spaces around it.
-    pub(crate) fn of_text(text: &str) -> Cell {
+    pub(crate) fn from_text(text: &str) -> Cell {
         match text.trim() {
             "" => Cell::Blank,
             text => Cell::Text(text.to_owned()),
@@ -42,7 +42,7 @@ impl Cell {
         *self == Cell::Blank
     }
 
-    /// What people read in it.
+    /// The text that users read in it.
     pub(crate) fn shown(&self) -> String {
         match self {
             Cell::Blank => String::new(),
@@ -53,21 +53,21 @@ impl Cell {
     }
 }
 
-/// How the places of a file are named.
+/// The naming of places in a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Form {
     /// Lines of a text.
     Lines,
     /// Cells of a sheet: `C7`.
     Cells,
-    /// Rows of variables; the titles are their names.
+    /// Rows of variables, whose names are the titles.
     Variables,
 }
 
 /// One row.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Row {
-    /// Line of the text or row of the sheet, counted from 1; row 0 of variables has their names.
+    /// Line of the text or row of the sheet, counted from 1; in variables, row 0 has their names.
     pub(crate) line: usize,
     pub(crate) cells: Vec<Cell>,
 }
@@ -81,7 +81,7 @@ impl Row {
         self.cells.iter().all(Cell::is_blank)
     }
 
-    /// Its first cells as people read them.
+    /// The first cells, as users read them.
     pub(crate) fn beginning(&self) -> Vec<String> {
         self.cells.iter().take(SHOWN_CELLS).map(Cell::shown).collect()
     }
@@ -96,7 +96,7 @@ pub(crate) struct Table {
     pub(crate) sheets: Vec<String>,
     pub(crate) form: Form,
     pub(crate) rows: Vec<Row>,
-    /// What was found out about the file, in words.
+    /// Detected properties of the file, in words.
     pub(crate) remarks: Vec<String>,
 }
 
@@ -111,12 +111,11 @@ impl Table {
         }
     }
 
-    /// The same, to refuse the table with.
+    /// A complaint that refuses the whole table.
     pub(crate) fn refusal(&self, message: impl Into<String>) -> Box<Complaint> {
         Box::new(self.complaint(message))
     }
 
-    /// A complaint about a cell.
     pub(crate) fn complaint_at(&self, line: usize, column: usize, message: impl Into<String>) -> Complaint {
         let cell = (self.form == Form::Cells).then(|| format!("{}{line}", letter(column)));
         Complaint {
@@ -126,7 +125,7 @@ impl Table {
         }
     }
 
-    /// Where a row stands, in words.
+    /// The place of a row, in words.
     pub(crate) fn place(&self, line: usize) -> String {
         match self.form {
             Form::Lines => format!("line {line}"),
@@ -135,7 +134,7 @@ impl Table {
     }
 }
 
-/// The letters of a column, as spreadsheets name it: `A`, `Z`, `AA`.
+/// The letters of a column in a spreadsheet: `A`, `Z`, `AA`.
 pub(crate) fn letter(column: usize) -> String {
     let (rest, last) = (column / 26, (column % 26) as u8);
     let before = if rest == 0 {
@@ -146,7 +145,7 @@ pub(crate) fn letter(column: usize) -> String {
     format!("{before}{}", char::from(b'A' + last))
 }
 
-/// The column that letters name; `None` where they name none.
+/// The column with these letters; `None` if they are no letters of a column.
 pub(crate) fn column_of(letters: &str) -> Option<usize> {
     if letters.is_empty() || letters.len() > 3 || !letters.bytes().all(|b| b.is_ascii_uppercase()) {
         return None;

@@ -1,4 +1,4 @@
-//! The titles of a table: where they stand, and the units that they state.
+//! The titles of a table: their line, and the units that they state.
 
 use std::collections::BTreeMap;
 
@@ -8,12 +8,12 @@ use crate::number;
 use crate::table::{Cell, Form, MAX_COLUMNS, Row, Table, column_of, letter, spaced, too_wide};
 use crate::unit::{self, Unit};
 
-/// The largest number of names that a sentence lists.
+/// Maximum number of names in a sentence.
 const LISTED: usize = 40;
-/// Longest title that is compared with a similar one: the comparison takes the product of both lengths.
+/// Maximum length of a title that is compared with a similar one: the comparison costs the product of both lengths.
 const NEAR_BYTES: usize = 200;
 
-/// What a title, or the row of units, says about the unit.
+/// The unit that a title, or the row of units, states.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Stated {
     Nothing,
@@ -23,12 +23,12 @@ pub(crate) enum Stated {
 /// The title of a column.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Title {
-    /// As it stands in the file; the letters of the column where the file has none.
+    /// The text in the file; the letters of the column without one.
     pub(crate) text: String,
-    /// Without its unit.
+    /// The name without its unit.
     pub(crate) name: String,
     pub(crate) stated: Stated,
-    /// What stands in brackets or in the row of units and is no unit that is known.
+    /// A text in brackets or in the row of units that is no known unit.
     pub(crate) unknown: Option<String>,
 }
 
@@ -40,9 +40,8 @@ pub(crate) struct Titled {
     /// The line of the titles; 0 where there are none.
     pub(crate) title_line: usize,
     pub(crate) unit_line: Option<usize>,
-    /// The columns of each title.
     by_text: BTreeMap<String, Vec<usize>>,
-    /// Positions of the rows of data: those below the titles that are not blank.
+    /// Indices of the rows of data: those below the titles that are not blank.
     data: Vec<usize>,
 }
 
@@ -52,17 +51,17 @@ impl Titled {
         self.data.iter().map(|&position| &self.table.rows[position])
     }
 
-    /// The column that a map means: by its title, else by its letters.
+    /// The column that a map names, by its title or else by its letters.
     pub(crate) fn column(&self, meant: &str) -> Result<usize, String> {
-        let found = self.by_text.get(&spaced(meant)).map_or(&[][..], Vec::as_slice);
-        match found[..] {
+        let columns = self.by_text.get(&spaced(meant)).map_or(&[][..], Vec::as_slice);
+        match columns[..] {
             [one] => Ok(one),
             [] => match column_of(meant).filter(|&column| column < self.titles.len()) {
                 Some(column) => Ok(column),
                 None => Err(self.unknown_column(meant)),
             },
             _ => {
-                let letters = found.iter().map(|&k| letter(k));
+                let letters = columns.iter().map(|&k| letter(k));
                 Err(format!(
                     "several columns have the title \"{meant}\": name the one that is meant by its letter, {}",
                     listed(letters, " or ")
@@ -93,29 +92,53 @@ impl Titled {
             .iter()
             .find(is_near)
             .or_else(|| self.titles.iter().find(begins));
-        let known = || listed(self.titles.iter().map(|title| title.text.clone()), ", ");
+        let titles = || listed(self.titles.iter().map(|title| title.text.clone()), ", ");
         match near {
             Some(near) => format!(
                 "no column has the title \"{meant}\"; did you mean \"{}\"",
                 near.text
             ),
-            None => format!("no column has the title \"{meant}\"; the titles are {}", known()),
+            None => format!("no column has the title \"{meant}\"; the titles are {}", titles()),
         }
     }
 }
 
-/// Names in a sentence, the first of them where there are many.
+/// Names in a sentence; only the first of many.
 fn listed(names: impl ExactSizeIterator<Item = String>, between: &str) -> String {
-    let more = names.len().saturating_sub(LISTED);
+    let omitted = names.len().saturating_sub(LISTED);
     let shown = names.take(LISTED).collect::<Vec<_>>().join(between);
-    if more == 0 {
+    if omitted == 0 {
         shown
     } else {
-        format!("{shown} and {more} more")
+        format!("{shown} and {omitted} more")
     }
 }
 
-/// Finds the titles; `stated` are the lines of titles and units as the map has them, 0 for none.
+/// Parses the row of titles and the row of units.
+fn titles_of(titles: Option<&Row>, units: Option<&Row>, width: usize, fields: &[Field]) -> Vec<Title> {
+    // `slip` is also a unit's word, but only beside names of runs.csv with that unit.
+    let is_runs_csv = titles.is_some_and(|row| row.cells.iter().any(|cell| cell.shown() == "wheel_load_n"));
+    let fields: Vec<&Field> = fields
+        .iter()
+        .filter(|field| is_runs_csv || field.name != "slip")
+        .collect();
+    let parsed = |column: usize| {
+        let text = titles.map(|row| spaced(&row.cell(column).shown()));
+        let text = text.unwrap_or_default();
+        let text = if column == 0 {
+            text.trim_start_matches('#').trim_start()
+        } else {
+            &text
+        };
+        let below = units
+            .map(|row| row.cell(column).shown())
+            .filter(|text| !text.is_empty());
+        title(text, column, below, &fields)
+    };
+    (0..width).map(parsed).collect()
+}
+
+/// Finds the titles; `stated` are the lines of titles and units in the map, 0 for none.
 pub(crate) fn find(
     table: Table,
     stated: (Option<usize>, Option<usize>),
@@ -159,33 +182,8 @@ pub(crate) fn find(
     if width > MAX_COLUMNS {
         return Err(table.refusal(too_wide(width)));
     }
-    // `slip` names no unit, except beside names of runs.csv that do.
-    let is_own = at.is_some_and(|k| {
-        table.rows[k]
-            .cells
-            .iter()
-            .any(|cell| cell.shown() == "wheel_load_n")
-    });
-    let own: Vec<&Field> = fields
-        .iter()
-        .filter(|field| is_own || field.name != "slip")
-        .collect();
-    let titles: Vec<Title> = (0..width)
-        .map(|column| {
-            let text = at
-                .map(|k| spaced(&table.rows[k].cell(column).shown()))
-                .unwrap_or_default();
-            let text = if column == 0 {
-                text.trim_start_matches('#').trim_start().to_owned()
-            } else {
-                text
-            };
-            let below = units
-                .map(|k| table.rows[k].cell(column).shown())
-                .filter(|text| !text.is_empty());
-            title(&text, column, below, &own)
-        })
-        .collect();
+    let titles = at.map(|k| &table.rows[k]);
+    let titles = titles_of(titles, units.map(|k| &table.rows[k]), width, fields);
     let mut by_text: BTreeMap<String, Vec<usize>> = BTreeMap::new();
     for (column, title) in titles.iter().enumerate() {
         by_text.entry(title.text.clone()).or_default().push(column);
@@ -209,22 +207,26 @@ fn is_number(cell: &Cell) -> bool {
     }
 }
 
-/// Whether a row below the titles has their units.
+/// Whether the row below the titles has their units.
 fn is_units(row: &Row) -> bool {
     let mut cells = row.cells.iter().filter(|cell| !cell.is_blank());
     let is_like = |cell: &Cell| matches!(cell, Cell::Text(text) if unit::is_like_a_unit(text));
     cells.clone().any(is_like) && cells.all(is_like)
 }
 
-/// The position of the titles: the last row with words above the first row with as many numbers as the table has.
+/// The index of the titles: the last row with words above the first row with about as many numbers as any row has.
 fn guessed(table: &Table) -> Result<Option<usize>, Box<Complaint>> {
     let numbers = |row: &Row| row.cells.iter().filter(|cell| is_number(cell)).count();
-    let most = table.rows.iter().map(numbers).max().unwrap_or(0);
-    if most == 0 {
+    let max_numbers = table.rows.iter().map(numbers).max().unwrap_or(0);
+    if max_numbers == 0 {
         return Err(table
             .refusal("no row has a number: a table with a row of titles and rows of numbers is expected"));
     }
-    let Some(data) = table.rows.iter().position(|row| numbers(row) * 10 >= most * 6) else {
+    let Some(data) = table
+        .rows
+        .iter()
+        .position(|row| numbers(row) * 10 >= max_numbers * 6)
+    else {
         return Ok(None);
     };
     let above = table.rows[..data]
@@ -241,20 +243,20 @@ fn guessed(table: &Table) -> Result<Option<usize>, Box<Complaint>> {
     }))
 }
 
-/// What a title says; `below` is the cell of the row of units.
+/// Parses a title; `below` is the cell of the row of units.
 fn title(text: &str, column: usize, below: Option<String>, fields: &[&Field]) -> Title {
     let shown = if text.is_empty() {
         letter(column)
     } else {
         text.to_owned()
     };
-    let (name, said) = apart(text);
-    // The names of runs.csv have their units.
-    let own = fields
+    let (name, unit_text) = apart(text);
+    // Names of runs.csv imply their units.
+    let quantity = fields
         .iter()
         .find(|field| field.name == text)
         .and_then(|field| field.quantity());
-    let own = own.and_then(|quantity| {
+    let implied = quantity.and_then(|quantity| {
         unit::find(if quantity.si() == "rad" {
             "deg"
         } else {
@@ -262,10 +264,10 @@ fn title(text: &str, column: usize, below: Option<String>, fields: &[&Field]) ->
         })
     });
     let below = below.map(|text| text.trim_matches(['[', ']', '(', ')']).trim().to_owned());
-    let (stated, unknown) = match (below, own, said) {
+    let (stated, unknown) = match (below, implied, unit_text) {
         (Some(below), _, _) => (unit::find(&below), Some(below)),
-        (None, Some(own), _) => (Some(own), None),
-        (None, None, Some(said)) => (unit::find(&said), Some(said)),
+        (None, Some(implied), _) => (Some(implied), None),
+        (None, None, Some(text)) => (unit::find(&text), Some(text)),
         (None, None, None) => (None, None),
     };
     Title {
@@ -276,7 +278,7 @@ fn title(text: &str, column: usize, below: Option<String>, fields: &[&Field]) ->
     }
 }
 
-/// Units that may stand behind a title without brackets: no word of a language, no sign of a mean or a number.
+/// Units that may follow a title without brackets: none is a word of a language, a sign of a mean, or a number.
 const BARE: [&str; 26] = [
     "N", "kN", "mm", "cm", "%", "rpm", "deg", "°", "ms", "kgf", "lbf", "Nm", "Ncm", "Nmm", "mm/s", "cm/s",
     "m/s", "km/h", "m/h", "rad/s", "deg/s", "U/min", "1/min", "mm/min", "kp", "daN",
@@ -294,16 +296,16 @@ fn apart(text: &str) -> (String, Option<String>) {
         }
     }
     for between in [" / ", " in ", "/ "] {
-        if let Some((name, said)) = text.rsplit_once(between)
-            && unit::find(said).is_some()
+        if let Some((name, unit)) = text.rsplit_once(between)
+            && unit::find(unit).is_some()
         {
-            return (name.trim().to_owned(), Some(said.trim().to_owned()));
+            return (name.trim().to_owned(), Some(unit.trim().to_owned()));
         }
     }
-    if let Some((name, said)) = text.rsplit_once([' ', '_'])
-        && BARE.contains(&said)
+    if let Some((name, unit)) = text.rsplit_once([' ', '_'])
+        && BARE.contains(&unit)
     {
-        return (name.trim().to_owned(), Some(said.to_owned()));
+        return (name.trim().to_owned(), Some(unit.to_owned()));
     }
     (text.to_owned(), None)
 }
@@ -316,7 +318,7 @@ mod tests {
     #[test]
     fn a_title_states_its_unit_in_many_ways() {
         let fields = fields();
-        let own: Vec<&Field> = fields.iter().collect();
+        let all_fields: Vec<&Field> = fields.iter().collect();
         for (text, name, unit) in [
             ("Radlast [kN]", "Radlast", Some("kN")),
             ("load (kgf)", "load", Some("kgf")),
@@ -333,16 +335,19 @@ mod tests {
             ("sinkage_m", "sinkage_m", Some("m")),
             ("wheel_load_n", "wheel_load_n", Some("N")),
         ] {
-            let found = title(text, 0, None, &own);
-            let stated = match found.stated {
+            let title = title(text, 0, None, &all_fields);
+            let stated = match title.stated {
                 Stated::Unit(unit) => Some(unit.name),
                 Stated::Nothing => None,
             };
-            assert_eq!((found.name.as_str(), stated), (name, unit), "{text}");
+            assert_eq!((title.name.as_str(), stated), (name, unit), "{text}");
         }
-        assert_eq!(title("load [kg]", 0, None, &own).unknown.as_deref(), Some("kg"));
         assert_eq!(
-            title("load", 0, Some("(N)".into()), &own).stated,
+            title("load [kg]", 0, None, &all_fields).unknown.as_deref(),
+            Some("kg")
+        );
+        assert_eq!(
+            title("load", 0, Some("(N)".into()), &all_fields).stated,
             Stated::Unit(unit::find("N").unwrap())
         );
     }

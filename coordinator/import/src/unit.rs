@@ -1,8 +1,8 @@
-//! Units of measured quantities, as factors to SI, in the words that people write.
+//! Units of measured quantities, as factors to SI, in the spellings of users.
 
 use std::f64::consts::{PI, TAU};
 
-/// What is measured.
+/// A measured quantity.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Quantity {
     Ratio,
@@ -29,7 +29,7 @@ impl Quantity {
         }
     }
 
-    /// The SI unit, as formulas know it.
+    /// The SI unit in formulas.
     pub(crate) fn si(self) -> &'static str {
         match self {
             Quantity::Ratio => "1",
@@ -43,7 +43,7 @@ impl Quantity {
         }
     }
 
-    /// The units that it can be given in, the usual ones first.
+    /// The units that the quantity can be given in, the usual ones first.
     pub(crate) fn units(self) -> impl Iterator<Item = &'static str> {
         UNITS
             .iter()
@@ -57,9 +57,9 @@ impl Quantity {
 pub(crate) struct Unit {
     pub(crate) quantity: Quantity,
     pub(crate) name: &'static str,
-    /// One of it in SI units.
+    /// One unit in SI units.
     pub(crate) si: f64,
-    /// Other words for it.
+    /// Other spellings.
     words: &'static [&'static str],
 }
 
@@ -79,7 +79,7 @@ const LB: f64 = 0.453_592_37;
 const INCH: f64 = 0.0254;
 const FOOT: f64 = 0.3048;
 
-/// Every unit; spaces, dots, asterisks and brackets in what people write do not matter, capitals do.
+/// All units. Spaces, dots, asterisks and brackets in a spelling are ignored; capitals are not.
 const UNITS: [Unit; 56] = [
     unit(Quantity::Ratio, "1", 1.0, &["-", "–", "—", "ratio", "none"]),
     unit(Quantity::Ratio, "%", 0.01, &["percent", "Prozent", "pct", "v.H."]),
@@ -171,7 +171,7 @@ const UNITS: [Unit; 56] = [
     unit(Quantity::Angle, "mrad", 1e-3, &[]),
 ];
 
-/// Masses and other words that people write where a unit is expected, and what to write instead.
+/// Masses and other words that users write in place of a unit, and the replacement to propose.
 const NOT_UNITS: [(&str, &str); 10] = [
     (
         "kg",
@@ -191,37 +191,37 @@ const NOT_UNITS: [(&str, &str); 10] = [
     ("digit", "a raw reading has no unit; give the calibrated quantity"),
 ];
 
-/// The characters of a unit's name that matter.
+/// The significant characters of a unit's name.
 fn plain_chars(text: &str) -> impl Iterator<Item = char> + '_ {
     text.chars()
         .filter(|c| !c.is_whitespace() && !"·⋅*.[]()".contains(*c))
 }
 
-/// A unit's name without what does not matter.
+/// A unit's name reduced to its significant characters.
 fn plain(text: &str) -> String {
     plain_chars(text).collect()
 }
 
-/// The unit that a text means; `None` where it means none.
+/// The unit that a text names; `None` if it names none.
 pub(crate) fn find(text: &str) -> Option<&'static Unit> {
-    // Every title and every cell below the titles is asked about, so nothing is allocated.
+    // Every title and every cell below the titles is tested, so nothing is allocated.
     let is_meant = |name: &str| plain_chars(name).eq(plain_chars(text));
     let is_named = |unit: &&Unit| is_meant(unit.name) || unit.words.iter().any(|word| is_meant(word));
     UNITS.iter().find(is_named)
 }
 
-/// Whether a text is a unit, or a word that stands where a unit is expected.
+/// Whether a text is a unit, or a word used in place of one.
 pub(crate) fn is_like_a_unit(text: &str) -> bool {
     find(text).is_some() || NOT_UNITS.iter().any(|(word, _)| *word == plain(text))
 }
 
-/// The unit that a text means, of a quantity.
+/// The unit of a quantity that a text names.
 ///
 /// # Errors
-/// In words: what is no unit, or one of another quantity, with the nearest.
+/// A message if the text is no unit, or a unit of another quantity, with the nearest fix.
 pub(crate) fn read(text: &str, quantity: Quantity) -> Result<&'static Unit, String> {
-    let known: Vec<&str> = quantity.units().collect();
-    let listed = known.join(", ");
+    let names: Vec<&str> = quantity.units().collect();
+    let listed = names.join(", ");
     if let Some(unit) = find(text) {
         return if unit.quantity == quantity {
             Ok(unit)
@@ -295,10 +295,10 @@ mod tests {
         let mut seen = std::collections::BTreeMap::new();
         for unit in &UNITS {
             for word in unit.words.iter().chain([&unit.name]) {
-                let other = seen.insert(plain(word), unit.name);
+                let earlier = seen.insert(plain(word), unit.name);
                 assert!(
-                    other.is_none() || other == Some(unit.name),
-                    "{word}: {other:?}, {}",
+                    earlier.is_none() || earlier == Some(unit.name),
+                    "{word}: {earlier:?}, {}",
                     unit.name
                 );
             }
@@ -307,17 +307,17 @@ mod tests {
 
     #[test]
     fn what_is_no_unit_of_the_quantity_is_refused_with_the_nearest() {
-        let said = |text, quantity| read(text, quantity).unwrap_err();
+        let message = |text, quantity| read(text, quantity).unwrap_err();
         assert_eq!(
-            said("KN", Quantity::Force),
+            message("KN", Quantity::Force),
             "unknown unit \"KN\"; did you mean \"kN\""
         );
-        assert!(said("kg", Quantity::Force).contains("write kgf"));
+        assert!(message("kg", Quantity::Force).contains("write kgf"));
         assert!(
-            said("mm", Quantity::Force)
+            message("mm", Quantity::Force)
                 .starts_with("unit \"mm\" is one of length, and a force is expected: N, kN")
         );
-        assert!(said("Hz", Quantity::AngularSpeed).contains("rad/s or rev/s"));
-        assert!(said("zoll", Quantity::Length).contains("did you mean \"in\""));
+        assert!(message("Hz", Quantity::AngularSpeed).contains("rad/s or rev/s"));
+        assert!(message("zoll", Quantity::Length).contains("did you mean \"in\""));
     }
 }

@@ -1,4 +1,4 @@
-//! What a table costs: as much as it is wide, up to a bound.
+//! The cost of a table: proportional to its width, with a bound.
 
 use std::time::{Duration, Instant};
 
@@ -6,7 +6,7 @@ use import::{SourceFile, guess};
 
 use super::complaints;
 
-/// A table with so many columns, each with a title and a unit of its own.
+/// A table with this many columns, each with a different title and a unit.
 fn wide(columns: usize) -> String {
     let line = |cell: &dyn Fn(usize) -> String| (0..columns).map(cell).collect::<Vec<_>>().join(";") + "\n";
     line(&|k| format!("force {k} [N]")) + &line(&|k| k.to_string()) + &line(&|k| format!("{k},5"))
@@ -20,12 +20,12 @@ fn source(text: &str) -> SourceFile<'_> {
     }
 }
 
-/// The least of several times.
+/// The shortest of several times.
 fn cost(text: &str) -> Duration {
     let time = || {
         let begin = Instant::now();
-        let found = guess(&source(text), None).expect("a table");
-        assert!(!found.columns.is_empty());
+        let proposal = guess(&source(text), None).expect("a table");
+        assert!(!proposal.columns.is_empty());
         begin.elapsed()
     };
     (0..5).map(|_| time()).min().unwrap_or_default()
@@ -44,26 +44,28 @@ fn four_times_the_columns_cost_less_than_eight_times_as_much() {
 #[test]
 fn more_columns_than_a_table_has_are_refused_with_their_number() {
     let refusal = "wide.csv line 1: 20001 columns must be at most 20000: a table has a column for each quantity, and a row for each run";
-    let said = guess(&source(&wide(20_001)), None).expect_err("too wide");
-    assert_eq!(said.to_string(), refusal);
+    let refused = guess(&source(&wide(20_001)), None).expect_err("too wide");
+    assert_eq!(refused.to_string(), refusal);
     assert!(complaints("wide.csv", wide(20_001).as_bytes(), "").contains(&refusal.to_owned()));
-    let found = guess(&source(&wide(20_000)), None).expect("a table");
-    assert_eq!(found.columns.len(), 20_000);
-    // Nothing but separators is as wide.
-    let said = guess(&source(&format!("{}\n1;2\n", ";".repeat(1_000_000))), None).expect_err("too wide");
+    let proposal = guess(&source(&wide(20_000)), None).expect("a table");
+    assert_eq!(proposal.columns.len(), 20_000);
+    // A line of separators only is as wide.
+    let refused = guess(&source(&format!("{}\n1;2\n", ";".repeat(1_000_000))), None).expect_err("too wide");
     assert!(
-        said.message.starts_with("1000001 columns must be at most 20000"),
-        "{said}"
+        refused
+            .message
+            .starts_with("1000001 columns must be at most 20000"),
+        "{refused}"
     );
 }
 
 #[test]
 fn a_title_that_is_not_there_lists_some_of_many() {
     let map = "[columns.slip]\ncolumn = \"nowhere\"\nunit = \"1\"\n";
-    let said = complaints("wide.csv", wide(1_000).as_bytes(), map).join("\n");
+    let messages = complaints("wide.csv", wide(1_000).as_bytes(), map).join("\n");
     assert!(
-        said.contains("the titles are force 0 [N], force 1 [N], "),
-        "{said}"
+        messages.contains("the titles are force 0 [N], force 1 [N], "),
+        "{messages}"
     );
-    assert!(said.contains(" and 960 more"), "{said}");
+    assert!(messages.contains(" and 960 more"), "{messages}");
 }

@@ -1,4 +1,4 @@
-//! The same runs from every kind of file.
+//! Every file format gives the same runs.
 
 use super::{complaints, converted, runs};
 
@@ -44,15 +44,15 @@ fn every_spreadsheet_gives_the_same_runs() {
         ("runs.ods", include_bytes!("files/runs.ods")),
         ("runs.xls", include_bytes!("files/runs.xls")),
     ] {
-        let found = converted(name, bytes, SHEET);
-        assert_eq!(found.complaints, [], "{name}");
+        let import = converted(name, bytes, SHEET);
+        assert_eq!(import.complaints, [], "{name}");
         assert_eq!(
-            (found.runs.as_deref(), found.notes.as_deref()),
+            (import.runs.as_deref(), import.notes.as_deref()),
             (Some(EXPECTED), Some(NOTES)),
             "{name}"
         );
         assert_eq!(
-            found.remarks,
+            import.remarks,
             ["kept as notes, no columns of runs.csv: operator"],
             "{name}"
         );
@@ -81,9 +81,9 @@ fn every_matlab_file_gives_the_same_runs() {
             "{name}"
         );
     }
-    let found = converted("a.mat", include_bytes!("files/vectors-v7.mat"), VARIABLES);
+    let import = converted("a.mat", include_bytes!("files/vectors-v7.mat"), VARIABLES);
     assert_eq!(
-        found.remarks[0],
+        import.remarks[0],
         "left out, no columns of this table: cube (an array of more than two dimensions)"
     );
 }
@@ -106,7 +106,7 @@ fn the_sheet_is_chosen_and_its_cells_are_named() {
             "awkward.xlsx, sheet \"Runs\", cell G9, column \"sinkage [mm]\": the formula of this cell has no stored result: open the file in its program, let it compute, and save it again"
         ]
     );
-    // The text 12,5 is read with its comma, and the merged load counts for all its rows.
+    // The text 12,5 is read with its decimal comma, and the merged load counts for all its rows.
     let without = chosen.replace("columns.sinkage_m = { column = \"G\", unit = \"mm\" }", "");
     let text = runs("awkward.xlsx", bytes, &without);
     assert!(
@@ -123,10 +123,10 @@ fn a_service_reads_no_old_excel_file() {
         bytes,
         is_own: false,
     };
-    let found = import::convert(&source, ("map.toml", SHEET), "runs");
+    let result = import::convert(&source, ("map.toml", SHEET), "runs");
     assert!(
-        found.complaints[0].message.contains("save it as .xlsx"),
+        result.complaints[0].message.contains("save it as .xlsx"),
         "{:?}",
-        found.complaints
+        result.complaints
     );
 }

@@ -1,4 +1,4 @@
-//! Maps that are proposed: what is stated is taken, what is not is asked.
+//! Proposed maps: stated facts are taken, missing ones become questions.
 
 use import::{Guess, SourceFile, guess};
 
@@ -21,24 +21,24 @@ A;0,1;20;8;35,2;590;5,6;Ada\nB;0,1;40;8;;660;;Ada\n";
 
 #[test]
 fn german_titles_with_units_need_no_more_than_wheel_and_soil() {
-    let found = guessed("Sand.csv", GERMAN.as_bytes());
-    let open: Vec<&str> = found
+    let proposal = guessed("Sand.csv", GERMAN.as_bytes());
+    let open: Vec<&str> = proposal
         .fields
         .iter()
         .filter(|field| field.question.is_some())
         .map(|field| field.name.as_str())
         .collect();
     assert_eq!(open, ["wheel", "soil"]);
-    assert_eq!(found.decimal.as_deref(), Some(","));
+    assert_eq!(proposal.decimal.as_deref(), Some(","));
     assert!(
-        found.map.ends_with("# Kept as notes: \"Bediener\"\n"),
+        proposal.map.ends_with("# Kept as notes: \"Bediener\"\n"),
         "{}",
-        found.map
+        proposal.map
     );
-    // The proposal is refused as it is, and does what it says once it is answered.
-    let said = complaints("Sand.csv", GERMAN.as_bytes(), &found.map);
-    assert_eq!(said.len(), 2, "{said:#?}");
-    let answered = found.map.replace("value = \"?\"", "value = \"x\"");
+    // The open proposal is refused, and converts the file once its questions are answered.
+    let messages = complaints("Sand.csv", GERMAN.as_bytes(), &proposal.map);
+    assert_eq!(messages.len(), 2, "{messages:#?}");
+    let answered = proposal.map.replace("value = \"?\"", "value = \"x\"");
     assert_eq!(
         runs("Sand.csv", GERMAN.as_bytes(), &answered),
         "run,wheel,soil,slip,wheel_load_n,sled_speed_m_s,drawbar_pull_n,torque_n_m,sinkage_m\nA,x,x,0.2,100,0.008,35.2,5.9,0.0056\nB,x,x,0.4,100,0.008,,6.6,\n"
@@ -48,45 +48,45 @@ fn german_titles_with_units_need_no_more_than_wheel_and_soil() {
 #[test]
 fn a_column_whose_words_mark_held_out_runs_is_proposed_with_what_they_mean() {
     let text = "run;wheel;soil;slip [%];load [N];speed [mm/s];pull [N];Bediener;Bemerkung\na;w;s;20;100;8;1,5;Ada;\nb;w;s;30;100;8;1,7;Bob;Kontrolle\nc;w;s;40;100;8;1,8;Ada;neu aufbereitet\n";
-    let found = guessed("a.csv", text.as_bytes());
+    let proposal = guessed("a.csv", text.as_bytes());
     assert!(
-        found.map.contains("[columns.use]\ncolumn = \"Bemerkung\"\nwords = { \"Kontrolle\" = \"holdout\", \"neu aufbereitet\" = \"fit\" }   # fit, holdout"),
+        proposal.map.contains("[columns.use]\ncolumn = \"Bemerkung\"\nwords = { \"Kontrolle\" = \"holdout\", \"neu aufbereitet\" = \"fit\" }   # fit, holdout"),
         "{}",
-        found.map
+        proposal.map
     );
-    assert!(runs("a.csv", text.as_bytes(), &found.map).ends_with(
+    assert!(runs("a.csv", text.as_bytes(), &proposal.map).ends_with(
         "\na,w,s,0.2,100,0.008,1.5,\nb,w,s,0.3,100,0.008,1.7,holdout\nc,w,s,0.4,100,0.008,1.8,fit\n"
     ));
-    // A title that says so, with words that do not tell which is which, is a question.
+    // A title that marks held-out runs, with words that do not say which is which, becomes a question.
     let marks = text
         .replace("Bemerkung", "Kontrolle")
         .replace(";Kontrolle\nc", ";x\nc");
-    let found = guessed("a.csv", marks.as_bytes());
-    let said = complaints("a.csv", marks.as_bytes(), &found.map);
+    let proposal = guessed("a.csv", marks.as_bytes());
+    let messages = complaints("a.csv", marks.as_bytes(), &proposal.map);
     assert!(
-        said[0].contains("words: \"neu aufbereitet\" = \"?\" asks for an answer"),
-        "{said:#?}"
+        messages[0].contains("words: \"neu aufbereitet\" = \"?\" asks for an answer"),
+        "{messages:#?}"
     );
-    assert!(said[1].contains("words: \"x\" = \"?\""), "{said:#?}");
-    // Where nothing says which are held out, the map shows how a column could.
+    assert!(messages[1].contains("words: \"x\" = \"?\""), "{messages:#?}");
+    // If nothing marks held-out runs, the map shows how a column could.
     let quiet = text.replace("Kontrolle", "");
-    let found = guessed("a.csv", quiet.as_bytes());
+    let proposal = guessed("a.csv", quiet.as_bytes());
     assert!(
-        found.map.contains(
+        proposal.map.contains(
             "# [columns.use]\n# column = \"Bediener\"\n# words = { \"Ada\" = \"?\", \"Bob\" = \"?\" }"
         ),
         "{}",
-        found.map
+        proposal.map
     );
-    assert_eq!(complaints("a.csv", quiet.as_bytes(), &found.map), [""; 0]);
+    assert_eq!(complaints("a.csv", quiet.as_bytes(), &proposal.map), [""; 0]);
 }
 
 #[test]
 fn a_unit_that_is_not_stated_is_a_question() {
     let text =
         "run,wheel,soil,slip,load,speed [mm/s],sinkage,torque [kg]\na,w,s,20,100,8,5,1\nb,w,s,30,100,8,6,2\n";
-    let found = guessed("a.csv", text.as_bytes());
-    let questions: Vec<&str> = found
+    let proposal = guessed("a.csv", text.as_bytes());
+    let questions: Vec<&str> = proposal
         .fields
         .iter()
         .filter_map(|field| field.question.as_deref())
@@ -96,29 +96,33 @@ fn a_unit_that_is_not_stated_is_a_question() {
         ["slip", "load", "torque [kg]", "sinkage"]
             .map(|title| format!("in which unit is \"{title}\"? The file does not state it"))
     );
-    let said = complaints("a.csv", text.as_bytes(), &found.map);
-    assert_eq!(said.len(), 4, "{said:#?}");
+    let messages = complaints("a.csv", text.as_bytes(), &proposal.map);
+    assert_eq!(messages.len(), 4, "{messages:#?}");
     assert!(
-        said.iter()
+        messages
+            .iter()
             .all(|line| line.contains("unit = \"?\" asks for an answer")),
-        "{said:#?}"
+        "{messages:#?}"
     );
 }
 
 #[test]
 fn slip_from_rotation_is_proposed_with_the_radius_as_a_question() {
     let text = "run;wheel;soil;load [N];speed [mm/s];rotation [rpm];pull [N]\na;w;s;100;8;1;12,5\nb;w;s;100;8;1,2;13,5\n";
-    let found = guessed("a.csv", text.as_bytes());
+    let proposal = guessed("a.csv", text.as_bytes());
     assert!(
-        found
+        proposal
             .map
             .contains("[columns.slip]\nformula = \"(omega * r - sled_speed_m_s)"),
         "{}",
-        found.map
+        proposal.map
     );
-    let said = complaints("a.csv", text.as_bytes(), &found.map).join("\n");
-    assert!(said.contains("r: value = \"?\" asks for an answer"), "{said}");
-    let answered = found
+    let messages = complaints("a.csv", text.as_bytes(), &proposal.map).join("\n");
+    assert!(
+        messages.contains("r: value = \"?\" asks for an answer"),
+        "{messages}"
+    );
+    let answered = proposal
         .map
         .replace("value = \"?\"", "value = 125")
         .replace("unit = \"?\"", "unit = \"mm\"");
@@ -128,15 +132,18 @@ fn slip_from_rotation_is_proposed_with_the_radius_as_a_question() {
 #[test]
 fn what_can_be_read_in_two_ways_is_asked() {
     let text = "run;wheel;soil;slip [%];load [N];speed [mm/s];pull [N]\na;w;s;20;1,234;8;1,500\nb;w;s;20;1,235;8;1,750\n";
-    let found = guessed("a.csv", text.as_bytes());
-    assert_eq!(found.decimal.as_deref(), Some("?"));
-    let said = complaints("a.csv", text.as_bytes(), &found.map).join("\n");
-    assert!(said.contains("decimal = \"?\" asks for an answer"), "{said}");
+    let proposal = guessed("a.csv", text.as_bytes());
+    assert_eq!(proposal.decimal.as_deref(), Some("?"));
+    let messages = complaints("a.csv", text.as_bytes(), &proposal.map).join("\n");
+    assert!(
+        messages.contains("decimal = \"?\" asks for an answer"),
+        "{messages}"
+    );
     assert!(
         runs(
             "a.csv",
             text.as_bytes(),
-            &found.map.replace("decimal = \"?\"", "decimal = \",\"")
+            &proposal.map.replace("decimal = \"?\"", "decimal = \",\"")
         )
         .contains("\na,w,s,0.2,1.234,0.008,1.5\n")
     );
@@ -144,11 +151,11 @@ fn what_can_be_read_in_two_ways_is_asked() {
 
 #[test]
 fn names_of_runs_csv_are_taken_as_they_are_and_sheets_are_listed() {
-    let own = "# made by hand\nrun,wheel,soil,slip,wheel_load_n,sled_speed_m_s,slip_angle_deg,sinkage_m\na,w,s,0.2,100,0.008,15,0.005\n";
-    let found = guessed("a.csv", own.as_bytes());
+    let text = "# made by hand\nrun,wheel,soil,slip,wheel_load_n,sled_speed_m_s,slip_angle_deg,sinkage_m\na,w,s,0.2,100,0.008,15,0.005\n";
+    let proposal = guessed("a.csv", text.as_bytes());
     assert_eq!(
-        runs("a.csv", own.as_bytes(), &found.map),
-        own.split_once('\n').unwrap().1
+        runs("a.csv", text.as_bytes(), &proposal.map),
+        text.split_once('\n').unwrap().1
     );
     let book = guessed("b.xlsx", include_bytes!("files/awkward.xlsx"));
     assert_eq!((book.sheet.as_deref(), book.title_line), (Some("Runs"), 3));

@@ -23,15 +23,18 @@ fn converted(name: &str, bytes: &[u8], map: &str) -> Converted {
 
 /// The complaints about a file, as they are printed.
 fn complaints(name: &str, bytes: &[u8], map: &str) -> Vec<String> {
-    let found = converted(name, bytes, map);
-    assert!(found.runs.is_none() || found.complaints.is_empty(), "{found:?}");
-    found.complaints.iter().map(ToString::to_string).collect()
+    let result = converted(name, bytes, map);
+    assert!(
+        result.runs.is_none() || result.complaints.is_empty(),
+        "{result:?}"
+    );
+    result.complaints.iter().map(ToString::to_string).collect()
 }
 
 /// The text of runs.csv.
 #[track_caller]
 fn runs(name: &str, bytes: &[u8], map: &str) -> String {
-    let found = converted(name, bytes, map);
-    let said: Vec<String> = found.complaints.iter().map(ToString::to_string).collect();
-    found.runs.unwrap_or_else(|| panic!("{}", said.join("\n")))
+    let result = converted(name, bytes, map);
+    let messages: Vec<String> = result.complaints.iter().map(ToString::to_string).collect();
+    result.runs.unwrap_or_else(|| panic!("{}", messages.join("\n")))
 }

@@ -1,4 +1,4 @@
-//! Every mistake at once, with its place, what was expected and the nearest fix.
+//! All mistakes at once, each with its place, the expectation and the nearest fix.
 
 use super::complaints;
 
@@ -67,9 +67,9 @@ drawbar_pull_n = { column = "pull", unit = "N" }
 /// The only complaint about a small table.
 #[track_caller]
 fn only(text: &str, map: &str) -> String {
-    let said = complaints("a.csv", text.as_bytes(), map);
-    assert_eq!(said.len(), 1, "{said:#?}");
-    said[0].clone()
+    let messages = complaints("a.csv", text.as_bytes(), map);
+    assert_eq!(messages.len(), 1, "{messages:#?}");
+    messages[0].clone()
 }
 
 #[test]
@@ -144,8 +144,8 @@ fn units_are_stated_or_refused() {
         ("wheel = {", "wheel {", "map.toml line 3: "),
     ] {
         assert!(RIGHT.contains(from), "{from}");
-        let said = complaints("a.csv", text.as_bytes(), &RIGHT.replacen(from, to, 1)).join("\n");
-        assert!(said.contains(part), "{part} in\n{said}");
+        let messages = complaints("a.csv", text.as_bytes(), &RIGHT.replacen(from, to, 1)).join("\n");
+        assert!(messages.contains(part), "{part} in\n{messages}");
     }
     assert_eq!(complaints("a.csv", text.as_bytes(), RIGHT), [""; 0]);
     let weighed = text.replace("load", "load [kg]");
@@ -173,32 +173,32 @@ fn files_that_are_no_table_say_what_to_do() {
             "all numbers are like \"1,234\"",
         ),
     ] {
-        let said = complaints(name, bytes, RIGHT).join("\n");
-        assert!(said.contains(part), "{part} in\n{said}");
+        let messages = complaints(name, bytes, RIGHT).join("\n");
+        assert!(messages.contains(part), "{part} in\n{messages}");
     }
 }
 
 #[test]
 fn fields_that_do_not_fit_the_titles_are_named_by_line() {
     let text = "slip,load,pull\n0.1,100,12.5\n0.2,100,12,5\n0.3,100\n";
-    let said = complaints("a.csv", text.as_bytes(), RIGHT);
+    let messages = complaints("a.csv", text.as_bytes(), RIGHT);
     assert!(
-        said[0].starts_with("a.csv line 3: 4 fields where the titles have 3: is a decimal comma"),
-        "{said:#?}"
+        messages[0].starts_with("a.csv line 3: 4 fields where the titles have 3: is a decimal comma"),
+        "{messages:#?}"
     );
     assert!(
-        said[1].starts_with("a.csv line 4: 2 fields where the titles have 3"),
-        "{said:#?}"
+        messages[1].starts_with("a.csv line 4: 2 fields where the titles have 3"),
+        "{messages:#?}"
     );
 }
 
 #[test]
 fn many_mistakes_of_a_column_are_counted() {
     let rows: String = (0..50).map(|_| "0.1,100,x\n").collect();
-    let said = complaints("a.csv", format!("slip,load,pull\n{rows}").as_bytes(), RIGHT);
-    assert_eq!(said.len(), 11);
+    let messages = complaints("a.csv", format!("slip,load,pull\n{rows}").as_bytes(), RIGHT);
+    assert_eq!(messages.len(), 11);
     assert_eq!(
-        said[10],
+        messages[10],
         "a.csv, column \"pull\": 40 more cells of this column have mistakes"
     );
 }

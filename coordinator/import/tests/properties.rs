@@ -1,4 +1,4 @@
-//! No bytes and no map make the import panic, and every complaint says something.
+//! No bytes and no map make the import panic, and every complaint has a message.
 
 use import::{SourceFile, convert, guess};
 use proptest::prelude::*;
@@ -61,23 +61,23 @@ fn judge(bytes: &[u8], map: &str) {
         bytes,
         is_own: false,
     };
-    let found = convert(&source, ("map.toml", map), "runs");
-    assert_eq!(found.runs.is_some(), found.complaints.is_empty());
-    for complaint in &found.complaints {
+    let result = convert(&source, ("map.toml", map), "runs");
+    assert_eq!(result.runs.is_some(), result.complaints.is_empty());
+    for complaint in &result.complaints {
         assert!(!complaint.message.is_empty() && !complaint.to_string().contains('\n'));
     }
     if let Ok(proposed) = guess(&source, None) {
-        // What is proposed can be read: at most its questions and the cells are wrong.
-        let again = convert(&source, ("map.toml", &proposed.map), "runs");
+        // A proposed map can be parsed: its only mistakes are open questions and the cells.
+        let proposal = convert(&source, ("map.toml", &proposed.map), "runs");
         let is_syntax = |message: &str| message.contains("unknown key") || message.contains("must be a t");
         assert!(
-            !again
+            !proposal
                 .complaints
                 .iter()
                 .any(|complaint| is_syntax(&complaint.message)),
             "{}\n{:?}",
             proposed.map,
-            again.complaints
+            proposal.complaints
         );
     }
 }

@@ -37,16 +37,16 @@ drawbar_pull_n = { column = "pull [N]" }
 
 #[test]
 fn a_window_of_each_run_is_averaged() {
-    let found = converted("log.csv", recording().as_bytes(), MAP);
-    assert_eq!(found.complaints, []);
+    let result = converted("log.csv", recording().as_bytes(), MAP);
+    assert_eq!(result.complaints, []);
     assert_eq!(
-        found.runs.as_deref(),
+        result.runs.as_deref(),
         Some(
             "run,wheel,soil,slip,wheel_load_n,sled_speed_m_s,drawbar_pull_n\nA,w,s,0.2,100,0.008,30\nB,w,s,0.4,100,0.008,50\n"
         )
     );
     assert_eq!(
-        found.remarks[0],
+        result.remarks[0],
         "40 of 120 rows lie between runs and are left out"
     );
 }
@@ -54,14 +54,14 @@ fn a_window_of_each_run_is_averaged() {
 #[test]
 fn histories_are_those_that_the_program_reads() {
     let map = MAP.replace("between", "histories = true\nbetween");
-    let found = converted("log.csv", recording().as_bytes(), &map);
-    let runs = found.runs.unwrap();
+    let result = converted("log.csv", recording().as_bytes(), &map);
+    let runs = result.runs.unwrap();
     assert_eq!(
         runs,
         "run,wheel,soil,slip,wheel_load_n,sled_speed_m_s,history\nA,w,s,0.2,100,0.008,runs-A.csv\nB,w,s,0.4,100,0.008,runs-B.csv\n"
     );
-    assert!(found.histories["runs-B.csv"].starts_with("t_s,drawbar_pull_n\n0.1,57\n0.2,57\n"));
-    let mut files = found.histories.clone();
+    assert!(result.histories["runs-B.csv"].starts_with("t_s,drawbar_pull_n\n0.1,57\n0.2,57\n"));
+    let mut files = result.histories.clone();
     files.insert("runs.csv".into(), runs);
     let toml = "runs = \"runs.csv\"\n[wheel.w]\nradius_m = 0.125\nwidth_m = 0.1\n[soil.s]\n[noise]\ndrawbar_pull_n = 1.0\n[protocol]\nmeasured_transient_s = 1.0\nlowpass_hz = 0.0\n";
     let read = shared::experiment::Experiment::parse(
@@ -79,10 +79,10 @@ fn histories_are_those_that_the_program_reads() {
 #[test]
 fn a_marker_that_counts_on_and_off_numbers_the_runs() {
     let text = recording().replace(";A;", ";1;").replace(";B;", ";1;");
-    let found = converted("log.csv", text.as_bytes(), MAP);
-    assert!(found.runs.unwrap().contains("\n1-2,w,s,0.4,"));
+    let result = converted("log.csv", text.as_bytes(), MAP);
+    assert!(result.runs.unwrap().contains("\n1-2,w,s,0.4,"));
     assert_eq!(
-        found.remarks[1],
+        result.remarks[1],
         "the marker \"1\" comes 2 times: its runs are named 1-1 to 1-2"
     );
 }
@@ -95,21 +95,21 @@ fn what_is_wrong_with_a_recording_has_its_line() {
     let text = recording()
         .replace("5300;", "5350;")
         .replace("13200;B;40;100;8;57", "13200;B;40;100;8;");
-    let said = complaints("log.csv", text.as_bytes(), &map).join("\n");
+    let messages = complaints("log.csv", text.as_bytes(), &map).join("\n");
     for part in [
         "log.csv line 2: run \"A\" lasts 3.900000 s, and window_s ends at 4.5 s",
         "log.csv line 5: run \"A\": the time 5.35 s comes 0.150000 s after the one before",
         "log.csv line 84, column \"pull [N]\": drawbar pull is blank within a run",
     ] {
-        assert!(said.contains(part), "{part} in\n{said}");
+        assert!(messages.contains(part), "{part} in\n{messages}");
     }
-    let said = complaints(
+    let messages = complaints(
         "log.csv",
         recording().as_bytes(),
         &MAP.replace("\"marker\"", "\"Marke\""),
     );
     assert!(
-        said[0].ends_with("no column has the title \"Marke\"; did you mean \"marker\""),
-        "{said:?}"
+        messages[0].ends_with("no column has the title \"Marke\"; did you mean \"marker\""),
+        "{messages:?}"
     );
 }

@@ -1,4 +1,4 @@
-//! Text as programs and people write it.
+//! Texts as written by programs and by hand.
 
 use super::{converted, runs};
 
@@ -44,10 +44,10 @@ fn encodings_are_found_and_said() {
         .chars()
         .map(|c| u8::try_from(u32::from(c)).unwrap())
         .collect();
-    let found = converted("a.csv", &western, MAP);
-    assert_eq!(found.notes.as_deref(), Some("run,Prüfer\nr1,Jürgen\nr2,Zoë\n"));
+    let result = converted("a.csv", &western, MAP);
+    assert_eq!(result.notes.as_deref(), Some("run,Prüfer\nr1,Jürgen\nr2,Zoë\n"));
     assert_eq!(
-        found.remarks[0],
+        result.remarks[0],
         "the file is read as windows-1252, which it does not state"
     );
     let wide: Vec<u8> = text.encode_utf16().flat_map(u16::to_le_bytes).collect();
@@ -57,14 +57,14 @@ fn encodings_are_found_and_said() {
 #[test]
 fn rows_and_words_are_left_out_where_the_map_says_so_and_it_is_told() {
     let text = "Schlupf;Last;Einsinkung\n10,5;100;5,5\n# a break\n20;1250,5;n.b.\nMittel;675,25;\n";
-    let found = converted(
+    let result = converted(
         "a.csv",
         text.as_bytes(),
         &format!("skip = [5]\nmissing = [\"n.b.\"]{MAP}"),
     );
-    assert_eq!(found.runs, Some(expected()));
+    assert_eq!(result.runs, Some(expected()));
     assert_eq!(
-        found.remarks,
+        result.remarks,
         [
             "comments, left out: lines 3",
             "left out, as the map says: 5",
@@ -99,14 +99,14 @@ fn slip_is_derived_from_rotation_or_from_advance() {
             .next()
             .unwrap()
             .split(',')
-            .position(|own| own == name)
+            .position(|column| column == name)
             .unwrap();
         lines
             .map(|line| line.split(',').nth(column).unwrap().parse().unwrap())
             .collect()
     };
     let close =
-        |found: &[f64], expected: &[f64]| found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-9);
+        |result: &[f64], expected: &[f64]| result.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-9);
     let rotation = map.replace("FORMULA", "(n * r - sled_speed_m_s) / max(n * r, sled_speed_m_s)");
     assert!(close(
         &field(&rotation, "slip"),

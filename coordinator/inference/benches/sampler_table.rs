@@ -150,7 +150,7 @@ fn main() {
             "-, -, right or flagged",
         ),
     ];
-    for (problem, particles, least, reference) in &problems {
+    for (problem, particles, min_moves, reference) in &problems {
         if arguments.get(2).is_some_and(|name| name != problem.name) {
             continue;
         }
@@ -161,13 +161,13 @@ fn main() {
         };
         let lean = TmcmcSettings {
             particles: *particles,
-            moves: [*least, 60],
+            moves: [*min_moves, 60],
             ..moves
         };
         let original = |algorithm| TmcmcSettings { algorithm, ..moves };
         for (label, settings) in [
             ("draws, 1000".to_owned(), base),
-            (format!("moves, {particles} [{least}, 60]"), lean),
+            (format!("moves, {particles} [{min_moves}, 60]"), lean),
             ("moves, 1000 [10, 60]".to_owned(), moves),
             ("ching-chen-2007".to_owned(), original(Algorithm::ChingChen2007)),
             ("basis".to_owned(), original(Algorithm::Basis)),

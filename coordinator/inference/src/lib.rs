@@ -39,11 +39,11 @@
 //! fixed order, so the same input gives the same bits on every machine.
 //!
 //! # Layout
-//! - `round`: a round of proposals and its results. `tell`: what telling leads to. `phase`: how far an algorithm is.
-//! - [`tmcmc`]: the sampler, its stages and its evidence. `mixture`: what its independent draws come from.
-//! - [`point_estimate`]: what every point estimate shares: axes, the result.
+//! - `round`: a round of proposals and its results. `tell`: the outcomes of telling. `phase`: the progress of an algorithm.
+//! - [`tmcmc`]: the sampler, its stages and its evidence. `mixture`: the proposals of its independent draws.
+//! - [`point_estimate`]: the axes and the result of every point estimate.
 //! - [`lm`]: the Levenberg-Marquardt fit. [`evolution`]: the genetic algorithm and CMA-ES.
-//! - [`gaussian_process`]: interpolation of measurements, without a model. [`discrepancy`]: what a model misses between them.
+//! - [`gaussian_process`]: interpolation of measurements, without a model. [`discrepancy`]: the misfit of a model between them.
 //! - [`diagnostics`]: summaries and tests of draws and residuals.
 
 pub mod diagnostics;

@@ -1,8 +1,8 @@
-//! What every ask/tell algorithm keeps beside its round: how far it is, and what it has spent.
+//! The state of an ask/tell algorithm beside its round: its progress and its evaluations.
 
 use crate::tell::{InferenceFailure, TellProgress};
 
-/// What an algorithm waits for, or how it ended.
+/// The phase of an algorithm, or its end.
 #[derive(Debug, Clone)]
 pub(crate) enum RunPhase<W, R> {
     Waiting(W),
@@ -25,7 +25,7 @@ impl<W, R> RunPhase<W, R> {
         }
     }
 
-    /// What a told result led to; `complete`: it was the last one of its round.
+    /// The progress after a told result; `complete`: it was the last one of its round.
     pub(crate) fn progress(&self, complete: bool) -> TellProgress {
         match self {
             Self::Done(_) => TellProgress::Finished,
@@ -39,9 +39,9 @@ impl<W, R> RunPhase<W, R> {
 /// Evaluations in completed rounds.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct EvaluationCount {
-    /// All of them.
+    /// Number of all evaluations.
     pub evaluations: usize,
-    /// Those that the model rejected.
+    /// Number of evaluations that the model rejected.
     pub rejected: usize,
 }
 

@@ -30,7 +30,7 @@ impl Proposal {
 #[derive(Debug, Clone)]
 pub struct ProposalRound<A> {
     number: u64,
-    /// By ascending particle.
+    /// The proposals by ascending particle.
     pending: Vec<Proposal>,
     answers: Vec<Option<A>>,
     missing: usize,
@@ -57,7 +57,7 @@ impl<A> ProposalRound<A> {
 
     /// Takes the result of a pending particle; returns whether it was the last one of the round.
     ///
-    /// # Errors
+    /// [`TellError::NotPending`] or [`TellError::AlreadyTold`]; the round is unchanged then.
     /// [`TellError::NotPending`], [`TellError::AlreadyTold`].
     pub fn tell(&mut self, particle: usize, answer: A) -> Result<bool, TellError> {
         let round = self.number;

@@ -1,8 +1,8 @@
-//! What telling a result leads to, and why one is refused.
+//! The progress after a told result, and the errors of telling.
 
 use statistics::likelihood::LikelihoodError;
 
-/// What a told result led to.
+/// The progress after a told result.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum TellProgress {
     /// The round has untold proposals left.
@@ -17,7 +17,7 @@ pub enum TellProgress {
     Failed(InferenceFailure),
 }
 
-/// Why a sampler or a point estimate fails.
+/// The reasons for which a sampler or a point estimate fails.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum InferenceFailure {
     /// The model rejected every prior draw.
@@ -29,11 +29,11 @@ pub enum InferenceFailure {
     /// The model accepted too few prior draws.
     #[error("the model accepted only {possible} of {draws} prior draws, at least {needed} are needed")]
     TooFewPossible {
-        /// Accepted draws.
+        /// Number of accepted draws.
         possible: usize,
-        /// Prior draws.
+        /// Number of prior draws.
         draws: usize,
-        /// Draws needed.
+        /// Number of draws needed.
         needed: usize,
     },
     /// The metamodel's predictions cannot be scored.
@@ -49,31 +49,31 @@ pub enum InferenceFailure {
     },
 }
 
-/// Why a told result is refused.
+/// The reasons for which a told result is refused.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum TellError {
     /// The particle was told before in this round.
     #[error("particle {particle} was told before in round {round}")]
     AlreadyTold {
-        /// The round.
+        /// Number of the round.
         round: u64,
-        /// The particle.
+        /// Index of the particle.
         particle: usize,
     },
     /// The particle has no proposal in this round.
     #[error("particle {particle} has no proposal in round {round}")]
     NotPending {
-        /// The round.
+        /// Number of the round.
         round: u64,
-        /// The particle.
+        /// Index of the particle.
         particle: usize,
     },
     /// The predicted values are not one for each datum.
     #[error("{given} predicted values for {expected} data")]
     Length {
-        /// Data.
+        /// Number of values that the likelihood takes.
         expected: usize,
-        /// Predicted values.
+        /// Number of values that were told.
         given: usize,
     },
     /// The end of a subchain was told for a proposal without one, or the other way round.
@@ -81,9 +81,9 @@ pub enum TellError {
         "particle {particle} of round {round}: a subchain was told where none was asked for, or none where one was"
     )]
     NotAsked {
-        /// The round.
+        /// Number of the round.
         round: u64,
-        /// The particle.
+        /// Index of the particle.
         particle: usize,
     },
     /// The predicted values cannot be scored.

@@ -6,10 +6,10 @@ use statistics::{Distribution, Marginal};
 
 const SEEDS: u64 = 4;
 
-/// Draws that carry as much as one independent draw, at most; they are moved until their ranks decorrelate.
+/// An upper bound of the draws per independent draw; particles are moved until their ranks decorrelate.
 const DRAWS_PER_INDEPENDENT: f64 = 4.0;
 
-/// Standard errors allowed.
+/// Number of standard errors allowed.
 const K: f64 = 4.0;
 
 /// Means over seeds must agree with the answer within `K` Monte-Carlo errors: the evidence by its own

@@ -17,7 +17,7 @@ struct Linear {
 }
 
 impl Linear {
-    /// So many data on a line and a parabola, `weight` times as steep as the noise is wide.
+    /// Data on a line and a parabola, `weight` times as steep as the noise is wide.
     fn new(data: usize, weight: f64, inferred: bool) -> Self {
         let x = |i: usize| 2.0 * i as f64 / (data - 1) as f64 - 1.0;
         Linear {
@@ -158,12 +158,12 @@ fn chi_square_knows_errors_in_common() {
     let inverse = errors.clone().try_inverse().unwrap();
     let mean = DVector::from_vec(PredictedDraw::mean(&draws).unwrap().values);
     let spread = &model.design * model.covariance() * model.design.transpose();
-    let found = diagnostics::chi_square(&likelihood, &draws, |_| true)
+    let result = diagnostics::chi_square(&likelihood, &draws, |_| true)
         .unwrap()
         .unwrap();
     let residual = &y - &mean;
-    assert!((found.value - residual.dot(&(&inverse * &residual))).abs() < 1e-9);
-    assert!((found.effective_parameters - (&spread * &inverse).trace()).abs() < 1e-9);
+    assert!((result.value - residual.dot(&(&inverse * &residual))).abs() < 1e-9);
+    assert!((result.effective_parameters - (&spread * &inverse).trace()).abs() < 1e-9);
     let rows = diagnostics::residuals(&likelihood, &draws).unwrap();
     for (i, row) in rows.iter().enumerate() {
         let t = residual[i] / (errors[(i, i)] - spread[(i, i)]).sqrt();
@@ -179,7 +179,7 @@ fn level(repeats: u64, p: impl Fn(&mut Stream) -> Vec<f64>) -> f64 {
 
 #[test]
 fn studentised_residuals_keep_their_level() {
-    // Residuals share what the fit takes up of them, so against their peers alarms are a little rarer than stated.
+    // The residuals share the part that the fit absorbs, so against their peers alarms are a little rarer than stated.
     for (inferred, range) in [(false, 0.046..0.054), (true, 0.038..0.052)] {
         let model = Linear::new(12, 1.3, inferred);
         let share = level(2000, |stream| {
@@ -194,14 +194,14 @@ fn studentised_residuals_keep_their_level() {
 #[test]
 fn chi_square_keeps_its_level() {
     // The second prior is strong: alarms are rarer than stated, never more frequent.
-    for (weight, least) in [(30.0, 0.04), (0.4, 0.02)] {
+    for (weight, lowest) in [(30.0, 0.04), (0.4, 0.02)] {
         let model = Linear::new(12, weight, false);
         let share = level(4000, |stream| {
             let y = model.data(&model.truth(stream), stream);
-            let found = diagnostics::chi_square(&model.likelihood(&y), &model.posterior(&y), |_| true);
-            vec![found.unwrap().unwrap().p.unwrap()]
+            let result = diagnostics::chi_square(&model.likelihood(&y), &model.posterior(&y), |_| true);
+            vec![result.unwrap().unwrap().p.unwrap()]
         });
-        assert!((least..0.06).contains(&share), "{weight}: {share}");
+        assert!((lowest..0.06).contains(&share), "{weight}: {share}");
     }
 }
 
@@ -215,8 +215,8 @@ fn a_model_that_misses_fails_its_chi_square_and_an_outlier_is_named() {
     assert_eq!(worst, Some(4));
     assert!(rows[4].p.unwrap() * 12.0 < 0.01);
     let bent = DVector::from_fn(12, |i, _| if i % 4 < 2 { 3.0 } else { -3.0 } * model.sd);
-    let found = diagnostics::chi_square(&model.likelihood(&bent), &model.posterior(&bent), |_| true);
-    assert!(found.unwrap().unwrap().p.unwrap() < 1e-6);
+    let result = diagnostics::chi_square(&model.likelihood(&bent), &model.posterior(&bent), |_| true);
+    assert!(result.unwrap().unwrap().p.unwrap() < 1e-6);
 }
 
 #[test]
@@ -240,12 +240,12 @@ fn noise_that_is_inferred_has_no_chi_square_and_too_few_peers_no_residual() {
 fn conflict_is_rare_where_the_prior_is_right() {
     let model = Linear::new(12, 1.3, false);
     let prior = standard_normals(2);
-    let check = |of: fn(&diagnostics::Conflict) -> f64| {
+    let check = |value: fn(&diagnostics::Conflict) -> f64| {
         level(4000, |stream| {
             let y = model.data(&model.truth(stream), stream);
             let draws = model.posterior(&y);
             let draws: Vec<&[f64]> = draws.iter().map(|d| d.theta.as_slice()).collect();
-            vec![of(&diagnostics::conflict(&prior, &draws).unwrap())]
+            vec![value(&diagnostics::conflict(&prior, &draws).unwrap())]
         })
     };
     // Four draws only, so the sampling error of their mean, which these draws do not have, makes it a little rarer.
@@ -299,10 +299,10 @@ fn what_a_joint_prior_forbids_is_contradicted() {
         })
         .collect();
     let draws: Vec<&[f64]> = draws.iter().map(|d| d.as_slice()).collect();
-    let found = diagnostics::conflict(&prior, &draws).unwrap();
-    assert_eq!(found.degrees_of_freedom, 1, "{found:?}");
-    assert!((found.statistic - 36.0).abs() < 3.0, "{found:?}");
-    assert!(found.parameters.iter().flatten().all(|p| *p > 0.1), "{found:?}");
+    let result = diagnostics::conflict(&prior, &draws).unwrap();
+    assert_eq!(result.degrees_of_freedom, 1, "{result:?}");
+    assert!((result.statistic - 36.0).abs() < 3.0, "{result:?}");
+    assert!(result.parameters.iter().flatten().all(|p| *p > 0.1), "{result:?}");
 }
 
 #[test]
@@ -334,10 +334,10 @@ fn the_signal_of_a_linear_model_is_its_slope() {
     let reach = 1.0 / 2.0_f64.sqrt();
     // Theta is (+-r, 0): variance r^2 2 / 1 = 1 with divisor n - 1.
     let draws = [reach, -reach].map(|r| model.predicted(DVector::from_vec(vec![r, 0.0])));
-    let found = diagnostics::signals(model.likelihood(&y).data(), &[0.25, 36.0], &draws);
-    assert!((found[&0].prior_sd - 3.0).abs() < 1e-12 && (found[&0].error_sd - 0.5).abs() < 1e-12);
-    assert!((found[&0].ratio - 6.0).abs() < 1e-12);
-    assert!((found[&1].ratio - 0.5).abs() < 1e-12 && !found[&1].is_heard_together());
+    let result = diagnostics::signals(model.likelihood(&y).data(), &[0.25, 36.0], &draws);
+    assert!((result[&0].prior_sd - 3.0).abs() < 1e-12 && (result[&0].error_sd - 0.5).abs() < 1e-12);
+    assert!((result[&0].ratio - 6.0).abs() < 1e-12);
+    assert!((result[&1].ratio - 0.5).abs() < 1e-12 && !result[&1].is_heard_together());
     assert!(diagnostics::signals(model.likelihood(&y).data(), &[0.25, 36.0], &draws[..1]).is_empty());
 }
 
@@ -357,7 +357,7 @@ fn a_uniform_prior_falls_into_equal_bins() {
     assert_eq!(counts, [200; BINS]);
 }
 
-/// Every combination of bins of three parameters, so often.
+/// Every combination of bins of three parameters, this many times.
 fn grid(times: usize, failed: impl Fn(&[usize]) -> bool) -> Vec<(Vec<usize>, bool)> {
     let one = (0..BINS.pow(3)).map(|k| vec![k % BINS, k / BINS % BINS, k / BINS / BINS]);
     (0..times)
@@ -391,7 +391,7 @@ fn failures_of_a_corner_are_found_there() {
 
 #[test]
 fn failures_that_fall_anywhere_concentrate_nowhere() {
-    let found = (0..200)
+    let result = (0..200)
         .filter(|&k| {
             let mut stream = stream(k);
             let mut draws = grid(2, |_| false);
@@ -401,5 +401,5 @@ fn failures_that_fall_anywhere_concentrate_nowhere() {
             diagnostics::concentration(&draws).unwrap().p < 0.05
         })
         .count();
-    assert!(found <= 10, "{found} of 200");
+    assert!(result <= 10, "{result} of 200");
 }

@@ -55,7 +55,7 @@ fn many_modes_are_kept() {
     assert!(evaluations < 20_000.0 && error < 0.08, "{evaluations}, {error}");
 }
 
-/// Literal moduli, whose ridge defeats most moves.
+/// Literal moduli; their ridge defeats the moves.
 #[test]
 fn a_ridge_of_moduli_is_drawn_from() {
     let [evaluations, error, se] = cost_and_errors(&problems::bekker_known_noise());
@@ -65,7 +65,7 @@ fn a_ridge_of_moduli_is_drawn_from() {
     );
 }
 
-/// Where no mixture reaches the target, particles move; and where these fail as well, the run says so.
+/// If no mixture reaches the target, particles move; if these fail as well, the run reports it.
 #[test]
 fn draws_that_miss_give_way_to_moves() {
     let sampler = problems::bekker_unknown_noise().run(TmcmcSettings {

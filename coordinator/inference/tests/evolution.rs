@@ -23,7 +23,7 @@ fn adapting(seed: u64) -> EvolutionSettings {
     })
 }
 
-/// Both with every seed.
+/// Settings of both strategies, for every seed.
 fn all() -> impl Iterator<Item = EvolutionSettings> {
     SEEDS.flat_map(|seed| [genetic(seed), adapting(seed)])
 }
@@ -44,10 +44,10 @@ fn run(
         let pending = evolution.round().pending().to_vec();
         let mut indices: Vec<usize> = (0..pending.len()).collect();
         order(&mut indices, evolution.round().number());
-        for (told, &k) in indices.iter().enumerate() {
+        for (count, &k) in indices.iter().enumerate() {
             let value = LogLikelihood::new(score(&pending[k].theta)).unwrap();
             let progress = evolution.tell(k, value).unwrap();
-            assert_eq!(progress == TellProgress::Waiting, told + 1 < indices.len());
+            assert_eq!(progress == TellProgress::Waiting, count + 1 < indices.len());
         }
     }
     evolution
@@ -62,16 +62,16 @@ fn check(problem: &Problem, settings: impl Iterator<Item = EvolutionSettings>, l
     for settings in settings {
         let evolution = problem.evolve(settings);
         let estimate = evolution.estimate().unwrap();
-        let found = estimate.log_posterior();
+        let reached = estimate.log_posterior();
         assert!(
-            (problem.optimum - loss..problem.optimum + 1e-6).contains(&found),
-            "{}, {settings:?}: {found}, not {}",
+            (problem.optimum - loss..problem.optimum + 1e-6).contains(&reached),
+            "{}, {settings:?}: {reached}, not {}",
             problem.name,
             problem.optimum
         );
         let theta = &estimate.theta;
         let at = problem.score(theta).value() + problem.prior().log_density(theta);
-        assert!((at - found).abs() < 1e-9);
+        assert!((at - reached).abs() < 1e-9);
         // The genetic algorithm may still be creeping when its generations have passed.
         let settled = estimate.stop == StopReason::Stagnation || matches!(settings, EvolutionSettings::Ga(_));
         assert!(settled, "{} {settings:?}", problem.name);
@@ -222,10 +222,10 @@ fn the_order_within_a_generation_does_not_matter() {
         let shuffled = run(&prior, settings, score, shuffle);
         assert_eq!(straight.estimate(), shuffled.estimate());
     }
-    for [one, other] in [[genetic(1), genetic(2)], [adapting(1), adapting(2)]] {
+    for [first, second] in [[genetic(1), genetic(2)], [adapting(1), adapting(2)]] {
         assert_ne!(
-            find(&prior, one, score).history,
-            find(&prior, other, score).history
+            find(&prior, first, score).history,
+            find(&prior, second, score).history
         );
     }
 }

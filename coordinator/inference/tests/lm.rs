@@ -52,10 +52,10 @@ fn fit(prior: &[Marginal], likelihood: &Likelihood, settings: LmSettings, model:
 }
 
 #[track_caller]
-fn near(given: f64, expected: f64, tolerance: f64) {
+fn near(computed: f64, expected: f64, tolerance: f64) {
     assert!(
-        (given - expected).abs() <= tolerance * expected.abs().max(1.0),
-        "{given}, not {expected}"
+        (computed - expected).abs() <= tolerance * expected.abs().max(1.0),
+        "{computed}, not {expected}"
     );
 }
 
@@ -262,12 +262,12 @@ fn model_parameters_and_noise_are_fitted_together() {
     let estimate = fit(&prior, &likelihood, LmSettings::default(), &linear);
     let a = design();
     let inverse = (a.transpose() * &a).try_inverse().unwrap();
-    let least = &inverse * a.transpose() * DVector::from_vec(measured());
-    let residuals = DVector::from_vec(measured()) - &a * &least;
+    let solution = &inverse * a.transpose() * DVector::from_vec(measured());
+    let residuals = DVector::from_vec(measured()) - &a * &solution;
     let variance = residuals.norm_squared() / 12.0;
     near(estimate.theta[3], variance.sqrt(), 1e-8);
     for i in 0..3 {
-        near(estimate.theta[i], least[i], 1e-8);
+        near(estimate.theta[i], solution[i], 1e-8);
         near(estimate.sd(i).unwrap(), (variance * inverse[(i, i)]).sqrt(), 1e-8);
     }
 }
@@ -323,7 +323,7 @@ fn a_model_with_the_noise_of_a_grid_is_fitted_within_its_uncertainty() {
     };
     // Along the ridge of stiffness and exponent the noise of 0.3 % looks like information over short steps. It makes
     // the log-posterior itself uncertain by some 0.3 nats; nothing that compares points can do better.
-    for (share, loss, least_sd) in [(0.001, 0.2, 0.8), (0.003, 0.8, 0.4)] {
+    for (share, loss, min_sd) in [(0.001, 0.2, 0.8), (0.003, 0.8, 0.4)] {
         let noisy = |theta: &[f64]| {
             let values = wheel(theta).into_iter().enumerate();
             Some(
@@ -343,7 +343,7 @@ fn a_model_with_the_noise_of_a_grid_is_fitted_within_its_uncertainty() {
             for i in 0..3 {
                 let ratio = estimate.sd(i).unwrap() / smooth.sd(i).unwrap();
                 assert!(
-                    (least_sd..1.3).contains(&ratio),
+                    (min_sd..1.3).contains(&ratio),
                     "{share}, seed {seed}, {i}: sd {ratio}"
                 );
             }
@@ -451,12 +451,12 @@ fn the_order_within_a_round_does_not_matter() {
         forwards
     );
     // Another seed starts elsewhere.
-    let other = LmSettings {
+    let settings = LmSettings {
         seed: 2,
         ..LmSettings::default()
     };
     assert_ne!(
-        begin(&prior, &likelihood, other).round().pending(),
+        begin(&prior, &likelihood, settings).round().pending(),
         begin(&prior, &likelihood, LmSettings::default())
             .round()
             .pending()
@@ -537,7 +537,7 @@ fn settings_that_cannot_work_are_refused() {
         .check(8),
         Err(LmSettingsError::TooFewEvaluations {
             max_evaluations: 13,
-            least: 14,
+            min: 14,
             starts: 5,
             dimension: 8
         })
@@ -579,8 +579,12 @@ fn a_correlated_prior_counts_as_on_paper() {
     let estimate = ended.estimate().unwrap();
     let covariance = [1.0 + 2.0 * rho, rho + 2.0];
     let variance = covariance[0] + 2.0 * covariance[1] + sd * sd;
-    for (k, own) in covariance.into_iter().enumerate() {
-        near(estimate.theta[k], own * datum / variance, 1e-6);
-        near(estimate.sd(k).unwrap(), (1.0 - own * own / variance).sqrt(), 1e-4);
+    for (k, covariance_with_datum) in covariance.into_iter().enumerate() {
+        near(estimate.theta[k], covariance_with_datum * datum / variance, 1e-6);
+        near(
+            estimate.sd(k).unwrap(),
+            (1.0 - covariance_with_datum * covariance_with_datum / variance).sqrt(),
+            1e-4,
+        );
     }
 }

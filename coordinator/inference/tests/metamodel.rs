@@ -9,7 +9,7 @@ use statistics::{
 const MEASURED: [f64; 2] = [1.2, 0.9];
 const NOISE: f64 = 0.25;
 
-/// What counts.
+/// The fine model, whose evaluations count.
 fn fine(theta: &[f64]) -> Vec<f64> {
     let (x, y) = (theta[0], theta[1]);
     vec![x + 0.4 * y * y, libm::exp(0.5 * y) - 0.3 * x * y]
@@ -57,11 +57,11 @@ fn run(settings: TmcmcSettings, coarse: fn(&[f64]) -> Option<Vec<f64>>) -> (Samp
             let answer = match (proposal.subchain, &metamodel) {
                 (Some(subchain), Some(metamodel)) => {
                     let end = metamodel.run(&subchain, &proposal.theta, coarse).unwrap();
-                    let found = (end.accepted > 0).then(|| score(&end.theta));
+                    let scored = (end.accepted > 0).then(|| score(&end.theta));
                     moves += u64::from(end.moves);
                     subchains += 1;
-                    found_out += u64::from(found.is_some());
-                    EvaluationResult::AtSubchainEnd { end, found }
+                    found_out += u64::from(scored.is_some());
+                    EvaluationResult::AtSubchainEnd { end, found: scored }
                 }
                 _ => {
                     let (log_likelihood, pair) = score(&proposal.theta);
@@ -95,8 +95,8 @@ fn truth() -> ([f64; 4], f64) {
 }
 
 fn moments(posterior: &PosteriorSample) -> [f64; 4] {
-    let mean = |of: fn(&[f64]) -> f64| {
-        let values: Vec<f64> = posterior.particles.iter().map(|p| of(&p.theta)).collect();
+    let mean = |value: fn(&[f64]) -> f64| {
+        let values: Vec<f64> = posterior.particles.iter().map(|p| value(&p.theta)).collect();
         mean_and_sd(&values).unwrap().0
     };
     [
@@ -158,7 +158,7 @@ fn fewer_evaluations_are_needed_than_without() {
     assert!(2 * with < without, "{with} with, {without} without");
 }
 
-/// The fine model less a quadratic: what a regression can find.
+/// The fine model less a quadratic, which a regression can find.
 fn quadratic_off(theta: &[f64]) -> Option<Vec<f64>> {
     let (x, y) = (theta[0], theta[1]);
     let off = [0.3 + 0.1 * x - 0.2 * x * y, -0.2 + 0.1 * y * y];

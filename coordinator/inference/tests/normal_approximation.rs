@@ -41,8 +41,11 @@ fn moments(estimate: &ModeEstimate, parameter: usize) -> (f64, f64) {
 }
 
 #[track_caller]
-fn near(given: f64, expected: f64, tolerance: f64) {
-    assert!((given - expected).abs() <= tolerance, "{given}, not {expected}");
+fn near(computed: f64, expected: f64, tolerance: f64) {
+    assert!(
+        (computed - expected).abs() <= tolerance,
+        "{computed}, not {expected}"
+    );
 }
 
 /// A prior N(0, R) and a datum of a + 2 b: the covariance of datum and parameters is C w, its variance w' C w + e^2.
@@ -57,10 +60,14 @@ fn draws_of_a_linear_model_have_its_closed_form_and_evidence() {
     let estimate = fit(prior, likelihood, |theta| vec![theta[0] + 2.0 * theta[1]]);
     let covariance = [1.0 + 2.0 * rho, rho + 2.0];
     let variance = covariance[0] + 2.0 * covariance[1] + sd * sd;
-    for (k, own) in covariance.into_iter().enumerate() {
+    for (k, covariance_with_datum) in covariance.into_iter().enumerate() {
         let (mean, spread) = moments(&estimate, k);
-        near(mean, own * value / variance, 0.05);
-        near(spread, (1.0 - own * own / variance).sqrt(), 0.05);
+        near(mean, covariance_with_datum * value / variance, 0.05);
+        near(
+            spread,
+            (1.0 - covariance_with_datum * covariance_with_datum / variance).sqrt(),
+            0.05,
+        );
     }
     let log_evidence = -0.5 * (2.0 * std::f64::consts::PI * variance).ln() - 0.5 * value * value / variance;
     near(estimate.approximation.unwrap().log_evidence, log_evidence, 1e-6);

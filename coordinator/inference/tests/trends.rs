@@ -112,7 +112,7 @@ impl Rig {
         clean + SD * noise
     }
 
-    /// So many random draws of the posterior; noise sds that are inferred wander about the truth by a tenth.
+    /// Random draws of the posterior; inferred noise sds vary about the truth by a tenth.
     fn posterior(&self, y: &DVector<f64>, draws: usize, stream: &mut Stream) -> Vec<PredictedDraw> {
         let covariance = self.covariance();
         let mean = &covariance * self.design.transpose() * y / (SD * SD);
@@ -154,22 +154,22 @@ fn a_trend_of_a_line_is_its_closed_form() {
     let rig = Rig::new(false);
     let mut normals = stream(0);
     let y = rig.data(&mut normals);
-    let found = rig.trends(&y, &mut normals);
-    // What the model expects of the data before it sees any.
+    let trend = rig.trends(&y, &mut normals);
+    // The prior predictive expectation of the data.
     let expected = &rig.design * rig.design.transpose() + DMatrix::identity(y.len(), y.len()) * (SD * SD);
     let inverse = expected.try_inverse().unwrap();
-    for (pair, found) in found.iter().enumerate() {
-        let found = found.unwrap();
+    for (pair, trend) in trend.iter().enumerate() {
+        let trend = trend.unwrap();
         let x = DVector::from_vec(regressor(pair / 5, pair % 5));
         let information = x.dot(&(&inverse * &x));
-        assert!((found.sd * information.sqrt() - 1.0).abs() < 1e-9, "{pair}");
+        assert!((trend.sd * information.sqrt() - 1.0).abs() < 1e-9, "{pair}");
         let statistic = x.dot(&(&inverse * &y)) / information.sqrt();
-        assert!((found.statistic - statistic).abs() < 1e-9, "{pair}: {found:?}");
-        assert!((found.slope / found.sd - statistic).abs() < 1e-9);
+        assert!((trend.statistic - statistic).abs() < 1e-9, "{pair}: {trend:?}");
+        assert!((trend.slope / trend.sd - statistic).abs() < 1e-9);
         let whole = x.norm_squared() / (SD * SD);
-        assert!((found.share_left - information / whole).abs() < 1e-9);
+        assert!((trend.share_left - information / whole).abs() < 1e-9);
         let p = libm::erfc(statistic.abs() / 2.0_f64.sqrt());
-        assert!((found.p - p).abs() < 1e-12);
+        assert!((trend.p - p).abs() < 1e-12);
     }
 }
 
@@ -200,8 +200,8 @@ fn trends_keep_their_level() {
         let (single, flagged) = alarms(&Rig::new(inferred), SETS, |_| {});
         assert!((0.042..0.058).contains(&single), "inferred {inferred}: {single}");
         // One in a hundred, and two standard errors of its count.
-        let most = 0.01 + 2.0 * (0.01 / SETS as f64).sqrt();
-        assert!(flagged <= most, "inferred {inferred}: {flagged}");
+        let limit = 0.01 + 2.0 * (0.01 / SETS as f64).sqrt();
+        assert!(flagged <= limit, "inferred {inferred}: {flagged}");
     }
 }
 
@@ -231,7 +231,7 @@ fn what_the_fit_takes_up_is_not_judged() {
         None,
         "there is nothing to follow"
     );
-    // One draw, and draws that do not spread, say nothing about what the fit takes up.
+    // One draw, or draws that do not spread, do not determine what the fit absorbs.
     for draws in [vec![draws[0].clone()], vec![draws[0].clone(); 9]] {
         assert!(
             TrendTest::new(&likelihood, &rig.prior(), &draws)

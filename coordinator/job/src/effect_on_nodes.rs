@@ -8,7 +8,7 @@ use shared::model::spatial::DisplacementFrame;
 use crate::model_switch::ModelSwitch;
 use crate::spec::Spec;
 
-/// What follows the effect's name.
+/// The ending of the candidate's name, behind the effect's name.
 const ON_NODES: &str = "_node";
 
 /// An effect of the catalogue together with the setting that keeps its displacement on the nodes: without such an effect the setting
@@ -38,12 +38,12 @@ impl EffectOnNodes {
         format!("{}{ON_NODES}", self.effect.name)
     }
 
-    /// Those that a model may have: one that rolls, and has no effect of the displacement yet.
+    /// The candidates of a model that rolls and has no effect of the displacement yet; none of other models.
     pub fn all_of(spec: &Spec) -> impl Iterator<Item = Self> {
         let spatial = spec.model.spatial.as_ref();
-        let is_on_rim = spatial.is_some_and(|own| own.displacement == DisplacementFrame::Rim);
+        let is_on_rim = spatial.is_some_and(|spatial| spatial.displacement == DisplacementFrame::Rim);
         let effects = EffectSet::read(&spec.fit_variant.effects);
-        let has_one = effects.is_ok_and(|own| own.using(Variable::J).is_some());
+        let has_one = effects.is_ok_and(|effects| effects.using(Variable::J).is_some());
         let all = catalogue().iter().filter_map(Self::new);
         all.filter(move |_| is_on_rim && !has_one)
     }
@@ -73,7 +73,9 @@ mod tests {
             files: [("runs.csv".to_owned(), RUNS.to_owned())].into(),
         };
         let spec = Spec::new("job.toml", &job, "experiment.toml", &experiment).unwrap();
-        EffectOnNodes::all_of(&spec).map(|own| own.name()).collect()
+        EffectOnNodes::all_of(&spec)
+            .map(|candidate| candidate.name())
+            .collect()
     }
 
     #[test]

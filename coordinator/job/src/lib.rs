@@ -1,45 +1,48 @@
 //! Turns the text of a job and its experiment into everything a calibration needs.
 //!
 //! # Layout
-//! - `job_file`: [`JobFile`], a job as written.
-//! - `table`: the tables of a job, as written and what they mean.
+//! - `job`: [`Job`], a job as users write it, as a value. `addition`: what changes it. `named_files`: the files that it names.
+//! - `table`: the tables of a job, as written and what they mean. `schema`: their JSON schemas.
 //! - `data`: the fitted measurements: noise, likelihood, predicted values; whether their order follows a condition.
-//! - `spec`: [`Spec`], a calibration as its files determine it; `spec_words` says it in words.
+//! - `spec`: [`Spec`], a calibration as its files determine it.
 //! - `plain_parameter`: [`PlainParameter`], what a search may free. `model_switch`: [`ModelSwitch`], what it may turn.
 //!   `effect_on_nodes`: [`EffectOnNodes`], an effect together with such a turn.
 //! - `plausibility`: questions about what is possible, but was probably not meant.
-//! - `derived`: the jobs, and the experiment, that follow from a job and its experiment.
+//! - `text`: the texts of jobs that follow from a job; no other file edits them. `facts`: single facts that texts state.
+//!   `service_effect`: effects of a service's catalogue as files of a job. `assumed_experiment`: [`AssumedExperiment`].
 
+mod addition;
+mod assumed_experiment;
 mod data;
-mod derived;
 mod effect_on_nodes;
-mod job_file;
+mod facts;
+mod job;
 mod model_switch;
+mod named_files;
 mod plain_parameter;
 mod plausibility;
+mod schema;
+mod service_effect;
 mod spec;
-mod spec_words;
 mod table;
+mod text;
 
+pub use addition::{Addition, ModelChange};
+pub use assumed_experiment::{AssumedExperiment, SiteProperty, UnsaidProperty};
 pub use data::bevameter_readings::{BevameterReadings, PLATE, RING, Reading};
 pub use data::confounded_order::{ConfoundedOrder, SetCondition, confounded_orders};
 pub use data::level::levels_of;
 pub use data::noise::{conditions, repeat_scatter, repeats};
 pub use data::soil_scatter::SoilScatter;
-pub use derived::accepting_job::accepting_job;
-pub use derived::assumed_experiment::{AssumedExperiment, SiteProperty, UnsaidProperty};
-pub use derived::discovery_job::{continued_job, effect_name, model_kind, searched_job, without_effects};
-pub use derived::earlier_search::{earlier_search, is_earlier_search, searched_model};
-pub use derived::extended_job::{extended_job, with_free, with_setting};
-pub use derived::one_model::model_job;
-pub use derived::own_effects::{OwnEffect, foreign_effects, with_own_effects, without_own_effects};
-pub use derived::point_job::point_job;
-pub use derived::validation_job::validation_job;
 pub use effect_on_nodes::EffectOnNodes;
-pub use job_file::{JobFile, JobModels};
+pub use facts::{effect_name, foreign_effects, is_earlier_search, model_kind};
+pub use job::{Job, JobModels};
 pub use model_switch::{MODEL_SWITCHES, ModelSwitch};
+pub use named_files::{NamedFile, NamedFiles};
 pub use plain_parameter::{PLAIN_PARAMETERS, PlainParameter};
 pub use plausibility::{Question, Unanswered, check_accepted, questions};
+pub use schema::sampler_schema;
+pub use service_effect::ServiceEffect;
 pub use spec::{EffectsChanged, PREDICTION_DRAWS, Spec};
 pub use table::algorithm_settings::{AlgorithmName, AlgorithmSettings, AlgorithmSettingsError};
 pub use table::candidate_priors::candidate_priors;
@@ -48,3 +51,7 @@ pub use table::likelihood_settings::LikelihoodSettings;
 pub use table::posterior_prior::{ImpliedModuli, JointPrior, PosteriorPrior};
 pub use table::prior_entry::{FreeParameter, PriorEntry, check_own, free_parameters};
 pub use table::prior_entry_error::PriorEntryError;
+pub use text::{
+    accepting_job, continued_job, earlier_search, extended_job, model_job, point_job, searched_job,
+    searched_model, validation_job, with_service_effects, without_effects, without_service_effects,
+};

@@ -14,7 +14,7 @@ pub struct ModelSwitch {
     pub key: &'static str,
     /// The value of the key.
     pub value: &'static str,
-    /// What the model with it assumes, in a line.
+    /// A line that says what the model with it assumes.
     pub summary: &'static str,
 }
 

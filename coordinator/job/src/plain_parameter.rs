@@ -1,5 +1,8 @@
 //! Parameters of the model itself that a job may hold fixed though they are not: candidates of a search, as effects are.
 
+use std::collections::BTreeMap;
+use std::sync::LazyLock;
+
 use shared::parameters::of_models;
 use statistics::Marginal;
 
@@ -12,7 +15,7 @@ use crate::table::prior_entry::marginal;
 pub struct PlainParameter {
     /// Its name in jobs.
     pub name: &'static str,
-    /// What it says of the soil if its value is another, in a line.
+    /// A line that says what holds if its value is another.
     pub summary: &'static str,
     /// Its prior where it is freed, as in a job.
     pub prior: &'static str,
@@ -69,6 +72,12 @@ pub const PLAIN_PARAMETERS: [PlainParameter; 6] = [
     ),
 ];
 
+/// Their priors by name, read once.
+static PRIORS: LazyLock<BTreeMap<&'static str, (toml::Value, Marginal)>> = LazyLock::new(|| {
+    let prior = |plain: &PlainParameter| Some((plain.name, plain.read_prior()?));
+    PLAIN_PARAMETERS.iter().filter_map(prior).collect()
+});
+
 impl PlainParameter {
     /// The parameter of a name, if a search may free it.
     pub fn find(name: &str) -> Option<&'static Self> {
@@ -76,9 +85,12 @@ impl PlainParameter {
     }
 
     /// Its prior as a value of TOML, and as a density.
-    pub fn prior(&self) -> Option<(toml::Value, Marginal)> {
-        let table: toml::Table = format!("prior = {}", self.prior).parse().ok()?;
-        let value = table.get("prior")?.clone();
+    pub fn prior(&self) -> Option<&'static (toml::Value, Marginal)> {
+        PRIORS.get(self.name)
+    }
+
+    fn read_prior(&self) -> Option<(toml::Value, Marginal)> {
+        let value: toml::Value = self.prior.parse().ok()?;
         let known = of_models().find(|p| p.name == self.name)?;
         let density = marginal(&value, &known.into()).ok()?;
         Some((value, density))
@@ -99,7 +111,7 @@ impl PlainParameter {
         let value = spec.model.fixed.get(self.name).copied().or(known.default)?;
         let (_, density) = self.prior()?;
         let (lower, upper) = density.support();
-        (lower..=upper).contains(&value).then_some((value, density))
+        (lower..=upper).contains(&value).then(|| (value, density.clone()))
     }
 }
 

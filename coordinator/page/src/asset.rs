@@ -31,11 +31,11 @@ fn file(path: &str) -> Option<rust_embed::EmbeddedFile> {
 /// A file of the page.
 #[derive(Debug, Clone)]
 pub struct Asset {
-    /// Its content.
+    /// Content of the file.
     pub content: Cow<'static, [u8]>,
-    /// Its media type.
+    /// Media type.
     pub media_type: &'static str,
-    /// Names its content, in hexadecimal digits.
+    /// Hash of the content, in hexadecimal digits.
     pub tag: String,
 }
 
@@ -55,7 +55,7 @@ pub fn asset(path: &str) -> Option<Asset> {
     })
 }
 
-/// A text file that is there.
+/// A text file that must exist.
 pub(crate) fn text(path: &str) -> String {
     let file = file(path).unwrap_or_else(|| panic!("the page has the file {path}"));
     String::from_utf8_lossy(&file.data).into_owned()

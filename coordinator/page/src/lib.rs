@@ -3,9 +3,9 @@
 //! # Layout
 //! - [`asset`]: the files, as a service serves them under `/page/`.
 //! - [`report`]: one self-contained document with the same modules, which opens offline.
-//! - `modules/`: `page.js` and `report.js` are where the two begin; `view/` what a person sees, `chart/` pictures, `part/` what views
-//!   share, `rest/` questions to the service, `words/` quantities as people read them. `vendor/`: preact with htm, D3, Observable
-//!   Plot, with their licences. `tests/`: of the modules, for Node.
+//! - `modules/`: `page.js` and `report.js` are the entry points. `view/` has the views, `chart/` the pictures, `part/` shared parts
+//!   of views, `rest/` requests to the service, `words/` quantities in readable form. `vendor/`: preact with htm, D3, Observable
+//!   Plot, with their licences. `tests/`: tests of the modules, for Node.
 
 pub mod asset;
 pub mod report;

@@ -8,27 +8,27 @@ use serde_json::{Map, Value, json};
 
 use crate::asset::{modules, text};
 
-/// A module goes by this name and its path: a document of its own has no address to which paths are relative.
+/// Prefix of a module's name in the document, where relative paths do not resolve.
 const PREFIX: &str = "grouser/";
-/// A report asks nobody, and runs nothing but what it carries.
+/// Content security policy: a report makes no requests, and runs only scripts that it contains.
 const POLICY: &str = "default-src 'none'; script-src 'unsafe-inline' data:; style-src 'unsafe-inline'; img-src data: blob:; base-uri 'none'; form-action 'none'";
 
 /// The modules of the page that describes the interface, which a report does not show.
 const INTERFACE: &str = "modules/interface/";
 
-/// The element that says which calibration of which study is shown first.
+/// The element that states which calibration of which study is shown first.
 const SHOWN: &str = "shown";
 
-/// What a report carries.
+/// The content of a report.
 #[derive(Debug, Clone)]
 pub struct Report<'a> {
     /// Title of the document, as text.
     pub title: &'a str,
-    /// What stands there for whoever runs no scripts.
+    /// Text shown if scripts are disabled.
     pub text: &'a str,
-    /// The study.
+    /// Id of the study.
     pub study: i64,
-    /// The calibration whose model it shows first.
+    /// Id of the calibration whose model is shown first.
     pub calibration: i64,
     /// Answers of the service by their paths.
     pub answers: &'a Map<String, Value>,
@@ -69,7 +69,7 @@ pub fn report(report: &Report) -> String {
     page
 }
 
-/// The same report with the model of another calibration first.
+/// Shows the model of another calibration first in a report.
 pub fn showing(document: &str, calibration: i64) -> String {
     let (begin, end) = (opening(SHOWN), "</script>");
     let parts = document.split_once(&begin).and_then(|(before, rest)| {
@@ -87,14 +87,14 @@ fn opening(id: &str) -> String {
     format!("<script type=\"application/json\" id=\"{id}\">")
 }
 
-/// Numbers and names as JSON in which no text can end the element that it stands in.
+/// Numbers and names as JSON that cannot close the element that contains it.
 fn data(id: &str, value: &Value) -> String {
-    // `<` stands in texts alone, where its escape means the same.
+    // `<` occurs in texts only, where its escape means the same.
     let json = value.to_string().replace('<', "\\u003c");
     format!("{}{json}</script>", opening(id))
 }
 
-/// Where the browser finds each module: in the document itself.
+/// The import map, which locates each module in the document.
 fn import_map() -> String {
     let entry = |path: String| {
         let source = STANDARD.encode(with_names(&path, &text(&path)));
@@ -108,7 +108,7 @@ fn import_map() -> String {
     json!({ "imports": imports }).to_string()
 }
 
-/// A module whose imports go by name in place of relative paths.
+/// A module whose imports use names in place of relative paths.
 fn with_names(path: &str, source: &str) -> String {
     let folder = folder_of(path);
     let line = |line: &str| match line.rsplit_once(" from \"") {
@@ -124,7 +124,7 @@ fn folder_of(path: &str) -> &str {
     path.rsplit_once('/').map_or("", |(folder, _)| folder)
 }
 
-/// The path of a relative one below a folder.
+/// The path of a relative import below a folder.
 fn resolved(folder: &str, relative: &str) -> String {
     if let Some(rest) = relative.strip_prefix("../") {
         return resolved(folder_of(folder), rest);
@@ -189,7 +189,7 @@ mod tests {
         let answers = Map::from_iter([("/v1/studies/1".to_owned(), json!({"name": "</script><i>"}))]);
         let page = example(&answers);
         assert!(!page.contains("</script><i>") && page.contains("&lt;sand&gt;") && page.contains("a &lt; b"));
-        // The import map, two sets of data, two libraries, the beginning.
+        // The document has an import map, two sets of data, two libraries and the entry point.
         assert_eq!(page.matches("<script").count(), 6);
         assert_eq!(page.matches("</script").count(), 6);
     }
@@ -197,10 +197,10 @@ mod tests {
     #[test]
     fn another_calibration_is_shown() {
         let page = example(&Map::new());
-        let other = showing(&page, 5);
+        let moved = showing(&page, 5);
         assert!(page.contains("{\"calibration\":3,\"study\":1}</script>"));
-        assert!(other.contains("{\"calibration\":5,\"study\":1}</script>"));
-        assert_eq!(showing(&other, 3), page);
+        assert!(moved.contains("{\"calibration\":5,\"study\":1}</script>"));
+        assert_eq!(showing(&moved, 3), page);
         assert_eq!(showing("no report", 3), "no report");
     }
 

@@ -5,7 +5,7 @@ import { table } from "../modules/chart/download.js";
 import { groups, levels, levelWords } from "../modules/words/group.js";
 import { digits, duration, meanAndSd, numberOf, parameterName, probability, shown, size, tickWords, titled } from "../modules/words/quantity.js";
 import { meanErrorSd, residualSds } from "../modules/words/residual.js";
-import { verdictWords } from "../modules/words/state.js";
+import { progressWords, verdictWords } from "../modules/words/state.js";
 
 test("a number has its significant digits, and an exponent only where it needs one", () => {
   assert.equal(digits(0.00933), "0.00933");
@@ -134,4 +134,13 @@ test("what a study has found and added is not said to be nothing", () => {
   assert.equal(verdictWords("nothing_detectable", ["slip_sinkage"]), "nothing further is detectable");
   assert.equal(verdictWords("class", ["slip_sinkage"]), "an effect is missing: one of a class");
   assert.equal(verdictWords(null), "no search yet");
+});
+
+test("progress says where each kind of algorithm is", () => {
+  const told = (/** @type {any} */ position) => progressWords({ position, evaluations: 2300, remaining_s: null });
+  assert.equal(told({ kind: "sampler", stage: 5, tempering_exponent: 0.012, step: 1, acceptance: 0.3 }), "stage 5, exponent 0.012, 2300 evaluations");
+  assert.equal(told({ kind: "sampler", stage: 0, tempering_exponent: 0, step: 0, acceptance: null }), "stage 0, 2300 evaluations");
+  assert.equal(told({ kind: "fit", steps: 4 }), "step 4, 2300 evaluations");
+  assert.equal(told({ kind: "evolution", generations: 7 }), "generation 7, 2300 evaluations");
+  assert.equal(told({ kind: "search", rounds: 2 }), "round 2, 2300 evaluations");
 });

@@ -8,9 +8,9 @@ use crate::membership::Membership;
 /// A stored experiment.
 #[derive(Debug, Clone)]
 pub struct ExperimentRow {
-    /// Its id.
+    /// Id in the store.
     pub id: i64,
-    /// Its files.
+    /// Files of the experiment, by name.
     pub files: FileSet,
 }
 
@@ -27,21 +27,21 @@ impl std::fmt::Debug for SealKey {
 /// A stored calibration.
 #[derive(Debug, Clone)]
 pub struct CalibrationRow {
-    /// Its id.
+    /// Id in the store.
     pub id: i64,
-    /// The study it belongs to.
+    /// Id of the study to which it belongs.
     pub study: i64,
-    /// The experiment it is about.
+    /// Id of its experiment.
     pub experiment: i64,
-    /// Its place in the study.
+    /// Role in the study, and its parent.
     pub membership: Membership,
     /// Name for lists.
     pub name: String,
-    /// Its job, with the effect files that it names.
+    /// The job, with the effect files that it names.
     pub job: FileSet,
-    /// Its state.
+    /// Progress: queued, running, finished and so on.
     pub state: CalibrationState,
-    /// Why it is paused or failed.
+    /// Reason for which it is paused or failed.
     pub message: Option<String>,
     /// Version of the equations.
     pub model_version: Option<String>,
@@ -49,13 +49,13 @@ pub struct CalibrationRow {
     pub busy_ms: u64,
     /// Log-evidence.
     pub log_evidence: Option<f64>,
-    /// Its standard error.
+    /// Standard error of the log-evidence.
     pub log_evidence_se: Option<f64>,
     /// Whether every stage reached equilibrium.
     pub equilibrated: Option<bool>,
-    /// Evaluations of the sampler.
+    /// Number of evaluations by the sampler.
     pub evaluations: Option<u64>,
-    /// Of these, rejected by the model.
+    /// Number of these that the model rejected.
     pub rejected: Option<u64>,
 }
 

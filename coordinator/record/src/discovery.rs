@@ -12,7 +12,7 @@ use shared::channel::Channel;
 pub const NONE: &str = "none";
 /// Name of the explanation that a law outside the library is missing.
 pub const NOT_IN_LIBRARY: &str = "not_in_library";
-/// Most proposed test runs.
+/// Maximum number of proposed test runs.
 pub const NEXT_RUNS: usize = 3;
 
 /// The verdict of a search.
@@ -38,32 +38,32 @@ pub struct Discovery {
     pub given: Vec<String>,
     /// The verdict of a search.
     pub verdict: Verdict,
-    /// The verdict in a sentence for a test engineer.
+    /// The verdict as a sentence for a test engineer.
     pub text: String,
-    /// The parameter of the searched model that the best explanation puts where its prior all but excludes it: nothing is claimed then.
+    /// The parameter of the searched model that the best explanation puts where its prior nearly excludes it: nothing is claimed then.
     #[serde(default)]
     pub implausible: Option<ImplausibleParameter>,
-    /// The inferred noise sds, by the names of their parameters, that are not known well enough for a claim: nothing is claimed then.
+    /// The parameters of inferred noise sds that are too uncertain for a claim: nothing is claimed then.
     #[serde(default)]
     pub unsupported_noise: Vec<String>,
-    /// The addition to the model, where the verdict names one, or where it is open but evidence and prediction of left-out levels
-    /// have the same best set: its leading effect.
+    /// The effect to add, if the verdict names one, or if it is open but evidence and prediction of left-out levels have the same
+    /// best set: the leading effect of that set.
     pub extension: Option<Extension>,
     /// Effects of the model that no longer improve its evidence.
     pub drop: Vec<String>,
     /// Every explanation by falling probability, with `none` and, if it was searched, `not_in_library`.
     pub effects: Vec<JudgedEffect>,
-    /// Every model that was compared, by falling probability; those of the effects are the sums over the sets that they lead.
+    /// Every model that was compared, by falling probability; an effect's probability is the sum over the sets that it leads.
     #[serde(default)]
     pub sets: Vec<JudgedSet>,
     /// Chi-square of the best explanation over its degrees of freedom, 1 where it fits: a set's probability is proportional to
     /// `prior exp(log_bayes_factor / misfit)`.
     #[serde(default = "fits")]
     pub misfit: f64,
-    /// Whether the best explanation leaves nothing to explain; null where the noise is not known.
+    /// Whether the best explanation fits the declared noise; null where the noise is not known.
     #[serde(default)]
     pub complete: Option<bool>,
-    /// The share of the searched model's excess chi-square that the best explanation takes away; null without an excess.
+    /// The share of the searched model's excess chi-square that the best explanation removes; null without an excess.
     #[serde(default)]
     pub explained: Option<f64>,
     /// The channels that the best explanation leaves unexplained, the worst first.
@@ -75,41 +75,39 @@ pub struct Discovery {
     pub cannot_exclude: Vec<String>,
     /// Effects that the model rejected at every strength, or from all starts of a fit.
     pub refused: Vec<String>,
-    /// Effects that need what the experiment does not state: they are weighed with typical values, and never named.
+    /// Effects that need a value missing in the experiment: they are weighed with typical values, and never named.
     #[serde(default)]
     pub not_tried: Vec<NotTried>,
-    /// Test runs that together would distinguish the remaining explanations, each given those before it.
+    /// Test runs that together distinguish the remaining explanations best; each is chosen given those before it.
     pub next_runs: Vec<NextRun>,
-    /// What every proposed run would tell by itself; absent where no explanations are compared, in records of earlier versions, and from
-    /// `summary.json`.
+    /// The information of every proposed run when made alone. Absent where no explanations are compared, in records of earlier
+    /// versions, and from `summary.json`.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub information: Vec<RunInformation>,
-    /// What each explanation predicts of the fitted measurements; absent from records of earlier versions, and from `summary.json`.
+    /// The predictions of the fitted measurements by each explanation; absent from records of earlier versions, and from `summary.json`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub curves: Option<EffectCurves>,
-    /// Tests without a rolling wheel that would distinguish them.
+    /// Tests without a rolling wheel that would distinguish the explanations.
     pub other_tests: Vec<String>,
-    /// Scatter of the model's predictions about a smooth function of its parameters, which the search counts as noise: an sd for each
-    /// channel by its column, in its unit; empty where it is negligible.
+    /// Numerical noise sd of each channel by its column, in its unit, which counts as noise of the data; empty where it is negligible.
     #[serde(default)]
     pub numerical_noise: BTreeMap<String, f64>,
     /// Goodness of fit of the searched model.
     pub chi2: ChiSquare,
     /// Goodness of fit with the best explanation.
     pub chi2_best: ChiSquare,
-    /// Evaluations until the effect had a name.
+    /// Number of evaluations until the effect had a name.
     pub evaluations_to_name: u64,
-    /// All evaluations.
+    /// Number of all evaluations.
     pub evaluations: u64,
 }
 
 /// A parameter that contradicts its prior.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct ImplausibleParameter {
-    /// Its name.
+    /// Name of the parameter.
     pub name: String,
-    /// Its distance from the median of its prior, in standard deviations of a normal density; beyond 6.5 either way. With a joint prior
-    /// that of the parameter given those before it.
+    /// Normal score of its value in its prior, beyond 6.5 in size; with a joint prior, given the parameters before it.
     pub prior_sds: f64,
 }
 
@@ -121,16 +119,16 @@ pub enum Extension {
     Effect(String),
     /// An effect of the catalogue on one wheel of several.
     OnWheel {
-        /// The effect.
+        /// Name of the effect.
         effect: String,
-        /// The wheel.
+        /// Name of the wheel.
         wheel: String,
     },
     /// An effect file: its name and its text.
     File {
-        /// Its name.
+        /// Name of the file.
         name: String,
-        /// Its text.
+        /// Content of the file.
         text: String,
     },
 }
@@ -142,21 +140,20 @@ pub struct JudgedEffect {
     pub name: String,
     /// Log evidence over that of the searched model, with the stated prior of its strength \[nats\].
     pub log_bayes_factor: f64,
-    /// Distance of its fitted strength from the middle of that prior, in standard deviations; null of `none` and
-    /// `not_in_library`.
+    /// Distance of its fitted strength from the middle of that prior, in standard deviations; null of `none` and `not_in_library`.
     #[serde(default)]
     pub prior_sds: Option<f64>,
-    /// Probability among all explanations.
+    /// Posterior probability among all explanations.
     pub probability: f64,
-    /// Explanations that these data cannot distinguish share a class; 0 is `none`.
+    /// Number of the class, in which these data cannot distinguish explanations; 0 is `none`.
     pub class: u32,
     /// Whether its class belongs to the smallest set of classes with 95 % probability.
     pub in_credible_set: bool,
     /// The prior of its strength, as in its file.
     pub strength_prior: Option<String>,
-    /// Its own most probable parameters, SI.
+    /// Parameters at the best fit of this explanation, SI.
     pub parameters: BTreeMap<String, f64>,
-    /// The units of these by name; empty in records of earlier versions.
+    /// Units of the parameters by name; empty in records of earlier versions.
     #[serde(default)]
     pub units: BTreeMap<String, String>,
     /// How the evidence was computed: `screen`, `rank_one`, `polished`, `confirmed` or `sampled`.
@@ -166,8 +163,7 @@ pub struct JudgedEffect {
 /// A model that explains the data.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct JudgedSet {
-    /// Its effects; `none`, or `not_in_library`, stands alone. A law outside the library beyond effects has the name of its quantity,
-    /// variable and form.
+    /// The effects; `none` or `not_in_library` alone. A law outside the library beyond effects is named by quantity, variable and form.
     pub members: Vec<String>,
     /// Log evidence over that of the searched model, with widened priors of the strengths \[nats\].
     pub log_bayes_factor: f64,
@@ -180,7 +176,7 @@ pub struct JudgedSet {
     pub predictive: Option<f64>,
 }
 
-/// What the best explanation leaves of a channel.
+/// The misfit of a channel under the best explanation.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct RemainingMisfit {
     /// Channel without unit.
@@ -188,11 +184,11 @@ pub struct RemainingMisfit {
     pub channel: Channel,
     /// Root mean square of measured less predicted values, in declared noise sds.
     pub noise_sds: f64,
-    /// Number of values.
+    /// Number of measured values.
     pub values: u64,
-    /// The condition that orders them: `slip`, `wheel_load`, `rim_speed`, `sled_speed` or `order`; null where none does.
+    /// The condition with which they correlate: `slip`, `wheel_load`, `rim_speed`, `sled_speed` or `order`; null where none does.
     pub along: Option<String>,
-    /// Their correlation with it.
+    /// Correlation with the condition.
     pub correlation: Option<f64>,
 }
 
@@ -221,35 +217,35 @@ impl RemainingMisfit {
     }
 }
 
-/// The misfit of what fits.
+/// The misfit of an explanation that fits.
 fn fits() -> f64 {
     1.0
 }
 
-/// An effect that needs what the experiment, or a model that is not ours, does not state.
+/// An effect that needs a value that the experiment, or an external model, does not state.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 pub struct NotTried {
     /// The effect, `EFFECT.WHEEL` on one wheel of several.
     pub name: String,
-    /// What is not stated, and the value that is assumed to weigh the effect.
+    /// The missing quantity, and the value that is assumed to weigh the effect.
     pub why: String,
     /// The line of the experiment that would state it, or the runs that would show it: `runs at a slip angle`.
     pub needs: String,
 }
 
 impl NotTried {
-    /// What an effect needs that no line of an experiment states: a model that shows its contact.
+    /// The need of an effect that no line of an experiment satisfies: a model that shows its contact.
     pub const OUR_MODEL: &str = "kind = \"quasi_static\" or \"scm\" under [model]";
 
-    /// How `needs` begins where no line, but runs are missing.
+    /// Prefix of `needs` if runs are missing instead of a line.
     pub const RUNS: &str = "runs ";
 
-    /// Whether a line of the experiment would state, or runs would show, what it needs.
+    /// Whether a line of the experiment would state, or runs would show, the missing quantity.
     pub fn lacks_data(&self) -> bool {
         self.needs != Self::OUR_MODEL
     }
 
-    /// Whether runs would show what it needs.
+    /// Whether runs would show the missing quantity.
     pub fn lacks_runs(&self) -> bool {
         self.needs.starts_with(Self::RUNS)
     }
@@ -268,49 +264,49 @@ pub struct Outside {
     pub log_bayes_factor: f64,
     /// The effect file, ready to be added.
     pub effect_file: String,
-    /// The factor on the quantity (of a channel: the addition to it) against the variable, in pairs of variable and value.
+    /// Pairs of the variable and the factor on the quantity, or for a channel the addition to it.
     pub curve: Vec<[f64; 2]>,
-    /// Log predictive density of left-out levels over that of the searched model, and of the best of the library \[nats\].
+    /// Log predictive density of left-out levels over that of the searched model, and over that of the best of the library \[nats\].
     pub left_out_nats: [f64; 2],
 }
 
 /// A proposed test run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct NextRun {
-    /// Slip.
+    /// Slip of the run.
     pub slip: f64,
-    /// Wheel load.
+    /// Wheel load of the run.
     pub wheel_load_n: f64,
-    /// Sled speed.
+    /// Sled speed of the run.
     pub sled_speed_m_s: f64,
     /// The explanations that it distinguishes.
     pub separates: Vec<String>,
-    /// Expected information on them beyond that of the runs before it in the list \[nats\].
+    /// Expected information on the explanations in addition to that of the runs before it in the list \[nats\].
     pub information_nats: f64,
 }
 
-/// What a test run would tell by itself.
+/// The information of a test run when made alone.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct RunInformation {
-    /// Slip.
+    /// Slip of the run.
     pub slip: f64,
-    /// Wheel load.
+    /// Wheel load of the run.
     pub wheel_load_n: f64,
-    /// Sled speed.
+    /// Sled speed of the run.
     pub sled_speed_m_s: f64,
     /// Expected information on the explanations that remain \[nats\].
     pub nats: f64,
 }
 
-/// What the explanations predict of the fitted measurements of a wheel, to six digits, SI.
+/// The predictions of a wheel's fitted measurements by the explanations, to six digits, SI.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct EffectCurves {
     /// The measurements, in the order of every list of values.
     pub data: Vec<CurveDatum>,
     /// The searched model at its best fit.
     pub base: Vec<f64>,
-    /// By name of the explanation: the model with the effect at its own best fit; of an effect that was only screened, linear about the
-    /// base's fit. `not_in_library` is the best law outside the library.
+    /// Values by the name of the explanation: the model with the effect at its best fit; for an effect that was only screened,
+    /// linear about the base's fit; for `not_in_library`, the best law outside the library.
     pub effects: BTreeMap<String, Vec<f64>>,
 }
 
@@ -319,13 +315,13 @@ pub struct EffectCurves {
 pub struct CurveDatum {
     /// Name of the run.
     pub run: String,
-    /// Its channel.
+    /// Channel that was measured.
     #[schema(value_type = String)]
     pub channel: Channel,
 }
 
 impl Discovery {
-    /// The record without what is of use to pictures alone.
+    /// Removes the parts that only pictures use.
     #[must_use]
     pub fn without_curves(self) -> Self {
         Discovery {
@@ -339,15 +335,15 @@ impl Discovery {
 /// Squared residuals in units of the noise.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct ChiSquare {
-    /// Their sum; null where the noise was inferred from them.
+    /// Sum of the squares; null where the noise was inferred from them.
     pub value: Option<f64>,
     /// Number of data minus the effective number of fitted parameters.
     pub degrees_of_freedom: f64,
-    /// p-value.
+    /// p-value of the fit.
     pub p: Option<f64>,
 }
 
-/// The name of an extension as a candidate: `EFFECT.WHEEL` of an effect on one wheel of several.
+/// The name of an extension as a candidate; `EFFECT.WHEEL` for an effect on one wheel of several.
 pub fn addition_name(extension: &Extension) -> String {
     match extension {
         Extension::OnWheel { effect, wheel } => format!("{effect}.{wheel}"),
@@ -363,12 +359,12 @@ pub fn effect_of(extension: &Extension) -> String {
     }
 }
 
-/// What a model has more by an extension: its effect, and with an effect of the displacement on the nodes the setting too.
+/// The parts of a model that an extension adds: its effect and, if the effect keeps its displacement on the nodes, that setting.
 pub fn parts_of(extension: &Extension) -> Vec<String> {
     parts_of_effect(&effect_of(extension))
 }
 
-/// The same of the name of an effect.
+/// The parts that an effect of this name adds.
 pub fn parts_of_effect(effect: &str) -> Vec<String> {
     match EffectOnNodes::find(effect) {
         Some(on_nodes) => vec![on_nodes.effect.name.clone(), on_nodes.setting.name.to_owned()],

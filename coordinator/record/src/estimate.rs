@@ -1,4 +1,4 @@
-//! Stored result of a fit or a search by generations.
+//! Stored result of a fit or of a search by generations.
 
 use inference::point_estimate::{Generation, StopReason};
 
@@ -7,16 +7,15 @@ use inference::point_estimate::{Generation, StopReason};
 pub struct EstimateRow {
     /// The most probable parameters.
     pub theta: Vec<f64>,
-    /// Log-likelihood there.
+    /// Log-likelihood at these parameters.
     pub log_likelihood: f64,
-    /// Log-density of the prior there.
+    /// Log-density of the prior at these parameters.
     pub log_prior: f64,
-    /// Standard deviations after Laplace; `None` at a bound, and where nothing fixes a parameter. A search by
-    /// generations has none at all.
+    /// Standard deviations by Laplace's approximation; `None` at a bound, for an undetermined parameter, and after a search by generations.
     pub sd: Option<Vec<Option<f64>>>,
     /// Whether each parameter lies at a bound of its prior.
     pub at_bound: Vec<bool>,
-    /// Why the fit or the search stopped.
+    /// Reason for which the fit or the search stopped.
     pub stop: StopReason,
     /// Convergence of a search by generations.
     pub history: Vec<Generation>,

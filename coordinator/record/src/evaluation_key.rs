@@ -4,16 +4,16 @@
 /// Below, they are the sampler's or the fit's.
 pub const PREDICTIONS_FROM: u64 = 1 << 40;
 
-/// Number of the evaluation at the likeliest parameters.
+/// Number of the evaluation at the most probable parameters.
 pub const LIKELIEST: u64 = 2 * PREDICTIONS_FROM;
 
 /// Numbers from here on are single holdout runs of final draws: run r of draw k is 65536 r + k further.
 pub const HOLDOUT_RUNS_FROM: u64 = 3 * PREDICTIONS_FROM;
 
-/// There are fewer final draws than this.
-const MOST_DRAWS: u64 = 1 << 16;
+/// Bound on the number of final draws.
+const MAX_DRAWS: u64 = 1 << 16;
 
-/// Purpose of an evaluation. Its number depends on the job alone, so it is the same after a restart.
+/// Purpose of an evaluation. Its number depends only on the job, so it survives a restart.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum EvaluationKey {
     /// A proposal of the sampler or the fit: number = round x width + particle, the width of [`AlgorithmSettings::width`].
@@ -22,30 +22,30 @@ pub enum EvaluationKey {
     Sampling {
         /// The round, counted from 0.
         round: u64,
-        /// The particle.
+        /// Index of the particle.
         particle: usize,
     },
-    /// The fitted runs at the likeliest parameters, with their histories where the model knows time.
+    /// The fitted runs at the most probable parameters, with histories if the model is time-dependent.
     Likeliest,
-    /// A final draw.
+    /// A final draw of the posterior.
     Prediction {
-        /// Position among the draws.
+        /// Index among the draws.
         draw: usize,
-        /// Its holdout runs, or its fitted ones. Separate, so that a rejected holdout run does
-        /// not reject the fitted ones.
+        /// Whether its holdout runs are evaluated, or its fitted ones. They are separate, so that a rejected holdout run does not
+        /// reject the fitted ones.
         holdout: bool,
     },
     /// One holdout run of a final draw whose holdout runs the model refused together.
     HoldoutRun {
-        /// Position among the draws.
+        /// Index among the draws.
         draw: usize,
-        /// Position among the holdout runs.
+        /// Index among the holdout runs.
         run: usize,
     },
 }
 
 impl EvaluationKey {
-    /// The number of this evaluation in a calibration of so wide rounds.
+    /// The number of this evaluation in a calibration with rounds of this width.
     pub fn number(self, width: usize) -> u64 {
         match self {
             EvaluationKey::Sampling { round, particle } => round * width as u64 + particle as u64,
@@ -54,17 +54,17 @@ impl EvaluationKey {
                 PREDICTIONS_FROM + 2 * draw as u64 + u64::from(holdout)
             }
             EvaluationKey::HoldoutRun { draw, run } => {
-                HOLDOUT_RUNS_FROM + run as u64 * MOST_DRAWS + draw as u64
+                HOLDOUT_RUNS_FROM + run as u64 * MAX_DRAWS + draw as u64
             }
         }
     }
 
-    /// The evaluation of a number.
+    /// The evaluation that has a number.
     pub fn of(number: u64, width: usize) -> Self {
         match number.checked_sub(PREDICTIONS_FROM) {
             Some(_) if number >= HOLDOUT_RUNS_FROM => EvaluationKey::HoldoutRun {
-                draw: ((number - HOLDOUT_RUNS_FROM) % MOST_DRAWS) as usize,
-                run: ((number - HOLDOUT_RUNS_FROM) / MOST_DRAWS) as usize,
+                draw: ((number - HOLDOUT_RUNS_FROM) % MAX_DRAWS) as usize,
+                run: ((number - HOLDOUT_RUNS_FROM) / MAX_DRAWS) as usize,
             },
             Some(_) if number >= LIKELIEST => EvaluationKey::Likeliest,
             Some(k) => EvaluationKey::Prediction {
@@ -78,7 +78,7 @@ impl EvaluationKey {
         }
     }
 
-    /// Whether it is of holdout runs alone: of a parameter vector whose fitted runs are another evaluation.
+    /// Whether only holdout runs are evaluated, of parameters whose fitted runs are another evaluation.
     pub fn is_of_holdout(self) -> bool {
         matches!(
             self,
@@ -86,7 +86,7 @@ impl EvaluationKey {
         )
     }
 
-    /// The first number after the round of an evaluation: from there on stands what may follow from its result.
+    /// The first number that a result of this evaluation may influence: the one after its round.
     pub fn round_end(number: u64, width: usize) -> u64 {
         match EvaluationKey::of(number, width) {
             EvaluationKey::Sampling { round, .. } => (round + 1) * width as u64,
@@ -111,7 +111,7 @@ mod tests {
             PREDICTIONS_FROM + 199,
             LIKELIEST,
             HOLDOUT_RUNS_FROM,
-            HOLDOUT_RUNS_FROM + 17 * MOST_DRAWS + 199,
+            HOLDOUT_RUNS_FROM + 17 * MAX_DRAWS + 199,
         ] {
             assert_eq!(EvaluationKey::of(number, 1000).number(1000), number);
         }
@@ -125,6 +125,6 @@ mod tests {
             (end(PREDICTIONS_FROM + 3), end(LIKELIEST)),
             (HOLDOUT_RUNS_FROM, HOLDOUT_RUNS_FROM)
         );
-        assert!(end(HOLDOUT_RUNS_FROM + 5) > HOLDOUT_RUNS_FROM + MOST_DRAWS * MOST_DRAWS);
+        assert!(end(HOLDOUT_RUNS_FROM + 5) > HOLDOUT_RUNS_FROM + MAX_DRAWS * MAX_DRAWS);
     }
 }

@@ -9,30 +9,30 @@ use statistics::SubchainEnd;
 
 use crate::discovery::Discovery;
 
-/// Something that must survive a restart.
+/// A fact that must survive a restart.
 #[derive(Debug, Clone)]
 pub enum Fact {
     /// A parameter vector was simulated.
     Evaluated {
-        /// The calibration.
+        /// Id of the calibration.
         calibration: i64,
-        /// The evaluation.
+        /// The stored result.
         row: EvaluationRow,
     },
-    /// A late result of an evaluation that is already stored; compared, because it must be equal.
+    /// A late result of a stored evaluation; it is compared with the stored one, which it must equal.
     Duplicate {
-        /// The calibration.
+        /// Id of the calibration.
         calibration: i64,
-        /// The evaluation.
+        /// Number of the evaluation.
         evaluation: u64,
-        /// Fingerprint that must agree.
+        /// Fingerprint that must agree with the stored one.
         fingerprint: Fingerprint,
-        /// Who computed it.
+        /// Name of the worker that computed it.
         worker: String,
     },
     /// A stage ended.
     Stage {
-        /// The calibration.
+        /// Id of the calibration.
         calibration: i64,
         /// The stage with its population.
         record: Box<StageRecord>,
@@ -41,88 +41,88 @@ pub enum Fact {
     },
     /// The sampler ended.
     Posterior {
-        /// The calibration.
+        /// Id of the calibration.
         calibration: i64,
         /// Evidence and counts; the draws are the last stage's population.
         posterior: Box<PosteriorSample>,
     },
     /// The fit ended.
     Estimate {
-        /// The calibration.
+        /// Id of the calibration.
         calibration: i64,
         /// The most probable parameters.
         estimate: Box<ModeEstimate>,
     },
     /// A search for a missing effect ended.
     Discovery {
-        /// The calibration.
+        /// Id of the calibration.
         calibration: i64,
-        /// Its result.
+        /// The result as a record.
         record: Box<Discovery>,
     },
     /// A calibration changed its state.
     State {
-        /// The calibration.
+        /// Id of the calibration.
         calibration: i64,
         /// The new state.
         state: CalibrationState,
-        /// The reason, where there is one.
+        /// The reason, if there is one.
         message: Option<String>,
         /// Wall time spent on the calibration so far `[ms]`.
         busy_ms: u64,
     },
     /// A second worker has reproduced a stored result.
     Confirmed {
-        /// The calibration.
+        /// Id of the calibration.
         calibration: i64,
-        /// The evaluation.
+        /// Number of the evaluation.
         evaluation: u64,
-        /// The second worker.
+        /// Name of the second worker.
         worker: String,
     },
-    /// A worker computes wrongly: it gets no leases, and nothing that it says counts.
+    /// A worker computes wrongly: it gets no further leases, and its answers are ignored.
     Quarantined {
-        /// The worker.
+        /// Name of the worker.
         worker: String,
-        /// The calibration that shows it.
+        /// Id of the calibration that shows it.
         calibration: i64,
-        /// The evaluation that shows it.
+        /// Number of the evaluation that shows it.
         evaluation: u64,
     },
-    /// The unconfirmed results of a worker that computes wrongly are dropped, and what followed from them.
+    /// The unconfirmed results of a worker that computes wrongly are dropped, and all that followed from them.
     Rewound {
-        /// The calibration.
+        /// Id of the calibration.
         calibration: i64,
-        /// The worker.
+        /// Name of the worker.
         worker: String,
-        /// Evaluations of a round.
+        /// Number of evaluations in a round.
         width: usize,
     },
-    /// A model that is not ours was asked the same twice.
+    /// An external model was evaluated twice at the same parameters.
     Repeated {
-        /// The calibration.
+        /// Id of the calibration.
         calibration: i64,
-        /// How far its answers differ.
+        /// Difference of its answers.
         repeated: RepeatedAnswer,
     },
     /// The first result pinned the version of the equations, and of the effects.
     ModelVersion {
-        /// The calibration.
+        /// Id of the calibration.
         calibration: i64,
         /// The version.
         version: String,
     },
     /// A machine failed at an evaluation.
     Fault {
-        /// The calibration.
+        /// Id of the calibration.
         calibration: i64,
-        /// The evaluation.
+        /// Number of the evaluation.
         evaluation: u64,
-        /// Number of failed leases of it so far.
+        /// Number of its leases that have failed so far.
         attempt: u32,
-        /// The machine's worker.
+        /// Name of the machine's worker.
         worker: String,
-        /// The error message.
+        /// Message of the failure.
         message: String,
     },
 }
@@ -130,11 +130,11 @@ pub enum Fact {
 /// Two different answers to one evaluation.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Dispute {
-    /// The evaluation.
+    /// Number of the evaluation.
     pub evaluation: u64,
-    /// The worker whose answer is stored.
+    /// Name of the worker whose answer is stored.
     pub first: String,
-    /// The worker whose answer differs; it may be the same.
+    /// Name of the worker whose answer differs; it may be the same.
     pub second: String,
 }
 
@@ -155,23 +155,38 @@ pub struct EvaluationRow {
     pub end: Option<SubchainEnd>,
     /// Fingerprint that a second computation must reproduce.
     pub fingerprint: Fingerprint,
-    /// Who computed it.
+    /// Name of the worker that computed it.
     pub worker: String,
 }
 
 /// The kept part of a result.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Kept {
-    /// While sampling: nothing beside the log-likelihood. Also where a subchain stayed.
+    /// Nothing beside the log-likelihood, while sampling, and where a subchain stayed in place.
     Scored,
-    /// The predicted values that the likelihood takes: of draws from the prior, and of what an engine is told again.
+    /// The predicted values that the likelihood takes, for draws from the prior and for evaluations that are told to an engine again.
     Fitted(Vec<f64>),
-    /// Of the final draws: everything.
+    /// All observables, for a final draw.
     Whole(Box<Observables>),
-    /// The model rejected, with its reason.
+    /// The reason for which the model rejected the parameters.
     Rejected(String),
 }
 
-/// Two computations of an evaluation must have the same one.
+impl Kept {
+    /// Whether the model rejected.
+    pub fn is_rejected(&self) -> bool {
+        matches!(self, Kept::Rejected(_))
+    }
+
+    /// The kept predicted values.
+    pub fn fitted(&self) -> Option<&[f64]> {
+        match self {
+            Kept::Fitted(values) => Some(values),
+            Kept::Scored | Kept::Whole(_) | Kept::Rejected(_) => None,
+        }
+    }
+}
+
+/// The fingerprint of a result, which a second computation must reproduce.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Fingerprint(pub i64);

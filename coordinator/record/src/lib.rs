@@ -1,11 +1,11 @@
 //! Stored rows of a calibration: the types between calibration, store and results.
 //!
 //! # Layout
-//! - [`fact`]: what must survive a restart, in order of occurrence.
+//! - [`fact`]: facts that must survive a restart, in order of occurrence.
 //! - `evaluation_key`: the permanent number of an evaluation.
 //! - `calibration`, `sample`, `estimate`: stored rows. `membership`: the place of a calibration in its study.
 //! - `replay`: rows that a restart reads back.
-//! - `verification`: how far the answers of workers are verified.
+//! - `verification`: how many answers of workers are verified.
 //! - `token`: bearer tokens and their roles.
 //! - `discovery`: the record of a search for a missing effect.
 
@@ -30,7 +30,7 @@ pub use estimate::EstimateRow;
 pub use evaluation_key::{EvaluationKey, HOLDOUT_RUNS_FROM, LIKELIEST, PREDICTIONS_FROM};
 pub use fact::{Dispute, EvaluationRow, Fact, Fingerprint, Kept};
 pub use membership::{Change, Membership, Role};
-pub use replay::{Stored, StoredEvaluation};
-pub use sample::{Prediction, PriorDraw, RejectionReason, Sample, StageRow, Subchains};
+pub use replay::Stored;
+pub use sample::{Prediction, PriorDraw, RejectionReason, StageRow, Subchains};
 pub use token::{Token, TokenHash, TokenRole};
 pub use verification::{Quarantine, Repeats, Verified};

@@ -5,7 +5,7 @@ use utoipa::ToSchema;
 
 use crate::discovery::Extension;
 
-/// What a calibration computes.
+/// The result that a calibration computes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Role {
@@ -36,7 +36,7 @@ impl Role {
     }
 }
 
-/// How the job of a calibration differs from that of its parent.
+/// The change of a calibration's job from that of its parent.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Change {
@@ -55,12 +55,12 @@ pub enum Change {
 /// The place of a calibration in its study. Held by `study::lineage`, which follows the parents.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Membership {
-    /// What the calibration computes.
+    /// Kind of result that the calibration computes.
     pub role: Role,
-    /// The calibration whose model it changes, or searches; `None` of the submitted one.
+    /// The calibration whose model it changes or searches; `None` for the submitted one.
     pub parent: Option<i64>,
-    /// How its job differs from its parent's; `None` of the submitted one and of a search, and where an earlier version did not
-    /// leave enough to tell.
+    /// The change from its parent's job. `None` for the submitted calibration, for a search, and where an earlier version did not
+    /// store enough to know it.
     pub change: Option<Change>,
 }
 
@@ -74,7 +74,7 @@ impl Membership {
         }
     }
 
-    /// A calibration that follows from another.
+    /// A calibration that follows from another one.
     pub fn changed(role: Role, parent: i64, change: Change) -> Self {
         Membership {
             role,

@@ -7,17 +7,17 @@ use shared::outcome::Observables;
 /// A stored stage, without its population.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
 pub struct StageRow {
-    /// Position, counted from 0 = the prior.
+    /// Index of the stage; 0 is the prior.
     pub stage: u32,
     /// Tempering exponent.
     pub tempering_exponent: f64,
-    /// Acceptance rate of the moves; of independent draws, their effective share.
+    /// Acceptance rate of the moves; in a stage of draws, effective sample size over number of draws (ESS/N).
     pub acceptance: f64,
-    /// Drift of the mean log-likelihood during the moves, or from the last stage's draws to this one's, as a z-score.
+    /// z-score of the drift of the mean log-likelihood during the moves, or from the last stage's draws to these.
     pub drift_z: f64,
-    /// Rank correlation of the log-likelihood between start and end of the moves; 0 of draws.
+    /// Rank correlation of the log-likelihood between start and end of the moves; 0 in a stage of draws.
     pub correlation: f64,
-    /// Moves per particle; rounds of draws.
+    /// Moves per particle; in a stage of draws, rounds.
     pub steps: u32,
     /// Share of the log-evidence.
     pub log_evidence_increment: f64,
@@ -25,26 +25,15 @@ pub struct StageRow {
     pub weight_cov: f64,
     /// Effective sample size of the weights.
     pub ess: f64,
-    /// Scale of the proposals at the end; 0: the stage was drawn.
+    /// Scale of the proposals at the end; 0 in a stage of draws.
     pub scale: f64,
-    /// Evaluations spent.
+    /// Number of evaluations.
     pub evaluations: u64,
-    /// Whether the moves reached equilibrium, or the last draws agree with those before.
+    /// Whether the moves reached equilibrium; after draws, whether they agree with those before.
     pub equilibrated: bool,
 }
 
-/// A particle of a stored population.
-#[derive(Debug, Clone, PartialEq, serde::Serialize, utoipa::ToSchema)]
-pub struct Sample {
-    /// Parameter vector.
-    pub theta: Vec<f64>,
-    /// Log-likelihood; `None` where the model rejected.
-    pub log_likelihood: Option<f64>,
-    /// Log-density of the prior.
-    pub log_prior: f64,
-}
-
-/// Why the model rejected a parameter vector: its kind, a colon, the details.
+/// A rejection of parameters by the model: its kind, a colon, the details.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{0}")]
 pub struct RejectionReason(pub String);
@@ -61,9 +50,9 @@ impl RejectionReason {
 pub struct PriorDraw {
     /// Parameter vector, noise parameters included.
     pub theta: Vec<f64>,
-    /// The predicted values that the likelihood takes, or why the model rejected.
+    /// The predicted values that the likelihood takes, or the rejection by the model.
     pub result: Result<Vec<f64>, RejectionReason>,
-    /// Leases of it that failed before one succeeded.
+    /// Number of leases of it that failed before one succeeded.
     pub faults: u64,
 }
 
@@ -72,29 +61,29 @@ pub struct PriorDraw {
 pub struct Prediction {
     /// Parameter vector, noise parameters included.
     pub theta: Vec<f64>,
-    /// Observables of the fitted runs, or why the model rejected.
+    /// Observables of the fitted runs, or the rejection by the model.
     pub fit: Result<Observables, RejectionReason>,
-    /// The holdout runs, where there are any.
+    /// Observables of the holdout runs, if there are any.
     pub holdout: Option<HoldoutPrediction>,
 }
 
-/// What the model says of the holdout runs at a final draw.
+/// The model's observables of the holdout runs at a final draw.
 #[derive(Debug, Clone, PartialEq)]
 pub struct HoldoutPrediction {
-    /// Observables of all of them, or why the model rejected one.
+    /// Observables of all holdout runs together, or the rejection of one of them.
     pub together: Result<Observables, RejectionReason>,
-    /// Where it rejected one of several: each by itself, by position among them.
+    /// If it rejected one of several: observables or rejection of each run by its index.
     pub alone: BTreeMap<usize, Result<Observables, RejectionReason>>,
 }
 
 impl HoldoutPrediction {
-    /// The observables in which a run stands, with its place in them, or why the model rejected it.
+    /// The observables that contain a run with its index in them, or the rejection of the run.
     ///
     /// # Arguments
-    /// - `position`: the run's among the holdout runs.
+    /// - `position`: index of the run among the holdout runs.
     ///
     /// # Errors
-    /// The reason: its own, or where it was not asked for alone that of all.
+    /// The rejection of this run or, if it was not evaluated alone, that of all.
     pub fn run(&self, position: usize) -> Result<(&Observables, usize), &RejectionReason> {
         match (&self.together, self.alone.get(&position)) {
             (Ok(observables), _) => Ok((observables, position)),
@@ -116,10 +105,10 @@ impl From<Result<Observables, RejectionReason>> for HoldoutPrediction {
 /// Counts of a metamodel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Subchains {
-    /// Requested subchains.
+    /// Number of requested subchains.
     pub subchains: u64,
-    /// Moves that they proposed.
+    /// Number of moves that they proposed.
     pub moves: u64,
-    /// Subchains that moved, so that the model was evaluated at their end.
+    /// Number of subchains that moved, so that the model was evaluated at their end.
     pub moved: u64,
 }

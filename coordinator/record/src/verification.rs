@@ -1,4 +1,4 @@
-//! How far the answers of workers are verified.
+//! Verification of the answers of workers.
 
 use std::collections::BTreeMap;
 
@@ -7,36 +7,36 @@ use shared::exchange::RepeatedAnswer;
 /// A worker that computes wrongly.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Quarantine {
-    /// The worker.
+    /// Name of the worker.
     pub worker: String,
-    /// The calibration that shows it.
+    /// Id of the calibration that shows it.
     pub calibration: i64,
-    /// The evaluation that shows it.
+    /// Number of the evaluation that shows it.
     pub evaluation: u64,
 }
 
-/// How far the results of a calibration are verified.
+/// Counts of verified results of a calibration.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Verified {
-    /// Results that are stored.
+    /// Number of stored results.
     pub results: u64,
-    /// Of these, reproduced by a second worker.
+    /// Number of these that a second worker has reproduced.
     pub confirmed: u64,
-    /// Workers that computed them.
+    /// Number of workers that computed them.
     pub workers: u64,
-    /// Results of workers that were quarantined after the calibration ended, which nobody has confirmed.
+    /// Number of results of workers that were quarantined after the calibration ended, and that nobody has confirmed.
     pub resting_on: BTreeMap<String, u64>,
-    /// Results of workers that were quarantined, which were computed again.
+    /// Number of results of quarantined workers that were computed again.
     pub computed_again: BTreeMap<String, u64>,
 }
 
-/// How a model that is not ours answered what it was asked twice.
+/// The answers of an external model to evaluations that were asked twice.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Repeats {
-    /// Evaluations that were asked for twice.
+    /// Number of evaluations that were asked twice.
     pub evaluations: u64,
-    /// Of these, answered in two ways.
+    /// Number of these with two different answers.
     pub differing: u64,
-    /// The largest differences.
+    /// Largest difference of each value.
     pub largest: RepeatedAnswer,
 }

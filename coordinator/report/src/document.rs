@@ -43,7 +43,7 @@ pub fn answers(study: &Study) -> Map<String, Value> {
         add(path("figures"), json(&study.figures_of(calibration)));
         add(path("histories"), json(&calibration.histories()));
         add(path("provenance"), json(&provenance(calibration)));
-        add(path("stages"), json(&calibration.stages));
+        add(path("stages"), json(&calibration.stages()));
     }
     for round in &study.rounds {
         // One that was cancelled or failed before it has no record.

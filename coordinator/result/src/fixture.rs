@@ -2,20 +2,22 @@
 
 use std::collections::BTreeMap;
 
+use inference::Particle;
 use inference::evolution::{EvolutionSettings, GaSettings};
 use inference::point_estimate::{Generation, StopReason};
 use job::{AlgorithmSettings, Spec};
 use record::{
     CalibrationRow, Discovery, EstimateRow, Extension, JudgedEffect, Membership, NONE, Outside, Prediction,
-    PriorDraw, RejectionReason, Repeats, Role, Sample, StageRow, Verdict, Verified,
+    PriorDraw, RejectionReason, Repeats, Role, StageRow, Verdict, Verified,
 };
 use shared::api::CalibrationState;
 use shared::experiment::Campaign;
 use shared::file::{FileSet, parse_toml};
 use shared::outcome::Observables;
+use statistics::LogLikelihood;
 
 use result::discovery::DiscoveryRound;
-use result::finished_calibration::FinishedCalibration;
+use result::finished_calibration::{FinishedCalibration, Outcome, SampledPosterior};
 use result::study::Study;
 use result::study_member::StudyMember;
 
@@ -130,6 +132,14 @@ pub fn with_smooth_misfit() -> FinishedCalibration {
     calibration
 }
 
+/// The sample of a calibration, to be changed.
+pub fn sampled(calibration: &mut FinishedCalibration) -> &mut SampledPosterior {
+    match &mut calibration.outcome {
+        Outcome::Sampled(sampled) => sampled,
+        other => panic!("{other:?} is no sample"),
+    }
+}
+
 /// The same where the model rejected all final draws, drifted, and has no evidence.
 pub fn all_rejected() -> FinishedCalibration {
     let mut calibration = calibration();
@@ -138,7 +148,7 @@ pub fn all_rejected() -> FinishedCalibration {
         let refused = |_| Err(RejectionReason("no_support".into())).into();
         prediction.holdout = prediction.holdout.take().map(refused);
     }
-    for stage in &mut calibration.stages {
+    for stage in &mut sampled(&mut calibration).stages {
         (stage.equilibrated, stage.drift_z, stage.tempering_exponent) = (false, 1e6, 0.0);
     }
     calibration.row.equilibrated = Some(false);
@@ -181,7 +191,7 @@ pub fn fit() -> FinishedCalibration {
     let mut sd: Vec<Option<f64>> = first.theta.iter().map(|x| Some(0.1 * x)).collect();
     let mut at_bound = vec![false; sd.len()];
     (sd[1], at_bound[1]) = (None, true);
-    calibration.estimate = Some(EstimateRow {
+    calibration.outcome = Outcome::Estimated(EstimateRow {
         theta: first.theta.clone(),
         log_likelihood: -20.0,
         log_prior: -1.0,
@@ -191,11 +201,7 @@ pub fn fit() -> FinishedCalibration {
         history: Vec::new(),
     });
     calibration.predictions = vec![first];
-    calibration.posterior.clear();
-    calibration.prior_draws.clear();
-    calibration.populations.clear();
     calibration.likeliest_values = None;
-    calibration.stages.clear();
     calibration.row.log_evidence = None;
     calibration.row.log_evidence_se = None;
     calibration.row.equilibrated = None;
@@ -206,7 +212,7 @@ pub fn fit() -> FinishedCalibration {
 pub fn search() -> FinishedCalibration {
     let mut calibration = fit();
     calibration.spec.algorithm = AlgorithmSettings::Evolve(EvolutionSettings::Ga(GaSettings::default()));
-    if let Some(estimate) = &mut calibration.estimate {
+    if let Outcome::Estimated(estimate) = &mut calibration.outcome {
         estimate.sd = None;
         estimate.stop = StopReason::Generations;
         estimate.history = vec![Generation {
@@ -362,10 +368,10 @@ pub fn of_files(job: FileSet, files: &FileSet) -> FinishedCalibration {
             .map(|(i, p)| p.marginal.quantile(share(k, i)))
             .collect()
     };
-    let posterior: Vec<Sample> = (0..40)
-        .map(|k| Sample {
+    let posterior: Vec<Particle> = (0..40)
+        .map(|k| Particle {
             theta: theta(k),
-            log_likelihood: Some(-20.0 - share(k, 0)),
+            log_likelihood: LogLikelihood::new(-20.0 - share(k, 0)).unwrap(),
             log_prior: -1.0,
         })
         .collect();
@@ -432,17 +438,17 @@ pub fn of_files(job: FileSet, files: &FileSet) -> FinishedCalibration {
     FinishedCalibration {
         experiment: row.name.clone(),
         row,
-        estimate: None,
-        approximated: None,
-        stages: vec![stage(1, 0.001), stage(2, 0.1), stage(3, 1.0)],
-        populations: vec![posterior.clone(); 3],
+        outcome: Outcome::Sampled(SampledPosterior {
+            stages: vec![stage(1, 0.001), stage(2, 0.1), stage(3, 1.0)],
+            populations: vec![posterior.clone(); 3],
+            draws: posterior,
+            prior_draws,
+            subchains: None,
+        }),
         likeliest_values: Some(likeliest_values),
-        posterior,
         predictions,
         simulated_histories: None,
         rejections: BTreeMap::from([("no_support".into(), 3)]),
-        subchains: None,
-        prior_draws,
         faults: BTreeMap::from([("the lease expired".into(), 1)]),
         given_up: 0,
         disputes: Vec::new(),

@@ -38,7 +38,7 @@ pub mod words;
 pub use diagnostics::Diagnostics;
 pub use discovery::{DiscoveryRound, DiscoverySummary};
 pub use figure::{CalibrationFigures, ChannelHistory, MeasuredSeries, ModelSeries};
-pub use finished_calibration::{FinishedCalibration, first_population, likeliest};
+pub use finished_calibration::{FinishedCalibration, Outcome, SampledPosterior, first_population, likeliest};
 pub use flag::{Flag, FlagKind};
 pub use model_comparison::{ComparedModel, LeftOutBy, ModelComparison};
 pub use parameter_summary::ParameterSummary;

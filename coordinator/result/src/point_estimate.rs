@@ -108,7 +108,7 @@ impl PointEstimate {
 impl FinishedCalibration {
     /// The result of a fit, drawn from or not, or of a search; `None` of a sample.
     pub fn point_estimate(&self) -> Option<PointEstimate> {
-        let estimate = self.estimate.as_ref().or(self.approximated.as_ref())?;
+        let estimate = self.mode()?;
         let comparison = self.comparison();
         let fitted = || fitted(estimate, &self.spec.parameters);
         let name = |p: FittedParameter| p.free.name.clone();

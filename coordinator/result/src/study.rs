@@ -63,9 +63,9 @@ impl Study {
     /// The lines of the error ledger: the calibrations that have a posterior. A fit beside a sample is a point estimate, even
     /// with draws, which those of earlier versions are given when they go on.
     pub fn ledger(&self) -> impl Iterator<Item = &FinishedCalibration> {
-        let approximates = self.lead.approximated.is_some();
+        let approximates = self.lead.approximated().is_some();
         self.line().filter(move |calibration| {
-            calibration.estimate.is_none() && (approximates || calibration.approximated.is_none())
+            calibration.estimate().is_none() && (approximates || calibration.approximated().is_none())
         })
     }
 

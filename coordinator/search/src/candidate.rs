@@ -1,16 +1,18 @@
 //! Candidate effects as additions to a job, and those of the library.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
 
 use formula::catalogue::{catalogue, find};
 use formula::slip::variables;
 use formula::{Effect, Parameter};
-use shared::experiment::RunUse;
+use shared::experiment::{Experiment, RunUse};
 use shared::file::{FileError, FileSet, unknown_word};
 use shared::model::effects::parameter_name;
 
 use job::{
-    EffectOnNodes, ModelSwitch, PlainParameter, Spec, candidate_priors, extended_job, with_free, with_setting,
+    Addition, EffectOnNodes, FreeParameter, Job, ModelChange, ModelSwitch, NamedFile, NamedFiles,
+    PlainParameter, Spec, candidate_priors, extended_job,
 };
 use record::Extension;
 
@@ -38,7 +40,7 @@ pub enum ExclusionReason {
     AbsentEverywhere,
 }
 
-/// The job with further effects.
+/// The job with further effects, as a text.
 ///
 /// Effects of the catalogue join those under `[model]`, where a setting is turned; a plain parameter of the model gets its prior under
 /// `[priors]`; effect files come with the job; and an effect on one wheel is a line under `[priors]` for each of its strengths, with the
@@ -48,60 +50,90 @@ pub enum ExclusionReason {
 /// [`FileError`] of the job: an effect is unknown, a file or a line exists already, the text is not a job. Whether the model can
 /// express the result is checked by [`Spec::new`].
 pub fn extended(name: &str, job: &FileSet, extensions: &[&Extension]) -> Result<FileSet, FileError> {
-    let fail = |message: String| FileError::whole(name, message);
-    let (mut effects, mut named, mut priors) = (Vec::new(), Vec::new(), Vec::new());
-    let mut files = job.files.clone();
-    let mut toml = job.toml.clone();
     let stated = candidate_priors(&job.toml);
+    let addition = addition(&stated, extensions, &NamedFiles::default());
+    extended_job(name, job, &addition.map_err(|e| FileError::whole(name, e))?)
+}
+
+/// The job with further effects, as a value.
+///
+/// # Arguments
+/// - `read`: effect files that were read before.
+///
+/// # Errors
+/// As those of [`extended`], or the model is not valid with them.
+pub(crate) fn with_extensions(
+    job: &Job,
+    extensions: &[&Extension],
+    read: &NamedFiles,
+) -> Result<Job, FileError> {
+    let addition = addition(&job.candidate_priors, extensions, read);
+    job.with(JOB, &addition.map_err(|e| FileError::whole(JOB, e))?)
+}
+
+/// What further effects add to a job that states these priors for candidates.
+fn addition(
+    stated: &BTreeMap<String, toml::Value>,
+    extensions: &[&Extension],
+    read: &NamedFiles,
+) -> Result<Addition, String> {
+    let mut addition = Addition::default();
     for extension in extensions {
         match extension {
-            Extension::Effect(effect) => {
-                if let Some((prior, _)) = PlainParameter::find(effect).and_then(PlainParameter::prior) {
-                    toml = with_free(name, &toml, effect, stated.get(effect).unwrap_or(&prior))?;
-                } else if let Some(switch) = ModelSwitch::find(effect) {
-                    toml = with_setting(name, &toml, switch)?;
-                } else {
-                    let mut effect = effect;
-                    if let Some(on_nodes) = EffectOnNodes::find(effect) {
-                        toml = with_setting(name, &toml, on_nodes.setting)?;
-                        effect = &on_nodes.effect.name;
-                    }
-                    // On the rim and on the nodes together, an effect is on the nodes.
-                    if effects.contains(effect) {
-                        continue;
-                    }
-                    let own = stated
-                        .iter()
-                        .filter(|(name, _)| name.split_once('.').is_some_and(|(of, _)| of == effect));
-                    priors.extend(own.map(|(name, prior)| (name.clone(), prior.clone())));
-                    effects.push(effect.clone());
-                }
-            }
+            Extension::Effect(name) => add_named(&mut addition, stated, name),
             Extension::OnWheel { effect, wheel } => {
                 let known = find(effect).ok_or_else(|| {
                     let known = catalogue().iter().map(|e| e.name.as_str());
-                    fail(unknown_word("effect", effect, known))
+                    unknown_word("effect", effect, known)
                 })?;
                 let strengths = known.parameters.iter().filter(|p| p.neutral.is_some());
                 let prior = |p: &Parameter| {
-                    stated
-                        .get(&parameter_name(known, p, None))
-                        .unwrap_or(&p.prior)
-                        .clone()
+                    let stated = stated.get(&parameter_name(known, p, None));
+                    stated.unwrap_or(&p.prior).clone()
                 };
-                priors.extend(strengths.map(|p| (parameter_name(known, p, Some(wheel)), prior(p))));
+                let lines = strengths.map(|p| (parameter_name(known, p, Some(wheel)), prior(p)));
+                addition.priors.extend(lines);
             }
-            Extension::File { name: file, text } => {
-                if files.insert(file.clone(), text.clone()).is_some() {
-                    return Err(fail(format!("file \"{file}\" exists already")));
-                }
-                named.push(file.clone());
+            Extension::File { name, text } => {
+                let known = read.get(name).filter(|file| file.text == *text);
+                let file = known.map_or_else(|| NamedFile::new(text.clone()), Arc::clone);
+                addition.files.push((name.clone(), file));
             }
         }
     }
-    let toml = extended_job(name, &toml, &effects, &named, &priors)?;
-    Ok(FileSet { toml, files })
+    Ok(addition)
 }
+
+/// Adds what has a name in the catalogue: a plain parameter, a setting of the model, or an effect.
+fn add_named(addition: &mut Addition, stated: &BTreeMap<String, toml::Value>, name: &str) {
+    if let Some((prior, _)) = PlainParameter::find(name).and_then(PlainParameter::prior) {
+        let prior = stated.get(name).unwrap_or(prior).clone();
+        addition.changes.push(ModelChange::Free(name.to_owned(), prior));
+        return;
+    }
+    if let Some(switch) = ModelSwitch::find(name) {
+        addition.changes.push(ModelChange::Turn(switch));
+        return;
+    }
+    let mut effect = name;
+    if let Some(on_nodes) = EffectOnNodes::find(name) {
+        addition.changes.push(ModelChange::Turn(on_nodes.setting));
+        effect = &on_nodes.effect.name;
+    }
+    // On the rim and on the nodes together, an effect is on the nodes.
+    if addition.effects.iter().any(|added| added == effect) {
+        return;
+    }
+    let of_effect = |parameter: &str| parameter.split_once('.').is_some_and(|(of, _)| of == effect);
+    let lines = stated.iter().filter(|(parameter, _)| of_effect(parameter));
+    addition
+        .priors
+        .extend(lines.map(|(parameter, prior)| (parameter.clone(), prior.clone())));
+    addition.effects.push(effect.to_owned());
+}
+
+/// A candidate of the library with the free parameters of the model that has it.
+pub type LibraryEffect = (CandidateEffect, Vec<FreeParameter>);
 
 /// The candidate effects of the library for an experiment.
 ///
@@ -112,30 +144,27 @@ pub fn extended(name: &str, job: &FileSet, extensions: &[&Extension]) -> Result<
 /// # Returns
 /// The candidates, and the names of the effects that are excluded here with the reason.
 pub fn library(
-    job: &FileSet,
-    experiment: &FileSet,
-) -> (Vec<CandidateEffect>, Vec<(String, ExclusionReason)>) {
-    let (mut had, mut wheels, mut fitted) = (BTreeSet::new(), BTreeSet::new(), Vec::new());
-    let mut on_nodes = Vec::new();
+    job: &Job,
+    experiment: &Arc<Experiment>,
+) -> (Vec<LibraryEffect>, Vec<(String, ExclusionReason)>) {
+    let (mut had, mut on_nodes, mut runs) = (BTreeSet::new(), Vec::new(), [].as_slice());
     // An invalid job excludes every effect, each with the reason.
     if let Ok(base) = spec(job, experiment) {
         on_nodes.extend(EffectOnNodes::all_of(&base));
         had.extend(base.fit_variant.effects.into_iter().map(|e| e.name));
-        fitted = base.experiment.runs;
-        fitted.retain(|run| run.usage == RunUse::Fit);
-        wheels.extend(fitted.iter().map(|run| run.wheel.clone()));
+        runs = &experiment.runs;
     }
+    let fitted = || runs.iter().filter(|run| run.usage == RunUse::Fit);
+    let wheels: BTreeSet<&str> = fitted().map(|run| run.wheel.as_str()).collect();
     let acts = |effect: &Effect, wheel: Option<&str>| {
-        let mut own = fitted
-            .iter()
-            .filter(|run| wheel.is_none_or(|wheel| run.wheel == wheel));
-        fitted.is_empty()
-            || own.any(|run| !effect.is_absent_at(&variables(run.slip, run.slip_angle_deg.to_radians())))
+        let mut on_wheel = fitted().filter(|run| wheel.is_none_or(|wheel| run.wheel == wheel));
+        fitted().next().is_none()
+            || on_wheel.any(|run| !effect.is_absent_at(&variables(run.slip, run.slip_angle_deg.to_radians())))
     };
     let missing = || catalogue().iter().filter(|e| !had.contains(&e.name));
     let everywhere = missing().map(|effect| (effect, None));
     let on_one = missing()
-        .flat_map(|effect| wheels.iter().map(move |wheel| (effect, Some(wheel.as_str()))))
+        .flat_map(|effect| wheels.iter().map(move |wheel| (effect, Some(*wheel))))
         .filter(|_| wheels.len() > 1);
     let (mut candidates, mut excluded) = (Vec::new(), Vec::new());
     for (effect, wheel) in everywhere.chain(on_one) {
@@ -149,15 +178,15 @@ pub fn library(
             false => Err(ExclusionReason::AbsentEverywhere),
         };
         match able {
-            Ok(()) => candidates.push(candidate),
+            Ok(parameters) => candidates.push((candidate, parameters)),
             Err(reason) => excluded.push((candidate.name, reason)),
         }
     }
     for on_nodes in on_nodes {
         let candidate = named(on_nodes.name());
         // Where it cannot be on the rim, that has been said.
-        if check(job, experiment, &candidate.extension, on_nodes.effect, None).is_ok() {
-            candidates.push(candidate);
+        if let Ok(parameters) = check(job, experiment, &candidate.extension, on_nodes.effect, None) {
+            candidates.push((candidate, parameters));
         }
     }
     (candidates, excluded)
@@ -198,22 +227,25 @@ fn named(name: String) -> CandidateEffect {
     }
 }
 
-/// Whether the job can have an effect with a free strength.
+/// The free parameters of the job's model with an effect.
+///
+/// # Errors
+/// [`ExclusionReason`]: the model cannot have the effect, or none of its strengths is free.
 pub(super) fn check(
-    job: &FileSet,
-    experiment: &FileSet,
+    job: &Job,
+    experiment: &Arc<Experiment>,
     extension: &Extension,
     effect: &Effect,
     wheel: Option<&str>,
-) -> Result<(), ExclusionReason> {
-    let spec = spec(&extended(JOB, job, &[extension])?, experiment)?;
+) -> Result<Vec<FreeParameter>, ExclusionReason> {
+    let with = with_extensions(job, &[extension], &NamedFiles::default())?;
+    let parameters = spec(&with, experiment)?.parameters;
     let strengths = effect.parameters.iter().filter(|p| p.neutral.is_some());
     let mut strengths = strengths.map(|p| parameter_name(effect, p, wheel));
-    let is_free = |name: String| spec.parameters.iter().any(|p| p.name == name);
-    if strengths.any(is_free) {
-        Ok(())
-    } else {
-        Err(ExclusionReason::NoFreeStrength)
+    let is_free = |name: String| parameters.iter().any(|p| p.name == name);
+    match strengths.any(is_free) {
+        true => Ok(parameters),
+        false => Err(ExclusionReason::NoFreeStrength),
     }
 }
 
@@ -221,16 +253,16 @@ pub(super) fn check(
 pub(super) const JOB: &str = "job.toml";
 pub(super) const EXPERIMENT: &str = "experiment.toml";
 
-/// Parses a job and its experiment as the search of that job's model.
-pub(super) fn spec(job: &FileSet, experiment: &FileSet) -> Result<Spec, FileError> {
-    Spec::of_search(JOB, job, EXPERIMENT, experiment)
+/// The specification of a search's job.
+pub(super) fn spec(job: &Job, experiment: &Arc<Experiment>) -> Result<Spec, FileError> {
+    Spec::from_values(JOB, job.clone(), EXPERIMENT, Arc::clone(experiment))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::SearchModels;
-    use crate::fixture::read;
+    use crate::fixture::{library_of, read, spec_of};
 
     #[test]
     fn the_library_is_the_catalogue_less_what_the_job_has_and_the_model_cannot_say() {
@@ -238,7 +270,7 @@ mod tests {
         job.toml = job
             .toml
             .replacen("[model]\n", "[model]\neffects = [\"sled_tare\"]\n", 1);
-        let (candidates, excluded) = library(&job, &files);
+        let (candidates, excluded) = library_of(&job, &files);
         assert_eq!(candidates.len() + excluded.len(), catalogue().len() - 1);
         let names: Vec<&str> = candidates.iter().map(|e| e.name.as_str()).collect();
         assert!(names.contains(&"janosi_hanamoto") && !names.contains(&"sled_tare"));
@@ -258,7 +290,7 @@ mod tests {
         job.toml += "\n[discovery.priors]\nslip_sinkage.exponent_per_slip = { half_normal = 2.5 }\ncohesion_pa = { half_normal = 90.0 }\n";
         let width = |job: &FileSet, effect: &str, parameter: &str| {
             let added = Extension::Effect(effect.to_owned());
-            let with = spec(&extended("job.toml", job, &[&added]).unwrap(), &files).unwrap();
+            let with = spec_of(&extended("job.toml", job, &[&added]).unwrap(), &files).unwrap();
             let place = with.parameters.iter().position(|p| p.name == parameter).unwrap();
             with.parameters[place].marginal.quantile(0.5)
         };
@@ -279,7 +311,7 @@ mod tests {
     #[test]
     fn of_several_wheels_each_may_have_an_effect_alone() {
         let (job, files, _) = read("examples/cmu-sand");
-        let (candidates, excluded) = library(&job, &files);
+        let (candidates, excluded) = library_of(&job, &files);
         assert_eq!(candidates.len() + excluded.len(), 3 * catalogue().len());
         let of = |name: &str| candidates.iter().find(|e| e.name == name);
         let digging = of("slip_sinkage.grousered").unwrap();
@@ -290,10 +322,10 @@ mod tests {
             "{}",
             with.toml
         );
-        let with = spec(&with, &files).unwrap();
+        let with = spec_of(&with, &files).unwrap();
         assert_eq!(with.effects_on_wheels(), ["slip_sinkage.grousered"]);
         let everywhere = extended("job.toml", &job, &[&of("slip_sinkage").unwrap().extension]).unwrap();
-        let everywhere = spec(&everywhere, &files).unwrap();
+        let everywhere = spec_of(&everywhere, &files).unwrap();
         assert_eq!(everywhere.effects_on_wheels(), ["slip_sinkage"]);
         let names = with.parameters;
         assert!(
@@ -317,7 +349,7 @@ mod tests {
         job.toml = job
             .toml
             .replacen(kind, &format!("{kind}grousers = \"rolled\"\n"), 1);
-        let (candidates, excluded) = library(&job, &files);
+        let (candidates, excluded) = library_of(&job, &files);
         for effect in ["elastic_rebound", "wheel_flexibility"] {
             let smooth = format!("{effect}.smooth");
             assert!(candidates.iter().any(|c| c.name == smooth), "{smooth}");
@@ -335,7 +367,7 @@ mod tests {
     fn an_effect_of_the_displacement_may_be_on_the_nodes() {
         let (mut job, files, _) = read("tests/data/shear-mobilisation");
         let on_nodes = |job: &FileSet| -> Vec<CandidateEffect> {
-            let (candidates, _) = library(job, &files);
+            let (candidates, _) = library_of(job, &files);
             candidates
                 .into_iter()
                 .filter(|c| c.name.ends_with("_node"))
@@ -348,7 +380,7 @@ mod tests {
         let names: Vec<&str> = found.iter().map(|c| c.name.as_str()).collect();
         assert_eq!(names, ["janosi_hanamoto_node", "stretched_mobilisation_node"]);
         let with = extended("job.toml", &job, &[&found[0].extension]).unwrap();
-        let own = spec(&with, &files).unwrap();
+        let own = spec_of(&with, &files).unwrap();
         let displacement = own.model.spatial.map(|spatial| spatial.displacement);
         assert_eq!(
             displacement,
@@ -358,7 +390,7 @@ mod tests {
         // Together with the same on the rim it is one effect; a job that has one is asked where it keeps the displacement.
         let rim = Extension::Effect("janosi_hanamoto".into());
         let both = extended("job.toml", &job, &[&rim, &found[0].extension]).unwrap();
-        assert_eq!(spec(&both, &files).unwrap().fit_variant.effects.len(), 1);
+        assert_eq!(spec_of(&both, &files).unwrap().fit_variant.effects.len(), 1);
         // The search therefore combines none on the nodes with another effect of the displacement.
         let models = SearchModels::new(&job, &files, 2).unwrap();
         let excluded = |name: &str| -> Vec<String> {
@@ -391,7 +423,7 @@ mod tests {
             })
             .collect();
         let names = |files: &FileSet| -> Vec<String> {
-            let (candidates, _) = library(&job, files);
+            let (candidates, _) = library_of(&job, files);
             candidates.into_iter().map(|c| c.name).collect()
         };
         let of = |names: &[String], effect: &str| -> Vec<String> {
@@ -434,7 +466,7 @@ mod tests {
         let (job, files, _) = read("examples/hidden-effect");
         let free = |name: &str| {
             let with = extended(JOB, &job, &[&Extension::Effect(name.into())]).unwrap();
-            spec(&with, &files).map(|spec| spec.freed())
+            spec_of(&with, &files).map(|spec| spec.freed())
         };
         assert_eq!(free("cohesion_pa").unwrap(), ["cohesion_pa", "kind_quasi_static"]);
         // the job holds it under [model]
@@ -502,7 +534,7 @@ mod tests {
         };
         let (tare, digging) = (Extension::Effect("sled_tare".into()), on_wheel("slip_sinkage"));
         let with = extended("job.toml", &job, &[&tare, &file, &digging]).unwrap();
-        let effects = spec(&with, &files).unwrap().fit_variant.effects;
+        let effects = spec_of(&with, &files).unwrap().fit_variant.effects;
         let names: Vec<&str> = effects.iter().map(|e| e.name.as_str()).collect();
         assert_eq!(names, ["slip_sinkage", "sled_tare", "mine"]);
         let twice = extended("job.toml", &with, &[&file]).unwrap_err();

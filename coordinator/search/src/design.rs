@@ -177,7 +177,7 @@ mod tests {
     #[test]
     fn a_run_lies_beyond_what_was_measured_by_the_greater_of_its_ratios() {
         let (job, files, _) = crate::fixture::read("examples/hidden-effect");
-        let spec = super::super::candidate::spec(&job, &files).unwrap();
+        let spec = crate::fixture::spec_of(&job, &files).unwrap();
         let [loads, rims] = measured(&spec.fit_variant.conditions).map(|values| range(&values));
         let run = |load: f64, rim: f64| RunCondition {
             slip: 0.2,

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use discovery::{
     Conclusion, EvidenceMethod, FitChiSquare, OutsideLaw, RankedEffect, SearchVerdict, WeighedSet,
 };
-use job::{PlainParameter, candidate_priors};
+use job::PlainParameter;
 use record::{
     ChiSquare, Discovery, Extension, ImplausibleParameter, JudgedEffect, JudgedSet, NONE, NOT_IN_LIBRARY,
     NextRun, Outside, RunInformation, Verdict,
@@ -230,7 +230,7 @@ fn method(method: EvidenceMethod) -> &'static str {
 
 /// As it stands under `[discovery.priors]`, or else in the catalogue.
 fn strength_prior(candidate: &CandidateEffect, models: &SearchModels) -> Option<String> {
-    let stated = candidate_priors(&models.job.toml);
+    let stated = &models.job.candidate_priors;
     if let Some(plain) = PlainParameter::find(&candidate.name) {
         let prior = stated
             .get(plain.name)
@@ -265,7 +265,7 @@ fn outside(models: &SearchModels, found: &OutsideLaw) -> Option<(Outside, Extens
         left_out_nats: found.left_out_nats,
     };
     let extension = Extension::File {
-        name: free_name(&entry.effect.name, &models.job),
+        name: free_name(&entry.effect.name, &models.job.files),
         text: effect_file,
     };
     Some((outside, extension))

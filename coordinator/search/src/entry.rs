@@ -2,14 +2,13 @@
 
 use discovery::Candidate;
 use formula::Effect;
-use job::{EffectOnNodes, FreeParameter, ModelSwitch, PlainParameter, Spec};
+use job::{EffectOnNodes, FreeParameter, Job, ModelSwitch, NamedFiles, PlainParameter, Spec};
 use record::{Extension, NotTried};
 
-use shared::file::FileSet;
 use shared::model::ModelKind;
 use shared::parameters::{SPATIAL, of_models};
 
-use super::candidate::{CandidateEffect, JOB, extended, spec};
+use super::candidate::{CandidateEffect, candidate_of, spec, with_extensions};
 use super::law::dependence::Dependence;
 use super::law::form::LawForm;
 
@@ -34,7 +33,27 @@ pub(super) struct LawEntry {
     pub(super) forms: Vec<(LawForm, CandidateEntry)>,
 }
 
+impl LawEntry {
+    /// Its candidates: the curve, then the forms.
+    pub(super) fn entries(&self) -> impl Iterator<Item = &CandidateEntry> {
+        std::iter::once(&self.curve).chain(self.forms.iter().map(|(_, entry)| entry))
+    }
+}
+
 impl CandidateEntry {
+    /// The candidate that is an effect of the catalogue, with the free parameters of the model that has it; `None` where none of the
+    /// parameters that it brings is a strength.
+    pub(super) fn of_library(
+        candidate: CandidateEffect,
+        parameters: Vec<FreeParameter>,
+        base: &Spec,
+    ) -> Option<Self> {
+        let (effect, _) = candidate_of(&candidate.name)?;
+        let is_known = |parameter: &FreeParameter| base.parameters.iter().any(|p| p.name == parameter.name);
+        let free = parameters.into_iter().filter(|parameter| !is_known(parameter));
+        Self::new(candidate, effect, free.collect(), false)
+    }
+
     /// The candidate that is a parameter of the model itself; `None` where the job does not hold it fixed.
     pub(super) fn plain(plain: &PlainParameter, base: &Spec) -> Option<Self> {
         let (neutral, density) = plain.held_by(base)?;
@@ -65,12 +84,7 @@ impl CandidateEntry {
     ///
     /// # Errors
     /// [`NotTried`] where the model with it is not valid or has other parameters.
-    pub(super) fn switch(
-        switch: &ModelSwitch,
-        base: &Spec,
-        job: &FileSet,
-        experiment: &FileSet,
-    ) -> Result<Option<Self>, NotTried> {
+    pub(super) fn switch(switch: &ModelSwitch, base: &Spec, job: &Job) -> Result<Option<Self>, NotTried> {
         if switch.is_on(base) || (switch.is_kind() && !base.discovery.other_kind) {
             return Ok(None);
         }
@@ -84,7 +98,8 @@ impl CandidateEntry {
             ),
         };
         let extension = Extension::Effect(name.clone());
-        let with = extended(JOB, job, &[&extension]).and_then(|with| spec(&with, experiment));
+        let with = with_extensions(job, &[&extension], &NamedFiles::default());
+        let with = with.and_then(|with| spec(&with, &base.experiment));
         let with = with.map_err(|e| not_tried(e.to_string()))?;
         let names = |spec: &Spec| spec.parameters.iter().map(|p| p.name.clone()).collect::<Vec<_>>();
         if names(&with) != names(base) {

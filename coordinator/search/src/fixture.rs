@@ -1,15 +1,16 @@
 //! Experiments and effect files for tests.
 
 use std::path::Path;
+use std::sync::Arc;
 
 use formula::Effect;
-use job::check_own;
+use job::{Job, Spec, check_own};
 use record::Extension;
 use shared::experiment::Experiment;
-use shared::file::FileSet;
+use shared::file::{FileError, FileSet};
 use shared::model::effects::own;
 
-use super::candidate::CandidateEffect;
+use super::candidate::{CandidateEffect, EXPERIMENT, ExclusionReason, JOB, library, spec};
 
 /// An experiment of the repository, with the job beside it.
 pub(super) fn read(folder: &str) -> (FileSet, FileSet, Experiment) {
@@ -21,6 +22,29 @@ pub(super) fn read(folder: &str) -> (FileSet, FileSet, Experiment) {
     let files = Experiment::read_files(&file("experiment.toml")).unwrap();
     let experiment = Experiment::parse("experiment.toml", &files).unwrap();
     (job, files, experiment)
+}
+
+/// The job of a search and its experiment as values.
+pub(super) fn values(job: &FileSet, files: &FileSet) -> (Job, Arc<Experiment>) {
+    let experiment = Experiment::parse(EXPERIMENT, files).unwrap();
+    (Job::read(JOB, job).unwrap().into_search(), Arc::new(experiment))
+}
+
+/// The specification of the search of a job.
+pub(super) fn spec_of(job: &FileSet, files: &FileSet) -> Result<Spec, FileError> {
+    let (job, experiment) = values(job, files);
+    spec(&job, &experiment)
+}
+
+/// The library of a job: the candidates, and the names of the effects that are excluded with the reason.
+pub(super) fn library_of(
+    job: &FileSet,
+    files: &FileSet,
+) -> (Vec<CandidateEffect>, Vec<(String, ExclusionReason)>) {
+    let (job, experiment) = values(job, files);
+    let (candidates, excluded) = library(&job, &experiment);
+    let candidates = candidates.into_iter().map(|(candidate, _)| candidate);
+    (candidates.collect(), excluded)
 }
 
 /// The effect file of a candidate, checked as a user's.

@@ -1,6 +1,7 @@
 //! The models of a search, made when they are queried.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
 
 use discovery::{
     LawCandidate, ProposedRuns, QueriedModel, Query, Reduction, Roughness, SearchSettings, SearchTask, Starts,
@@ -16,17 +17,17 @@ use shared::model::{EffectSet, ExternalModel, ModelKind, ModelVariant, RunCondit
 use shared::outcome::Observables;
 
 use super::candidate::{
-    CandidateEffect, EXPERIMENT, ExclusionReason, JOB, candidate_of, extended, library, spec,
+    CandidateEffect, EXPERIMENT, ExclusionReason, JOB, LibraryEffect, candidate_of, library, spec,
+    with_extensions,
 };
 use super::design;
 use super::entry::{CandidateEntry, LawEntry};
 use super::family::set_families;
 use super::law::dependence::{Dependence, dependences};
 use super::law::file::LawFiles;
-use super::untried::untried;
+use super::untried::{UntriedEffect, untried};
 use job::{
-    EffectOnNodes, FreeParameter, JobFile, MODEL_SWITCHES, PLAIN_PARAMETERS, Spec, free_parameters,
-    without_effects,
+    EffectOnNodes, Job, MODEL_SWITCHES, NamedFile, NamedFiles, PLAIN_PARAMETERS, Spec, free_parameters,
 };
 use record::{Extension, NotTried};
 
@@ -56,15 +57,17 @@ impl VariantKey {
 /// The models of a search.
 #[derive(Debug)]
 pub struct SearchModels {
-    pub(super) job: FileSet,
+    pub(super) job: Job,
     /// The experiment with typical values for what it leaves unsaid.
-    assumed: Experiment,
+    assumed: Arc<Experiment>,
     pub(super) base: Spec,
     pub(super) library: Vec<CandidateEntry>,
     /// The other kind of model, where the job asks for it and cannot have it, and effects inside the contact of a model that does not
     /// show it.
     not_tried: Vec<NotTried>,
     pub(super) laws: Vec<LawEntry>,
+    /// The files of the laws, each read once.
+    law_files: NamedFiles,
     /// The base's own effects, each with the names of the parameters that remain without it.
     pub(super) reductions: Vec<(String, Vec<String>)>,
     /// Proposed runs.
@@ -84,97 +87,35 @@ impl SearchModels {
     ///
     /// # Errors
     /// [`FileError`] of job or experiment.
-    pub fn new(job: &FileSet, experiment: &FileSet, max_effects: usize) -> Result<Self, FileError> {
-        let base = spec(job, experiment)?;
-        let fail = |message: String| FileError::whole(JOB, message);
-        let (effects, excluded) = library(job, experiment);
-        let (untried, assumed) = untried(job, experiment, base.model.is_smooth(), &excluded)?;
-        let known = |name: &str| base.parameters.iter().any(|p| p.name == name);
-        let entry = |own: CandidateEffect, experiment: &FileSet| {
-            let with = spec(&extended(JOB, job, &[&own.extension])?, experiment)?;
-            let free: Vec<FreeParameter> = with.parameters.into_iter().filter(|p| !known(&p.name)).collect();
-            let effect = candidate_of(&own.name).map(|(effect, _)| effect);
-            Ok::<_, FileError>(effect.and_then(|effect| CandidateEntry::new(own, effect, free, false)))
-        };
-        let mut entries = Vec::new();
-        for own in effects {
-            entries.extend(entry(own, experiment)?);
-        }
-        entries.extend(
-            PLAIN_PARAMETERS
-                .iter()
-                .filter_map(|plain| CandidateEntry::plain(plain, &base)),
-        );
+    pub fn new(job: &FileSet, files: &FileSet, max_effects: usize) -> Result<Self, FileError> {
+        let job = Job::read(JOB, job)?.into_search();
+        let experiment = Arc::new(Experiment::parse(EXPERIMENT, files)?);
+        let base = spec(&job, &experiment)?;
+        let (effects, excluded) = library(&job, &experiment);
+        let (untried, assumed) = untried(&job, &experiment, files, base.model.is_smooth(), &excluded)?;
         let external = base.model.external.iter();
         let mut not_tried: Vec<NotTried> = external.flat_map(out_of_reach).collect();
         not_tried.extend(absent(&excluded));
-        for switch in &MODEL_SWITCHES {
-            match CandidateEntry::switch(switch, &base, job, experiment) {
-                Ok(own) => entries.extend(own),
-                // A setting that the model cannot have is none of the job's alternatives; another kind was asked for.
-                Err(why) => not_tried.extend(switch.is_kind().then_some(why)),
-            }
-        }
-        for own in untried {
-            let needing = Some(own.record());
-            let own = entry(own.effect, &assumed)?;
-            entries.extend(own.map(|own| CandidateEntry {
-                not_tried: needing,
-                ..own
-            }));
-        }
-        exclude_on_nodes(&mut entries);
-        set_families(&mut entries);
-        let of_file = |law: CandidateEffect| -> Result<CandidateEntry, FileError> {
-            let name = law.name.clone();
-            let Extension::File { text, .. } = &law.extension else {
-                return Err(fail(format!("{name} is not an effect file")));
-            };
-            let effect = Effect::read(text).map_err(|e| fail(format!("{name}: {e}")))?;
-            let free = free_parameters(&effect).map_err(|e| fail(e.to_string()))?;
-            let entry = CandidateEntry::new(law, &effect, free, true);
-            entry.ok_or_else(|| fail(format!("{name} has no strength")))
-        };
+        let mut library = library_entries(&job, &base, effects, untried, &mut not_tried);
+        exclude_on_nodes(&mut library);
+        set_families(&mut library);
         // A job has at most so many effects; one place is for a law beyond the best combination.
         let room = EffectSet::MOST.saturating_sub(base.fit_variant.effects.len());
-        let mut laws = Vec::new();
-        let of_model = |dependence: &Dependence| dependence.is_shown_by(base.model.external.as_ref());
-        let dependences = dependences(&base.experiment).into_iter().filter(of_model);
-        for dependence in dependences.take_while(|_| room > 1) {
-            let Some(LawFiles { curve, forms }) =
-                LawFiles::addable(&dependence, job, &base.fit_variant.effects)
-            else {
-                continue;
-            };
-            let forms = forms.into_iter().map(|(form, file)| Ok((form, of_file(file)?)));
-            laws.push(LawEntry {
-                curve: of_file(curve)?,
-                forms: forms.collect::<Result<_, FileError>>()?,
-                dependence,
-            });
-        }
-        let own: Vec<String> = base.fit_variant.effects.iter().map(|e| e.name.clone()).collect();
-        let mut reductions = Vec::new();
-        for effect in own {
-            // An effect stays without which the job is invalid.
-            if let Ok(without) = spec(
-                &without_effects(JOB, job, std::slice::from_ref(&effect))?,
-                experiment,
-            ) {
-                let names = without.parameters.into_iter().map(|p| p.name).collect();
-                reductions.push((effect, names));
-            }
-        }
+        let laws = match room {
+            0 | 1 => Vec::new(),
+            _ => laws(&job, &base)?,
+        };
         let prior_means: Vec<f64> = base.parameters.iter().map(|p| p.marginal.quantile(0.5)).collect();
         Ok(Self {
             design: design::proposed(&base),
             channels: design::channels(&base, &prior_means),
-            job: job.clone(),
-            assumed: Experiment::parse(EXPERIMENT, &assumed)?,
-            library: entries,
+            reductions: reductions(&job, &base),
+            job,
+            assumed,
+            library,
             not_tried,
+            law_files: law_files(&laws),
             laws,
-            reductions,
             variants: BTreeMap::new(),
             keys: BTreeMap::new(),
             max_effects: max_effects.min(room.saturating_sub(1)),
@@ -234,10 +175,7 @@ impl SearchModels {
 
     /// The candidate of an index: the library, then the curve and the forms of each law.
     pub(super) fn entry(&self, index: usize) -> Option<&CandidateEntry> {
-        let of_laws = self.laws.iter().flat_map(|law| {
-            let forms = law.forms.iter().map(|(_, entry)| entry);
-            std::iter::once(&law.curve).chain(forms)
-        });
+        let of_laws = self.laws.iter().flat_map(LawEntry::entries);
         self.library.iter().chain(of_laws).nth(index)
     }
 
@@ -321,21 +259,21 @@ impl SearchModels {
                 let entries: Vec<&CandidateEntry> = effects.iter().filter_map(|&k| self.entry(k)).collect();
                 let extensions: Vec<&Extension> = entries.iter().map(|e| &e.effect.extension).collect();
                 let is_assumed = entries.iter().any(|e| e.not_tried.is_some());
-                let experiment = if is_assumed {
-                    &self.assumed
-                } else {
-                    &self.base.experiment
+                let experiment = match is_assumed {
+                    true => &self.assumed,
+                    false => &self.base.experiment,
                 };
-                (extended(JOB, &self.job, &extensions)?, experiment)
+                (
+                    with_extensions(&self.job, &extensions, &self.law_files)?,
+                    experiment,
+                )
             }
             QueriedModel::Without(k) => {
-                let job = without_effects(JOB, &self.job, std::slice::from_ref(&self.reductions[*k].0))?;
-                (job, &self.base.experiment)
+                let effect = std::slice::from_ref(&self.reductions[*k].0);
+                (self.job.without(JOB, effect)?, &self.base.experiment)
             }
         };
-        let parsed = JobFile::parse(JOB, &job.toml)?.into_search();
-        let spec = Spec::measured(JOB, parsed, &job.files, EXPERIMENT, experiment.clone())?;
-        Ok(spec.fit_variant)
+        Ok(spec(&job, experiment)?.fit_variant)
     }
 
     /// The parameters of a query in the order of its variant.
@@ -367,6 +305,93 @@ impl SearchModels {
         };
         (0..self.design.len()).flat_map(channel).collect()
     }
+}
+
+/// The candidates of the library, those that the model itself has, and those that are weighed with typical values. Settings that were
+/// asked for and that the model cannot have join what is not tried.
+fn library_entries(
+    job: &Job,
+    base: &Spec,
+    effects: Vec<LibraryEffect>,
+    untried: Vec<UntriedEffect>,
+    not_tried: &mut Vec<NotTried>,
+) -> Vec<CandidateEntry> {
+    let effects = effects.into_iter();
+    let mut entries: Vec<CandidateEntry> = effects
+        .filter_map(|(effect, parameters)| CandidateEntry::of_library(effect, parameters, base))
+        .collect();
+    let plain = PLAIN_PARAMETERS.iter();
+    entries.extend(plain.filter_map(|plain| CandidateEntry::plain(plain, base)));
+    for switch in &MODEL_SWITCHES {
+        match CandidateEntry::switch(switch, base, job) {
+            Ok(entry) => entries.extend(entry),
+            // A setting that the model cannot have is none of the job's alternatives; another kind was asked for.
+            Err(why) => not_tried.extend(switch.is_kind().then_some(why)),
+        }
+    }
+    for untried in untried {
+        let needing = Some(untried.record());
+        let entry = CandidateEntry::of_library(untried.effect, untried.parameters, base);
+        entries.extend(entry.map(|entry| CandidateEntry {
+            not_tried: needing,
+            ..entry
+        }));
+    }
+    entries
+}
+
+/// The files of laws.
+fn law_files(laws: &[LawEntry]) -> NamedFiles {
+    let mut files = NamedFiles::default();
+    for entry in laws.iter().flat_map(LawEntry::entries) {
+        if let Extension::File { name, text } = &entry.effect.extension {
+            files.insert(name, NamedFile::new(text.clone()));
+        }
+    }
+    files
+}
+
+/// The laws outside the library that the experiment shows, as candidates.
+fn laws(job: &Job, base: &Spec) -> Result<Vec<LawEntry>, FileError> {
+    let fail = |message: String| FileError::whole(JOB, message);
+    let entry = |law: CandidateEffect| -> Result<CandidateEntry, FileError> {
+        let name = law.name.clone();
+        let Extension::File { text, .. } = &law.extension else {
+            return Err(fail(format!("{name} is not an effect file")));
+        };
+        let effect = Effect::read(text).map_err(|e| fail(format!("{name}: {e}")))?;
+        let free = free_parameters(&effect).map_err(|e| fail(e.to_string()))?;
+        let entry = CandidateEntry::new(law, &effect, free, true);
+        entry.ok_or_else(|| fail(format!("{name} has no strength")))
+    };
+    let mut laws = Vec::new();
+    let is_shown = |dependence: &Dependence| dependence.is_shown_by(base.model.external.as_ref());
+    for dependence in dependences(&base.experiment).into_iter().filter(is_shown) {
+        let files = LawFiles::addable(&dependence, &job.files, &base.fit_variant.effects);
+        let Some(LawFiles { curve, forms }) = files else {
+            continue;
+        };
+        let forms = forms.into_iter().map(|(form, file)| Ok((form, entry(file)?)));
+        laws.push(LawEntry {
+            curve: entry(curve)?,
+            forms: forms.collect::<Result<_, FileError>>()?,
+            dependence,
+        });
+    }
+    Ok(laws)
+}
+
+/// The base's effects without which the job is valid, each with the names of the parameters that remain.
+fn reductions(job: &Job, base: &Spec) -> Vec<(String, Vec<String>)> {
+    let mut reductions = Vec::new();
+    for effect in &base.fit_variant.effects {
+        let without = job.without(JOB, std::slice::from_ref(&effect.name));
+        if let Ok(without) = without.and_then(|job| spec(&job, &base.experiment)) {
+            let names = without.parameters.into_iter().map(|p| p.name).collect();
+            reductions.push((effect.name.clone(), names));
+        }
+    }
+    reductions
 }
 
 /// An effect with the displacement on the nodes puts that of all others there, too: it makes no combination with them.

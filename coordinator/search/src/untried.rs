@@ -1,12 +1,14 @@
 //! Effects that the experiment leaves no way to try as it is: weighed with typical values, never named.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use formula::{Effect, Variable};
+use shared::experiment::Experiment;
 use shared::file::{FileError, FileSet};
 
-use super::candidate::{CandidateEffect, EXPERIMENT, ExclusionReason, candidate_of, check, library};
-use job::{AssumedExperiment, SiteProperty, UnsaidProperty};
+use super::candidate::{CandidateEffect, EXPERIMENT, ExclusionReason, JOB, candidate_of, check, library};
+use job::{AssumedExperiment, FreeParameter, Job, SiteProperty, UnsaidProperty};
 use record::NotTried;
 
 /// An effect that needs what the experiment does not state.
@@ -14,6 +16,8 @@ use record::NotTried;
 pub struct UntriedEffect {
     /// The effect as an addition to the job.
     pub(super) effect: CandidateEffect,
+    /// The free parameters of the model that has it, with typical values for what is not stated.
+    pub(super) parameters: Vec<FreeParameter>,
     /// What is not stated.
     unsaid: Vec<UnsaidProperty>,
 }
@@ -33,32 +37,38 @@ impl UntriedEffect {
     }
 }
 
-/// Those of the excluded effects that the model could have if the experiment stated more, and the experiment in which typical
-/// values stand for that.
+/// The excluded effects that the model could have if the experiment stated more, and the experiment in which typical values stand for
+/// that.
 ///
 /// # Arguments
+/// - `files`: the experiment as texts, which say what it states.
 /// - `is_smooth`: whether the model rolls smooth rims, whatever grousers are declared.
 /// - `excluded`: names as [`library`] gives them.
 ///
 /// # Errors
 /// [`FileError`] of the experiment.
 pub fn untried(
-    job: &FileSet,
-    experiment: &FileSet,
+    job: &Job,
+    experiment: &Experiment,
+    files: &FileSet,
     is_smooth: bool,
     excluded: &[(String, ExclusionReason)],
-) -> Result<(Vec<UntriedEffect>, FileSet), FileError> {
-    let assumed = AssumedExperiment::new(EXPERIMENT, experiment, is_smooth)?;
-    let of = |name: &str| {
+) -> Result<(Vec<UntriedEffect>, Arc<Experiment>), FileError> {
+    let assumed = AssumedExperiment::new(EXPERIMENT, files, experiment, is_smooth)?;
+    let with_values = Arc::new(assumed.experiment);
+    let effect = |name: &str| {
         let (effect, candidate) = candidate_of(name)?;
         let needed = needed(effect);
         let unsaid = assumed.unsaid.iter().filter(|u| needed.contains(&u.property));
         let unsaid: Vec<UnsaidProperty> = unsaid.cloned().collect();
+        if unsaid.is_empty() {
+            return None;
+        }
         let wheel = name.split_once('.').map(|(_, wheel)| wheel);
-        let can_be =
-            !unsaid.is_empty() && check(job, &assumed.files, &candidate.extension, effect, wheel).is_ok();
-        can_be.then_some(UntriedEffect {
+        let parameters = check(job, &with_values, &candidate.extension, effect, wheel).ok()?;
+        Some(UntriedEffect {
             effect: candidate,
+            parameters,
             unsaid,
         })
     };
@@ -66,17 +76,19 @@ pub fn untried(
     let stated = excluded
         .iter()
         .filter(|(_, reason)| !matches!(reason, ExclusionReason::AbsentEverywhere));
-    let untried = stated.filter_map(|(name, _)| of(name)).collect();
-    Ok((untried, assumed.files))
+    let untried = stated.filter_map(|(name, _)| effect(name)).collect();
+    Ok((untried, with_values))
 }
 
 /// What further lines of the experiment would add to the candidates of a search, a sentence for each.
 ///
 /// # Errors
-/// [`FileError`] of the experiment.
-pub fn additions(job: &FileSet, experiment: &FileSet, is_smooth: bool) -> Result<Vec<String>, FileError> {
-    let (_, excluded) = library(job, experiment);
-    let (untried, _) = untried(job, experiment, is_smooth, &excluded)?;
+/// [`FileError`] of job and experiment.
+pub fn additions(job: &FileSet, files: &FileSet, is_smooth: bool) -> Result<Vec<String>, FileError> {
+    let job = Job::read(JOB, job)?.into_search();
+    let experiment = Arc::new(Experiment::parse(EXPERIMENT, files)?);
+    let (_, excluded) = library(&job, &experiment);
+    let (untried, _) = untried(&job, &experiment, files, is_smooth, &excluded)?;
     let mut of_lines: BTreeMap<String, Vec<String>> = BTreeMap::new();
     for effect in &untried {
         let NotTried { name, needs, .. } = effect.record();
@@ -111,7 +123,7 @@ fn needed(effect: &Effect) -> Vec<SiteProperty> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fixture::read;
+    use crate::fixture::{read, values};
 
     #[test]
     fn what_the_experiment_does_not_state_is_said_with_the_line_that_would() {
@@ -122,8 +134,9 @@ mod tests {
             .filter(|line| !line.starts_with("grouser_count"))
             .map(|line| format!("{line}\n"))
             .collect();
-        let (candidates, excluded) = library(&job, &files);
-        let (untried, assumed) = untried(&job, &files, true, &excluded).unwrap();
+        let (value, experiment) = values(&job, &files);
+        let (candidates, excluded) = library(&value, &experiment);
+        let (untried, assumed) = untried(&value, &experiment, &files, true, &excluded).unwrap();
         let records: Vec<NotTried> = untried.iter().map(UntriedEffect::record).collect();
         let of = |name: &str| records.iter().find(|r| r.name == name);
         let bulldozing = of("bulldozing").unwrap();
@@ -136,7 +149,9 @@ mod tests {
             lugs.needs.contains("density_kg_m3") && lugs.needs.contains("grouser_count"),
             "{lugs:?}"
         );
-        assert!(of("janosi_hanamoto").is_none() && candidates.iter().any(|c| c.name == "janosi_hanamoto"));
+        assert!(
+            of("janosi_hanamoto").is_none() && candidates.iter().any(|(c, _)| c.name == "janosi_hanamoto")
+        );
         let lines = additions(&job, &files, true).unwrap();
         assert!(
             lines
@@ -145,15 +160,16 @@ mod tests {
             "{lines:?}"
         );
         // with the values that are assumed, nothing is excluded any more for want of them
-        let (more, _) = library(&job, &assumed);
+        let (more, _) = library(&value, &assumed);
         assert_eq!(more.len(), candidates.len() + untried.len());
     }
 
     #[test]
     fn a_rim_that_is_stated_to_be_smooth_has_no_grousers_to_try() {
         let (job, files, _) = read("examples/hidden-effect");
-        let (_, excluded) = library(&job, &files);
-        let (untried, _) = untried(&job, &files, true, &excluded).unwrap();
+        let (job, experiment) = values(&job, &files);
+        let (_, excluded) = library(&job, &experiment);
+        let (untried, _) = untried(&job, &experiment, &files, true, &excluded).unwrap();
         assert!(untried.iter().all(|u| u.effect.name != "lug_thrust"));
     }
 }

@@ -8,7 +8,7 @@ use super::job_on_disk;
 use super::output::say;
 use crate::config::CheckArguments;
 use crate::embedded::{Evaluate, LocalModels};
-use farm::calibration::{Calibration, CalibrationEngine, CalibrationIdentity, SimulationResult, result_of};
+use farm::calibration::{Calibration, CalibrationEngine, CalibrationIdentity, SimulationResult};
 use job::{AlgorithmSettings, Spec, confounded_orders};
 use report::{model_limits, terminal};
 use search::untried::additions;
@@ -213,20 +213,19 @@ fn pilot(mut spec: Spec, models: &LocalModels) -> anyhow::Result<Pilot> {
             let start = Instant::now();
             let (outcome, end) = model.serve(question.theta, question.subchain.as_ref());
             simulated_s += start.elapsed().as_secs_f64();
-            let outcome = outcome.map(result_of).transpose().map_err(anyhow::Error::msg)?;
-            calibration.complete(evaluation, SimulationResult { end, outcome }, "pilot")?;
+            calibration.complete(evaluation, SimulationResult::new(outcome, end)?, "pilot")?;
         }
     }
     if let Some(message) = calibration.message {
         anyhow::bail!("the pilot failed: {message}");
     }
-    let evaluations = calibration.evaluations.max(1);
+    let evaluations = calibration.cost.evaluations.max(1);
     Ok(Pilot {
         algorithm,
         evaluations,
         runs,
         seconds_per_evaluation: simulated_s / evaluations as f64,
-        rejected_share: calibration.rejected as f64 / evaluations as f64,
+        rejected_share: calibration.cost.rejected as f64 / evaluations as f64,
         exponent: match calibration.engine() {
             CalibrationEngine::Sampler(sampler) => sampler.progress().tempering_exponent,
             CalibrationEngine::Fit(_) | CalibrationEngine::Evolution(_) | CalibrationEngine::Discovery(_) => {

@@ -9,8 +9,8 @@ use shared::text_file::{read_beside, read_text, sibling};
 
 use crate::config::JobArguments;
 use job::{
-    JobFile, OwnEffect, Spec, accepting_job, check_accepted, extended_job, with_own_effects,
-    without_own_effects,
+    Addition, Job, NamedFile, ServiceEffect, Spec, accepting_job, check_accepted, extended_job,
+    with_service_effects, without_service_effects,
 };
 
 /// A job with everything it names, read and validated.
@@ -28,11 +28,11 @@ pub(super) struct JobOnDisk {
 }
 
 /// Reads and validates a job and its experiment. Of the effects that it lists, `own` are in the catalogue of a service.
-pub(super) fn read(file: &JobArguments, own: &[OwnEffect]) -> Result<JobOnDisk, FileError> {
+pub(super) fn read(file: &JobArguments, own: &[ServiceEffect]) -> Result<JobOnDisk, FileError> {
     let path = &file.job;
     let job_name = path.display().to_string();
     let written = read_text(path)?;
-    let mut models = JobFile::parse_models(&job_name, &without_own_effects(&job_name, &written, own)?)?;
+    let mut models = Job::parse_models(&job_name, &without_service_effects(&job_name, &written, own)?)?;
     for name in &file.accept {
         models.accept(name).map_err(|e| FileError::whole(&job_name, e))?;
     }
@@ -47,19 +47,26 @@ pub(super) fn read(file: &JobArguments, own: &[OwnEffect]) -> Result<JobOnDisk, 
     let experiment_path = sibling(path, named);
     let experiment_name = experiment_path.display().to_string();
     let experiment = Experiment::read_files(&experiment_path)?;
-    let mut files = read_beside(path, &job.named_files())?;
+    let files = read_beside(path, &job.named_files())?;
     let added = added_files(&file.effect_file)?;
     let names: Vec<String> = added.keys().cloned().collect();
     let of_service: Vec<String> = own.iter().map(|own| own.file.clone()).collect();
     for (effects, files) in [(&file.effect[..], &names), (&[], &of_service)] {
-        let added = job.model.add_effects(effects, files);
+        let added = job.list_effects(effects, files);
         added.map_err(|e| FileError::whole(&job_name, e))?;
     }
-    files.extend(added);
     // Messages name the lines of the file as it is; what is kept has the additions.
-    let toml = extended_job(&job_name, &written, &file.effect, &names, &[])?;
-    let toml = accepting_job(&job_name, &toml, &file.accept)?;
-    let kept = with_own_effects(&job_name, FileSet { toml, files }, own)?;
+    let toml = accepting_job(&job_name, &written, &file.accept)?;
+    let addition = Addition {
+        effects: file.effect.clone(),
+        files: added
+            .into_iter()
+            .map(|(name, text)| (name, NamedFile::new(text)))
+            .collect(),
+        ..Addition::default()
+    };
+    let kept = extended_job(&job_name, &FileSet { toml, files }, &addition)?;
+    let kept = with_service_effects(&job_name, kept, own)?;
     let mut specs = Spec::of_models(&job_name, models, &kept.files, &experiment_name, &experiment)?;
     for spec in &specs {
         check_accepted(spec).map_err(|e| FileError::whole(&job_name, e.to_string()))?;

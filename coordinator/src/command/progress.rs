@@ -4,7 +4,7 @@ use std::io::IsTerminal;
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
-use shared::api::{CalibrationState, CalibrationStatus, Progress};
+use shared::api::{CalibrationState, CalibrationStatus, Position, Progress};
 
 use super::output::note;
 
@@ -18,10 +18,10 @@ const SEARCH: f64 = 2000.0;
 const FIT_STEPS: f64 = 8.0;
 /// Generations of a usual search by generations.
 const GENERATIONS: f64 = 100.0;
-/// Least share done from which the remaining time is estimated.
-const LEAST: f64 = 0.03;
+/// The smallest share done from which the remaining time is estimated.
+const MIN_SHARE: f64 = 0.03;
 /// The display never says that all is done.
-const MOST: f64 = 0.99;
+const MAX_SHARE: f64 = 0.99;
 
 /// The share of a study that is done, from 0 to 1: of equal parts, those that are over and what is done of the present one. It is
 /// monotone by construction, as the parts to come are a guess.
@@ -36,7 +36,7 @@ impl StudyShare {
     fn advance(&mut self, over: usize, expected: usize, present: &Progress) -> f64 {
         let parts = expected.max(over + 1) as f64;
         let now = (over as f64 + share_of(present)) / parts;
-        self.0 = now.min(MOST).max(self.0);
+        self.0 = now.min(MAX_SHARE).max(self.0);
         self.0
     }
 }
@@ -44,14 +44,18 @@ impl StudyShare {
 /// The share of a calibration or a search that is done, from 0 to 1.
 fn share_of(p: &Progress) -> f64 {
     let settling = |done: f64, usual: f64| 1.0 - libm::exp(-done / usual);
-    match p.algorithm.as_str() {
-        "lm" => settling(f64::from(p.stage), FIT_STEPS),
-        "ga" | "cma-es" => settling(f64::from(p.stage), GENERATIONS),
-        "discovery" => settling(p.evaluations as f64, SEARCH),
-        _ if p.tempering_exponent >= 1.0 => {
+    match p.position {
+        Position::Fit { steps } => settling(f64::from(steps), FIT_STEPS),
+        Position::Evolution { generations } => settling(f64::from(generations), GENERATIONS),
+        Position::Search { .. } => settling(p.evaluations as f64, SEARCH),
+        Position::Sampler {
+            tempering_exponent, ..
+        } if tempering_exponent >= 1.0 => {
             CLIMB + (1.0 - CLIMB) * p.step_done as f64 / p.step_size.max(1) as f64
         }
-        _ => CLIMB * (1.0 - libm::log(p.tempering_exponent) / FIRST_LN_EXPONENT).clamp(0.0, 1.0),
+        Position::Sampler {
+            tempering_exponent, ..
+        } => CLIMB * (1.0 - libm::log(tempering_exponent) / FIRST_LN_EXPONENT).clamp(0.0, 1.0),
     }
 }
 
@@ -59,7 +63,7 @@ fn share_of(p: &Progress) -> f64 {
 fn time_to_go(elapsed_s: f64, first: f64, share: f64) -> Option<String> {
     let done = share - first;
     let seconds = elapsed_s * (1.0 - share) / done;
-    (done >= LEAST).then(|| match seconds {
+    (done >= MIN_SHARE).then(|| match seconds {
         s if s >= 5400.0 => format!("about {:.1} h left", s / 3600.0),
         s if s >= 90.0 => format!("about {:.0} min left", s / 60.0),
         s => format!("about {:.0} s left", s.max(1.0)),
@@ -70,26 +74,27 @@ fn time_to_go(elapsed_s: f64, first: f64, share: f64) -> Option<String> {
 ///
 /// # Arguments
 /// - `first`: stage and exponent at which it was seen first; its stages to come climb as fast as those since then.
-fn phase(p: &Progress, first: (u32, f64)) -> String {
-    match p.algorithm.as_str() {
-        "lm" => format!("fit, step {}", p.stage),
-        "ga" | "cma-es" => format!("generation {}", p.stage),
-        "discovery" => "search for a missing effect".into(),
-        _ if p.stage == 0 => "draws from the prior".into(),
-        _ if p.tempering_exponent >= 1.0 => format!("stage {}, the last", p.stage),
-        _ => {
-            let stages = f64::from(p.stage.saturating_sub(first.0));
-            let climbed = libm::log(p.tempering_exponent / first.1);
-            let left = -libm::log(p.tempering_exponent) * stages / climbed;
-            match left.is_finite() && stages > 0.0 && climbed > 0.0 {
-                true => format!(
-                    "stage {} of about {}",
-                    p.stage,
-                    p.stage + left.round().max(1.0) as u32
-                ),
-                false => format!("stage {}", p.stage),
-            }
-        }
+fn phase(position: Position, first: (u32, f64)) -> String {
+    let (stage, exponent) = match position {
+        Position::Fit { steps } => return format!("fit, step {steps}"),
+        Position::Evolution { generations } => return format!("generation {generations}"),
+        Position::Search { .. } => return "search for a missing effect".into(),
+        Position::Sampler { stage: 0, .. } => return "draws from the prior".into(),
+        Position::Sampler {
+            stage,
+            tempering_exponent,
+            ..
+        } => (stage, tempering_exponent),
+    };
+    if exponent >= 1.0 {
+        return format!("stage {stage}, the last");
+    }
+    let stages = f64::from(stage.saturating_sub(first.0));
+    let climbed = libm::log(exponent / first.1);
+    let left = -libm::log(exponent) * stages / climbed;
+    match left.is_finite() && stages > 0.0 && climbed > 0.0 {
+        true => format!("stage {stage} of about {}", stage + left.round().max(1.0) as u32),
+        false => format!("stage {stage}"),
     }
 }
 
@@ -132,7 +137,14 @@ impl Display {
     /// Shows where the study stands: its present calibration, and how many members are over.
     pub(super) fn show(&mut self, status: &CalibrationStatus, over: usize) {
         let Some(p) = &status.progress else { return };
-        let here = (p.stage, p.tempering_exponent);
+        let here = match p.position {
+            Position::Sampler {
+                stage,
+                tempering_exponent,
+                ..
+            } => (stage, tempering_exponent),
+            Position::Fit { .. } | Position::Evolution { .. } | Position::Search { .. } => (0, 0.0),
+        };
         let first = match self.first {
             Some((id, first)) if id == status.id && first.1 > 0.0 => first,
             _ => here,
@@ -143,7 +155,7 @@ impl Display {
         let left = time_to_go(self.began.elapsed().as_secs_f64(), first_share, share);
         let left = left.map_or(String::new(), |left| format!(", {left}"));
         let name = status.name.trim_end_matches(" (discovery)");
-        let phase = (status.id, phase(p, first));
+        let phase = (status.id, phase(p.position, first));
         let message = format!("{:2.0} %{left}: {name}, {}", 100.0 * share, phase.1);
         match &self.bar {
             Some(bar) => {
@@ -181,14 +193,20 @@ fn stage_of(phase: &str) -> &str {
 mod tests {
     use super::*;
 
-    fn progress(algorithm: &str, stage: u32, exponent: f64) -> Progress {
-        Progress {
-            algorithm: algorithm.into(),
+    fn sampler(stage: u32, tempering_exponent: f64) -> Position {
+        Position::Sampler {
             stage,
-            tempering_exponent: exponent,
+            tempering_exponent,
             step: 0,
-            acceptance: 0.0,
-            evaluations: 1000 * u64::from(stage),
+            acceptance: None,
+        }
+    }
+
+    fn progress(position: Position, evaluations: u64) -> Progress {
+        Progress {
+            algorithm: String::new(),
+            position,
+            evaluations,
             rejected: 0,
             step_done: 0,
             step_size: 1000,
@@ -207,24 +225,31 @@ mod tests {
                 for step_done in [0, 500, 1000, 10] {
                     let p = Progress {
                         step_done,
-                        ..progress("tmcmc", stage, exponent)
+                        ..progress(sampler(stage, exponent), 1000)
                     };
                     shown.push(share.advance(over, 4, &p));
                 }
             }
-            shown.push(share.advance(over, 4, &progress("discovery", 1, 1.0)));
+            let search = progress(Position::Search { rounds: 1 }, 1000);
+            shown.push(share.advance(over, 4, &search));
         }
         assert!(shown.windows(2).all(|pair| pair[0] <= pair[1]), "{shown:?}");
-        assert!(shown.iter().all(|s| (0.0..=MOST).contains(s)), "{shown:?}");
+        assert!(shown.iter().all(|s| (0.0..=MAX_SHARE).contains(s)), "{shown:?}");
         assert!(shown[0] < 0.01 && *shown.last().unwrap() > 0.8, "{shown:?}");
     }
 
     #[test]
     fn every_algorithm_moves_its_share() {
-        for algorithm in ["tmcmc", "lm", "ga", "cma-es", "discovery"] {
-            let early = share_of(&progress(algorithm, 1, 1e-4));
-            let late = share_of(&progress(algorithm, 9, 0.5));
-            assert!(early < late && late < 1.0, "{algorithm}");
+        let pairs = [
+            [sampler(1, 1e-4), sampler(9, 0.5)],
+            [1, 9].map(|steps| Position::Fit { steps }),
+            [1, 9].map(|generations| Position::Evolution { generations }),
+            [1, 9].map(|rounds| Position::Search { rounds }),
+        ];
+        for [early, late] in pairs {
+            let [early_share, late_share] =
+                [(early, 1000), (late, 9000)].map(|(position, n)| share_of(&progress(position, n)));
+            assert!(early_share < late_share && late_share < 1.0, "{late:?}");
         }
     }
 
@@ -241,12 +266,12 @@ mod tests {
 
     #[test]
     fn the_number_of_stages_follows_from_the_climb_so_far() {
-        let words = |stage, exponent| phase(&progress("tmcmc", stage, exponent), (1, 1e-4));
+        let words = |stage, exponent| phase(sampler(stage, exponent), (1, 1e-4));
         assert_eq!(words(1, 1e-4), "stage 1");
         assert_eq!(words(3, 1e-2), "stage 3 of about 5");
         assert_eq!(words(5, 1.0), "stage 5, the last");
         assert_eq!(
-            phase(&progress("discovery", 1, 1.0), (0, 0.0)),
+            phase(Position::Search { rounds: 1 }, (0, 0.0)),
             "search for a missing effect"
         );
     }

@@ -18,7 +18,7 @@ use crate::config::{
     ListArguments, ReportArguments, ResumeArguments, StudyArguments, SubmitArguments, TargetArguments,
 };
 use crate::effect::EffectCard;
-use job::{OwnEffect, foreign_effects};
+use job::{ServiceEffect, foreign_effects};
 use page::report::showing;
 use report::terminal;
 
@@ -47,7 +47,7 @@ pub(super) async fn submit(config: &SubmitArguments) -> anyhow::Result<()> {
 }
 
 /// The effects that a job lists and that the service has in its catalogue, where the library lacks them.
-async fn own_effects(config: &SubmitArguments, client: &ServiceClient) -> anyhow::Result<Vec<OwnEffect>> {
+async fn own_effects(config: &SubmitArguments, client: &ServiceClient) -> anyhow::Result<Vec<ServiceEffect>> {
     /// What is needed of `GET /v1/effects/NAME`.
     #[derive(Deserialize)]
     struct Page {
@@ -66,7 +66,7 @@ async fn own_effects(config: &SubmitArguments, client: &ServiceClient) -> anyhow
             .get(&format!("/v1/effects/{named}"))
             .await
             .with_context(|| format!("{}: [model] effects", config.file.job.display()))?;
-        own.push(OwnEffect::new(
+        own.push(ServiceEffect::new(
             named,
             &page.effect.name,
             page.effect.version.unwrap_or_default(),

@@ -15,8 +15,9 @@ use super::studies::WithArchived;
 use crate::service::{Service, finished_calibration};
 use export::InferenceData;
 use farm::Control;
+use inference::Particle;
 use page::report::showing;
-use record::{Sample, StageRow};
+use record::StageRow;
 use report::{Provenance, StudyFile, StudySummary};
 use result::{
     CalibrationFigures, ChannelHistory, Comparison, Diagnostics, FinishedCalibration, Flag, PosteriorTable,
@@ -185,6 +186,28 @@ struct WhichSamples {
     most: Option<u32>,
 }
 
+/// A draw of a population.
+#[derive(Debug, serde::Serialize, utoipa::ToSchema)]
+struct Sample {
+    /// Parameter vector.
+    theta: Vec<f64>,
+    /// Log-likelihood; `None` where the model rejected.
+    log_likelihood: Option<f64>,
+    /// Log-density of the prior.
+    log_prior: f64,
+}
+
+impl From<Particle> for Sample {
+    fn from(particle: Particle) -> Self {
+        let log_likelihood = particle.log_likelihood.value();
+        Sample {
+            theta: particle.theta,
+            log_likelihood: Some(log_likelihood).filter(|l| l.is_finite()),
+            log_prior: particle.log_prior,
+        }
+    }
+}
+
 /// The population at the end of a stage, or a part of it.
 #[derive(Debug, serde::Serialize, utoipa::ToSchema)]
 struct Population {
@@ -227,7 +250,7 @@ async fn samples(
         parameters,
         units,
         of,
-        samples,
+        samples: samples.into_iter().map(Sample::from).collect(),
     }))
 }
 

@@ -1,15 +1,11 @@
 //! `job.toml`.
 
-use inference::evolution::{CmaEsSettings, GaSettings};
-use inference::lm::LmSettings;
-use inference::{MAX_PARTICLES, TmcmcSettings};
-use job::AlgorithmName;
 use serde_json::{Value, json};
 use shared::channel::Channel;
 
 use super::model::{is_external, model};
 use super::prior;
-use super::shape::{either, flag, list, named, number, one_of, pair, said, table, text, usual, whole};
+use super::shape::{either, flag, list, named, number, one_of, said, table, text, usual, whole};
 
 const ANY: f64 = f64::INFINITY;
 
@@ -39,7 +35,7 @@ pub(super) fn job() -> Value {
                 said(several, "several models to compare, in place of [model]"),
             ),
             ("priors", priors),
-            ("sampler", sampler()),
+            ("sampler", job::sampler_schema()),
             ("discovery", discovery()),
             ("likelihood", likelihood()),
             ("figures", figures()),
@@ -55,122 +51,6 @@ pub(super) fn job() -> Value {
         json!({ "properties": { "priors": { "propertyNames": prior::names_of(&prior::priors()) } } });
     job["definitions"] = json!({ "model": model(), "priors": prior::priors(), "prior": prior::definition() });
     job
-}
-
-fn sampler() -> Value {
-    let (sample, fit) = (TmcmcSettings::default(), LmSettings::default());
-    let (ga, cma_es) = (GaSettings::default(), CmaEsSettings::default());
-    let algorithms = AlgorithmName::STATED.map(AlgorithmName::name);
-    table(
-        "the algorithm and its settings",
-        [
-            (
-                "algorithm",
-                usual(
-                    one_of("how parameters are found", algorithms),
-                    AlgorithmName::Tmcmc.name(),
-                ),
-            ),
-            (
-                "seed",
-                usual(whole("seed of all random numbers", 0, None), sample.seed),
-            ),
-            (
-                "particles",
-                usual(
-                    whole(
-                        "size of the population, and draws of a stage",
-                        0,
-                        Some(MAX_PARTICLES as u64),
-                    ),
-                    sample.particles,
-                ),
-            ),
-            (
-                "stages",
-                one_of(
-                    "tmcmc: independent draws from a mixture, or Metropolis moves",
-                    ["draws", "moves"],
-                ),
-            ),
-            (
-                "components",
-                usual(
-                    whole("tmcmc: most components of the mixture", 1, Some(256)),
-                    sample.components,
-                ),
-            ),
-            (
-                "moves",
-                pair_of_whole("least and most Metropolis steps per particle in a stage"),
-            ),
-            (
-                "metamodel_moves",
-                usual(
-                    whole(
-                        "scm: steps of a corrected quasi_static model between two evaluations",
-                        0,
-                        None,
-                    ),
-                    sample.metamodel_moves,
-                ),
-            ),
-            (
-                "point_estimates",
-                list(
-                    "fits of the same job beside the sample",
-                    one_of(
-                        "an algorithm",
-                        AlgorithmName::POINT_ESTIMATES.map(AlgorithmName::name),
-                    ),
-                ),
-            ),
-            (
-                "starts",
-                usual(whole("lm: points of the first round", 1, None), fit.starts),
-            ),
-            (
-                "max_evaluations",
-                whole(
-                    &format!(
-                        "lm, cma-es: most evaluations; {} of lm, {} of cma-es",
-                        fit.max_evaluations, cma_es.max_evaluations
-                    ),
-                    1,
-                    None,
-                ),
-            ),
-            (
-                "difference_step",
-                usual(
-                    number("lm: shortest difference, in prior widths", 0.0, 0.5),
-                    fit.difference_step,
-                ),
-            ),
-            (
-                "population",
-                whole(
-                    &format!("ga, cma-es: individuals of a generation; {} of ga", ga.population),
-                    4,
-                    None,
-                ),
-            ),
-            (
-                "generations",
-                usual(whole("ga: most generations", 2, Some(100_000)), ga.generations),
-            ),
-            (
-                "restarts",
-                usual(whole("cma-es: most restarts", 0, Some(20)), cma_es.restarts),
-            ),
-        ],
-    )
-}
-
-fn pair_of_whole(words: &str) -> Value {
-    let mut shape = pair(words);
-    shape["items"] = json!({ "type": "integer", "minimum": 1 });
-    shape
 }
 
 fn discovery() -> Value {

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use job::JobFile;
+use job::Job;
 use serde_json::Value;
 use shared::experiment::Experiment;
 use shared::file::FileSet;
@@ -16,7 +16,7 @@ const UNKNOWN: &str = "xqjxqjxqjxqjxqjxqjxqjxqjxqjxqjxqjxqjxqjxqjxqjxqj";
 /// The message about a file.
 fn message(kind: FileKind, text: &str) -> String {
     let error = match kind {
-        FileKind::Job => JobFile::parse("job.toml", text)
+        FileKind::Job => Job::parse("job.toml", text)
             .map(|_| ())
             .map_err(|e| e.to_string()),
         FileKind::Experiment => {

@@ -10,7 +10,7 @@ use super::clock::now_ms;
 use super::error::ServiceError;
 use super::handle::Service;
 use farm::dispatch::Stopped;
-use job::{EffectOnNodes, ModelSwitch, OwnEffect, PlainParameter, check_own, foreign_effects};
+use job::{EffectOnNodes, ModelSwitch, PlainParameter, ServiceEffect, check_own, foreign_effects};
 use record::Extension;
 use store::{AddedEffect, NewEffect, StoredEffect};
 
@@ -81,7 +81,7 @@ impl Service {
     ///
     /// # Errors
     /// [`ServiceError`]: an effect has no such version.
-    pub(super) async fn listed_own_effects(&self, job: &FileSet) -> Result<Vec<OwnEffect>, ServiceError> {
+    pub(super) async fn listed_own_effects(&self, job: &FileSet) -> Result<Vec<ServiceEffect>, ServiceError> {
         let toml = job.toml.clone();
         let listed = tokio::task::spawn_blocking(move || foreign_effects(&toml));
         let mut own = Vec::new();
@@ -114,13 +114,13 @@ impl Service {
     }
 
     /// An effect that users have added, as a file that states its version.
-    async fn as_file(&self, named: &str) -> Result<Option<OwnEffect>, ServiceError> {
+    async fn as_file(&self, named: &str) -> Result<Option<ServiceEffect>, ServiceError> {
         let stored = self.own_effect(named).await.map_err(|error| match error {
             missing @ ServiceError::NoVersion { .. } => FileError::whole(JOB, missing.to_string()).into(),
             error => error,
         })?;
         let own = |effect: StoredEffect| {
-            OwnEffect::new(
+            ServiceEffect::new(
                 named.to_owned(),
                 &effect.name,
                 effect.version.version,

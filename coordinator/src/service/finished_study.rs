@@ -5,13 +5,15 @@ use std::sync::OnceLock;
 use shared::api::CalibrationState;
 
 use super::error::ServiceError;
-use super::stored_calibration::spec_of;
+use super::stored_calibration::ParsedExperiments;
 use super::study_members::study_members;
 use super::study_step::next_step_from;
 use crate::study::{Lineage, most_probable};
 use job::AlgorithmSettings;
 use record::CalibrationRow;
-use result::{DiscoveryRound, FinishedCalibration, Study, first_population, likeliest};
+use result::{
+    DiscoveryRound, FinishedCalibration, Outcome, SampledPosterior, Study, first_population, likeliest,
+};
 use store::Reader;
 
 /// Loads a finished calibration.
@@ -23,14 +25,22 @@ pub async fn finished_calibration(
     reader: &Reader,
     row: &CalibrationRow,
 ) -> Result<FinishedCalibration, ServiceError> {
+    finished_with(reader, row, &mut ParsedExperiments::default()).await
+}
+
+/// A finished calibration of a study whose experiments were parsed before.
+async fn finished_with(
+    reader: &Reader,
+    row: &CalibrationRow,
+    experiments: &mut ParsedExperiments,
+) -> Result<FinishedCalibration, ServiceError> {
     if row.state != CalibrationState::Finished {
         return Err(ServiceError::not_finished(row));
     }
     if row.membership.is_search() {
         return Err(ServiceError::Search(row.id));
     }
-    let stages = reader.stages(row.id).await?;
-    let spec = spec_of(reader, row).await?;
+    let spec = experiments.spec_of(reader, row).await?;
     // Parameters and texts would be shown that the result was not computed with.
     if let Some(pinned) = &row.model_version {
         spec.check_effects(pinned)?;
@@ -50,10 +60,6 @@ pub async fn finished_calibration(
     let posterior = match populations.pop() {
         Some(last) => last,
         None => reader.samples(row.id, None).await?,
-    };
-    let (estimate, approximated) = match posterior.is_empty() {
-        true => (estimate, None),
-        false => (None, estimate),
     };
     if let AlgorithmSettings::Sample(_) = spec.algorithm {
         populations.insert(0, first_population(&spec, &prior_draws));
@@ -76,19 +82,22 @@ pub async fn finished_calibration(
         true => reader.subchains(row.id).await?,
         false => None,
     };
+    let sampled = SampledPosterior {
+        draws: posterior,
+        populations,
+        prior_draws,
+        stages: reader.stages(row.id).await?,
+        subchains,
+    };
+    let outcome = Outcome::new(estimate, sampled);
     Ok(FinishedCalibration {
         spec,
-        estimate,
-        approximated,
-        prior_draws,
+        outcome,
         experiment: row.name.clone(),
-        posterior,
-        populations,
         likeliest_values,
         predictions: reader.predictions(row.id).await?,
         simulated_histories,
         rejections: reader.rejections(row.id).await?,
-        subchains,
         faults: reader.faults(row.id).await?,
         given_up: reader.given_up(row.id).await?,
         disputes: reader.disputes(row.id).await?,
@@ -96,7 +105,6 @@ pub async fn finished_calibration(
         repeats: reader.repeats(row.id).await?,
         interpolations: Default::default(),
         comparison: Default::default(),
-        stages,
         row: row.clone(),
     })
 }
@@ -126,18 +134,19 @@ pub(super) async fn finished_study_of(
     let best = most_probable(of_models.iter().map(|row| row.log_evidence)).map(|i| of_models[i]);
     // Without any, the calibration that was asked for says why there is nothing to show.
     let lead = best.or(calibrations.first()).copied().unwrap_or(row);
-    let lead = finished_calibration(reader, lead).await?;
+    let mut experiments = ParsedExperiments::default();
+    let lead = finished_with(reader, lead, &mut experiments).await?;
     let (mut others, mut point_estimates, mut extensions) = (Vec::new(), Vec::new(), Vec::new());
     for row in calibrations.into_iter().filter(|row| row.id != lead.row.id) {
         if compared(row) {
-            others.push(finished_calibration(reader, row).await?);
+            others.push(finished_with(reader, row, &mut experiments).await?);
             continue;
         }
         let beside = match lineage.model_of(row.id) == lineage.model_of(lead.row.id) {
             true => &mut point_estimates,
             false => &mut extensions,
         };
-        beside.push(finished_calibration(reader, row).await?);
+        beside.push(finished_with(reader, row, &mut experiments).await?);
     }
     let state = match unfinished {
         Some(row) => row.state,

@@ -17,7 +17,7 @@ use super::submission::role_of;
 use crate::study::{Lineage, StudyStep};
 use farm::calibration::{Calibration, CalibrationIdentity};
 use farm::dispatch::Stopped;
-use job::{Spec, continued_job, without_effects};
+use job::{Job, Spec, continued_job, without_effects};
 use record::{CalibrationRow, Change, Extension, Membership, addition_name};
 use search::candidate::extended;
 use store::NewCalibrationRow;
@@ -221,18 +221,17 @@ impl Service {
         let parent = parent.id;
         let member = tokio::task::spawn_blocking(move || {
             let [job_name, experiment_name] = FILES;
-            let (spec, membership) = match change {
-                None => (
-                    Spec::of_search(job_name, &job, experiment_name, &files)?,
-                    Membership::search_of(parent),
-                ),
+            let value = Job::read(job_name, &job)?;
+            let (value, membership) = match change {
+                None => (value.into_search(), Membership::search_of(parent)),
                 Some(change) => {
-                    let spec = Spec::new(job_name, &job, experiment_name, &files)?;
-                    let role = role_of(&spec.algorithm);
-                    (spec, Membership::changed(role, parent, change))
+                    let role = role_of(&value.algorithm);
+                    (value, Membership::changed(role, parent, change))
                 }
             };
-            let calibration = Calibration::of(identity, Arc::new(spec), &job, &files)?;
+            let measured = Arc::new(Experiment::parse(experiment_name, &files)?);
+            let spec = Spec::from_values(job_name, value, experiment_name, measured)?;
+            let calibration = Calibration::from_files(identity, Arc::new(spec), &job, &files)?;
             let row = NewCalibrationRow {
                 membership,
                 name,

@@ -15,7 +15,7 @@ use super::recovery::{recover, rewind};
 use super::stored_calibration;
 use super::study_results;
 use crate::webhook::WebhookHosts;
-use farm::calibration::{Calibration, Verification};
+use farm::calibration::Calibration;
 use farm::dispatch::Dispatcher;
 use farm::{Control, ControlError, Farm};
 use job::Spec;
@@ -124,12 +124,9 @@ impl Service {
     }
 
     /// Gives a stored calibration to the farm.
-    pub(super) async fn take_in_hand(&self, mut calibration: Calibration) -> Result<(), ServiceError> {
+    pub(super) async fn take_in_hand(&self, calibration: Calibration) -> Result<(), ServiceError> {
         let key = self.store.reader().seal_key(calibration.identity.id).await?;
-        calibration.verification = Verification {
-            share: calibration.verified_share(self.verified_share),
-            key,
-        };
+        let calibration = calibration.verified(self.verified_share, key);
         Ok(self.dispatcher.add(calibration, key, Vec::new()).await?)
     }
 

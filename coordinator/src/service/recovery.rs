@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::error::ServiceError;
 use super::stored_calibration::{calibration_row, experiment_files, spec_of};
-use farm::calibration::{Calibration, CalibrationIdentity, Verification};
+use farm::calibration::{Calibration, CalibrationIdentity};
 use farm::dispatch::{Dispatcher, Rewinds, Stopped};
 use store::{Reader, Store};
 
@@ -68,11 +68,8 @@ async fn take_up(
     let experiment = experiment_files(reader, row.experiment).await?;
     // Replaying is seconds of CPU for a long calibration: not on the async runtime.
     let replayed = tokio::task::spawn_blocking(move || {
-        let mut calibration = Calibration::of(identity, spec, &row.job, &experiment)?;
-        calibration.verification = Verification {
-            share: calibration.verified_share(verified_share),
-            key,
-        };
+        let calibration = Calibration::from_files(identity, spec, &row.job, &experiment)?;
+        let mut calibration = calibration.verified(verified_share, key);
         let facts = calibration.replay(stored)?;
         Ok::<_, ServiceError>((calibration, facts))
     });

@@ -1,10 +1,14 @@
 //! A stored calibration: its row, its specification, where it stands.
 
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
 use shared::api::{CalibrationState, CalibrationStatus};
+use shared::experiment::Experiment;
 use shared::file::FileSet;
 
 use super::error::ServiceError;
-use job::{JobFile, Spec, model_kind};
+use job::{Job, Spec, model_kind};
 use record::{CalibrationRow, Role};
 use store::{Reader, StoreError};
 
@@ -33,12 +37,40 @@ pub async fn experiment_files(reader: &Reader, id: i64) -> Result<FileSet, Servi
 /// # Errors
 /// [`ServiceError`].
 pub(super) async fn spec_of(reader: &Reader, row: &CalibrationRow) -> Result<Spec, ServiceError> {
-    let experiment = experiment_files(reader, row.experiment).await?;
-    let [job, experiment_name] = FILES;
-    Ok(match row.membership.role {
-        Role::Search => Spec::of_search(job, &row.job, experiment_name, &experiment)?,
-        Role::Sample | Role::Fit => Spec::new(job, &row.job, experiment_name, &experiment)?,
-    })
+    ParsedExperiments::default().spec_of(reader, row).await
+}
+
+/// The experiments that the calibrations of a study share, each parsed once.
+#[derive(Debug, Default)]
+pub(super) struct ParsedExperiments(BTreeMap<i64, Arc<Experiment>>);
+
+impl ParsedExperiments {
+    /// The specification of a stored calibration.
+    ///
+    /// # Errors
+    /// [`ServiceError`].
+    pub(super) async fn spec_of(
+        &mut self,
+        reader: &Reader,
+        row: &CalibrationRow,
+    ) -> Result<Spec, ServiceError> {
+        let [job_name, experiment_name] = FILES;
+        let job = Job::read(job_name, &row.job)?;
+        let job = match row.membership.role {
+            Role::Search => job.into_search(),
+            Role::Sample | Role::Fit => job,
+        };
+        let experiment = match self.0.get(&row.experiment) {
+            Some(experiment) => Arc::clone(experiment),
+            None => {
+                let files = experiment_files(reader, row.experiment).await?;
+                let experiment = Arc::new(Experiment::parse(experiment_name, &files)?);
+                self.0.insert(row.experiment, Arc::clone(&experiment));
+                experiment
+            }
+        };
+        Ok(Spec::from_values(job_name, job, experiment_name, experiment)?)
+    }
 }
 
 /// Whether a calibration has draws of the posterior, or will have: of a sample, or of a fit's normal approximation. A finished fit has them
@@ -50,7 +82,7 @@ pub(super) async fn has_posterior(reader: &Reader, row: &CalibrationRow) -> Resu
         Role::Fit if row.state == CalibrationState::Finished => {
             !reader.samples(row.id, None).await?.is_empty()
         }
-        Role::Fit => JobFile::parse(FILES[0], &row.job.toml)?.algorithm.has_posterior(),
+        Role::Fit => Job::parse(FILES[0], &row.job.toml)?.algorithm.has_posterior(),
     })
 }
 

@@ -5,7 +5,7 @@ use shared::api::CalibrationState;
 use super::error::ServiceError;
 use super::stored_calibration::has_posterior;
 use crate::study::{Lineage, StudyFindings, StudyStep, next_step};
-use job::{Apply, JobFile};
+use job::{Apply, Job};
 use record::{CalibrationRow, Discovery};
 use store::Reader;
 
@@ -26,7 +26,7 @@ pub(super) async fn next_step_from(
     rows: &[CalibrationRow],
 ) -> Result<Option<StudyStep>, ServiceError> {
     let Some(lead) = rows.first() else { return Ok(None) };
-    let settings = JobFile::parse("job.toml", &lead.job.toml)?.discovery;
+    let settings = Job::parse("job.toml", &lead.job.toml)?.discovery;
     if settings.apply == Apply::Off || rows.iter().any(|row| row.state != CalibrationState::Finished) {
         return Ok(None);
     }

@@ -12,8 +12,8 @@ use super::handle::Service;
 use farm::calibration::{Calibration, CalibrationIdentity};
 use farm::dispatch::Stopped;
 use job::{
-    AlgorithmSettings, JobFile, OwnEffect, Spec, check_accepted, model_job, point_job, with_own_effects,
-    without_own_effects,
+    AlgorithmSettings, Job, ServiceEffect, Spec, check_accepted, model_job, point_job, with_service_effects,
+    without_service_effects,
 };
 use record::{Change, Membership, Role};
 use store::{NewCalibrationRow, NewStudy, StudyIds};
@@ -91,17 +91,17 @@ impl Service {
 fn members(
     identity: &CalibrationIdentity,
     job: FileSet,
-    own: &[OwnEffect],
+    own: &[ServiceEffect],
     experiment: &FileSet,
 ) -> Result<Vec<(Calibration, NewCalibrationRow)>, ServiceError> {
     let file = "job.toml";
     // Messages name the lines of the file as it is; what is kept has the files of own effects.
-    let mut parsed = JobFile::parse_models(file, &without_own_effects(file, &job.toml, own)?)?;
+    let mut parsed = Job::parse_models(file, &without_service_effects(file, &job.toml, own)?)?;
     parsed.first.check_files(file, &job.files)?;
     let names: Vec<String> = own.iter().map(|own| own.file.clone()).collect();
-    let added = parsed.first.model.add_effects(&[], &names);
+    let added = parsed.first.list_effects(&[], &names);
     added.map_err(|e| FileError::whole(file, e))?;
-    let job = with_own_effects(file, job, own)?;
+    let job = with_service_effects(file, job, own)?;
     let mut specs = Spec::of_models(file, parsed, &job.files, "experiment.toml", experiment)?;
     for spec in &specs {
         check_accepted(spec).map_err(|e| FileError::whole(file, e.to_string()))?;
@@ -109,19 +109,25 @@ fn members(
     let others = specs.split_off(1);
     let spec = specs.remove(0);
     let point_estimates = spec.point_estimates.clone();
+    let experiment = Arc::clone(&spec.experiment);
+    let spec_of = |job: &FileSet| -> Result<Spec, FileError> {
+        Spec::from_values(
+            file,
+            Job::read(file, job)?,
+            "experiment.toml",
+            Arc::clone(&experiment),
+        )
+    };
     let mut members = vec![member(identity.name.clone(), None, spec, job.clone(), identity)?];
     for (number, spec) in (1..).zip(others) {
         let alone = model_job(file, &job, number)?;
         let name = format!("{} ({})", identity.name, spec.model.kind.name());
-        let spec = Spec::new(file, &alone, "experiment.toml", experiment)?;
+        let spec = spec_of(&alone)?;
         members.push(member(name, Some(Change::Model(number)), spec, alone, identity)?);
     }
     for algorithm in &point_estimates {
-        let job = FileSet {
-            toml: point_job(file, &job.toml, algorithm)?,
-            files: job.files.clone(),
-        };
-        let spec = Spec::new(file, &job, "experiment.toml", experiment)?;
+        let job = point_job(file, &job, algorithm)?;
+        let spec = spec_of(&job)?;
         let name = format!("{} ({})", identity.name, algorithm.name());
         let change = Change::Algorithm(algorithm.name().to_owned());
         members.push(member(name, Some(change), spec, job, identity)?);

@@ -11,7 +11,7 @@ use super::error::StoreError;
 use super::json::{file_map, json};
 use super::sql::{Connection, On, Row, query, query_scalar};
 use job::{
-    AlgorithmSettings, JobFile, continued_job, earlier_search, effect_name, is_earlier_search, searched_model,
+    AlgorithmSettings, Job, continued_job, earlier_search, effect_name, is_earlier_search, searched_model,
 };
 use record::{Change, Extension, Membership, Role};
 
@@ -112,7 +112,7 @@ fn of_study(rows: &[EarlierRow]) -> Vec<(i64, Filled)> {
     // A job that this version does not understand compares nothing.
     let lead = calibrations.first();
     let models = lead
-        .and_then(|lead| JobFile::parse(JOB, &lead.job.toml).ok())
+        .and_then(|lead| Job::parse(JOB, &lead.job.toml).ok())
         .map_or(1, |job| job.models);
     let mut filled: Vec<(i64, Filled)> = Vec::new();
     for (number, row) in calibrations.iter().enumerate() {
@@ -139,7 +139,7 @@ fn of_study(rows: &[EarlierRow]) -> Vec<(i64, Filled)> {
 
 /// What a calibration of a job computes; of a job that this version does not understand, a sample.
 fn role(row: &EarlierRow) -> Role {
-    match JobFile::parse(JOB, &row.job.toml).map(|job| job.algorithm) {
+    match Job::parse(JOB, &row.job.toml).map(|job| job.algorithm) {
         Ok(AlgorithmSettings::Fit(_) | AlgorithmSettings::Evolve(_)) => Role::Fit,
         Ok(AlgorithmSettings::Sample(_) | AlgorithmSettings::Discover { .. }) | Err(_) => Role::Sample,
     }
@@ -206,7 +206,7 @@ fn change(row: &EarlierRow, parent: &EarlierRow, rest: &str) -> Option<Change> {
     if let Some(runs) = word.strip_suffix(" runs") {
         return runs.parse().ok().map(Change::Runs);
     }
-    let job = JobFile::parse(JOB, &row.job.toml).ok()?;
+    let job = Job::parse(JOB, &row.job.toml).ok()?;
     (job.algorithm.name() == word).then(|| Change::Algorithm(word.to_owned()))
 }
 
@@ -334,7 +334,7 @@ mod tests {
         // This version reads the job that it stands for.
         let filled: BTreeMap<i64, Filled> = of_study(&rows).into_iter().collect();
         let toml = filled[&3].toml.clone().unwrap();
-        assert_eq!(JobFile::parse(JOB, &toml).unwrap().algorithm.seed(), 7);
+        assert_eq!(Job::parse(JOB, &toml).unwrap().algorithm.seed(), 7);
         assert!(toml.contains("n = 1.0"), "{toml}");
     }
 

@@ -2,10 +2,12 @@
 
 use std::collections::BTreeMap;
 
+use inference::Particle;
 use inference::point_estimate::{Generation, StopReason};
 use shared::api::CalibrationState;
 use shared::file::FileSet;
 use shared::outcome::Observables;
+use statistics::LogLikelihood;
 
 use super::blob;
 use super::error::StoreError;
@@ -16,7 +18,7 @@ use super::sql::{Pool, Row, query, query_as, query_scalar};
 use super::theta::theta;
 use record::{
     CalibrationRow, Discovery, EstimateRow, EvaluationKey, ExperimentRow, LIKELIEST, Membership,
-    PREDICTIONS_FROM, Prediction, RejectionReason, Role, Sample, StageRow, Subchains,
+    PREDICTIONS_FROM, Prediction, RejectionReason, Role, StageRow, Subchains,
 };
 
 const CALIBRATION: &str = "SELECT c.*, coalesce(c.experiment, s.experiment) AS on_experiment
@@ -246,7 +248,7 @@ impl Reader {
     ///
     /// # Errors
     /// [`StoreError`].
-    pub async fn samples(&self, calibration: i64, stage: Option<u32>) -> Result<Vec<Sample>, StoreError> {
+    pub async fn samples(&self, calibration: i64, stage: Option<u32>) -> Result<Vec<Particle>, StoreError> {
         let rows = query(
             "SELECT theta, log_likelihood, log_prior FROM samples WHERE calibration = ?1
              AND stage = coalesce(?2, (SELECT max(stage) FROM samples WHERE calibration = ?1)) ORDER BY particle",
@@ -255,7 +257,7 @@ impl Reader {
         .bind(stage)
         .fetch_all(&self.pool)
         .await?;
-        rows.iter().map(sample).collect()
+        rows.iter().map(particle).collect()
     }
 
     /// At most so many equally spaced draws of the population at the end of a stage, or of the last one, and its size.
@@ -269,7 +271,7 @@ impl Reader {
         calibration: i64,
         stage: Option<u32>,
         most: u32,
-    ) -> Result<(Vec<Sample>, u64), StoreError> {
+    ) -> Result<(Vec<Particle>, u64), StoreError> {
         let population = "FROM samples WHERE calibration = ?1
              AND stage = coalesce(?2, (SELECT max(stage) FROM samples WHERE calibration = ?1))";
         let count = format!("SELECT count(*) {population}");
@@ -289,7 +291,7 @@ impl Reader {
             .bind(count.max(1))
             .fetch_all(&self.pool)
             .await?;
-        let samples: Result<Vec<Sample>, StoreError> = rows.iter().map(sample).collect();
+        let samples: Result<Vec<Particle>, StoreError> = rows.iter().map(particle).collect();
         Ok((samples?, count.unsigned_abs()))
     }
 
@@ -297,7 +299,7 @@ impl Reader {
     ///
     /// # Errors
     /// [`StoreError`].
-    pub async fn populations(&self, calibration: i64) -> Result<Vec<Vec<Sample>>, StoreError> {
+    pub async fn populations(&self, calibration: i64) -> Result<Vec<Vec<Particle>>, StoreError> {
         let mut populations = Vec::new();
         for stage in self.stages(calibration).await? {
             populations.push(self.samples(calibration, Some(stage.stage)).await?);
@@ -509,10 +511,12 @@ fn small(row: &Row, column: &str) -> Result<u32, StoreError> {
     u32::try_from(value).map_err(|_| StoreError::Corrupt(format!("{column} {value}")))
 }
 
-fn sample(row: &Row) -> Result<Sample, StoreError> {
-    Ok(Sample {
+fn particle(row: &Row) -> Result<Particle, StoreError> {
+    let log_likelihood: Option<f64> = row.try_get("log_likelihood")?;
+    let log_likelihood = log_likelihood.map_or(Ok(LogLikelihood::Impossible), LogLikelihood::new);
+    Ok(Particle {
         theta: theta(row)?,
-        log_likelihood: row.get("log_likelihood"),
+        log_likelihood: log_likelihood.map_err(|error| StoreError::Corrupt(error.to_string()))?,
         log_prior: row.get("log_prior"),
     })
 }

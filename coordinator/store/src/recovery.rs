@@ -1,6 +1,6 @@
 //! What a restart needs of an unfinished calibration.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use shared::api::CalibrationState;
 use statistics::SubchainEnd;
@@ -10,9 +10,9 @@ use super::error::StoreError;
 use super::reader::Reader;
 use super::sql::{Row, query, query_scalar};
 use super::theta::theta;
-use record::{Fingerprint, SealKey, Stored, StoredEvaluation};
+use record::{EvaluationRow, Fingerprint, Kept, SealKey, Stored};
 
-/// Most evaluations that one statement reads: a long calibration has hundreds of thousands.
+/// The largest number of evaluations that one statement reads: a long calibration has hundreds of thousands.
 const PAGE: usize = 2_000;
 
 impl Reader {
@@ -63,13 +63,13 @@ impl Reader {
         .bind(calibration)
         .fetch_one(&mut view)
         .await?;
-        let mut evaluations = BTreeMap::new();
+        let (mut evaluations, mut confirmed) = (BTreeMap::new(), BTreeSet::new());
         loop {
             let after = evaluations
                 .last_key_value()
                 .map_or(-1, |(&number, _)| number as i64);
             let rows = query(
-                "SELECT evaluation, theta, log_likelihood, rejection IS NOT NULL AS rejected, worker, fingerprint,
+                "SELECT evaluation, theta, log_likelihood, rejection, worker, fingerprint,
                  confirmed_by IS NOT NULL AS is_confirmed,
                  CASE WHEN ?2 THEN fitted END AS fitted, CASE WHEN ?2 THEN coarse END AS coarse, subchain
                  FROM evaluations WHERE calibration = ?1 AND evaluation > ?3 ORDER BY evaluation LIMIT ?4",
@@ -85,7 +85,10 @@ impl Reader {
                 let named = |error: StoreError| {
                     error.within(&format!("calibration {calibration}, evaluation {number}"))
                 };
-                evaluations.insert(number, stored_evaluation(row).map_err(named)?);
+                evaluations.insert(number, evaluation_row(number, row).map_err(named)?);
+                if row.try_get("is_confirmed")? {
+                    confirmed.insert(number);
+                }
             }
             if rows.len() < PAGE {
                 break;
@@ -115,26 +118,32 @@ impl Reader {
             model_version: row.try_get("model_version")?,
             busy_ms: row.try_get::<i64>("busy_ms")?.unsigned_abs(),
             evaluations,
+            confirmed,
             is_rewound: row.try_get("is_rewound")?,
             failed,
         })
     }
 }
 
-fn stored_evaluation(row: &Row) -> Result<StoredEvaluation, StoreError> {
+fn evaluation_row(evaluation: u64, row: &Row) -> Result<EvaluationRow, StoreError> {
     let values = |column: &str| {
         let bytes: Option<&[u8]> = row.try_get(column)?;
         bytes.map(blob::decode_values).transpose()
     };
     let end: Option<&str> = row.try_get("subchain")?;
-    Ok(StoredEvaluation {
+    let rejection: Option<String> = row.try_get("rejection")?;
+    let fitted = values("fitted")?.filter(|values| !values.is_empty());
+    Ok(EvaluationRow {
+        evaluation,
         theta: theta(row)?,
         log_likelihood: row.try_get("log_likelihood")?,
-        rejected: row.try_get("rejected")?,
+        kept: match (rejection, fitted) {
+            (Some(reason), _) => Kept::Rejected(reason),
+            (None, Some(values)) => Kept::Fitted(values),
+            (None, None) => Kept::Scored,
+        },
         worker: row.try_get("worker")?,
         fingerprint: Fingerprint(row.try_get("fingerprint")?),
-        is_confirmed: row.try_get("is_confirmed")?,
-        fitted: values("fitted")?,
         coarse: values("coarse")?,
         end: end.map(subchain_end).transpose()?,
     })
@@ -146,7 +155,7 @@ fn subchain_end(json: &str) -> Result<SubchainEnd, StoreError> {
 
 #[cfg(test)]
 mod tests {
-    use record::{EvaluationRow, Fact, HOLDOUT_RUNS_FROM, Kept, PREDICTIONS_FROM};
+    use record::{Fact, HOLDOUT_RUNS_FROM, PREDICTIONS_FROM};
 
     use super::*;
     use crate::fixture;
@@ -200,9 +209,7 @@ mod tests {
         let bits = |theta: &[f64]| theta.iter().map(|x| x.to_bits()).collect::<Vec<_>>();
         for (&number, evaluation) in stored.iter().take(last as usize + 1) {
             assert_eq!(bits(&evaluation.theta), bits(&theta(number)));
-            assert_eq!(evaluation.rejected, number % 3 == 2);
-            let values = evaluation.fitted.as_deref();
-            assert_eq!(values == Some(&[number as f64, 0.1]), number % 3 == 1);
+            assert_eq!(evaluation.kept, kept(number));
         }
         assert_eq!(bits(&stored[&(last + 1)].theta), bits(&[0.1, 1e-300]));
         store.close().await;

@@ -38,16 +38,21 @@ def of_status(status: Mapping[str, Any]) -> Progress:
     name = status["name"].removesuffix(" (discovery)")
     if not live:
         return Progress(f"{name}: {status['state']}")
-    words = {
-        "discovery": "search for a missing effect",
-        "lm": f"fit, step {live['stage']}",
-        "ga": f"generation {live['stage']}",
-        "cma-es": f"generation {live['stage']}",
-    }
-    phase = words.get(live["algorithm"], f"stage {live['stage']}, tempering exponent {live['tempering_exponent']:.2g}")
     left = live.get("remaining_s")
     about = f", about {left:.0f} s left" if left is not None else ""
-    return Progress(f"{name}: {phase}, {live['evaluations']} evaluations{about}")
+    return Progress(f"{name}: {_phase(live['position'])}, {live['evaluations']} evaluations{about}")
+
+
+def _phase(position: Mapping[str, Any]) -> str:
+    match position["kind"]:
+        case "sampler":
+            return f"stage {position['stage']}, tempering exponent {position['tempering_exponent']:.2g}"
+        case "fit":
+            return f"fit, step {position['steps']}"
+        case "evolution":
+            return f"generation {position['generations']}"
+        case _:
+            return "search for a missing effect"
 
 
 class Display:

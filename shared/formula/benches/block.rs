@@ -1,6 +1,6 @@
-//! Time of a formula in blocks, beside the same law written in Rust over the same arrays with the same elementary functions.
+//! Time of a formula in blocks, compared with the same law written in Rust over the same arrays with the same elementary functions.
 //!
-//! `cargo bench -p formula` prints both for 16, 32 and 128 points, then the ratios, each the least of many batches.
+//! `cargo bench -p formula` prints both times for 16, 32 and 128 points, then their ratios, each the minimum of many batches.
 
 use std::hint::black_box;
 use std::time::Instant;
@@ -18,7 +18,7 @@ fn main() {
 const POINTS: [usize; 3] = [16, 32, 128];
 const PARAMETERS: [f64; 3] = [0.3, 0.4, 0.01];
 
-/// A law and the columns that it reads: its target and another.
+/// A law and the columns that it reads: its target and a second variable.
 #[derive(Debug, Clone, Copy)]
 enum Law {
     /// Pressure grows with a power of slip velocity.
@@ -64,7 +64,7 @@ impl Law {
             text += &format!("[parameters.{name}]\nunit = \"{unit}\"\nneutral = 0\nprior = 1\n");
         }
         let effect = Effect::read(&text).unwrap_or_else(|e| panic!("{e}"));
-        let local = Variables::of(&[self.hook().target(), self.other()]);
+        let local = Variables::new(&[self.hook().target(), self.other()]);
         effect.program(self.hook(), local).expect("the law has this hook")
     }
 
@@ -76,7 +76,7 @@ impl Law {
     }
 }
 
-/// The same law, as one would write it.
+/// The law in plain Rust code.
 #[inline(never)]
 fn native(law: Law, target: &mut [f64], other: &[f64], shear_velocity: f64) {
     let [a, b, k] = black_box(PARAMETERS);
@@ -94,7 +94,7 @@ fn native(law: Law, target: &mut [f64], other: &[f64], shear_velocity: f64) {
     }
 }
 
-/// Values that the benched law keeps as they are: it is applied again and again.
+/// Fills the columns with values that the law leaves unchanged, because it is applied repeatedly.
 fn fill(law: Law, target: &mut [f64], other: &mut [f64]) {
     for (point, (target, other)) in target.iter_mut().zip(other).enumerate() {
         let share = (point as f64 + 0.5) / 128.0;
@@ -205,7 +205,7 @@ fn exponential_native(bencher: divan::Bencher<'_, '_>, points: usize) {
         .bench_local(|| law.step(points));
 }
 
-/// Least time of a step over many batches, in nanoseconds.
+/// Returns the minimum time of a step over many batches, in nanoseconds.
 fn least(mut step: impl FnMut()) -> f64 {
     const BATCH: u32 = 2000;
     let batches = (0..300).map(|_| {

@@ -1,6 +1,6 @@
 //! Feeds the crate texts of all kinds for some minutes: `cargo run -p formula --release --example fuzz -- --minutes 10`.
 //!
-//! `--seed N` begins elsewhere. A failure ends the run with the bytes that led to it.
+//! `--seed N` sets the first seed. A failure ends the run and prints the bytes that led to it.
 #![allow(clippy::float_cmp)]
 
 #[path = "../tests/generate.rs"]
@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 
 use generate::{Dice, anything, check_evaluation, check_exact, check_read, file};
 
-/// A number that follows an option.
+/// Returns the number that follows an option.
 fn option(name: &str, default: u64) -> u64 {
     let mut arguments = std::env::args().skip_while(|argument| argument != name);
     let value = arguments.nth(1).map(|value| value.parse());
@@ -52,7 +52,7 @@ fn main() {
             };
             let mut took = before.elapsed();
             if took > slowest {
-                // again, as the machine may have been busy
+                // measured twice, because the machine may have been busy
                 let before = Instant::now();
                 case();
                 took = took.min(before.elapsed());

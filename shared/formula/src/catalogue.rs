@@ -4,8 +4,8 @@ use std::sync::LazyLock;
 
 use crate::effect::Effect;
 
-/// The files, in the order in which effects follow each other at a hook: pressure first, by how it is distributed; then strength
-/// and its mobilisation; wheel and rig; last what the rig does to what it measures, offsets after gains.
+/// The files, in the order in which effects follow each other at a hook: pressure, shear strength and its mobilisation,
+/// wheel and rig, and last the errors of the instruments, offsets after gains.
 const FILES: [&str; 50] = [
     include_str!("../catalogue/pressure_distribution_shape.toml"),
     include_str!("../catalogue/peak_pressure_angle.toml"),

@@ -1,4 +1,4 @@
-//! One formula over names that its user declares, as in the map of an import.
+//! One formula over names that its user declares, such as in the map of an import.
 
 use std::collections::BTreeMap;
 
@@ -8,10 +8,10 @@ use crate::syntax::parse::{Scope, parse};
 use crate::unit::Unit;
 use crate::variable::Variables;
 
-/// Most names.
-const MOST_NAMES: usize = 255;
+/// The maximum number of names.
+const MAX_NAMES: usize = 255;
 
-/// A formula that has been read, and whose units agree.
+/// A formula that has been read and whose units agree.
 #[derive(Debug, Clone)]
 pub struct Expression {
     graph: Graph,
@@ -23,11 +23,11 @@ impl Expression {
     /// Reads a formula over names with their units, in the order of their values.
     ///
     /// # Errors
-    /// What is wrong and at which character, counted from 1; units that contradict each other.
+    /// The message names the mistake and its character, counted from 1; units that contradict each other are a mistake.
     /// Checked by `tests::a_formula_over_names_has_a_value_and_a_unit`.
     pub fn read(text: &str, names: &[(String, Unit)]) -> Result<Self, String> {
-        if names.len() > MOST_NAMES {
-            return Err(format!("{} names must be at most {MOST_NAMES}", names.len()));
+        if names.len() > MAX_NAMES {
+            return Err(format!("{} names must be at most {MAX_NAMES}", names.len()));
         }
         let scope = Scope {
             variables: Variables::default(),
@@ -47,7 +47,7 @@ impl Expression {
         Ok(Expression { graph, result, used })
     }
 
-    /// The unit of its result, as far as units tell: a number has whatever unit is needed.
+    /// The unit of the result, if the units determine it; a plain number takes any unit.
     pub fn unit(&self) -> Option<Unit> {
         self.graph.unit(self.result)
     }
@@ -57,23 +57,23 @@ impl Expression {
         &self.used
     }
 
-    /// Its value, from the values of all names in SI units; NaN where one that it uses is missing.
+    /// Computes the value from the values of all names in SI units; NaN if a used name has none.
     pub fn value(&self, values: &[f64]) -> f64 {
-        let mut known: Vec<f64> = Vec::with_capacity(self.graph.len());
+        let mut results: Vec<f64> = Vec::with_capacity(self.graph.len());
         for place in 0..=self.result.0 {
-            let of = |id: Id| known.get(usize::from(id.0)).copied().unwrap_or(f64::NAN);
+            let result = |id: Id| results.get(usize::from(id.0)).copied().unwrap_or(f64::NAN);
             let value = match self.graph.node(Id(place)) {
                 Node::Number(bits) => f64::from_bits(bits),
-                // Declared names hide none of the model's variables: the scope has none.
+                // The scope has no variables of a model.
                 Node::Variable(_) => f64::NAN,
                 Node::Parameter(name) => values.get(usize::from(name)).copied().unwrap_or(f64::NAN),
-                Node::Unary(operation, a) => unary(operation, of(a)),
-                Node::Binary(operation, a, b) => binary(operation, of(a), of(b)),
-                Node::If(condition, a, b) => choose(of(condition), of(a), of(b)),
+                Node::Unary(operation, a) => unary(operation, result(a)),
+                Node::Binary(operation, a, b) => binary(operation, result(a), result(b)),
+                Node::If(condition, a, b) => choose(result(condition), result(a), result(b)),
             };
-            known.push(value);
+            results.push(value);
         }
-        known.pop().unwrap_or(f64::NAN)
+        results.pop().unwrap_or(f64::NAN)
     }
 }
 
@@ -98,14 +98,14 @@ mod tests {
     }
 
     #[test]
-    fn what_is_wrong_is_said_with_its_place() {
-        let said = |text| Expression::read(text, &names()).unwrap_err();
+    fn a_mistake_is_named_with_its_place() {
+        let error = |text| Expression::read(text, &names()).unwrap_err();
         assert!(
-            said("omega * r - r").starts_with("character 11: "),
+            error("omega * r - r").starts_with("character 11: "),
             "{}",
-            said("omega * r - r")
+            error("omega * r - r")
         );
-        assert!(said("omeg * r").contains("\"omega\""), "{}", said("omeg * r"));
-        assert!(said("1 -").starts_with("character 4: "), "{}", said("1 -"));
+        assert!(error("omeg * r").contains("\"omega\""), "{}", error("omeg * r"));
+        assert!(error("1 -").starts_with("character 4: "), "{}", error("1 -"));
     }
 }

@@ -4,12 +4,12 @@ use crate::variable::{Variable, Variables};
 
 /// A place in the model where effects enter: the quantity that a formula replaces.
 ///
-/// A formula finds there what the effects before it have made of the quantity. The order of the hooks is that of their
-/// evaluation; at one hook, effects follow each other as the catalogue does, then as a job lists its files.
+/// A formula sees the quantity after the effects before it. The hooks stand in the order of their evaluation; at one
+/// hook, effects follow the order of the catalogue, then that of the files in a job.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 #[repr(u8)]
 pub enum Hook {
-    /// Slip, in [−1, 1), at the rim's speed: the sled moves as the new slip says.
+    /// Slip, in [−1, 1), at the rim's speed: the speed of the sled follows from it.
     Slip,
     /// Radius of the rim, > 0.
     Radius,
@@ -17,7 +17,7 @@ pub enum Hook {
     Width,
     /// Sinkage exponent n, in (0, 10].
     SinkageExponent,
-    /// Load that the soil must carry, > 0; may depend on pull and torque, which depend on it.
+    /// Load that the soil must carry, > 0; may depend on pull and torque, which depend on this load in turn.
     WheelLoad,
     /// Normal pressure at a node, ≥ 0.
     Pressure,
@@ -25,13 +25,13 @@ pub enum Hook {
     ShearLimit,
     /// Shear stress at a node, ≥ 0.
     Shear,
-    /// Drawbar pull as it is measured.
+    /// Measured drawbar pull.
     DrawbarPull,
-    /// Torque as it is measured.
+    /// Measured torque.
     Torque,
-    /// Sinkage as it is measured.
+    /// Measured sinkage.
     Sinkage,
-    /// Lateral force as it is measured.
+    /// Measured lateral force.
     LateralForce,
 }
 
@@ -52,7 +52,7 @@ const TABLE: [(Hook, &str, Variable); Hook::COUNT] = [
 ];
 
 impl Hook {
-    /// How many hooks there are.
+    /// The number of hooks.
     pub const COUNT: usize = 12;
 
     /// Every hook, in the order of evaluation.
@@ -66,7 +66,7 @@ impl Hook {
         all
     };
 
-    /// The measured channels: each sees the others as they were before this effect.
+    /// The measured channels: each formula sees the channels before this effect.
     pub const CHANNELS: [Hook; 4] = [Hook::DrawbarPull, Hook::Torque, Hook::Sinkage, Hook::LateralForce];
 
     /// Key in effect files.
@@ -79,15 +79,15 @@ impl Hook {
         TABLE[self as usize].2
     }
 
-    /// What its formula may use.
+    /// The variables that its formula may use.
     pub fn sees(self) -> Variables {
         use Variable::{
             BEff, ContactLength, DrawbarPull, J, KStar, LateralForce, P, Position, Sinkage, Tau, TauMax,
             Torque, Vn, Vt, Z,
         };
         let run = Variables::OF_RUN;
-        let contact = run.union(Variables::of(&[ContactLength, BEff, KStar]));
-        let node = contact.union(Variables::of(&[P, Z, Vn, Vt, J, Position]));
+        let contact = run.union(Variables::new(&[ContactLength, BEff, KStar]));
+        let node = contact.union(Variables::new(&[P, Z, Vn, Vt, J, Position]));
         match self {
             Hook::Slip | Hook::Radius | Hook::Width | Hook::SinkageExponent => run,
             Hook::WheelLoad => run.with(DrawbarPull).with(Torque),
@@ -95,12 +95,12 @@ impl Hook {
             Hook::ShearLimit => node.with(TauMax),
             Hook::Shear => node.with(TauMax).with(Tau),
             Hook::DrawbarPull | Hook::Torque | Hook::Sinkage | Hook::LateralForce => {
-                contact.union(Variables::of(&[DrawbarPull, Torque, Sinkage, LateralForce]))
+                contact.union(Variables::new(&[DrawbarPull, Torque, Sinkage, LateralForce]))
             }
         }
     }
 
-    /// Whether its quantity may have a value.
+    /// Returns whether its quantity may have this value.
     pub fn admits(self, value: f64) -> bool {
         value.is_finite()
             && match self {
@@ -112,7 +112,7 @@ impl Hook {
             }
     }
 
-    /// The bound that [`Hook::admits`] holds values to.
+    /// The bound that [`Hook::admits`] checks, in words.
     pub fn bound(self) -> &'static str {
         match self {
             Hook::Slip => "in [-1, 1)",
@@ -129,7 +129,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_formula_sees_what_it_replaces() {
+    fn a_formula_sees_the_quantity_that_it_replaces() {
         for (place, hook) in Hook::ALL.into_iter().enumerate() {
             assert_eq!(hook as usize, place);
             assert!(hook.sees().contains(hook.target()), "{}", hook.name());

@@ -10,10 +10,10 @@
 //!
 //! From text to numbers:
 //! - [`expression`]: one formula over names that its user declares.
-//! - `syntax`: from the text of a formula to operations, with a check of units.
-//! - `evaluation`: from operations to numbers: [`program`] is a compiled formula, [`block`] evaluates it at many points.
+//! - `syntax`: parses the text of a formula into operations, with a check of units.
+//! - `evaluation`: evaluates operations: [`program`] is a compiled formula, [`block`] evaluates it at many points.
 //! - [`nesting`]: whether a file is too deep to be parsed.
-//! - [`word`]: the known word nearest to an unknown one.
+//! - [`word`]: finds the known word nearest to an unknown one.
 //!
 //! Everything is pure and safe for untrusted text: no loops, only declared names, limits on every size. The crate knows
 //! neither the wheel-soil models nor probability: a prior is kept as written.
@@ -42,9 +42,9 @@
 //! # let effect = formula::Effect::read(text).unwrap();
 //! # assert!(effect.is_neutral(&[0.0, 0.3]) && !effect.is_neutral(&[0.2, 0.3]));
 //! ```
-//! A key for each quantity that the effect replaces; the formula sees the quantity after the effects before it.
-//! At the neutral value of all its strengths an effect is not evaluated. An effect without parameters is a law that always
-//! holds. `mechanism` names a part of a model that has the effect in code of its own.
+//! Each replaced quantity has a key; its formula sees the quantity after the effects before it. At the neutral value of
+//! all its strengths an effect is not evaluated. An effect without parameters is a law that always holds. `mechanism`
+//! names a part of a model that implements the effect in code.
 //!
 //! # Formulas
 //! ```text
@@ -62,8 +62,8 @@
 //! - `if(a < b, then, otherwise)` with `<`, `<=`, `>`, `>=`, `==` or `!=`: the only place for a comparison. Both values are
 //!   always computed, and one is taken.
 //!
-//! # What formulas see
-//! | key of the formula | replaces | in | must be | sees, beside what every formula sees |
+//! # Variables of formulas
+//! | key of the formula | replaces | in | must be | additional variables |
 //! |---|---|---|---|---|
 //! | `slip` | `slip` | 1 | in [−1, 1) | |
 //! | `radius`, `width` | the same | m | > 0 | |
@@ -83,14 +83,14 @@
 //!
 //! # Units
 //! Parameters have a unit of `1 kg m s deg rad N Pa J W Hz`, with `^`, `/` and spaces, without prefixes. Only certain
-//! contradictions of units are errors. A number takes the unit that its neighbour needs, as in `v_t / 0.02`, and so does
-//! what has a unit that depends on a parameter: `k_star`, or a power whose exponent is not a number. A degree is not a radian:
-//! `sin(tilt_deg * pi / 180)`.
+//! contradictions of units are errors. A number takes the unit that its neighbour needs, as in `v_t / 0.02`, and so
+//! does a quantity whose unit depends on a parameter: `k_star`, or a power whose exponent is not a number. A degree is
+//! not a radian: `sin(tilt_deg * pi / 180)`.
 //!
 //! # Numbers
 //! IEEE double precision; no value is an error and none is clamped. Undefined values are NaN, and models reject a NaN in
 //! any of their quantities.
-//! - `1/0` is infinite and `0/0` NaN; `log(0)` is −∞; `log` and `sqrt` of what is below 0 are NaN.
+//! - `1/0` is infinite and `0/0` NaN; `log(0)` is −∞; `log` and `sqrt` of negative numbers are NaN.
 //! - `exp` above 709.78 is infinite and below −700 (where it would be under 1e-304) it is 0.
 //! - `x^0` is 1, also for 0 and NaN, and so is `1^x`; `0^b` is 0 for b > 0 and infinite for b < 0. A negative base needs a whole exponent, else
 //!   the power is NaN. `x^2` is `x * x`, `x^0.5` is `sqrt(x)`; other powers are exp(b ln x), to a relative error of
@@ -99,11 +99,11 @@
 //! - `min` and `max` of NaN are NaN. Comparisons with NaN do not hold, but for `!=`: `if(x < 1, a, b)` is b where x is NaN. −0
 //!   equals 0.
 //!
-//! A formula gives the same bits on every machine, and whichever variables differ from point to point.
+//! A formula gives the same bits on every machine, whichever variables differ from point to point.
 //!
 //! # Limits
-//! A file of 32 768 bytes, 16 parameters, 32 definitions; a formula of 2000 characters, parentheses and signs 50 deep; names
-//! of 60 characters; 1000 different operations in an effect; tables nested 8 deep; powers of units up to 9.
+//! A file has at most 32 768 bytes, 16 parameters and 32 definitions; a formula 2000 characters, with parentheses and signs 50
+//! deep; a name 60 characters; an effect 1000 different operations; tables are nested at most 8 deep; powers of units reach 9.
 
 pub mod catalogue;
 pub mod effect;

@@ -6,10 +6,10 @@
 use toml_parser::Source;
 use toml_parser::lexer::TokenKind;
 
-/// The byte of the first bracket that stands in more than so many others.
+/// Returns the byte of the first bracket that is nested more than `max_depth` deep.
 ///
-/// A bracket that closes another kind than was opened counts for nothing, so that no malformed file seems flatter than it is.
-pub fn too_deep(text: &str, most: usize) -> Option<usize> {
+/// A bracket that closes a different kind than was opened is ignored, so that no malformed file seems flatter than it is.
+pub fn too_deep(text: &str, max_depth: usize) -> Option<usize> {
     let mut open = Vec::new();
     for token in Source::new(text).lex() {
         match token.kind() {
@@ -22,7 +22,7 @@ pub fn too_deep(text: &str, most: usize) -> Option<usize> {
             }
             _ => {}
         }
-        if open.len() > most {
+        if open.len() > max_depth {
             return Some(token.span().start());
         }
     }

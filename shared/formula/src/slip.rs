@@ -2,7 +2,7 @@
 
 use crate::Variable;
 
-/// The variables of how a wheel slides: slip, slip angle, and the slip along and across the heading.
+/// Computes the variables of a sliding wheel: slip, slip angle, and the slip along and across the heading.
 ///
 /// The slip of a run is nominal: it compares the rim, which moves along the heading with ωR, with the sled, which moves along the travel
 /// with v. The lowest point of the rim slides over the soil at ωR − v cos β along the heading and at v sin β across; both over the
@@ -41,21 +41,21 @@ mod tests {
         for (slip, degrees, longitudinal, lateral) in [
             (0.5, 0.0, 0.5, 0.0),
             (-0.7, 0.0, -0.7, 0.0),
-            // the rim drives at 10 mm/s, the sled follows at 5 mm/s along the heading, and at 8.66 mm/s across
+            // the rim drives at 10 mm/s, the sled at 5 mm/s along the heading and 8.66 mm/s across
             (0.0, 60.0, 0.5, root(0.75)),
             (0.0, -60.0, 0.5, -root(0.75)),
-            // nominal skid that drives, 8 mm/s against 5 mm/s; and one that skids less, 3 mm/s against 5 mm/s
+            // nominal skid that drives along the heading, 8 mm/s against 5 mm/s; and a weaker skid, 3 mm/s against 5 mm/s
             (-0.2, 60.0, 0.3, root(0.75)),
             (-0.7, 60.0, -0.2, root(0.75)),
-            // 20 mm/s and 10 mm/s across
+            // the rim at 20 mm/s, the sled at 10 mm/s across
             (0.5, 90.0, 1.0, 0.5),
             (-1.0, 45.0, -root(0.5), root(0.5)),
             (-1.0, 90.0, 0.0, 1.0),
         ] {
-            let found = variables(slip, f64::to_radians(degrees));
+            let slips = variables(slip, f64::to_radians(degrees));
             assert!(
-                (found[2].1 - longitudinal).abs() < 1e-12 && (found[3].1 - lateral).abs() < 1e-12,
-                "slip {slip} at {degrees} degrees: {found:?}"
+                (slips[2].1 - longitudinal).abs() < 1e-12 && (slips[3].1 - lateral).abs() < 1e-12,
+                "slip {slip} at {degrees} degrees: {slips:?}"
             );
         }
         for percent in -100..100 {

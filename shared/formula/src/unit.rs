@@ -2,16 +2,16 @@
 
 /// Powers of kilogram, metre, second and degree, each counted in halves: a square root stays a dimension.
 ///
-/// A degree has a dimension of its own, so that `sin` of one is noticed; a radian has none.
+/// A degree is a dimension, so that `sin` of a degree is noticed; a radian has no dimension.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Unit {
     halves: [i16; 4],
 }
 
-/// The largest power that is kept track of, in halves.
-const MOST: i16 = 64;
+/// The largest power that is tracked, in halves.
+const MAX_HALVES: i16 = 64;
 
-/// The highest power that a text may ask for.
+/// The highest power that a text may state.
 const HIGHEST: i16 = 9;
 
 /// A unit that is not known.
@@ -19,9 +19,9 @@ const HIGHEST: i16 = 9;
 #[error("unknown unit \"{word}\"{}; SI units without prefixes are {}, with / and spaces and ^ up to {HIGHEST}",
     within.as_ref().map_or_else(String::new, |text| format!(" in \"{text}\"")), KNOWN.map(|(name, _)| name).join(", "))]
 pub struct UnitError {
-    /// The word that is not known.
+    /// The unknown word.
     pub word: String,
-    /// The whole text, where it holds more than that word.
+    /// The whole text, if it contains more than that word.
     pub within: Option<String>,
 }
 
@@ -46,11 +46,11 @@ impl Unit {
     /// A degree.
     pub(crate) const DEGREE: Unit = Unit { halves: [0, 0, 0, 2] };
 
-    /// Reads a unit: names of SI units, `^` with a whole power, products by spaces, quotients by `/` (which takes the next name
-    /// alone): `N s/m`, `1/m`, `kg/m^3`.
+    /// Parses a unit: names of SI units, `^` with a whole power, products by spaces, quotients by `/` (which applies to
+    /// the next name alone): `N s/m`, `1/m`, `kg/m^3`.
     ///
     /// # Errors
-    /// [`UnitError`] names what is not known, and what is.
+    /// [`UnitError`] names the unknown word and the known units.
     pub fn parse(text: &str) -> Result<Unit, UnitError> {
         let unknown = |word: &str| UnitError {
             word: word.to_owned(),
@@ -61,8 +61,8 @@ impl Unit {
         for product in text.split_whitespace() {
             for (place, factor) in product.split('/').enumerate() {
                 let (name, power) = factor.split_once('^').unwrap_or((factor, "1"));
-                let known = KNOWN.iter().find(|(known, _)| *known == name);
-                let (_, dimension) = known.ok_or_else(|| unknown(factor))?;
+                let entry = KNOWN.iter().find(|(symbol, _)| *symbol == name);
+                let (_, dimension) = entry.ok_or_else(|| unknown(factor))?;
                 let power: i16 = power.parse().map_err(|_| unknown(factor))?;
                 if power.unsigned_abs() > HIGHEST.unsigned_abs() {
                     return Err(unknown(factor));
@@ -76,7 +76,7 @@ impl Unit {
         if any { Ok(unit) } else { Err(unknown(text)) }
     }
 
-    /// The unit of a product; none if its powers are out of hand.
+    /// The unit of a product; `None` if its powers are too large.
     pub(crate) fn times(self, other: Unit) -> Option<Unit> {
         self.combine(other, |a, b| a + b)
     }
@@ -94,12 +94,12 @@ impl Unit {
         Unit { halves }.within_reach()
     }
 
-    /// The unit of a power, or none if it is no whole number of halves.
+    /// The unit of a power; `None` if it is no whole number of halves.
     pub(crate) fn to_the(self, power: f64) -> Option<Unit> {
         let mut halves = [0; 4];
         for (new, old) in halves.iter_mut().zip(self.halves) {
             let exact = f64::from(old) * power;
-            if (libm::rint(exact) - exact).abs() > 0.0 || exact.abs() > f64::from(MOST) {
+            if (libm::rint(exact) - exact).abs() > 0.0 || exact.abs() > f64::from(MAX_HALVES) {
                 return None;
             }
             *new = exact as i16;
@@ -108,7 +108,7 @@ impl Unit {
     }
 
     fn within_reach(self) -> Option<Unit> {
-        self.halves.iter().all(|h| h.abs() <= MOST).then_some(self)
+        self.halves.iter().all(|h| h.abs() <= MAX_HALVES).then_some(self)
     }
 }
 
@@ -160,7 +160,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_si_unit_is_named() {
+    fn unknown_units_are_named() {
         for text in ["mm", "", "N/", "m^x", "m^400", "m^-32768", "lb"] {
             let error = Unit::parse(text).unwrap_err().to_string();
             assert!(

@@ -2,7 +2,7 @@
 
 use crate::unit::Unit;
 
-/// A quantity of the model that formulas may use. SI units; magnitudes, ≥ 0, unless said.
+/// A quantity of the model that formulas may use, in SI units; a magnitude, ≥ 0, unless stated otherwise.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 #[repr(u8)]
 pub enum Variable {
@@ -12,9 +12,9 @@ pub enum Variable {
     Z,
     /// Velocity of the wheel's surface into the soil, along its normal.
     Vn,
-    /// Slip velocity: of the wheel's surface along the soil.
+    /// Slip velocity of the wheel's surface along the soil.
     Vt,
-    /// Shear displacement: how far the wheel's surface has slid since it met the soil.
+    /// Shear displacement: the distance that the wheel's surface has slid since it met the soil.
     J,
     /// Position of a node in the contact: 0 at the rear end, 1 at the front entry.
     Position,
@@ -28,7 +28,8 @@ pub enum Variable {
     Tau,
     /// Length of the contact along the ground.
     ContactLength,
-    /// Slip, in [−1, 1): negative in skid. Nominal: of the speed of the sled along its travel, whatever the wheel's heading.
+    /// Slip, in [−1, 1): negative in skid. It is nominal: it uses the speed of the sled along its travel, whatever the
+    /// wheel's heading.
     Slip,
     /// Angle from the wheel's heading to the sled's travel, in [−π/2, π/2].
     SlipAngle,
@@ -115,13 +116,13 @@ const TABLE: [(Variable, &str, &str); Variable::COUNT] = [
 ];
 
 impl Variable {
-    /// How many variables there are; `variable as usize` is below it.
+    /// The number of variables; `variable as usize` is below it.
     pub const COUNT: usize = 34;
 
-    /// How many may differ from node to node: they come first.
+    /// The number of variables that may differ from node to node; they come first.
     pub const LOCAL: usize = 10;
 
-    /// Every variable, in the order of their numbers.
+    /// Every variable, in numerical order.
     pub const ALL: [Variable; Variable::COUNT] = {
         let mut all = [Variable::P; Variable::COUNT];
         let mut place = 0;
@@ -137,7 +138,7 @@ impl Variable {
         TABLE[self as usize].1
     }
 
-    /// Its unit; none where that depends on a parameter.
+    /// Its unit; `None` if it depends on a parameter.
     pub fn unit(self) -> Option<Unit> {
         Unit::parse(self.unit_name()).ok()
     }
@@ -159,34 +160,34 @@ impl Variables {
         Variables((1 << (last + 1)) - (1 << first))
     };
 
-    /// The set of these.
-    pub fn of(variables: &[Variable]) -> Self {
+    /// The set of these variables.
+    pub fn new(variables: &[Variable]) -> Self {
         variables.iter().fold(Self::default(), |set, &v| set.with(v))
     }
 
-    /// The same set and one more.
+    /// The set with one more variable.
     #[must_use]
     pub fn with(self, variable: Variable) -> Self {
         Self(self.0 | 1 << variable as u8)
     }
 
-    /// Whether a variable belongs to it.
+    /// Returns whether a variable belongs to the set.
     pub fn contains(self, variable: Variable) -> bool {
         self.0 >> variable as u8 & 1 == 1
     }
 
-    /// What belongs to either.
+    /// The union of two sets.
     #[must_use]
     pub fn union(self, other: Self) -> Self {
         Self(self.0 | other.0)
     }
 
-    /// Whether the two have a member in common.
+    /// Returns whether the two have a member in common.
     pub fn meets(self, other: Self) -> bool {
         self.0 & other.0 != 0
     }
 
-    /// Its members, in the order of their numbers.
+    /// The members, in numerical order.
     pub fn iter(self) -> impl Iterator<Item = Variable> {
         Variable::ALL.into_iter().filter(move |&v| self.contains(v))
     }

@@ -1,14 +1,14 @@
 //! The known word nearest to an unknown one.
 
-/// A longer word is not a misspelling: only its beginning is shown and it is not compared, so that a very long text costs
-/// nothing.
+/// The length above which a word is no misspelling: it is shown by its beginning and not compared, so that a very long
+/// text costs nothing.
 const LONGEST: usize = 60;
 
-/// `unknown key "radus_m"; the nearest known is "radius_m"`, or the list where nothing is near.
-pub fn unknown_word<'a>(what: &str, unknown: &str, known: impl IntoIterator<Item = &'a str>) -> String {
-    let known: Vec<&str> = known.into_iter().collect();
+/// Returns `unknown key "radus_m"; the nearest known is "radius_m"`, or the list if no word is near.
+pub fn unknown_word<'a>(what: &str, unknown: &str, known_words: impl IntoIterator<Item = &'a str>) -> String {
+    let known_words: Vec<&str> = known_words.into_iter().collect();
     let long = |word: &str| word.chars().nth(LONGEST).is_some();
-    let compared: &[&str] = if long(unknown) { &[] } else { &known };
+    let compared: &[&str] = if long(unknown) { &[] } else { &known_words };
     let nearest = compared
         .iter()
         .filter(|k| !long(k))
@@ -24,8 +24,11 @@ pub fn unknown_word<'a>(what: &str, unknown: &str, known: impl IntoIterator<Item
     let unknown: String = beginning.chain(long(unknown).then_some('…')).collect();
     match nearest {
         Some((_, near)) => format!("unknown {what} \"{unknown}\"; the nearest known is \"{near}\""),
-        None if known.is_empty() => format!("unknown {what} \"{unknown}\"; none is expected here"),
-        None => format!("unknown {what} \"{unknown}\"; known are {}", known.join(", ")),
+        None if known_words.is_empty() => format!("unknown {what} \"{unknown}\"; none is expected here"),
+        None => format!(
+            "unknown {what} \"{unknown}\"; known are {}",
+            known_words.join(", ")
+        ),
     }
 }
 

@@ -15,7 +15,7 @@ fn effect(formula: &str) -> Effect {
 
 const PARAMETERS: [f64; 2] = [0.3, -2.0];
 
-/// The value at one point, where nothing differs from point to point.
+/// Evaluates the formula at one point, with nothing that differs from point to point.
 fn at_one_point(formula: &str, variables: &[f64; Variable::COUNT]) -> f64 {
     let program = effect(formula)
         .program(Hook::Pressure, Variables::default())
@@ -49,7 +49,7 @@ fn operators_bind_as_in_mathematics() {
         ("10 * a + 1 * b", 1.0),
         ("1 * cos(pi)", -1.0),
     ] {
-        let found = at_one_point(formula, &variables);
+        let actual = at_one_point(formula, &variables);
         // a power is an exponential of a logarithm
         let tolerance = if formula.contains(['^', 'w']) {
             4e-15 * f64::abs(value)
@@ -57,8 +57,8 @@ fn operators_bind_as_in_mathematics() {
             1e-15
         };
         assert!(
-            (found - value).abs() <= tolerance,
-            "{formula} = {found}, not {value}"
+            (actual - value).abs() <= tolerance,
+            "{formula} = {actual}, not {value}"
         );
     }
 }
@@ -79,7 +79,7 @@ fn every_operation_agrees_with_one_point_at_a_time() {
             _ => (i as f64 - 64.0) * 0.137,
         })
         .collect();
-    let local = Variables::of(&[Variable::Z, Variable::Vt]);
+    let local = Variables::new(&[Variable::Z, Variable::Vt]);
     for formula in [
         "z + v_t",
         "z - v_t",
@@ -117,17 +117,17 @@ fn every_operation_agrees_with_one_point_at_a_time() {
         let mut variables = [0.0; Variable::COUNT];
         program.settle(&variables, &PARAMETERS, &mut scalars);
         block.column_mut(Variable::Z).copy_from_slice(&points);
-        let others: Vec<f64> = points.iter().rev().copied().collect();
-        block.column_mut(Variable::Vt).copy_from_slice(&others);
+        let reversed: Vec<f64> = points.iter().rev().copied().collect();
+        block.column_mut(Variable::Vt).copy_from_slice(&reversed);
         block.replace(Variable::P, &program, &scalars, BLOCK);
         let one = effect.program(Hook::Pressure, Variables::default()).unwrap();
         for i in 0..BLOCK {
             variables[Variable::Z as usize] = points[i];
-            variables[Variable::Vt as usize] = others[i];
+            variables[Variable::Vt as usize] = reversed[i];
             let expected = one.settle(&variables, &PARAMETERS, &mut scalars).unwrap();
-            let found = block.column(Variable::P)[i];
-            let same = found == expected || found.is_nan() && expected.is_nan();
-            // an exponent multiplies the rounding of the logarithm
+            let actual = block.column(Variable::P)[i];
+            let same = actual == expected || actual.is_nan() && expected.is_nan();
+            // the exponent multiplies the rounding of the logarithm
             let tolerance = 1e-14 * expected.abs() + if expected.abs() < 1e-300 { 1e-300 } else { 0.0 };
             let tolerance = if formula.contains('^') {
                 20.0 * tolerance
@@ -135,10 +135,10 @@ fn every_operation_agrees_with_one_point_at_a_time() {
                 tolerance
             };
             assert!(
-                same || (found - expected).abs() <= tolerance,
-                "{formula} at {} and {}: {found:e}, not {expected:e}",
+                same || (actual - expected).abs() <= tolerance,
+                "{formula} at {} and {}: {actual:e}, not {expected:e}",
                 points[i],
-                others[i]
+                reversed[i]
             );
         }
     }
@@ -147,7 +147,7 @@ fn every_operation_agrees_with_one_point_at_a_time() {
 #[test]
 fn a_block_may_be_short_and_used_again() {
     let program = effect("p * (1 + a * z) ^ b")
-        .program(Hook::Pressure, Variables::of(&[Variable::P, Variable::Z]))
+        .program(Hook::Pressure, Variables::new(&[Variable::P, Variable::Z]))
         .unwrap();
     let (mut block, mut scalars) = (Block::default(), Vec::new());
     program.settle(&[0.0; Variable::COUNT], &PARAMETERS, &mut scalars);
@@ -166,7 +166,7 @@ fn a_block_may_be_short_and_used_again() {
 
 #[test]
 fn kinks_are_those_between_points() {
-    let local = Variables::of(&[Variable::P, Variable::Z, Variable::Position]);
+    let local = Variables::new(&[Variable::P, Variable::Z, Variable::Position]);
     for (formula, kinked) in [
         ("if(position > 0.5, 1.8 * p, p)", true),
         ("p * max(z / 1, 0.001)", true),
@@ -187,7 +187,7 @@ fn kinks_are_those_between_points() {
 }
 
 #[test]
-fn what_is_undefined_is_as_documented() {
+fn undefined_values_are_as_documented() {
     let mut variables = [0.0; Variable::COUNT];
     variables[Variable::Z as usize] = f64::NAN;
     variables[Variable::Vt as usize] = -0.0;
@@ -226,10 +226,10 @@ fn what_is_undefined_is_as_documented() {
         ("1e300 * 1e300", infinite),
     ] {
         let names = formula.replace("NAN", "(z / 1)").replace("ZERO", "(v_t / 1)");
-        let found = at_one_point(&names, &variables);
+        let actual = at_one_point(&names, &variables);
         assert!(
-            found == value || found.is_nan() && value.is_nan(),
-            "{formula} = {found}, not {value}"
+            actual == value || actual.is_nan() && value.is_nan(),
+            "{formula} = {actual}, not {value}"
         );
     }
 }
@@ -250,14 +250,14 @@ fn elementary_functions_agree_with_those_of_libm() {
         for step in -2000..2000 {
             let x = f64::from(step) * 0.0137 + 0.001;
             variables[Variable::Z as usize] = x;
-            let (found, expected) = (
+            let (actual, expected) = (
                 program.settle(&variables, &PARAMETERS, &mut Vec::new()).unwrap(),
                 exact(x),
             );
-            let error = (found / expected - 1.0).abs();
+            let error = (actual / expected - 1.0).abs();
             assert!(
                 error <= tolerance,
-                "{formula} at {x}: {found:e}, not {expected:e}"
+                "{formula} at {x}: {actual:e}, not {expected:e}"
             );
         }
     }
@@ -275,11 +275,11 @@ fn signs_bind_less_than_powers_and_more_than_products() {
         ("a / b * 3", "(a / b) * 3"),
         ("-a^-b^-a", "-(a^(-(b^(-a))))"),
     ] {
-        let [found, expected] =
+        let [actual, expected] =
             [formula, same].map(|f| at_one_point(&format!("1 * ({f}) * b / b * a / a"), &variables));
         assert!(
-            found.to_bits() == expected.to_bits() || found.is_nan(),
-            "{formula}: {found}, not {expected}"
+            actual.to_bits() == expected.to_bits() || actual.is_nan(),
+            "{formula}: {actual}, not {expected}"
         );
     }
 }

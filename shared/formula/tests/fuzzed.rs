@@ -1,6 +1,6 @@
-//! Files and formulas of all kinds: no panic, places that are there, the same bits however a formula is evaluated.
+//! Random files and formulas: no panic, errors with valid places, and the same bits however a formula is evaluated.
 //!
-//! `cargo run -p formula --release --example fuzz -- --minutes 10` does the same for longer, with other bytes.
+//! `cargo run -p formula --release --example fuzz -- --minutes 10` runs longer, with different bytes.
 
 use proptest::collection::vec;
 use proptest::prelude::*;
@@ -8,7 +8,7 @@ use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
 
 use crate::generate::{Dice, anything, check_evaluation, check_exact, check_read, file};
 
-/// The same cases in every run.
+/// Runs the check on the same cases in every run.
 fn run(cases: u32, bytes: usize, check: impl Fn(&[u8])) {
     let config = Config {
         failure_persistence: None,
@@ -43,13 +43,13 @@ fn any_formula_has_the_same_bits_at_one_point_and_in_blocks() {
 }
 
 #[test]
-fn formulas_mean_what_their_signs_say() {
+fn formulas_follow_the_precedence_of_their_operators() {
     run(300_000, 200, |bytes| check_exact(&mut Dice(bytes)));
 }
 
 #[test]
 fn a_file_made_to_exhaust_the_stack_is_refused() {
-    // 79 inline tables of 79 dotted names each are 6241 tables, one in the other, in 13 kB
+    // 79 inline tables of 79 dotted names each are 6241 nested tables in 13 kB
     let names = ["a"; 79].join(".");
     let prior = format!("{}1{}", format!("{{ {names} = ").repeat(79), " }".repeat(79));
     let text = format!(
@@ -63,7 +63,7 @@ fn a_file_made_to_exhaust_the_stack_is_refused() {
 
 #[test]
 fn the_largest_effect_is_computed() {
-    // nearly as many operations as an effect may have
+    // close to the maximum number of operations of an effect
     let terms = |first: usize| {
         (first..first + 60)
             .map(|i| format!("sin(z*{i}.5)"))

@@ -1,12 +1,12 @@
-//! Make formulas, effect files and points out of bytes, and check what the crate makes of them.
+//! Generates formulas, effect files and points from bytes, and checks the results of the crate.
 //!
-//! All choices come from the bytes given, so that proptest can shrink them and a run can be repeated.
+//! All choices come from the given bytes, so that proptest can shrink them and a run can be repeated.
 
 use formula::block::{BLOCK, Block};
 use formula::variable::Variables;
 use formula::{Effect, Hook, Variable};
 
-/// Choices, byte for byte; 0, the simplest, when the bytes are used up.
+/// A source of choices, one byte each; 0, the simplest choice, when the bytes are used up.
 #[derive(Debug)]
 pub(crate) struct Dice<'a>(pub(crate) &'a [u8]);
 
@@ -21,17 +21,17 @@ impl Dice<'_> {
         }
     }
 
-    /// A number below another, which is at most 65536.
+    /// Returns a number below `count`, which is at most 65536.
     fn below(&mut self, count: usize) -> usize {
         let high = if count > 256 { self.byte() } else { 0 };
         (usize::from(high) << 8 | usize::from(self.byte())) % count
     }
 
-    fn one<T: Copy>(&mut self, of: &[T]) -> T {
-        of[self.below(of.len())]
+    fn one<T: Copy>(&mut self, choices: &[T]) -> T {
+        choices[self.below(choices.len())]
     }
 
-    /// A number that may be awkward.
+    /// Returns a number, possibly an awkward one.
     fn value(&mut self) -> f64 {
         const AWKWARD: [f64; 20] = [
             0.0,
@@ -68,7 +68,7 @@ const NUMBERS: [&str; 12] = [
     "1", "2", "0.5", "0", "3", "1e-3", ".25", "7.", "1e300", "2E+2", "700", "5e-324",
 ];
 
-/// Names, most of them of a unit that fits everywhere.
+/// Names, for the greater part with a unit that fits everywhere.
 const NAMES: [&str; 14] = [
     "a",
     "b",
@@ -90,7 +90,7 @@ const FUNCTIONS: [&str; 8] = ["exp", "log", "sqrt", "tanh", "abs", "sin", "cos",
 
 const COMPARISONS: [&str; 6] = ["<", "<=", ">", ">=", "==", "!="];
 
-/// A formula by the grammar; its names and units may not fit.
+/// Generates a formula by the grammar; its names and units may not fit.
 pub(crate) fn formula(dice: &mut Dice<'_>, depth: u32) -> String {
     if depth == 0 {
         return dice.one(&NAMES).to_owned();
@@ -123,7 +123,7 @@ pub(crate) fn formula(dice: &mut Dice<'_>, depth: u32) -> String {
     }
 }
 
-/// An effect file by the format, whose names and units may not fit.
+/// Generates an effect file by the format; its names and units may not fit.
 pub(crate) fn file(dice: &mut Dice<'_>) -> String {
     let mut text = "name = \"toy\"\nsummary = \"a toy\"\nsource = \"none\"\n".to_owned();
     let mut used = String::new();
@@ -145,9 +145,9 @@ pub(crate) fn file(dice: &mut Dice<'_>) -> String {
         }
     }
     text += "[definitions]\n";
-    for (name, others) in [("one", "two"), ("two", "three")] {
+    for (name, replacement) in [("one", "two"), ("two", "three")] {
         if used.contains(name) {
-            let formula = formula(dice, 3).replace(name, others).replace("three", "1");
+            let formula = formula(dice, 3).replace(name, replacement).replace("three", "1");
             used += &formula;
             text += &format!("{name} = \"{formula}\"\n");
         }
@@ -167,7 +167,7 @@ pub(crate) fn file(dice: &mut Dice<'_>) -> String {
     text
 }
 
-/// The same text with some mistakes.
+/// Returns the text with some mistakes.
 pub(crate) fn mutated(text: &str, dice: &mut Dice<'_>) -> String {
     const PIECES: [&str; 24] = [
         "(",
@@ -219,7 +219,7 @@ pub(crate) fn mutated(text: &str, dice: &mut Dice<'_>) -> String {
     characters.into_iter().collect()
 }
 
-/// A text of some kind: a file by the format, one with mistakes, a formula of any characters, or anything.
+/// Generates a text: a file by the format, one with mistakes, a formula of any characters, or any text.
 pub(crate) fn anything(dice: &mut Dice<'_>) -> String {
     match dice.below(5) {
         0 => file(dice),
@@ -233,7 +233,7 @@ pub(crate) fn anything(dice: &mut Dice<'_>) -> String {
     }
 }
 
-/// Reads a text; an error must name a place that is there, in one line.
+/// Reads a text; an error must be one line with a valid place.
 pub(crate) fn check_read(text: &str) -> Option<Effect> {
     match Effect::read(text) {
         Ok(effect) => Some(effect),
@@ -245,17 +245,17 @@ pub(crate) fn check_read(text: &str) -> Option<Effect> {
             );
             assert!(shown.chars().count() < 3000 + text.len(), "{shown:?}");
             if let (Some(line), Some(column)) = (error.line, error.column) {
-                let found = text.split('\n').nth(line - 1);
-                let found = found.unwrap_or_else(|| panic!("no line {line} in {text:?}"));
-                assert!(column <= found.chars().count() + 1, "{shown:?} of {text:?}");
+                let line_text = text.split('\n').nth(line - 1);
+                let line_text = line_text.unwrap_or_else(|| panic!("no line {line} in {text:?}"));
+                assert!(column <= line_text.chars().count() + 1, "{shown:?} of {text:?}");
             }
             None
         }
     }
 }
 
-/// Whether an effect has the same bits however it is evaluated: at one point, and in blocks for any choice of what differs
-/// from point to point. Gives how many values were compared.
+/// Checks that an effect has the same bits at one point and in blocks, for any choice of the variables that differ from
+/// point to point. Returns the number of values compared.
 pub(crate) fn check_evaluation(effect: &Effect, dice: &mut Dice<'_>) -> usize {
     let parameters: Vec<f64> = effect.parameters.iter().map(|_| dice.value()).collect();
     let mut compared = 0;
@@ -291,14 +291,14 @@ fn compare(
         .expect("the hook has a formula");
     let in_blocks = effect.program(hook, local).expect("the hook has a formula");
     assert_eq!(at_one.uses(), in_blocks.uses());
-    // what does not differ from point to point is that of the first
+    // variables that are equal at all points have the value of the first point
     let shared = |point: &[f64; Variable::COUNT]| {
         core::array::from_fn(|place| {
             let differs = local.contains(Variable::ALL[place]);
             if differs { point[place] } else { table[0][place] }
         })
     };
-    let (mut block, mut scalars, mut own) = (Block::default(), Vec::new(), Vec::new());
+    let (mut block, mut scalars, mut settled_scalars) = (Block::default(), Vec::new(), Vec::new());
     for variable in local.iter() {
         let column = block.column_mut(variable);
         column
@@ -307,29 +307,30 @@ fn compare(
             .for_each(|(value, point)| *value = point[variable as usize]);
     }
     let settled = in_blocks.settle(&table[0], parameters, &mut scalars);
-    // a column that the formula replaces, whether or not the hook is at nodes
+    // the column that the formula replaces, whether or not the hook is at nodes
     let target = if (hook.target() as usize) < Variable::LOCAL {
         hook.target()
     } else {
         Variable::P
     };
     block.replace(target, &in_blocks, &scalars, table.len());
-    for (found, point) in block.column(target).iter().zip(table) {
+    for (actual, point) in block.column(target).iter().zip(table) {
         let expected = at_one
-            .settle(&shared(point), parameters, &mut own)
+            .settle(&shared(point), parameters, &mut settled_scalars)
             .expect("nothing differs");
-        let same = |found: f64| found.to_bits() == expected.to_bits() || found.is_nan() && expected.is_nan();
+        let same =
+            |actual: f64| actual.to_bits() == expected.to_bits() || actual.is_nan() && expected.is_nan();
         assert!(
-            same(*found) && settled.is_none_or(same),
-            "{found:e}, not {expected:e} at {point:?} with {parameters:?} of {}",
+            same(*actual) && settled.is_none_or(same),
+            "{actual:e}, not {expected:e} at {point:?} with {parameters:?} of {}",
             effect.text
         );
     }
     table.len()
 }
 
-/// A formula of operations that are exact to the last bit, with its value at given z, `v_t` and slip; and how tightly it binds:
-/// 0 sum, 1 product, 2 sign, 3 power, 4 anything else.
+/// Generates a formula of operations that are exact to the last bit, with its value at given z, `v_t` and slip, and its
+/// binding strength: 0 sum, 1 product, 2 sign, 3 power, 4 anything else.
 pub(crate) fn exact(dice: &mut Dice<'_>, depth: u32, values: [f64; 3]) -> (String, u8, f64) {
     if depth == 0 {
         let place = dice.below(3);
@@ -399,7 +400,7 @@ pub(crate) fn exact(dice: &mut Dice<'_>, depth: u32, values: [f64; 3]) -> (Strin
     }
 }
 
-/// Reads a formula of exact operations and compares its value with its maker's.
+/// Reads a formula of exact operations and compares its value with the generator's.
 pub(crate) fn check_exact(dice: &mut Dice<'_>) {
     let values = [dice.value(), dice.value(), dice.value()];
     let (formula, _, expected) = exact(dice, 5, values);
@@ -418,9 +419,9 @@ pub(crate) fn check_exact(dice: &mut Dice<'_>) {
     let program = effect
         .program(Hook::Pressure, Variables::default())
         .expect("it has a pressure");
-    let found = program
+    let actual = program
         .settle(&point, &[], &mut Vec::new())
         .expect("nothing differs");
-    let same = found.to_bits() == expected.to_bits() || found.is_nan() && expected.is_nan();
-    assert!(same, "{formula} at {values:?} is {found:e}, not {expected:e}");
+    let same = actual.to_bits() == expected.to_bits() || actual.is_nan() && expected.is_nan();
+    assert!(same, "{formula} at {values:?} is {actual:e}, not {expected:e}");
 }

@@ -1,12 +1,12 @@
-//! What the reader says of files with one mistake each: `gallery/NAME.toml` and beside it `NAME.txt`.
+//! The reader's messages for files with one mistake each: `gallery/NAME.toml` with `NAME.txt`.
 //!
-//! `UPDATE_GALLERY=1` writes the messages anew; read them before they are committed.
+//! `UPDATE_GALLERY=1` rewrites the messages; read them before committing them.
 
 use std::path::{Path, PathBuf};
 
 use formula::Effect;
 
-/// The files of the gallery with an ending, in the order of their names.
+/// Returns the files of the gallery with an ending, sorted by name.
 fn files(ending: &str) -> Vec<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/gallery");
     let entries = folder.read_dir().unwrap().map(|entry| entry.unwrap().path());
@@ -23,17 +23,17 @@ fn every_message_is_as_written() {
     let mut wrong = String::new();
     for file in files("toml") {
         let text = String::from_utf8_lossy(&std::fs::read(&file).unwrap()).into_owned();
-        let found = match Effect::read(&text) {
+        let actual = match Effect::read(&text) {
             Ok(_) => "read without an error\n".to_owned(),
             Err(error) => format!("{error}\n"),
         };
         let snapshot = file.with_extension("txt");
         if update {
-            std::fs::write(&snapshot, &found).unwrap();
+            std::fs::write(&snapshot, &actual).unwrap();
         }
         let expected = std::fs::read_to_string(&snapshot).unwrap_or_default();
-        if found != expected.replace("\r\n", "\n") {
-            wrong += &format!("{}\n  expected {expected}  found    {found}", file.display());
+        if actual != expected.replace("\r\n", "\n") {
+            wrong += &format!("{}\n  expected {expected}  found    {actual}", file.display());
         }
     }
     assert!(wrong.is_empty(), "\n{wrong}");

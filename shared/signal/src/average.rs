@@ -6,20 +6,17 @@ use super::period_mean::{PeriodMean, SampledSignal, Window, period_mean};
 
 /// Filters a history in place, cuts its beginning, and takes the mean over the last whole number of periods.
 ///
-/// Simulated and measured histories both come here, so that the same numbers give the same average.
+/// Simulated and measured histories share this function, so that the same numbers give the same average.
 ///
 /// # Arguments
-/// - `samples`: one mean for each interval, in the unit of the channel; filtered afterwards, over their whole length.
+/// - `samples`: one mean for each interval, in the unit of the channel; filtered in place over their whole length.
 /// - `interval_s`: length of an interval `[s]`, > 0.
-/// - `filter`: for histories of `1 / interval_s`; `None`: nothing is filtered.
+/// - `filter`: for histories of rate `1 / interval_s`; `None`: no filter.
 /// - `transient_s`: cut from the beginning `[s]`, ≥ 0, shorter than the history.
-/// - `period_s`: period of what swings `[s]`; `None`: nothing does.
-///
-/// # Returns
-/// [`PeriodMean`].
+/// - `period_s`: period of the oscillation `[s]`; `None`: no oscillation.
 ///
 /// # Errors
-/// As those of [`period_mean`], which has validity and source, too. Checked by `an_average_is_filter_cut_and_mean_in_this_order`.
+/// Those of [`period_mean`], which also states validity and source. Checked by `an_average_is_filter_cut_and_mean_in_this_order`.
 pub fn average(
     samples: &mut [f64],
     interval_s: f64,

@@ -1,25 +1,25 @@
 //! Errors of histories and settings.
 
-/// What is wrong with a history or a setting. Messages are fragments that complete "failed to average: …".
+/// Why a history or a setting is refused. Messages are fragments that complete "failed to average: …".
 #[non_exhaustive]
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum SignalError {
-    /// A slice does not have the length that another one asks for.
+    /// A slice is too short or too long.
     #[error("{what} has {got} entries, {needed} are needed")]
     Length {
-        /// The slice.
+        /// Name of the slice.
         what: &'static str,
-        /// Its length.
+        /// Length of the slice.
         got: usize,
-        /// The length, or the least length, that it must have.
+        /// Required length, or minimum length.
         needed: usize,
     },
-    /// Times do not increase, or are no numbers.
+    /// Times do not increase, or are not numbers.
     #[error("time {time_s} s at position {position} does not lie after {before_s} s")]
     NotIncreasing {
-        /// Position of the time to blame.
+        /// Position of the offending time.
         position: usize,
-        /// That time `[s]`.
+        /// The offending time `[s]`.
         time_s: f64,
         /// The time before it `[s]`.
         before_s: f64,
@@ -27,20 +27,20 @@ pub enum SignalError {
     /// A setting lies outside its bounds.
     #[error("{name} = {value} {unit} must be {bound} {limit} {unit}")]
     OutOfBounds {
-        /// The setting, which carries its unit.
+        /// Name of the setting, with its unit.
         name: &'static str,
-        /// The value given.
+        /// Refused value.
         value: f64,
-        /// Its unit.
+        /// Unit of value and limit.
         unit: &'static str,
-        /// Which way the limit binds.
+        /// Direction of the limit: `above` or `below`.
         bound: &'static str,
         /// The limit.
         limit: f64,
     },
 }
 
-/// Ok if `accepted`; NaN fails every comparison, so a bound written as a positive condition rejects it.
+/// Returns `Ok` if `accepted`; NaN fails every comparison, so a bound written as a positive condition rejects it.
 pub(super) fn require(
     accepted: bool,
     name: &'static str,

@@ -1,23 +1,23 @@
 //! A low-pass filter that does not shift a history in time.
 //!
-//! Own code, for the same bits on every machine: filter crates take the tangent of the cut-off from the platform as
-//! soon as any crate of a build enables `std`, or do not expose the state that the ends of a history need.
+//! The filter is implemented here for the same bits on every machine: filter crates take the tangent of the cut-off from the
+//! platform as soon as any crate of a build enables `std`, or do not expose the state that the ends of a history need.
 
 use super::error::{SignalError, require};
 
-/// Samples by which a history is extended at each end.
+/// Number of samples by which a history is extended at each end.
 const PAD: usize = 9;
 
 /// A Butterworth low-pass of second order that runs forward and backward over a history.
 ///
-/// `H(s) = 1 / (s² + √2 s + 1)` by the bilinear transform with the cut-off in place. Both ways together have the gain
+/// `H(s) = 1 / (s² + √2 s + 1)` by the bilinear transform with prewarped cut-off. Both passes together have the gain
 /// `|H(f)|² = 1 / (1 + (tan(π f / f_s) / tan(π f_c / f_s))⁴)` and no phase: 1/2 at the cut-off `f_c`, 1 at rest.
 ///
 /// # Source
-/// Butterworth 1930; forward and backward, with ends as in `scipy.signal.filtfilt(*butter(2, f_c, fs=f_s), x)`: odd
-/// extension by nine samples, filter at rest on the first of them. Checked by
-/// `sines_keep_their_phase_and_are_weakened_by_the_gain_squared`,
-/// `a_constant_comes_through_and_a_ramp_nearly`, `figures_of_an_independent_filter_are_met`.
+/// Butterworth 1930; forward and backward with the ends of `scipy.signal.filtfilt(*butter(2, f_c, fs=f_s), x)`: odd
+/// extension by nine samples, initial state at rest on the first of them. Checked by
+/// `sines_keep_their_phase_and_are_weakened_by_the_gain_squared`, `a_constant_comes_through_and_a_ramp_nearly`,
+/// `figures_of_an_independent_filter_are_met`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LowPass {
     b: [f64; 3],
@@ -25,15 +25,12 @@ pub struct LowPass {
 }
 
 impl LowPass {
-    /// The filter with this cut-off for histories of this sampling rate.
+    /// Designs the filter.
     ///
     /// # Arguments
-    /// - `cutoff_hz`: `f_c` \[Hz\], above 0 and below half the sampling rate. Use [`LowPass::unless_zero`]
-    ///   where 0 means no filter.
+    /// - `cutoff_hz`: `f_c` \[Hz\], above 0 and below half the sampling rate, else [`SignalError::OutOfBounds`]. Use
+    ///   [`LowPass::unless_zero`] if 0 means no filter.
     /// - `sample_hz`: `f_s` \[Hz\], > 0.
-    ///
-    /// # Errors
-    /// [`SignalError::OutOfBounds`].
     pub fn new(cutoff_hz: f64, sample_hz: f64) -> Result<Self, SignalError> {
         let (half, unit) = (0.5 * sample_hz, "Hz");
         require(sample_hz > 0.0, "sample_hz", sample_hz, unit, "above", 0.0)?;
@@ -48,10 +45,7 @@ impl LowPass {
         })
     }
 
-    /// The same, where a cut-off of 0 Hz means no filter, as in the protocol of an experiment.
-    ///
-    /// # Errors
-    /// As those of [`LowPass::new`].
+    /// Like [`LowPass::new`], but a cut-off of 0 Hz means no filter, as in the protocol of an experiment.
     pub fn unless_zero(cutoff_hz: f64, sample_hz: f64) -> Result<Option<Self>, SignalError> {
         if cutoff_hz == 0.0 {
             return Ok(None);
@@ -61,14 +55,14 @@ impl LowPass {
 
     /// Filters a history in place.
     ///
-    /// Beyond its ends the history is continued by turning it about its end points, `2 x_0 − x_k`, for nine samples,
-    /// or for one less than it has. So a constant comes through, and an end is no jump.
+    /// The history is extended at each end by point reflection, `2 x_0 − x_k`, for nine samples, or one less than its
+    /// length. So a constant is unchanged, and the ends cause no jump.
     ///
     /// # Arguments
-    /// - `history`: samples at the filter's rate, in any unit. An empty one stays so.
+    /// - `history`: samples at the filter's rate, in any unit. An empty history stays empty.
     ///
     /// # Validity
-    /// Within about `1 / f_c` of an end the result leans on the continuation. A number that is not finite spreads.
+    /// Within about `1 / f_c` of an end the result depends on the extension. A value that is not finite spreads.
     pub fn apply(&self, history: &mut [f64]) {
         let Some(last) = history.len().checked_sub(1) else {
             return;
@@ -88,7 +82,7 @@ impl LowPass {
         }
         let end = if pad > 0 { tail[pad - 1] } else { history[last] };
         let mut backward = self.at_rest_on(end);
-        // output before the first sample is not needed, so the backward pass ends there
+        // The output before the first sample is not needed, so the backward pass ends there.
         for x in tail[..pad].iter_mut().rev() {
             backward.next(*x);
         }
@@ -97,7 +91,7 @@ impl LowPass {
         }
     }
 
-    /// The state of the filter after a constant input of this value.
+    /// Returns the state of the filter after a constant input of this value.
     fn at_rest_on(&self, x: f64) -> State<'_> {
         State {
             filter: self,

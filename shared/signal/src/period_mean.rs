@@ -2,13 +2,13 @@
 
 use super::error::{SignalError, require};
 
-/// Relative amount by which rounding may keep a period from fitting once more.
+/// Relative tolerance for rounding when whole periods are counted.
 const ROUNDING: f64 = 1e-9;
 
 /// Means over intervals of equal length.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SampledSignal<'a> {
-    /// Where the first interval begins `[s]`.
+    /// Start of the first interval `[s]`.
     pub start_s: f64,
     /// Length of an interval `[s]`, > 0.
     pub interval_s: f64,
@@ -17,15 +17,15 @@ pub struct SampledSignal<'a> {
 }
 
 impl SampledSignal<'_> {
-    /// Where the last interval ends `[s]`.
+    /// End of the last interval `[s]`.
     pub fn end_s(&self) -> f64 {
         self.start_s + self.samples.len() as f64 * self.interval_s
     }
 
-    /// Integral from one time to another `[channel's unit · s]`, both within the history.
+    /// Returns the integral between two times within the history `[channel's unit · s]`.
     fn integral(&self, from_s: f64, to_s: f64) -> f64 {
         let last = self.samples.len() - 1;
-        // Times in intervals.
+        // The times are in units of intervals.
         let (from, to) = (
             (from_s - self.start_s) / self.interval_s,
             (to_s - self.start_s) / self.interval_s,
@@ -43,50 +43,50 @@ impl SampledSignal<'_> {
     }
 }
 
-/// Which part of a history counts.
+/// The part of a history that is averaged.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Window {
-    /// Where it begins `[s]`: the transient lies before.
+    /// Start `[s]`, after the transient.
     pub from_s: f64,
-    /// Where it ends `[s]`, after the beginning.
+    /// End `[s]`, after the start.
     pub to_s: f64,
-    /// Period of the oscillation, such as from grouser to grouser `[s]`, > 0; `None`: no oscillation.
+    /// Period of the oscillation `[s]`, such as from grouser to grouser, > 0; `None`: no oscillation.
     pub period_s: Option<f64>,
 }
 
-/// A mean and the number of periods that it was taken over.
+/// A mean and the number of periods that it covers.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PeriodMean {
     /// The mean, in the unit of the channel.
     pub mean: f64,
-    /// Whole periods that it covers; 0: the whole window, because no period is known or none fits.
+    /// Number of whole periods covered; 0: the whole window, because no period is known or none fits.
     pub periods: u32,
-    /// Length of time that it covers `[s]`.
+    /// Length of time covered `[s]`.
     pub covered_s: f64,
 }
 
-/// Mean over the last whole number of periods in a window.
+/// Computes the mean over the last whole number of periods in a window.
 ///
-/// With N the number of periods P that fit, `mean = 1/(N P) ∫ x dt` from `to − N P` to `to`; over the whole window
-/// where P is not known or longer than the window. Intervals that are cut count by the part that is covered.
+/// With N the number of periods P that fit, `mean = 1/(N P) ∫ x dt` from `to − N P` to `to`; over the whole window if P
+/// is unknown or longer than the window. Partial intervals count by their covered part.
 ///
 /// # Arguments
 /// - `history`: at least one sample. `window`: within the history.
 ///
 /// # Returns
-/// [`PeriodMean`]. A period that lacks less than 1e-9 of itself counts as whole.
+/// [`PeriodMean`]. A period that is short by less than 1e-9 of itself counts as whole.
 ///
 /// # Errors
-/// [`SignalError::Length`]: no sample. [`SignalError::OutOfBounds`]: the window leaves the history or is empty, the period
-/// is not above 0, the interval is not.
+/// [`SignalError::Length`]: no sample. [`SignalError::OutOfBounds`]: the window leaves the history or is empty, or
+/// period or interval is not above 0.
 ///
 /// # Validity
-/// An oscillation of period P drops out; where P is not a multiple of the interval dt, all but about `π A dt² / (4 N P²)` of
-/// its amplitude A does (the one cut interval is taken as constant).
+/// An oscillation of period P cancels; if P is not a multiple of the interval dt, at most about `π A dt² / (4 N P²)` of
+/// its amplitude A remains (the one partial interval is taken as constant).
 ///
 /// # Source
-/// A window that is no multiple of the period is off by up to `A / (π N)`. Checked by
-/// `a_mean_over_whole_periods_is_free_of_the_swing` and others of that file.
+/// A window that is not a multiple of the period causes an error of up to `A / (π N)`. Checked by the tests of this
+/// crate, such as `a_mean_over_whole_periods_is_free_of_the_swing`.
 pub fn period_mean(history: &SampledSignal<'_>, window: &Window) -> Result<PeriodMean, SignalError> {
     let Window {
         from_s,
@@ -111,7 +111,7 @@ pub fn period_mean(history: &SampledSignal<'_>, window: &Window) -> Result<Perio
     let mut periods = 0;
     if let Some(period) = period_s {
         require(period > 0.0, "period_s", period, "s", "above", 0.0)?;
-        // More periods than the largest count are a window without any: the swing is faster than anything here.
+        // A count of periods beyond the range of `u32` counts as no period: such an oscillation is faster than any here.
         periods = libm::floor(length / period + ROUNDING) as u32;
     }
     let covered_s = match (periods, period_s) {

@@ -1,4 +1,4 @@
-//! Histories to averages: against sums on paper, the analytic gain, and scipy.
+//! Averages of histories, compared with hand-computed sums, the analytic gain, and scipy.
 
 use core::f64::consts::PI;
 
@@ -8,7 +8,7 @@ use signal::{
 
 const RATE_HZ: f64 = 10.0;
 
-/// Steps of 50 to 149 ms whose lengths look random.
+/// Returns steps of 50 to 149 ms with pseudo-random lengths.
 fn uneven_edges(steps: u32) -> Vec<f64> {
     let mut t = 3.0;
     let lengths = (0..steps).map(|i| 0.05 + f64::from((i * 37) % 100) * 1e-3);
@@ -86,7 +86,7 @@ fn histories_that_are_none_are_refused_by_position_and_length() {
     );
     assert!(resample(&[0.0, f64::NAN], &[1.0], INTERVAL_S, &mut out).is_err());
     assert_eq!(resample(&[0.0], &[], INTERVAL_S, &mut out), Ok(0));
-    // Shorter than one interval: nothing is whole.
+    // The history is shorter than one interval.
     assert_eq!(resample(&[0.0, 0.05], &[1.0], INTERVAL_S, &mut out), Ok(0));
 }
 
@@ -130,7 +130,7 @@ fn figures_of_an_independent_filter_are_met() {
             );
         }
     }
-    // Shorter than the usual extension: padlen = 3.
+    // The history is shorter than the usual extension: padlen = 3.
     let mut short = [1.0, -2.0, 4.0, 0.5];
     LowPass::new(2.0, RATE_HZ).unwrap().apply(&mut short);
     let figures = [
@@ -154,7 +154,7 @@ fn sines_keep_their_phase_and_are_weakened_by_the_gain_squared() {
         filter.apply(&mut history);
         let ratio = libm::tan(PI * frequency_hz / RATE_HZ) / libm::tan(PI * cutoff_hz / RATE_HZ);
         let gain = 1.0 / (1.0 + ratio * ratio * ratio * ratio);
-        // Far from the ends, where the continuation has died away.
+        // The samples are far from the ends, where the extension has no effect.
         for i in 500..1500 {
             let expected = gain * sine(i);
             let got = history[i as usize];
@@ -173,7 +173,7 @@ fn a_constant_comes_through_and_a_ramp_nearly() {
         LowPass::new(0.5, RATE_HZ).unwrap().apply(&mut constant);
         assert!(constant.iter().all(|x| (x - 38.25).abs() < 1e-11), "{constant:?}");
     }
-    // The way forth is not yet steady on a ramp where it enters the history; a fast filter is after nine samples.
+    // The forward pass starts unsteady on a ramp; a fast filter is steady after nine samples.
     let mut ramp: Vec<f64> = (0..200_u32).map(f64::from).collect();
     LowPass::new(3.0, RATE_HZ).unwrap().apply(&mut ramp);
     for (i, x) in ramp.iter().enumerate() {
@@ -190,7 +190,7 @@ fn a_cut_off_that_the_rate_cannot_carry_is_refused() {
     assert!(message(f64::NAN).starts_with("lowpass_hz = NaN Hz"));
 }
 
-/// Exact means of `mean + amplitude sin(2 π t / period + 0.7)` over 0.1 s each, from 0 s.
+/// Returns exact means of `mean + amplitude sin(2 π t / period + 0.7)` over 0.1 s each, from 0 s.
 fn swinging(mean: f64, amplitude: f64, period_s: f64, count: u32) -> Vec<f64> {
     let omega = 2.0 * PI / period_s;
     let cosine = |i: u32| libm::cos(omega * f64::from(i) * 0.1 + 0.7);
@@ -224,7 +224,7 @@ fn a_mean_over_whole_periods_is_free_of_the_swing() {
         (covered - 26.0).abs() < 1e-12 && (mean - 38.0).abs() < 1e-12,
         "{mean}"
     );
-    // 28 s hold four periods and 2 s, which take the mean off by up to A / (π N) = 1 N.
+    // 28 s hold four periods and 2 s, which change the mean by up to A / (π N) = 1 N.
     let (off, none, covered) = mean_of(&samples, 20.0, 48.0, None);
     assert_eq!(none, 0);
     assert!(
@@ -232,7 +232,7 @@ fn a_mean_over_whole_periods_is_free_of_the_swing() {
         "{off}"
     );
     assert!((mean_of(&samples, 20.0, 48.0, Some(6.5)).0 - 38.0).abs() < 1e-12);
-    // A period that is no multiple of the interval leaves π A dt² / (4 N P²) at most: 7e-4 N of 13 N for P = 6.53 s.
+    // A period that is not a multiple of the interval leaves at most π A dt² / (4 N P²): 7e-4 N of 13 N for P = 6.53 s.
     let samples = swinging(38.0, 13.0, 6.53, 500);
     let (mean, periods, _) = mean_of(&samples, 20.0, 50.0, Some(6.53));
     let bound = PI * 13.0 * 0.01 / (4.0 * 4.0 * 6.53 * 6.53);
@@ -248,7 +248,7 @@ fn a_period_that_just_fits_counts_and_one_too_long_takes_the_window() {
     assert_eq!(periods, 0);
     assert!((covered - 30.0).abs() < 1e-12);
     assert!((mean - samples.iter().sum::<f64>() / 300.0).abs() < 1e-12);
-    // Part of an interval counts by its part: 0.05 s of 1 and 0.1 s of 4
+    // A partial interval counts by its part: 0.05 s of 1 and 0.1 s of 4.
     let (mean, _, _) = mean_of(&[1.0, 4.0], 0.05, 0.2, None);
     assert!((mean - 3.0).abs() < 1e-12, "{mean}");
 }

@@ -40,9 +40,9 @@ pub const SHEAR_COLUMNS: [&str; 4] = [
     "shear_stress_pa",
 ];
 
-/// No bevameter presses a plate this deep; a number in millimetres is larger.
+/// Upper bound on the sinkage of a plate: no bevameter presses deeper, but a number in millimetres is larger.
 const DEEPEST_PLATE_M: f64 = 1.0;
-/// No ring is turned so far; a number in millimetres mostly is.
+/// Upper bound on the displacement of a ring: no ring is turned so far; a number in millimetres usually exceeds it.
 const LARGEST_SHEAR_M: f64 = 10.0;
 
 /// Parses `plates.csv`.
@@ -78,9 +78,9 @@ pub(super) fn shear(file: &str, text: &str) -> Result<Vec<ShearReading>, FileErr
 
 fn columns<'a>(names: &'a [&'a str; 4]) -> Columns<'a> {
     Columns {
-        known: names.to_vec(),
+        allowed: names.to_vec(),
         required: &names[..3],
-        most_rows: table::MOST_ROWS,
+        max_rows: table::MAX_ROWS,
     }
 }
 

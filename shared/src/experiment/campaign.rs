@@ -1,4 +1,4 @@
-//! Where the measurements of an experiment come from: `[campaign]`. Nothing is computed from it; it is kept and shown.
+//! The origin of an experiment's measurements: `[campaign]`. It is stored and shown; nothing is computed from it.
 
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
@@ -9,49 +9,48 @@ use super::check::ValueError;
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Campaign {
-    /// What was measured, as a title.
+    /// Title: the subject of the measurements.
     pub title: String,
-    /// Who measured.
+    /// Names of those who measured.
     #[serde(default)]
     pub authors: Vec<String>,
-    /// Where.
+    /// Institution that measured.
     pub institution: Option<String>,
-    /// When it was measured, else published: `2025`, `2025-04` or `2025-04-30`.
+    /// Date of the measurements, else of publication: `2025`, `2025-04` or `2025-04-30`.
     pub date: Option<String>,
-    /// Licence of the rows in words: an SPDX identifier where one says it all; of digitised rows, who owns what.
+    /// Licence of the rows in words, or an SPDX identifier; for digitised rows, the owner of each part.
     pub licence: Option<String>,
     /// DOI of the publication, without a resolver.
     pub doi: Option<String>,
     /// The file, table or figure that the rows come from, with its version.
     pub source: Option<String>,
-    /// Whether the rows were read off figures; they are then called digitised wherever they are shown.
+    /// True if the rows were read off figures; results then call them digitised.
     #[serde(default)]
     pub digitised: bool,
-    /// How the soil was prepared before a run.
+    /// Preparation of the soil before a run.
     pub preparation: Option<String>,
     /// Material and surface of the wheels.
     pub wheel: Option<String>,
-    /// How slip was set or measured, and with which radius.
+    /// Method of setting or measuring slip, with its radius.
     pub slip: Option<String>,
-    /// How sinkage was measured, and from which zero.
+    /// Method of measuring sinkage, with its zero.
     pub sinkage: Option<String>,
-    /// How forces and torque were measured: sensor, sampling, tare, signs as they were recorded.
+    /// Method of measuring forces and torque: sensor, sampling, tare, signs as recorded.
     pub forces: Option<String>,
-    /// Which part of a run was averaged.
+    /// The averaged part of a run.
     pub averaging: Option<String>,
-    /// How the standard deviations under `[noise]` were found.
+    /// Origin of the standard deviations under `[noise]`.
     pub noise: Option<String>,
-    /// What is uncertain about all this.
+    /// Uncertainties of the measurements and of this description.
     #[serde(default)]
     pub doubts: Vec<String>,
 }
 
 impl Campaign {
-    /// The same with its texts in one line each.
+    /// Validates the campaign and joins each text into one line.
     ///
-    /// # Errors
-    /// A blank text, a control character, a date or a DOI of another form, digitised rows without a source.
-    /// Checked by `tests::a_wrong_campaign_says_what_is_wrong`.
+    /// Refused are a blank text, a control character, a malformed date or DOI, digitised rows without a source. Checked by
+    /// `tests::a_wrong_campaign_is_refused_with_its_mistake`.
     pub(super) fn checked(mut self) -> Result<Campaign, ValueError> {
         self.title = text("title", &self.title)?;
         for (key, list) in [("authors", &mut self.authors), ("doubts", &mut self.doubts)] {
@@ -97,7 +96,7 @@ impl Campaign {
     }
 }
 
-/// A text in one line.
+/// Joins a text into one line.
 fn text(key: &str, text: &str) -> Result<String, ValueError> {
     let line = text.split_whitespace().collect::<Vec<_>>().join(" ");
     if line.is_empty() {
@@ -111,23 +110,23 @@ fn text(key: &str, text: &str) -> Result<String, ValueError> {
     Ok(line)
 }
 
-/// A year, or a month or a day of it.
+/// Returns whether the text is a year, a month or a day.
 fn is_date(text: &str) -> bool {
     let parts: Vec<&str> = text.split('-').collect();
-    let within = |part: &str, digits: usize, most: u32| {
+    let within = |part: &str, digits: usize, max: u32| {
         part.len() == digits
             && part.bytes().all(|b| b.is_ascii_digit())
-            && part.parse().is_ok_and(|number: u32| (1..=most).contains(&number))
+            && part.parse().is_ok_and(|number: u32| (1..=max).contains(&number))
     };
     let bounds = [(4, 9999), (2, 12), (2, 31)];
     parts.len() <= bounds.len()
         && parts
             .iter()
             .zip(bounds)
-            .all(|(part, (digits, most))| within(part, digits, most))
+            .all(|(part, (digits, max))| within(part, digits, max))
 }
 
-/// A registrant's prefix and a suffix.
+/// Returns whether the text is a registrant's prefix and a suffix.
 fn is_doi(text: &str) -> bool {
     let suffix = text.strip_prefix("10.").and_then(|rest| rest.split_once('/'));
     suffix.is_some_and(|(registrant, suffix)| {
@@ -158,7 +157,7 @@ mod tests {
     }
 
     #[test]
-    fn a_wrong_campaign_says_what_is_wrong() {
+    fn a_wrong_campaign_is_refused_with_its_mistake() {
         for (lines, message) in [
             ("title = \" \"", "title is blank"),
             ("title = \"a\"\nauthors = [\"\"]", "authors is blank"),

@@ -1,4 +1,4 @@
-//! Checks of single values, and what is wrong with them.
+//! Checks of single values, and their errors.
 
 use serde::Deserialize;
 
@@ -13,7 +13,7 @@ pub(super) enum RawSd {
     Word(String),
 }
 
-/// What is wrong with a key or a field.
+/// An error of a key or a field.
 #[derive(Debug, thiserror::Error)]
 pub(super) enum ValueError {
     #[error("{0} is blank")]
@@ -22,7 +22,7 @@ pub(super) enum ValueError {
     NotNumber {
         key: String,
         text: String,
-        /// What to write instead, or nothing.
+        /// The correction to suggest, or an empty text.
         remedy: String,
     },
     #[error("{key} {value} is not a finite number")]
@@ -37,7 +37,7 @@ pub(super) enum ValueError {
     },
     #[error("{key} {value} m must be <= {largest} m: metres are expected, were these millimetres?")]
     Millimetres { key: String, value: f64, largest: f64 },
-    /// A word that is not known, with the nearest known.
+    /// An unknown word, with the nearest known one.
     #[error("{0}")]
     Unknown(String),
     /// Any other rule, as a sentence.
@@ -47,19 +47,19 @@ pub(super) enum ValueError {
     Mesh(#[from] MeshError),
 }
 
-/// Requires a finite number above 0 that the quantity can have.
+/// Requires a finite number above 0 within the physical limits of the quantity.
 pub(super) fn positive(key: &str, value: f64, unit: &str) -> Result<(), ValueError> {
     require(value.is_finite() && value > 0.0, key, value, unit, "> 0")?;
     possible(key, value)
 }
 
-/// Requires a finite number of at least 0 that the quantity can have.
+/// Requires a finite number of at least 0 within the physical limits of the quantity.
 pub(super) fn not_negative(key: &str, value: f64, unit: &str) -> Result<(), ValueError> {
     require(value.is_finite() && value >= 0.0, key, value, unit, ">= 0")?;
     possible(key, value)
 }
 
-/// Requires a value that a rig can have.
+/// Requires a value within the physical limits of the quantity.
 pub(super) fn possible(key: &str, value: f64) -> Result<(), ValueError> {
     match limit::impossible(key, value) {
         None => Ok(()),
@@ -67,7 +67,7 @@ pub(super) fn possible(key: &str, value: f64) -> Result<(), ValueError> {
     }
 }
 
-/// Requires what `holds`; `bound` says it in words.
+/// Returns an error with the requirement `bound` in words unless `holds`.
 pub(super) fn require(holds: bool, key: &str, value: f64, unit: &str, bound: &str) -> Result<(), ValueError> {
     if holds {
         return Ok(());

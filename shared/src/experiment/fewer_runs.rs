@@ -1,15 +1,14 @@
-//! An experiment of which some fitted runs are held out.
+//! An experiment with some of its fitted runs held out.
 
 use super::more_runs::{records, written};
 use super::{Experiment, RunUse, settings};
 use crate::file::{FileError, FileSet};
 
 impl Experiment {
-    /// The files of an experiment with these fitted runs held out: `use = holdout` in their rows of `runs.csv`. All columns stay; comments
-    /// are left out.
+    /// Returns the files of an experiment with these fitted runs held out: `use = holdout` in their rows of `runs.csv`. All
+    /// columns stay; comments are left out.
     ///
-    /// # Errors
-    /// [`FileError`] where a run is unknown, named twice or held out already, and where no fitted run would be left.
+    /// A [`FileError`] names a run that is unknown, named twice or already held out; one fitted run must remain.
     pub fn with_held_out(name: &str, files: &FileSet, runs: &[String]) -> Result<FileSet, FileError> {
         let before = Experiment::parse(name, files)?;
         let file = settings::parse(name, &files.toml)?.runs;
@@ -23,9 +22,9 @@ impl Experiment {
             return Err(fail("no run is named: name at least one fitted run".into()));
         }
         for (i, run) in runs.iter().enumerate() {
-            match before.runs.iter().find(|own| own.name == *run) {
+            match before.runs.iter().find(|candidate| candidate.name == *run) {
                 None => return Err(fail(format!("there is no run \"{run}\""))),
-                Some(own) if own.usage != RunUse::Fit => {
+                Some(candidate) if candidate.usage != RunUse::Fit => {
                     return Err(fail(format!("run \"{run}\" is held out already")));
                 }
                 Some(_) if runs[..i].contains(run) => {
@@ -34,13 +33,13 @@ impl Experiment {
                 Some(_) => {}
             }
         }
-        let fitted = before.runs.iter().filter(|own| own.usage == RunUse::Fit).count();
+        let fitted = before.runs.iter().filter(|run| run.usage == RunUse::Fit).count();
         if fitted == runs.len() {
             let message = format!("all {fitted} fitted runs are left out: leave at least one to fit");
             return Err(fail(message));
         }
         let (mut header, mut rows) = records(file, files.named(name, file)?)?;
-        let place = |header: &[String], column: &str| header.iter().position(|own| own == column);
+        let place = |header: &[String], column: &str| header.iter().position(|candidate| candidate == column);
         let usage = place(&header, "use").unwrap_or_else(|| {
             header.push("use".into());
             header.len() - 1
@@ -97,7 +96,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_held_out_says_why() {
+    fn runs_that_cannot_be_held_out_are_refused_with_a_reason() {
         let runs = format!("{HEADER},use\na,a,sand,0.2,25,0.01,0.5,fit\nb,a,sand,0.4,25,0.01,0.7,holdout\n");
         for (names, message) in [
             (&[][..], "runs.csv: no run is named: name at least one fitted run"),

@@ -8,10 +8,10 @@ use super::wheel::WheelGeometry;
 use crate::channel::Channel;
 use crate::file::FileError;
 
-/// Most samples of a history: a day at 10 Hz.
-const MOST_SAMPLES: usize = 864_000;
+/// The maximum number of samples of a history: a day at 10 Hz.
+const MAX_SAMPLES: usize = 864_000;
 
-/// A step between two times may differ from the first one by this share of it: loggers round their times.
+/// Relative tolerance of each time step against the first one, because loggers round their times.
 const UNEVEN: f64 = 0.01;
 
 /// The recording of a run: the samples of its file, filtered and averaged by the experiment's protocol.
@@ -19,13 +19,13 @@ const UNEVEN: f64 = 0.01;
 pub struct MeasuredHistory {
     /// Name of the file.
     pub file: String,
-    /// End of the interval that each sample is the mean of `[s]`.
+    /// End of the averaging interval of each sample `[s]`.
     pub t_s: Vec<f64>,
     /// Length of an interval `[s]`.
     pub interval_s: f64,
-    /// Cut from the beginning before averaging `[s]`.
+    /// Time cut from the beginning before averaging `[s]`.
     pub transient_s: f64,
-    /// By channel; `None` = not recorded.
+    /// The recordings by channel; `None` = not recorded.
     recorded: [Option<Recorded>; 4],
 }
 
@@ -34,9 +34,9 @@ pub struct MeasuredHistory {
 pub struct Recorded {
     /// Samples of the file [channel's unit].
     pub raw: Vec<f64>,
-    /// After the protocol's low-pass [channel's unit].
+    /// Samples after the protocol's low-pass [channel's unit].
     pub filtered: Vec<f64>,
-    /// Mean of the filtered samples over whole grouser periods behind the transient [channel's unit].
+    /// Mean of the filtered samples over whole grouser periods after the transient [channel's unit].
     pub average: f64,
     /// Number of periods; 0: the whole recording, because the wheel has no grousers or no period fits.
     pub periods: u32,
@@ -58,15 +58,14 @@ impl MeasuredHistory {
     }
 }
 
-/// Parses a history and averages it by the protocol: the simulated histories' own filter, cut and mean.
+/// Parses a history and averages it by the protocol, with the same filter, cut and mean as simulated histories.
 ///
-/// Columns are `t_s`, the ends of the intervals that the samples are means of, and channels; `wheel_load_n`, which
-/// `worker simulate --histories` writes, may stand there and is not averaged. `(slip, sled speed)` give the period.
+/// The columns are `t_s`, the end of each sample's averaging interval, and channels; `wheel_load_n`, which
+/// `worker simulate --histories` writes, is allowed and not averaged. `(slip, sled speed)` give the period.
 ///
-/// # Errors
-/// [`FileError`] with file, line and column: times that do not ascend by equal steps, fields that are blank or no finite
-/// number, a sinkage beyond the wheel's diameter; a cut-off or a transient that the recording is too slow or too short for.
-/// Checked by `tests::malformed_histories_say_what_is_wrong`.
+/// A [`FileError`] names file, line and column: times that do not ascend by equal steps, fields that are blank or not
+/// finite, a sinkage beyond the wheel's diameter; a cut-off or a transient for which the recording is too slow or too short.
+/// Checked by `tests::malformed_histories_are_refused_with_their_mistake`.
 pub(super) fn averaged(
     file: &str,
     text: &str,
@@ -74,13 +73,13 @@ pub(super) fn averaged(
     protocol: &AveragingProtocol,
     (slip, sled_speed_m_s): (f64, f64),
 ) -> Result<MeasuredHistory, FileError> {
-    let mut known = vec!["t_s"];
-    known.extend(Channel::ALL.iter().map(|c| c.column()));
-    known.push("wheel_load_n");
+    let mut allowed = vec!["t_s"];
+    allowed.extend(Channel::ALL.iter().map(|c| c.column()));
+    allowed.push("wheel_load_n");
     let columns = Columns {
-        known,
+        allowed,
         required: &["t_s"],
-        most_rows: MOST_SAMPLES,
+        max_rows: MAX_SAMPLES,
     };
     let mut lines = Vec::new();
     let mut samples: [Vec<f64>; 4] = Default::default();
@@ -142,7 +141,7 @@ pub(super) fn averaged(
     })
 }
 
-/// The equal step between the times `[s]`, or the position of the wrong time and what is wrong with it.
+/// Returns the equal step between the times `[s]`, or the position of the wrong time with a message.
 fn interval(t_s: &[f64]) -> Result<f64, (usize, String)> {
     let [first, second, .., last] = t_s else {
         return Err((
@@ -157,7 +156,7 @@ fn interval(t_s: &[f64]) -> Result<f64, (usize, String)> {
             let message = format!("t_s {} s must lie after {} s", pair[1], pair[0]);
             return Err((i + 1, message));
         }
-        // Against the first step: the mean is off itself where a sample is missing.
+        // The reference is the first step: a missing sample would shift the mean.
         let expected = second - first;
         if (step - expected).abs() > UNEVEN * expected {
             let message = format!(
@@ -194,7 +193,7 @@ mod tests {
         averaged("h.csv", text, &wheel(), protocol, MOTION).map_err(|e| e.to_string())
     }
 
-    /// Sixty seconds at 10 Hz: a pull that swings by 3 N as grousers come and go, after a start that is no steady state.
+    /// Sixty seconds at 10 Hz: a pull that oscillates by 3 N with the passing grousers, after a transient.
     fn recording() -> String {
         let mut text = "# a rig\nt_s,drawbar_pull_n,sinkage_m,wheel_load_n\n".to_owned();
         for k in 1..=600 {
@@ -206,7 +205,7 @@ mod tests {
         text
     }
 
-    /// A swing of period 1, mean 0.
+    /// An oscillation of period 1 and mean 0.
     fn swing(x: f64) -> f64 {
         (std::f64::consts::TAU * x).sin()
     }
@@ -215,7 +214,7 @@ mod tests {
     fn the_transient_is_cut_and_whole_grouser_periods_are_averaged() {
         let history = read(&recording(), &AveragingProtocol::default()).unwrap();
         let pull = history.channel(Channel::DrawbarPull).unwrap();
-        // 20 s behind the transient hold three periods of 6.545 s; over these the swing drops out
+        // 20 s after the transient hold three periods of 6.545 s; over these the oscillation cancels
         assert_eq!(pull.periods, 3);
         assert!((pull.covered_s - 19.634_954).abs() < 1e-6);
         assert!((pull.average - 20.0).abs() < 0.02, "{}", pull.average);
@@ -234,7 +233,7 @@ mod tests {
     }
 
     #[test]
-    fn malformed_histories_say_what_is_wrong() {
+    fn malformed_histories_are_refused_with_their_mistake() {
         let steady = AveragingProtocol {
             measured_transient_s: 0.0,
             ..AveragingProtocol::default()

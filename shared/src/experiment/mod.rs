@@ -1,9 +1,8 @@
 //! An experiment as its files describe it: wheels, rig, noise, protocol, test runs, bevameter readings.
 //!
 //! # Layout
-//! - `settings`: the tables of `experiment.toml`; `wheel`: those of the wheels; `tread`: how their grousers
-//!   stand; `scatter`: relative noise;
-//!   `campaign`: where the measurements come from.
+//! - `settings`: the tables of `experiment.toml`; `wheel`: the tables of the wheels; `tread`: the arrangement of their
+//!   grousers; `scatter`: relative noise; `campaign`: the origin of the measurements.
 //! - `mesh`: a wheel given as a surface of triangles.
 //! - `runs`: the rows of `runs.csv`; `history`: the recorded time history of a run, and its averages.
 //! - `more_runs`: an experiment with further runs. `fewer_runs`: with fitted runs held out.
@@ -31,7 +30,7 @@ use std::path::Path;
 pub use bevameter::{PLATE_COLUMNS, PlateReading, SHEAR_COLUMNS, ShearReading};
 pub use campaign::Campaign;
 pub use history::{MeasuredHistory, Recorded};
-pub use mesh::{MOST_BYTES, MOST_TRIANGLES, MeshError, WheelMesh};
+pub use mesh::{MAX_BYTES, MAX_TRIANGLES, MeshError, WheelMesh};
 pub use runs::{CONDITION_COLUMNS, RunUse, TestRun};
 pub use scatter::{Scatter, ScatterSd};
 pub use settings::{AveragingProtocol, Noise, NoiseSd, ProtocolKind, Rig, SoilProperties};
@@ -45,7 +44,7 @@ use crate::text_file::{read_text, sibling};
 /// A measured data set: the content of `experiment.toml` and of the files it names.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Experiment {
-    /// Where the measurements come from, where the file says it.
+    /// The origin of the measurements, if the file states it.
     pub campaign: Option<Campaign>,
     /// Wheels by name.
     pub wheels: BTreeMap<String, WheelGeometry>,
@@ -55,13 +54,13 @@ pub struct Experiment {
     pub rig: Rig,
     /// Standard deviation of the measurement noise by channel.
     pub noise: Noise,
-    /// How histories become averages.
+    /// The protocol that turns histories into averages.
     pub protocol: AveragingProtocol,
-    /// The test runs, in the order of `runs.csv`; empty where the experiment names bevameter readings alone.
+    /// The test runs, in the order of `runs.csv`; empty if the experiment has bevameter readings alone.
     pub runs: Vec<TestRun>,
-    /// Readings of plates, in the order of `plates.csv`; empty where the experiment names no such file.
+    /// Readings of plates, in the order of `plates.csv`; empty without such a file.
     pub plates: Vec<PlateReading>,
-    /// Readings of rings, in the order of `shear.csv`; empty where the experiment names no such file.
+    /// Readings of rings, in the order of `shear.csv`; empty without such a file.
     pub shear: Vec<ShearReading>,
 }
 
@@ -73,7 +72,7 @@ pub struct Series {
 }
 
 impl Series {
-    /// Where a run stands in it: −0.5 the first, 0.5 the last; none of a run without a number.
+    /// Position of a run in the series: −0.5 the first, 0.5 the last; `None` for a run without a number.
     pub fn position(self, run: &TestRun) -> Option<f64> {
         let [first, last] = [self.first, self.last].map(f64::from);
         run.order
@@ -82,9 +81,7 @@ impl Series {
 }
 
 impl Experiment {
-    /// Reads an experiment's file and those that it names, unparsed except for binary STL, which becomes ASCII STL.
-    ///
-    /// # Errors
+    /// Reads an experiment's file and the files that it names, unparsed, except that binary STL becomes ASCII STL.
     /// [`FileError`] names the file that is missing or cannot be read.
     pub fn read_files(path: &Path) -> Result<FileSet, FileError> {
         let toml = read_text(path)?;
@@ -110,7 +107,7 @@ impl Experiment {
     ///
     /// # Errors
     /// [`FileError`] names the file, the line, the value, the unit and the bound.
-    /// Checked by `tests::malformed_experiments_say_what_is_wrong`.
+    /// Checked by `tests::malformed_experiments_are_refused_with_their_mistake`.
     pub fn parse(name: &str, files: &FileSet) -> Result<Experiment, FileError> {
         let mut file = settings::parse(name, &files.toml)?;
         let text = |named: &str| files.named(name, named);
@@ -169,14 +166,14 @@ impl Experiment {
         self.runs.iter().map(|r| r.wheel.as_str()).collect()
     }
 
-    /// The series of all runs, holdout runs among them; none where the column `order` is absent or has one value alone.
+    /// The series of all runs, with the holdout runs; `None` if the column `order` is absent or has a single value.
     pub fn series(&self) -> Option<Series> {
         let orders = || self.runs.iter().filter_map(|run| run.order);
         let (first, last) = (orders().min()?, orders().max()?);
         (first < last).then_some(Series { first, last })
     }
 
-    /// Whether any run of this use has a measurement of the channel.
+    /// Returns whether any run of this use has a measurement of the channel.
     pub fn measures(&self, channel: Channel, usage: RunUse) -> bool {
         self.runs
             .iter()
@@ -210,9 +207,9 @@ mod tests {
         assert!(!experiment.measures(Channel::Sinkage, RunUse::Fit));
     }
 
-    /// One wrong value each; the message must name line, quantity, value, unit and bound.
+    /// Each case has one wrong value; the message must name line, quantity, value, unit and bound.
     #[test]
-    fn malformed_experiments_say_what_is_wrong() {
+    fn malformed_experiments_are_refused_with_their_mistake() {
         let row = |row: &str| parse(TOML, &format!("{HEADER}{row}\n")).unwrap_err();
         for (wrong, message) in [
             (
@@ -297,16 +294,16 @@ mod tests {
     #[test]
     fn the_order_of_the_runs_is_a_position_in_the_series() {
         let header = HEADER.replace("use", "use,order,prepared");
-        let of = |rows: &str| parse(TOML, &format!("{header}{rows}"));
+        let read = |rows: &str| parse(TOML, &format!("{header}{rows}"));
         let rows = "a,w,s,0.2,100,0.01,1,,fit,7,bed 1\nb,w,s,0.3,100,0.01,1,,holdout,3,bed 1\nc,w,s,0.4,100,0.01,1,,fit,5,\n";
-        let experiment = of(rows).unwrap();
+        let experiment = read(rows).unwrap();
         let series = experiment.series().unwrap();
         let positions: Vec<_> = experiment.runs.iter().map(|r| series.position(r)).collect();
         assert_eq!(positions, [Some(0.5), Some(-0.5), Some(0.0)]);
         let prepared: Vec<_> = experiment.runs.iter().map(|r| r.prepared.as_deref()).collect();
         assert_eq!(prepared, [Some("bed 1"), Some("bed 1"), None]);
-        assert_eq!(of("a,w,s,0.2,100,0.01,1,,fit,4,\n").unwrap().series(), None);
-        assert_eq!(of("a,w,s,0.2,100,0.01,1,,fit,,\n").unwrap().series(), None);
+        assert_eq!(read("a,w,s,0.2,100,0.01,1,,fit,4,\n").unwrap().series(), None);
+        assert_eq!(read("a,w,s,0.2,100,0.01,1,,fit,,\n").unwrap().series(), None);
         for (wrong, message) in [
             (
                 rows.replace(",5,", ",,"),
@@ -317,7 +314,7 @@ mod tests {
                 "runs.csv line 4: order \"5.5\" must be a whole number: that of the run in time",
             ),
         ] {
-            assert_eq!(of(&wrong).unwrap_err(), message);
+            assert_eq!(read(&wrong).unwrap_err(), message);
         }
     }
 

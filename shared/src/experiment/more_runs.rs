@@ -6,13 +6,10 @@ use super::{Experiment, settings, table};
 use crate::file::{FileError, FileSet};
 
 impl Experiment {
-    /// The files of an experiment with the rows of another `runs.csv` appended, and the resulting number of runs.
+    /// Returns the files of an experiment with the rows of another `runs.csv` appended, and the resulting number of runs.
     ///
-    /// Columns are matched by name; where one of the two files lacks a column of the other, its rows leave it blank. Comments of
-    /// both are left out.
-    ///
-    /// # Errors
-    /// [`FileError`] with the line of the new rows where one is malformed or its run stands in the experiment already.
+    /// Columns are matched by name; rows of a file without a column leave it blank. Comments of both files are left out. A
+    /// [`FileError`] names the line of a new row that is malformed or whose run is in the experiment already.
     pub fn with_runs(name: &str, files: &FileSet, csv: &str) -> Result<(FileSet, usize), FileError> {
         let before = Experiment::parse(name, files)?;
         let file = settings::parse(name, &files.toml)?.runs;
@@ -28,7 +25,7 @@ impl Experiment {
             all.files.insert(file.clone(), text);
             all
         };
-        // first alone, so that messages name the lines of the new file
+        // the new file is parsed alone first, so that messages name its lines
         Experiment::parse(name, &with(csv.to_owned()))?;
         let (mut header, mut rows) = records(&file, files.named(name, &file)?)?;
         let (new_header, new_rows) = records(&file, csv)?;
@@ -80,7 +77,7 @@ pub(super) fn records(file: &str, text: &str) -> Result<Records, FileError> {
     Ok((header, rows))
 }
 
-/// The text of a CSV file; short rows are filled with blanks.
+/// Writes the text of a CSV file; short rows are filled with blanks.
 pub(super) fn written(header: &[String], rows: Vec<(usize, Vec<String>)>) -> Result<String, csv::Error> {
     let mut writer = csv::Writer::from_writer(Vec::new());
     writer.write_record(header)?;
@@ -118,8 +115,8 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_join_names_its_line() {
-        for (more, message) in [
+    fn rows_that_cannot_be_added_are_named_by_line() {
+        for (new_rows, message) in [
             (
                 MORE.replace("three", "\"one, two\""),
                 "runs.csv line 4: run \"one, two\" is in the study already",
@@ -137,7 +134,7 @@ mod tests {
                 "runs.csv line 4: 7 fields where the header has 8",
             ),
         ] {
-            let error = Experiment::with_runs("experiment.toml", &files(RUNS), &more).unwrap_err();
+            let error = Experiment::with_runs("experiment.toml", &files(RUNS), &new_rows).unwrap_err();
             assert!(error.to_string().starts_with(message), "{error}");
         }
         let plates = FileSet {

@@ -10,14 +10,14 @@ use super::wheel::WheelGeometry;
 use crate::channel::Channel;
 use crate::file::{FileError, FileSet};
 
-/// One run of the rig: its condition and what was measured.
+/// One run of the rig: its condition and its measurements.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TestRun {
     /// Name, unique in the experiment.
     pub name: String,
-    /// Which wheel.
+    /// Name of the wheel.
     pub wheel: String,
-    /// Which soil.
+    /// Name of the soil.
     pub soil: String,
     /// `(omega R_s - v) / max(omega R_s, v)`, in [-1, 1); `R_s` is the rig's radius.
     pub slip: f64,
@@ -29,17 +29,17 @@ pub struct TestRun {
     pub slip_angle_deg: f64,
     /// Number of passes; the last one is measured.
     pub pass: u32,
-    /// Number in the series of the campaign: runs with larger ones were made later.
+    /// Number in the series of the campaign; later runs have larger numbers.
     pub order: Option<i32>,
     /// Id of the soil's preparation; runs of one preparation share its error.
     pub prepared: Option<String>,
     /// Measured value by channel [channel's unit], stated or averaged from the history; `None` = unmeasured.
     pub measured: [Option<f64>; 4],
-    /// The history that some of the measured values are averages of.
+    /// The recorded history from which some of the measured values are averaged.
     pub history: Option<MeasuredHistory>,
-    /// Standard deviation that takes precedence over the experiment's, by channel.
+    /// Standard deviation by channel, in place of the experiment's.
     pub sd: [Option<f64>; 4],
-    /// Fitted, or held out to judge the fit.
+    /// The use of the run: fitted, or held out to judge the fit.
     pub usage: RunUse,
 }
 
@@ -84,14 +84,14 @@ const PREPARED: &str = "prepared";
 
 /// The known columns of `runs.csv`.
 fn columns<'a>(sd_columns: &'a [String; 4]) -> Columns<'a> {
-    let mut known: Vec<&str> = CONDITION_COLUMNS.to_vec();
-    known.extend(Channel::ALL.iter().map(|c| c.column()));
-    known.extend(sd_columns.iter().map(String::as_str));
-    known.extend([ORDER, PREPARED, HISTORY, "use"]);
+    let mut allowed: Vec<&str> = CONDITION_COLUMNS.to_vec();
+    allowed.extend(Channel::ALL.iter().map(|c| c.column()));
+    allowed.extend(sd_columns.iter().map(String::as_str));
+    allowed.extend([ORDER, PREPARED, HISTORY, "use"]);
     Columns {
-        known,
+        allowed,
         required: &CONDITION_COLUMNS[..REQUIRED],
-        most_rows: table::MOST_ROWS,
+        max_rows: table::MAX_ROWS,
     }
 }
 

@@ -24,7 +24,7 @@ pub enum Scatter {
 /// A relative standard deviation.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum ScatterSd {
-    /// Stated.
+    /// A stated value.
     Known(f64),
     /// A parameter of the calibration: `noise.` and the key.
     Unknown,
@@ -60,8 +60,8 @@ impl Scatter {
         }
     }
 
-    /// Value where the experiment gives none. That of preparations is inferred: who names them expects them to differ, and
-    /// without the column `prepared` nothing has it.
+    /// The value if the experiment states none. The scatter of preparations is inferred: an experiment that names
+    /// preparations expects them to differ, and without the column `prepared` it has no effect.
     pub fn usual(self) -> ScatterSd {
         match self {
             Scatter::Run => ScatterSd::Known(0.0),
@@ -72,8 +72,8 @@ impl Scatter {
         }
     }
 
-    /// Scale of the half-normal prior of an unknown scatter where the job gives none: of tests and readings twice the usual
-    /// value, 0.2 for the soil's stiffness and 0.05 for its strength, of which a degree of friction is 0.04.
+    /// Scale of the half-normal prior of an unknown scatter if the job states none: for tests and readings twice the usual
+    /// value, for the soil's stiffness 0.2 and for its strength 0.05 (one degree of friction changes it by 0.04).
     pub fn prior_scale(self) -> f64 {
         match self {
             Scatter::Run | Scatter::Preparation | Scatter::PlateTest => 0.2,

@@ -11,7 +11,7 @@ use super::wheel::{RawWheel, WheelGeometry};
 use crate::channel::Channel;
 use crate::file::{FileError, parse_toml};
 
-/// What is known of a soil besides the calibrated parameters.
+/// Properties of a soil besides the calibrated parameters.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SoilProperties {
@@ -40,10 +40,10 @@ impl Default for Rig {
     }
 }
 
-/// Where the noise standard deviation of a channel comes from.
+/// The origin of a channel's noise standard deviation.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum NoiseSd {
-    /// Stated [channel's unit].
+    /// A stated value [channel's unit].
     Known(f64),
     /// Pooled from the repeats of a condition.
     Replicates,
@@ -51,10 +51,10 @@ pub enum NoiseSd {
     Unknown,
 }
 
-/// How measurements scatter.
+/// The scatter of the measurements.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Noise {
-    /// Source of the standard deviation of each channel, in the order of [`Channel::ALL`]; `None` = nothing stated.
+    /// Source of the standard deviation of each channel, in the order of [`Channel::ALL`]; `None` = not stated.
     pub sd: [Option<NoiseSd>; 4],
     /// Relative standard deviations, in the order of [`Scatter::ALL`].
     pub scatter: [ScatterSd; 7],
@@ -76,11 +76,11 @@ impl Noise {
     }
 }
 
-/// How a time history becomes the averages of a run.
+/// The protocol that turns a time history into the averages of a run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct AveragingProtocol {
-    /// When a simulated run ends.
+    /// The end of a simulated run.
     pub kind: ProtocolKind,
     /// Time cut from the start of a measured history `[s]`.
     pub measured_transient_s: f64,
@@ -92,7 +92,7 @@ pub struct AveragingProtocol {
     pub lowpass_hz: f64,
 }
 
-/// When a simulated run ends.
+/// The end of a simulated run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ProtocolKind {
@@ -121,7 +121,7 @@ pub(super) struct ExperimentFile {
     pub(super) plates: Option<String>,
     pub(super) shear: Option<String>,
     pub(super) wheel: BTreeMap<String, WheelGeometry>,
-    /// Names of the mesh files, by wheel; the wheels themselves are still without.
+    /// Names of the mesh files, by wheel; the wheels have no mesh yet.
     pub(super) meshes: BTreeMap<String, String>,
     pub(super) soil: BTreeMap<String, SoilProperties>,
     pub(super) rig: Rig,

@@ -6,30 +6,26 @@ use super::check::{ValueError, not_negative, positive};
 use crate::file::{FileError, unknown_word};
 use crate::text_file::CONVERT;
 
-/// Most rows of a file of runs or readings: 64 threads post as many results, each with nine values of 9 bytes for every run,
-/// in one message of 64 MiB.
-pub(super) const MOST_ROWS: usize = 10_000;
+/// The maximum number of rows of a file of runs or readings: 64 threads post as many results, each with nine values of 9
+/// bytes for every run, in one message of 64 MiB.
+pub(super) const MAX_ROWS: usize = 10_000;
 
-/// Which columns a file may and must have.
+/// The columns that a file may and must have.
 pub(super) struct Columns<'a> {
-    /// Every known name.
-    pub(super) known: Vec<&'a str>,
-    /// Names that must be there.
+    pub(super) allowed: Vec<&'a str>,
+    /// The required names.
     pub(super) required: &'a [&'a str],
-    /// Most rows.
-    pub(super) most_rows: usize,
+    /// The maximum number of rows.
+    pub(super) max_rows: usize,
 }
 
 impl Columns<'_> {
-    /// Where each column stands in the header.
-    ///
-    /// # Errors
-    /// Everything that is wrong with it.
+    /// Finds the position of each column in the header; the error lists everything that is wrong with it.
     fn find(&self, header: &csv::StringRecord) -> Result<BTreeMap<String, usize>, ValueError> {
         let whole = header.iter().collect::<Vec<_>>().join(",");
         for (separator, name) in [(';', "semicolons"), ('\t', "tabs"), ('|', "bars")] {
             let names: Vec<&str> = whole.split(separator).map(str::trim).collect();
-            let is_separator = names.len() > 1 && names.iter().all(|name| self.known.contains(name));
+            let is_separator = names.len() > 1 && names.iter().all(|name| self.allowed.contains(name));
             if is_separator {
                 let message = format!("columns are separated by {name}, commas are expected: {CONVERT}");
                 return Err(ValueError::Rule(message));
@@ -38,14 +34,14 @@ impl Columns<'_> {
         let mut positions = BTreeMap::new();
         let mut wrong = Vec::new();
         for (position, name) in header.iter().enumerate() {
-            if !self.known.contains(&name) {
-                wrong.push(unknown_word("column", name, self.known.iter().copied()));
+            if !self.allowed.contains(&name) {
+                wrong.push(unknown_word("column", name, self.allowed.iter().copied()));
             } else if positions.insert(name.to_owned(), position).is_some() {
                 wrong.push(format!("column \"{name}\" appears twice"));
             }
         }
         let missing = |column: &&&str| {
-            let is_misspelt = || wrong.iter().any(|said| said.ends_with(&format!("\"{column}\"")));
+            let is_misspelt = || wrong.iter().any(|text| text.ends_with(&format!("\"{column}\"")));
             !positions.contains_key(**column) && !is_misspelt()
         };
         let missing: Vec<&str> = self.required.iter().filter(missing).copied().collect();
@@ -70,10 +66,8 @@ pub(super) fn reader(text: &str) -> csv::Reader<&[u8]> {
         .from_reader(text.as_bytes())
 }
 
-/// Parses the rows of a file with `row`, which also gets the line, counted from 1.
-///
-/// # Errors
-/// [`FileError`] with the line of the header or of the first bad row, and with what is wrong with the next ones.
+/// Parses the rows of a file with `row`, which also gets the line, counted from 1. The [`FileError`] names the line of the
+/// header or of the first bad row, and the faults of the next ones.
 pub(super) fn rows<T>(
     file: &str,
     text: &str,
@@ -93,8 +87,8 @@ pub(super) fn rows<T>(
     for record in reader.records() {
         let record = record.map_err(|e| FileError::whole(file, e.to_string()))?;
         let line = line_of(text, &record);
-        if parsed.len() + wrong.len() == columns.most_rows {
-            let message = format!("the file must have at most {} rows", columns.most_rows);
+        if parsed.len() + wrong.len() == columns.max_rows {
+            let message = format!("the file must have at most {} rows", columns.max_rows);
             return Err(FileError::at(file, line, message));
         }
         let fields = Row {
@@ -119,10 +113,10 @@ pub(super) fn rows<T>(
     }
 }
 
-/// So many bad rows of a file are told.
+/// The number of bad rows that an error describes.
 const TOLD: usize = 3;
 
-/// Bad rows as one error: at the first, with the next ones, and the number of all others.
+/// Joins bad rows into one error: the first, the next ones, and the number of the rest.
 fn all(file: &str, wrong: &[FileError]) -> FileError {
     let line = |error: &FileError| error.line.unwrap_or_default();
     let mut message = wrong[0].message.clone();
@@ -132,12 +126,12 @@ fn all(file: &str, wrong: &[FileError]) -> FileError {
     match wrong.len().saturating_sub(TOLD) {
         0 => {}
         1 => message += "; and 1 more row is wrong",
-        more => message += &format!("; and {more} more rows are wrong"),
+        count => message += &format!("; and {count} more rows are wrong"),
     }
     FileError::at(file, line(&wrong[0]), message)
 }
 
-/// The line in which a record stands, counted from 1: its position is that of the comments before it.
+/// The line of a record, counted from 1; the position that the reader gives is that of the comments before it.
 pub(super) fn line_of(text: &str, record: &csv::StringRecord) -> usize {
     let Some(position) = record.position() else {
         return 1;
@@ -150,7 +144,7 @@ pub(super) fn line_of(text: &str, record: &csv::StringRecord) -> usize {
         .count()
 }
 
-/// What a text that is no number should be, where it is nearly one.
+/// Returns the correction for a text that is nearly a number.
 fn remedy(text: &str) -> String {
     let pointed = text.replace(',', ".");
     if text.matches(',').count() == 1 && pointed.parse::<f64>().is_ok() {
@@ -176,17 +170,17 @@ pub(super) struct Row<'a> {
 
 impl Row<'_> {
     fn check_length(&self, expected: usize) -> Result<(), ValueError> {
-        let found = self.record.len();
-        if found == expected {
+        let field_count = self.record.len();
+        if field_count == expected {
             return Ok(());
         }
         let behind = self.record.iter().skip(expected);
-        let remedy = match found > expected && behind.into_iter().all(str::is_empty) {
+        let remedy = match field_count > expected && behind.into_iter().all(str::is_empty) {
             true => ": leave out the commas at its end",
             false => "",
         };
         Err(ValueError::Rule(format!(
-            "{found} fields where the header has {expected}{remedy}"
+            "{field_count} fields where the header has {expected}{remedy}"
         )))
     }
 
@@ -194,12 +188,12 @@ impl Row<'_> {
         self.record.iter().all(|field| field.parse::<f64>().is_err())
     }
 
-    /// Whether the file has a column.
+    /// Returns whether the file has a column.
     pub(super) fn has(&self, column: &str) -> bool {
         self.positions.contains_key(column)
     }
 
-    /// The field of a column; `None` where it is blank or the column absent.
+    /// The field of a column; `None` if it is blank or the column absent.
     pub(super) fn text(&self, column: &str) -> Option<&str> {
         self.positions
             .get(column)
@@ -213,7 +207,7 @@ impl Row<'_> {
             .ok_or_else(|| ValueError::Blank(column.to_owned()))
     }
 
-    /// A finite number; `None` where the field is blank or the column absent.
+    /// A finite number; `None` if the field is blank or the column absent.
     pub(super) fn number(&self, column: &str) -> Result<Option<f64>, ValueError> {
         let Some(text) = self.text(column) else {
             return Ok(None);
@@ -230,34 +224,34 @@ impl Row<'_> {
         }
     }
 
-    /// A finite number that must be there.
+    /// A finite number, which is required.
     pub(super) fn required(&self, column: &str) -> Result<f64, ValueError> {
         self.number(column)?
             .ok_or_else(|| ValueError::Blank(column.to_owned()))
     }
 
-    /// A number above 0 that must be there.
+    /// A number above 0, which is required.
     pub(super) fn positive(&self, column: &str, unit: &str) -> Result<f64, ValueError> {
         let value = self.required(column)?;
         positive(column, value, unit)?;
         Ok(value)
     }
 
-    /// A number of at least 0 that must be there.
+    /// A number of at least 0, which is required.
     pub(super) fn not_negative(&self, column: &str, unit: &str) -> Result<f64, ValueError> {
         let value = self.required(column)?;
         not_negative(column, value, unit)?;
         Ok(value)
     }
 
-    /// A name that must be one of `known`.
-    pub(super) fn named<T>(&self, column: &str, known: &BTreeMap<String, T>) -> Result<String, ValueError> {
+    /// A name that must be a key of `names`.
+    pub(super) fn named<T>(&self, column: &str, names: &BTreeMap<String, T>) -> Result<String, ValueError> {
         let name = self.word(column)?;
-        if known.contains_key(name) {
+        if names.contains_key(name) {
             Ok(name.to_owned())
         } else {
-            let known = known.keys().map(String::as_str);
-            Err(ValueError::Unknown(unknown_word(column, name, known)))
+            let names = names.keys().map(String::as_str);
+            Err(ValueError::Unknown(unknown_word(column, name, names)))
         }
     }
 }

@@ -1,15 +1,15 @@
-//! How grousers stand on a rim, where they are more than straight bars across it.
+//! The arrangement of grousers on a rim, other than straight bars across it.
 
 use serde::{Deserialize, Serialize};
 
 use super::check::{ValueError, positive, possible, require};
 
-/// Most rows of grousers.
-const MOST_ROWS: u32 = 100;
-/// Relative difference that is only rounding.
+/// The maximum number of rows of grousers.
+const MAX_ROWS: u32 = 100;
+/// Relative difference that rounding can cause.
 const ROUNDING: f64 = 1e-9;
 
-/// Grousers in rows side by side, shifted against each other, oblique, V-shaped or bent; `scm` alone rolls them so.
+/// Grousers in rows side by side: staggered, oblique, V-shaped or bent; only `scm` models them.
 ///
 /// Positive angles and bows are forward where the rim is lowest: with positive `chevron_deg` and `bow_m` the middle of a grouser
 /// enters the soil before its ends.
@@ -19,18 +19,18 @@ pub struct Tread {
     pub rows: u32,
     /// Shift of a row against the one to its right, relative to the distance of its grousers, in [0, 1) `[–]`.
     pub stagger: f64,
-    /// Width of a row's grousers `[m]`; none: the wheel's width over the number of rows.
+    /// Width of a row's grousers `[m]`; `None`: the wheel's width over the number of rows.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub width_m: Option<f64>,
     /// Angle of the grousers against the axle; positive: their left end is further forward `[deg]`.
     pub angle_deg: f64,
     /// Angle of either half against the axle `[deg]`.
     pub chevron_deg: f64,
-    /// How far forward of their middle the ends at the sides of the wheel lie, on a parabola `[m]`.
+    /// Distance by which the ends of the grousers at the sides of the wheel lie ahead of their middle, on a parabola `[m]`.
     pub bow_m: f64,
 }
 
-/// The keys of `[wheel.NAME]` that say how grousers stand.
+/// The keys of `[wheel.NAME]` that describe the arrangement of grousers.
 #[derive(Debug, Default)]
 pub(super) struct RawTread {
     pub(super) rows: Option<u32>,
@@ -55,7 +55,7 @@ impl RawTread {
         keys.into_iter().find_map(|(key, stated)| stated.then_some(key))
     }
 
-    /// The tread of a wheel of a width; none where its grousers are straight bars across all of it.
+    /// The tread of a wheel of a width; `None` if its grousers are straight bars across its whole width.
     pub(super) fn check(&self, wheel_width_m: f64, grousers: u32) -> Result<Option<Tread>, ValueError> {
         let Some(stated) = self.stated() else {
             return Ok(None);
@@ -81,7 +81,7 @@ impl RawTread {
 impl Tread {
     fn check(&self, wheel_width_m: f64) -> Result<(), ValueError> {
         let rows = f64::from(self.rows);
-        let some = (1..=MOST_ROWS).contains(&self.rows);
+        let some = (1..=MAX_ROWS).contains(&self.rows);
         require(some, "grouser_rows", rows, "rows", "between 1 and 100")?;
         let share = (0.0..1.0).contains(&self.stagger);
         let bound = "in [0, 1), a part of the distance from grouser to grouser,";
@@ -94,10 +94,10 @@ impl Tread {
         }
         if let Some(width) = self.width_m {
             positive("grouser_width_m", width, "m")?;
-            let most = wheel_width_m / rows;
-            let bound = format!("<= width_m / grouser_rows = {most}");
+            let max_width_m = wheel_width_m / rows;
+            let bound = format!("<= width_m / grouser_rows = {max_width_m}");
             require(
-                width <= most * (1.0 + ROUNDING),
+                width <= max_width_m * (1.0 + ROUNDING),
                 "grouser_width_m",
                 width,
                 "m",
@@ -134,7 +134,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_said_is_a_straight_bar_across_the_wheel() {
+    fn a_wheel_without_tread_keys_has_straight_bars() {
         assert_eq!(check(RawTread::default()), Ok(None));
         for straight in [
             RawTread {

@@ -6,8 +6,8 @@ use super::check::{ValueError, not_negative, positive};
 use super::mesh::{self, WheelMesh};
 use super::tread::{RawTread, Tread};
 
-/// Speed of the rim `[m/s]` by the rig's radius: `v / (1 - s)` for s ≥ 0 and `v (1 + s)` for s < 0, v the sled speed `[m/s]`.
-/// 0 for a locked wheel.
+/// Speed of the rim `[m/s]` with the rig's radius: `v / (1 - s)` for s ≥ 0 and `v (1 + s)` for s < 0, v the sled speed
+/// `[m/s]`; 0 for a locked wheel.
 pub fn rim_speed_m_s(slip: f64, sled_speed_m_s: f64) -> f64 {
     if slip < 0.0 {
         sled_speed_m_s * (1.0 + slip)
@@ -16,13 +16,13 @@ pub fn rim_speed_m_s(slip: f64, sled_speed_m_s: f64) -> f64 {
     }
 }
 
-/// A rigid wheel. `quasi_static` models its smooth rim alone, unless its grousers roll: they enter through a radius of its own.
+/// A rigid wheel. `quasi_static` models its smooth rim alone unless its grousers roll; their tips then have a larger radius.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct WheelGeometry {
-    /// Radius of the rim `[m]`; beside a mesh, the radius that slip and sinkage refer to.
+    /// Radius of the rim `[m]`; with a mesh, the radius that slip and sinkage refer to.
     pub radius_m: f64,
-    /// Width of the rim `[m]`; beside a mesh, the width of the lane.
+    /// Width of the rim `[m]`; with a mesh, the width of the lane.
     pub width_m: f64,
     /// Number of grousers; with a tread, in each row.
     pub grouser_count: u32,
@@ -32,17 +32,17 @@ pub struct WheelGeometry {
     pub grouser_thickness_m: f64,
     /// Radius with which the rig turns slip into rim speed `[m]`.
     pub rig_radius_m: f64,
-    /// The surface, where it is given instead of rim and grousers. Not written where there is none, so that a variant
-    /// without a mesh has the text, and the hash, that it had before there were meshes.
+    /// The surface, in place of rim and grousers. It is omitted from the text if absent, so that a variant without a mesh
+    /// keeps the text and hash of versions without meshes.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub mesh: Option<WheelMesh>,
-    /// How the grousers stand, where they are more than straight bars across the rim; not written where they are not.
+    /// The arrangement of the grousers, if they are not straight bars across the rim; else omitted from the text.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub tread: Option<Tread>,
 }
 
 impl WheelGeometry {
-    /// Whether grousers are declared, by their count or their height.
+    /// Returns whether grousers are declared, by their count or their height.
     pub fn has_grousers(&self) -> bool {
         self.grouser_count > 0 || self.grouser_height_m > 0.0
     }
@@ -159,7 +159,7 @@ mod tests {
             mesh: None,
             tread: None,
         };
-        // 8 mm/s at slip 0.2 and 12.5 mm/s at slip -0.2 are 10 mm/s of the rim: 2 pi 0.125 m / 12 / 0.01 m/s
+        // 8 mm/s at slip 0.2 and 12.5 mm/s at slip -0.2 both give 10 mm/s of the rim: 2 pi 0.125 m / 12 / 0.01 m/s
         for (slip, speed) in [(0.2, 0.008), (-0.2, 0.0125)] {
             let period = wheel.grouser_period_s(slip, speed).unwrap();
             assert!((period - 6.544_984_694_978_736).abs() < 1e-12, "{period}");

@@ -1,4 +1,4 @@
-//! Whether a forward model can express a variant.
+//! Check that a forward model can express a variant.
 
 use std::collections::BTreeSet;
 
@@ -13,7 +13,7 @@ use super::variant::ModelVariant;
 use crate::parameters;
 
 impl ModelKind {
-    /// Whether the model has a form of an effect.
+    /// Returns whether the model has a form of an effect.
     pub fn has_form(self, effect: &Effect) -> bool {
         match self {
             ModelKind::QuasiStatic => effect.mechanism != Some(Mechanism::SideWall),
@@ -25,11 +25,8 @@ impl ModelKind {
 }
 
 impl ModelVariant {
-    /// Checks that the forward model can express the variant and its effects. Without conditions no wheel rolls, and there is
-    /// nothing to check.
-    ///
-    /// # Errors
-    /// [`ModelError`] names what the model of this kind lacks.
+    /// Checks that the forward model can express the variant and its effects. Without conditions no wheel rolls, and there
+    /// is nothing to check. [`ModelError`] names the missing capability.
     pub fn check_expressible(&self, effects: &EffectSet) -> Result<(), ModelError> {
         if self.conditions.is_empty() {
             return Ok(());

@@ -1,11 +1,11 @@
-//! What is to be simulated: conditions of the rig, readings of plates and rings.
+//! The conditions to simulate: runs of the rig, readings of plates and rings.
 
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
 use crate::experiment::TestRun;
 
-/// A condition of the rig, as the simulation needs it; measurements stay with the coordinator.
+/// The properties of a run that the simulation needs; measurements stay with the coordinator.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RunCondition {
@@ -21,19 +21,19 @@ pub struct RunCondition {
     pub slip_angle_deg: f64,
     /// Number of passes; the last one is averaged.
     pub pass: u32,
-    /// Angle of repose of the run's soil `[deg]`, for a model whose soil slides; absent: the model's default.
+    /// Angle of repose of the run's soil `[deg]`, for a model with sliding soil; absent: the model's default.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub repose_angle_deg: Option<f64>,
-    /// Density of the run's soil `[kg/m^3]`; absent where no effect asks for it.
+    /// Density of the run's soil `[kg/m^3]`; absent if no effect uses it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub density_kg_m3: Option<f64>,
-    /// Position of the run in the series of the campaign, −0.5 the first, 0.5 the last; absent where no effect asks for it.
+    /// Position of the run in the series of the campaign, −0.5 the first, 0.5 the last; absent if no effect uses it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub order: Option<f64>,
 }
 
 impl RunCondition {
-    /// The condition of a run, without what only some models and effects ask for.
+    /// The condition of a run, without the properties that only some models and effects use.
     pub(super) fn new(run: &TestRun) -> Self {
         RunCondition {
             repose_angle_deg: None,

@@ -1,6 +1,6 @@
 //! The effects of a job, their order and their parameters.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 
 use formula::catalogue::{catalogue, find};
 use formula::{Effect, Parameter, Variable};
@@ -12,17 +12,17 @@ use super::error::ModelError;
 use crate::file::{FileError, unknown_word};
 use crate::parameters::{self, ParameterBounds};
 
-/// An effect on the wire, with its file: the worker may have another version of the catalogue, and no file of the user.
+/// An effect with its file as it is sent: the worker may have another version of the catalogue, and has no file of the user.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct EffectText {
     /// Name of the effect.
     pub name: String,
-    /// Its file, as written.
+    /// The text of its file, as written.
     pub text: String,
 }
 
-/// The effects of a job in the order of their evaluation at a hook: those of the catalogue in its order, then those of
+/// The effects of a job in the order of their evaluation at a hook: first the catalogue's in its order, then those from
 /// files in the order of the job.
 #[derive(Debug, Clone, Default)]
 pub struct EffectSet(Vec<Chosen>);
@@ -30,24 +30,24 @@ pub struct EffectSet(Vec<Chosen>);
 /// An effect of a job.
 #[derive(Debug, Clone)]
 pub struct Chosen {
-    /// The effect.
+    /// The effect itself.
     pub effect: Effect,
     /// The user's file; `None` for an effect of the catalogue.
     pub file: Option<String>,
 }
 
-/// A parameter of an effect that a job does not mention.
+/// A parameter of an effect for which a job states neither prior nor value.
 #[derive(Debug, Clone)]
 pub struct Unsaid<'a> {
     /// Its name in the job: `EFFECT.PARAMETER`, or `EFFECT.PARAMETER.WHEEL`.
     pub name: String,
     /// The effect, with its file.
     pub chosen: &'a Chosen,
-    /// The parameter, with the prior that its file gives it.
+    /// The parameter, with the prior from its file.
     pub parameter: &'a Parameter,
 }
 
-/// The parts of a parameter's name: effect, parameter, wheel.
+/// Splits a parameter's name into effect, parameter and wheel.
 fn parts(name: &str) -> Option<(&str, &str, Option<&str>)> {
     let (effect, rest) = name.split_once('.')?;
     let (parameter, wheel) = rest.split_once('.').map_or((rest, None), |(p, w)| (p, Some(w)));
@@ -55,7 +55,7 @@ fn parts(name: &str) -> Option<(&str, &str, Option<&str>)> {
 }
 
 impl EffectSet {
-    /// Most effects of a job.
+    /// The maximum number of effects of a job.
     pub const MOST: usize = 10;
 
     /// Reads the effects that a model lists and, from the catalogue, those whose parameters are named.
@@ -64,31 +64,30 @@ impl EffectSet {
     /// - `file`: the name of the job in messages.
     /// - `effects`, `files`: the effects of the catalogue and the effect files that the model lists.
     /// - `names`: every parameter that the job names.
-    /// - `texts`: the texts of the files.
+    /// - `read`: reads an effect file; `None` of a file that was not sent.
     ///
     /// # Errors
-    /// [`FileError`]: of the effect's file with line and column, or of the job.
+    /// [`FileError`] of the effect's file with line and column, or of the job.
     pub fn choose<'a>(
         file: &str,
         (effects, files): (&[String], &[String]),
         names: impl IntoIterator<Item = &'a str>,
-        texts: &BTreeMap<String, String>,
+        read: impl Fn(&str) -> Option<Result<Effect, FileError>>,
     ) -> Result<Self, FileError> {
         let listed = effects.iter().map(String::as_str);
         let named = names.into_iter().filter_map(|name| Some(parts(name)?.0));
         let wanted: BTreeSet<&str> = listed.chain(named).collect();
-        let known = catalogue().iter().filter(|e| wanted.contains(e.name.as_str()));
-        let mut chosen: Vec<Chosen> = known
+        let listed = catalogue().iter().filter(|e| wanted.contains(e.name.as_str()));
+        let mut chosen: Vec<Chosen> = listed
             .map(|effect| Chosen {
                 effect: effect.clone(),
                 file: None,
             })
             .collect();
         for named in files {
-            let text = texts.get(named).ok_or_else(|| {
+            let effect = read(named).ok_or_else(|| {
                 FileError::whole(file, format!("file \"{named}\" is named but was not sent"))
-            })?;
-            let effect = own(named, text)?;
+            })??;
             if let Some(other) = chosen.iter().find(|c| c.effect.name == effect.name) {
                 let message = format!(
                     "effect {} is already in {}",
@@ -115,17 +114,21 @@ impl EffectSet {
         Ok(())
     }
 
-    /// Reads effects that were sent.
-    ///
-    /// # Errors
-    /// [`ModelError`] names the effect and what is wrong with its file.
+    /// Reads the effects of a message; [`ModelError`] names the effect and the mistake in its file.
     pub fn read(texts: &[EffectText]) -> Result<Self, ModelError> {
         let read = |sent: &EffectText| {
-            let name = sent.name.clone();
-            let effect = Effect::read(&sent.text).map_err(|error| ModelError::Effect { name, error })?;
+            // The catalogue is read already.
+            let known = find(&sent.name).filter(|effect| effect.text == sent.text);
+            let effect = match known {
+                Some(effect) => effect.clone(),
+                None => Effect::read(&sent.text).map_err(|error| ModelError::Effect {
+                    name: sent.name.clone(),
+                    error,
+                })?,
+            };
             if effect.name != sent.name {
                 return Err(ModelError::EffectName {
-                    own: effect.name,
+                    in_file: effect.name,
                     sent: sent.name.clone(),
                 });
             }
@@ -153,24 +156,22 @@ impl EffectSet {
         self.iter().find(|effect| effect.uses().contains(variable))
     }
 
-    /// The bounds of an effect's parameter; `None` where the name is not that of an effect's parameter.
-    ///
-    /// # Errors
-    /// [`ModelError`] names what is unknown, and the nearest known.
+    /// The bounds of an effect's parameter; `None` if the name has another form. [`ModelError`] names an unknown word and
+    /// the nearest known one.
     pub fn lookup(&self, name: &str, wheels: &BTreeSet<&str>) -> Option<Result<ParameterBounds, ModelError>> {
         let (effect, parameter, wheel) = parts(name)?;
         Some(self.find(effect).and_then(|effect| {
-            let known = effect.parameters.iter().map(|p| p.name.as_str());
+            let names = effect.parameters.iter().map(|p| p.name.as_str());
             let Some(place) = effect.parameter(parameter) else {
                 let what = format!("parameter of effect {}", effect.name);
-                return Err(ModelError::Unknown(unknown_word(&what, parameter, known)));
+                return Err(ModelError::Unknown(unknown_word(&what, parameter, names)));
             };
             if let Some(unknown) = wheel.filter(|w| !wheels.contains(w)) {
-                let known = wheels.iter().copied();
-                return Err(ModelError::Unknown(unknown_word("wheel", unknown, known)));
+                let names = wheels.iter().copied();
+                return Err(ModelError::Unknown(unknown_word("wheel", unknown, names)));
             }
             let parameter = &effect.parameters[place];
-            // only the prior in the file shows whether it is a magnitude
+            // the prior in the file shows whether the parameter is a magnitude
             let magnitude = ["half_normal", "lognormal", "loguniform"];
             let positive = magnitude.iter().any(|d| parameter.prior.get(d).is_some());
             Ok(ParameterBounds {
@@ -189,23 +190,23 @@ impl EffectSet {
         })
     }
 
-    /// The parameters of effects that are still missing beside these names: those of effects on all wheels and, of effects
-    /// with a strength for one wheel, those of that wheel.
+    /// The parameters of effects that are missing among these names: for an effect on all wheels its parameters, and for an
+    /// effect with a strength for one wheel the parameters of that wheel.
     pub fn unsaid<'a>(&'a self, names: &BTreeSet<&str>, wheels: &BTreeSet<&str>) -> Vec<Unsaid<'a>> {
         let mut unsaid = Vec::new();
         for chosen in &self.0 {
-            let reach = Reach::of(&chosen.effect, names, wheels);
+            let reach = Reach::new(&chosen.effect, names, wheels);
             for parameter in &chosen.effect.parameters {
                 let strength = parameter.neutral.is_some();
-                let said = |wheel: Option<&str>| reach.says(parameter, wheel);
-                let missing: Vec<Option<&str>> = if said(None) {
+                let is_stated = |wheel: Option<&str>| reach.says(parameter, wheel);
+                let missing: Vec<Option<&str>> = if is_stated(None) {
                     Vec::new()
-                } else if strength && wheels.iter().any(|w| said(Some(w))) {
-                    // neutral on the other wheels
+                } else if strength && wheels.iter().any(|w| is_stated(Some(w))) {
+                    // the effect is neutral on the other wheels
                     Vec::new()
                 } else if strength && reach.on_some {
                     reach.wheels.iter().map(|&w| Some(w)).collect()
-                } else if !reach.wheels.is_empty() && reach.wheels.iter().all(|w| said(Some(w))) {
+                } else if !reach.wheels.is_empty() && reach.wheels.iter().all(|w| is_stated(Some(w))) {
                     Vec::new()
                 } else {
                     vec![None]
@@ -220,10 +221,8 @@ impl EffectSet {
         unsaid
     }
 
-    /// Checks the names of effects' parameters against each other, and that nothing is missing.
-    ///
-    /// # Errors
-    /// [`ModelError`] names the parameter.
+    /// Checks that the names of effects' parameters do not contradict each other, and that none is missing; [`ModelError`]
+    /// names the parameter.
     pub(crate) fn check_complete(
         &self,
         names: &BTreeSet<&str>,
@@ -231,7 +230,7 @@ impl EffectSet {
     ) -> Result<(), ModelError> {
         for chosen in &self.0 {
             let effect = &chosen.effect;
-            let reach = Reach::of(effect, names, wheels);
+            let reach = Reach::new(effect, names, wheels);
             for parameter in &effect.parameters {
                 let one = wheels.iter().find(|w| reach.says(parameter, Some(w)));
                 let Some(wheel) = one else { continue };
@@ -255,17 +254,17 @@ impl EffectSet {
         }
     }
 
-    /// The wheels that an effect acts on, of these, by the names of a complete job.
+    /// The wheels, among these, that an effect acts on, by the names of a complete job.
     pub fn acts_on<'a>(
         effect: &Effect,
         names: &BTreeSet<&str>,
         wheels: &BTreeSet<&'a str>,
     ) -> BTreeSet<&'a str> {
-        Reach::of(effect, names, wheels).wheels
+        Reach::new(effect, names, wheels).wheels
     }
 
-    /// The effects in a model's version: empty without effects, otherwise the first bytes of the SHA-256 of their files in
-    /// order.
+    /// The effects' part of a model version: empty without effects, otherwise the first bytes of the SHA-256 of their files
+    /// in order.
     pub fn version(texts: &[EffectText]) -> String {
         if texts.is_empty() {
             return String::new();
@@ -279,7 +278,7 @@ impl EffectSet {
     }
 }
 
-/// `EFFECT.PARAMETER`, or `EFFECT.PARAMETER.WHEEL`.
+/// Builds `EFFECT.PARAMETER`, or `EFFECT.PARAMETER.WHEEL`.
 pub fn parameter_name(effect: &Effect, parameter: &Parameter, wheel: Option<&str>) -> String {
     let wheel = wheel.map(|w| format!(".{w}")).unwrap_or_default();
     format!("{}.{}{wheel}", effect.name, parameter.name)
@@ -290,12 +289,12 @@ struct Reach<'a, 'n> {
     effect: &'n Effect,
     names: &'n BTreeSet<&'n str>,
     wheels: BTreeSet<&'a str>,
-    /// Whether strengths are given for single wheels alone.
+    /// True if strengths are stated for single wheels only.
     on_some: bool,
 }
 
 impl<'a, 'n> Reach<'a, 'n> {
-    fn of(effect: &'n Effect, names: &'n BTreeSet<&'n str>, wheels: &BTreeSet<&'a str>) -> Self {
+    fn new(effect: &'n Effect, names: &'n BTreeSet<&'n str>, wheels: &BTreeSet<&'a str>) -> Self {
         let mut reach = Reach {
             effect,
             names,
@@ -317,10 +316,8 @@ impl<'a, 'n> Reach<'a, 'n> {
     }
 }
 
-/// Reads a user's effect file, which may not use names or mechanisms of the catalogue.
-///
-/// # Errors
-/// [`FileError`] with the line, and the column where one is to blame.
+/// Reads a user's effect file, which may not use names or mechanisms of the catalogue. A [`FileError`] names line and column
+/// if known.
 pub fn own(file: &str, text: &str) -> Result<Effect, FileError> {
     let effect = Effect::read(text).map_err(|e| FileError {
         file: file.to_owned(),
@@ -355,6 +352,8 @@ pub fn own(file: &str, text: &str) -> Result<Effect, FileError> {
 
 #[cfg(test)]
 mod tests {
+    use std::collections::BTreeMap;
+
     use super::*;
 
     const MINE: &str = "name = \"mine\"\nsummary = \"s\"\nsource = \"s\"\nshear = \"tau * (1 - a * exp(-v_t / v_a))\"\n\
@@ -365,7 +364,8 @@ mod tests {
         let effects: Vec<String> = effects.iter().map(|&e| e.to_owned()).collect();
         let files = ["mine.toml".to_owned()];
         let texts = BTreeMap::from([("mine.toml".to_owned(), mine.to_owned())]);
-        EffectSet::choose("job.toml", (&effects, &files), names.iter().copied(), &texts)
+        let read = |name: &str| texts.get(name).map(|text| own(name, text));
+        EffectSet::choose("job.toml", (&effects, &files), names.iter().copied(), read)
             .map_err(|e| e.to_string())
     }
 
@@ -394,15 +394,15 @@ mod tests {
         assert_eq!(unsaid(&set, &["mine.a.w", "mine.v_a.w"]), Vec::<String>::new());
         assert_eq!(unsaid(&set, &["mine.a", "mine.v_a.w"]), ["mine.v_a"]);
         let two = choose(&["peak_pressure_angle"], &[], MINE).unwrap();
-        let said = ["peak_pressure_angle.front_share.x", "mine.a", "mine.v_a"];
+        let stated = ["peak_pressure_angle.front_share.x", "mine.a", "mine.v_a"];
         assert_eq!(
-            unsaid(&two, &said),
+            unsaid(&two, &stated),
             ["peak_pressure_angle.front_share_per_slip.x"]
         );
     }
 
     #[test]
-    fn what_contradicts_itself_or_acts_nowhere_is_refused() {
+    fn contradictory_and_idle_parameters_are_refused() {
         let set = choose(&[], &[], MINE).unwrap();
         let check = |names: &[&str]| {
             let names = names.iter().copied().collect();
@@ -425,7 +425,7 @@ mod tests {
     }
 
     #[test]
-    fn files_that_take_what_is_not_theirs_are_refused_by_line() {
+    fn files_with_names_of_the_catalogue_are_refused_by_line() {
         let named = |name: &str| MINE.replace("\"mine\"", &format!("\"{name}\""));
         for (text, message) in [
             (

@@ -2,10 +2,10 @@
 
 use crate::parameters::BoundsError;
 
-/// Why a model cannot be set up. Where a variant holds a text, it is the whole sentence.
+/// Why a model cannot be set up. A variant with a text holds the whole sentence.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum ModelError {
-    /// A word that is not known, with the nearest known.
+    /// An unknown word, with the nearest known one.
     #[error("{0}")]
     Unknown(String),
     /// A key or its value breaks a rule.
@@ -14,29 +14,29 @@ pub enum ModelError {
     /// A parameter lies outside its bounds.
     #[error(transparent)]
     Bounds(#[from] BoundsError),
-    /// A parameter that the model needs is not given.
+    /// A parameter that the model needs has neither prior nor value.
     #[error("parameter {0} has neither a prior nor a fixed value")]
     Unset(String),
-    /// Something is missing, or is given twice.
+    /// Something is missing or stated twice.
     #[error("{0}")]
     Incomplete(String),
-    /// The forward model cannot express what is asked, or it would have no effect.
+    /// The forward model cannot express the request, or the request would have no effect.
     #[error("{0}")]
     Inexpressible(String),
-    /// An effect was sent that cannot be read.
+    /// The file of a received effect cannot be read.
     #[error("effect {name}: {error}")]
     Effect {
-        /// Its name.
+        /// Name of the effect.
         name: String,
-        /// What is wrong with its file.
+        /// The mistake in its file.
         error: formula::EffectError,
     },
-    /// An effect was sent under another name than its file has.
-    #[error("effect {own} came as {sent}")]
+    /// The name of a received effect differs from the name in its file.
+    #[error("effect {in_file} came as {sent}")]
     EffectName {
-        /// The name in its file.
-        own: String,
-        /// The name under which it was sent.
+        /// Name in the file.
+        in_file: String,
+        /// The name in the message.
         sent: String,
     },
 }

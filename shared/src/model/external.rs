@@ -1,4 +1,4 @@
-//! A model that is not ours: a program or a UM-Bridge server, with what it takes and what it gives.
+//! An external model: a program or a UM-Bridge server, with its inputs and outputs.
 
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
@@ -6,48 +6,48 @@ use utoipa::ToSchema;
 use crate::channel::Channel;
 use crate::parameters::{BASE, BaseParameter, ParameterBounds};
 
-/// A model that is not ours, as a job describes it.
+/// An external model, as a job describes it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ExternalModel {
-    /// Where it is.
+    /// The program or server that runs it.
     pub source: ExternalSource,
-    /// The version that the job states of it.
+    /// The version that the job states.
     pub version: String,
-    /// The properties of a run that it takes, in its order.
+    /// The properties of a run that it takes, in order.
     pub inputs: Vec<RunInput>,
-    /// The parameters that it takes, in its order.
+    /// The parameters that it takes, in order.
     pub parameters: Vec<ExternalParameter>,
-    /// The channels that it gives, in its order.
+    /// The channels that it returns, in order.
     #[schema(value_type = Vec<String>)]
     pub outputs: Vec<Channel>,
-    /// The longest that one run may take `[s]`.
+    /// The maximum time of one run `[s]`.
     pub time_s: f64,
-    /// Address space of a program \[MB\]; absent of a server, which has its own limits.
+    /// Maximum address space of a program \[MB\]; absent for a server, which has its own limits.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub memory_mb: Option<u64>,
 }
 
-/// Where a model that is not ours is.
+/// The location of an external model.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum ExternalSource {
-    /// A program of a worker's machine.
+    /// A program on a worker's machine.
     Command {
-        /// Name of its file, without a folder: where it lies is its operator's choice.
+        /// Name of its file, without a folder: the operator chooses the folder.
         program: String,
     },
-    /// A model of a UM-Bridge server.
+    /// A model on a UM-Bridge server.
     Umbridge {
         /// URL of the server.
         url: String,
-        /// Name of the model there.
+        /// Name of the model on the server.
         model: String,
     },
 }
 
 impl ExternalSource {
-    /// The name by which workers say that they run it: `wheel.py`, or `http://host:4242 wheel`.
+    /// The name under which workers announce it: `wheel.py`, or `http://host:4242 wheel`.
     pub fn name(&self) -> String {
         match self {
             ExternalSource::Command { program } => program.clone(),
@@ -56,22 +56,22 @@ impl ExternalSource {
     }
 }
 
-/// A parameter of a model that is not ours.
+/// A parameter of an external model.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ExternalParameter {
-    /// Its name.
+    /// Name of the parameter.
     pub name: String,
-    /// Its unit; `1` without one.
+    /// Unit of the parameter; `1` if dimensionless.
     pub unit: String,
 }
 
 impl ExternalParameter {
-    /// Reads `NAME` of a parameter that our models have too, or `NAME [UNIT]`; `None` where the unit is missing.
+    /// Reads `NAME` of a parameter that the built-in models have too, or `NAME [UNIT]`; `None` if the unit is missing.
     pub(super) fn read(text: &str) -> Option<Self> {
         let (name, unit) = match text.split_once('[') {
             Some((name, unit)) => (name.trim(), unit.trim().strip_suffix(']')?.trim()),
-            None => (text.trim(), known(text.trim())?.unit),
+            None => (text.trim(), base_parameter(text.trim())?.unit),
         };
         Some(ExternalParameter {
             name: name.to_owned(),
@@ -79,28 +79,28 @@ impl ExternalParameter {
         })
     }
 
-    /// The parameter of our models that has the same name.
-    pub fn known(&self) -> Option<&'static BaseParameter> {
-        known(&self.name)
+    /// The parameter of the built-in models with the same name.
+    pub fn base_parameter(&self) -> Option<&'static BaseParameter> {
+        base_parameter(&self.name)
     }
 
-    /// Unit and bounds: those of ours of the same name and unit; otherwise none but the job's are known.
+    /// Unit and bounds: those of the built-in parameter of the same name and unit; otherwise unbounded.
     pub fn bounds(&self) -> ParameterBounds {
         let unbounded = ParameterBounds {
             unit: self.unit.clone(),
             lower: f64::NEG_INFINITY,
             upper: f64::INFINITY,
         };
-        let same = self.known().filter(|known| known.unit == self.unit);
+        let same = self.base_parameter().filter(|base| base.unit == self.unit);
         same.map_or(unbounded, ParameterBounds::from)
     }
 }
 
-fn known(name: &str) -> Option<&'static BaseParameter> {
+fn base_parameter(name: &str) -> Option<&'static BaseParameter> {
     BASE.iter().find(|base| base.name == name)
 }
 
-/// A property of a run that a model takes.
+/// A property of a run that an external model can take.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum RunInput {
@@ -131,7 +131,7 @@ pub enum RunInput {
 }
 
 impl RunInput {
-    /// Every property.
+    /// Every property, in the order of the enumeration.
     pub const ALL: [RunInput; 12] = [
         RunInput::Slip,
         RunInput::WheelLoadN,
@@ -147,7 +147,7 @@ impl RunInput {
         RunInput::GravityMS2,
     ];
 
-    /// Name in jobs and in what a program reads.
+    /// Name in jobs and in the input of a program.
     pub fn name(self) -> &'static str {
         [
             "slip",
@@ -167,18 +167,18 @@ impl RunInput {
 }
 
 impl ExternalModel {
-    /// The parameter of a name.
+    /// Finds a parameter by name.
     pub fn parameter(&self, name: &str) -> Option<&ExternalParameter> {
         self.parameters.iter().find(|parameter| parameter.name == name)
     }
 
-    /// Whether it has a parameter of our models, in the same unit.
+    /// Returns whether it has a parameter of the built-in models, in the same unit.
     pub fn shares(&self, name: &str) -> bool {
-        let same = |own: &ExternalParameter| own.known().is_some_and(|known| known.unit == own.unit);
+        let same = |p: &ExternalParameter| p.base_parameter().is_some_and(|base| base.unit == p.unit);
         self.parameter(name).is_some_and(same)
     }
 
-    /// Whether it takes a property of a run.
+    /// Returns whether it takes a property of a run.
     pub fn takes(&self, input: RunInput) -> bool {
         self.inputs.contains(&input)
     }
@@ -189,17 +189,20 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_parameter_of_its_own_brings_its_unit_and_a_known_one_has_it() {
+    fn a_new_parameter_states_its_unit_and_a_base_parameter_has_one() {
         let read = |text: &str| ExternalParameter::read(text).map(|p| (p.name, p.unit));
-        let own = |name: &str, unit: &str| Some((name.to_owned(), unit.to_owned()));
-        assert_eq!(read("n"), own("n", "1"));
-        assert_eq!(read("contact_stiffness [N/m]"), own("contact_stiffness", "N/m"));
+        let expected = |name: &str, unit: &str| Some((name.to_owned(), unit.to_owned()));
+        assert_eq!(read("n"), expected("n", "1"));
+        assert_eq!(
+            read("contact_stiffness [N/m]"),
+            expected("contact_stiffness", "N/m")
+        );
         assert_eq!(read("contact_stiffness"), None);
         assert_eq!(read("contact_stiffness [N/m"), None);
     }
 
     #[test]
-    fn the_bounds_of_a_known_name_hold_in_its_own_unit_alone() {
+    fn the_bounds_of_a_base_parameter_hold_only_in_its_unit() {
         let bounds = |text: &str| ExternalParameter::read(text).unwrap().bounds();
         assert!(bounds("cohesion_pa").lower.abs() < f64::EPSILON);
         assert!(bounds("cohesion_pa [kPa]").lower.is_infinite());

@@ -1,4 +1,4 @@
-//! Whether effects can act around a model that is not ours: on what it is given, and on what it answers.
+//! Check that effects can act around an external model: on its inputs and its outputs.
 
 use std::collections::BTreeSet;
 
@@ -11,10 +11,8 @@ use super::external::{ExternalModel, RunInput};
 use crate::channel::Channel;
 
 impl ExternalModel {
-    /// Checks that every effect has something to act on, and that nothing is named that the model does not take.
-    ///
-    /// # Errors
-    /// [`ModelError`] names the effect and what the model does not show.
+    /// Checks that every effect has a quantity to act on, and that every named parameter belongs to the model or an effect.
+    /// [`ModelError`] names the effect and the hidden quantity.
     pub(super) fn check_expressible(
         &self,
         effects: &EffectSet,
@@ -33,7 +31,7 @@ impl ExternalModel {
         })
     }
 
-    /// Why an effect cannot act around the model; `None` where it can.
+    /// The reason why an effect cannot act around the model; `None` if it can.
     pub fn why_not(&self, effect: &Effect) -> Option<String> {
         if effect.hooks().next().is_none() {
             return Some(INSIDE.to_owned());
@@ -42,7 +40,7 @@ impl ExternalModel {
             return Some(why);
         }
         let uses = effect.uses();
-        if effect.hooks().any(|hook| hook == Hook::WheelLoad) && uses.meets(Variables::of(&REACTION)) {
+        if effect.hooks().any(|hook| hook == Hook::WheelLoad) && uses.meets(Variables::new(&REACTION)) {
             let why = "the load depends on what the soil answers to it, which only a model that balances it can follow";
             return Some(why.to_owned());
         }
@@ -53,7 +51,7 @@ impl ExternalModel {
         ))
     }
 
-    /// Why nothing can act on a quantity; `None` where something can.
+    /// The reason why no effect can act on a quantity; `None` if one can.
     fn lacks(&self, hook: Hook) -> Option<String> {
         let among = |is_there: bool, name: &str, list: &str| {
             (!is_there).then(|| format!("{name} is not among the {list} of this model"))
@@ -77,7 +75,7 @@ impl ExternalModel {
         }
     }
 
-    /// Whether a variable has a value outside the contact.
+    /// Returns whether a variable has a value outside the contact.
     fn knows(&self, variable: Variable) -> bool {
         let parameter = |name: &str| self.shares(name);
         let output = |channel: Channel| self.outputs.contains(&channel);
@@ -120,10 +118,10 @@ impl ExternalModel {
     }
 }
 
-/// What most effects act on.
+/// The message for effects inside the contact, which are the majority.
 const INSIDE: &str = "it acts inside the contact of wheel and soil, which this model does not show";
 
-/// The soil's answer to a load.
+/// The reaction of the soil to a load.
 const REACTION: [Variable; 2] = [Variable::DrawbarPull, Variable::Torque];
 
 #[cfg(test)]
@@ -149,7 +147,7 @@ mod tests {
     }
 
     #[test]
-    fn effects_act_on_what_a_model_is_given_and_answers() {
+    fn effects_act_on_the_inputs_and_outputs_of_a_model() {
         let bare = model("\"slip\"", "\"k_phi\"");
         let all = model(
             "\"slip\", \"wheel_load_n\", \"radius_m\", \"width_m\"",

@@ -1,4 +1,4 @@
-//! The keys of `[model]` that describe a model that is not ours.
+//! The keys of `[model]` that describe an external model.
 
 use std::collections::BTreeSet;
 
@@ -9,16 +9,16 @@ use crate::channel::Channel;
 use crate::file::{number, unknown_word};
 use crate::parameters;
 
-/// Longest that a run may take where the job says nothing `[s]`.
+/// The default of the maximum time of a run `[s]`.
 const TIME_S: f64 = 60.0;
-/// A day `[s]`.
-const MOST_TIME_S: f64 = 86_400.0;
-/// Address space of a program where the job says nothing \[MB\].
+/// The upper bound of that time: a day `[s]`.
+const MAX_TIME_S: f64 = 86_400.0;
+/// The default of a program's address space \[MB\].
 const MEMORY_MB: u64 = 4096;
-/// Most inputs, parameters or outputs.
-const MOST_NAMES: usize = 100;
+/// The maximum number of inputs, parameters or outputs.
+const MAX_NAMES: usize = 100;
 
-/// The keys by name.
+/// The names of the keys.
 pub(super) const KEYS: [&str; 9] = [
     "program",
     "url",
@@ -31,10 +31,7 @@ pub(super) const KEYS: [&str; 9] = [
     "memory_mb",
 ];
 
-/// Reads the keys that stand in `[model]`.
-///
-/// # Errors
-/// [`ModelError`] names every key that is missing or wrong, with its value and what is allowed.
+/// Reads the keys in `[model]`; [`ModelError`] names every key that is missing or wrong, with its value and the allowed values.
 pub(super) fn external(kind: ModelKind, table: &toml::Table) -> Result<ExternalModel, ModelError> {
     let mut wrong: Vec<String> = Vec::new();
     let (needed, foreign): (&[&str], &[&str]) = match kind {
@@ -56,10 +53,10 @@ pub(super) fn external(kind: ModelKind, table: &toml::Table) -> Result<ExternalM
             String::new()
         }
     };
-    let own: Vec<String> = needed.iter().map(|key| text(key)).collect();
+    let texts: Vec<String> = needed.iter().map(|key| text(key)).collect();
     let version = text("version");
     let mut check = |checked: Result<(), String>| wrong.extend(checked.err());
-    let source = match own.as_slice() {
+    let source = match texts.as_slice() {
         [url, model] => {
             check(is_url(url));
             check(is_word("model", model));
@@ -68,8 +65,8 @@ pub(super) fn external(kind: ModelKind, table: &toml::Table) -> Result<ExternalM
                 model: model.clone(),
             }
         }
-        own => {
-            let program = own.first().cloned().unwrap_or_default();
+        texts => {
+            let program = texts.first().cloned().unwrap_or_default();
             check(is_file_name(&program));
             ExternalSource::Command { program }
         }
@@ -113,19 +110,19 @@ pub(super) fn external(kind: ModelKind, table: &toml::Table) -> Result<ExternalM
     if distinct.len() < read_parameters.len() {
         wrong.push("parameters: a name appears twice".to_owned());
     }
-    let mut limit = |key: &str, default: f64, most: f64, unit: &str| match table.get(key) {
+    let mut limit = |key: &str, default: f64, max: f64, unit: &str| match table.get(key) {
         None => default,
-        Some(value) => match number(value).filter(|v| *v > 0.0 && *v <= most) {
+        Some(value) => match number(value).filter(|v| *v > 0.0 && *v <= max) {
             Some(value) => value,
             None => {
                 wrong.push(format!(
-                    "{key} = {value} {unit} must be > 0 {unit} and at most {most} {unit}"
+                    "{key} = {value} {unit} must be > 0 {unit} and at most {max} {unit}"
                 ));
                 default
             }
         },
     };
-    let time_s = limit("time_s", TIME_S, MOST_TIME_S, "s");
+    let time_s = limit("time_s", TIME_S, MAX_TIME_S, "s");
     let memory_mb = limit("memory_mb", MEMORY_MB as f64, 1e9, "MB");
     if !wrong.is_empty() {
         return Err(ModelError::Invalid(wrong.join("; ")));
@@ -141,7 +138,7 @@ pub(super) fn external(kind: ModelKind, table: &toml::Table) -> Result<ExternalM
     })
 }
 
-/// A list of different names.
+/// Reads a list of distinct names.
 fn names(kind: &str, key: &str, table: &toml::Table) -> Result<Vec<String>, String> {
     let Some(value) = table.get(key) else {
         return Err(format!(
@@ -153,8 +150,8 @@ fn names(kind: &str, key: &str, table: &toml::Table) -> Result<Vec<String>, Stri
     let Some(list) = list else {
         return Err(format!("{key} = {value} must be a list of names in quotes"));
     };
-    if list.is_empty() || list.len() > MOST_NAMES {
-        return Err(format!("{key}: {} names must be 1 to {MOST_NAMES}", list.len()));
+    if list.is_empty() || list.len() > MAX_NAMES {
+        return Err(format!("{key}: {} names must be 1 to {MAX_NAMES}", list.len()));
     }
     let distinct: BTreeSet<&String> = list.iter().collect();
     match distinct.len() == list.len() {
@@ -163,7 +160,7 @@ fn names(kind: &str, key: &str, table: &toml::Table) -> Result<Vec<String>, Stri
     }
 }
 
-/// A name that no effect, noise or key of `[model]` has.
+/// Checks that a name is not used by an effect, a noise or a key of `[model]`.
 fn is_own_name(name: &str) -> Result<(), String> {
     let is_word = name.starts_with(|c: char| c.is_ascii_alphabetic())
         && name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_')
@@ -193,7 +190,7 @@ fn is_own_name(name: &str) -> Result<(), String> {
     }
 }
 
-/// A part of a version: no space, and no sign by which versions are told apart.
+/// Checks a part of a version: it has no space and none of the signs that separate parts.
 fn is_word(key: &str, text: &str) -> Result<(), String> {
     let fits = |c: char| c.is_ascii_alphanumeric() || "._-".contains(c);
     match text.len() <= 60 && text.chars().all(fits) {
@@ -245,7 +242,7 @@ mod tests {
     }
 
     #[test]
-    fn everything_that_is_wrong_is_said_at_once() {
+    fn all_mistakes_are_reported_together() {
         let text = PROGRAM
             .replace("wheel.py", "/bin/sh -c")
             .replace("slip", "slipp")

@@ -1,17 +1,14 @@
-//! The key `grousers` under `[model]`: whether the quasi-static model rolls the grousers that wheels have.
+//! The key `grousers` under `[model]`: it decides whether the quasi-static model rolls grousers.
 
 use super::error::ModelError;
 use super::kind::ModelKind;
 
-/// The key.
+/// The name of the key.
 pub const KEY: &str = "grousers";
-/// Its values: a smooth rim, whatever grousers are declared, or a rim with them.
+/// The values of the key: a smooth rim, whatever grousers are declared, or a rim with them.
 pub const WORDS: [&str; 2] = ["ignored", "rolled"];
 
-/// Whether a model of a kind rolls its wheels' grousers by the value of the key.
-///
-/// # Errors
-/// [`ModelError::Invalid`]: another word, or another kind.
+/// Returns whether the key makes a model of this kind roll its wheels' grousers; [`ModelError::Invalid`] for another word or kind.
 pub(super) fn read(kind: ModelKind, value: &toml::Value) -> Result<bool, ModelError> {
     let [ignored, rolled] = WORDS;
     let rolls = match value.as_str() {

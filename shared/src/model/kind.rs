@@ -46,19 +46,19 @@ impl ModelKind {
         }
     }
 
-    /// Whether the model is not ours: its parameters stand in the job.
+    /// Returns whether the model is external: its parameters are stated in the job.
     pub fn is_external(self) -> bool {
         matches!(self, ModelKind::Command | ModelKind::Umbridge)
     }
 
-    /// The model of a name.
+    /// Finds the model of a name.
     pub fn find(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|kind| kind.name() == name)
     }
 
-    /// The base parameters that a model of this kind has; of one that is not ours, its job says.
+    /// The base parameters of a model of this kind; an external model's are stated in its job.
     pub fn parameters(self) -> impl Iterator<Item = &'static BaseParameter> {
-        let own: &[BaseParameter] = match self {
+        let specific: &[BaseParameter] = match self {
             ModelKind::QuasiStatic | ModelKind::Command | ModelKind::Umbridge => &[],
             ModelKind::Scm => &SPATIAL,
             ModelKind::WongReece => &WONG_REECE,
@@ -67,18 +67,18 @@ impl ModelKind {
         let shared = BASE.iter().filter(move |p| match self {
             ModelKind::Rft => p.name == WHEEL_RADIUS,
             ModelKind::Command | ModelKind::Umbridge => false,
-            _ => own.iter().all(|own| own.name != p.name),
+            _ => specific.iter().all(|specific| specific.name != p.name),
         });
-        shared.chain(own)
+        shared.chain(specific)
     }
 
-    /// Whether it knows the laws of a soil at a point, by Bekker, Mohr and Coulomb: those of plates and rings, and of effects that
-    /// enter there.
+    /// Returns whether it uses the laws of Bekker and Mohr-Coulomb for the soil at a point, as plates, rings and the effects
+    /// on these laws need.
     pub fn has_soil_laws(self) -> bool {
         !matches!(self, ModelKind::Rft | ModelKind::Command | ModelKind::Umbridge)
     }
 
-    /// Whether its wheel is a smooth cylinder, whatever grousers are declared.
+    /// Returns whether its wheel is a smooth cylinder, whatever grousers are declared.
     pub fn is_smooth(self) -> bool {
         matches!(self, ModelKind::QuasiStatic | ModelKind::WongReece)
     }

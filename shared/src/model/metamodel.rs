@@ -1,4 +1,4 @@
-//! The variants that a metamodel needs: the quasi-static one, and one with the metamodel of a stage.
+//! The variants that a metamodel needs: the quasi-static one, and the one with the metamodel of a stage.
 
 use statistics::Metamodel;
 
@@ -10,10 +10,8 @@ use super::variant::ModelVariant;
 use crate::parameters;
 
 impl ModelVariant {
-    /// The same conditions and parameters for the quasi-static model.
-    ///
-    /// # Errors
-    /// [`ModelError`] names what that model cannot express.
+    /// The variant of the quasi-static model with the same conditions and parameters; [`ModelError`] names what that model
+    /// cannot express.
     pub fn coarse(&self) -> Result<ModelVariant, ModelError> {
         let coarse = ModelVariant {
             kind: ModelKind::QuasiStatic,
@@ -33,7 +31,7 @@ impl ModelVariant {
         Ok(coarse)
     }
 
-    /// The same with the metamodel of a stage.
+    /// The variant with the metamodel of a stage.
     pub fn with_metamodel(&self, metamodel: &Metamodel) -> ModelVariant {
         ModelVariant {
             companion: self.companion.as_ref().map(|companion| Companion {

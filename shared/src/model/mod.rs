@@ -1,16 +1,16 @@
 //! The forward models, and the self-contained variant of one that a worker evaluates.
 //!
 //! # Layout
-//! - `kind`: the models by name; [`settings`]: the table `[model]` of a job; [`spatial`]: settings of the
-//!   three-dimensional model; `external`, `external_table`, `external_effects`: models
-//!   that are not ours.
-//! - [`grouser_key`]: whether the quasi-static model rolls grousers; `rolled_grousers`: those that it has a form of.
+//! - `kind`: the models by name; [`settings`]: the table `[model]` of a job; [`spatial`]: settings of the three-dimensional
+//!   model; `external`, `external_table`, `external_effects`: external models.
+//! - [`grouser_key`]: the key that makes the quasi-static model roll grousers; `rolled_grousers`: the grousers that it has a
+//!   form of.
 //! - [`effects`]: the effects of a job, their order and their parameters.
-//! - `error`: why a model cannot be set up.
-//! - `names`: what parameter names mean, and whether a set of them is complete.
-//! - `variant`: [`ModelVariant`], with the runs and readings (`condition`) to simulate; `capability`: whether its model can
-//!   express it.
-//! - `companion`, `metamodel`: the quasi-static model beside the three-dimensional one.
+//! - `error`: errors of a model's set-up.
+//! - `names`: the meaning of parameter names, and the check that a set of them is complete.
+//! - `variant`: [`ModelVariant`], with the runs and readings (`condition`) to simulate; `capability`: the check that its
+//!   model can express it.
+//! - `companion`, `metamodel`: the quasi-static, low-fidelity model for the three-dimensional one.
 
 mod capability;
 mod companion;

@@ -1,4 +1,4 @@
-//! What parameter names mean, and whether a set of them determines a model.
+//! The meaning of parameter names, and the check that a set of them determines a model.
 
 use std::collections::BTreeSet;
 
@@ -9,43 +9,41 @@ use super::kind::ModelKind;
 use crate::file::unknown_word;
 use crate::parameters::{BASE, ParameterBounds, RING_TRANSFER, SPATIAL, WHEEL_RADIUS, of_models};
 
-/// What gives the names of parameters their meaning.
+/// The objects that give parameter names their meaning.
 #[derive(Debug, Clone, Copy)]
 pub struct ParameterScope<'a> {
     /// The wheels of the experiment.
     pub wheels: &'a BTreeSet<&'a str>,
     /// The effects of the job.
     pub effects: &'a EffectSet,
-    /// The model, where it is not ours: then it has its own parameters.
+    /// The external model, which brings its parameters; `None` for a built-in model.
     pub external: Option<&'a ExternalModel>,
 }
 
 impl ParameterScope<'_> {
-    /// A parameter of the model itself.
+    /// Finds a parameter of the model itself.
     fn of_model(&self, name: &str) -> Option<ParameterBounds> {
         let Some(model) = self.external else {
             return of_models().find(|p| p.name == name).map(ParameterBounds::from);
         };
-        // the radius of the rim, in place of the experiment's
+        // the radius of the rim may replace the experiment's
         let radius = BASE.iter().filter(|p| p.name == WHEEL_RADIUS);
         let mut radius = radius.filter(|p| p.name == name).map(ParameterBounds::from);
-        let own = model.parameter(name).map(|parameter| parameter.bounds());
-        own.or_else(|| radius.next())
+        let declared = model.parameter(name).map(|parameter| parameter.bounds());
+        declared.or_else(|| radius.next())
     }
 
     fn unknown(&self, name: &str) -> ModelError {
-        let known: Vec<&str> = match self.external {
+        let names: Vec<&str> = match self.external {
             None => of_models().map(|p| p.name).collect(),
             Some(model) => model.parameters.iter().map(|p| p.name.as_str()).collect(),
         };
-        ModelError::Unknown(unknown_word("parameter", name, known))
+        ModelError::Unknown(unknown_word("parameter", name, names))
     }
 }
 
-/// Unit and bounds of a parameter by name: of the model, of one of its wheels, of an effect.
-///
-/// # Errors
-/// [`ModelError`] names the unknown name and the nearest known one.
+/// Unit and bounds of a parameter of the model, of one of its wheels or of an effect, by name. [`ModelError`] names the
+/// unknown name and the nearest known one.
 pub fn lookup(name: &str, scope: &ParameterScope) -> Result<ParameterBounds, ModelError> {
     let wheels = scope.wheels;
     if name == RING_TRANSFER {
@@ -59,13 +57,13 @@ pub fn lookup(name: &str, scope: &ParameterScope) -> Result<ParameterBounds, Mod
         .split_once('.')
         .map_or((name, None), |(stem, wheel)| (stem, Some(wheel)));
     match (scope.of_model(stem), wheel) {
-        (Some(found), None) => Ok(found),
-        (Some(found), Some(w)) if stem == WHEEL_RADIUS => {
+        (Some(bounds), None) => Ok(bounds),
+        (Some(bounds), Some(w)) if stem == WHEEL_RADIUS => {
             if wheels.contains(w) {
-                Ok(found)
+                Ok(bounds)
             } else {
-                let known = wheels.iter().copied();
-                Err(ModelError::Unknown(unknown_word("wheel", w, known)))
+                let names = wheels.iter().copied();
+                Err(ModelError::Unknown(unknown_word("wheel", w, names)))
             }
         }
         (Some(_), Some(_)) => Err(ModelError::Invalid(format!(
@@ -78,13 +76,11 @@ pub fn lookup(name: &str, scope: &ParameterScope) -> Result<ParameterBounds, Mod
     }
 }
 
-/// Checks that a set of names determines a model.
+/// Checks that a set of names determines a model; [`ModelError`] names a parameter that is missing, stated twice or of
+/// another model.
 ///
-/// One way to state the stiffness, `n` and the friction angle present where the model has them, as are its own parameters; every
-/// parameter of every effect given, nothing given both for one wheel and for all.
-///
-/// # Errors
-/// [`ModelError`] names what is missing or given twice, or belongs to another model.
+/// Required are one way to state the stiffness, `n` and the friction angle if the model has them, its further parameters, and
+/// every parameter of every effect; nothing may be stated both for one wheel and for all.
 pub fn check_complete(
     kind: ModelKind,
     names: &BTreeSet<&str>,
@@ -99,8 +95,8 @@ pub fn check_complete(
     match scope.external {
         None => check_soil(kind, names)?,
         Some(model) => {
-            let mut own = model.parameters.iter();
-            if let Some(unset) = own.find(|p| !names.contains(p.name.as_str())) {
+            let mut parameters = model.parameters.iter();
+            if let Some(unset) = parameters.find(|p| !names.contains(p.name.as_str())) {
                 return Err(ModelError::Unset(unset.name.clone()));
             }
         }
@@ -113,12 +109,12 @@ pub fn check_complete(
     scope.effects.check_complete(names, scope.wheels)
 }
 
-/// Checks that names determine the soil of our models.
+/// Checks that names determine the soil of a built-in model.
 fn check_soil(kind: ModelKind, names: &BTreeSet<&str>) -> Result<(), ModelError> {
     let incomplete = |message: &str| Err(ModelError::Incomplete(message.to_owned()));
     let has = |name| names.contains(name);
-    if let Some(own) = kind.parameters().find(|p| p.prior.is_some() && !has(p.name)) {
-        return Err(ModelError::Unset(own.name.to_owned()));
+    if let Some(unset) = kind.parameters().find(|p| p.prior.is_some() && !has(p.name)) {
+        return Err(ModelError::Unset(unset.name.to_owned()));
     }
     let stiffness = (has("k_c") && has("k_phi"), has("log10_p_ref") && has("kappa"));
     match stiffness {
@@ -137,7 +133,8 @@ fn check_soil(kind: ModelKind, names: &BTreeSet<&str>) -> Result<(), ModelError>
     Ok(())
 }
 
-/// Checks that a base parameter is one of the model's; those of a terrain are refused where it is known whether a wheel rolls.
+/// Checks that a base parameter belongs to the model; terrain parameters are refused elsewhere, where it is known whether a
+/// wheel rolls.
 fn check_kind(kind: ModelKind, name: &str) -> Result<(), ModelError> {
     let stem = name.split_once('.').map_or(name, |(stem, _)| stem);
     let is_base = of_models().any(|p| p.name == stem) && SPATIAL.iter().all(|p| p.name != stem);
@@ -147,12 +144,12 @@ fn check_kind(kind: ModelKind, name: &str) -> Result<(), ModelError> {
     let having = ModelKind::ALL.into_iter();
     let having = having.filter(|kind| kind.parameters().any(|p| p.name == stem));
     let having: Vec<&str> = having.map(ModelKind::name).collect();
-    let own: Vec<&str> = kind.parameters().map(|p| p.name).collect();
+    let names: Vec<&str> = kind.parameters().map(|p| p.name).collect();
     Err(ModelError::Inexpressible(format!(
         "{name} is a parameter of {}, not of {}, which has {}",
         having.join(", "),
         kind.name(),
-        own.join(", ")
+        names.join(", ")
     )))
 }
 
@@ -181,7 +178,7 @@ mod tests {
     }
 
     #[test]
-    fn a_model_needs_its_own_parameters_and_no_other_s() {
+    fn a_model_needs_exactly_its_parameters() {
         let none = (BTreeSet::from(["smooth"]), EffectSet::default());
         let check = |kind, names: &[&str]| {
             let names: BTreeSet<&str> = names.iter().copied().collect();
@@ -246,7 +243,7 @@ mod tests {
     #[test]
     fn a_parameter_of_an_effect_has_a_unit_and_a_bound() {
         let name = "janosi_hanamoto.shear_modulus_m";
-        let effects = EffectSet::choose("job.toml", (&[], &[]), [name], &Default::default()).unwrap();
+        let effects = EffectSet::choose("job.toml", (&[], &[]), [name], |_| None).unwrap();
         let lookup = |name: &str| lookup(name, &scope(&BTreeSet::from(["w"]), &effects));
         assert_eq!(
             check_value(&lookup(name).unwrap(), name, -0.01)

@@ -1,4 +1,4 @@
-//! Grousers in the quasi-static model: which wheels and effects it has a form of.
+//! Grousers in the quasi-static model: the wheels and effects that it has a form of.
 
 use std::collections::BTreeSet;
 use std::f64::consts::TAU;
@@ -14,7 +14,7 @@ use super::variant::ModelVariant;
 use crate::experiment::WheelGeometry;
 
 impl ModelVariant {
-    /// Checks that the quasi-static model has a form of the wheels' grousers, where they roll, and of the effects on these wheels.
+    /// Checks that the quasi-static model has a form of the wheels' grousers, if they roll, and of the effects on these wheels.
     ///
     /// # Errors
     /// [`ModelError::Inexpressible`] names the wheel or the effect, and the bound.
@@ -105,7 +105,7 @@ mod tests {
     const GROUSERS: &str = "grouser_count = 12\ngrouser_height_m = 0.009\ngrouser_thickness_m = 0.002\n";
     const SOIL: &str = "log10_p_ref = 4.6\nkappa = 0.0\nn = 1.1\nfriction_angle_deg = 30.0\n";
 
-    /// The variant of two wheels, of which `b` is smooth.
+    /// The variant of two wheels; `b` is smooth.
     fn variant(model: &str, grousers: &str) -> Result<ModelVariant, String> {
         let files = FileSet {
             toml: format!(
@@ -123,7 +123,7 @@ mod tests {
         let table: toml::Table = format!("{model}\n{SOIL}").parse().expect("TOML");
         let settings = ModelSettings::from_table(&table).map_err(|e| e.to_string())?;
         let named = settings.fixed.keys().map(String::as_str);
-        let effects = EffectSet::choose("job.toml", (&settings.effects, &[]), named, &Default::default());
+        let effects = EffectSet::choose("job.toml", (&settings.effects, &[]), named, |_| None);
         let effects = effects.map_err(|e| e.to_string())?;
         ModelVariant::new(&experiment, &settings, &effects, Vec::new(), &experiment.runs)
             .map_err(|e| e.to_string())
@@ -145,7 +145,7 @@ mod tests {
     }
 
     #[test]
-    fn what_has_no_form_with_grousers_is_named_with_its_bound() {
+    fn wheels_and_effects_without_a_form_with_grousers_are_named_with_the_bound() {
         let refused = |model: &str, grousers: &str| variant(model, grousers).unwrap_err();
         for (model, message) in [
             (

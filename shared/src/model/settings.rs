@@ -14,34 +14,31 @@ use formula::catalogue;
 use crate::file::{number, unknown_word};
 use crate::parameters;
 
-/// The table `[model]`, read.
+/// The content of the table `[model]`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ModelSettings {
-    /// Which forward model.
+    /// The forward model.
     pub kind: ModelKind,
     /// Settings of the three-dimensional model.
     pub spatial: Option<SpatialSettings>,
-    /// Whether the quasi-static model rolls the grousers that wheels have.
+    /// True if the quasi-static model rolls the grousers that wheels have.
     pub rolls_grousers: bool,
-    /// The model, where it is not ours.
+    /// The external model, if the kind is one.
     pub external: Option<ExternalModel>,
-    /// Parameters that are fixed.
+    /// Values of the fixed parameters.
     pub fixed: BTreeMap<String, f64>,
-    /// Effects of the catalogue that are listed.
+    /// Names of the listed effects of the catalogue.
     pub effects: Vec<String>,
-    /// Files of further effects.
+    /// Names of effect files.
     pub effect_files: Vec<String>,
 }
 
 impl ModelSettings {
-    /// Reads the table `[model]`.
-    ///
-    /// # Errors
-    /// [`ModelError`] names the key, the value and what is allowed.
+    /// Reads the table `[model]`; [`ModelError`] names the key, the value and the allowed values.
     pub fn from_table(table: &toml::Table) -> Result<Self, ModelError> {
         let kind = kind_of(table)?;
-        let (mut spatial, mut own) = (toml::Table::new(), toml::Table::new());
-        let mut others = Vec::new();
+        let (mut spatial, mut external_keys) = (toml::Table::new(), toml::Table::new());
+        let mut remaining = Vec::new();
         let (mut effects, mut effect_files) = (Vec::new(), Vec::new());
         let mut rolls_grousers = false;
         for (key, value) in table {
@@ -50,7 +47,7 @@ impl ModelSettings {
                 "effects" => effects = words("effects", value)?,
                 "effect_files" => effect_files = words("effect_files", value)?,
                 key if kind.is_external() && external_table::KEYS.contains(&key) => {
-                    own.insert(key.to_owned(), value.clone());
+                    external_keys.insert(key.to_owned(), value.clone());
                 }
                 key if SpatialSettings::KEYS.contains(&key) => {
                     spatial.insert(key.to_owned(), value.clone());
@@ -58,15 +55,15 @@ impl ModelSettings {
                 grouser_key::KEY if !kind.is_external() => {
                     rolls_grousers = grouser_key::read(kind, value)?;
                 }
-                key => others.push((key, value)),
+                key => remaining.push((key, value)),
             }
         }
         let external = match kind.is_external() {
-            true => Some(external_table::external(kind, &own)?),
+            true => Some(external_table::external(kind, &external_keys)?),
             false => None,
         };
         let mut fixed = BTreeMap::new();
-        for (key, value) in others {
+        for (key, value) in remaining {
             fixed.insert(key.to_owned(), fixed_parameter(key, value, external.as_ref())?);
         }
         let spatial = match (kind, spatial.keys().next()) {
@@ -92,7 +89,7 @@ impl ModelSettings {
         Ok(settings)
     }
 
-    /// The keys that only a model of a kind has, beside its parameters.
+    /// The keys that only a model of this kind has, in addition to its parameters.
     pub fn keys_of(kind: ModelKind) -> &'static [&'static str] {
         match kind {
             ModelKind::QuasiStatic => &[grouser_key::KEY],
@@ -102,17 +99,15 @@ impl ModelSettings {
         }
     }
 
-    /// Whether the model rolls smooth rims, whatever grousers are declared.
+    /// Returns whether the model rolls smooth rims, whatever grousers are declared.
     pub fn is_smooth(&self) -> bool {
         self.kind.is_smooth() && !self.rolls_grousers
     }
 
-    /// Adds effects of the catalogue by name, and files of others.
-    ///
-    /// # Errors
-    /// [`ModelError`] names the effect that is unknown or listed already, or the number of effects.
+    /// Adds effects of the catalogue by name, and effect files. [`ModelError`] names the effect that is unknown or listed
+    /// already, or the number of effects.
     pub fn add_effects(&mut self, effects: &[String], files: &[String]) -> Result<(), ModelError> {
-        // first, because the checks below compare every name with every other
+        // this check is first, because the ones below compare every pair of names
         EffectSet::check_count(self.effects.len() + self.effect_files.len() + effects.len() + files.len())?;
         for name in effects {
             if name.ends_with(".toml") {
@@ -124,11 +119,11 @@ impl ModelSettings {
                 return Err(ModelError::Unknown(unknown_effect(name)));
             }
         }
-        for (key, list, more) in [
+        for (key, list, new_names) in [
             ("effects", &mut self.effects, effects),
             ("effect_files", &mut self.effect_files, files),
         ] {
-            for name in more {
+            for name in new_names {
                 if list.contains(name) {
                     return Err(ModelError::Invalid(format!("{key}: \"{name}\" appears twice")));
                 }
@@ -139,14 +134,14 @@ impl ModelSettings {
     }
 }
 
-/// A list of words.
+/// Reads a list of words.
 fn words(key: &str, value: &toml::Value) -> Result<Vec<String>, ModelError> {
     let word = |v: &toml::Value| v.as_str().map(str::to_owned);
     let words: Option<Vec<String>> = value.as_array().and_then(|list| list.iter().map(word).collect());
     words.ok_or_else(|| ModelError::Invalid(format!("{key} = {value} must be a list of names in quotes")))
 }
 
-/// `unknown effect "bulldosing"; the nearest known is "bulldozing"`.
+/// Returns `unknown effect "bulldosing"; the nearest known is "bulldozing"`.
 pub fn unknown_effect(name: &str) -> String {
     unknown_word(
         "effect",
@@ -155,14 +150,14 @@ pub fn unknown_effect(name: &str) -> String {
     )
 }
 
-/// The value of `kind`.
+/// Reads the value of `kind`.
 fn kind_of(table: &toml::Table) -> Result<ModelKind, ModelError> {
-    let known = ModelKind::ALL.map(ModelKind::name);
-    let list = known.map(|name| format!("\"{name}\"")).join(", ");
+    let names = ModelKind::ALL.map(ModelKind::name);
+    let list = names.map(|name| format!("\"{name}\"")).join(", ");
     match table.get("kind") {
         Some(toml::Value::String(name)) => {
-            let found = ModelKind::ALL.into_iter().find(|kind| kind.name() == name);
-            found.ok_or_else(|| ModelError::Unknown(unknown_word("kind", name, known)))
+            let kind = ModelKind::ALL.into_iter().find(|kind| kind.name() == name);
+            kind.ok_or_else(|| ModelError::Unknown(unknown_word("kind", name, names)))
         }
         Some(other) => Err(ModelError::Invalid(format!(
             "kind = {other} must be one of {list}"
@@ -181,12 +176,12 @@ fn fixed_parameter(
             "write the name in quotes: \"{key}.{within}\""
         )));
     }
-    // the part before a dot may be an effect of a file that is read later
+    // the part before a dot may name an effect of a file that is read later
     let base: Vec<&str> = match external {
         None => parameters::of_models().map(|p| p.name).collect(),
         Some(model) => {
-            let own = model.parameters.iter().map(|p| p.name.as_str());
-            own.chain(["wheel_radius_m"]).collect()
+            let parameters = model.parameters.iter().map(|p| p.name.as_str());
+            parameters.chain(["wheel_radius_m"]).collect()
         }
     };
     if !key.contains('.') && !base.contains(&key) {
@@ -209,7 +204,7 @@ mod tests {
     #[test]
     fn a_list_that_is_too_long_is_refused_for_its_length_alone() {
         for (key, end) in [("effects", ""), ("effect_files", ".toml")] {
-            // none of them is known, and the last appears twice
+            // all names are unknown, and the last appears twice
             let mut names: Vec<String> = (0..60_000).map(|i| format!("\"e{i}{end}\"")).collect();
             names[59_999] = names[0].clone();
             let table = format!("kind = \"scm\"\n{key} = [{}]", names.join(", "));

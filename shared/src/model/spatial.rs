@@ -10,34 +10,34 @@ use crate::toml_message::plain;
 
 /// Length of a simulated run of the `paper` protocol `[s]`.
 pub const PAPER_DURATION_S: f64 = 50.0;
-/// Samples of a history in a second \[Hz\].
+/// Sampling rate of a history \[Hz\].
 const SAMPLES_HZ: f64 = 10.0;
 
-/// Choices for `kind = "scm"`, keys of the table `[model]`.
+/// Settings of `kind = "scm"`: keys of the table `[model]`.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct SpatialSettings {
-    /// Spacing of the terrain's nodes `[m]`; finer along travel where the contact is shorter than eight nodes.
+    /// Spacing of the terrain's nodes `[m]`; finer along travel if the contact is shorter than eight nodes.
     pub dem_spacing_m: f64,
     /// Travel of one step `[m]`.
     pub travel_step_m: f64,
-    /// Where the displacement of `janosi_hanamoto` is kept.
+    /// The frame in which the displacement of `janosi_hanamoto` is stored.
     pub displacement: DisplacementFrame,
-    /// Along which normal the pressure acts.
+    /// The normal along which the pressure acts.
     pub pressure_direction: PressureAxis,
-    /// Whose effective width the nodes of a footprint have.
+    /// The effective width that applies to the nodes of a footprint.
     pub footprint: FootprintWidth,
-    /// How the hub finds its height.
+    /// The motion of the hub in height.
     pub vertical: HubMotion,
-    /// Damping of the hub where it moves freely \[N s/m\].
+    /// Damping of a freely moving hub \[N s/m\].
     pub damping_n_s_m: f64,
-    /// What the averages of a steady run may still have to go to their limit when it ends `[–]`.
+    /// Remaining relative change of a steady run's averages towards their limit at which the run ends `[–]`.
     pub steady_tolerance: f64,
     /// Travel at which a steady run ends in any case `[m]`.
     pub steady_travel_m: f64,
 }
 
-/// Where the shear displacement is kept.
+/// The frame in which the shear displacement is stored.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum DisplacementFrame {
@@ -47,33 +47,33 @@ pub enum DisplacementFrame {
     Node,
 }
 
-/// Along which normal the pressure acts.
+/// The normal along which the pressure acts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum PressureAxis {
-    /// The wheel's surface.
+    /// The normal of the wheel's surface.
     WheelNormal,
-    /// The undisturbed soil: upwards, without compaction resistance.
+    /// The normal of the undisturbed soil: upwards, without compaction resistance.
     Vertical,
 }
 
-/// Whose effective width `b_eff` the nodes of a footprint have.
+/// The effective width `b_eff` that applies to the nodes of a footprint.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum FootprintWidth {
-    /// That of the whole footprint, by its hull.
+    /// The width of the whole footprint, by its hull.
     Hull,
-    /// Each that of its patch of connected nodes, by the patch's contour.
+    /// The width of each patch of connected nodes, by the patch's contour.
     Patches,
 }
 
-/// How the hub finds its height.
+/// The motion of the hub in height.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum HubMotion {
-    /// In balance with the load at every step.
+    /// The hub is in balance with the load at every step.
     Balance,
-    /// Under the mass that the load stands for, and a damper.
+    /// The hub moves with the mass of the load and a damper.
     Dynamic,
 }
 
@@ -94,7 +94,7 @@ impl Default for SpatialSettings {
 }
 
 impl SpatialSettings {
-    /// The keys by name.
+    /// The names of the keys.
     pub const KEYS: [&str; 9] = [
         "dem_spacing_m",
         "travel_step_m",
@@ -107,10 +107,7 @@ impl SpatialSettings {
         "steady_travel_m",
     ];
 
-    /// Reads the keys that stand in `[model]`.
-    ///
-    /// # Errors
-    /// [`ModelError`] names the key, the value and what is allowed.
+    /// Reads the keys in `[model]`; [`ModelError`] names the key, the value and the allowed values.
     pub fn from_table(table: toml::Table) -> Result<Self, ModelError> {
         let damped = table.contains_key("damping_n_s_m");
         let settings: SpatialSettings = table
@@ -144,10 +141,8 @@ impl SpatialSettings {
         Ok(settings)
     }
 
-    /// Checks that a protocol can be followed with these settings, and that each has an effect.
-    ///
-    /// # Errors
-    /// [`ModelError`] names the key, the value and what is allowed.
+    /// Checks that a run can follow a protocol with these settings, and that each setting has an effect. [`ModelError`]
+    /// names the key, the value and the allowed values.
     pub fn check_protocol(&self, protocol: &AveragingProtocol) -> Result<(), ModelError> {
         if protocol.kind == ProtocolKind::Steady {
             return Ok(());

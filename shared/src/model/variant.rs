@@ -25,15 +25,15 @@ use crate::parameters::check_value;
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ModelVariant {
-    /// Which forward model.
+    /// The forward model.
     pub kind: ModelKind,
-    /// Settings of the three-dimensional model; absent for the others.
+    /// Settings of the three-dimensional model; absent for other models.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub spatial: Option<SpatialSettings>,
-    /// Whether the quasi-static model rolls the grousers that wheels have.
+    /// True if the quasi-static model rolls the grousers that wheels have.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub rolls_grousers: bool,
-    /// The model, where it is not ours.
+    /// The external model, if the kind is one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub external: Option<ExternalModel>,
     /// The effects, in the order of their evaluation.
@@ -47,41 +47,40 @@ pub struct ModelVariant {
     pub wheels: BTreeMap<String, WheelGeometry>,
     /// Acceleration of gravity `[m/s^2]`.
     pub gravity_m_s2: f64,
-    /// Length of the soil bin `[m]`; absent where no effect asks for it.
+    /// Length of the soil bin `[m]`; absent if no effect uses it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub bin_length_m: Option<f64>,
     /// The conditions to simulate, in the order of the observables.
     pub conditions: Vec<RunCondition>,
-    /// How histories become averages.
+    /// The protocol that turns histories into averages.
     #[schema(value_type = Object)]
     pub protocol: AveragingProtocol,
-    /// The channels that are returned; empty: all, with the diagnostics of the contact.
+    /// The channels to return; empty: all, with the diagnostics of the contact.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     #[schema(value_type = Vec<String>)]
     pub channels: Vec<Channel>,
-    /// Whether each condition is simulated once more on slightly stiffer soil, for the derivatives by ln k*.
+    /// True if each condition is simulated again on slightly stiffer soil, for the derivatives by ln k*.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub stiffness_sensitivity: bool,
-    /// Whether the time histories of the runs are returned, too; only the three-dimensional model has them.
+    /// True if the time histories of the runs are returned, too; only the three-dimensional model has them.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub histories: bool,
-    /// Readings of plates to predict as well.
+    /// Readings of plates to predict.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub plates: Vec<PlateCondition>,
-    /// Readings of rings to predict as well.
+    /// Readings of rings to predict.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub rings: Vec<RingCondition>,
-    /// Parameters at which a model that is not ours must answer: where it fails, they tell whether the machine is at fault.
+    /// Parameters at which an external model must answer: if it fails there, the machine is at fault.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub probe: Vec<f64>,
-    /// The quasi-static model for a metamodel, where there is one.
+    /// The low-fidelity quasi-static model for a metamodel, if there is one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub companion: Option<Companion>,
 }
 
 impl ModelVariant {
-    /// The variant for some of an experiment's runs; base parameters that are neither free nor fixed take
-    /// their defaults.
+    /// The variant for some of an experiment's runs; base parameters that are neither free nor fixed take their defaults.
     ///
     /// # Errors
     /// [`ModelError`] names a parameter that is unknown, out of bounds, missing or given twice.
@@ -100,7 +99,7 @@ impl ModelVariant {
         };
         let mut fixed = settings.fixed.clone();
         let of_job = settings.external.iter().flat_map(|model| &model.parameters);
-        let of_job = of_job.filter_map(|p| p.known().filter(|known| known.unit == p.unit));
+        let of_job = of_job.filter_map(|p| p.base_parameter().filter(|base| base.unit == p.unit));
         for parameter in settings.kind.parameters().chain(of_job) {
             let Some(default) = parameter.default else {
                 continue;
@@ -174,7 +173,7 @@ impl ModelVariant {
             bin_length_m,
             conditions,
             protocol: experiment.protocol.clone(),
-            // all that the model has
+            // all channels that the model has
             channels: settings.external.iter().flat_map(|m| m.outputs.clone()).collect(),
             stiffness_sensitivity: false,
             histories: false,
@@ -187,7 +186,7 @@ impl ModelVariant {
         Ok(variant)
     }
 
-    /// The same with the time histories of its runs; `None` for a steady-state model and without runs.
+    /// The variant with the time histories of its runs; `None` for a steady-state model and without runs.
     pub fn with_histories(&self) -> Option<Self> {
         let rolls = self.kind == ModelKind::Scm && !self.conditions.is_empty();
         rolls.then(|| ModelVariant {
@@ -197,7 +196,7 @@ impl ModelVariant {
         })
     }
 
-    /// The same for each of its conditions alone.
+    /// Variants for each condition alone.
     pub fn by_condition(&self) -> impl Iterator<Item = Self> {
         self.conditions.iter().map(|condition| ModelVariant {
             conditions: vec![condition.clone()],
@@ -213,9 +212,10 @@ impl ModelVariant {
             .map(String::as_str)
     }
 
-    /// Version of the model that a worker with these equations computes: that of the equations, that which the job states of a
-    /// model that is not ours, and that of the effects. A calibration is pinned to all; [`equations_of`] is the part that a
-    /// worker knows.
+    /// Version of the model that a worker with these equations computes: the version of the equations, the version that the
+    /// job states for an external model, and the version of the effects.
+    ///
+    /// A calibration is pinned to all three; [`equations_of`] is the part that a worker knows.
     pub fn model_version(&self, equations: &str) -> String {
         let stated = self
             .external
@@ -236,7 +236,7 @@ impl ModelVariant {
     }
 }
 
-/// The hash of a variant of this text: the first 128 bits of the SHA-256, in hex.
+/// The hash of a variant's text: the first 128 bits of the SHA-256, in hex.
 pub fn hash_of(text: &[u8]) -> String {
     let digest = Sha256::digest(text);
     digest[..16].iter().map(|byte| format!("{byte:02x}")).collect()
@@ -277,8 +277,8 @@ fn check_grousers(
 }
 
 impl Observables {
-    /// Whether every vector that a variant asks for has an entry for each condition, each plate and each ring; what it does not
-    /// ask for may be there too.
+    /// Returns whether every vector that a variant requests has an entry for each condition, plate and ring; vectors beyond
+    /// the request are allowed.
     pub fn covers(&self, variant: &ModelVariant) -> bool {
         let runs = variant.conditions.len();
         let derivatives = if variant.stiffness_sensitivity { runs } else { 0 };

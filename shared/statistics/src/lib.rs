@@ -9,7 +9,7 @@
 //! let theta = prior.sample(&mut Stream::new(1, 0, 0, 0));
 //! assert!((prior.log_density(&theta) - 0.5_f64.ln()).abs() < 1e-12);
 //!
-//! // A measurement one standard deviation off: -ln(sqrt(2 pi) 0.5) - 1/2.
+//! // The prediction is one standard deviation off: -ln(sqrt(2 pi) 0.5) - 1/2.
 //! let datum = Datum { run: 0, channel: 0, value: 1.5, sd: ErrorSd::Known(0.5) };
 //! let log_likelihood = Likelihood::new(vec![datum])?.log_likelihood(&[1.0], &theta)?;
 //! assert!((log_likelihood.value() + 0.7258).abs() < 1e-4);

@@ -16,7 +16,7 @@ pub enum LogLikelihood {
 pub struct Nats(f64);
 
 impl Nats {
-    /// The number.
+    /// Returns the finite number.
     #[must_use]
     pub fn get(self) -> f64 {
         self.0
@@ -55,7 +55,7 @@ impl LogLikelihood {
         }
     }
 
-    /// Whether the model rejected the parameter vector.
+    /// Returns whether the model rejected the parameter vector.
     #[must_use]
     pub fn is_impossible(self) -> bool {
         matches!(self, Self::Impossible)

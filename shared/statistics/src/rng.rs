@@ -1,7 +1,7 @@
 //! Random streams, one for every (seed, stage, particle, step).
 //!
-//! The streams are `ChaCha8` counters: seed, stage and step make the key, the particle is the stream number.
-//! So no draw depends on the number or order of other draws.
+//! The streams are `ChaCha8` counters: seed, stage and step make the key, the particle is the stream number. So no draw
+//! depends on the number or order of other draws.
 
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -9,7 +9,7 @@ use rand_chacha::ChaCha8Rng;
 /// Half the spacing of 53-bit uniforms; keeps them off 0 and 1.
 const UNIFORM_STEP: f64 = 1.0 / 9_007_199_254_740_992.0;
 
-/// Last eight bytes of every key: the name of the scheme, which changes with the scheme.
+/// Last eight bytes of every key: the name of the scheme; a new scheme gets a new name.
 const SCHEME: [u8; 8] = *b"grouser1";
 
 /// A stream of random numbers.

@@ -1,16 +1,16 @@
-//! Plate and ring tests as data: their information on the soil, against the table of another implementation.
+//! Plate and ring tests as data: their information about the soil, compared with a table of another implementation.
 
 use nalgebra::DMatrix;
 use statistics::{CommonError, CommonErrorSize, Datum, Discrepancy, ErrorLaw, ErrorSd, Likelihood};
 
-/// The logarithm of a stress by the parameters.
+/// The logarithm of a stress as a function of the parameters.
 type LogStress<'a> = &'a dyn Fn(&[f64]) -> f64;
 
-/// The same, owned.
+/// [`LogStress`] as an owned function.
 type Law = Box<dyn Fn(&[f64]) -> f64>;
 
-/// Standard deviations and the correlation of the first two parameters after tests, each a list of readings, from the
-/// information in the likelihood: errors of logarithms, 1 / J' S^-1 J.
+/// Standard deviations and the correlation of the first two parameters after tests, each a list of readings, from the Fisher
+/// information: errors of logarithms, 1 / J' S^-1 J.
 fn posterior(tests: &[Vec<LogStress>], theta: &[f64], steps: &[f64], s_u: f64, s_e: f64) -> (Vec<f64>, f64) {
     let readings: Vec<LogStress> = tests.iter().flatten().copied().collect();
     let data = (0..readings.len())
@@ -93,7 +93,7 @@ fn plates_fix_the_moduli_as_well_as_they_should() {
         let (got, corr) = posterior(&tests, &[0.0, 1e7, 1.1], &[10.0, 1e3, 1e-5], s_u, 0.03);
         within(0.2, &got[..2], &sds);
         assert!((corr - correlation).abs() < 0.05, "{corr}, not {correlation}");
-        // The table says .003 to .008, falling with the number of tests.
+        // The table has .003 to .008, decreasing with the number of tests.
         let per_test = got[2] * ((radii_mm.len() * repeats) as f64).sqrt();
         within(0.2, &[per_test], &[0.011]);
     }

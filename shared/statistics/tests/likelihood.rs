@@ -1,4 +1,4 @@
-//! The likelihood against hand numbers.
+//! The likelihood, compared with hand-computed numbers.
 
 use nalgebra::{DMatrix, DVector};
 use statistics::likelihood::{
@@ -35,7 +35,7 @@ fn hand_numbers() {
     assert!((value - expected).abs() < 1e-12, "{value} {expected}");
 }
 
-/// The normalisation lets an inferred noise find its level: the best sd of residuals 1 and -1 is 1.
+/// With the normalisation, the best sd of residuals 1 and -1 is 1.
 #[test]
 fn the_best_noise_is_the_residuals_rms() {
     let noise = ErrorSd::Inferred { parameter: 0 };
@@ -45,7 +45,7 @@ fn the_best_noise_is_the_residuals_rms() {
 }
 
 #[test]
-fn what_is_not_a_number_is_refused() {
+fn values_that_are_not_numbers_are_refused() {
     assert!(Likelihood::new(vec![datum(0, 0, f64::NAN, ErrorSd::Known(1.0))]).is_err());
     assert!(Likelihood::new(vec![datum(0, 0, 1.0, ErrorSd::Known(0.0))]).is_err());
     let likelihood = Likelihood::new(vec![datum(2, 1, 1.0, ErrorSd::Inferred { parameter: 0 })]).unwrap();
@@ -83,12 +83,13 @@ fn a_t_of_one_datum_has_its_hand_number() {
     let value = |m: f64| likelihood.log_likelihood(&[m, 1.0], &[]).unwrap().value();
     let centre = (8.0 / (3.0 * 5.0_f64.sqrt() * std::f64::consts::PI) / 2.0).ln();
     assert!((value(1.0) - 2.0 * centre).abs() < 1e-12);
-    // Three scales off: (1 + 9/5)^-3.
+    // A residual of three scales: (1 + 9/5)^-3.
     assert!((value(7.0) - 2.0 * centre + 3.0 * 2.8_f64.ln()).abs() < 1e-12);
 }
 
-/// Three runs of two channels: runs 0 and 1 repeat a condition, run 2 stands alone. Data: channel 0 of every run, then
-/// channel 1 of every run. Each run has a sensitivity, each (condition, channel) a discrepancy.
+/// Three runs of two channels: runs 0 and 1 repeat a condition, run 2 has a different one.
+///
+/// Data: channel 0 of every run, then channel 1 of every run. Each run has a sensitivity, each (condition, channel) a discrepancy.
 fn three_runs(scatter: ErrorSd) -> (Vec<Datum>, Vec<CommonError>) {
     let sds = [0.5, 0.7, 0.5, 0.1, 0.1, 0.2];
     let values = [10.0, 11.0, 7.0, 1.0, 1.3, 0.8];
@@ -118,7 +119,7 @@ fn three_runs(scatter: ErrorSd) -> (Vec<Datum>, Vec<CommonError>) {
 const PREDICTED: [f64; 6] = [10.4, 10.4, 6.5, 1.1, 1.1, 0.9];
 const SENSITIVITIES: [f64; 6] = [-3.0, -3.5, -2.0, 0.4, 0.5, 0.3];
 
-/// The covariance, written down term by term.
+/// The covariance, assembled term by term.
 fn dense(data: &[Datum], tau: f64, m: f64) -> DMatrix<f64> {
     let sd = |i: usize| match data[i].sd {
         ErrorSd::Known(sd) => sd,
@@ -141,7 +142,7 @@ fn dense(data: &[Datum], tau: f64, m: f64) -> DMatrix<f64> {
     })
 }
 
-/// Normal density of the whole, and t density of some of the data, by determinant and inverse.
+/// Normal density of all data, or t density of some, by determinant and inverse.
 fn density(covariance: &DMatrix<f64>, data: &[Datum], members: &[usize], nu: Option<f64>) -> f64 {
     let k = members.len();
     let part = DMatrix::from_fn(k, k, |i, j| covariance[(members[i], members[j])]);
@@ -177,7 +178,11 @@ fn blocks_match_a_dense_density() {
             .sum();
         let likelihood =
             Likelihood::with_common(data.clone(), law, common, vec![Discrepancy::Known(2.0)]).unwrap();
-        let sensitive: Vec<usize> = likelihood.sensitive().iter().map(|own| own.datum).collect();
+        let sensitive: Vec<usize> = likelihood
+            .sensitive()
+            .iter()
+            .map(|sensitive| sensitive.datum)
+            .collect();
         assert_eq!(sensitive, [0, 1, 2, 3, 4, 5]);
         let value = likelihood.log_likelihood(&values(), &[9.0, 0.3]).unwrap().value();
         assert!((value - expected).abs() < 1e-10, "{value} {expected}");
@@ -188,7 +193,7 @@ fn blocks_match_a_dense_density() {
     }
 }
 
-/// A known discrepancy goes through the factored covariance, an unknown one through the sums of a common shift.
+/// A known discrepancy uses the factored covariance, an unknown one the sums of a common shift.
 #[test]
 fn a_common_shift_has_the_density_of_its_covariance() {
     let sds = [0.4, 1.0, 2.5, 0.7, 0.7];
@@ -221,7 +226,7 @@ fn a_common_shift_has_the_density_of_its_covariance() {
     }
 }
 
-/// Runs 0 and 1 have one preparation, run 2 another: two errors along different derivatives couple the runs of one.
+/// Runs 0 and 1 share a preparation, run 2 has a different one: two errors along different derivatives couple the first two.
 #[test]
 fn errors_of_a_preparation_couple_its_runs() {
     let (data, _) = three_runs(ErrorSd::Known(0.0));
@@ -262,10 +267,10 @@ fn errors_of_a_preparation_couple_its_runs() {
 #[test]
 fn an_unknown_discrepancy_is_the_mean_over_its_values() {
     let (data, common) = three_runs(ErrorSd::Known(0.3));
-    let of = |discrepancy| {
+    let build = |discrepancy| {
         Likelihood::with_common(data.clone(), ErrorLaw::Gaussian, common.clone(), discrepancy).unwrap()
     };
-    let unknown = of(vec![Discrepancy::Unknown]);
+    let unknown = build(vec![Discrepancy::Unknown]);
     let levels = discrepancy_levels();
     assert_eq!(levels.len(), DISCREPANCY_LEVELS);
     assert!(
@@ -291,33 +296,32 @@ fn an_unknown_discrepancy_is_the_mean_over_its_values() {
     }
 }
 
-/// The channels of [`three_runs`] are groups of their own. Alone, each has its own m; where the soil's scatter ties them they share
-/// one.
+/// Each channel of [`three_runs`] is a group. Alone, each has its own m; when the soil's scatter ties them, they share one.
 #[test]
-fn every_channel_has_a_discrepancy_of_its_own() {
+fn every_channel_has_a_separate_discrepancy() {
     let (data, mut common) = three_runs(ErrorSd::Known(0.0));
     for (error, group) in common[3..].iter_mut().zip([0, 0, 1, 1]) {
         error.size = CommonErrorSize::Discrepancy { group };
     }
-    let of = |common: &[CommonError], own: [Discrepancy; 2]| {
-        Likelihood::with_common(data.clone(), ErrorLaw::Gaussian, common.to_vec(), own.to_vec()).unwrap()
+    let build = |common: &[CommonError], groups: [Discrepancy; 2]| {
+        Likelihood::with_common(data.clone(), ErrorLaw::Gaussian, common.to_vec(), groups.to_vec()).unwrap()
     };
     let unknown = [Discrepancy::Unknown; 2];
     let levels = discrepancy_levels();
     let density_of = |members: &[usize], m: f64| density(&dense(&data, 0.0, m), &data, members, None).exp();
     let mean =
         |members: &[usize]| levels.iter().map(|&m| density_of(members, m)).sum::<f64>() / levels.len() as f64;
-    let apart = of(&common[3..], unknown);
+    let apart = build(&common[3..], unknown);
     let value = apart.log_likelihood(&PREDICTED, &[]).unwrap().value();
     let expected = mean(&[0, 1, 2]).ln() + mean(&[3, 4, 5]).ln();
     assert!((value - expected).abs() < 1e-10, "{value} {expected}");
     let weights = apart.discrepancy_weights(&PREDICTED, &[]).unwrap();
     assert!((weights[0][3].1 - weights[1][3].1).abs() > 1e-4, "{weights:?}");
-    let fixed = of(&common[3..], [Discrepancy::Unknown, Discrepancy::Known(2.0)]);
+    let fixed = build(&common[3..], [Discrepancy::Unknown, Discrepancy::Known(2.0)]);
     let value = fixed.log_likelihood(&PREDICTED, &[]).unwrap().value();
     let expected = mean(&[0, 1, 2]).ln() + density_of(&[3, 4, 5], 2.0).ln();
     assert!((value - expected).abs() < 1e-10, "{value} {expected}");
-    let tied = of(&common, unknown);
+    let tied = build(&common, unknown);
     let value = tied.log_likelihood(&values(), &[]).unwrap().value();
     let expected = mean(&[0, 1, 2, 3, 4, 5]).ln();
     assert!((value - expected).abs() < 1e-10, "{value} {expected}");
@@ -336,9 +340,9 @@ fn errors_of_size_zero_are_the_independent_ones() {
     assert!((value - expected).abs() < 1e-12, "{value} {expected}");
 }
 
-/// A test's common shift leaves one fact: forty readings that agree say no more of the level than the shift lets them.
+/// A common shift limits the information of a test: forty equal readings determine the level no better than the shift allows.
 #[test]
-fn a_shift_in_common_bounds_what_readings_can_say() {
+fn a_common_shift_bounds_the_information_of_readings() {
     let data: Vec<Datum> = (0..40).map(|i| datum(i, 0, 0.3, ErrorSd::Known(0.03))).collect();
     let shift = CommonError {
         data: (0..40).collect(),
@@ -373,10 +377,10 @@ fn whitened_slopes_are_those_of_the_density() {
             let slope = (value(1e-5) - value(-1e-5)) / 2e-5;
             let whitening = likelihood.whitening(&at(0.0), &[]).unwrap();
             let applied = whitening.apply(&direction);
-            let own = whitening.slope(&applied);
+            let applied_slope = whitening.slope(&applied);
             assert!(
-                (own - slope).abs() < 1e-6 * slope.abs().max(1.0),
-                "{law:?} {discrepancy:?}: {own} {slope}"
+                (applied_slope - slope).abs() < 1e-6 * slope.abs().max(1.0),
+                "{law:?} {discrepancy:?}: {applied_slope} {slope}"
             );
             assert!(whitening.curvature(&applied, &applied) > 0.0);
         }
@@ -415,10 +419,10 @@ fn a_common_shift_is_whitened_by_its_mean_precision() {
             *sum += probability * product;
         }
     }
-    for (own, expected) in products(&unknown).into_iter().zip(expected) {
+    for (actual, expected) in products(&unknown).into_iter().zip(expected) {
         assert!(
-            (own - expected).abs() < 1e-12 * expected.abs().max(1.0),
-            "{own} {expected}"
+            (actual - expected).abs() < 1e-12 * expected.abs().max(1.0),
+            "{actual} {expected}"
         );
     }
 }
@@ -474,7 +478,7 @@ fn error_models_that_mean_nothing_are_refused() {
     );
 }
 
-/// Five data: one alone, a shift over two, a derivative over two others, a discrepancy over the first of these pairs.
+/// Five data: one alone, a shift over two, a derivative over two more, a discrepancy over the first of these pairs.
 fn entangled(discrepancy: Discrepancy) -> Likelihood {
     let data = (0..5)
         .map(|i| datum(i, i % 2, i as f64, ErrorSd::Known(0.5 + 0.1 * i as f64)))
@@ -501,27 +505,27 @@ const ENTANGLED: [f64; 7] = [0.1, 0.9, 2.3, 3.0, 3.5, 2.0, -1.5];
 
 #[test]
 fn variances_are_the_diagonal_of_the_covariance() {
-    let known = entangled(Discrepancy::Known(2.0));
-    let found = known.error_variances(&ENTANGLED, &[0.7]).unwrap();
+    let likelihood = entangled(Discrepancy::Known(2.0));
+    let variances = likelihood.error_variances(&ENTANGLED, &[0.7]).unwrap();
     // Noise 0.5 ... 0.9; shift 0.7; twice the noise of datum 1; 0.3 times the derivatives 2 and -1.5.
     let expected = [0.25, 0.36 + 0.49 + 1.44, 0.49 + 0.49, 0.64 + 0.36, 0.81 + 0.2025];
-    for (a, b) in found.iter().zip(expected) {
-        assert!((a - b).abs() < 1e-12, "{found:?}");
+    for (a, b) in variances.iter().zip(expected) {
+        assert!((a - b).abs() < 1e-12, "{variances:?}");
     }
     let unknown = entangled(Discrepancy::Unknown);
     let weights = unknown.discrepancy_weights(&ENTANGLED, &[0.7]).unwrap();
     let squares: f64 = weights[0].iter().map(|(m, w)| w * m * m).sum();
-    let found = unknown.error_variances(&ENTANGLED, &[0.7]).unwrap();
-    assert!((found[1] - (0.36 + 0.49 + 0.36 * squares)).abs() < 1e-12);
+    let variances = unknown.error_variances(&ENTANGLED, &[0.7]).unwrap();
+    assert!((variances[1] - (0.36 + 0.49 + 0.36 * squares)).abs() < 1e-12);
 }
 
 #[test]
 fn densities_of_single_data_are_those_of_their_variances() {
-    let known = entangled(Discrepancy::Known(2.0));
-    let found = known.log_densities(&ENTANGLED, &[0.7]).unwrap();
-    assert_eq!(found.len(), 5);
-    for (datum, &density) in found.iter().enumerate() {
-        let (alone, places) = known.subset(&[datum]).unwrap();
+    let likelihood = entangled(Discrepancy::Known(2.0));
+    let densities = likelihood.log_densities(&ENTANGLED, &[0.7]).unwrap();
+    assert_eq!(densities.len(), 5);
+    for (datum, &density) in densities.iter().enumerate() {
+        let (alone, places) = likelihood.subset(&[datum]).unwrap();
         let values: Vec<f64> = places.iter().map(|&place| ENTANGLED[place]).collect();
         let expected = alone.log_likelihood(&values, &[0.7]).unwrap().value();
         assert!(
@@ -537,13 +541,13 @@ fn a_subset_has_the_density_of_its_data_alone() {
     let (part, places) = whole.subset(&[0, 2, 4]).unwrap();
     assert_eq!(places, [0, 2, 4, 6]);
     let values: Vec<f64> = places.iter().map(|&p| ENTANGLED[p]).collect();
-    // Nothing is shared any more: three independent normals with the variances of the whole.
+    // No common error remains: three independent normals with the variances of the whole.
     let density = |variance: f64, residual: f64| {
         -0.5 * (2.0 * std::f64::consts::PI * variance).ln() - 0.5 * residual * residual / variance
     };
     let expected = density(0.25, -0.1) + density(0.98, -0.3) + density(1.0125, 0.5);
-    let found = part.log_likelihood(&values, &[0.7]).unwrap().value();
-    assert!((found - expected).abs() < 1e-12, "{found} {expected}");
+    let actual = part.log_likelihood(&values, &[0.7]).unwrap().value();
+    assert!((actual - expected).abs() < 1e-12, "{actual} {expected}");
     let all: Vec<usize> = (0..5).collect();
     assert_eq!(whole.subset(&all).unwrap().0, whole);
     assert!(matches!(

@@ -1,4 +1,4 @@
-//! Priors and likelihood against known answers.
+//! Priors and likelihood, compared with known answers.
 
 #![expect(clippy::unwrap_used, reason = "helpers of tests may panic as tests do")]
 

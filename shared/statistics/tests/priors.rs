@@ -1,4 +1,4 @@
-//! Marginals against numerical integration.
+//! Marginals, compared with numerical integration.
 
 use proptest::prelude::*;
 use statistics::rng::Stream;
@@ -55,8 +55,8 @@ fn cases() -> Vec<Marginal> {
     .to_vec()
 }
 
-/// Integral of f(x) p(x) by the midpoint rule in ln x for positive supports, in x otherwise; 0 to 2 are
-/// the moments about `centre`.
+/// Integral of f(x) p(x) by the midpoint rule in ln x for positive supports, in x otherwise; powers 0 to 2 give the moments
+/// about `centre`.
 fn moment(marginal: &Marginal, power: i32, centre: f64) -> f64 {
     const POINTS: u32 = 200_000;
     let (low, high) = (marginal.quantile(1e-13), marginal.quantile(1.0 - 1e-13));
@@ -220,7 +220,7 @@ fn nearness_to_a_bound_is_judged_in_the_sampling_coordinate() {
         None,
     )
     .unwrap();
-    // 0.01 is a whole decade of four from the lower end, though within 2 % of the linear range.
+    // 0.01 is one of four decades above the lower end, although within 2 % of the linear range.
     assert!(!marginal.at_bound(0.01, 0.1));
     assert!(marginal.at_bound(0.001_1, 0.1));
 }
@@ -268,8 +268,8 @@ fn scores_are_normal_quantiles() {
 fn coordinates_have_the_moments_of_their_draws() {
     for marginal in cases() {
         let count = 20_000;
-        let of = |k: usize| marginal.coordinate(marginal.quantile((k as f64 + 0.5) / count as f64));
-        let draws: Vec<f64> = (0..count).map(of).collect();
+        let draw = |k: usize| marginal.coordinate(marginal.quantile((k as f64 + 0.5) / count as f64));
+        let draws: Vec<f64> = (0..count).map(draw).collect();
         let (mean, sd) = mean_and_sd(&draws);
         let (expected, expected_sd) = marginal.coordinate_moments();
         assert!((mean - expected).abs() < 1e-3 * expected_sd, "{marginal:?}");
@@ -318,7 +318,7 @@ fn correlated_parameters_have_the_closed_form() {
     }
 }
 
-/// The prior of x and y, and that of y alone, are the joint one integrated over the others.
+/// The prior of x and y, and that of y alone, equal the joint prior integrated over the rest.
 #[test]
 fn some_parameters_keep_their_correlations() {
     let prior = joint();
@@ -367,7 +367,7 @@ fn draws_of_correlated_parameters_have_their_moments() {
 }
 
 #[test]
-fn what_cannot_be_correlated_is_refused() {
+fn invalid_correlations_are_refused() {
     let normal = |bounds| Marginal::new(Distribution::Normal { mean: 0.0, sd: 1.0 }, bounds).unwrap();
     let prior = |second| Prior::new(vec![normal(None), second]);
     let half = vec![vec![1.0, 0.5], vec![0.5, 1.0]];

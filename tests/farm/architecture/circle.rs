@@ -82,7 +82,7 @@ fn imports_are_followed_to_where_things_are_defined() {
     let importers: Vec<&str> = importers.collect();
     let is_found = |file: &str| importers.iter().any(|importer| importer.ends_with(file));
     assert!(
-        is_found("src/calibration/second_answer.rs") && is_found("src/state.rs"),
+        is_found("src/calibration/second_answer.rs") && is_found("src/farm.rs"),
         "{importers:?}"
     );
 }

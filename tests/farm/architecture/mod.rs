@@ -192,7 +192,7 @@ fn manifests_keep_the_direction_of_dependencies() {
     );
     assert_eq!(
         ours("coordinator/export"),
-        set(&["job", "record", "result", "shared", "statistics"])
+        set(&["inference", "job", "record", "result", "shared", "statistics"])
     );
     assert_eq!(
         ours("coordinator/search"),
@@ -401,7 +401,7 @@ fn pure_rooms_read_no_clock() {
     ];
     nowhere(&pure, &clocks, &[]);
     for file in [
-        "coordinator/farm/src/state.rs",
+        "coordinator/farm/src/farm.rs",
         "coordinator/farm/src/leasing.rs",
         "coordinator/farm/src/verification.rs",
         "coordinator/farm/src/progress.rs",

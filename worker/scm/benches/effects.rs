@@ -1,8 +1,8 @@
-//! What a formula costs: the base without its shear-velocity law, with that law as a formula, and with the law in code.
+//! The cost of a formula: the base without its shear-velocity law, with that law as a formula, and with the law in code.
 //!
 //! `cargo bench -p scm --bench effects`. All three run in turn, and the fastest of many turns counts, so that the ratios
-//! hold on a machine that does other things. A base velocity of 0 mobilises the whole strength; the formula then does what the
-//! code does otherwise, and both give the same forces.
+//! hold on a busy machine. A base velocity of 0 mobilises the whole strength; the formula then replaces the code, and both
+//! give the same forces.
 
 #[path = "../tests/support.rs"]
 #[expect(dead_code, reason = "tests draw random cases")]
@@ -19,10 +19,10 @@ use support::base;
 
 const TURNS: u32 = 2000;
 
-/// One of the ways to simulate: its name, and what it simulates.
+/// One of the variants: its name and its simulation.
 type Way<'a> = (&'a str, Box<dyn FnMut() -> Averages + 'a>);
 
-/// Prints the fastest time of each way, and its ratio to the last one's.
+/// Prints the fastest time of each variant, and its ratio to that of the last one.
 fn compare(title: &str, turns: u32, ways: &mut [Way]) {
     let mut fastest = vec![f64::INFINITY; ways.len()];
     for _ in 0..turns {

@@ -50,7 +50,7 @@ fn one_run(bencher: divan::Bencher<'_, '_>, (slip, slip_angle_deg): (f64, f64)) 
     });
 }
 
-/// 1000 parameter vectors as a prior gives them, so that no branch can be learnt.
+/// 1000 parameter vectors from a prior, so that branch prediction cannot learn them.
 #[divan::bench(args = ["drive", "skid", "cohesive_skid", "mixed"])]
 fn batch_of_1000(bencher: divan::Bencher<'_, '_>, kind: &str) {
     let mut state = 1_u64;

@@ -18,7 +18,7 @@ fn main() {
     divan::main();
 }
 
-/// One run: what the benches change of it.
+/// A run, by the settings that the benches change.
 #[derive(Debug, Clone, Copy)]
 struct Case {
     name: &'static str,
@@ -27,7 +27,7 @@ struct Case {
     both_halves: bool,
     slip_angle_deg: f64,
     spacing_m: f64,
-    /// Of Janosi and Hanamoto's law, which enters where it is above 0.
+    /// Shear modulus of Janosi and Hanamoto's law, which is active if this is above 0.
     shear_modulus_m: f64,
     displacement: Displacement,
 }
@@ -120,7 +120,7 @@ fn steps(bencher: Bencher<'_, '_>, case: Case) {
     bencher.counter(ItemsCount::new(steps)).bench(|| case.run());
 }
 
-/// Time of a run, and nodes in contact that were computed per second, over all trials.
+/// Time of a run, and computed nodes in contact per second, over all trials.
 #[divan::bench(args = CASES)]
 fn node_trials(bencher: Bencher<'_, '_>, case: Case) {
     let nodes = case.run().map_or(0, |run| run.node_trials);
@@ -138,7 +138,7 @@ fn spacing(bencher: Bencher<'_, '_>, spacing_mm: f64) {
     bencher.counter(ItemsCount::new(nodes)).bench(|| case.run());
 }
 
-/// Time of a run with the displacement kept nowhere, on the rim and on the soil's nodes.
+/// Time of a run without displacement, and with displacement on the rim and on the soil's nodes.
 #[divan::bench(args = ["none", "rim", "node"])]
 fn displacement(bencher: Bencher<'_, '_>, keeper: &str) {
     let case = Case {

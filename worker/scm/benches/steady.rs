@@ -1,6 +1,7 @@
-//! When steady runs end, and how far the averages of neighbours scatter; it fails above its bounds.
+//! The end of steady runs, and the scatter of the averages of neighbours; it fails above its bounds.
 //!
-//! `cargo bench -p scm --bench steady`; under `valgrind --tool=callgrind` with the word `draws` it counts their instructions alone.
+//! `cargo bench -p scm --bench steady`; under `valgrind --tool=callgrind` the word `draws` counts only the instructions of
+//! the draws.
 
 #[path = "../tests/scene.rs"]
 #[expect(dead_code, reason = "tests ask more of a track")]
@@ -15,14 +16,14 @@ use std::process::ExitCode;
 
 use steady_runs::{draws, mean, neighbours, outcomes, scatter};
 
-/// Runs of either kind.
+/// Number of runs of either kind.
 const COUNT: u32 = 40;
 
 fn main() -> ExitCode {
     let mut fine = true;
-    let mut row = |name: &str, got: f64, most: f64| {
-        println!("{name:40} | {got:9.4} | at most {most}");
-        fine &= got <= most;
+    let mut row = |name: &str, got: f64, bound: f64| {
+        println!("{name:40} | {got:9.4} | at most {bound}");
+        fine &= got <= bound;
     };
     let drawn = outcomes(&draws(COUNT));
     row("draws of the prior: mean steps", mean(&drawn, 0), 400.0);

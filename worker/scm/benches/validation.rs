@@ -1,4 +1,4 @@
-//! Prints every figure that effects and the three-dimensional model are expected to give, with what they give.
+//! Prints the expected figures of effects and of the three-dimensional model, with the model's results.
 //!
 //! `cargo bench -p scm --bench validation`; it fails if a row fails.
 

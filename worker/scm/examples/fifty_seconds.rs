@@ -1,4 +1,4 @@
-//! One run of 50 s over 1 m of travel with 12 grousers: what speed is counted on.
+//! One run of 50 s over 1 m of travel with 12 grousers, as a benchmark of speed.
 //!
 //! `cargo build --release -p scm --example fifty_seconds`, then
 //! `valgrind --tool=callgrind target/release/examples/fifty_seconds`. Words on the command line change the case:

@@ -1,10 +1,9 @@
-//! Quasi-static runs at one slip under draws of a prior like that of `examples/cmu-sand`: what their cost is counted on.
+//! Quasi-static runs at one slip under draws of a prior like that of `examples/cmu-sand`, as a benchmark of cost.
 //!
 //! `cargo build --release -p scm --example prior_runs`, then
-//! `valgrind --tool=callgrind target/release/examples/prior_runs 1000 -0.7` for so many runs at a slip. A word after it
-//! changes the soil's law: `none`, no shear-velocity law; `formula`, that law as a formula; `displacement`, Janosi and
-//! Hanamoto's law besides. `base` takes one case instead of the draws, `wide` draws far beyond that
-//! prior; `print` prints every run.
+//! `valgrind --tool=callgrind target/release/examples/prior_runs 1000 -0.7` for a number of runs at a slip. A word after it changes
+//! the soil's law: `none`, no shear-velocity law; `formula`, that law as a formula; `displacement`, Janosi and Hanamoto's law in
+//! addition. `base` takes one case instead of the draws, `wide` draws far beyond that prior; `print` prints every run.
 
 #[path = "../tests/support.rs"]
 #[expect(dead_code, reason = "tests ask more of a case")]
@@ -74,9 +73,9 @@ fn main() {
     println!("slip {slip}: sums of pull and sinkage {sums:?}, {rejected} of {runs} refused");
 }
 
-/// A small wheel on sand as the prior of `examples/cmu-sand` has it, at a slip.
+/// A small wheel on sand from the prior of `examples/cmu-sand`, at a slip.
 fn prior_draw(draws: &mut Draws, slip: f64) -> Case {
-    // a sum of twelve is about normal
+    // a sum of twelve uniform numbers is nearly normal
     let mut normal =
         |mean: f64, sd: f64| mean + sd * ((0..12).map(|_| draws.uniform(0.0, 1.0)).sum::<f64>() - 6.0);
     let n = normal(1.32, 0.13).clamp(0.8, 2.0);

@@ -15,10 +15,10 @@ pub struct Averages {
     pub b_eff_m: f64,
     /// Length of the contact projected on the ground `[m]`.
     pub contact_length_m: f64,
-    /// Vertical soil force less wheel load that the balance left `[N]`.
+    /// Residual of the balance: vertical soil force less wheel load `[N]`.
     pub residual_load_n: f64,
     /// Number of points at which the contact was evaluated.
     pub nodes_in_contact: u32,
-    /// Travel that was simulated to reach the steady state `[m]`; 0 for a quasi-static model.
+    /// Simulated travel until the steady state `[m]`; 0 for a quasi-static model.
     pub simulated_travel_m: f64,
 }

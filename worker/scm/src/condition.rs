@@ -2,7 +2,7 @@
 
 use crate::rejection::{Rejection, require};
 
-/// What the rig prescribes during one run.
+/// The conditions that the rig prescribes during one run.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Condition {
     /// Slip `(omega R_s − v) / max(omega R_s, v)` `[–]`, in [−1, 1); `R_s` is the rig's radius. Negative: skid;
@@ -14,16 +14,14 @@ pub struct Condition {
     pub sled_speed_m_s: f64,
     /// Angle beta from the wheel's heading to the travel `[rad]`, in [−π/2, π/2].
     pub slip_angle_rad: f64,
-    /// Which pass over the same track is measured, ≥ 1. A model without memory of the track, such as the
-    /// base [`quasi_static`](crate::quasi_static) one, gives every pass the same answer.
+    /// Number of the measured pass over the same track, ≥ 1. A model without memory of the track, such as the base
+    /// [`quasi_static`](crate::quasi_static) one, gives the same answer for every pass.
     pub pass: u32,
 }
 
 impl Condition {
-    /// Checks that every field lies within its bounds, and returns the condition.
-    ///
-    /// # Errors
-    /// [`Rejection::InvalidParameter`] for the first that does not.
+    /// Checks that every field is within its bounds, and returns the condition; [`Rejection::InvalidParameter`] names the
+    /// first field that is not.
     pub fn checked(self) -> Result<Self, Rejection> {
         let beta = self.slip_angle_rad;
         let slip = self.slip;

@@ -5,7 +5,7 @@
 /// `b_eff = 2 A / L`; a circle of radius r has `b_eff` = r, Bekker's convention for round plates.
 ///
 /// # Arguments
-/// - `area`: `[m²]`; `contour_length`: `[m]`, > 0, the smooth contour and not the staircase of a grid.
+/// - `area`: `[m²]`; `contour_length`: `[m]`, > 0, along the smooth contour, not the staircase of a grid.
 #[inline]
 pub fn effective_width(area: f64, contour_length: f64) -> f64 {
     2.0 * area / contour_length

@@ -6,13 +6,13 @@
 //! - [`pressure_sinkage`]: normal pressure from sinkage (Bekker).
 //! - [`pressure_distribution`]: gamma, the weight that takes the pressure to zero at the border.
 //! - [`footprint`]: the effective width `2 A / L` of a footprint.
-//! - [`wong_reece`]: where the pressure under a driven wheel peaks, and its shear by displacement.
-//! - [`shear`]: the Mohr–Coulomb limit and how much of it a slip velocity or a displacement mobilises.
+//! - [`wong_reece`]: the peak of the pressure under a driven wheel, and its shear by displacement.
+//! - [`shear`]: the Mohr–Coulomb limit and the share that a slip velocity or a displacement mobilises.
 //!
 //! Boundary of the crate:
 //! - [`wheel`], [`condition`]: the rigid wheel and one run of the rig.
 //! - [`averages`]: the result of a run.
-//! - [`rejection`]: why a parameter vector has no solution.
+//! - [`rejection`]: the reasons why a parameter vector has no solution.
 //!
 //! Between them and the models:
 //! - [`effects`]: formulas and mechanisms that replace quantities of the base.

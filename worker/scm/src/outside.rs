@@ -1,4 +1,4 @@
-//! Effects around a model that is not of this crate: on the run that it is given, and on the channels that it answers.
+//! Effects around a model outside this crate: on its inputs and on its outputs.
 
 use formula::Variable;
 
@@ -6,7 +6,7 @@ use crate::effects::case::Case;
 use crate::effects::{Active, Site};
 use crate::{Condition, Rejection, Soil, Wheel};
 
-/// A run as a model that is not of this crate is given it.
+/// The inputs of a model outside this crate for one run.
 #[derive(Debug, Clone)]
 pub struct OutsideRun(Case);
 
@@ -19,11 +19,12 @@ const CHANNELS: [Variable; 4] = [
 ];
 
 impl OutsideRun {
-    /// A run after the effects on slip, dimensions, sinkage exponent and load.
+    /// Applies the effects on slip, dimensions, sinkage exponent and load to a run.
     ///
     /// # Arguments
-    /// - `soil`: what formulas may use of the parameters; NaN where the model has none, which no effect may then use.
-    /// - `effects`: compiled for [`ModelForm::Outside`](crate::effects::ModelForm::Outside); the load does not depend on pull or torque.
+    /// - `soil`: the parameters that formulas may use; NaN for a parameter that the model lacks, which no effect may use.
+    /// - `effects`: compiled for [`ModelForm::Outside`](crate::effects::ModelForm::Outside); the load does not depend on
+    ///   pull or torque.
     ///
     /// # Errors
     /// [`Rejection::InvalidParameter`]: a field of wheel or condition is outside its bounds. [`Rejection::Formula`]: a formula
@@ -47,20 +48,19 @@ impl OutsideRun {
         &self.0.condition
     }
 
-    /// The wheel.
+    /// The wheel after the effects.
     pub fn wheel(&self) -> &Wheel {
         &self.0.wheel
     }
 
-    /// The sinkage exponent.
+    /// The sinkage exponent after the effects.
     pub fn sinkage_exponent(&self) -> f64 {
         self.0.soil.n
     }
 
-    /// The channels as the rig measures them: drawbar pull `[N]`, torque \[N m\], sinkage `[m]`, lateral force `[N]`, of those
-    /// that the model answered; NaN is a channel that it does not have, which no effect may then use.
+    /// The measured channels: drawbar pull `[N]`, torque \[N m\], sinkage `[m]`, lateral force `[N]`, from those that the
+    /// model answered; NaN is a channel that the model lacks, which no effect may use.
     ///
-    /// # Errors
     /// [`Rejection::Formula`]: a formula gives an inadmissible value.
     pub fn measured(&self, effects: &Active, channels: [f64; 4]) -> Result<[f64; 4], Rejection> {
         if !effects.change_channels() {
@@ -113,21 +113,21 @@ mod tests {
     }
 
     #[test]
-    fn effects_act_on_what_is_given_and_on_what_is_answered() {
+    fn effects_act_on_inputs_and_outputs() {
         // 100 N (1 + 0.1), n + 0.5 |0.2|, 20 N - 3 N
         let (run, channels) = with("load_scale", &[0.1]);
         assert!((run.condition().wheel_load_n - 110.0).abs() < 1e-9);
         assert!((channels[0] - 20.0).abs() < f64::EPSILON);
         assert!((with("slip_sinkage", &[0.5]).0.sinkage_exponent() - 1.1).abs() < 1e-12);
         assert!((with("sled_tare", &[3.0]).1[0] - 17.0).abs() < 1e-12);
-        // the motor keeps its speed: (1 - 0.2) v / (1 - s) of the new slip
+        // the motor keeps its speed: (1 - 0.2) v / (1 - s) with the new slip s
         let (run, _) = with("slip_radius_error", &[0.03]);
         let speed = CONDITION.rig_rim_speed_m_s() * (1.0 - run.condition().slip);
         assert!((run.condition().sled_speed_m_s - speed).abs() < 1e-12);
     }
 
     #[test]
-    fn what_is_inside_the_contact_has_no_form_outside() {
+    fn effects_inside_the_contact_have_no_form_outside() {
         let error = CompiledEffects::compile(ModelForm::Outside, find("elastic_rebound")).unwrap_err();
         assert!(error.to_string().contains("a model that is not ours"), "{error}");
     }

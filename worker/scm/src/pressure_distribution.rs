@@ -8,8 +8,8 @@ use crate::elementary::fraction_pow;
 /// modulus; m = 0 makes gamma 1 everywhere.
 ///
 /// # Source
-/// Krenn & Hirzinger's model requires a weight that is highest in the middle and vanishes at the border, without
-/// giving a formula; this power law is our own.
+/// Krenn & Hirzinger's model requires a weight that is highest in the middle and vanishes at the border, without giving a
+/// formula; this power law is a choice of this crate.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum PressureDistribution {
     /// m = 0.

@@ -10,8 +10,8 @@ use crate::soil::Soil;
 /// - `b_eff`: `[m]`, > 0; see [`footprint`](crate::footprint).
 ///
 /// # Returns
-/// k* `[N/m^(n+2)]`. Not positive for a small footprint when `k_c` < 0: there is then no support, which the
-/// caller must detect; nothing is clamped here.
+/// k* `[N/m^(n+2)]`. It is not positive for a small footprint when `k_c` < 0: then there is no support, which the caller
+/// must detect; nothing is clamped here.
 ///
 /// # Source
 /// Bekker 1969, pressure–sinkage relation, see [Literature](crate#literature). Checked by `closed_forms::plate_load_is_area_times_bekker_pressure`.

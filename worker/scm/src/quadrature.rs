@@ -1,9 +1,9 @@
 //! Quadrature over a panel whose integrand has roots or thin layers at its ends.
 //!
-//! Gauss–Legendre in s on (0, 1) with `x = a + h S(s)`, `S = s² (3 − 2 s)`, `dx = h · 6 s (1 − s) ds`. Near
-//! an end the distance to it goes with s²: the root of gamma and of the sinkage law become smooth there,
-//! and nodes gather where a slip velocity changes sign. A panel of zero length contributes zero, so an
-//! integral stays continuous when a breakpoint enters or leaves the contact.
+//! Gauss–Legendre in s on (0, 1) with `x = a + h S(s)`, `S = s² (3 − 2 s)`, `dx = h · 6 s (1 − s) ds`. Near an end the
+//! distance to it is proportional to s²: the root of gamma and of the sinkage law become smooth there, and nodes cluster
+//! where a slip velocity changes sign. A panel of zero length contributes zero, so an integral stays continuous when a
+//! breakpoint enters or leaves the contact.
 
 /// Nodes per panel.
 pub(crate) const NODES: usize = 8;

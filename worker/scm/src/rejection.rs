@@ -1,6 +1,6 @@
-//! Why a parameter vector has no solution.
+//! The reasons why a parameter vector has no solution.
 
-/// A fact about the parameters: the model has no equilibrium there, or they lie outside its validity.
+/// A property of the parameters: the model has no equilibrium there, or they lie outside its validity.
 ///
 /// A rejection is a result (likelihood zero), not a fault of the machine: the same arguments are always
 /// rejected, on every machine. Messages are fragments that complete "failed to simulate: …".
@@ -9,12 +9,12 @@
 pub enum Rejection {
     /// The soil cannot carry the wheel load at any sinkage below the wheel radius.
     #[error(
-        "no support: the soil carries at most {most_carried_n:.4} N of the {wheel_load_n} N wheel load \
+        "no support: the soil carries at most {max_carried_n:.4} N of the {wheel_load_n} N wheel load \
          before the sinkage reaches the wheel radius {wheel_radius_m} m"
     )]
     NoSupport {
         /// The largest vertical soil force met `[N]`.
-        most_carried_n: f64,
+        max_carried_n: f64,
         /// The load to be carried `[N]`.
         wheel_load_n: f64,
         /// The model's wheel radius `[m]`.
@@ -35,12 +35,12 @@ pub enum Rejection {
         /// Number of trial sinkages.
         evaluations: u32,
     },
-    /// A number overflowed or became undefined on the way.
+    /// A number overflowed or became undefined during the computation.
     #[error("not finite: {quantity} is {value}")]
     NotFinite {
-        /// What was not finite.
+        /// Name of the quantity.
         quantity: &'static str,
-        /// Its value.
+        /// The refused value.
         value: f64,
     },
     /// The soil seems to drive the wheel: the model breaks its own energy balance.
@@ -54,45 +54,45 @@ pub enum Rejection {
     /// The protocol does not fit the run.
     #[error("the protocol does not fit the run: {0}")]
     Protocol(#[from] signal::SignalError),
-    /// A formula of an effect gave what the model cannot use.
+    /// A formula of an effect gave an inadmissible value.
     #[error(transparent)]
     Formula(Box<FormulaRefusal>),
     /// A parameter lies outside the bounds within which the model is defined.
     #[error("invalid parameter: {name} = {value} {unit} must be {bound}")]
     InvalidParameter {
-        /// The field's name, which carries its unit.
+        /// Name of the field, with its unit.
         name: &'static str,
-        /// The value given.
+        /// The refused value.
         value: f64,
-        /// Its unit.
+        /// Unit of the value.
         unit: &'static str,
-        /// The bound it breaks.
+        /// The violated bound.
         bound: &'static str,
     },
 }
 
-/// Which formula gave what, and from which values.
+/// The formula that gave an inadmissible value, with its inputs.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error(
     "effect {effect}: {hook} is {value}{}, which must be {bound} ({values})",
     shown(unit)
 )]
 pub struct FormulaRefusal {
-    /// The effect.
+    /// Name of the effect.
     pub effect: String,
     /// The quantity that the formula replaces.
     pub hook: &'static str,
-    /// What it gave.
+    /// The inadmissible value.
     pub value: f64,
-    /// Its unit.
+    /// Unit of the value.
     pub unit: &'static str,
-    /// The bound it breaks.
+    /// The violated bound.
     pub bound: &'static str,
     /// The variables and parameters that the formula uses, with their values and units.
     pub values: String,
 }
 
-/// A unit behind a number; nothing where there is none.
+/// A unit after a number; nothing for a dimensionless one.
 pub(crate) fn shown(unit: &str) -> String {
     match unit {
         "1" => String::new(),
@@ -115,7 +115,7 @@ impl Rejection {
     }
 }
 
-/// Ok if `accepted`; NaN fails every comparison, so a bound written as a positive condition rejects it.
+/// Returns `Ok` if `accepted`; NaN fails every comparison, so a bound written as a positive condition rejects it.
 pub(crate) fn require(
     accepted: bool,
     name: &'static str,

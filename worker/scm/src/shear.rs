@@ -25,7 +25,7 @@ pub struct ShearVelocity {
 impl ShearVelocity {
     /// The law with reference velocity v0 `[m/s]`, ≥ 0; with v0 = 0 any motion mobilises the whole strength.
     pub fn new(reference_velocity: f64) -> Self {
-        // 1/0 would turn a point at rest into 0 · ∞; the largest number gives 0 there and ∞ elsewhere.
+        // 1/0 would give 0 · ∞ for a point at rest; the largest number gives 0 there and ∞ elsewhere.
         Self {
             per_velocity: (1.0 / reference_velocity).min(f64::MAX),
         }
@@ -64,7 +64,7 @@ impl ShearVelocity {
 
     #[inline]
     fn mobilised_in_motion(&self, speed: f64) -> f64 {
-        // with v0 = 0 there is no exponential to compute; the test is the same for every point of a loop
+        // with v0 = 0 no exponential is needed; the branch is the same for every point of a loop
         if self.per_velocity < f64::MAX {
             1.0 - crate::elementary::exp(-speed * self.per_velocity)
         } else {
@@ -84,7 +84,7 @@ pub struct ShearDisplacement {
 impl ShearDisplacement {
     /// The law with shear modulus K `[m]`, ≥ 0; with K = 0 any displacement mobilises the whole strength.
     pub fn new(modulus_m: f64) -> Self {
-        // as for the velocity law: 0 · ∞ at zero displacement would be NaN
+        // 0 · ∞ at zero displacement would be NaN, as for the velocity law
         Self {
             per_displacement: (1.0 / modulus_m).min(f64::MAX),
         }

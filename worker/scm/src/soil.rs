@@ -10,7 +10,7 @@ pub const REFERENCE_SINKAGE_M: f64 = 0.01;
 /// The parameters of one soil, shared by every model of this crate.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Soil {
-    /// Bekker's cohesive modulus `k_c` `[N/m^(n+1)]`; may be negative, as plate tests on sand often give it.
+    /// Bekker's cohesive modulus `k_c` `[N/m^(n+1)]`; it may be negative, as plate tests on sand often show.
     pub k_c: f64,
     /// Bekker's frictional modulus `k_phi` `[N/m^(n+2)]`, ≥ 0.
     pub k_phi: f64,
@@ -20,9 +20,9 @@ pub struct Soil {
     pub cohesion_pa: f64,
     /// Angle of internal friction `[rad]`, in [0, π/2).
     pub friction_angle_rad: f64,
-    /// Slip velocity v0 at which 1 − 1/e of the strength is mobilised `[m/s]`, ≥ 0; 0: always all of it.
+    /// Slip velocity v0 at which 1 − 1/e of the strength is mobilised `[m/s]`, ≥ 0; 0: the whole strength always.
     pub shear_velocity_m_s: f64,
-    /// Exponent m of the pressure distribution `[–]`, ≥ 0; 0: uniform, 0.5: the default elsewhere.
+    /// Exponent m of the pressure distribution `[–]`, ≥ 0; 0: uniform, 0.5: the default in jobs.
     pub gamma_exponent: f64,
 }
 
@@ -30,8 +30,8 @@ impl Soil {
     /// Checks that the laws are defined for the soil, and returns it.
     ///
     /// # Errors
-    /// [`Rejection::InvalidParameter`] for the first field outside its bounds (see the fields) or not
-    /// finite. A negative `k_c` is accepted: the balance decides whether the soil then carries the wheel.
+    /// [`Rejection::InvalidParameter`] for the first field that is outside its bounds or not finite. A negative `k_c` is
+    /// accepted: the balance decides whether the soil carries the wheel.
     pub fn checked(self) -> Result<Self, Rejection> {
         let quarter_turn = core::f64::consts::FRAC_PI_2;
         let phi = self.friction_angle_rad;

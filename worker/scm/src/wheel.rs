@@ -9,15 +9,13 @@ pub struct Wheel {
     pub radius_m: f64,
     /// Width b of the rim `[m]`, > 0.
     pub width_m: f64,
-    /// Radius `R_s` with which the rig turns rim speed into slip `[m]`, > 0; R may be inferred, `R_s` is known.
+    /// Radius `R_s` with which the rig turns rim speed into slip `[m]`, > 0; R may be inferred, `R_s` is given.
     pub rig_radius_m: f64,
 }
 
 impl Wheel {
-    /// Checks that the dimensions are positive and finite, and returns the wheel.
-    ///
-    /// # Errors
-    /// [`Rejection::InvalidParameter`] for the first that is not.
+    /// Checks that the dimensions are positive and finite, and returns the wheel; [`Rejection::InvalidParameter`] names the
+    /// first that is not.
     pub fn checked(self) -> Result<Self, Rejection> {
         require(self.radius_m > 0.0, "radius_m", self.radius_m, "m", "above 0")?;
         require(self.width_m > 0.0, "width_m", self.width_m, "m", "above 0")?;

@@ -1,4 +1,4 @@
-//! Plate and ring against figures that are known on paper.
+//! Plate and ring, compared with hand-computed figures.
 
 use crate::support::base;
 use scm::bevameter::{Plate, Ring, Unloading, plate, ring};
@@ -21,7 +21,7 @@ fn a_plate_carries_its_area_times_bekkers_pressure() {
     };
     assert!((plate::pressure(&soil, &SMALL, 0.006).unwrap() - 63_000.0).abs() < 1e-9);
     assert!((plate::load(&soil, &SMALL, 0.006).unwrap() - 316.672_5).abs() < 1e-3);
-    // b is the short side, whichever it is: (2e4/0.05 + 1e7) 0.006 = 62.4 kPa on 0.05 · 0.2 m²
+    // b is the short side in either order: (2e4/0.05 + 1e7) 0.006 = 62.4 kPa on 0.05 · 0.2 m²
     for (length_m, width_m) in [(0.2, 0.05), (0.05, 0.2)] {
         let rectangle = Plate::Rectangle { length_m, width_m };
         assert!((plate::pressure(&soil, &rectangle, 0.006).unwrap() - 62_400.0).abs() < 1e-9);
@@ -53,7 +53,7 @@ fn a_lifted_plate_follows_the_unloading_line_and_leaves_the_soil() {
     assert!((at(0.01) - 1e5).abs() < 1e-9);
     assert!((at(0.009) - 5e4).abs() < 1e-6);
     assert!(at(0.0079).abs() < f64::MIN_POSITIVE);
-    // Deeper than ever before: the virgin curve, which the line meets.
+    // Beyond the deepest sinkage the virgin curve applies, which the line meets.
     assert!((at(0.012) - 1.2e5).abs() < 1e-9);
     assert!((at(0.01 - 1e-12) - at(0.01)).abs() < 1e-3);
 }

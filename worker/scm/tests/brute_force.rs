@@ -1,5 +1,5 @@
-//! The model against a slow integrator that shares no code with it: midpoint strips in x, `std` functions,
-//! a march from the surface down and bisection.
+//! The model, compared with a slow integrator that shares no code with it: midpoint strips in x, `std` functions, a march
+//! from the surface down, and bisection.
 
 use scm::Averages;
 
@@ -7,18 +7,18 @@ use crate::support::{Case, Draws, base};
 
 const STRIPS: u32 = 20_000;
 
-/// What an effect makes of pressure, strength and shear stress at a node, written down again for this integrator.
+/// The change of pressure, strength and shear stress at a node by an effect, written independently for this integrator.
 #[derive(Clone, Copy)]
 pub(crate) struct Law {
-    /// From p, z, k* and the effective width.
+    /// Pressure from p, z, k* and the effective width.
     pub(crate) pressure: fn(f64, f64, f64, f64) -> f64,
-    /// From the strength, p and the friction angle.
+    /// Strength from the strength, p and the friction angle.
     pub(crate) limit: fn(f64, f64, f64) -> f64,
-    /// From the stress and the way slid.
+    /// Stress from the stress and the distance slid.
     pub(crate) shear: fn(f64, f64) -> f64,
 }
 
-/// The base.
+/// The base laws.
 pub(crate) const NONE: Law = Law {
     pressure: |p, _, _, _| p,
     limit: |tau_max, _, _| tau_max,
@@ -46,7 +46,7 @@ fn forces(case: &Case, law: Law, sinkage: f64, strips: u32) -> [f64; 4] {
     let v = condition.sled_speed_m_s;
     let mut total = [0.0; 4];
     let mut slid = 0.0;
-    // from the front entry backwards, the way an element of the rim goes
+    // from the front entry backwards, like an element of the rim
     for x in xs().rev() {
         let theta = (x / r).asin();
         let z = r * theta.cos() - (r - sinkage);
@@ -107,13 +107,13 @@ fn deviation(case: &Case, law: Law, sinkage: f64, got: &Averages) -> [f64; 4] {
     ]
 }
 
-/// The largest deviation, by channel, of a run with a law from this integrator's; none where there is no support.
+/// The largest deviation, by channel, of a run with a law from this integrator's result; `None` if there is no support.
 pub(crate) fn deviation_with(case: &Case, law: Law, got: &Averages) -> Option<[f64; 4]> {
     let sinkage = first_sinkage(case, law)?;
     Some(deviation(case, law, sinkage, got))
 }
 
-/// The largest deviation of a run without effects, each of which must lie below a bound.
+/// Returns the largest deviation of a run without effects; each must be below a bound.
 fn deviation_below(case: &Case, bound: f64) -> f64 {
     let deviations = deviation_with(case, NONE, &case.simulate()).expect("the base has support");
     for (i, difference) in deviations.into_iter().enumerate() {
@@ -139,15 +139,15 @@ fn random_runs_agree_with_the_brute_force_integrator() {
             unsupported += 1;
             continue;
         };
-        // Deep in the soil the layer where the slip velocity turns is thin; nearly at the hub the front of
-        // the rim is almost vertical, and both integrators are poorer.
+        // Deep in the soil the layer where the slip velocity changes sign is thin; with the hub close to the soil the front
+        // of the rim is almost vertical, and both integrators are less accurate.
         let depth = sinkage / case.wheel.radius_m;
         let shallow = depth < 0.25;
         let bound = [5e-4, 1e-4, 1e-5][usize::from(depth < 0.75) + usize::from(shallow)];
-        let here = deviation(&case, NONE, sinkage, &case.simulate());
+        let off = deviation(&case, NONE, sinkage, &case.simulate());
         for i in 0..4 {
-            worst[i] = if shallow { worst[i].max(here[i]) } else { worst[i] };
-            assert!(here[i] < bound, "channel {i} differs by {} in {case:?}", here[i]);
+            worst[i] = if shallow { worst[i].max(off[i]) } else { worst[i] };
+            assert!(off[i] < bound, "channel {i} differs by {} in {case:?}", off[i]);
         }
         compared += 1;
         skids += u32::from(case.condition.slip < 0.0);

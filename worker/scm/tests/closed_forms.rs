@@ -1,4 +1,4 @@
-//! Cases whose answer is known on paper.
+//! Cases with hand-computed results.
 
 use crate::support::base;
 use scm::footprint::{effective_width, rectangle_effective_width};

@@ -1,10 +1,10 @@
-//! In skid the carried load rises and falls with depth: the wheel stops at the first balance.
+//! In skid the carried load rises and falls with depth, and the wheel stops at the first balance.
 
 use crate::support::{Case, base};
 use scm::Rejection;
 use scm::quasi_static::simulate;
 
-/// Strong friction and a low exponent: in skid the load carried peaks well before z = R.
+/// A case with strong friction and a low exponent: in skid the carried load peaks well before z = R.
 fn skidding(slip: f64, n: f64, wheel_load_n: f64) -> Case {
     let mut case = base(slip, wheel_load_n, 50.0);
     case.condition.sled_speed_m_s = 0.01;
@@ -18,7 +18,7 @@ fn rejection(case: &Case) -> Rejection {
 
 #[test]
 fn of_three_balances_the_one_nearest_the_surface_is_taken() {
-    // By a prototype with 32 nodes: 191.3 N at z = 0.42 R, 175.3 N at 0.63 R, 272 N at R.
+    // Computed by a prototype with 32 nodes: 191.3 N at z = 0.42 R, 175.3 N at 0.63 R, 272 N at R.
     let radius = 0.125;
     for load in [176.0, 180.0, 185.0, 190.0, 191.0] {
         let got = skidding(-0.6, 0.3, load).simulate();
@@ -27,7 +27,7 @@ fn of_three_balances_the_one_nearest_the_surface_is_taken() {
             "{load} N: {got:?}"
         );
     }
-    // The peak no longer carries these: the wheel drops past the dip.
+    // The peak does not carry these loads: the wheel drops past the dip.
     for load in [192.0, 220.0, 270.0] {
         let got = skidding(-0.6, 0.3, load).simulate();
         assert!(
@@ -41,7 +41,7 @@ fn of_three_balances_the_one_nearest_the_surface_is_taken() {
 fn a_load_just_under_the_peak_is_carried_before_it_and_one_just_above_is_not() {
     // locked wheel, n = 0.5: 109.6 N at 0.55 R and less from there on
     let Rejection::NoSupport {
-        most_carried_n: peak, ..
+        max_carried_n: peak, ..
     } = rejection(&skidding(-1.0, 0.5, 1e4))
     else {
         panic!("supported")

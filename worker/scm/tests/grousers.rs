@@ -1,4 +1,4 @@
-//! The quasi-static model with grousers: its limits.
+//! The limits of the quasi-static model with grousers.
 
 use scm::effects::{Active, CompiledEffects, ModelForm, Site};
 use scm::quasi_static::{self, StraightGrousers};
@@ -26,7 +26,7 @@ fn roll(case: &Case, grousers: &StraightGrousers) -> Averages {
     try_roll(case, grousers).unwrap_or_else(|rejection| panic!("{rejection}: {case:?} {grousers:?}"))
 }
 
-fn of(count: u32, height_m: f64) -> StraightGrousers {
+fn bars(count: u32, height_m: f64) -> StraightGrousers {
     StraightGrousers {
         count,
         height_m,
@@ -45,7 +45,7 @@ fn without_count_or_height_the_wheel_is_smooth_bit_for_bit() {
             condition,
         } = &case;
         let smooth = quasi_static::simulate(soil, wheel, condition);
-        for grousers in [NONE, of(0, 0.009)] {
+        for grousers in [NONE, bars(0, 0.009)] {
             assert_eq!(try_roll(&case, &grousers), smooth, "{case:?}");
         }
     }
@@ -55,7 +55,7 @@ fn without_count_or_height_the_wheel_is_smooth_bit_for_bit() {
 fn low_grousers_make_a_smooth_wheel() {
     for slip in [-0.6, -0.05, 0.05, 0.4, 0.8] {
         let case = base(slip, 100.0, 30.0);
-        let (low, smooth) = (roll(&case, &of(12, 1e-7)), case.simulate());
+        let (low, smooth) = (roll(&case, &bars(12, 1e-7)), case.simulate());
         for (got, expected, scale) in [
             (low.drawbar_pull_n, smooth.drawbar_pull_n, 100.0),
             (low.torque_n_m, smooth.torque_n_m, 12.5),
@@ -66,13 +66,13 @@ fn low_grousers_make_a_smooth_wheel() {
     }
 }
 
-/// As many as stand side by side on the rim: tips cover R / (R + h) of their circumference, and nothing is open between.
+/// Grousers fill the whole rim: tips cover R / (R + h) of their circumference, without gaps.
 #[test]
 fn grousers_side_by_side_make_a_smooth_wheel_of_their_tips() {
     for slip in [0.05, 0.2, 0.6] {
         let case = base(slip, 100.0, 30.0);
         let count = 392;
-        let grousers = of(count, 0.009);
+        let grousers = bars(count, 0.009);
         let tips = case.wheel.radius_m + grousers.height_m;
         let share = f64::from(count) * grousers.thickness_m / (core::f64::consts::TAU * tips);
         let mut smooth = case;
@@ -100,7 +100,7 @@ fn grousers_side_by_side_make_a_smooth_wheel_of_their_tips() {
 fn the_more_grousers_the_more_a_rolling_wheel_pulls() {
     let case = base(0.05, 100.0, 30.0);
     let runs: Vec<Averages> = [0, 6, 12, 24, 48, 96, 300]
-        .map(|count| roll(&case, &of(count, 0.009)))
+        .map(|count| roll(&case, &bars(count, 0.009)))
         .to_vec();
     for pair in runs.windows(2) {
         assert!(pair[1].torque_n_m > pair[0].torque_n_m, "{pair:?}");
@@ -112,7 +112,7 @@ fn the_more_grousers_the_more_a_rolling_wheel_pulls() {
 
 #[test]
 fn the_higher_the_slip_the_deeper_grousers_dig() {
-    let at = |slip| roll(&base(slip, 100.0, 30.0), &of(12, 0.009)).sinkage_m;
+    let at = |slip| roll(&base(slip, 100.0, 30.0), &bars(12, 0.009)).sinkage_m;
     let sinkages = [0.05, 0.2, 0.4, 0.6, 0.8].map(at);
     assert!(sinkages.is_sorted(), "{sinkages:?}");
     let smooth = base(0.8, 100.0, 30.0).simulate().sinkage_m;
@@ -136,7 +136,7 @@ fn every_draw_has_a_balance_or_a_reason() {
                 balanced += 1;
             }
             Err(Rejection::NoSupport { .. }) => {}
-            // k* passes through zero at a footprint
+            // k* is zero at some footprint
             Err(Rejection::NoConvergence { .. }) if case.soil.k_c < 0.0 => {}
             Err(rejection) => panic!("{rejection}: {case:?} {grousers:?}"),
         }
@@ -149,9 +149,9 @@ fn grousers_have_bounds_and_neither_rebound_nor_a_flat() {
     let case = base(0.2, 100.0, 30.0);
     let thin = StraightGrousers {
         thickness_m: 0.0,
-        ..of(12, 0.009)
+        ..bars(12, 0.009)
     };
-    for grousers in [of(12, 0.2), of(12, f64::NAN), of(4_000, 0.009), thin] {
+    for grousers in [bars(12, 0.2), bars(12, f64::NAN), bars(4_000, 0.009), thin] {
         let got = try_roll(&case, &grousers);
         assert!(
             matches!(got, Err(Rejection::InvalidParameter { .. })),
@@ -165,7 +165,7 @@ fn grousers_have_bounds_and_neither_rebound_nor_a_flat() {
         let got = quasi_static::simulate_with_grousers(
             &case.soil,
             &case.wheel,
-            &of(12, 0.009),
+            &bars(12, 0.009),
             &case.condition,
             &mut compiled.activate([values]),
             &Site::default(),
@@ -176,7 +176,7 @@ fn grousers_have_bounds_and_neither_rebound_nor_a_flat() {
 
 #[test]
 fn formulas_see_every_surface() {
-    // a law that changes nothing takes the same panels: the same numbers to rounding
+    // a law that changes nothing uses the same panels, so the results agree to rounding
     let case = base(-0.1, 100.0, 30.0);
     let law = "name = \"same\"\nsummary = \"s\"\nsource = \"s\"\n\
                shear = \"tau * (1 + a * 0 * (j / radius + z / radius + v_n / sled_speed + position))\"\n[parameters.a]\nunit = \"1\"\nneutral = 0\nprior = 0.1\n";
@@ -185,13 +185,13 @@ fn formulas_see_every_surface() {
     let got = quasi_static::simulate_with_grousers(
         &case.soil,
         &case.wheel,
-        &of(12, 0.009),
+        &bars(12, 0.009),
         &case.condition,
         &mut compiled.activate([vec![1.0]]),
         &Site::default(),
     )
     .expect("a balance");
-    let plain = roll(&case, &of(12, 0.009));
+    let plain = roll(&case, &bars(12, 0.009));
     assert!(
         (got.drawbar_pull_n - plain.drawbar_pull_n).abs() < 1e-6,
         "{got:?} {plain:?}"

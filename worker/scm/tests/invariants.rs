@@ -1,4 +1,4 @@
-//! What must hold whatever the parameters.
+//! Invariants that hold for all parameters.
 
 use crate::support::{Case, Draws, base};
 use proptest::prelude::*;
@@ -20,7 +20,7 @@ proptest! {
         let (Ok(left), Ok(mut right)) = (left, right) else { return Ok(()) };
         prop_assert!(left.lateral_force_n > 0.0);
         right.lateral_force_n = -right.lateral_force_n;
-        prop_assert_eq!(left, right); // to the last bit
+        prop_assert_eq!(left, right); // equal to the last bit
     }
 
     #[test]

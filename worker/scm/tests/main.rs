@@ -1,4 +1,4 @@
-//! Checks the physics against closed forms, invariants, a brute-force integrator and another implementation.
+//! Checks of the physics with closed forms, invariants, a brute-force integrator and another implementation.
 
 mod bevameter;
 mod brute_force;

@@ -1,10 +1,10 @@
-//! The closed forms of gamma against sums over a footprint.
+//! The closed forms of gamma, compared with sums over a footprint.
 
 use scm::pressure_distribution::{PressureDistribution, RectangleDistribution};
 
 const CELLS: u32 = 1_200;
 
-/// gamma by its definition, on a grid of cells: mean over the width at each place, mean of all 1.
+/// gamma by its definition, on a grid of cells: the mean over the width at each place, with an overall mean of 1.
 fn gamma_by_cells(length: f64, width: f64, exponent: f64) -> Vec<(f64, f64)> {
     let deepest = (length / 2.0).min(width / 2.0);
     let middle = |i: u32, extent: f64| (f64::from(i) + 0.5) / f64::from(CELLS) * extent;
@@ -46,7 +46,7 @@ fn gamma_has_mean_one() {
         for exponent in [0.0, 0.5, 0.7, 1.0, 3.0] {
             let law = PressureDistribution::new(exponent);
             let distribution = RectangleDistribution::new(law, length, 0.5 * width);
-            // x = (l/2) s² (3 − 2 s) takes the root at the end out of the sum
+            // x = (l/2) s² (3 − 2 s) removes the root at the end from the sum
             let steps = 100_000;
             let mean: f64 = (0..steps)
                 .map(|i| {

@@ -1,4 +1,4 @@
-//! Parameters without an answer are told apart from faults, with the numbers that show why.
+//! Parameters without an answer are distinguished from faults, with the numbers that show why.
 
 use crate::support::{Case, base};
 use scm::Rejection;
@@ -20,11 +20,11 @@ fn too_soft_a_soil_gives_no_support_and_names_the_most_it_carries() {
                 .ends_with(" N of the 100 N wheel load before the sinkage reaches the wheel radius 0.125 m"),
         "{message}"
     );
-    // the number is true: a little less than that is carried
-    let Rejection::NoSupport { most_carried_n, .. } = rejection(&case) else {
+    // the number is correct: a slightly smaller load is carried
+    let Rejection::NoSupport { max_carried_n, .. } = rejection(&case) else {
         panic!("{message}")
     };
-    case.condition.wheel_load_n = 0.999 * most_carried_n;
+    case.condition.wheel_load_n = 0.999 * max_carried_n;
     assert!(case.simulate().sinkage_m < 0.125);
 }
 

@@ -43,7 +43,7 @@ fn run(shape: &RftShape, condition: &Condition) -> Result<Averages, Rejection> {
     )
 }
 
-/// A closed cylinder about the axle of so many facets, or a box where `facets` is 4 and `turned` half a facet.
+/// A closed cylinder about the axle with a number of facets, or a box if `facets` is 4 and `turned` half a facet.
 fn prism(facets: u32, radius: f64, width: f64, turned: f64) -> SurfaceMesh {
     let mut vertices_m = vec![[0.0, -0.5 * width, 0.0], [0.0, 0.5 * width, 0.0]];
     for i in 0..facets {
@@ -68,7 +68,7 @@ fn prism(facets: u32, radius: f64, width: f64, turned: f64) -> SurfaceMesh {
 
 #[test]
 fn the_load_on_a_plate_grows_linearly_with_depth() {
-    // by the law: alpha = 0.87504 under a level plate that moves down, whatever its shape
+    // the law gives alpha = 0.87504 under a level plate of any shape that moves down
     for depth_m in [0.002, 0.01, 0.05] {
         let carried = rft::plate_force_n(&SOIL, 0.01, depth_m).unwrap();
         assert!(
@@ -82,9 +82,9 @@ fn the_load_on_a_plate_grows_linearly_with_depth() {
 fn load_is_carried_and_scales_with_the_factor() {
     let shape = RftShape::rim(SMOOTH);
     for slip in [-0.5, 0.0, 0.3, 0.8] {
-        let here = run(&shape, &condition(slip, 100.0, 0.0)).unwrap();
-        assert!(here.residual_load_n.abs() < 1e-9 && here.sinkage_m > 0.0);
-        // stresses go with the factor: twice the load on a soil twice as stiff sinks as deep
+        let run_once = run(&shape, &condition(slip, 100.0, 0.0)).unwrap();
+        assert!(run_once.residual_load_n.abs() < 1e-9 && run_once.sinkage_m > 0.0);
+        // stresses are proportional to the factor: twice the load on a soil twice as stiff has the same sinkage
         let stiff = RftSoil {
             xi_n_pa_m: 1e6,
             ..SOIL
@@ -99,8 +99,8 @@ fn load_is_carried_and_scales_with_the_factor() {
             &site,
         )
         .unwrap();
-        assert!((twice.sinkage_m / here.sinkage_m - 1.0).abs() < 1e-9);
-        assert!((twice.drawbar_pull_n / here.drawbar_pull_n - 2.0).abs() < 1e-9);
+        assert!((twice.sinkage_m / run_once.sinkage_m - 1.0).abs() < 1e-9);
+        assert!((twice.drawbar_pull_n / run_once.drawbar_pull_n - 2.0).abs() < 1e-9);
     }
 }
 
@@ -173,7 +173,7 @@ fn grousers_add_thrust() {
 }
 
 #[test]
-fn soil_too_weak_is_refused_with_what_it_carries() {
+fn too_weak_a_soil_is_refused_with_the_largest_load_that_it_carries() {
     let weak = RftSoil {
         xi_n_pa_m: 1e3,
         ..SOIL

@@ -1,4 +1,4 @@
-//! A wheel in three dimensions, ready to roll: what tests and the validation table start from.
+//! A wheel in three dimensions, ready to roll, for tests and the validation table.
 
 use crate::support::{Case, base};
 use formula::Effect;
@@ -6,7 +6,7 @@ use scm::effects::{CompiledEffects, ModelForm, Site};
 use scm::spatial::{Ground, Grousers, Protocol, RunSettings, Scene, Shape, SpatialRun, simulate};
 use scm::{Averages, Rejection};
 
-/// A case with the choices of the three-dimensional model.
+/// A case with the settings of the three-dimensional model.
 #[derive(Debug, Clone)]
 pub(crate) struct Track {
     pub(crate) case: Case,
@@ -19,7 +19,7 @@ pub(crate) struct Track {
 }
 
 impl Track {
-    /// A smooth wheel on soil that compacts and does not flow: what the quasi-static model describes.
+    /// A smooth wheel on soil that compacts and does not flow, as in the quasi-static model.
     pub(crate) fn smooth(case: Case) -> Self {
         Self {
             case,
@@ -47,7 +47,7 @@ impl Track {
         }
     }
 
-    /// Roll a distance whatever comes, and average over the last part of it.
+    /// Rolls a distance unconditionally, and averages over the last part of it.
     pub(crate) fn for_a_travel_of(mut self, travel_m: f64, averaged_m: f64) -> Self {
         let speed = self.case.condition.sled_speed_m_s;
         let cut = (travel_m - averaged_m) / speed;
@@ -60,12 +60,12 @@ impl Track {
         self
     }
 
-    /// Let an effect enter, at these values of its parameters.
+    /// Adds an effect at these values of its parameters.
     pub(crate) fn enter(&mut self, effect: &Effect, values: &[f64]) {
         self.effects.push((effect.clone(), values.to_vec()));
     }
 
-    /// Let Janosi and Hanamoto's law enter with a shear modulus `[m]`.
+    /// Adds Janosi and Hanamoto's law with a shear modulus `[m]`.
     pub(crate) fn enter_displacement_law(&mut self, shear_modulus_m: f64) {
         let law = formula::catalogue::find("janosi_hanamoto").expect("in the catalogue");
         self.enter(law, &[shear_modulus_m]);

@@ -15,8 +15,8 @@ pub(crate) fn neighbours(count: u32) -> Vec<Track> {
     (0..count).map(|i| track(100.0 + 0.02 * f64::from(i))).collect()
 }
 
-/// Draws of Table 1's prior, but for the moduli: a pressure at 10 mm over its whole range in `examples/paper/bevameter.toml`, because
-/// the literal ones are ground that hardly yields or does not carry.
+/// Draws of Table 1's prior, except for the moduli: a pressure at 10 mm over its whole range in
+/// `examples/paper/bevameter.toml`, because the stated moduli give ground that hardly yields or does not carry.
 pub(crate) fn draws(count: u32) -> Vec<Track> {
     let mut draws = Draws(14);
     let draw = |_| {
@@ -32,7 +32,7 @@ pub(crate) fn draws(count: u32) -> Vec<Track> {
     (0..count).map(draw).collect()
 }
 
-/// What runs came to, each in steps, drawbar pull `[N]`, torque \[N m\] and sinkage `[mm]`.
+/// The results of runs, each as steps, drawbar pull `[N]`, torque \[N m\] and sinkage `[mm]`.
 pub(crate) fn outcomes(tracks: &[Track]) -> Vec<[f64; 4]> {
     let outcome = |track: &Track| {
         let run = track.roll();
@@ -49,7 +49,7 @@ pub(crate) fn outcomes(tracks: &[Track]) -> Vec<[f64; 4]> {
 }
 
 pub(crate) fn mean(outcomes: &[[f64; 4]], quantity: usize) -> f64 {
-    outcomes.iter().map(|of| of[quantity]).sum::<f64>() / outcomes.len() as f64
+    outcomes.iter().map(|outcome| outcome[quantity]).sum::<f64>() / outcomes.len() as f64
 }
 
 /// Standard deviation of a quantity about a straight line over evenly spaced runs.
@@ -58,14 +58,14 @@ pub(crate) fn scatter(outcomes: &[[f64; 4]], quantity: usize) -> f64 {
     let middle = mean(outcomes, quantity);
     let place = |i: usize| i as f64 - 0.5 * (count - 1.0);
     let (mut rise, mut run) = (0.0, 0.0);
-    for (i, of) in outcomes.iter().enumerate() {
-        rise += place(i) * (of[quantity] - middle);
+    for (i, outcome) in outcomes.iter().enumerate() {
+        rise += place(i) * (outcome[quantity] - middle);
         run += place(i) * place(i);
     }
     let slope = rise / run;
     let squares = outcomes
         .iter()
         .enumerate()
-        .map(|(i, of)| (of[quantity] - middle - slope * place(i)).powi(2));
+        .map(|(i, outcome)| (outcome[quantity] - middle - slope * place(i)).powi(2));
     (squares.sum::<f64>() / (count - 2.0)).sqrt()
 }

@@ -1,4 +1,4 @@
-//! The case from which tests depart, and numbers that look random but are the same every time.
+//! The base case of tests, and reproducible pseudo-random numbers.
 
 use scm::{Averages, Condition, Soil, Wheel, quasi_static};
 
@@ -74,7 +74,7 @@ impl Draws {
         self.uniform(low.ln(), high.ln()).exp()
     }
 
-    /// A normal number within bounds: of twelve uniform ones, drawn again where it lies beyond them.
+    /// A normal number within bounds: the sum of twelve uniform ones, drawn again if it is outside.
     pub(crate) fn normal(&mut self, mean: f64, sd: f64, [low, high]: [f64; 2]) -> f64 {
         loop {
             let sum: f64 = (0..12).map(|_| self.uniform(-0.5, 0.5)).sum();
@@ -85,13 +85,13 @@ impl Draws {
         }
     }
 
-    /// A number from one of the ranges, each as likely; an empty range is a fixed value.
+    /// A number from one of the ranges with equal probability; an empty range is a fixed value.
     fn any_of(&mut self, ranges: &[(f64, f64)]) -> f64 {
         let (low, high) = ranges[self.uniform(0.0, ranges.len() as f64) as usize];
         self.uniform(low, high)
     }
 
-    /// Wheels from 58 to 150 mm, soft to hard soil, drive and skid, straight and at an angle.
+    /// Draws wheels from 58 to 150 mm, soft to hard soil, drive and skid, straight and at an angle.
     pub(crate) fn case(&mut self) -> Case {
         let n = self.uniform(0.7, 1.8);
         let kappa = self.any_of(&[(0.0, 0.0), (0.0, 0.0), (-0.6, 0.0), (0.0, 2.0)]);

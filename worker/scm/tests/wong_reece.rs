@@ -1,5 +1,5 @@
-//! The stresses of Wong & Reece against a slow integration in the angle that shares no code with the model: `std` functions, midpoints,
-//! bisection.
+//! The stresses of Wong & Reece, compared with a slow integration in the angle that shares no code with the model: `std`
+//! functions, midpoints, bisection.
 
 use scm::effects::{Active, Site};
 use scm::{Averages, Rejection, WongReece, quasi_static};
@@ -38,7 +38,7 @@ fn forces(case: &Case, law: &WongReece, sinkage: f64, steps: u32) -> [f64; 3] {
             entry - angle / peak * (entry - peak)
         };
         let p = k_star * (r * (counts.cos() - entry.cos())).powf(soil.n);
-        // dj = |omega R − v cos| dt, dt = d(angle)/omega; sliding one way
+        // dj = |omega R − v cos| dt, dt = d(angle)/omega; sliding in one direction
         let slid = r * (entry - angle) - v / case.omega() * (entry.sin() - angle.sin());
         let share = 1.0 - (-slid.abs() / law.shear_modulus_m).exp();
         let slides = (case.omega() * r - v * angle.cos()).signum();
@@ -88,13 +88,13 @@ fn driven_wheels_agree_with_an_independent_integration() {
             let got = simulate(&case, &law).unwrap();
             let depth = sinkage(&case, &law);
             let [_, pull, torque] = forces(&case, &law, depth, STEPS);
-            let here = [
+            let deviations = [
                 (got.sinkage_m / depth - 1.0).abs(),
                 (got.drawbar_pull_n - pull).abs() / load,
                 (got.torque_n_m - torque).abs() / (load * case.wheel.radius_m),
             ];
-            for (most, here) in worst.iter_mut().zip(here) {
-                *most = most.max(here);
+            for (largest, deviations) in worst.iter_mut().zip(deviations) {
+                *largest = largest.max(deviations);
             }
         }
     }

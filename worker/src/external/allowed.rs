@@ -1,7 +1,7 @@
-//! Which models that are not ours this worker runs.
+//! The external models that this worker may run.
 //!
-//! A job names a program by its file name, or a server by its URL; only what the operator has allowed is run, and where a program
-//! lies is the operator's choice. So a job from the network starts nothing else, and gives no arguments.
+//! A job names a program by its file name, or a server by its URL; a program runs only if the operator allows it, from the
+//! operator's folder. So a job from the network can neither start anything else nor pass arguments.
 
 use std::collections::BTreeMap;
 use std::os::unix::fs::MetadataExt;
@@ -17,20 +17,20 @@ use super::group::ProcessGroups;
 use super::umbridge::{CallError, UmbridgeServer};
 use super::{ExternalFailure, ExternalRun, program};
 
-/// Shortest time that a server has to say what it is.
+/// The minimum time that a server gets to identify itself.
 const PATIENCE: Duration = Duration::from_secs(5);
 
-/// The models that are not ours that this worker runs.
+/// The external models that this worker may run.
 #[derive(Debug, Default)]
 pub struct AllowedModels {
-    /// By file name.
+    /// The programs by file name.
     programs: BTreeMap<String, PathBuf>,
     servers: Vec<UmbridgeServer>,
-    /// The programs that run.
+    /// The running programs.
     groups: ProcessGroups,
-    /// The identity of each model by its name, as last seen; absent where it cannot be asked.
+    /// The last identity of each model by its name; absent if the model could not be asked.
     identities: Mutex<BTreeMap<String, String>>,
-    /// What is known of a program's file: its contents are read again only where this differs.
+    /// State and hash of a program's file: the contents are read again only when the state differs.
     hashes: Mutex<BTreeMap<String, (FileState, String)>>,
 }
 
@@ -43,7 +43,7 @@ pub enum AllowedModelError {
     /// There is no such file.
     #[error("--allow-model {0}: no such file; a server begins with http:// or https://")]
     NoFile(String),
-    /// Two files have one name.
+    /// Two files have the same name.
     #[error("--allow-model {0}: another program of the same name is allowed already")]
     Twice(String),
     /// The HTTP client cannot be set up.
@@ -52,9 +52,7 @@ pub enum AllowedModelError {
 }
 
 impl AllowedModels {
-    /// Reads what the operator allows: files of programs, and URLs of UM-Bridge servers, which are talked to on `runtime`.
-    ///
-    /// # Errors
+    /// Reads the operator's list: files of programs, and URLs of UM-Bridge servers, which are called on `runtime`.
     /// [`AllowedModelError`] names the argument.
     pub fn new(allowed: &[String], runtime: &Handle) -> Result<Self, AllowedModelError> {
         let mut models = AllowedModels::default();
@@ -66,7 +64,7 @@ impl AllowedModels {
                 continue;
             }
             let no_file = || AllowedModelError::NoFile(argument.clone());
-            // A name without a folder is a file here, not a program of the search path.
+            // A name without a folder is a file in the working folder, not a program of the search path.
             let path = PathBuf::from(argument).canonicalize().map_err(|_| no_file())?;
             let named = PathBuf::from(argument);
             let name = named
@@ -83,17 +81,17 @@ impl AllowedModels {
         Ok(models)
     }
 
-    /// Whether nothing is allowed.
+    /// Returns whether nothing is allowed.
     pub fn is_empty(&self) -> bool {
         self.programs.is_empty() && self.servers.is_empty()
     }
 
-    /// What a worker says that it runs: the identity of each model by its name, as last seen.
+    /// The models that the worker announces: the last identity of each by its name.
     pub fn announced(&self) -> BTreeMap<String, String> {
         lock(&self.identities).clone()
     }
 
-    /// Asks every model for its identity again. A server that is too busy to say is taken for what it was.
+    /// Asks every model for its identity. A server that is too busy to answer keeps its last identity.
     pub async fn refresh(&self) {
         let mut seen = BTreeMap::new();
         for name in self.programs.keys() {
@@ -103,13 +101,19 @@ impl AllowedModels {
             }
         }
         for server in &self.servers {
-            let of = |model: &str| format!("{} {model}", server.url());
+            let name_of = |model: &str| format!("{} {model}", server.url());
             match server.identities(PATIENCE).await {
-                Ok(models) => seen.extend(models.into_iter().map(|(model, identity)| (of(&model), identity))),
+                Ok(models) => seen.extend(
+                    models
+                        .into_iter()
+                        .map(|(model, identity)| (name_of(&model), identity)),
+                ),
                 Err(CallError::Slow) => {
-                    let known = lock(&self.identities);
-                    let own = known.iter().filter(|(name, _)| name.starts_with(&of("")));
-                    seen.extend(own.map(|(name, identity)| (name.clone(), identity.clone())));
+                    let identities = lock(&self.identities);
+                    let of_server = identities
+                        .iter()
+                        .filter(|(name, _)| name.starts_with(&name_of("")));
+                    seen.extend(of_server.map(|(name, identity)| (name.clone(), identity.clone())));
                 }
                 Err(error) => {
                     let reason = error.words(server.url());
@@ -120,22 +124,22 @@ impl AllowedModels {
         *lock(&self.identities) = seen;
     }
 
-    /// The identity of a model, asked for again. A server may take as long for it as for a run: it may answer one request at a time.
+    /// Asks for the identity of a model.
     ///
-    /// # Errors
-    /// A sentence: it is not allowed, or cannot be asked.
+    /// A server gets as much time for it as for a run, because it may answer one request at a time. The error is a sentence:
+    /// the model is not allowed, or cannot be asked.
     pub fn identify(&self, model: &ExternalModel) -> Result<String, String> {
         let name = model.source.name();
         let identity = match &model.source {
             ExternalSource::Command { program } => self.hash(program),
-            ExternalSource::Umbridge { url, model: own } => self.server(url).and_then(|server| {
+            ExternalSource::Umbridge { url, model: served } => self.server(url).and_then(|server| {
                 let patience = PATIENCE.max(Duration::from_secs_f64(model.time_s));
                 let models = server.runtime().block_on(server.identities(patience));
                 let models = models.map_err(|error| error.words(url))?;
-                let model = own;
-                let own = models.into_iter().find(|(own, _)| own == model);
-                own.map(|(_, identity)| identity)
-                    .ok_or_else(|| format!("{url} has no model {model}"))
+                let entry = models.into_iter().find(|(candidate, _)| candidate == served);
+                entry
+                    .map(|(_, identity)| identity)
+                    .ok_or_else(|| format!("{url} has no model {served}"))
             }),
         };
         let mut identities = lock(&self.identities);
@@ -146,10 +150,7 @@ impl AllowedModels {
         identity
     }
 
-    /// Evaluates all runs.
-    ///
-    /// # Errors
-    /// [`ExternalFailure`].
+    /// Evaluates all runs of a model.
     pub(crate) fn evaluate(
         &self,
         model: &ExternalModel,
@@ -167,7 +168,7 @@ impl AllowedModels {
         }
     }
 
-    /// Kills the programs that run, and begins none any more.
+    /// Kills the running programs, and starts none any more.
     pub fn stop(&self) {
         self.groups.stop();
     }

@@ -1,14 +1,14 @@
-//! What a model that is not ours answers, in numbers.
+//! The answers of external models, as numbers.
 
 use serde_json::Value;
 use shared::channel::Channel;
 
 use super::failure::ExternalFailure;
 
-/// The words by which languages write what JSON has no number for.
+/// Words that languages write for values without a JSON number.
 const NO_NUMBERS: [&str; 7] = ["-Infinity", "Infinity", "-inf", "inf", "NaN", "-nan", "nan"];
 
-/// Reads JSON in which a number may be one of those words: it becomes null.
+/// Reads JSON that may have one of those words in place of a number; the word becomes null.
 pub(super) fn json(text: &str) -> Result<Value, String> {
     let strict = serde_json::from_str(text);
     strict.or_else(|_| serde_json::from_str(&without_words(text)).map_err(|e| e.to_string()))
@@ -35,7 +35,7 @@ fn without_words(text: &str) -> String {
     clean
 }
 
-/// The outputs of one run: a number each. Null is what no number stands for, and says that the parameters have no answer.
+/// Returns the outputs of one run as numbers. Null stands for no number and means that the parameters have no answer.
 pub(super) fn outputs<'a>(
     run: usize,
     outputs: &[Channel],
@@ -60,12 +60,12 @@ pub(super) fn outputs<'a>(
     outputs.iter().enumerate().map(number).collect()
 }
 
-/// The beginning of a value, for a message.
+/// Returns the beginning of a value, for a message.
 pub(super) fn shortened(value: &Value) -> String {
     beginning(&value.to_string())
 }
 
-/// The beginning of a text, for a message.
+/// Returns the beginning of a text, for a message.
 pub(super) fn beginning(text: &str) -> String {
     const LONGEST: usize = 200;
     let text = text.trim();
@@ -82,22 +82,22 @@ mod tests {
     use super::*;
 
     #[test]
-    fn words_for_what_is_no_number_are_null_outside_texts_alone() {
+    fn words_for_missing_numbers_are_null_outside_strings() {
         let read = json(r#"{"a": [NaN, -Infinity, nan, 1e3], "b": "NaN \" inf"}"#).unwrap();
         assert_eq!(read, json!({"a": [null, null, null, 1e3], "b": "NaN \" inf"}));
         assert!(json("Traceback (most recent call last)").is_err());
     }
 
     #[test]
-    fn null_is_a_rejection_and_what_is_missing_a_fault() {
-        let of = |value: Option<Value>| outputs(3, &[Channel::Torque], |_, _| value.as_ref());
-        assert_eq!(of(Some(json!(2.5))), Ok(vec![2.5]));
-        match of(Some(Value::Null)) {
+    fn null_is_a_rejection_and_a_missing_value_a_fault() {
+        let answer = |value: Option<Value>| outputs(3, &[Channel::Torque], |_, _| value.as_ref());
+        assert_eq!(answer(Some(json!(2.5))), Ok(vec![2.5]));
+        match answer(Some(Value::Null)) {
             Err(ExternalFailure::Refused(r)) => assert_eq!((r.kind.as_str(), r.condition), ("not_finite", 3)),
             other => panic!("{other:?}"),
         }
         for wrong in [None, Some(json!("12")), Some(json!([1.0]))] {
-            assert!(matches!(of(wrong), Err(ExternalFailure::Machine(_))));
+            assert!(matches!(answer(wrong), Err(ExternalFailure::Machine(_))));
         }
     }
 }

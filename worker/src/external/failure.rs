@@ -1,25 +1,25 @@
-//! Why a model that is not ours gives no channels.
+//! Failures of external models.
 
 use shared::outcome::ParameterRejection;
 
-/// Why a model that is not ours gives no channels.
+/// Why an external model returns no channels.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum ExternalFailure {
-    /// It says so itself, or an answer is no number: a fact about the parameters.
+    /// The model refuses, or an answer is no number: a property of the parameters.
     Refused(ParameterRejection),
-    /// It broke down: the parameters' fault where it answers for others, else the machine's.
+    /// The model broke down: the parameters are at fault if it answers for others, else the machine.
     Broke(ParameterRejection),
-    /// The machine, or what is agreed between the job and the model.
+    /// The machine failed, or the model breaks the agreement with the job.
     Machine(String),
 }
 
 impl ExternalFailure {
-    /// It refuses a run.
+    /// The model refuses a run.
     pub(crate) fn refused(kind: &str, run: usize, message: String) -> Self {
         ExternalFailure::Refused(rejection(kind, run, message))
     }
 
-    /// It broke down at a run, as far as is known.
+    /// The model broke down at a run, as far as is known.
     pub(crate) fn broke(kind: &str, run: usize, message: String) -> Self {
         ExternalFailure::Broke(rejection(kind, run, message))
     }

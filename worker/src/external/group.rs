@@ -1,7 +1,8 @@
-//! The processes of a program: a group that is killed as one, within limits.
+//! The processes of a program: a group that is killed as a whole, within limits.
 //!
-//! A group is killed when its leader ends, also where it has started others, and when the worker stops. The limits are those of the
-//! system: address space by `RLIMIT_AS`, and CPU time by `RLIMIT_CPU`, which also ends what computes on after its worker was killed.
+//! A group is killed when its leader ends, even if the leader has started other processes, and when the worker stops. The
+//! limits are those of the system: address space by `RLIMIT_AS`, and CPU time by `RLIMIT_CPU`, which also ends processes
+//! that outlive a killed worker.
 
 use std::process::{Child, ExitStatus};
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -11,10 +12,10 @@ use rustix::process::{
     Pid, Resource, Rlimit, Signal, WaitId, WaitIdOptions, kill_process_group, prlimit, waitid,
 };
 
-/// How often the end of a leader is looked for that has closed its output.
+/// The interval of polling for the end of a leader that has closed its output.
 const LOOK: Duration = Duration::from_millis(1);
 
-/// The groups that run.
+/// The running groups.
 #[derive(Debug, Default)]
 pub(super) struct ProcessGroups(Mutex<Running>);
 
@@ -24,18 +25,17 @@ struct Running {
     is_stopped: bool,
 }
 
-/// Why a process is not taken.
+/// Why a process is not accepted.
 #[derive(Debug, thiserror::Error)]
 pub(super) enum GroupError {
-    /// Nothing more is begun.
+    /// The worker starts no process any more.
     #[error("the worker stops")]
     Stopped,
-    /// The operating system gives a number that is none.
+    /// The process number of the operating system is invalid.
     #[error("process {0} has no group")]
     Number(u32),
 }
 
-/// A process with its group.
 pub(super) struct ProcessGroup<'a> {
     child: Child,
     leader: Pid,
@@ -43,10 +43,7 @@ pub(super) struct ProcessGroup<'a> {
 }
 
 impl ProcessGroups {
-    /// Takes a process that leads a group.
-    ///
-    /// # Errors
-    /// [`GroupError`]; the process is then killed.
+    /// Accepts a process that leads a group; on a [`GroupError`] the process is killed.
     pub(super) fn take(&self, mut child: Child) -> Result<ProcessGroup<'_>, GroupError> {
         let leader = i32::try_from(child.id()).ok().and_then(Pid::from_raw);
         let mut running = self.lock();
@@ -63,13 +60,13 @@ impl ProcessGroups {
             Some(_) => GroupError::Stopped,
             None => GroupError::Number(child.id()),
         };
-        // It may have ended already.
+        // The process may have ended already.
         let _ = child.kill();
         let _ = child.wait();
         Err(refused)
     }
 
-    /// Kills every group that runs, and takes no more.
+    /// Kills every running group, and accepts no more.
     pub(super) fn stop(&self) {
         let mut running = self.lock();
         running.is_stopped = true;
@@ -84,17 +81,17 @@ impl ProcessGroups {
 }
 
 fn kill(leader: Pid) {
-    // It may have ended already.
+    // The group may have ended already.
     let _ = kill_process_group(leader, Signal::KILL);
 }
 
 impl ProcessGroup<'_> {
-    /// Limits address space `[MB]` and CPU time. The program cannot have done anything yet: it has no question.
+    /// Limits address space `[MB]` and CPU time. The program cannot have done any work yet, because it has no input.
     pub(super) fn limit(&self, memory_mb: Option<u64>, time: Duration) -> Result<(), rustix::io::Errno> {
-        let set = |resource, most: u64| {
+        let set = |resource, max: u64| {
             let limit = Rlimit {
-                current: Some(most),
-                maximum: Some(most),
+                current: Some(max),
+                maximum: Some(max),
             };
             prlimit(Some(self.leader), resource, limit).map(drop)
         };
@@ -104,8 +101,8 @@ impl ProcessGroup<'_> {
         set(Resource::Cpu, time.as_secs() + 2)
     }
 
-    /// Waits for the end of the leader until a time, kills what is left of the group, and gives the leader's status; `None` where
-    /// the time came first.
+    /// Waits for the end of the leader until a time, kills the rest of the group, and returns the leader's status; `None` on
+    /// timeout.
     pub(super) fn end(&mut self, until: Instant) -> std::io::Result<Option<ExitStatus>> {
         let seen = WaitIdOptions::EXITED | WaitIdOptions::NOHANG | WaitIdOptions::NOWAIT;
         let has_ended = loop {
@@ -115,7 +112,7 @@ impl ProcessGroup<'_> {
             }
             std::thread::sleep(LOOK);
         };
-        // Until the leader is waited for, the group's number is nobody else's.
+        // The system cannot reuse the group's number until the leader is waited for.
         kill(self.leader);
         self.groups.lock().leaders.retain(|leader| *leader != self.leader);
         let status = self.child.wait()?;
@@ -131,14 +128,14 @@ mod tests {
 
     use super::*;
 
-    /// A process and one that it starts, both of which sleep and hold standard output.
+    /// A process and a child, both of which sleep and hold standard output.
     fn sleeper() -> Child {
         let mut command = Command::new("sh");
         command.args(["-c", "sleep 600 & sleep 600"]).process_group(0);
         command.stdout(Stdio::piped()).spawn().unwrap()
     }
 
-    /// Waits until nobody holds the other end.
+    /// Waits until no process holds the other end.
     fn drained(output: Option<ChildStdout>) {
         output.unwrap().read_to_end(&mut Vec::new()).unwrap();
     }
@@ -157,7 +154,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_left_of_a_group_is_killed_at_its_time() {
+    fn the_rest_of_a_group_is_killed_at_its_time_limit() {
         let groups = ProcessGroups::default();
         let mut child = sleeper();
         let output = child.stdout.take();

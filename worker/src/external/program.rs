@@ -1,10 +1,10 @@
-//! A program that is fed with JSON, within its limits.
+//! A program with JSON input, within its limits.
 //!
-//! One process evaluates all runs of a parameter vector: to start an interpreter takes longer than a simple model does. It reads
-//! one object, `{"runs": [{"slip": 0.2, ..., "n": 1.1}, ...]}`, with every input and parameter of every run by name, and writes
-//! one, `{"runs": [{"drawbar_pull_n": 20.1, ...}, ...]}`. A run that has no answer may be `{"rejected": "the reason"}`.
+//! One process evaluates all runs of a parameter vector, because starting an interpreter takes longer than a simple model does. It
+//! reads one object, `{"runs": [{"slip": 0.2, ..., "n": 1.1}, ...]}`, with every input and parameter of every run by name, and
+//! writes one, `{"runs": [{"drawbar_pull_n": 20.1, ...}, ...]}`. A run without an answer may be `{"rejected": "the reason"}`.
 //!
-//! The process leads a [group](super::group) of its own, which is killed when it ends, and has limits of memory and time.
+//! The process leads its own [group](super::group), which is killed when it ends, and has limits of memory and time.
 
 use std::io::{Read, Write};
 use std::os::unix::process::CommandExt;
@@ -21,15 +21,12 @@ use super::answer::{beginning, json, outputs, shortened};
 use super::failure::ExternalFailure;
 use super::group::ProcessGroups;
 
-/// Longest answer `[bytes]`.
-const MOST_BYTES: u64 = 64 << 20;
-/// How much of what the program says of its errors is kept `[bytes]`.
-const MOST_ERROR_BYTES: usize = 4000;
+/// The maximum size of an answer `[bytes]`.
+const MAX_BYTES: u64 = 64 << 20;
+/// The maximum size of the kept end of standard error `[bytes]`.
+const MAX_ERROR_BYTES: usize = 4000;
 
-/// Evaluates all runs by a process of its own.
-///
-/// # Errors
-/// [`ExternalFailure`].
+/// Evaluates all runs in a new process.
 pub(super) fn evaluate(
     program: &Path,
     model: &ExternalModel,
@@ -76,7 +73,7 @@ fn question(model: &ExternalModel, runs: &[ExternalRun]) -> Vec<u8> {
     text
 }
 
-/// Starts the program, gives it the question, and gives what it has written by its end.
+/// Starts the program, writes the question to it, and returns its complete output.
 fn run(
     program: &Path,
     question: &[u8],
@@ -90,7 +87,7 @@ fn run(
     };
     let until = Instant::now() + limit;
     let mut child = Command::new(program)
-        // A model has no business with the farm.
+        // A model must not act on the farm.
         .env_remove("GROUSER_TOKEN")
         .stdin(Stdio::piped())
         .stdout(Stdio::piped())
@@ -101,21 +98,21 @@ fn run(
     let pipes = (child.stdin.take(), child.stdout.take(), child.stderr.take());
     let mut group = groups.take(child).map_err(|e| machine("is not run", &e))?;
     if let Err(error) = group.limit(memory_mb, limit) {
-        // The error that matters is the first.
+        // Only the first error is reported.
         let _ = group.end(Instant::now());
         return Err(machine("its limits cannot be set", &error));
     }
     let (Some(mut stdin), Some(stdout), Some(stderr)) = pipes else {
         return Err(machine("its pipes", &"not there"));
     };
-    let (ended, text, said) = std::thread::scope(|scope| {
-        // A program that ends without reading its question answers by what it writes.
+    let (ended, text, stderr_end) = std::thread::scope(|scope| {
+        // A program may answer without reading its question, so a failed write is ignored.
         scope.spawn(move || drop(stdin.write_all(question)));
         let (done, output) = channel();
         scope.spawn(move || {
             let mut text = Vec::new();
-            let read = stdout.take(MOST_BYTES).read_to_end(&mut text);
-            // Nobody waits where the time has come.
+            let read = stdout.take(MAX_BYTES).read_to_end(&mut text);
+            // After the timeout nobody receives.
             let _ = done.send(read.map(|_| text));
         });
         let errors = scope.spawn(move || last(stderr));
@@ -123,25 +120,25 @@ fn run(
         let ended = group.end(until);
         (ended, text, errors.join().unwrap_or_default())
     });
-    let said = beginning(&String::from_utf8_lossy(&said)).replace('\n', " | ");
-    let said = if said.is_empty() {
-        said
+    let stderr_end = beginning(&String::from_utf8_lossy(&stderr_end)).replace('\n', " | ");
+    let stderr_end = if stderr_end.is_empty() {
+        stderr_end
     } else {
-        format!(": {said}")
+        format!(": {stderr_end}")
     };
     match ended.map_err(|e| machine("cannot be waited for", &e))? {
         None => {
-            let message = format!("{name} takes longer than {} s{said}", limit.as_secs_f64());
+            let message = format!("{name} takes longer than {} s{stderr_end}", limit.as_secs_f64());
             Err(ExternalFailure::broke("time_limit", 0, message))
         }
         Some(status) if !status.success() => {
-            let message = format!("{name} failed, {status}{said}");
+            let message = format!("{name} failed, {status}{stderr_end}");
             Err(ExternalFailure::broke("model_error", 0, message))
         }
         Some(_) => {
             let text = text.unwrap_or_default();
-            if text.len() as u64 >= MOST_BYTES {
-                let bound = format!("at most {MOST_BYTES} bytes");
+            if text.len() as u64 >= MAX_BYTES {
+                let bound = format!("at most {MAX_BYTES} bytes");
                 return Err(machine("the answer is too long", &bound));
             }
             String::from_utf8(text).map_err(|e| machine("the answer is not text", &e))
@@ -149,19 +146,19 @@ fn run(
     }
 }
 
-/// The output, where it is there in time.
+/// Returns the output if it arrives in time.
 fn wait(output: &Receiver<std::io::Result<Vec<u8>>>, until: Instant) -> Option<Vec<u8>> {
     let left = until.saturating_duration_since(Instant::now());
     output.recv_timeout(left).ok()?.ok()
 }
 
-/// The end of what a program says of its errors: the reason stands last.
+/// Returns the end of standard error, because the reason comes last.
 fn last(mut stderr: impl Read) -> Vec<u8> {
-    let (mut said, mut part) = (Vec::new(), [0; 4096]);
+    let (mut stderr_end, mut part) = (Vec::new(), [0; 4096]);
     while let Ok(read @ 1..) = stderr.read(&mut part) {
-        said.extend_from_slice(&part[..read]);
-        let old = said.len().saturating_sub(MOST_ERROR_BYTES);
-        said.drain(..old);
+        stderr_end.extend_from_slice(&part[..read]);
+        let old = stderr_end.len().saturating_sub(MAX_ERROR_BYTES);
+        stderr_end.drain(..old);
     }
-    said.split_off(said.len().saturating_sub(300))
+    stderr_end.split_off(stderr_end.len().saturating_sub(300))
 }

@@ -1,7 +1,7 @@
 //! A model of a UM-Bridge server, protocol 1.0, <https://um-bridge-benchmarks.readthedocs.io>.
 //!
-//! An evaluation is one request for each run: the properties of the run and the parameters, as two vectors or as one, whichever the
-//! server's input sizes ask for; its outputs, in however many vectors, are the channels.
+//! An evaluation is one request for each run: the properties of the run and the parameters, as two vectors or as one, by the
+//! server's input sizes; its outputs, in any number of vectors, are the channels.
 
 use std::sync::Mutex;
 use std::sync::PoisonError;
@@ -17,7 +17,7 @@ use super::answer::{beginning, json, outputs, shortened};
 use super::failure::ExternalFailure;
 use super::{ExternalRun, MODEL_VERSION};
 
-/// The protocol that is spoken.
+/// The supported version of the protocol.
 const PROTOCOL: f64 = 1.0;
 
 /// A server that the operator allows.
@@ -25,13 +25,13 @@ const PROTOCOL: f64 = 1.0;
 pub(super) struct UmbridgeServer {
     url: String,
     client: Client,
-    /// The rayon threads that evaluate have no runtime of their own.
+    /// The runtime for requests, because the rayon threads that evaluate have none.
     runtime: Handle,
-    /// Input sizes that were found to fit, by model: asked for once.
+    /// The layouts by model, so that each model is asked for its input sizes once.
     layouts: Mutex<Vec<(String, Layout)>>,
 }
 
-/// How a run goes into the inputs of a model.
+/// The layout of a run in the inputs of a model.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Layout {
     /// One vector: properties, then parameters.
@@ -42,11 +42,11 @@ enum Layout {
 
 /// Why a server gives no answer.
 pub(super) enum CallError {
-    /// It took too long.
+    /// The request took too long.
     Slow,
-    /// It says that it failed, with status 500.
+    /// The server reports a failure with status 500.
     Failed(String),
-    /// Anything else.
+    /// Any other failure.
     Other(String),
 }
 
@@ -54,7 +54,7 @@ impl UmbridgeServer {
     pub(super) fn new(url: &str, runtime: Handle) -> Result<Self, String> {
         let client = match url.starts_with("https:") {
             true => Client::builder(),
-            // Without TLS no certificate is read: a machine may have none.
+            // Without TLS no certificate is read, because a machine may have none.
             false => Client::builder().tls_certs_only([]),
         };
         Ok(UmbridgeServer {
@@ -73,10 +73,7 @@ impl UmbridgeServer {
         &self.runtime
     }
 
-    /// The models of the server, each with its identity: a digest of what the server says of itself and of the model.
-    ///
-    /// # Errors
-    /// [`CallError`].
+    /// Returns the models of the server, each with its identity: a digest of the server's description of itself and of the model.
     pub(super) async fn identities(&self, patience: Duration) -> Result<Vec<(String, String)>, CallError> {
         let info = self.client.get(format!("{}/Info", self.url));
         let (info, version) = call(info, patience).await?;
@@ -90,7 +87,7 @@ impl UmbridgeServer {
         let mut models = Vec::new();
         for name in names.filter_map(Value::as_str) {
             let about = self.ask("ModelInfo", &json!({ "name": name }), patience).await?;
-            // keys are in order, so equal answers have equal texts
+            // keys are sorted, so equal answers have equal texts
             let digest = Sha256::digest(format!("{info}\n{name}\n{about}\n{version}"));
             let hex: String = digest[..8].iter().map(|byte| format!("{byte:02x}")).collect();
             models.push((name.to_owned(), format!("umbridge-{hex}")));
@@ -99,9 +96,6 @@ impl UmbridgeServer {
     }
 
     /// Evaluates all runs, one after the other.
-    ///
-    /// # Errors
-    /// [`ExternalFailure`].
     pub(super) fn evaluate(
         &self,
         name: &str,
@@ -146,12 +140,12 @@ impl UmbridgeServer {
         runs.iter().enumerate().map(one).collect()
     }
 
-    /// How a run goes into the inputs of a model.
+    /// Finds the layout of a run in the inputs of a model.
     fn layout(&self, name: &str, model: &ExternalModel) -> Result<Layout, ExternalFailure> {
         let (inputs, parameters) = (model.inputs.len(), model.parameters.len());
-        let mut known = self.layouts.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut layouts = self.layouts.lock().unwrap_or_else(PoisonError::into_inner);
         let key = format!("{name} {inputs} {parameters}");
-        if let Some((_, layout)) = known.iter().find(|(own, _)| *own == key) {
+        if let Some((_, layout)) = layouts.iter().find(|(candidate, _)| *candidate == key) {
             return Ok(*layout);
         }
         let question = json!({ "name": name, "config": {} });
@@ -168,7 +162,7 @@ impl UmbridgeServer {
                 inputs + parameters
             )));
         };
-        known.push((key, layout));
+        layouts.push((key, layout));
         Ok(layout)
     }
 
@@ -189,7 +183,7 @@ impl UmbridgeServer {
     }
 }
 
-/// The answer to a request, and the version of the server's models if it tells one.
+/// Returns the answer to a request, and the version of the server's models if it states one.
 async fn call(request: RequestBuilder, limit: Duration) -> Result<(Value, String), CallError> {
     let away = |error: reqwest::Error| match error.is_timeout() {
         true => CallError::Slow,
@@ -204,17 +198,17 @@ async fn call(request: RequestBuilder, limit: Duration) -> Result<(Value, String
         .to_owned();
     let text = response.text().await.map_err(away)?;
     if status == StatusCode::INTERNAL_SERVER_ERROR {
-        return Err(CallError::Failed(said(&text)));
+        return Err(CallError::Failed(reason(&text)));
     }
     if !status.is_success() {
-        return Err(CallError::Other(format!("status {status}: {}", said(&text))));
+        return Err(CallError::Other(format!("status {status}: {}", reason(&text))));
     }
     match json(&text) {
         Ok(answer) => Ok((answer, version)),
         Err(e) => {
-            let said = beginning(&text);
+            let start = beginning(&text);
             Err(CallError::Other(format!(
-                "the answer is not JSON: {e}: \"{said}\""
+                "the answer is not JSON: {e}: \"{start}\""
             )))
         }
     }
@@ -229,8 +223,8 @@ impl CallError {
     }
 }
 
-/// What the body of an error says.
-fn said(text: &str) -> String {
+/// Returns the message in the body of an error.
+fn reason(text: &str) -> String {
     let body: Option<Value> = json(text).ok();
     let message = body
         .as_ref()

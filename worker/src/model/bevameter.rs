@@ -1,4 +1,4 @@
-//! Plates and rings by the parameters of a variant.
+//! Plate and ring readings from the parameters of a variant.
 
 use scm::bevameter::{Plate, plate, ring};
 use scm::shear::ShearDisplacement;
@@ -8,19 +8,19 @@ use shared::parameters::RING_TRANSFER;
 
 use super::parameters::{ParameterSource, SoilMap};
 
-/// The one effect that a ring feels.
+/// The only effect that acts on a ring.
 const SHEAR_DISPLACEMENT: &str = "janosi_hanamoto";
-/// Its K, of all wheels: a ring is none of them.
+/// The K of that effect for all wheels, because a ring is not a wheel.
 const SHEAR_MODULUS: &str = "janosi_hanamoto.shear_modulus_m";
 
-/// The effects of a variant that plates and rings do not feel.
+/// The effects of a variant that do not act on plates and rings.
 pub fn without_action(variant: &ModelVariant) -> impl Iterator<Item = &str> {
     let felt = ParameterSource::find(variant, SHEAR_MODULUS).map(|_| SHEAR_DISPLACEMENT);
     let names = variant.effects.iter().map(|effect| effect.name.as_str());
     names.filter(move |&name| Some(name) != felt)
 }
 
-/// The soil and the shear-displacement law of a variant, ready to be asked what a bevameter reads.
+/// The soil and the shear-displacement law of a variant, with their parameters resolved.
 #[derive(Debug)]
 pub struct CompiledBevameter {
     soil: SoilMap,
@@ -28,20 +28,17 @@ pub struct CompiledBevameter {
     ln_transfer: Option<ParameterSource>,
 }
 
-/// What a bevameter reads at one parameter vector.
+/// The readings of a bevameter at one parameter vector.
 #[derive(Debug)]
 pub struct Readings {
     soil: Soil,
-    /// The soil that a ring feels: its tan(phi) may be another one.
+    /// The soil under a ring, whose tan(phi) may differ.
     under_ring: Soil,
     law: ShearDisplacement,
 }
 
 impl CompiledBevameter {
-    /// Resolves the names of a variant; its wheels and conditions do not count.
-    ///
-    /// # Errors
-    /// [`ModelError::Unset`] names the parameter that is missing.
+    /// Resolves the names of a variant, without its wheels and conditions; [`ModelError::Unset`] names a missing parameter.
     pub fn new(variant: &ModelVariant) -> Result<Self, ModelError> {
         Ok(CompiledBevameter {
             soil: SoilMap::new(variant)?,
@@ -72,19 +69,15 @@ impl CompiledBevameter {
 }
 
 impl Readings {
-    /// Pressure `[Pa]` under a round plate of this radius `[m]` at this sinkage `[m]`.
-    ///
-    /// # Errors
-    /// [`Rejection`]: the soil cannot carry such a plate, or a number is outside its bounds.
+    /// Pressure `[Pa]` under a round plate of this radius `[m]` at this sinkage `[m]`; a [`Rejection`] if the soil cannot
+    /// carry such a plate, or a number is outside its bounds.
     pub fn pressure_pa(&self, plate_radius_m: f64, sinkage_m: f64) -> Result<f64, Rejection> {
         let radius_m = plate_radius_m;
         plate::pressure(&self.soil, &Plate::Circle { radius_m }, sinkage_m)
     }
 
-    /// Shear stress `[Pa]` under a ring at this normal stress `[Pa]` after this displacement `[m]`.
-    ///
-    /// # Errors
-    /// [`Rejection`]: a number is outside its bounds.
+    /// Shear stress `[Pa]` under a ring at this normal stress `[Pa]` after this displacement `[m]`; a [`Rejection`] if a
+    /// number is outside its bounds.
     pub fn shear_stress_pa(&self, normal_stress_pa: f64, displacement_m: f64) -> Result<f64, Rejection> {
         ring::shear_stress(&self.under_ring, &self.law, normal_stress_pa, displacement_m)
     }

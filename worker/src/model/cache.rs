@@ -9,30 +9,30 @@ use super::error::CompileError;
 use super::variant::CompiledVariant;
 use crate::external::allowed::AllowedModels;
 
-/// Variants by hash, each compiled once; the oldest make room.
+/// Variants by hash, each compiled once; the oldest are evicted.
 #[derive(Debug)]
 pub struct VariantCache {
     models: Arc<AllowedModels>,
     variants: BTreeMap<String, CachedVariant>,
     by_age: VecDeque<String>,
-    /// Length of the texts of all variants.
+    /// Total length of the texts of all variants.
     bytes: usize,
 }
 
 #[derive(Debug)]
 struct CachedVariant {
     compiled: Arc<CompiledVariant>,
-    /// Length of its text: that of a metamodel grows with the particles, and with it what is compiled.
+    /// Length of its text, which for a metamodel grows with the particles, as does its compiled size.
     bytes: usize,
 }
 
 impl VariantCache {
-    /// Most variants: a round of a search asks hundreds, and the next round most of them again.
-    pub const MOST: usize = 1024;
-    /// Most of their texts together, where there are several.
-    pub const MOST_BYTES: usize = 64 << 20;
+    /// The maximum number of variants: a round of a search needs hundreds, and the next round almost the same ones.
+    pub const MAX_VARIANTS: usize = 1024;
+    /// The maximum total length of their texts, unless there is a single one.
+    pub const MAX_BYTES: usize = 64 << 20;
 
-    /// An empty cache; `models` are those that are not ours and may be run.
+    /// Creates an empty cache; `models` are the external models that may be run.
     pub fn new(models: Arc<AllowedModels>) -> Self {
         VariantCache {
             models,
@@ -42,22 +42,19 @@ impl VariantCache {
         }
     }
 
-    /// The compiled variant of a hash, if it was added and has not made room.
+    /// The compiled variant of a hash, if it is in the cache.
     pub fn get(&self, hash: &str) -> Option<Arc<CompiledVariant>> {
-        self.variants.get(hash).map(|own| own.compiled.clone())
+        self.variants.get(hash).map(|cached| cached.compiled.clone())
     }
 
-    /// Compiles and keeps a variant under the hash it was asked for by.
-    ///
-    /// # Errors
-    /// The variant does not have that hash, or cannot be compiled.
+    /// Compiles a variant and stores it under the requested hash; an error if its hash differs, or it cannot be compiled.
     pub fn add(&mut self, hash: &str, variant: &ModelVariant) -> Result<Arc<CompiledVariant>, CompileError> {
         let text = variant.text();
-        let own = hash_of(&text);
-        if own != hash {
+        let actual = hash_of(&text);
+        if actual != hash {
             return Err(CompileError::OtherHash {
                 asked: hash.to_owned(),
-                own,
+                actual,
             });
         }
         let compiled = Arc::new(CompiledVariant::new(variant, &self.models)?);
@@ -65,12 +62,14 @@ impl VariantCache {
             compiled: compiled.clone(),
             bytes: text.len(),
         };
-        // The same hash is the same text.
-        if self.variants.insert(own.clone(), cached).is_none() {
-            self.by_age.push_back(own);
+        // Equal hashes mean equal texts.
+        if self.variants.insert(actual.clone(), cached).is_none() {
+            self.by_age.push_back(actual);
             self.bytes += text.len();
         }
-        while self.by_age.len() > Self::MOST || (self.bytes > Self::MOST_BYTES && self.by_age.len() > 1) {
+        while self.by_age.len() > Self::MAX_VARIANTS
+            || (self.bytes > Self::MAX_BYTES && self.by_age.len() > 1)
+        {
             let oldest = self
                 .by_age
                 .pop_front()
@@ -86,7 +85,7 @@ mod tests {
     use super::*;
     use crate::fixture::{under_loads, variant};
 
-    /// Which of them are cached.
+    /// Returns which of the variants are cached.
     fn cached(variants: &[(String, ModelVariant)]) -> Vec<bool> {
         let mut cache = VariantCache::new(Arc::default());
         for (hash, variant) in variants {
@@ -100,18 +99,18 @@ mod tests {
 
     #[test]
     fn the_oldest_make_room() {
-        let variants = under_loads(VariantCache::MOST + 2);
+        let variants = under_loads(VariantCache::MAX_VARIANTS + 2);
         let cached = cached(&variants);
         assert_eq!(cached[..3], [false, false, true]);
         assert!(cached[2..].iter().all(|is_cached| *is_cached));
     }
 
     #[test]
-    fn what_is_long_makes_others_go_and_stays_itself() {
+    fn a_long_variant_evicts_others_and_stays() {
         let mut long = variant();
         let of_each = serde_json::to_vec(&long.conditions[0]).unwrap().len();
-        let most = VariantCache::MOST_BYTES / of_each;
-        long.conditions = vec![long.conditions[0].clone(); most];
+        let count = VariantCache::MAX_BYTES / of_each;
+        long.conditions = vec![long.conditions[0].clone(); count];
         let mut variants = under_loads(3);
         variants.insert(2, (long.hash(), long));
         assert_eq!(cached(&variants[..3]), [false, false, true]);

@@ -1,4 +1,4 @@
-//! The quasi-static model beside the three-dimensional one: what a metamodel compares, and its subchains.
+//! The quasi-static model as low-fidelity model of the three-dimensional one: predicted values for a metamodel, and its subchains.
 
 use shared::model::ModelVariant;
 use shared::outcome::Outcome;
@@ -8,7 +8,7 @@ use statistics::Metamodel;
 use super::error::CompileError;
 use super::forward::ForwardModel;
 
-/// A variant's companion, ready to evaluate.
+/// A variant's low-fidelity model, ready to evaluate.
 #[derive(Debug)]
 pub(super) struct CompiledCompanion {
     coarse: ForwardModel,
@@ -17,10 +17,8 @@ pub(super) struct CompiledCompanion {
 }
 
 impl CompiledCompanion {
-    /// The companion of a variant; `None` where it has none.
-    ///
-    /// # Errors
-    /// [`CompileError`] names what the quasi-static model cannot express.
+    /// The low-fidelity model of a variant; `None` if it has none. [`CompileError`] names what the quasi-static model cannot
+    /// express.
     pub(super) fn new(variant: &ModelVariant) -> Result<Option<Self>, CompileError> {
         let Some(companion) = &variant.companion else {
             return Ok(None);
@@ -32,7 +30,7 @@ impl CompiledCompanion {
         }))
     }
 
-    /// The quasi-static model's predicted values; `None` where it refuses.
+    /// The quasi-static model's predicted values; `None` if it rejects the parameters.
     pub(super) fn values(&self, theta: &[f64]) -> Option<Vec<f64>> {
         match self.coarse.evaluate(theta, |_| {}) {
             Outcome::Evaluated(observables) => {

@@ -1,4 +1,4 @@
-//! The effects of a variant: compiled once, and for each evaluation given the values of their parameters.
+//! The effects of a variant: compiled once, and activated with the values of their parameters for each evaluation.
 
 use scm::effects::{Active, CompiledEffects, ModelForm, Site};
 use shared::model::effects::parameter_name;
@@ -14,15 +14,15 @@ type Sources = Vec<Vec<ParameterSource>>;
 #[derive(Debug)]
 pub(super) struct EffectMap {
     effects: CompiledEffects,
-    /// Each different set of sources once: effects are activated as often as wheels differ in them.
+    /// Each distinct set of sources once: effects are activated once per set.
     sources: Vec<Sources>,
-    /// Of each wheel, in the variant's order: its set of sources.
+    /// The set of sources of each wheel, in the variant's order.
     of_wheel: Vec<usize>,
-    /// Of each condition.
+    /// The site of each condition.
     sites: Vec<Site>,
 }
 
-/// The effects at one parameter vector, as every wheel meets them.
+/// The effects at one parameter vector, for every wheel.
 #[derive(Debug)]
 pub(super) struct ActiveEffects<'a> {
     active: Vec<Active<'a>>,
@@ -30,17 +30,15 @@ pub(super) struct ActiveEffects<'a> {
 }
 
 impl<'a> ActiveEffects<'a> {
-    /// The effects on a wheel, by its place in the variant, with the room in which a model computes them.
+    /// The effects on a wheel, by its place in the variant, with their working memory.
     pub(super) fn on_wheel(&mut self, place: usize) -> &mut Active<'a> {
         &mut self.active[self.of_wheel[place]]
     }
 }
 
 impl EffectMap {
-    /// Compiles the effects of a variant for its model.
-    ///
-    /// # Errors
-    /// [`CompileError`] names the effect that the model cannot express, or the parameter that is missing.
+    /// Compiles the effects of a variant for its model; [`CompileError`] names the effect that the model cannot express, or
+    /// the missing parameter.
     pub(super) fn new(variant: &ModelVariant, set: &EffectSet) -> Result<Self, CompileError> {
         let model = match variant.kind {
             ModelKind::QuasiStatic => ModelForm::QuasiStatic,
@@ -53,11 +51,11 @@ impl EffectMap {
         let mut sources: Vec<Sources> = Vec::new();
         let mut of_wheel = Vec::new();
         for wheel in variant.wheels.keys() {
-            let own = sources_of(variant, set, wheel)?;
-            let place = sources.iter().position(|other| *other == own);
+            let wheel_sources = sources_of(variant, set, wheel)?;
+            let place = sources.iter().position(|other| *other == wheel_sources);
             of_wheel.push(place.unwrap_or(sources.len()));
             if place.is_none() {
-                sources.push(own);
+                sources.push(wheel_sources);
             }
         }
         Ok(EffectMap {
@@ -78,25 +76,26 @@ impl EffectMap {
         }
     }
 
-    /// Where the condition at a position of the variant is run.
+    /// The site of the condition at a position of the variant.
     pub(super) fn site(&self, position: usize) -> &Site {
         &self.sites[position]
     }
 }
 
-/// Where a wheel's values stand: its own, those of all wheels, or the neutral value of a strength that acts elsewhere.
+/// Finds the sources of a wheel's values: the wheel's parameter, the parameter of all wheels, or the neutral value of a
+/// strength that acts elsewhere.
 fn sources_of(variant: &ModelVariant, set: &EffectSet, wheel: &str) -> Result<Sources, ModelError> {
     let of_effect = |effect: &formula::Effect| {
         let strengths = effect.parameters.iter().filter(|p| p.neutral.is_some());
         let find = |p: &formula::Parameter| {
-            let own = ParameterSource::find(variant, &parameter_name(effect, p, Some(wheel)));
-            own.or_else(|| ParameterSource::find(variant, &parameter_name(effect, p, None)))
+            let of_wheel = ParameterSource::find(variant, &parameter_name(effect, p, Some(wheel)));
+            of_wheel.or_else(|| ParameterSource::find(variant, &parameter_name(effect, p, None)))
         };
         let acts = strengths.clone().count() == 0 || strengths.clone().any(|p| find(p).is_some());
         let source = |p: &formula::Parameter| match (find(p), p.neutral) {
             (Some(source), _) => Ok(source),
             (None, Some(neutral)) => Ok(ParameterSource::Fixed(neutral)),
-            // the shape of what is absent
+            // the shape of an absent effect
             (None, None) if !acts => Ok(ParameterSource::Fixed(0.0)),
             (None, None) => Err(ModelError::Unset(parameter_name(effect, p, None))),
         };

@@ -1,4 +1,4 @@
-//! Why a variant cannot be evaluated here.
+//! Errors of compiling a variant.
 
 use scm::effects::FormError;
 use shared::model::ModelError;
@@ -12,27 +12,27 @@ pub enum CompileError {
     /// The model of this worker has no form of an effect.
     #[error(transparent)]
     Effect(#[from] FormError),
-    /// Histories of a steady-state model.
+    /// Histories are requested from a steady-state model.
     #[error("histories: {0} has only a steady state; use kind = \"scm\"")]
     NoHistories(&'static str),
-    /// A surface that no wheel can have.
+    /// The surface of a wheel is impossible.
     #[error(transparent)]
     Surface(#[from] scm::Rejection),
     /// A condition names a wheel that does not exist.
     #[error("unknown wheel \"{0}\"")]
     UnknownWheel(String),
-    /// The three-dimensional model comes without its settings.
+    /// The settings of the three-dimensional model are missing.
     #[error("kind = \"scm\" comes without its settings")]
     NoSettings,
-    /// A model that is not ours comes without its description.
+    /// The description of an external model is missing.
     #[error("a model that is not ours comes without its description")]
     NoDescription,
-    /// A variant was asked for by another hash than it has.
-    #[error("variant {asked} came with hash {own}: coordinator and worker read it differently")]
+    /// The hash of a variant differs from the requested one.
+    #[error("variant {asked} came with hash {actual}: coordinator and worker read it differently")]
     OtherHash {
-        /// The hash that it was asked for by.
+        /// The requested hash.
         asked: String,
-        /// The hash that it has here.
-        own: String,
+        /// The hash computed here.
+        actual: String,
     },
 }

@@ -1,4 +1,4 @@
-//! A model that is not ours, with the effects around it.
+//! An external model, with the effects around it.
 
 use std::sync::Arc;
 
@@ -17,7 +17,7 @@ use super::parameters::{ParameterSource, Radius};
 use crate::external::allowed::AllowedModels;
 use crate::external::{ExternalFailure, ExternalRun};
 
-/// A model that is not ours, its names resolved.
+/// An external model with its names resolved.
 #[derive(Debug)]
 pub(super) struct OutsideModel {
     description: ExternalModel,
@@ -25,32 +25,29 @@ pub(super) struct OutsideModel {
     wheels: Vec<(WheelGeometry, Radius)>,
     conditions: Vec<(usize, Condition)>,
     effects: EffectMap,
-    /// In the model's order.
+    /// The sources of the parameters, in the model's order.
     parameters: Vec<ParameterSource>,
     shared: SharedParameters,
     gravity_m_s2: f64,
     channels: Vec<Channel>,
-    /// Parameters at which it must answer.
+    /// Parameters at which the model must answer.
     probe: Vec<f64>,
     dimension: usize,
 }
 
-/// The parameters that it has in common with our models, which effects may use.
+/// The parameters that it shares with the built-in models, which effects may use.
 #[derive(Debug)]
 struct SharedParameters {
     n: Option<ParameterSource>,
     cohesion_pa: Option<ParameterSource>,
     friction_angle_deg: Option<ParameterSource>,
     shear_velocity_m_s: Option<ParameterSource>,
-    /// Where n stands among the model's parameters.
+    /// Position of n among the model's parameters.
     place_of_n: Option<usize>,
 }
 
 impl OutsideModel {
-    /// Resolves the names of a variant.
-    ///
-    /// # Errors
-    /// [`CompileError`] names what is missing, or what cannot be expressed.
+    /// Resolves the names of a variant; [`CompileError`] names what is missing or cannot be expressed.
     pub(super) fn new(
         variant: &ModelVariant,
         description: &ExternalModel,
@@ -98,15 +95,15 @@ impl OutsideModel {
         })
     }
 
-    /// Conditions that an evaluation simulates.
+    /// Number of conditions of an evaluation.
     pub(super) fn runs(&self) -> usize {
         self.conditions.len()
     }
 
     /// Evaluates every condition at one parameter vector.
     ///
-    /// Where the model breaks down, it is asked at the probe: if it answers there, or refuses for a reason of its own, the
-    /// parameters are at fault. A model that has become another one meanwhile has answered nothing.
+    /// If the model breaks down, it is asked at the probe: if it answers or refuses there, the parameters are at fault. If
+    /// the identity of the model changes meanwhile, its answer is discarded.
     pub(super) fn evaluate(&self, theta: &[f64]) -> Outcome {
         let fault = |message: String| Outcome::Fault(Fault { message });
         let source = &self.description.source;
@@ -144,7 +141,7 @@ impl OutsideModel {
         }
     }
 
-    /// Asks the same once more, and tells how far the answers differ; `None` where the machine fails meanwhile.
+    /// Asks the same question again, and returns the difference of the answers; `None` if the machine fails meanwhile.
     pub(super) fn repeat(&self, theta: &[f64], first: &Observables) -> Option<RepeatedAnswer> {
         match self.answer(theta) {
             Ok(second) => Some(RepeatedAnswer::new(first, &second)),
@@ -189,7 +186,7 @@ impl OutsideModel {
         Ok(observables)
     }
 
-    /// A run after the effects on what the model is given.
+    /// Returns a run after the effects on the inputs of the model.
     fn run(&self, theta: &[f64], position: usize, effects: &Active) -> Result<OutsideRun, scm::Rejection> {
         let (place, condition) = &self.conditions[position];
         let (geometry, radius) = &self.wheels[*place];
@@ -211,7 +208,7 @@ impl OutsideModel {
         OutsideRun::new(&soil, &wheel, condition, effects, self.effects.site(position))
     }
 
-    /// What the model is asked of a run.
+    /// Returns the input of the model for a run.
     fn question(&self, theta: &[f64], place: usize, run: &OutsideRun) -> ExternalRun {
         let (condition, wheel) = (run.condition(), run.wheel());
         let geometry = &self.wheels[place].0;
@@ -239,7 +236,7 @@ impl OutsideModel {
         }
     }
 
-    /// Why there is nothing to say of the conditions one by one.
+    /// Returns why the conditions cannot be evaluated one by one.
     pub(super) fn no_single_runs(&self) -> ParameterRejection {
         ParameterRejection {
             kind: "not_asked".to_owned(),

@@ -1,4 +1,4 @@
-//! The forward model of a variant: shared names become the physics' types.
+//! The forward model of a variant: shared names are converted to the physics' types.
 
 use scm::spatial::SpatialRun;
 use scm::{Averages, Condition, Wheel};
@@ -13,7 +13,7 @@ use super::parameters::Radius;
 use super::physics::{Physics, Run, Settled, Simulated};
 use super::recording;
 
-/// The forward model of a variant, its names resolved, so that an evaluation looks up nothing.
+/// The forward model of a variant with its names resolved, so that an evaluation looks up nothing.
 #[derive(Debug)]
 pub(super) struct ForwardModel {
     pub(super) dimension: usize,
@@ -21,23 +21,20 @@ pub(super) struct ForwardModel {
     wheels: Vec<(Wheel, Radius)>,
     conditions: Vec<(usize, Condition)>,
     effects: EffectMap,
-    /// The channels that are returned; empty: everything.
+    /// The channels to return; empty: all.
     channels: Vec<Channel>,
     stiffness_sensitivity: bool,
     histories: bool,
-    /// What plates and rings read, where there are any to predict.
+    /// The bevameter with its plates and rings, if there are readings to predict.
     bevameter: Option<(CompiledBevameter, Vec<PlateCondition>, Vec<RingCondition>)>,
 }
 
-/// The stiffness is raised by this share for its derivatives: a model on a grid has noise of some 0.3 % of a force, and the
-/// laws are smooth powers of the stiffness.
+/// Relative increase of the stiffness for its derivatives: it must exceed the noise of a grid model, about 0.3 % of a force,
+/// and the laws are smooth powers of the stiffness.
 const STIFFER: f64 = 0.05;
 
 impl ForwardModel {
-    /// Resolves the names of a variant.
-    ///
-    /// # Errors
-    /// [`CompileError`] names what this worker does not know or cannot express.
+    /// Resolves the names of a variant; [`CompileError`] names what this worker does not know or cannot express.
     pub(super) fn new(variant: &ModelVariant) -> Result<Self, CompileError> {
         let set = EffectSet::read(&variant.effects)?;
         variant.check_expressible(&set)?;
@@ -89,13 +86,13 @@ impl ForwardModel {
         })
     }
 
-    /// Conditions that an evaluation simulates.
+    /// Number of conditions of an evaluation.
     pub(super) fn runs(&self) -> usize {
         self.conditions.len()
     }
 
-    /// Simulates every condition at one parameter vector; the first rejection ends it. `keep` receives each run of a model that
-    /// rolls in time, in the order of the conditions.
+    /// Simulates every condition at one parameter vector; the first rejection ends it. `keep` receives each run of a
+    /// time-dependent model, in the order of the conditions.
     pub(super) fn evaluate(&self, theta: &[f64], mut keep: impl FnMut(SpatialRun)) -> Outcome {
         let settled = match self.settle(theta) {
             Ok(settled) => settled,
@@ -156,7 +153,7 @@ impl ForwardModel {
                 }
             };
             let o = &mut *observables;
-            let change = |there: f64, here: f64| (there - here) / step;
+            let change = |stiffer: f64, base: f64| (stiffer - base) / step;
             o.d_drawbar_pull_n
                 .push(change(averages.drawbar_pull_n, o.drawbar_pull_n[position]));
             o.d_torque_n_m
@@ -169,7 +166,7 @@ impl ForwardModel {
         Ok(())
     }
 
-    /// Predicts plates and rings. Their likelihood is one of logarithms, so a stress of zero is a refusal.
+    /// Predicts plates and rings. Their likelihood uses logarithms, so a stress of zero is a rejection.
     fn read_bevameter(&self, theta: &[f64], observables: &mut Observables) -> Result<(), ParameterRejection> {
         let Some((bevameter, plates, rings)) = &self.bevameter else {
             return Ok(());
@@ -202,7 +199,7 @@ impl ForwardModel {
         Ok(())
     }
 
-    /// Simulates every condition at one parameter vector; a refusal of one leaves the others.
+    /// Simulates every condition at one parameter vector; a rejection of one does not affect the rest.
     pub(super) fn each(&self, theta: &[f64]) -> Vec<Result<Averages, ParameterRejection>> {
         let settled = match self.settle(theta) {
             Ok(settled) => settled,
@@ -255,7 +252,7 @@ impl ForwardModel {
     }
 }
 
-/// A condition of a variant as the physics has it.
+/// Converts a condition of a variant to the physics' type.
 pub(super) fn condition(c: &RunCondition) -> Condition {
     Condition {
         slip: c.slip,

@@ -1,12 +1,12 @@
 //! A model variant, compiled for evaluation.
 //!
 //! # Layout
-//! - `variant`: [`CompiledVariant`], a forward model with its companion; `cache`: the compiled variants in memory.
-//! - `forward`: the forward model; `physics`: which equations it solves; `spatial`: what the three-dimensional one needs; `bevameter`:
-//!   plates and rings.
-//! - `external`: a model that is not ours, with the effects around it.
-//! - `companion`: the quasi-static model that a metamodel evaluates beside the three-dimensional one.
-//! - `error`: why a variant cannot be evaluated here.
+//! - `variant`: [`CompiledVariant`], a forward model with its low-fidelity model; `cache`: the compiled variants in memory.
+//! - `forward`: the forward model; `physics`: its equations; `spatial`: the settings of the three-dimensional one;
+//!   `bevameter`: plates and rings.
+//! - `external`: an external model, with the effects around it.
+//! - `companion`: the quasi-static model as low-fidelity model of the three-dimensional one, for a metamodel.
+//! - `error`: errors of compiling a variant.
 //! - `effects`: the effects, compiled, with the sources of their parameters.
 //! - `parameters`: the source of each physical quantity.
 //! - `recording`: the time histories of a run, at 10 Hz.

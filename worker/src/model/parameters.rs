@@ -1,4 +1,4 @@
-//! Where each physical quantity comes from: a free parameter, or a fixed value.
+//! The source of each physical quantity: a free parameter, or a fixed value.
 
 use scm::rft::RftSoil;
 use scm::spatial::Ground;
@@ -35,7 +35,7 @@ impl ParameterSource {
     }
 }
 
-/// How the stiffness is stated.
+/// The parameters that state the stiffness.
 #[derive(Debug)]
 enum Stiffness {
     Moduli {
@@ -101,7 +101,7 @@ impl SoilMap {
     }
 }
 
-/// The sources of what deforms the soil.
+/// The sources of the parameters of soil deformation.
 #[derive(Debug)]
 pub(super) struct GroundMap {
     elastic_stiffness_pa_m: ParameterSource,
@@ -118,7 +118,7 @@ impl GroundMap {
         })
     }
 
-    /// The ground with the condition's angle of repose, or the model's default where there is none.
+    /// The ground with the condition's angle of repose, or the model's default without one.
     pub(super) fn ground(&self, theta: &[f64], repose_angle_deg: Option<f64>) -> Ground {
         let default = Ground::default();
         Ground {
@@ -130,7 +130,7 @@ impl GroundMap {
     }
 }
 
-/// The sources of what Wong & Reece add to a soil.
+/// The sources of the parameters that Wong & Reece add to a soil.
 #[derive(Debug)]
 pub(super) struct WongReeceMap {
     c1: ParameterSource,
@@ -179,14 +179,14 @@ impl RftMap {
     }
 }
 
-/// The source of a wheel's radius: its own parameter, the parameter of all wheels, or the experiment.
+/// The source of a wheel's radius: the wheel's parameter, the parameter of all wheels, or the experiment.
 #[derive(Debug)]
 pub(super) struct Radius(Option<ParameterSource>);
 
 impl Radius {
     pub(super) fn new(variant: &ModelVariant, wheel: &str) -> Self {
-        let own = ParameterSource::find(variant, &format!("wheel_radius_m.{wheel}"));
-        Radius(own.or_else(|| ParameterSource::find(variant, "wheel_radius_m")))
+        let of_wheel = ParameterSource::find(variant, &format!("wheel_radius_m.{wheel}"));
+        Radius(of_wheel.or_else(|| ParameterSource::find(variant, "wheel_radius_m")))
     }
 
     /// The radius `[m]`; `None` = the experiment's.

@@ -1,4 +1,4 @@
-//! Which equations a variant's wheel is simulated by, with the sources of their parameters.
+//! The equations that simulate a variant's wheel, with the sources of their parameters.
 
 use scm::effects::{Active, Site};
 use scm::quasi_static::{self, StraightGrousers};
@@ -15,11 +15,11 @@ use super::spatial::SpatialModel;
 /// The equations of a variant.
 #[derive(Debug)]
 pub(super) enum Physics {
-    /// With the grousers of each wheel that roll, in the variant's order.
+    /// The quasi-static model, with the rolled grousers of each wheel, in the variant's order.
     QuasiStatic(SoilMap, Vec<StraightGrousers>),
     WongReece(SoilMap, WongReeceMap),
     Scm(SoilMap, Box<SpatialModel>),
-    /// With the shape of each wheel, in the variant's order.
+    /// Resistive force theory, with the shape of each wheel, in the variant's order.
     Rft(RftMap, Vec<RftShape>),
 }
 
@@ -32,7 +32,7 @@ pub(super) enum Settled<'p> {
     Rft(RftSoil, &'p [RftShape]),
 }
 
-/// What simulating one condition gives.
+/// The result of simulating one condition.
 pub(super) enum Simulated {
     Steady(Averages),
     Rolled(Box<SpatialRun>),
@@ -41,7 +41,7 @@ pub(super) enum Simulated {
 /// One condition to simulate.
 pub(super) struct Run<'r> {
     pub(super) theta: &'r [f64],
-    /// Of the condition in the variant, and of its wheel.
+    /// Position of the condition in the variant, and of its wheel.
     pub(super) position: usize,
     pub(super) place: usize,
     pub(super) wheel: &'r Wheel,
@@ -50,10 +50,7 @@ pub(super) struct Run<'r> {
 }
 
 impl Physics {
-    /// Resolves the names of a variant.
-    ///
-    /// # Errors
-    /// [`CompileError`] names what is missing or cannot be expressed.
+    /// Resolves the names of a variant; [`CompileError`] names what is missing or cannot be expressed.
     pub(super) fn new(variant: &ModelVariant) -> Result<Self, CompileError> {
         Ok(match variant.kind {
             ModelKind::QuasiStatic => {
@@ -73,10 +70,7 @@ impl Physics {
         })
     }
 
-    /// The equations at a parameter vector.
-    ///
-    /// # Errors
-    /// [`Rejection::InvalidParameter`].
+    /// The equations at a parameter vector; [`Rejection::InvalidParameter`] if a number is outside its bounds.
     pub(super) fn at(&self, theta: &[f64]) -> Result<Settled<'_>, Rejection> {
         Ok(match self {
             Physics::QuasiStatic(soil, grousers) => {
@@ -90,10 +84,7 @@ impl Physics {
 }
 
 impl Settled<'_> {
-    /// Simulates one condition.
-    ///
-    /// # Errors
-    /// [`Rejection`]: the model has no answer for these parameters.
+    /// Simulates one condition; a [`Rejection`] if the model has no answer for these parameters.
     pub(super) fn simulate(&self, run: &Run, effects: &mut Active) -> Result<Simulated, Rejection> {
         let (wheel, condition, site) = (run.wheel, run.condition, run.site);
         let averages = match self {
@@ -116,7 +107,7 @@ impl Settled<'_> {
         averages.map(Simulated::Steady)
     }
 
-    /// The same on a soil that presses so many times as hard at the same depth.
+    /// The equations on a soil whose pressure at the same depth is `factor` times as large.
     pub(super) fn stiffer(&self, factor: f64) -> Self {
         let stiffer = |soil: &Soil| Soil {
             k_c: soil.k_c * factor,
@@ -135,7 +126,7 @@ impl Settled<'_> {
     }
 }
 
-/// The grousers of a wheel if they roll; none otherwise.
+/// The grousers of a wheel if they roll, else none.
 fn straight_grousers(wheel: &WheelGeometry, roll: bool) -> StraightGrousers {
     StraightGrousers {
         count: if roll { wheel.grouser_count } else { 0 },

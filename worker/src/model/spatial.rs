@@ -1,4 +1,4 @@
-//! The three-dimensional model of a variant: shared settings become the physics' types.
+//! The three-dimensional model of a variant: shared settings are converted to the physics' types.
 
 use scm::effects::{Active, Site};
 use scm::spatial::{self, Grousers, RunSettings, Scene, Shape, SpatialRun, SurfaceMesh, Tread};
@@ -10,22 +10,19 @@ use shared::model::spatial::{DisplacementFrame, FootprintWidth, HubMotion, PAPER
 use super::error::CompileError;
 use super::parameters::GroundMap;
 
-/// What a run needs beside soil, wheel and condition.
+/// The inputs of a run besides soil, wheel and condition.
 #[derive(Debug)]
 pub(super) struct SpatialModel {
     settings: RunSettings,
     ground: GroundMap,
-    /// Of each wheel, in the variant's order.
+    /// The shape of each wheel, in the variant's order.
     shapes: Vec<Shape>,
-    /// Of each condition `[deg]`.
+    /// The angle of repose of each condition `[deg]`.
     repose_angles: Vec<Option<f64>>,
 }
 
 impl SpatialModel {
-    /// Resolves the names of a variant of kind `scm`.
-    ///
-    /// # Errors
-    /// [`CompileError`] names what is missing or cannot be expressed.
+    /// Resolves the names of a variant of kind `scm`; [`CompileError`] names what is missing or cannot be expressed.
     pub(super) fn new(variant: &ModelVariant) -> Result<Self, CompileError> {
         let choices = variant.spatial.ok_or(CompileError::NoSettings)?;
         let protocol = &variant.protocol;
@@ -73,7 +70,7 @@ impl SpatialModel {
         })
     }
 
-    /// Rolls a wheel under the condition at a position of the variant.
+    /// Simulates a wheel under the condition at a position of the variant.
     pub(super) fn run(
         &self,
         theta: &[f64],

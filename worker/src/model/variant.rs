@@ -1,4 +1,4 @@
-//! A variant, compiled: its forward model, and the companion of a metamodel.
+//! A compiled variant: its forward model, and the low-fidelity model of a metamodel.
 
 use std::sync::Arc;
 
@@ -19,11 +19,11 @@ use crate::external::allowed::AllowedModels;
 #[derive(Debug)]
 pub struct CompiledVariant {
     model: Model,
-    /// The quasi-static model for a metamodel, where there is one.
+    /// The low-fidelity model for a metamodel, if there is one.
     companion: Option<CompiledCompanion>,
 }
 
-/// Whose model a variant has.
+/// The built-in or external model of a variant.
 #[derive(Debug)]
 enum Model {
     Ours(Box<ForwardModel>),
@@ -31,10 +31,8 @@ enum Model {
 }
 
 impl CompiledVariant {
-    /// Resolves the names of a variant; `models` are those that are not ours and may be run.
-    ///
-    /// # Errors
-    /// [`CompileError`] names what this worker does not know or cannot express.
+    /// Resolves the names of a variant; `models` are the external models that may be run. [`CompileError`] names what this
+    /// worker does not know or cannot express.
     pub fn new(variant: &ModelVariant, models: &Arc<AllowedModels>) -> Result<Self, CompileError> {
         let model = match &variant.external {
             None => Model::Ours(Box::new(ForwardModel::new(variant)?)),
@@ -46,7 +44,7 @@ impl CompiledVariant {
         })
     }
 
-    /// Number of conditions that an evaluation simulates.
+    /// Number of conditions of an evaluation.
     pub fn runs(&self) -> usize {
         match &self.model {
             Model::Ours(forward) => forward.runs(),
@@ -59,7 +57,7 @@ impl CompiledVariant {
         self.evaluate_and_keep(theta, |_| {})
     }
 
-    /// The same, handing over each run of a model that rolls in time, in the order of the conditions.
+    /// Like [`CompiledVariant::evaluate`]; `keep` receives each run of a time-dependent model, in the order of the conditions.
     pub fn evaluate_and_keep(&self, theta: &[f64], keep: impl FnMut(SpatialRun)) -> Outcome {
         let mut outcome = match &self.model {
             Model::Ours(forward) => forward.evaluate(theta, keep),
@@ -71,7 +69,7 @@ impl CompiledVariant {
         outcome
     }
 
-    /// Simulates every condition at one parameter vector; a rejection of one leaves the others.
+    /// Simulates every condition at one parameter vector; a rejection of one does not affect the rest.
     pub fn each(&self, theta: &[f64]) -> Vec<Result<Averages, ParameterRejection>> {
         match &self.model {
             Model::Ours(forward) => forward.each(theta),
@@ -79,7 +77,8 @@ impl CompiledVariant {
         }
     }
 
-    /// Asks a model that is not ours the same once more, and tells how far the answers differ: ours give the same bits.
+    /// Asks an external model the same question again, and returns the difference of the answers; the built-in models repeat
+    /// bit for bit.
     pub fn repeat(&self, theta: &[f64], first: &Outcome) -> Option<RepeatedAnswer> {
         match (&self.model, first) {
             (Model::Outside(model), Outcome::Evaluated(observables)) => model.repeat(theta, observables),
@@ -87,8 +86,7 @@ impl CompiledVariant {
         }
     }
 
-    /// Evaluates what a lease asks for: the model at `theta`, or at the end of a subchain that starts there, unless that
-    /// stayed where it was.
+    /// Evaluates a lease: the model at `theta`, or at the end of a subchain that starts there, unless the subchain did not move.
     pub fn serve(
         &self,
         theta: &[f64],

@@ -1,4 +1,4 @@
-//! A coordinator as the loop knows it.
+//! The interface of a coordinator for the loop.
 
 use std::future::Future;
 
@@ -18,13 +18,13 @@ pub enum ExchangeError {
 
 /// A coordinator, over HTTP or in the same process.
 pub trait Coordinator: Send + Sync + 'static {
-    /// One exchange of results for leases; a failure gives the results back, to be sent again.
+    /// Exchanges results for leases; a failure returns the results, to be sent again.
     fn exchange(
         &self,
         request: ExchangeRequest,
     ) -> impl Future<Output = Result<ExchangeResponse, (ExchangeError, Vec<WorkResult>)>> + Send;
 
-    /// The variant of a hash; `None` where no active calibration uses it.
+    /// Fetches the variant of a hash; `None` if no active calibration uses it.
     fn variant(&self, hash: &str)
     -> impl Future<Output = Result<Option<ModelVariant>, ExchangeError>> + Send;
 }

@@ -1,32 +1,32 @@
-//! How long a worker serves, and why it ends.
+//! The limits of a worker's service, and the reason of its end.
 
 use std::time::{Duration, Instant};
 
-/// How long a worker serves; without limits, until it is asked to stop.
+/// The limits of a worker's service; without limits, it serves until it is asked to stop.
 #[derive(Debug, Clone, Default)]
 pub struct WorkerLimits {
-    /// It ends after so long without a lease.
+    /// The worker ends after this time without a lease.
     pub max_idle: Option<Duration>,
-    /// It ends then, as if it were asked to: before a queue ends it.
+    /// The worker ends at this time, before a queue ends it.
     pub ends_at: Option<Instant>,
-    /// It ends when no calibration has wanted workers for some seconds.
+    /// The worker ends when no calibration has wanted workers for some seconds.
     pub once: bool,
-    /// It ends when its process holds more `[MB]`.
+    /// The worker ends when its process holds more memory `[MB]`.
     pub max_memory_mb: Option<u64>,
 }
 
 /// Why a worker has ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Ended {
-    /// It was asked to stop.
+    /// The worker was asked to stop.
     Asked,
-    /// It had no lease for as long as it waits for one.
+    /// The worker had no lease for [`WorkerLimits::max_idle`].
     Idle,
-    /// Its time is over.
+    /// The lifetime is over.
     Lifetime,
     /// No calibration wants workers.
     NothingLeft,
-    /// Its process held more memory than it may.
+    /// The process exceeded its memory limit.
     Memory,
 }
 
@@ -44,7 +44,7 @@ impl Ended {
 }
 
 impl WorkerLimits {
-    /// Ready when a worker that has been idle since then, if it is, reaches a limit of time.
+    /// Waits until a worker that has been idle since then, if it is, reaches a limit of time.
     pub(super) fn reached(&self, idle_since: Option<Instant>) -> impl Future<Output = Ended> + use<> {
         let idle_until = idle_since.and_then(|since| Some(since + self.max_idle?));
         let ends_at = self.ends_at;
@@ -64,16 +64,16 @@ impl WorkerLimits {
         }
     }
 
-    /// Whether the process holds more memory than it may; no, where the system does not tell.
+    /// Returns whether the process exceeds its memory limit; false if the system does not tell.
     pub(super) fn is_over_memory(&self) -> bool {
-        let Some(most) = self.max_memory_mb else {
+        let Some(max) = self.max_memory_mb else {
             return false;
         };
-        resident_bytes().is_some_and(|held| held > most.saturating_mul(1_000_000))
+        resident_bytes().is_some_and(|held| held > max.saturating_mul(1_000_000))
     }
 }
 
-/// Memory that this process holds `[bytes]`, of `/proc/self/status`, proc(5).
+/// Memory that this process holds `[bytes]`, from `/proc/self/status`, proc(5).
 fn resident_bytes() -> Option<u64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:"))?;

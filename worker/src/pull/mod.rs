@@ -1,10 +1,10 @@
 //! The loop of a worker: exchange, evaluate, resend, renew, give back.
 //!
 //! # Layout
-//! - here: its start.
+//! - This file: the start of the loop.
 //! - `worker`: the loop.
-//! - [`exchange`]: a coordinator as the loop knows it.
-//! - `settings`: who a worker is. [`limits`]: how long a worker serves, and why it ends.
+//! - [`exchange`]: the interface of a coordinator for the loop.
+//! - `settings`: identity and settings of a worker. [`limits`]: the limits of its service, and the reason of its end.
 
 pub mod exchange;
 pub mod limits;
@@ -24,7 +24,7 @@ use worker::Worker;
 /// Runs until `shutdown` is ready or a limit is reached; then, within 5 s, gives back the leases that are not finished.
 ///
 /// # Errors
-/// [`ExchangeError::Refused`], also where the threads cannot be started, because retrying would not help.
+/// [`ExchangeError::Refused`], also if the threads cannot be started, because retrying would not help.
 pub async fn run<C: Coordinator>(
     coordinator: Arc<C>,
     settings: PullSettings,

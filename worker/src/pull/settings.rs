@@ -1,21 +1,21 @@
-//! Who a worker is and how it works.
+//! Identity and settings of a worker.
 
 use std::sync::Arc;
 
 use super::limits::WorkerLimits;
 use crate::external::allowed::AllowedModels;
 
-/// Who the worker is and how it works.
+/// Identity and settings of a worker.
 #[derive(Debug, Clone)]
 pub struct PullSettings {
     /// Name of this worker process, fresh at every start.
     pub name: String,
-    /// The job of a queue that started it, as in `slurm 1234_5`.
+    /// The queue's job that started it, such as `slurm 1234_5`.
     pub queue_job: Option<String>,
-    /// Threads that simulate.
+    /// Number of threads that simulate.
     pub threads: usize,
-    /// The models that are not ours that it runs.
+    /// The external models that it may run.
     pub models: Arc<AllowedModels>,
-    /// How long it serves.
+    /// The limits of its service.
     pub limits: WorkerLimits,
 }

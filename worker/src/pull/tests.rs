@@ -1,4 +1,4 @@
-//! A worker with coordinators that do one thing.
+//! A worker with coordinators of a single behaviour each.
 
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex};
@@ -14,14 +14,14 @@ use super::{PullSettings, run};
 use crate::fixture::under_loads;
 use crate::model::VariantCache;
 
-/// A coordinator that leases two evaluations of a variant and never says what it is.
+/// A coordinator that leases two evaluations of a variant and never sends the variant.
 #[derive(Default)]
 struct Silent {
     returned: Mutex<Vec<u64>>,
     is_asked: tokio::sync::Notify,
 }
 
-/// A coordinator that leases one evaluation of each of its variants at once, and none again.
+/// A coordinator that leases one evaluation of each of its variants at once, and no more.
 struct Dealing {
     variants: BTreeMap<String, ModelVariant>,
     results: Mutex<Vec<WorkResult>>,
@@ -45,7 +45,7 @@ impl Coordinator for Dealing {
         &self,
         request: ExchangeRequest,
     ) -> Result<ExchangeResponse, (ExchangeError, Vec<WorkResult>)> {
-        // A worker that holds nothing asks at once, and the test ends only where others have a turn.
+        // A worker without leases asks at once; yielding lets the rest of the test run.
         tokio::task::yield_now().await;
         let mut results = self.results.lock().unwrap();
         results.extend(request.results);
@@ -131,7 +131,7 @@ async fn a_worker_stops_while_a_variant_does_not_come_and_gives_its_leases_back(
 
 #[tokio::test]
 async fn a_batch_of_more_variants_than_the_cache_holds_is_evaluated() {
-    let variants = VariantCache::MOST + 100;
+    let variants = VariantCache::MAX_VARIANTS + 100;
     let dealing = Arc::new(Dealing::new(variants));
     let stop = dealing.is_over.notified();
     let ended = run(dealing.clone(), settings(), Arc::default(), stop);

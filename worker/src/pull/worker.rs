@@ -1,7 +1,7 @@
 //! The loop of a worker: exchange, evaluate, resend, renew, give back.
 //!
-//! New leases are requested while the last ones are still being evaluated, so threads wait only where the
-//! sampler does: at the end of a step.
+//! New leases are requested while the last ones are still being evaluated, so threads wait only when the sampler does: at
+//! the end of a step.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::future::Future;
@@ -17,84 +17,83 @@ use super::settings::PullSettings;
 use crate::evaluator::{Evaluator, SimulationClock};
 use crate::model::{CompiledVariant, VariantCache};
 
-/// A worker holds about so much work `[s]`.
+/// The amount of work that a worker holds `[s]`.
 const WORK_S: f64 = 1.5;
-/// Less than so much work is not worth an exchange of its own `[s]`: about what one takes, with its results on disk.
+/// The minimum work for an exchange `[s]`: about the time of an exchange with results on disk.
 const LEAST_WORK_S: f64 = 5e-3;
-/// Longest wait of a long poll `[ms]`.
+/// The longest wait of a long poll `[ms]`.
 const WAIT_MS: u64 = 20_000;
-/// The same of one that ends when nothing is left `[ms]`.
+/// The longest wait of a long poll with `--once` `[ms]`.
 const ONCE_WAIT_MS: u64 = 500;
-/// Between two calibrations of a study there is no work for less than so long.
+/// The longest pause without work between two calibrations of a study.
 const LULL: Duration = Duration::from_secs(5);
-/// A worker holds at most so many runs, over all its leases: their results fit into one message.
-const MOST_RUNS: usize = 100_000;
-/// Results are sent at least so often, even while there is work left.
+/// The maximum number of runs that a worker holds over all leases, so that their results fit into one message.
+const MAX_RUNS: usize = 100_000;
+/// The maximum time between two messages with results, even while there is work left.
 const FLUSH: Duration = Duration::from_secs(1);
-/// How long a worker that stops waits for the evaluations that have begun: what takes longer is given back unfinished.
+/// The time that a stopping worker waits for running evaluations; slower ones are given back unfinished.
 const GRACE: Duration = Duration::from_secs(3);
-/// How long its last message may take.
+/// The maximum time of its last message.
 const FAREWELL: Duration = Duration::from_millis(1500);
-/// How long a worker that stops waits for an answer that may be on its way.
+/// The time that a stopping worker waits for an answer that may be under way.
 const PARTING: Duration = Duration::from_millis(300);
-/// Pauses between attempts to reach a coordinator that is away: doubled from the first to the last.
+/// Pauses between attempts to reach a coordinator that is away: doubled from the first to the last value.
 const BACK_OFF: [Duration; 2] = [Duration::from_millis(100), Duration::from_secs(5)];
 
-/// How often models that are not ours are asked what they are.
+/// The interval at which external models are asked for their identity.
 const ASK: Duration = Duration::from_secs(5);
 
 /// The state of the coordinator in its last answer.
 #[derive(Debug)]
-struct Known {
+struct LastAnswer {
     remaining: u64,
-    /// Calibrations that want workers, once it is known.
+    /// Calibrations that want workers; `None` before the first answer.
     in_hand: Option<u64>,
     workers: u32,
     lease_ms: u64,
-    /// How many leases the last successful request brought.
+    /// Number of leases that the last successful request brought.
     asked: usize,
-    /// Runs of an evaluation; the most of the last batch.
+    /// The maximum number of runs per evaluation in the last batch.
     runs: usize,
 }
 
-/// Why there is no variant of a hash.
+/// Why the variant of a hash is missing.
 enum Missing {
-    /// It cannot be fetched now.
+    /// The variant cannot be fetched now.
     Away,
-    /// This worker cannot compute it.
+    /// This worker cannot compute the variant.
     Unusable(String),
 }
 
-/// A worker.
 pub(super) struct Worker<C> {
     coordinator: Arc<C>,
     evaluator: Evaluator,
     clock: Arc<SimulationClock>,
     settings: PullSettings,
     variants: VariantCache,
-    /// When the models that are not ours were last asked what they are.
+    /// The time at which external models were last asked for their identity.
     asked: Option<Instant>,
-    /// Leases whose result is not there yet.
+    /// Leases without a result so far.
     held: BTreeSet<u64>,
     /// Results that the coordinator has not acknowledged.
     outbox: Vec<WorkResult>,
     /// Leases that this worker cannot serve at present, to be given back.
     returned: Vec<u64>,
-    /// Leases whose start the coordinator must know of before they are evaluated.
+    /// Leases that the coordinator must acknowledge as started before they are evaluated.
     announced: Vec<(Lease, Arc<CompiledVariant>)>,
     /// The highest lease number received.
     received: u64,
-    known: Known,
+    last_answer: LastAnswer,
     flushed: Instant,
     renewed: Instant,
-    /// When it last held a lease, or started.
+    /// The last time it held a lease, or started.
     busy: Instant,
-    /// Whether the coordinator does not answer.
+    /// True if the coordinator does not answer.
     away: bool,
 }
 
 impl<C: Coordinator> Worker<C> {
-    /// A worker that holds nothing.
+    /// Creates a worker without leases.
     pub(super) fn new(
         coordinator: Arc<C>,
         settings: PullSettings,
@@ -113,7 +112,7 @@ impl<C: Coordinator> Worker<C> {
             returned: Vec::new(),
             announced: Vec::new(),
             received: 0,
-            known: Known {
+            last_answer: LastAnswer {
                 remaining: 0,
                 in_hand: None,
                 workers: 1,
@@ -128,10 +127,7 @@ impl<C: Coordinator> Worker<C> {
         }
     }
 
-    /// Serves until `shutdown` is ready or a limit is reached.
-    ///
-    /// # Errors
-    /// [`ExchangeError::Refused`].
+    /// Serves until `shutdown` is ready or a limit is reached; [`ExchangeError::Refused`] if the coordinator refuses the worker.
     pub(super) async fn run(mut self, shutdown: impl Future<Output = ()>) -> Result<Ended, ExchangeError> {
         tokio::pin!(shutdown);
         let mut back_off = BACK_OFF[0];
@@ -140,7 +136,7 @@ impl<C: Coordinator> Worker<C> {
             if let Some(ended) = self.has_ended() {
                 return self.stop(ended).await;
             }
-            // Made anew in every round, because it follows from what is held.
+            // This future is created in every round, because it depends on the held leases.
             let reached = self.settings.limits.reached(self.idle_since());
             tokio::pin!(reached);
             if !self.is_time_to_exchange() {
@@ -173,7 +169,7 @@ impl<C: Coordinator> Worker<C> {
                         return self.stop(ended).await;
                     }
                     answer = &mut exchange => break answer,
-                    // What is being evaluated must not be lost because an answer hangs.
+                    // Running evaluations must not be lost because an answer hangs.
                     () = tokio::time::sleep(self.renewal_period()), if !self.held.is_empty() => {
                         self.renew_beside();
                     }
@@ -186,7 +182,7 @@ impl<C: Coordinator> Worker<C> {
                     }
                     back_off = BACK_OFF[0];
                     tokio::select! {
-                        // What has been leased is held by now, and given back.
+                        // New leases are held by now, and given back.
                         () = &mut shutdown => return self.stop(Ended::Asked).await,
                         ended = &mut reached => return self.stop(ended).await,
                         () = self.accept(response) => {}
@@ -213,7 +209,7 @@ impl<C: Coordinator> Worker<C> {
         }
     }
 
-    /// Leases may be under way to one that stops: it waits briefly for the answer, to give them back too.
+    /// Waits briefly for an answer that is under way when the worker stops, to give its leases back too.
     async fn part(
         &mut self,
         exchange: impl Future<Output = Result<ExchangeResponse, (ExchangeError, Vec<WorkResult>)>>,
@@ -228,12 +224,13 @@ impl<C: Coordinator> Worker<C> {
         }
     }
 
-    /// Whether it has nothing to do, and since when. Results that nobody takes are computed again elsewhere: they keep no machine.
+    /// Returns since when the worker has had nothing to do; `None` while it has work. Results that nobody takes do not count
+    /// as work: they are computed again elsewhere.
     fn idle_since(&self) -> Option<Instant> {
         (self.held.is_empty() && (self.outbox.is_empty() || self.away)).then_some(self.busy)
     }
 
-    /// Why it ends now, of the limits that are not a matter of time.
+    /// Returns why the worker must end now, for the limits other than time.
     fn has_ended(&mut self) -> Option<Ended> {
         if !self.held.is_empty() {
             self.busy = Instant::now();
@@ -241,13 +238,13 @@ impl<C: Coordinator> Worker<C> {
         let limits = &self.settings.limits;
         let is_idle =
             self.outbox.is_empty() && self.idle_since().is_some_and(|since| since.elapsed() >= LULL);
-        if limits.once && is_idle && self.known.in_hand == Some(0) {
+        if limits.once && is_idle && self.last_answer.in_hand == Some(0) {
             return Some(Ended::NothingLeft);
         }
         limits.is_over_memory().then_some(Ended::Memory)
     }
 
-    /// Asks the models that are not ours what they are, every now and then: one may have been started, or replaced.
+    /// Asks the external models for their identity from time to time, because one may have been started or replaced.
     async fn ask_models(&mut self) {
         let is_due = self.asked.is_none_or(|asked| asked.elapsed() >= ASK);
         if self.settings.models.is_empty() || !is_due {
@@ -272,37 +269,39 @@ impl<C: Coordinator> Worker<C> {
     /// An exchange is due when half of the last batch is done and there is more to get or enough to send, when no lease is
     /// held, or when results or renewals have waited long enough.
     fn is_time_to_exchange(&self) -> bool {
-        let half_done = self.held.len() * 2 <= self.known.asked;
+        let half_done = self.held.len() * 2 <= self.last_answer.asked;
         let much_done = self.outbox.len() as f64 >= self.evaluations_in(LEAST_WORK_S);
         self.held.is_empty()
-            || (half_done && (self.known.remaining > 0 || much_done))
+            || (half_done && (self.last_answer.remaining > 0 || much_done))
             || (!self.outbox.is_empty() && self.flushed.elapsed() >= FLUSH)
             || !self.announced.is_empty()
             || self.renewal_due()
     }
 
     fn renewal_period(&self) -> Duration {
-        Duration::from_millis(self.known.lease_ms / 3)
+        Duration::from_millis(self.last_answer.lease_ms / 3)
     }
 
     fn renewal_due(&self) -> bool {
         !self.held.is_empty() && self.renewed.elapsed() >= self.renewal_period()
     }
 
-    /// How many evaluations all threads do in a time `[s]`, as far as known; at least one each.
+    /// The number of evaluations that all threads complete in a time `[s]`, as far as known; at least one each.
     fn evaluations_in(&self, seconds: f64) -> f64 {
         let threads = self.settings.threads as f64;
         let mean = self.clock.mean_s();
         mean.map_or(threads, |mean| (seconds * threads / mean.max(1e-9)).max(threads))
     }
 
-    /// At most 1.5 s of work. Of what remains all if this worker is alone, else half of its share, so that a slower worker
-    /// leaves something to a faster one; but its share rather than less than is worth an exchange, which is also what it asks of
-    /// a round that it does not know yet.
+    /// The number of evaluations to request: at most 1.5 s of work.
+    ///
+    /// A single worker takes all that remains; otherwise a worker takes half of its share, so that a slower worker leaves
+    /// work to a faster one, but never splits below the amount that is worth an exchange. The same amount is requested from
+    /// a round of unknown size.
     fn want(&self) -> u32 {
         let least = self.evaluations_in(LEAST_WORK_S);
-        let share = self.known.remaining as f64 / f64::from(self.known.workers.max(1));
-        let share = match (self.known.remaining, self.known.workers) {
+        let share = self.last_answer.remaining as f64 / f64::from(self.last_answer.workers.max(1));
+        let share = match (self.last_answer.remaining, self.last_answer.workers) {
             (0, _) => least,
             (_, 0 | 1) => share,
             _ => (0.5 * share)
@@ -310,8 +309,8 @@ impl<C: Coordinator> Worker<C> {
                 .max(self.settings.threads as f64),
         };
         let want = self.evaluations_in(WORK_S).min(share) - self.held.len() as f64;
-        let most = (MOST_RUNS / self.known.runs).max(self.settings.threads);
-        want.clamp(0.0, most.saturating_sub(self.held.len()) as f64) as u32
+        let max = (MAX_RUNS / self.last_answer.runs).max(self.settings.threads);
+        want.clamp(0.0, max.saturating_sub(self.held.len()) as f64) as u32
     }
 
     fn request(&mut self) -> ExchangeRequest {
@@ -339,21 +338,21 @@ impl<C: Coordinator> Worker<C> {
             started: self.started(),
             received: self.received,
             want: self.want().max(u32::from(idle)),
-            // a worker that still holds work returns for more by itself
+            // a worker that still holds work asks again by itself
             wait_ms: if idle { self.patience_ms() } else { 0 },
         }
     }
 
-    /// How long the coordinator may wait for work before it answers one that is idle `[ms]`.
+    /// The time that the coordinator may wait for work before it answers an idle worker `[ms]`.
     fn patience_ms(&self) -> u64 {
         match self.settings.limits.once {
-            // It must hear soon that nothing is left.
+            // With `--once` the worker must learn soon that nothing is left.
             true => ONCE_WAIT_MS,
             false => WAIT_MS,
         }
     }
 
-    /// Renews all leases while another exchange waits for its answer. Nothing follows from the answer, so nobody waits for it.
+    /// Renews all leases while another exchange waits for its answer. Nothing depends on the answer, so nobody waits for it.
     fn renew_beside(&mut self) {
         let renewal = ExchangeRequest {
             worker: self.settings.name.clone(),
@@ -367,7 +366,7 @@ impl<C: Coordinator> Worker<C> {
             holding: self.held.iter().copied().collect(),
             returned: Vec::new(),
             started: self.evaluator.started(),
-            // Leases of the answer that is under way are not lost.
+            // The leases of the answer under way must not count as lost.
             received: u64::MAX,
             want: 0,
             wait_ms: 0,
@@ -379,7 +378,7 @@ impl<C: Coordinator> Worker<C> {
         });
     }
 
-    /// Leases whose evaluation has begun, or begins when the coordinator has answered.
+    /// Leases whose evaluation has begun, or begins after the coordinator's answer.
     fn started(&self) -> Vec<u64> {
         let announced = self.announced.iter().map(|(lease, _)| lease.lease);
         self.evaluator.started().into_iter().chain(announced).collect()
@@ -390,18 +389,18 @@ impl<C: Coordinator> Worker<C> {
         self.received = leases.fold(self.received, u64::max);
     }
 
-    /// Takes what an answer brings. May be dropped at any wait: every lease is then held or returned.
+    /// Processes an answer. It may be dropped at any wait: every lease is then held or returned.
     async fn accept(&mut self, response: ExchangeResponse) {
         self.note_received(&response);
-        // Their start is known now.
+        // The coordinator knows of their start now.
         self.evaluator.start(std::mem::take(&mut self.announced));
-        self.known = Known {
+        self.last_answer = LastAnswer {
             remaining: response.remaining,
             in_hand: Some(response.in_hand),
             workers: response.workers,
             lease_ms: response.lease_ms,
             asked: response.leases.len() + self.held.len(),
-            runs: self.known.runs,
+            runs: self.last_answer.runs,
         };
         self.held.extend(response.leases.iter().map(|l| l.lease));
         if let Some(reason) = response.refused.filter(|_| response.leases.is_empty()) {
@@ -413,18 +412,18 @@ impl<C: Coordinator> Worker<C> {
             tokio::time::sleep(BACK_OFF[1]).await;
         }
         let hashes: BTreeSet<String> = response.leases.iter().map(|l| l.variant.clone()).collect();
-        // Kept here, because a batch may have more variants than the cache.
+        // The variants are kept here, because a batch may have more variants than the cache.
         let mut variants = BTreeMap::new();
         for hash in hashes {
             let variant = self.fetch(&hash).await;
             variants.insert(hash, variant);
         }
-        self.known.runs = 1;
+        self.last_answer.runs = 1;
         let mut batch = Vec::with_capacity(response.leases.len());
         for lease in response.leases {
             match variants.get(&lease.variant) {
                 Some(Ok(variant)) => {
-                    self.known.runs = self.known.runs.max(variant.runs());
+                    self.last_answer.runs = self.last_answer.runs.max(variant.runs());
                     if lease.announce {
                         self.announced.push((lease, variant.clone()));
                     } else {
@@ -444,7 +443,7 @@ impl<C: Coordinator> Worker<C> {
         }
     }
 
-    /// A lease whose variant cannot be computed here is a fault of this machine.
+    /// Reports a lease whose variant cannot be computed here as a fault of this machine.
     fn refuse(&mut self, lease: Lease, message: String) {
         let Lease {
             lease,
@@ -465,10 +464,10 @@ impl<C: Coordinator> Worker<C> {
         });
     }
 
-    /// The compiled variant of a hash, from the cache or the coordinator.
+    /// Gets the compiled variant of a hash, from the cache or the coordinator.
     async fn fetch(&mut self, hash: &str) -> Result<Arc<CompiledVariant>, Missing> {
-        if let Some(known) = self.variants.get(hash) {
-            return Ok(known);
+        if let Some(variant) = self.variants.get(hash) {
+            return Ok(variant);
         }
         match self.coordinator.variant(hash).await {
             Ok(Some(variant)) => self
@@ -476,12 +475,12 @@ impl<C: Coordinator> Worker<C> {
                 .add(hash, &variant)
                 .map_err(|e| Missing::Unusable(e.to_string())),
             Err(ExchangeError::Refused(reason)) => Err(Missing::Unusable(reason)),
-            // the calibration has ended meanwhile, or the coordinator is away: not an error
+            // it is no error if the calibration has ended meanwhile, or the coordinator is away
             Ok(None) | Err(ExchangeError::Away(_)) => Err(Missing::Away),
         }
     }
 
-    /// Sends the finished results and gives back all other leases: those that have not begun, and those that take too long to wait for.
+    /// Sends the finished results and gives back all other leases: those that have not begun, and those that take too long.
     async fn stop(mut self, ended: Ended) -> Result<Ended, ExchangeError> {
         if tokio::time::timeout(GRACE, self.evaluator.cancel())
             .await

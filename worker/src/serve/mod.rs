@@ -1,8 +1,8 @@
-//! Our models by UM-Bridge, protocol 1.0, <https://um-bridge-benchmarks.readthedocs.io>: for any program that speaks it.
+//! The built-in models by UM-Bridge, protocol 1.0, <https://um-bridge-benchmarks.readthedocs.io>.
 //!
 //! # Layout
-//! - here: the routes and their errors.
-//! - [`model`]: what goes into a model and comes out of it.
+//! - This file: the routes and their errors.
+//! - [`model`]: the inputs and outputs of a model.
 
 pub mod model;
 
@@ -25,13 +25,13 @@ use tokio::sync::Semaphore;
 use crate::external::MODEL_VERSION;
 use model::{INPUTS, OUTPUTS, PARAMETERS, ServedError, evaluate};
 
-/// The models that are served.
+/// The served models.
 const MODELS: [ModelKind; 2] = [ModelKind::QuasiStatic, ModelKind::Scm];
 
-/// What all requests share: how many models may run at once.
+/// State that all requests share: the number of models that may run at once.
 type Threads = Arc<Semaphore>;
 
-/// The body of every request but that for `/Info`.
+/// The body of every request except that for `/Info`.
 #[derive(Debug, Deserialize)]
 struct Question {
     name: String,
@@ -41,7 +41,7 @@ struct Question {
     config: toml::Table,
 }
 
-/// Why a request has no answer, by the protocol's words.
+/// Why a request has no answer, in the protocol's words.
 #[derive(Debug)]
 struct ProtocolError {
     status: StatusCode,
@@ -66,10 +66,7 @@ impl IntoResponse for ProtocolError {
     }
 }
 
-/// Serves our models on so many threads until `shutdown` is ready.
-///
-/// # Errors
-/// The listener fails.
+/// Serves the built-in models on `threads` threads until `shutdown` is ready; an error if the listener fails.
 pub async fn serve(
     listener: TcpListener,
     threads: usize,
@@ -88,7 +85,7 @@ pub async fn serve(
         .await
 }
 
-/// The protocol allows no key for a version.
+/// Answers `/Info`. The version is a header, because the protocol allows no key for it.
 async fn info() -> ([(&'static str, &'static str); 1], Json<Value>) {
     let models = json!({ "protocolVersion": 1.0, "models": MODELS.map(ModelKind::name) });
     ([(MODEL_VERSION, crate::model_version())], Json(models))
@@ -139,15 +136,15 @@ async fn unsupported(uri: Uri) -> ProtocolError {
     ProtocolError::of_client("UnsupportedFeature", message)
 }
 
-/// The model and the question of a body.
+/// Reads the model and the question of a body.
 fn read(body: &[u8]) -> Result<(ModelKind, Question), ProtocolError> {
     let question: Question = serde_json::from_slice(body)
         .map_err(|e| ProtocolError::of_client("InvalidInput", format!("the body: {e}")))?;
     match MODELS.into_iter().find(|kind| kind.name() == question.name) {
         Some(kind) => Ok((kind, question)),
         None => {
-            let known = MODELS.map(ModelKind::name).join(", ");
-            let message = format!("model \"{}\" is none of {known}", question.name);
+            let names = MODELS.map(ModelKind::name).join(", ");
+            let message = format!("model \"{}\" is none of {names}", question.name);
             Err(ProtocolError::of_client("ModelNotFound", message))
         }
     }

@@ -1,4 +1,4 @@
-//! What goes into one of our models, and what comes out of it, where it is served.
+//! The inputs and outputs of a served model.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -13,7 +13,7 @@ use shared::outcome::Outcome;
 use crate::external::allowed::AllowedModels;
 use crate::model::CompiledVariant;
 
-/// The first input: the properties of a run.
+/// The first input vector: the properties of a run.
 pub const INPUTS: [RunInput; 6] = [
     RunInput::Slip,
     RunInput::WheelLoadN,
@@ -23,7 +23,7 @@ pub const INPUTS: [RunInput; 6] = [
     RunInput::WidthM,
 ];
 
-/// The second input: the parameters of the soil.
+/// The second input vector: the parameters of the soil.
 pub const PARAMETERS: [&str; 7] = [
     "log10_p_ref",
     "kappa",
@@ -34,7 +34,7 @@ pub const PARAMETERS: [&str; 7] = [
     "gamma_exponent",
 ];
 
-/// The output.
+/// The output vector.
 pub const OUTPUTS: [Channel; 4] = Channel::ALL;
 
 /// The keys of `config` that describe the wheel.
@@ -48,7 +48,7 @@ const WHEEL_KEYS: [&str; 4] = [
 /// Why a question has no answer.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum ServedError {
-    /// It is not one that the model takes.
+    /// The input does not fit the model.
     Input(String),
     /// The model rejects the parameters.
     Rejected(String),
@@ -58,11 +58,8 @@ pub enum ServedError {
 ///
 /// # Arguments
 /// - `input`: values of [`INPUTS`] and of [`PARAMETERS`].
-/// - `config`: of the wheel `grouser_count`, `grouser_height_m`, `grouser_thickness_m` and `rig_radius_m`; of the model the keys
-///   of a job's `[model]` that its kind alone has.
-///
-/// # Errors
-/// [`ServedError`].
+/// - `config`: for the wheel `grouser_count`, `grouser_height_m`, `grouser_thickness_m` and `rig_radius_m`; for the model
+///   the keys of a job's `[model]` that only its kind has.
 pub fn evaluate(kind: ModelKind, input: &[Vec<f64>], config: &toml::Table) -> Result<Vec<f64>, ServedError> {
     let sizes: Vec<usize> = input.iter().map(Vec::len).collect();
     let [run, parameters] = input else {
@@ -146,9 +143,9 @@ fn variant(
         .iter()
         .filter(|(key, _)| !WHEEL_KEYS.contains(&key.as_str()))
     {
-        let own = ModelSettings::keys_of(kind);
-        if !own.contains(&key.as_str()) {
-            let keys = [WHEEL_KEYS.as_slice(), own].concat();
+        let model_keys = ModelSettings::keys_of(kind);
+        if !model_keys.contains(&key.as_str()) {
+            let keys = [WHEEL_KEYS.as_slice(), model_keys].concat();
             let message = shared::file::unknown_word("key of config", key, keys);
             return Err(ServedError::Input(message));
         }
@@ -206,7 +203,7 @@ mod tests {
     }
 
     #[test]
-    fn what_a_model_does_not_take_is_not_what_it_rejects() {
+    fn invalid_input_differs_from_a_rejection() {
         let mut soft = SOIL;
         soft[0] = 0.0;
         assert!(matches!(

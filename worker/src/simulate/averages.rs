@@ -4,10 +4,10 @@ use shared::channel::Channel;
 use shared::experiment::{CONDITION_COLUMNS, Experiment, TestRun};
 use shared::outcome::Observables;
 
-/// The averages of each run, which the experiment itself can read as its `runs.csv`.
+/// Writes the averages of each run, in the form of the experiment's `runs.csv`.
 ///
-/// What stands in the table counts as measured, and a measurement needs its noise. Channels that the experiment states no noise for
-/// are therefore blank, unless it states none at all: then nobody can calibrate on it, and all channels are wanted.
+/// A value in the table counts as measured, and a measurement needs its noise. Channels without a stated noise are therefore
+/// blank, unless the experiment states none at all: then no calibration can use it, and all channels are written.
 pub(super) fn averages(
     experiment: &Experiment,
     observables: &Observables,
@@ -43,7 +43,7 @@ pub(super) fn averages(
             [run.slip, run.wheel_load_n, run.sled_speed_m_s, run.slip_angle_deg].map(|x| x.to_string()),
         );
         row.push(run.pass.to_string());
-        // A model that is not ours may lack a channel: then it is not measured.
+        // A channel that an external model lacks is not measured.
         let noisy = |c: Channel| {
             let value = observables.channel(c).get(i).filter(|_| has_noise(run, c))?;
             Some((value + noise[i][c.index()]).to_string())

@@ -5,7 +5,7 @@ use shared::experiment::{Experiment, PLATE_COLUMNS, SHEAR_COLUMNS};
 use super::error::SimulateError;
 use crate::model::Readings;
 
-/// The table of the plates, in the order of the experiment.
+/// Writes the table of the plates, in the order of the experiment.
 pub(super) fn plates(experiment: &Experiment, readings: &Readings) -> Result<Vec<u8>, SimulateError> {
     table(
         PLATE_COLUMNS,
@@ -16,7 +16,7 @@ pub(super) fn plates(experiment: &Experiment, readings: &Readings) -> Result<Vec
     )
 }
 
-/// The table of the rings, in the order of the experiment.
+/// Writes the table of the rings, in the order of the experiment.
 pub(super) fn shear(experiment: &Experiment, readings: &Readings) -> Result<Vec<u8>, SimulateError> {
     table(
         SHEAR_COLUMNS,
@@ -27,7 +27,7 @@ pub(super) fn shear(experiment: &Experiment, readings: &Readings) -> Result<Vec<
     )
 }
 
-/// Rows of a test's name, its two conditions and what the model predicts there.
+/// Writes rows of a test's name, its two conditions and the model's prediction.
 fn table<'a>(
     columns: [&str; 4],
     rows: impl Iterator<Item = (&'a str, [f64; 2], Result<f64, scm::Rejection>)>,

@@ -1,4 +1,4 @@
-//! Why there are no forward runs.
+//! Errors of forward runs.
 
 use shared::file::FileError;
 
@@ -13,7 +13,7 @@ pub enum SimulateError {
     Rejected {
         /// A run of the wheel, or a test of the bevameter.
         what: &'static str,
-        /// Its name.
+        /// Name of the run or test.
         name: String,
         /// Quantity, value, unit, bound.
         message: String,
@@ -21,7 +21,7 @@ pub enum SimulateError {
     /// A history cannot be brought to a regular interval.
     #[error("history: {0}")]
     History(#[from] signal::SignalError),
-    /// A table cannot be put together.
+    /// A table cannot be built.
     #[error("table: {0}")]
     Table(#[from] csv::Error),
     /// The result cannot be written.

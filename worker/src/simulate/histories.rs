@@ -21,7 +21,7 @@ const COLUMNS: [&str; 6] = [
     "wheel_load_n",
 ];
 
-/// The file of each run in a folder, at 10 Hz, unfiltered, transients included.
+/// Returns the file of each run in a folder, at 10 Hz, unfiltered, with transients.
 pub(super) fn histories(
     experiment: &Experiment,
     variant: &ModelVariant,
@@ -47,7 +47,7 @@ pub(super) fn histories(
     Ok(files)
 }
 
-/// A run's name as a file name: what may not stand in one becomes an underscore.
+/// Converts a run's name to a file name: forbidden characters become underscores.
 fn file_name(run: &str) -> String {
     let plain = |c: char| {
         if c.is_alphanumeric() || "-_.".contains(c) {
@@ -68,7 +68,7 @@ fn table(history: &History) -> Result<Vec<u8>, SimulateError> {
     writer.write_record(COLUMNS)?;
     for row in 0..rows {
         writer.write_record(columns.iter().enumerate().map(|(i, column)| {
-            // one decimal says which tenth of a second it is
+            // one decimal states the tenth of a second
             if i == 0 {
                 format!("{:.1}", column[row])
             } else {

@@ -1,7 +1,7 @@
 //! Forward runs of an experiment without a coordinator.
 //!
 //! # Layout
-//! - here: the wheel's runs, and which table goes where.
+//! - This file: the wheel's runs, and the destination of each table.
 //! - `averages`: the table of the wheel's runs.
 //! - `bevameter`: the tables of plates and rings.
 //! - `histories`: the time histories of each run.
@@ -22,6 +22,7 @@ use scm::spatial::History;
 use shared::channel::Channel;
 use shared::experiment::{Experiment, NoiseSd, Scatter, ScatterSd, TestRun};
 use shared::file::{FileError, number, parse_toml};
+use shared::model::effects::own;
 use shared::model::{EffectSet, ModelSettings, ModelVariant};
 use shared::outcome::Outcome;
 use shared::text_file::{read_beside, read_text};
@@ -30,13 +31,10 @@ use crate::config::Simulate;
 use crate::external::allowed::AllowedModels;
 use crate::model::{CompiledBevameter, CompiledVariant, without_action};
 
-/// Simulates an experiment and writes each table that is asked for as CSV.
+/// Simulates an experiment and writes each requested table as CSV.
 ///
-/// The tables: averages of the wheel's runs, pressures under plates, shear stresses under rings. If the model rejects
-/// any of them, no file is written.
-///
-/// # Errors
-/// [`SimulateError`].
+/// The tables are averages of the wheel's runs, pressures under plates, shear stresses under rings. If the model rejects any
+/// of them, no file is written.
 pub fn simulate(command: &Simulate, models: &Arc<AllowedModels>) -> Result<(), SimulateError> {
     let name = command.experiment.display().to_string();
     let experiment = Experiment::parse(&name, &Experiment::read_files(&command.experiment)?)?;
@@ -91,7 +89,7 @@ pub fn simulate(command: &Simulate, models: &Arc<AllowedModels>) -> Result<(), S
     Ok(())
 }
 
-/// The table of the wheel's runs; their histories, if they are asked for and the model has any, go to `rolled`.
+/// Writes the table of the wheel's runs; their histories, if requested and available, go to `rolled`.
 fn wheel_runs(
     experiment: &Experiment,
     variant: &ModelVariant,
@@ -156,14 +154,14 @@ fn variant(
         &model_name,
         (&settings.effects, &settings.effect_files),
         names,
-        &texts,
+        |name| texts.get(name).map(|text| own(name, text)),
     )?;
     state_shapes(experiment, &effects, &mut settings.fixed, &parameters_name)?;
     ModelVariant::new(experiment, &settings, &effects, Vec::new(), runs)
         .map_err(|e| FileError::whole(&parameters_name, e))
 }
 
-/// Adds the values that effect files fix; all others must be given.
+/// Adds the values that effect files fix; all other values must be given.
 fn state_shapes(
     experiment: &Experiment,
     effects: &EffectSet,
@@ -171,7 +169,7 @@ fn state_shapes(
     file: &str,
 ) -> Result<(), FileError> {
     let names = fixed.keys().map(String::as_str).collect();
-    let mut more = Vec::new();
+    let mut defaults = Vec::new();
     for unsaid in effects.unsaid(&names, &experiment.wheel_names()) {
         let prior = &unsaid.parameter.prior;
         let Some(number) = number(prior) else {
@@ -185,9 +183,9 @@ fn state_shapes(
             );
             return Err(FileError::whole(file, message));
         };
-        more.push((unsaid.name, number));
+        defaults.push((unsaid.name, number));
     }
-    fixed.extend(more);
+    fixed.extend(defaults);
     Ok(())
 }
 
@@ -203,7 +201,7 @@ fn check_quotes(file: &str, parameters: &str) -> Result<(), FileError> {
     Ok(())
 }
 
-/// Noise by run and channel: independent normal draws, one stream for each seed.
+/// Draws noise by run and channel: independent normal numbers, one stream for each seed.
 fn noise(experiment: &Experiment, command: &Simulate) -> Result<Vec<[f64; 4]>, FileError> {
     let mut noise = vec![[0.0; 4]; experiment.runs.len()];
     let Some(seed) = command.noise_seed else {

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use coordinator::embedded::Evaluate;
-use farm::calibration::{Calibration, CalibrationIdentity, CalibrationResult, result_of};
+use farm::calibration::{Calibration, CalibrationIdentity, CalibrationResult, SimulationResult};
 use shared::file::FileSet;
 
 use super::case::spec;
@@ -98,8 +98,8 @@ pub fn sample(
             let Some(question) = calibration.question(evaluation) else {
                 break;
             };
-            let outcome = result_of(model.evaluate(question.theta))?;
-            calibration.complete(evaluation, outcome, "hidden effect")?;
+            let computed = SimulationResult::new(Some(model.evaluate(question.theta)), None)?;
+            calibration.complete(evaluation, computed, "hidden effect")?;
         }
     }
 }

@@ -1,10 +1,12 @@
 //! One trial: an experiment whose truth is known, drawn and searched.
 
+use std::sync::Arc;
 use std::time::Instant;
 
-use job::EffectOnNodes;
+use job::{EffectOnNodes, Job};
 use record::Extension;
 use search::candidate::{CandidateEffect, library};
+use shared::experiment::Experiment;
 use statistics::rng::Stream;
 
 use super::case::{SyntheticCase, blank};
@@ -82,7 +84,7 @@ pub fn draw(kind: HiddenKind, seed: u64, number: u64) -> Result<SyntheticCase, S
     match kind {
         HiddenKind::None => draw(Plan::Full, &[]),
         HiddenKind::One => {
-            let known = expressible(Plan::Full);
+            let known = expressible(Plan::Full)?;
             let own = &known[turn(known.len())];
             draw(Plan::of(&own.0), std::slice::from_ref(own))
         }
@@ -100,7 +102,7 @@ pub fn draw_detectable(
     seed: u64,
     number: u64,
 ) -> Result<SyntheticCase, StudyError> {
-    draw_of(plan, &expressible(plan), count, seed, number)
+    draw_of(plan, &expressible(plan)?, count, seed, number)
 }
 
 /// Draws some of these effects at random until each of them is detectable without noise.
@@ -130,12 +132,15 @@ pub fn draw_of(
 }
 
 /// The effects of the catalogue that a plan can have, each with its addition to the job.
-fn expressible(plan: Plan) -> Vec<(String, Extension)> {
-    let (candidates, _) = library(&plan.job(), &blank(&plan.rows()));
+fn expressible(plan: Plan) -> Result<Vec<(String, Extension)>, StudyError> {
+    let job = Job::read("job.toml", &plan.job())?.into_search();
+    let experiment = Experiment::parse("experiment.toml", &blank(&plan.rows()))?;
+    let (candidates, _) = library(&job, &Arc::new(experiment));
     // Effects on one wheel alone are left out, and those on the nodes of the soil.
     let is_plain = |e: &CandidateEffect| !e.name.contains('.') && EffectOnNodes::find(&e.name).is_none();
-    let own = candidates.into_iter().filter(is_plain);
-    own.map(|e| (e.name, e.extension)).collect()
+    let candidates = candidates.into_iter().map(|(candidate, _)| candidate);
+    let plain = candidates.filter(is_plain);
+    Ok(plain.map(|e| (e.name, e.extension)).collect())
 }
 
 /// Whether the model falls short by enough without any one of the effects.

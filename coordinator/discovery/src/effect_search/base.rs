@@ -5,10 +5,10 @@ use crate::laplace::fit::{FitStep, LaplaceFit};
 use crate::laplace::point::FitPoint;
 use statistics::likelihood::Likelihood;
 
-/// Until a new Jacobian predicts no gain: every comparison is with this fit.
-pub(crate) const PLAN: [FitStep; 2] = [FitStep::Rounds { most: 6, trials: 12 }, FitStep::Differences];
+/// The fit ends once a new Jacobian predicts no gain: every candidate is compared with this fit.
+pub(crate) const PLAN: [FitStep; 2] = [FitStep::Rounds { max: 6, trials: 12 }, FitStep::Differences];
 
-/// How many of the starts are fitted, the most probable.
+/// How many of the starts, the most probable, are fitted.
 const COUNT: usize = 3;
 
 /// Starts that fill the prior evenly: Kronecker's sequence with the generalised golden ratio, through the priors' quantiles.

@@ -4,13 +4,13 @@ use nalgebra::DMatrix;
 
 /// Least `|cos|` between projected changes of one class.
 const ALIKE: f64 = 0.98;
-/// Fits of a model that scatters differ by so much \[nats\].
-const LEAST_SHORT: f64 = 3.0;
+/// Log Bayes factors of fits to a model with numerical noise differ by this amount \[nats\].
+const NOISE_OF_FITS: f64 = 3.0;
 
-/// Evidence by which a member of a class may fall short of another that has so much, and fit as well: what the angle between them costs,
-/// and no less than fits differ \[nats\].
-pub(crate) fn shortfall(nats: f64) -> f64 {
-    (nats * (1.0 - ALIKE * ALIKE)).max(LEAST_SHORT)
+/// How far the log Bayes factor of a class member may lie below that of another with `nats`, although both fit alike \[nats\]: the
+/// cost of the angle between their changes, at least the difference that fits have anyway.
+pub(crate) fn log_bayes_factor_deficit(nats: f64) -> f64 {
+    (nats * (1.0 - ALIKE * ALIKE)).max(NOISE_OF_FITS)
 }
 
 /// Classes by complete linkage: each candidate joins the first class with `|cos| > 0.98` to every member.
@@ -19,7 +19,7 @@ pub(crate) fn shortfall(nats: f64) -> f64 {
 /// - `products`: inner products of the projected changes, `[n_candidates, n_candidates]`.
 ///
 /// # Returns
-/// The class of each, from 0. A change of length zero is a class of its own.
+/// The class of each candidate, from 0. A change of length zero is a class of its own.
 pub(super) fn classes(products: &DMatrix<f64>) -> Vec<usize> {
     let count = products.nrows();
     let alike = |i: usize, j: usize| {
@@ -29,11 +29,11 @@ pub(super) fn classes(products: &DMatrix<f64>) -> Vec<usize> {
     let mut members: Vec<Vec<usize>> = Vec::new();
     let mut class = Vec::with_capacity(count);
     for i in 0..count {
-        let own = members
+        let joined = members
             .iter()
-            .position(|others| others.iter().all(|&j| alike(i, j)));
-        class.push(own.unwrap_or(members.len()));
-        match own {
+            .position(|class| class.iter().all(|&j| alike(i, j)));
+        class.push(joined.unwrap_or(members.len()));
+        match joined {
             Some(k) => members[k].push(i),
             None => members.push(vec![i]),
         }

@@ -3,22 +3,22 @@
 use crate::laplace::coordinate::NormalFrame;
 use crate::laplace::fit::LaplaceFit;
 
-/// How many extensions are confirmed at once, the best.
+/// How many extensions, the best, are confirmed at once.
 pub(crate) const COUNT: usize = 4;
-/// A fit that fell short of its promise has not converged, and its promise is that of a linear model: the best of them are
-/// confirmed where that is more than this share of the best.
+/// A fit that fell short of the screen's promise has not converged. It is confirmed if the promise, which is that of a linear
+/// model, exceeds this share of the best log Bayes factor.
 pub(crate) const STUCK: f64 = 0.6;
-/// Beyond the first, an extension is worth its confirmation where it promises more \[nats\].
-pub(crate) const LEAST_PROMISE: f64 = 0.0;
+/// A candidate beyond the first few is confirmed only if its log Bayes factor is higher \[nats\].
+pub(crate) const MIN_PROMISE: f64 = 0.0;
 
-/// Starts that fill the prior, where the best fit so far contradicts the data.
+/// Number of further starts that fill the prior, used where the best fit so far contradicts the data.
 pub(crate) const ANYWHERE: usize = 16;
 
-/// Distances of the strength from its neutral value, in standard deviations of its prior: very weak, weak, usual and strong.
+/// Distances of the strength from its neutral value, in standard deviations of its prior.
 const ONE_SIDED: [f64; 4] = [0.05, 0.3, 1.0, 2.0];
 const TWO_SIDED: [f64; 4] = [0.5, -0.5, 1.5, -1.5];
 
-/// Starts at the base's fit with the effect added; of a switch, that fit.
+/// Starts at the base's fit with the effect added; a switch has only the base's fit.
 pub(crate) fn starts(frame: &NormalFrame, base: &LaplaceFit) -> Vec<Vec<f64>> {
     if frame.is_switch() {
         return vec![base.point.position.clone()];

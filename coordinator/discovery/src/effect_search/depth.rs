@@ -1,24 +1,85 @@
-//! How far a search goes, and the plans of its fits.
+//! How much a search spends: which candidates each phase fits, and by which plans.
 
 use crate::effect_search::base;
 use crate::laplace::fit::{FitStep, LaplaceFit};
 use crate::settings::Roughness;
 
-/// The confirmation of a model from several starts.
+/// How much a search spends, phase by phase.
+#[derive(Debug)]
+pub(crate) struct Depth {
+    pub(crate) base: BaseDepth,
+    pub(crate) screen: ScreenDepth,
+    pub(crate) extension: ExtensionDepth,
+    pub(crate) refinement: RefinementDepth,
+    /// `None`: the search ends with the refinement.
+    pub(crate) confirmation: Option<ConfirmationDepth>,
+}
+
+/// The fits of the base before its numerical noise is known.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct BaseDepth {
+    pub(crate) plan: &'static [FitStep],
+    /// How many of these fits, the most probable, continue once the noise is known.
+    pub(crate) max_continued: usize,
+}
+
+/// The grid of the screen.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct ScreenDepth {
+    /// Steps of a single strength, in standard deviations of its prior, the longest first. An effect that acts like a square root
+    /// near zero shows its size at short steps only.
+    pub(crate) strengths: &'static [f64],
+    pub(crate) shapes: &'static [f64],
+}
+
+/// The first fits of candidates.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct ExtensionDepth {
+    /// How many candidates, the best of the screen, are fitted in any case.
+    pub(crate) max_count: usize,
+    /// A further candidate is fitted if the screen promises more than this share of the best fit's log Bayes factor: the screen is
+    /// linear and may promise too little, but not four times too little. `None`: no further candidates.
+    pub(crate) reach: Option<f64>,
+    pub(crate) plan: &'static [FitStep],
+    /// Whether shapes are held at the screen's values at first: between two levels of a design a threshold changes nothing, so a
+    /// finite difference of a shape has no information.
+    pub(crate) holds_shapes: bool,
+}
+
+/// The second fits of the best candidates, with new derivatives.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct RefinementDepth {
+    pub(crate) max_count: usize,
+    pub(crate) plan: &'static [FitStep],
+}
+
+/// The fits of the best candidates from several starts.
+#[derive(Debug)]
+pub(crate) struct ConfirmationDepth {
+    /// A candidate whose log Bayes factor, fitted or promised, lies within this distance of the best is confirmed too, because a
+    /// fit that stuck may lead \[nats\].
+    pub(crate) within: f64,
+    /// Whether uncertain evidences are computed by importance sampling. The weights of a rough model scatter as its log-likelihood
+    /// does, so that few draws dominate.
+    pub(crate) samples: bool,
+    pub(crate) usual: Confirmation,
+    /// Used where the best fit contradicts the data: a fit that is far off says little about its rank.
+    pub(crate) if_wrong: Confirmation,
+}
+
+/// The confirmation of one candidate.
 #[derive(Debug)]
 pub(crate) struct Confirmation {
-    /// How many models are confirmed in any case, the best.
-    pub(crate) least: usize,
-    /// Most starts of a model from which a fit continues, the most probable.
-    pub(crate) most_starts: usize,
-    /// The plan of these fits.
+    /// How many candidates, the best, are confirmed in any case.
+    pub(crate) min_count: usize,
+    /// How many starts of a candidate, the most probable, are fitted.
+    pub(crate) max_starts: usize,
     pub(crate) plan: &'static [FitStep],
-    /// Whether they begin with the Jacobian of the model's best fit.
+    /// Whether these fits begin with the Jacobian of the candidate's best fit.
     pub(crate) keeps_jacobian: bool,
 }
 
 impl Confirmation {
-    /// The fit continued by this plan.
     pub(crate) fn continued(&self, fit: &LaplaceFit) -> LaplaceFit {
         if self.keeps_jacobian {
             fit.continued(self.plan)
@@ -28,52 +89,9 @@ impl Confirmation {
     }
 }
 
-/// As thorough as the base's fit.
-const THOROUGH: Confirmation = Confirmation {
-    least: 4,
-    most_starts: 6,
-    plan: &[FitStep::Rounds { most: 3, trials: 12 }, FitStep::Differences],
-    keeps_jacobian: false,
-};
-
-/// How far a search goes.
-#[derive(Debug)]
-pub(crate) struct Depth {
-    /// The plan of the base's fits before the numerical noise is known, and how many of them go on after that, the best.
-    pub(crate) base: &'static [FitStep],
-    pub(crate) most_bases: usize,
-    /// Steps of a single strength that the screen tries, in standard deviations of its prior, the longest first. An effect that acts
-    /// like a square root near zero shows its size at short steps only.
-    pub(crate) strengths: &'static [f64],
-    /// How many candidates are fitted, the best of the screen.
-    pub(crate) most_extended: usize,
-    /// Of the others, those are fitted to which the screen promises more than this share of the best fit's log Bayes factor: the screen
-    /// is linear and may promise too little, but not four times too little. `None`: no others.
-    pub(crate) reach: Option<f64>,
-    /// Coordinates of the shape parameters that the screen tries.
-    pub(crate) shapes: &'static [f64],
-    /// The plan of an extension's fit.
-    pub(crate) extension: &'static [FitStep],
-    /// Whether shapes are held at the screen's values at first: between two levels of a design a threshold changes nothing, so a
-    /// finite difference of a shape has no information.
-    pub(crate) holds_shapes: bool,
-    /// How many of the best are polished, and the plan of that fit.
-    pub(crate) most_polished: usize,
-    pub(crate) polish: &'static [FitStep],
-    /// Whether the best are confirmed from several starts, and whether doubtful evidences are sampled: the weights of a rough model
-    /// scatter as its log-likelihood does, so that few draws stand for all.
-    pub(crate) confirms: bool,
-    /// Whatever lies, or promises to lie, within so many nats of the best is confirmed, too: a fit that stuck may lead.
-    pub(crate) within: f64,
-    pub(crate) samples: bool,
-    /// How a model is confirmed, and how where the best fit contradicts the data: a fit that is far off tells little of its rank.
-    pub(crate) confirmation: Confirmation,
-    pub(crate) confirmation_if_wrong: Confirmation,
-}
-
 impl Depth {
-    /// Of the search for one effect.
-    pub(crate) fn of(roughness: Roughness) -> &'static Self {
+    /// The depth of the search for one effect of the library.
+    pub(crate) fn for_roughness(roughness: Roughness) -> &'static Self {
         match roughness {
             Roughness::Smooth => &FULL,
             Roughness::Rough | Roughness::Unknown => &SPARING,
@@ -81,96 +99,141 @@ impl Depth {
     }
 }
 
-/// Every candidate, confirmed.
+/// As thorough as the base's fit.
+const THOROUGH: Confirmation = Confirmation {
+    min_count: 4,
+    max_starts: 6,
+    plan: &[FitStep::Rounds { max: 3, trials: 12 }, FitStep::Differences],
+    keeps_jacobian: false,
+};
+
+/// All candidates of a smooth model are fitted, and the best are confirmed.
 pub(crate) const FULL: Depth = Depth {
-    base: &base::PLAN,
-    most_bases: usize::MAX,
-    strengths: &[1.0, 0.3, 0.1],
-    most_extended: usize::MAX,
-    reach: None,
-    shapes: &[0.0, -1.0, 1.0],
-    // Broyden's steps alone, the first to the linear solution.
-    extension: &[FitStep::Trials(9)],
-    holds_shapes: false,
-    most_polished: 3,
-    polish: &[FitStep::Differences, FitStep::Trials(6)],
-    confirms: true,
-    within: 10.0,
-    samples: true,
-    confirmation: THOROUGH,
-    confirmation_if_wrong: THOROUGH,
+    base: BaseDepth {
+        plan: &base::PLAN,
+        max_continued: usize::MAX,
+    },
+    screen: ScreenDepth {
+        strengths: &[1.0, 0.3, 0.1],
+        shapes: &[0.0, -1.0, 1.0],
+    },
+    extension: ExtensionDepth {
+        max_count: usize::MAX,
+        reach: None,
+        // Broyden's steps alone, the first to the linear solution.
+        plan: &[FitStep::Trials(9)],
+        holds_shapes: false,
+    },
+    refinement: RefinementDepth {
+        max_count: 3,
+        plan: &[FitStep::Differences, FitStep::Trials(6)],
+    },
+    confirmation: Some(ConfirmationDepth {
+        within: 10.0,
+        samples: true,
+        usual: THOROUGH,
+        if_wrong: THOROUGH,
+    }),
 };
 
-/// Every candidate of a rough model, whose evaluations are dear and whose evidences are no sharper than its scatter.
+/// The best candidates of a rough model are fitted: its evaluations are expensive, and its evidences no sharper than its noise.
 pub(crate) const SPARING: Depth = Depth {
-    base: &[FitStep::Rounds { most: 2, trials: 6 }],
-    most_bases: 1,
-    strengths: &[1.0, 0.3],
-    most_extended: 8,
-    reach: Some(0.25),
-    extension: &[FitStep::Trials(6)],
-    within: 5.0,
-    samples: false,
-    confirmation: Confirmation {
-        least: 2,
-        most_starts: 2,
-        plan: &[
-            FitStep::Trials(6),
-            FitStep::Differences,
-            FitStep::Trials(4),
-            FitStep::Differences,
-        ],
-        keeps_jacobian: true,
+    base: BaseDepth {
+        plan: &[FitStep::Rounds { max: 2, trials: 6 }],
+        max_continued: 1,
     },
-    confirmation_if_wrong: Confirmation {
-        most_starts: 3,
-        ..THOROUGH
+    screen: ScreenDepth {
+        strengths: &[1.0, 0.3],
+        ..FULL.screen
     },
+    extension: ExtensionDepth {
+        max_count: 8,
+        reach: Some(0.25),
+        plan: &[FitStep::Trials(6)],
+        ..FULL.extension
+    },
+    confirmation: Some(ConfirmationDepth {
+        within: 5.0,
+        samples: false,
+        usual: Confirmation {
+            min_count: 2,
+            max_starts: 2,
+            plan: &[
+                FitStep::Trials(6),
+                FitStep::Differences,
+                FitStep::Trials(4),
+                FitStep::Differences,
+            ],
+            keeps_jacobian: true,
+        },
+        if_wrong: Confirmation {
+            max_starts: 3,
+            ..THOROUGH
+        },
+    }),
     ..FULL
 };
 
-/// The best of the screen, fitted and polished.
+/// A further effect beyond one of the best combinations. Nothing is confirmed, so the refinement must converge.
 pub(crate) const QUICK: Depth = Depth {
-    most_extended: 8,
-    // Nothing is confirmed, so these fits must converge.
-    most_polished: 5,
-    polish: &[FitStep::Rounds { most: 3, trials: 8 }],
-    confirms: false,
+    extension: ExtensionDepth {
+        max_count: 8,
+        ..FULL.extension
+    },
+    refinement: RefinementDepth {
+        max_count: 5,
+        plan: &[FitStep::Rounds { max: 3, trials: 8 }],
+    },
+    confirmation: None,
     ..FULL
 };
 
-/// The best of a shorter screen, from which few promise more.
+/// A further effect beyond one of the lower ranks of a wide beam, by a shorter screen.
 pub(crate) const GLANCE: Depth = Depth {
-    strengths: &[1.0, 0.3],
-    most_extended: 6,
-    shapes: &[0.0],
-    most_polished: 2,
+    screen: ScreenDepth {
+        strengths: &[1.0, 0.3],
+        shapes: &[0.0],
+    },
+    extension: ExtensionDepth {
+        max_count: 6,
+        ..QUICK.extension
+    },
+    refinement: RefinementDepth {
+        max_count: 2,
+        ..QUICK.refinement
+    },
     ..QUICK
 };
 
 /// The best curves outside the library, where the misfit is small and the linear screen reliable.
-pub(crate) const CURVES: Depth = Depth {
-    most_extended: 8,
-    ..QUICK
-};
+pub(crate) const CURVES: Depth = QUICK;
 
 /// All curves, where the misfit is too large for the linear screen.
 pub(crate) const ALL_CURVES: Depth = Depth {
-    most_extended: usize::MAX,
+    extension: ExtensionDepth {
+        max_count: usize::MAX,
+        ..QUICK.extension
+    },
     ..QUICK
 };
 
 /// Simple forms, with thresholds at about every tenth of their priors.
 pub(crate) const FORMS: Depth = Depth {
-    most_extended: 12,
-    shapes: &[0.0, -0.25, 0.25, -0.55, 0.55, -0.85, 0.85, -1.3, 1.3],
-    extension: &[
-        FitStep::Trials(6),
-        FitStep::Release,
-        FitStep::Differences,
-        FitStep::Trials(6),
-    ],
-    holds_shapes: true,
-    confirms: false,
+    screen: ScreenDepth {
+        shapes: &[0.0, -0.25, 0.25, -0.55, 0.55, -0.85, 0.85, -1.3, 1.3],
+        ..FULL.screen
+    },
+    extension: ExtensionDepth {
+        max_count: 12,
+        plan: &[
+            FitStep::Trials(6),
+            FitStep::Release,
+            FitStep::Differences,
+            FitStep::Trials(6),
+        ],
+        holds_shapes: true,
+        ..FULL.extension
+    },
+    confirmation: None,
     ..FULL
 };

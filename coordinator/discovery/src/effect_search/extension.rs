@@ -1,6 +1,6 @@
 //! The fit of the base with one effect added, from the screen's result.
 
-use crate::effect_search::depth::Depth;
+use crate::effect_search::depth::ExtensionDepth;
 use crate::effect_search::screen::Screened;
 use crate::laplace::coordinate::NormalFrame;
 use crate::laplace::correction::quotient;
@@ -9,20 +9,20 @@ use crate::laplace::point::FitPoint;
 use crate::laplace::quadratic::quadratic;
 use statistics::likelihood::Likelihood;
 
-/// A fit that begins at the base's fit or at the screen's point, whichever is more probable; with a switch turned at the latter.
+/// A fit that begins at the base's fit or at the screen's point, whichever is more probable; a switch begins at the screen's point.
 pub(crate) fn fit(
     frame: &NormalFrame,
     base: &LaplaceFit,
     screened: &Screened,
     likelihood: &Likelihood,
-    depth: &Depth,
+    depth: &ExtensionDepth,
 ) -> Option<LaplaceFit> {
-    // The value of the screen's point may be that of another likelihood.
+    // The screen's point may have been computed with another likelihood.
     let FitPoint { position, values, .. } = screened.point.clone();
     let present = FitPoint::new(frame, likelihood, position, values)?;
     if frame.is_switch() {
         let (point, columns) = (present, screened.columns.clone());
-        return Some(LaplaceFit::new(frame.clone(), point, columns, depth.extension));
+        return Some(LaplaceFit::new(frame.clone(), point, columns, depth.plan));
     }
     let position = frame.without(&screened.point.position);
     let absent = FitPoint::new(frame, likelihood, position, base.point.values.clone())?;
@@ -38,7 +38,7 @@ pub(crate) fn fit(
                 screened.point.position[k] - neutral,
             );
         }
-        // Where an effect is absent its shape changes nothing.
+        // The shape of an absent effect changes nothing.
         for k in shapes() {
             columns[k].fill(0.0);
         }
@@ -46,7 +46,7 @@ pub(crate) fn fit(
     let point = if is_present { present } else { absent };
     let mut corrections = base.corrections.clone();
     corrections.extend_from_slice(&screened.corrections[corrections.len()..]);
-    let fit = LaplaceFit::new(frame.clone(), point, columns, depth.extension);
+    let fit = LaplaceFit::new(frame.clone(), point, columns, depth.plan);
     let mut fit = fit.corrected(&corrections);
     if depth.holds_shapes {
         fit.hold(shapes());
@@ -54,14 +54,14 @@ pub(crate) fn fit(
     Some(fit)
 }
 
-/// The predicted values at the optimum of the model that is linear about where the fit begins: what the effect would change, before
-/// its fit has made a step. `None` where the fit has no beginning.
+/// The predicted values at the optimum of the model linearised where the fit begins: the effect's change before its fit has made a
+/// step. `None` if the fit cannot begin.
 pub(crate) fn linearised(
     frame: &NormalFrame,
     base: &LaplaceFit,
     screened: &Screened,
     likelihood: &Likelihood,
-    depth: &Depth,
+    depth: &ExtensionDepth,
 ) -> Option<Vec<f64>> {
     let fit = fit(frame, base, screened, likelihood, depth)?;
     let step = quadratic(frame, likelihood, &fit.point, &fit.columns).step(0.0)?;

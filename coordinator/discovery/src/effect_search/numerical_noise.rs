@@ -1,25 +1,25 @@
 //! The numerical noise of a model: how far its predictions scatter about a smooth function of its parameters.
 //!
-//! A model on a grid changes in jumps where a node enters or leaves the contact. A fit that takes the jumps for physics is sure of
-//! whatever effect happens to match them.
+//! The predictions of a model on a grid jump when a node enters or leaves the contact. A fit that takes the jumps for physics
+//! supports any effect that happens to match them.
 
 use statistics::likelihood::{ErrorSd, Likelihood};
 
-/// Positions on the line, and the distance of neighbours along every coordinate, in standard deviations of the prior.
+/// Number of positions on the line, and the distance of neighbours along every coordinate, in standard deviations of the prior.
 const POINTS: usize = 9;
 pub(super) const SPACING: f64 = 0.1;
-/// Shortest distance: where the model rejects too many positions, a quarter of the last distance is tried.
-const LEAST_SPACING: f64 = 0.005;
+/// If the model rejects too many positions, a quarter of the last distance is tried, down to this one.
+const MIN_SPACING: f64 = 0.005;
 const SHORTER: f64 = 0.25;
 /// Coefficients of the fourth difference, in which the smooth part of the predictions vanishes; their squares sum to 70.
 const FOURTH_DIFFERENCE: [f64; 5] = [1.0, -4.0, 6.0, -4.0, 1.0];
 const SUM_OF_SQUARES: f64 = 70.0;
-/// A scatter below this share of a channel's declared noise is neglected.
+/// A scatter below this share of a channel's noise is neglected.
 const NEGLIGIBLE: f64 = 0.1;
 
 /// The distances of neighbours to be tried, in standard deviations of the prior.
 pub(super) fn spacings() -> impl Iterator<Item = f64> {
-    let shorter = |spacing: &f64| Some(SHORTER * spacing).filter(|s| *s > LEAST_SPACING);
+    let shorter = |spacing: &f64| Some(SHORTER * spacing).filter(|s| *s > MIN_SPACING);
     std::iter::successors(Some(SPACING), shorter)
 }
 
@@ -30,7 +30,7 @@ pub(super) fn positions(fit: &[f64], spacing: f64) -> Vec<Vec<f64>> {
     (0..POINTS).map(moved).collect()
 }
 
-/// Whether the model took enough positions in a row for a difference.
+/// Whether enough neighbouring positions were accepted for a difference.
 pub(super) fn are_enough(answers: &[Option<Vec<f64>>]) -> bool {
     let mut windows = answers.windows(FOURTH_DIFFERENCE.len());
     windows.any(|window| window.iter().all(Option::is_some))
@@ -65,13 +65,13 @@ fn scatter(likelihood: &Likelihood, answers: &[Option<Vec<f64>>]) -> Option<Vec<
     Some(squares.into_iter().map(sd).collect())
 }
 
-/// The [`scatter`] to be counted as noise, 0 where all noise of the channel is inferred, which holds the scatter already. `None` where
-/// all are negligible beside the declared noise.
+/// The [`scatter`] that counts as noise; 0 for a channel whose noise is inferred, because that includes the scatter. `None` if all
+/// are negligible beside the declared noise.
 pub(super) fn sds(likelihood: &Likelihood, answers: &[Option<Vec<f64>>]) -> Option<Vec<f64>> {
     let data = likelihood.data();
     let is_declared = |channel: usize| {
-        let mut own = data.iter().filter(|datum| datum.channel == channel);
-        own.any(|datum| matches!(datum.sd, ErrorSd::Known(_)))
+        let mut data = data.iter().filter(|datum| datum.channel == channel);
+        data.any(|datum| matches!(datum.sd, ErrorSd::Known(_)))
     };
     let sds: Vec<f64> = scatter(likelihood, answers)?
         .into_iter()
@@ -110,7 +110,7 @@ mod tests {
 
     const RUNS: usize = 20;
 
-    /// Two channels; the predictions are a cubic along the line, with scatter of the first channel.
+    /// Two channels. The predictions are a cubic along the line, and those of the first channel scatter.
     fn answers(scatter: f64) -> (Likelihood, Vec<Option<Vec<f64>>>) {
         let datum = |i: usize| Datum {
             run: i / 2,
@@ -141,14 +141,14 @@ mod tests {
     #[test]
     fn the_scatter_about_a_smooth_function_is_found() {
         let (likelihood, mut answers) = answers(0.5);
-        let found = sds(&likelihood, &answers).unwrap();
-        assert!((0.4..0.6).contains(&found[0]), "{found:?}");
-        assert!(found[1] < 1e-9, "{found:?}");
+        let measured = sds(&likelihood, &answers).unwrap();
+        assert!((0.4..0.6).contains(&measured[0]), "{measured:?}");
+        assert!(measured[1] < 1e-9, "{measured:?}");
         assert!(are_enough(&answers));
         // Four differences of five are left.
         answers[0] = None;
-        let found = sds(&likelihood, &answers).unwrap();
-        assert!((0.4..0.6).contains(&found[0]), "{found:?}");
+        let measured = sds(&likelihood, &answers).unwrap();
+        assert!((0.4..0.6).contains(&measured[0]), "{measured:?}");
     }
 
     #[test]
@@ -169,7 +169,7 @@ mod tests {
         }
         let likelihood = Likelihood::new(data).unwrap();
         assert_eq!(sds(&likelihood, &answers), None);
-        // It is there nevertheless.
+        // The scatter itself is still there.
         assert!(!is_negligible(&likelihood, &answers, &[1.0]));
         assert!(is_negligible(&likelihood, &answers, &[10.0]));
     }
@@ -179,7 +179,7 @@ mod tests {
         let (likelihood, answers) = answers(0.0);
         assert_eq!(sds(&likelihood, &answers), None);
         assert!(is_negligible(&likelihood, &answers, &[]));
-        // What was not measured may be rough.
+        // A scatter that was not measured is not negligible.
         assert_eq!(sds(&likelihood, &[]), None);
         assert!(!is_negligible(&likelihood, &[], &[]));
     }

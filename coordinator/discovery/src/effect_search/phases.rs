@@ -1,4 +1,4 @@
-//! From one phase of a search to the next.
+//! The phases of a search for one effect, in their order; the module's page describes them.
 
 use std::collections::BTreeMap;
 
@@ -11,13 +11,13 @@ use crate::laplace::batch::{Asked, FitBatch};
 use crate::laplace::fit::{FitStep, FittedModel, LaplaceFit};
 use crate::laplace::importance::ImportanceSampler;
 use crate::laplace::point::FitPoint;
-use crate::laplace::tightened::tightened;
+use crate::laplace::reduced_discrepancy::reduced_discrepancy;
 use crate::settings::Roughness;
 use inference::InferenceFailure;
 use statistics::likelihood::Likelihood;
 
 impl EffectSearch {
-    /// Asks for the next evaluations of a batch; returns it once it is complete.
+    /// Asks for the next evaluations of a batch; returns the batch once it is complete.
     fn next_round(&mut self, mut batch: FitBatch, phase: fn(FitBatch) -> Phase) -> Option<FitBatch> {
         let asked = batch.ask(&self.likelihood);
         if asked.is_empty() {
@@ -30,42 +30,43 @@ impl EffectSearch {
 
     /// Takes the answers of a round and begins the next.
     pub(super) fn advance(&mut self, answers: Vec<Option<Vec<f64>>>) {
-        match std::mem::replace(&mut self.phase, Phase::Starts) {
-            Phase::Starts => self.after_starts(answers),
+        match std::mem::replace(&mut self.phase, Phase::BaseStarts) {
+            Phase::BaseStarts => self.take_base_starts(answers),
             Phase::Base(mut batch) => {
                 batch.tell(&self.likelihood, answers);
                 self.fit_base(batch);
             }
-            Phase::NumericalNoise(batch, spacing) => self.after_numerical_noise(batch, spacing, &answers),
-            Phase::CompanionScreen => self.after_companion_screen(answers),
-            Phase::Screen(level) => self.after_screen(level, answers),
-            Phase::Tightened(tightened, mut batch) => {
-                batch.tell(&tightened, answers);
-                self.fit_tightened(tightened, batch);
+            Phase::NumericalNoise(batch, spacing) => self.take_noise(batch, spacing, &answers),
+            Phase::LowFidelityScreen => self.take_low_fidelity_screen(answers),
+            Phase::Screen(level) => self.take_screen(level, answers),
+            Phase::ReducedDiscrepancy(likelihood, mut batch) => {
+                batch.tell(&likelihood, answers);
+                self.fit_reduced_discrepancy(likelihood, batch);
             }
             Phase::Extensions(mut batch) => {
                 batch.tell(&self.likelihood, answers);
                 self.fit_extensions(batch);
             }
-            Phase::FurtherExtensions(mut batch) => {
+            Phase::WithinReach(mut batch) => {
                 batch.tell(&self.likelihood, answers);
-                self.fit_further(batch);
+                self.fit_within_reach(batch);
             }
-            Phase::Polish(mut batch) => {
+            Phase::Refinement(mut batch) => {
                 batch.tell(&self.likelihood, answers);
-                self.polish(batch);
+                self.refine(batch);
             }
-            Phase::ConfirmationStarts(candidates) => self.after_confirmation_starts(candidates, answers),
+            Phase::ConfirmationStarts(candidates) => self.take_confirmation_starts(candidates, answers),
             Phase::Confirmation(mut batch) => {
                 batch.tell(&self.likelihood, answers);
                 self.confirm(batch);
             }
-            Phase::Sampling(models, waiting) => self.after_sample(models, &waiting, answers),
+            Phase::Sampling(models, counts) => self.take_sample(models, &counts, answers),
             over @ (Phase::Done(_) | Phase::Failed(_)) => self.phase = over,
         }
     }
 
-    fn after_starts(&mut self, answers: Vec<Option<Vec<f64>>>) {
+    /// Begins fits of the base at the most probable of its starts.
+    fn take_base_starts(&mut self, answers: Vec<Option<Vec<f64>>>) {
         let positions = std::mem::take(&mut self.asked)
             .into_iter()
             .map(|asked| asked.position);
@@ -73,7 +74,7 @@ impl EffectSearch {
         self.evaluations.base += draws;
         let evaluated = positions.zip(answers).collect();
         let plan = if self.measures_noise {
-            self.depth.base
+            self.depth.base.plan
         } else {
             &base::PLAN
         };
@@ -85,6 +86,7 @@ impl EffectSearch {
         }
     }
 
+    /// Continues the fits of the base. Once they are complete the numerical noise is measured, the first time, and the screen begins.
     fn fit_base(&mut self, batch: FitBatch) {
         let Some(batch) = self.next_round(batch, Phase::Base) else {
             return;
@@ -99,28 +101,25 @@ impl EffectSearch {
                 fit,
             })
         });
-        self.begin_screen();
+        self.screen_low_fidelity();
     }
 
     /// Evaluates the base along a line through its best fit.
     fn measure_noise(&mut self, batch: FitBatch, spacing: f64) {
         let Some(best) = batch.best() else { return };
         let asked = numerical_noise::positions(&best.point.position, spacing);
-        self.ask(Asked::all_of_model(None, asked).collect());
+        self.ask(Asked::all_for_model(None, asked).collect());
         self.phase = Phase::NumericalNoise(batch, spacing);
     }
 
-    /// Adds what the predictions scatter to the noise, and fits the base again where that matters.
-    fn after_numerical_noise(&mut self, batch: FitBatch, spacing: f64, answers: &[Option<Vec<f64>>]) {
+    /// Adds the numerical noise to that of the data, and fits the base again where it matters.
+    fn take_noise(&mut self, batch: FitBatch, spacing: f64, answers: &[Option<Vec<f64>>]) {
         self.evaluations.base += answers.len();
-        let shorter = numerical_noise::spacings().find(|other| *other < spacing);
+        let shorter = numerical_noise::spacings().find(|candidate| *candidate < spacing);
         if let Some(shorter) = shorter.filter(|_| !numerical_noise::are_enough(answers)) {
             return self.measure_noise(batch, shorter);
         }
         self.evaluations.base += batch.evaluations();
-        // Fits of which only the best go on have not been made to the end.
-        let is_made = self.depth.most_bases == usize::MAX;
-        let mut plan: &[FitStep] = if is_made { &[] } else { &base::PLAN };
         if self.base_frame.roughness == Roughness::Unknown {
             let mut best = batch.best().into_iter();
             let is_smooth =
@@ -131,7 +130,17 @@ impl EffectSearch {
                 Roughness::Rough
             });
         }
-        let most = self.depth.most_bases;
+        self.continue_base(batch, answers);
+    }
+
+    /// Continues the best fits of the base, with the numerical noise where it is not negligible.
+    ///
+    /// # Arguments
+    /// - `answers`: the predictions along the line of [`measure_noise`](Self::measure_noise).
+    fn continue_base(&mut self, batch: FitBatch, answers: &[Option<Vec<f64>>]) {
+        let max_count = self.depth.base.max_continued;
+        // Fits of which only the best continue were preliminary.
+        let mut plan: &[FitStep] = if max_count == usize::MAX { &[] } else { &base::PLAN };
         if let Some(sds) = numerical_noise::sds(&self.likelihood, answers)
             && let Ok(likelihood) = self.likelihood.with_numerical_noise(&sds)
         {
@@ -139,41 +148,42 @@ impl EffectSearch {
             self.likelihood = likelihood;
             plan = &base::PLAN;
         }
-        let again = batch.fits.into_iter().filter_map(|(_, fit)| {
+        let fits = batch.fits.into_iter().filter_map(|(_, fit)| {
             let FitPoint { position, values, .. } = fit.point;
             let frame = self.base_frame.clone();
             let point = FitPoint::new(&frame, &self.likelihood, position, values)?;
             Some((None, LaplaceFit::new(frame, point, fit.columns, plan)))
         });
-        let mut again: Vec<(Option<usize>, LaplaceFit)> = again.collect();
-        if again.len() > most {
-            again.sort_by(|(_, a), (_, b)| a.point.value.total_cmp(&b.point.value));
-            again.truncate(most);
+        let mut fits: Vec<(Option<usize>, LaplaceFit)> = fits.collect();
+        if fits.len() > max_count {
+            fits.sort_by(|(_, a), (_, b)| a.point.value.total_cmp(&b.point.value));
+            fits.truncate(max_count);
         }
-        self.fit_base(FitBatch::new(again));
+        self.fit_base(FitBatch::new(fits));
     }
 
-    /// Screens candidates by a step of the strength.
-    pub(super) fn screen(&mut self, level: usize, wanted: Vec<usize>) {
+    /// Evaluates candidates at the strengths of a level.
+    pub(super) fn screen(&mut self, level: usize, candidates: Vec<usize>) {
         let Some(base) = &self.base else { return };
         let mut asked = Vec::new();
-        for &k in &wanted {
+        for &k in &candidates {
             let frame = &self.candidates[k].frame;
             let base = &base.fit.point.position;
-            let at = screen::positions(frame, base, self.depth, self.best_shape(k), level);
-            asked.extend(Asked::all_of_model(Some(k), at));
+            let positions = screen::positions(frame, base, &self.depth.screen, self.best_shape(k), level);
+            asked.extend(Asked::all_for_model(Some(k), positions));
         }
         if asked.is_empty() && level + 1 < LEVELS.len() {
-            return self.screen(level + 1, wanted);
+            return self.screen(level + 1, candidates);
         }
         if asked.is_empty() {
-            return self.extend();
+            return self.begin_extensions();
         }
         self.ask(asked);
         self.phase = Phase::Screen(level);
     }
 
-    fn after_screen(&mut self, level: usize, answers: Vec<Option<Vec<f64>>>) {
+    /// Keeps the results of a level; candidates that the model refused at it are screened at the next.
+    fn take_screen(&mut self, level: usize, answers: Vec<Option<Vec<f64>>>) {
         let Some(base) = &self.base else { return };
         self.evaluations.screen += answers.len();
         let mut evaluated: Vec<Vec<Evaluated>> = vec![Vec::new(); self.candidates.len()];
@@ -196,54 +206,57 @@ impl EffectSearch {
         if level + 1 < LEVELS.len() && !refused.is_empty() {
             self.screen(level + 1, refused);
         } else {
-            self.extend();
+            self.begin_extensions();
         }
     }
 
-    fn extend(&mut self) {
-        let best = self.best(self.depth.most_extended).into_iter();
+    /// Fits the best candidates of the screen, each with the base. Those that only the low-fidelity model has screened are screened on
+    /// the model first.
+    fn begin_extensions(&mut self) {
+        let best = self.best(self.depth.extension.max_count).into_iter();
         let (awaiting, candidates): (Vec<usize>, Vec<usize>) = best
             .filter(|k| self.fit_of(*k).is_none())
             .partition(|k| self.awaits_model(*k));
         if !awaiting.is_empty() {
             return self.screen(0, awaiting);
         }
-        // The evaluations of a rough model are too dear for fitting twice.
+        // The evaluations of a rough model are too expensive for fitting twice.
         let is_smooth = self.base_frame.roughness == Roughness::Smooth;
         let base = self.base.as_ref().filter(|_| is_smooth);
-        match base.and_then(|base| tightened(&self.likelihood, &base.fit)) {
-            Some(tightened) => {
-                let fits = self.extensions(candidates, &tightened);
-                self.fit_tightened(tightened, FitBatch::new(fits));
+        match base.and_then(|base| reduced_discrepancy(&self.likelihood, &base.fit)) {
+            Some(reduced) => {
+                let fits = self.extension_fits(candidates, &reduced);
+                self.fit_reduced_discrepancy(reduced, FitBatch::new(fits));
             }
             None => {
-                let fits = self.extensions(candidates, &self.likelihood);
+                let fits = self.extension_fits(candidates, &self.likelihood);
                 self.fit_extensions(FitBatch::new(fits));
             }
         }
     }
 
-    /// Fits with less room for discrepancy, from where the fits with the whole of it begin a second time.
-    fn fit_tightened(&mut self, tightened: Likelihood, mut batch: FitBatch) {
-        let asked = batch.ask(&tightened);
+    /// Fits with a reduced discrepancy; the fits with the whole of it begin at the screen's points and, once more, at these modes.
+    fn fit_reduced_discrepancy(&mut self, reduced: Likelihood, mut batch: FitBatch) {
+        let asked = batch.ask(&reduced);
         if !asked.is_empty() {
             self.ask(asked);
-            self.phase = Phase::Tightened(tightened, batch);
+            self.phase = Phase::ReducedDiscrepancy(reduced, batch);
             return;
         }
         self.evaluations.extension += batch.evaluations();
-        let mut fits = self.extensions(self.best(self.depth.most_extended), &self.likelihood);
+        let best = self.best(self.depth.extension.max_count);
+        let mut fits = self.extension_fits(best, &self.likelihood);
         fits.extend(batch.fits.into_iter().filter_map(|(candidate, fit)| {
             let FitPoint { position, values, .. } = fit.point;
             let point = FitPoint::new(&fit.frame, &self.likelihood, position, values)?;
-            let again = LaplaceFit::new(fit.frame, point, fit.columns, self.depth.extension);
-            Some((candidate, again))
+            let plan = self.depth.extension.plan;
+            Some((candidate, LaplaceFit::new(fit.frame, point, fit.columns, plan)))
         }));
         self.fit_extensions(FitBatch::new(fits));
     }
 
-    /// Fits of candidates, from the screen's results.
-    fn extensions(
+    /// Fits of candidates that begin at the screen's results.
+    fn extension_fits(
         &self,
         candidates: Vec<usize>,
         likelihood: &Likelihood,
@@ -252,12 +265,13 @@ impl EffectSearch {
             let base = &self.base.as_ref()?.fit;
             let state = &self.candidates[k];
             let screened = state.screened.as_ref()?;
-            let fit = extension::fit(&state.frame, base, screened, likelihood, self.depth)?;
+            let fit = extension::fit(&state.frame, base, screened, likelihood, &self.depth.extension)?;
             Some((Some(k), fit))
         });
         fits.collect()
     }
 
+    /// Continues the fits of the best candidates. Once they are complete, candidates within reach of the best are fitted too.
     fn fit_extensions(&mut self, batch: FitBatch) {
         let Some(batch) = self.next_round(batch, Phase::Extensions) else {
             return;
@@ -269,73 +283,78 @@ impl EffectSearch {
         if !awaiting.is_empty() {
             return self.screen(0, awaiting);
         }
-        let further = self.extensions(near, &self.likelihood);
-        self.fit_further(FitBatch::new(further));
+        let fits = self.extension_fits(near, &self.likelihood);
+        self.fit_within_reach(FitBatch::new(fits));
     }
 
-    fn fit_further(&mut self, batch: FitBatch) {
-        let Some(batch) = self.next_round(batch, Phase::FurtherExtensions) else {
+    /// Continues the fits of the candidates within reach; the best of all are refined next.
+    fn fit_within_reach(&mut self, batch: FitBatch) {
+        let Some(batch) = self.next_round(batch, Phase::WithinReach) else {
             return;
         };
         self.evaluations.extension += batch.evaluations();
         self.take(batch, EvidenceMethod::RankOne);
+        let depth = &self.depth.refinement;
         let fits = self
-            .best(self.depth.most_polished)
+            .best(depth.max_count)
             .into_iter()
-            .filter_map(|k| Some((Some(k), self.fit_of(k)?.continued(self.depth.polish))));
+            .filter_map(|k| Some((Some(k), self.fit_of(k)?.continued(depth.plan))));
         let batch = FitBatch::new(fits.collect());
-        self.polish(batch);
+        self.refine(batch);
     }
 
-    fn polish(&mut self, batch: FitBatch) {
-        let Some(batch) = self.next_round(batch, Phase::Polish) else {
+    /// Fits the best candidates again with new derivatives.
+    fn refine(&mut self, batch: FitBatch) {
+        let Some(batch) = self.next_round(batch, Phase::Refinement) else {
             return;
         };
         self.evaluations.polish += batch.evaluations();
         self.take(batch, EvidenceMethod::Polished);
-        if !self.depth.confirms {
+        let Some(confirmation) = self.confirmation() else {
             return self.finish();
-        }
-        let first = self.best(self.confirmation().least);
-        self.confirm_these(first);
+        };
+        let best = self.best(confirmation.min_count);
+        self.begin_confirmation(best);
     }
 
-    fn confirmation(&self) -> &'static Confirmation {
-        if self.is_wrong() {
-            &self.depth.confirmation_if_wrong
+    /// How a candidate is confirmed now; `None` if nothing is confirmed.
+    fn confirmation(&self) -> Option<&'static Confirmation> {
+        let depth = self.depth.confirmation.as_ref()?;
+        Some(if self.is_wrong() {
+            &depth.if_wrong
         } else {
-            &self.depth.confirmation
-        }
+            &depth.usual
+        })
     }
 
-    /// Fits candidates from several starts.
-    pub(super) fn confirm_these(&mut self, candidates: Vec<usize>) {
+    /// Evaluates the starts from which candidates are confirmed.
+    pub(super) fn begin_confirmation(&mut self, candidates: Vec<usize>) {
         let Some(base) = &self.base else { return };
         // A base that contradicts the data may lie at an end of its prior, and is then a poor start.
         let is_wrong = self.is_wrong();
         let mut asked = Vec::new();
         for &k in &candidates {
-            // Of a model that scatters, each fit may stop somewhere else.
+            // With numerical noise each fit may stop at another local maximum.
             if !self.numerical_noise_sds.is_empty() {
                 let in_place = self.in_place_of_best(k);
-                asked.extend(in_place.map(|position| Asked::of_model(Some(k), position)));
+                asked.extend(in_place.map(|position| Asked::for_model(Some(k), position)));
             }
             if self.candidates[k].had_confirmation {
                 continue;
             }
             let frame = &self.candidates[k].frame;
-            asked.extend(Asked::all_of_model(
+            asked.extend(Asked::all_for_model(
                 Some(k),
                 confirmation::starts(frame, &base.fit),
             ));
             if is_wrong {
                 let anywhere = base::starts(frame, confirmation::ANYWHERE);
-                asked.extend(Asked::all_of_model(Some(k), anywhere));
+                asked.extend(Asked::all_for_model(Some(k), anywhere));
             }
             // The base may also improve from the extension's mode: a Bayes factor compares their best fits.
             if let Some(fit) = self.fit_of(k) {
-                let own = fit.point.position[..self.base_frame.dimension()].to_vec();
-                asked.push(Asked::of_model(None, own));
+                let position = fit.point.position[..self.base_frame.dimension()].to_vec();
+                asked.push(Asked::for_model(None, position));
             }
         }
         if asked.is_empty() {
@@ -348,8 +367,11 @@ impl EffectSearch {
         self.phase = Phase::ConfirmationStarts(candidates);
     }
 
-    fn after_confirmation_starts(&mut self, candidates: Vec<usize>, answers: Vec<Option<Vec<f64>>>) {
-        let Some(base) = &self.base else { return };
+    /// Begins fits at the most probable starts, and continues the best fit so far of each candidate.
+    fn take_confirmation_starts(&mut self, candidates: Vec<usize>, answers: Vec<Option<Vec<f64>>>) {
+        let (Some(base), Some(confirmation)) = (&self.base, self.confirmation()) else {
+            return;
+        };
         self.evaluations.confirmation += answers.len();
         let mut points: BTreeMap<Option<usize>, Vec<FitPoint>> = BTreeMap::new();
         for (asked, values) in std::mem::take(&mut self.asked).into_iter().zip(answers) {
@@ -357,17 +379,16 @@ impl EffectSearch {
             let point = values.and_then(|v| FitPoint::new(frame, &self.likelihood, asked.position, v));
             points.entry(asked.candidate).or_default().extend(point);
         }
-        let confirmation = self.confirmation();
         let mut fits = Vec::new();
         for (candidate, mut points) in points {
             points.sort_by(|a, b| a.value.total_cmp(&b.value));
-            points.truncate(confirmation.most_starts);
+            points.truncate(confirmation.max_starts);
             let frame = self.frame(candidate);
-            let known = candidate.map_or(Some(&base.fit), |k| self.fit_of(k));
-            let none = || vec![vec![0.0; base.fit.point.values.len()]; frame.dimension()];
-            let known = known.filter(|_| confirmation.keeps_jacobian);
-            let columns = known.map_or_else(none, |known| known.columns.clone());
-            let corrections = known.map_or(&[][..], |known| &known.corrections);
+            let fitted = candidate.map_or(Some(&base.fit), |k| self.fit_of(k));
+            let zeros = || vec![vec![0.0; base.fit.point.values.len()]; frame.dimension()];
+            let fitted = fitted.filter(|_| confirmation.keeps_jacobian);
+            let columns = fitted.map_or_else(zeros, |fit| fit.columns.clone());
+            let corrections = fitted.map_or(&[][..], |fit| &fit.corrections);
             for point in points {
                 let fit = LaplaceFit::new(frame.clone(), point, columns.clone(), confirmation.plan);
                 fits.push((candidate, fit.corrected(corrections)));
@@ -375,9 +396,9 @@ impl EffectSearch {
         }
         for k in candidates {
             let estimate = self.candidates[k].estimate.as_ref();
-            let known = estimate.and_then(|own| Some((own.method, own.fit.as_ref()?)));
-            fits.extend(known.map(|(method, fit)| match method {
-                // It has had these steps; it is there to be compared with.
+            let fitted = estimate.and_then(|estimate| Some((estimate.method, estimate.fit.as_ref()?)));
+            fits.extend(fitted.map(|(method, fit)| match method {
+                // A confirmed fit takes no further step; the new fits are compared with it.
                 EvidenceMethod::Confirmed | EvidenceMethod::Sampled => (Some(k), fit.continued(&[])),
                 _ => (Some(k), confirmation.continued(fit)),
             }));
@@ -385,6 +406,7 @@ impl EffectSearch {
         self.confirm(FitBatch::new(fits));
     }
 
+    /// Continues the fits of a confirmation. Further candidates follow while any is open; then evidences are sampled.
     fn confirm(&mut self, batch: FitBatch) {
         let Some(batch) = self.next_round(batch, Phase::Confirmation) else {
             return;
@@ -392,46 +414,47 @@ impl EffectSearch {
         self.evaluations.confirmation += batch.evaluations();
         self.take_base(&batch);
         self.take(batch, EvidenceMethod::Confirmed);
-        let more = self.unconfirmed();
-        if !more.is_empty() {
-            return self.confirm_these(more);
+        let open = self.unconfirmed();
+        if !open.is_empty() {
+            return self.begin_confirmation(open);
         }
         let models = self.samplers();
         self.sample(models);
     }
 
+    /// Asks for the next draws of each importance sampler; the search ends once all samplers are done and no other is needed.
     fn sample(&mut self, mut models: Vec<(Option<usize>, ImportanceSampler)>) {
         let mut asked = Vec::new();
-        let mut waiting = Vec::new();
+        let mut counts = Vec::new();
         for (candidate, model) in &mut models {
             let number = candidate.map_or(0, |k| k as u64 + 1);
             let positions = model.ask(self.seed, number);
-            waiting.push(positions.len());
-            asked.extend(Asked::all_of_model(*candidate, positions));
+            counts.push(positions.len());
+            asked.extend(Asked::all_for_model(*candidate, positions));
         }
         if asked.is_empty() {
             self.take_sampled(&models);
             // Another effect may lead now.
-            let more = self.samplers();
-            return if more.is_empty() {
+            let samplers = self.samplers();
+            return if samplers.is_empty() {
                 self.finish()
             } else {
-                self.sample(more)
+                self.sample(samplers)
             };
         }
         self.ask(asked);
-        self.phase = Phase::Sampling(models, waiting);
+        self.phase = Phase::Sampling(models, counts);
     }
 
-    fn after_sample(
+    fn take_sample(
         &mut self,
         mut models: Vec<(Option<usize>, ImportanceSampler)>,
-        waiting: &[usize],
+        counts: &[usize],
         answers: Vec<Option<Vec<f64>>>,
     ) {
         self.evaluations.confirmation += answers.len();
         let mut answers = answers.into_iter();
-        for ((_, model), count) in models.iter_mut().zip(waiting) {
+        for ((_, model), count) in models.iter_mut().zip(counts) {
             if *count > 0 {
                 model.tell(&self.likelihood, answers.by_ref().take(*count).collect());
             }

@@ -12,21 +12,21 @@ pub(crate) struct Projection {
     cholesky: Cholesky<f64, Dyn>,
 }
 
-/// A change of the predictions in the place of another.
+/// The substitution of one effect by another that changes the predictions alike.
 pub(crate) struct Exchange {
-    /// How far it goes, in standard deviations of the strength's prior.
+    /// Step of the new strength, in standard deviations of its prior.
     step: f64,
     /// The step of the base's parameters that absorbs the rest.
-    of_base: Vec<f64>,
+    base_step: Vec<f64>,
 }
 
 impl Exchange {
-    /// The position of a model, where the base's parameters come first, with the exchange made.
+    /// The position of a model, whose first parameters are the base's, after the exchange.
     ///
     /// # Arguments
-    /// - `strength`: the index of the strength that is given, and its neutral value.
+    /// - `strength`: the index and the neutral value of the new strength.
     pub(crate) fn applied_to(&self, mut position: Vec<f64>, strength: (usize, f64)) -> Vec<f64> {
-        for (t, by) in position.iter_mut().zip(&self.of_base) {
+        for (t, by) in position.iter_mut().zip(&self.base_step) {
             *t += by;
         }
         position[strength.0] = strength.1 + self.step;
@@ -49,25 +49,29 @@ impl Projection {
         })
     }
 
-    /// How far a change moves along the columns: whitened inner products.
+    /// Whitened inner products of a change with the base's columns.
     fn along(&self, whitened: &[f64]) -> DVector<f64> {
         let products = self.columns.iter().map(|c| self.whitening.curvature(c, whitened));
         DVector::from_iterator(self.columns.len(), products)
     }
 
-    /// The exchange of a step t of the second change g for one of the first h, of the same class: `s = t (h'P g / |h'P g|)
-    /// (g'P g / h'P h)^(1/2)`, and of the base `(I + J'J)^-1 J'(t g - s h)`. A regression of g on h would make s too short, since
-    /// changes of a model that scatters scatter, too.
+    /// Replaces a step t of the second change g by one of the first change h, of the same class: `s = t (h'P g / |h'P g|) (g'P g /
+    /// h'P h)^(1/2)`, and the base moves by `(I + J'J)^-1 J'(t g - s h)`. A regression of g on h would make s too short, because
+    /// both changes include numerical noise.
     pub(crate) fn exchange(&self, changes: [Vec<f64>; 2], step: f64) -> Exchange {
         let products = self.products(&changes);
         let ratio = (products[(1, 1)] / products[(0, 0)]).sqrt();
-        let own = step * ratio.copysign(products[(0, 1)]);
+        let new_step = step * ratio.copysign(products[(0, 1)]);
         let [to, from] = changes;
-        let rest: Vec<f64> = from.iter().zip(&to).map(|(g, h)| step * g - own * h).collect();
+        let rest: Vec<f64> = from
+            .iter()
+            .zip(&to)
+            .map(|(g, h)| step * g - new_step * h)
+            .collect();
         let along = self.along(&self.whitening.apply(&rest));
         Exchange {
-            step: own,
-            of_base: self.cholesky.solve(&along).iter().copied().collect(),
+            step: new_step,
+            base_step: self.cholesky.solve(&along).iter().copied().collect(),
         }
     }
 

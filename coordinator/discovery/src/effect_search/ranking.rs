@@ -24,55 +24,55 @@ pub struct RankedEffect {
     pub candidate: Option<usize>,
     /// Log evidence over that of the base, with the widened priors of the strengths.
     pub log_bayes_factor: f64,
-    /// The same with their stated priors.
+    /// Log Bayes factor with the stated priors of the strengths.
     pub stated_log_bayes_factor: f64,
-    /// With widened priors, by the screen alone.
+    /// Log Bayes factor of the screen, with widened priors.
     pub screen_log_bayes_factor: f64,
     /// ln p(data | theta) at the most probable parameters.
     pub log_likelihood: f64,
     /// The largest distance of a strength from the middle of its prior, in standard deviations of that prior.
     pub prior_sds: f64,
-    /// How its evidence was computed.
+    /// Method by which the evidence was computed.
     pub method: EvidenceMethod,
-    /// Its posterior probability; in a whole search, with that of the combinations in which it has the highest Bayes factor.
+    /// Posterior probability; in a whole search, with that of the combinations that count for the effect.
     pub probability: f64,
-    /// Effects that the data cannot distinguish share a class; that of the base is 0.
+    /// Number of the class, in which the data cannot distinguish effects; 0 is the base.
     pub class: usize,
     /// Whether its class belongs to the smallest set of classes with 95 % probability.
     pub is_credible: bool,
     /// The most probable parameters, the base's first.
     pub theta: Vec<f64>,
-    /// Predicted values of the data there; of an effect that was only screened, by the linear model about the base's fit.
+    /// Predicted values of the data there; for an effect that was only screened, those of the model linear about the base's fit.
     pub predicted: Vec<f64>,
-    /// Which of them lie at a bound, or at the value at which a one-sided strength is absent.
+    /// Whether each parameter lies at a bound, or at the value at which a one-sided strength is absent.
     pub at_bound: Vec<bool>,
-    /// Evaluations spent on it alone.
+    /// Evaluations spent on this effect alone.
     pub evaluations: usize,
 }
 
 /// Evaluations by purpose.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct EvaluationCounts {
-    /// Fit of the base.
+    /// Evaluations of the base's fits, and of the measurement of its noise.
     pub base: usize,
-    /// Screen.
+    /// Evaluations of the screen.
     pub screen: usize,
-    /// Fits of all extensions.
+    /// Evaluations of all extensions.
     pub extension: usize,
-    /// Polish.
+    /// Evaluations of the refinement.
     pub polish: usize,
-    /// Confirmation.
+    /// Evaluations of the confirmation, importance sampling included.
     pub confirmation: usize,
 }
 
 impl EvaluationCounts {
-    /// Until the effect has a name.
+    /// Evaluations up to the refinement, which names the effect.
     #[must_use]
     pub fn to_name(&self) -> usize {
         self.base + self.screen + self.extension + self.polish
     }
 
-    /// Until the name is confirmed.
+    /// Evaluations up to the confirmation.
     #[must_use]
     pub fn to_confirm(&self) -> usize {
         self.to_name() + self.confirmation
@@ -88,7 +88,7 @@ pub struct EffectRanking {
     pub cannot_exclude: Vec<usize>,
     /// Candidates that the model rejected at every strength, or from all starts of a fit; they have no evidence.
     pub refused: Vec<usize>,
-    /// Evaluations spent.
+    /// Evaluations by purpose.
     pub evaluations: EvaluationCounts,
 }
 
@@ -111,7 +111,7 @@ impl EffectRanking {
         };
         let explanations: Vec<Explanation> = self.effects.iter().map(explanation).collect();
         let probabilities = Probabilities::new(&explanations, outside, misfit);
-        for (effect, &probability) in self.effects.iter_mut().zip(&probabilities.of_each) {
+        for (effect, &probability) in self.effects.iter_mut().zip(&probabilities.explanations) {
             effect.probability = probability;
             effect.is_credible = probabilities.credible.contains(&Some(effect.class));
         }
@@ -120,7 +120,7 @@ impl EffectRanking {
 
     /// Probability of a class.
     #[must_use]
-    pub fn of_class(&self, class: usize) -> f64 {
+    pub fn class_probability(&self, class: usize) -> f64 {
         let members = self.effects.iter().filter(|e| e.class == class);
         members.map(|e| e.probability).sum()
     }

@@ -1,19 +1,19 @@
-//! The models whose evidence is sampled, because Laplace's approximation of it is doubtful.
+//! The models whose evidence is sampled because Laplace's approximation is uncertain.
 
 use crate::effect_search::ranking::EvidenceMethod;
 use crate::effect_search::state::EffectSearch;
 use crate::laplace::fit::LaplaceFit;
 use crate::laplace::importance::ImportanceSampler;
 
-/// Two effects with closer Bayes factors are compared by importance sampling \[nats\].
+/// Two effects whose log Bayes factors differ by less are compared by importance sampling \[nats\].
 const CLOSE: f64 = 3.0;
-/// Least log Bayes factor of the best effect for which importance sampling is worth its evaluations \[nats\].
-const LEAST_CLAIMED: f64 = 1.0;
+/// Importance sampling is worth its evaluations if the log Bayes factor of the best effect is higher \[nats\].
+const MIN_CLAIMED: f64 = 1.0;
 /// Beyond this log Bayes factor the posterior of a strength excludes its absence \[nats\].
 const CERTAINLY_PRESENT: f64 = 10.0;
-/// Most effects that are sampled, which bounds the cost where many lead in turn.
-const MOST_SAMPLED: usize = 3;
-/// A strength within so many standard deviations of its prior from where the effect is absent lies where the prior is not normal.
+/// Maximum number of sampled effects, which bounds the cost if several lead in turn.
+const MAX_SAMPLED: usize = 3;
+/// Within this distance from the absence of the effect, in standard deviations of its prior, the prior of a strength is not normal.
 const NEARLY_ABSENT: f64 = 0.1;
 
 /// One of the best effects.
@@ -24,16 +24,20 @@ struct Best<'a> {
 }
 
 impl EffectSearch {
-    /// Samplers of the base and the best effect, where Laplace's approximation is doubtful: a parameter of either is at a bound, or the
-    /// effect is nearly absent; and of the second effect where it is close and of another class. None of what was sampled before, and none of a
-    /// rough model.
+    /// Samplers of the base and the best effect, if a parameter of either is at a bound or the effect is nearly absent, and of the
+    /// second effect if it is close and of another class. Models that were sampled before are left out. A rough model has none.
     pub(super) fn samplers(&self) -> Vec<(Option<usize>, ImportanceSampler)> {
         let none = Vec::new();
         let (Some(base), Some((first, rest))) = (&self.base, self.fits_of_best()) else {
             return none;
         };
-        let is_in_vain = !self.depth.samples || first.log_bayes_factor < LEAST_CLAIMED;
-        if is_in_vain || self.sampled.len() > MOST_SAMPLED {
+        let samples = self
+            .depth
+            .confirmation
+            .as_ref()
+            .is_some_and(|depth| depth.samples);
+        let is_needless = !samples || first.log_bayes_factor < MIN_CLAIMED;
+        if is_needless || self.sampled.len() > MAX_SAMPLED {
             return none;
         }
         let classes = self.projected().map(|projected| projected.classes);
@@ -51,8 +55,8 @@ impl EffectSearch {
         if second.is_none() && !is_nearly_absent && !is_at_bound(&base.fit) && !is_at_bound(first.fit) {
             return none;
         }
-        let of_base = || Some((None, ImportanceSampler::new(&base.fit, &self.likelihood)?));
-        let of_effect = |best: Best| {
+        let base_sampler = || Some((None, ImportanceSampler::new(&base.fit, &self.likelihood)?));
+        let effect_sampler = |best: Best| {
             let sampler = ImportanceSampler::new(best.fit, &self.likelihood)?;
             let may_be_absent = best.log_bayes_factor < CERTAINLY_PRESENT;
             let sampler = if may_be_absent {
@@ -62,8 +66,8 @@ impl EffectSearch {
             };
             Some((Some(best.candidate), sampler))
         };
-        let effects = std::iter::once(first).chain(second).filter_map(of_effect);
-        of_base()
+        let effects = std::iter::once(first).chain(second).filter_map(effect_sampler);
+        base_sampler()
             .into_iter()
             .chain(effects)
             .filter(|(candidate, _)| !self.sampled.contains_key(candidate))
@@ -83,8 +87,8 @@ impl EffectSearch {
         Some((best.next()?, best.next()))
     }
 
-    /// Takes the evidence of the sampled effects over the sampled base. Other factors keep Laplace's approximation of both, whose errors at
-    /// a common bound cancel.
+    /// Replaces the log Bayes factors of sampled effects by the ratio of sampled evidences. The others keep Laplace's approximation
+    /// on both sides, whose errors at a common bound cancel.
     pub(super) fn take_sampled(&mut self, models: &[(Option<usize>, ImportanceSampler)]) {
         let evidences = models
             .iter()

@@ -1,6 +1,6 @@
 //! The screen: the evidence of every candidate by finite steps from the fitted base.
 
-use crate::effect_search::depth::Depth;
+use crate::effect_search::depth::ScreenDepth;
 use crate::laplace::coordinate::NormalFrame;
 use crate::laplace::correction::{Correction, quotient};
 use crate::laplace::evidence::log_sum_exp;
@@ -10,7 +10,7 @@ use crate::laplace::quadratic::quadratic;
 use crate::laplace::strength_prior::mixed_evidence;
 use statistics::likelihood::Likelihood;
 
-/// Steps of each of several strengths, and the last resort of a single one; each is tried where the model rejects the one before.
+/// Steps of each of several strengths. A single strength uses the last of them only. Each is tried where the model rejects the one before.
 pub(super) const LEVELS: [f64; 4] = [1.0, 0.3, 0.1, 0.03];
 
 /// A position with its predicted values; `None` where the model rejected it.
@@ -19,32 +19,32 @@ pub(super) type Evaluated = (Vec<f64>, Option<Vec<f64>>);
 /// The screen's result for one candidate.
 #[derive(Debug, Clone)]
 pub(super) struct Screened {
-    /// At the best shape and strength. Of several strengths: where they are absent.
+    /// The point at the best shape and strength; with several strengths, the point where all are zero.
     pub(super) point: FitPoint,
-    /// Change of the predictions per unit of the strength's coordinate, at its usual size. Of several strengths: that of the linear
-    /// solution.
+    /// Change of the predictions per unit of the strength's coordinate, over its longest step; with several strengths, the change
+    /// by the linear solution.
     pub(super) change: Vec<f64>,
-    /// Derivatives along the candidate's own coordinates, in the order of the frame; zeros for all others.
+    /// Derivatives along the candidate's own coordinates, in the order of the frame; zeros for the base's coordinates.
     pub(super) columns: Vec<Vec<f64>>,
-    /// The step over which the change of a single strength was taken; 1 of others.
+    /// The step over which the change of a single strength was taken; 1 otherwise.
     pub(super) longest_step: f64,
-    /// By how much those exceed the companion's, as far as that is known: nothing where the companion alone was screened.
+    /// Model derivative minus low-fidelity derivative, by coordinate; `None` where only one of them was evaluated.
     pub(super) corrections: Vec<Option<Correction>>,
-    /// Mean over the shapes of the best among the strengths.
+    /// Log of the mean Bayes factor over the shapes, each at its best strength.
     pub(super) log_bayes_factor: f64,
-    /// That of the best shape.
-    pub(super) of_best_shape: f64,
+    /// Log Bayes factor at the best shape.
+    pub(super) best_shape_log_bayes_factor: f64,
 }
 
-/// The positions to evaluate: every strength at the first shape and the usual strength at the others, a step along each of several
-/// strengths, or the base's fit with a switch turned.
+/// The positions to evaluate: every strength at the first shape and the first strength at the other shapes; a step along each of
+/// several strengths; or, for a switch, the base's fit.
 ///
 /// # Arguments
-/// - `shape`: the only coordinate of the shapes, where the best one is known.
+/// - `shape`: the best coordinate of the shapes, if it is known; no other is evaluated then.
 pub(super) fn positions(
     frame: &NormalFrame,
     base: &[f64],
-    depth: &Depth,
+    depth: &ScreenDepth,
     shape: Option<f64>,
     level: usize,
 ) -> Vec<Vec<f64>> {
@@ -67,7 +67,7 @@ pub(super) fn positions(
         return frame.strengths.iter().map(along).collect();
     };
     let shapes = match &shape {
-        Some(known) => std::slice::from_ref(known),
+        Some(best) => std::slice::from_ref(best),
         None if frame.dimension() > base.len() + 1 => depth.shapes,
         None => &depth.shapes[..1],
     };
@@ -81,8 +81,8 @@ pub(super) fn positions(
     match level {
         0 => {
             let strengths = depth.strengths.iter().map(|&strength| at(shapes[0], strength));
-            let others = shapes[1..].iter().map(|&shape| at(shape, depth.strengths[0]));
-            strengths.chain(others).collect()
+            let shapes = shapes[1..].iter().map(|&shape| at(shape, depth.strengths[0]));
+            strengths.chain(shapes).collect()
         }
         level if level == last => vec![at(shapes[0], LEVELS[last])],
         _ => Vec::new(),
@@ -93,10 +93,10 @@ pub(super) fn positions(
 ///
 /// # Returns
 /// With one strength, the log Bayes factor of the extension linear in it, `s^2 / (2 (I + 1)) - ln(1 + I) / 2` with `I = g' P g` and
-/// `s = g' P r` of the change g and the residuals r, P the projection of
-/// [`Projection`](crate::effect_search::projection::Projection); one-sided strengths truncated. With several, that of the model linear
-/// in all of them. Of a switch, that of the model linear in the base's parameters, with the base's derivatives. `None` if the model
-/// rejected all positions of the first, or one of the others.
+/// `s = g' P r` for the change g and the residuals r, where P is the projection of
+/// [`Projection`](crate::effect_search::projection::Projection); one-sided strengths are truncated. With several strengths, the one
+/// of the model linear in all of them. For a switch, the one of the model linear in the base's parameters, with the base's
+/// derivatives. `None` if the model rejected all positions of a single strength, or one of several.
 pub(super) fn screened(
     frame: &NormalFrame,
     base: &FittedModel,
@@ -104,73 +104,38 @@ pub(super) fn screened(
     evaluated: &[Evaluated],
 ) -> Option<Screened> {
     match frame.strength() {
-        _ if frame.is_switch() => of_switch(frame, base, likelihood, evaluated),
-        Some(strength) => of_one(frame, strength, base, likelihood, evaluated),
-        None => of_several(frame, base, likelihood, evaluated),
+        _ if frame.is_switch() => screen_switch(frame, base, likelihood, evaluated),
+        Some(strength) => screen_one_strength(frame, strength, base, likelihood, evaluated),
+        None => screen_several_strengths(frame, base, likelihood, evaluated),
     }
 }
 
 /// A step of the screen.
 struct Node {
     log_bayes_factor: f64,
-    /// Of the strength.
+    /// Step of the strength from its neutral value.
     step: f64,
     point: FitPoint,
     change: Vec<f64>,
 }
 
-fn of_one(
+fn screen_one_strength(
     frame: &NormalFrame,
-    (strength, neutral): (usize, f64),
+    strength: (usize, f64),
     base: &FittedModel,
     likelihood: &Likelihood,
     evaluated: &[Evaluated],
 ) -> Option<Screened> {
-    let FittedModel {
-        fit: base,
-        log_evidence: base_evidence,
-    } = base;
-    let shapes = || (base.point.position.len()..frame.dimension()).filter(|k| *k != strength);
+    let (k, _) = strength;
+    let fit = &base.fit;
+    let shapes: Vec<usize> = (fit.point.position.len()..frame.dimension())
+        .filter(|shape| *shape != k)
+        .collect();
     let nodes = evaluated.iter().filter_map(|(position, values)| {
         let values = values.clone()?;
-        let step = position[strength] - neutral;
-        let change = quotient(&values, &base.point.values, step);
-        let mut columns = base.columns.clone();
-        columns.resize(frame.dimension(), vec![0.0; values.len()]);
-        columns[strength].clone_from(&change);
-        let absent = frame.without(position);
-        let absent = FitPoint::new(frame, likelihood, absent, base.point.values.clone())?;
-        // The prior of the shape is no part of the evidence at one shape.
-        let mut quadratic = quadratic(frame, likelihood, &absent, &columns);
-        let mut value = absent.value;
-        for k in shapes() {
-            value -= 0.5 * position[k] * position[k];
-            quadratic.gradient[k] = 0.0;
-        }
-        let evidence = mixed_evidence(frame, &absent.position, &quadratic, value, f64::INFINITY)?;
-        let point = FitPoint::new(frame, likelihood, position.clone(), values)?;
-        Some(Node {
-            log_bayes_factor: evidence - base_evidence,
-            step,
-            point,
-            change,
-        })
+        node(frame, strength, base, likelihood, &shapes, position, values)
     });
     let nodes: Vec<Node> = nodes.collect();
-    let highest = |nodes: &mut dyn Iterator<Item = &Node>| {
-        nodes
-            .map(|node| node.log_bayes_factor)
-            .fold(f64::NEG_INFINITY, f64::max)
-    };
-    let is_shape_of =
-        |a: &Node, b: &Node| shapes().all(|k| a.point.position[k].to_bits() == b.point.position[k].to_bits());
-    // Of each shape, its best strength; the first node of a shape stands for it.
-    let first_of_shape = |i: &usize| !nodes[..*i].iter().any(|other| is_shape_of(other, &nodes[*i]));
-    let by_shape: Vec<f64> = (0..nodes.len())
-        .filter(first_of_shape)
-        .map(|i| highest(&mut nodes.iter().filter(|node| is_shape_of(node, &nodes[i]))))
-        .collect();
-    let mean = log_sum_exp(by_shape.iter().copied()) - libm::log(by_shape.len() as f64);
     let best = nodes.iter().reduce(|best, node| {
         if node.log_bayes_factor > best.log_bayes_factor {
             node
@@ -178,57 +143,114 @@ fn of_one(
             best
         }
     })?;
-    let mut columns = vec![vec![0.0; best.point.values.len()]; frame.dimension()];
     let usual = nodes
         .iter()
-        .filter(|node| is_shape_of(node, best))
+        .filter(|node| has_shape_of(node, best, &shapes))
         .reduce(|a, b| if b.step > a.step { b } else { a })?;
-    for k in shapes() {
-        let t = |node: &Node| node.point.position[k];
-        let distance = |node: &Node| (t(node) - t(usual)).abs();
-        // The nearest other shape at the same strength.
-        let other = nodes
-            .iter()
-            .filter(|node| distance(node) > 0.0 && node.step.to_bits() == usual.step.to_bits())
-            .reduce(|a, b| if distance(b) < distance(a) { b } else { a });
-        if let Some(other) = other {
-            let share = best.step / usual.step / (t(other) - t(usual));
-            let pairs = other.point.values.iter().zip(&usual.point.values);
-            columns[k] = pairs.map(|(x, m)| (x - m) * share).collect();
+    let mut columns = vec![vec![0.0; best.point.values.len()]; frame.dimension()];
+    for &shape in &shapes {
+        if let Some(column) = shape_column(shape, best, usual, &nodes) {
+            columns[shape] = column;
         }
     }
-    columns[strength] = slope(best, &nodes, base, is_shape_of);
+    columns[k] = slope(best, &nodes, fit, &shapes);
     Some(Screened {
         corrections: vec![None; columns.len()],
         point: best.point.clone(),
         change: usual.change.clone(),
         longest_step: usual.step,
         columns,
-        log_bayes_factor: mean,
-        of_best_shape: best.log_bayes_factor,
+        log_bayes_factor: mean_over_shapes(&nodes, &shapes),
+        best_shape_log_bayes_factor: best.log_bayes_factor,
     })
 }
 
-/// The derivative along the strength at a node: between the steps below and above it, of which the lowest is that of the base.
-fn slope(
-    node: &Node,
-    nodes: &[Node],
-    base: &LaplaceFit,
-    is_shape_of: impl Fn(&Node, &Node) -> bool,
-) -> Vec<f64> {
-    let same = || nodes.iter().filter(|other| is_shape_of(other, node));
-    let below = same()
-        .filter(|other| other.step < node.step)
+/// The step to an evaluated position, with the log Bayes factor of the model linear in the strength.
+fn node(
+    frame: &NormalFrame,
+    (strength, neutral): (usize, f64),
+    base: &FittedModel,
+    likelihood: &Likelihood,
+    shapes: &[usize],
+    position: &[f64],
+    values: Vec<f64>,
+) -> Option<Node> {
+    let fit = &base.fit;
+    let step = position[strength] - neutral;
+    let change = quotient(&values, &fit.point.values, step);
+    let mut columns = fit.columns.clone();
+    columns.resize(frame.dimension(), vec![0.0; values.len()]);
+    columns[strength].clone_from(&change);
+    let absent = frame.without(position);
+    let absent = FitPoint::new(frame, likelihood, absent, fit.point.values.clone())?;
+    // The prior of the shape is no part of the evidence at one shape.
+    let mut quadratic = quadratic(frame, likelihood, &absent, &columns);
+    let mut value = absent.value;
+    for &k in shapes {
+        value -= 0.5 * position[k] * position[k];
+        quadratic.gradient[k] = 0.0;
+    }
+    let evidence = mixed_evidence(frame, &absent.position, &quadratic, value, f64::INFINITY)?;
+    Some(Node {
+        log_bayes_factor: evidence - base.log_evidence,
+        step,
+        point: FitPoint::new(frame, likelihood, position.to_vec(), values)?,
+        change,
+    })
+}
+
+fn has_shape_of(a: &Node, b: &Node, shapes: &[usize]) -> bool {
+    let coordinate = |node: &Node, k: usize| node.point.position[k].to_bits();
+    shapes.iter().all(|&k| coordinate(a, k) == coordinate(b, k))
+}
+
+/// Log of the mean Bayes factor over the shapes, each at its best strength.
+fn mean_over_shapes(nodes: &[Node], shapes: &[usize]) -> f64 {
+    let highest = |i: usize| {
+        nodes
+            .iter()
+            .filter(|node| has_shape_of(node, &nodes[i], shapes))
+            .map(|node| node.log_bayes_factor)
+            .fold(f64::NEG_INFINITY, f64::max)
+    };
+    // The first node of a shape represents it.
+    let is_first = |i: &usize| {
+        !nodes[..*i]
+            .iter()
+            .any(|earlier| has_shape_of(earlier, &nodes[*i], shapes))
+    };
+    let by_shape: Vec<f64> = (0..nodes.len()).filter(is_first).map(highest).collect();
+    log_sum_exp(by_shape.iter().copied()) - libm::log(by_shape.len() as f64)
+}
+
+/// The derivative along a shape at the best node, from the nearest other shape at the usual strength; `None` without one.
+fn shape_column(shape: usize, best: &Node, usual: &Node, nodes: &[Node]) -> Option<Vec<f64>> {
+    let t = |node: &Node| node.point.position[shape];
+    let distance = |node: &Node| (t(node) - t(usual)).abs();
+    let nearest = nodes
+        .iter()
+        .filter(|node| distance(node) > 0.0 && node.step.to_bits() == usual.step.to_bits())
+        .reduce(|a, b| if distance(b) < distance(a) { b } else { a })?;
+    let share = best.step / usual.step / (t(nearest) - t(usual));
+    let pairs = nearest.point.values.iter().zip(&usual.point.values);
+    Some(pairs.map(|(x, m)| (x - m) * share).collect())
+}
+
+/// The derivative along the strength at a node, between the neighbouring steps; the base is the step of length zero.
+fn slope(node: &Node, nodes: &[Node], base: &LaplaceFit, shapes: &[usize]) -> Vec<f64> {
+    let same_shape = || nodes.iter().filter(|a| has_shape_of(a, node, shapes));
+    let below = same_shape()
+        .filter(|a| a.step < node.step)
         .reduce(|a, b| if b.step > a.step { b } else { a });
-    let above = same()
-        .filter(|other| other.step > node.step)
+    let above = same_shape()
+        .filter(|a| a.step > node.step)
         .reduce(|a, b| if b.step < a.step { b } else { a });
     let (low, from) = below.map_or((0.0, &base.point.values), |node| (node.step, &node.point.values));
     let to = above.unwrap_or(node);
     quotient(&to.point.values, from, to.step - low)
 }
 
-fn of_switch(
+fn screen_switch(
     frame: &NormalFrame,
     base: &FittedModel,
     likelihood: &Likelihood,
@@ -245,13 +267,13 @@ fn of_switch(
         columns: fit.columns.clone(),
         corrections: vec![None; fit.columns.len()],
         log_bayes_factor: evidence - base.log_evidence,
-        of_best_shape: evidence - base.log_evidence,
+        best_shape_log_bayes_factor: evidence - base.log_evidence,
         point,
     })
 }
 
-/// The log Bayes factor is `g' H^-1 g / 2 - ln det(H) / 2` less that of the base.
-fn of_several(
+/// The log Bayes factor is `g' H^-1 g / 2 - ln det(H) / 2` less the log evidence of the base.
+fn screen_several_strengths(
     frame: &NormalFrame,
     base: &FittedModel,
     likelihood: &Likelihood,
@@ -268,9 +290,9 @@ fn of_several(
     let quadratic = quadratic(frame, likelihood, &absent, &columns);
     let evidence = mixed_evidence(frame, &absent.position, &quadratic, absent.value, f64::INFINITY)?;
     let solution = quadratic.step(0.0)?;
-    let own = || frame.strengths.iter().map(|(k, _)| *k);
+    let strengths = || frame.strengths.iter().map(|(k, _)| *k);
     let change = (0..absent.values.len())
-        .map(|i| own().map(|k| solution[k] * columns[k][i]).sum())
+        .map(|i| strengths().map(|k| solution[k] * columns[k][i]).sum())
         .collect();
     for column in &mut columns[..fit.columns.len()] {
         column.fill(0.0);
@@ -282,6 +304,6 @@ fn of_several(
         corrections: vec![None; columns.len()],
         columns,
         log_bayes_factor: evidence - base.log_evidence,
-        of_best_shape: evidence - base.log_evidence,
+        best_shape_log_bayes_factor: evidence - base.log_evidence,
     })
 }

@@ -18,7 +18,7 @@ use statistics::prior::Prior;
 pub struct EffectRequest {
     /// The candidate that is switched on; `None`: the base model.
     pub candidate: Option<usize>,
-    /// Of the model's companion.
+    /// Whether the low-fidelity model is asked, in place of the model.
     pub is_companion: bool,
     /// The base's parameters, then the candidate's.
     pub theta: Vec<f64>,
@@ -28,10 +28,10 @@ impl EffectSearch {
     /// A search whose first round holds the starts of the base's fit.
     ///
     /// # Arguments
-    /// - `prior`: of the base's parameters; inferred noise sds are among them. `likelihood`: the data.
+    /// - `prior`: the prior of the base's parameters, which include inferred noise sds. `likelihood`: the data.
     ///
     /// # Errors
-    /// [`CandidateError`].
+    /// [`CandidateError`] if the base has no parameter or a candidate is ill-defined.
     pub fn new(
         prior: &Prior,
         likelihood: Likelihood,
@@ -42,15 +42,15 @@ impl EffectSearch {
             return Err(CandidateError::NoBase);
         }
         candidates.iter().try_for_each(Candidate::check)?;
-        let frame = NormalFrame::base(prior, settings.roughness).beside(settings.has_companion);
+        let frame = NormalFrame::base(prior, settings.roughness).with_low_fidelity(settings.has_companion);
         let positions = match &settings.starts {
             Starts::Draws(draws) => draws.iter().map(|theta| frame.position(theta)).collect(),
             Starts::Even(count) => base::starts(&frame, *count),
         };
         let mut search = Self::unasked(frame, likelihood, candidates, settings.seed);
         search.measures_noise = settings.has_numerical_noise;
-        search.depth = Depth::of(settings.roughness);
-        search.ask(Asked::all_of_model(None, positions).collect());
+        search.depth = Depth::for_roughness(settings.roughness);
+        search.ask(Asked::all_for_model(None, positions).collect());
         Ok(search)
     }
 
@@ -65,7 +65,7 @@ impl EffectSearch {
         let mut search = Self::unasked(base.fit.frame.clone(), likelihood, candidates, seed);
         search.depth = depth;
         search.base = Some(base);
-        search.begin_screen();
+        search.screen_low_fidelity();
         search
     }
 
@@ -77,7 +77,7 @@ impl EffectSearch {
         seed: u64,
     ) -> Self {
         let mut search = Self::unasked(frame, likelihood, &[], seed);
-        search.ask(Asked::all_of_model(None, starts).collect());
+        search.ask(Asked::all_for_model(None, starts).collect());
         search
     }
 
@@ -86,7 +86,7 @@ impl EffectSearch {
         let pairs = self.asked.iter().zip(self.round.pending());
         pairs.map(|(asked, proposal)| EffectRequest {
             candidate: asked.candidate,
-            is_companion: asked.is_companion,
+            is_companion: asked.is_low_fidelity,
             theta: proposal.theta.clone(),
         })
     }
@@ -97,7 +97,8 @@ impl EffectSearch {
     /// - `values`: as [`Likelihood::log_likelihood`] takes them; `None` where the model rejected the parameters.
     ///
     /// # Errors
-    /// [`TellError`]: told before, never asked for, or not as many finite values as the likelihood takes. Nothing is changed then.
+    /// [`TellError`] for an answer that was told before or never asked for, or with a wrong number of values or infinite ones. The
+    /// search is unchanged then.
     pub fn tell(&mut self, index: usize, values: Option<&[f64]>) -> Result<TellProgress, TellError> {
         if let Some(values) = values {
             let (expected, given) = (self.likelihood.values(), values.len());

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use crate::chi_square::FitChiSquare;
-use crate::effect_search::class::{classes, shortfall};
+use crate::effect_search::class::{classes, log_bayes_factor_deficit};
 use crate::effect_search::confirmation;
 use crate::effect_search::extension;
 use crate::effect_search::projection::Projection;
@@ -16,12 +16,12 @@ use crate::laplace::point::FitPoint;
 use crate::probability::DETECTED;
 use crate::settings::Roughness;
 
-/// A change of the predictions shorter than this many standard deviations, after projection, cannot be seen.
-const LEAST_SEEN: f64 = 2.0;
-/// A fit that is not confirmed counts at most so much less than the screen promises \[nats\].
-const MOST_SHORT: f64 = 3.0;
+/// A projected change of the predictions shorter than this many noise standard deviations is invisible.
+const MIN_VISIBLE: f64 = 2.0;
+/// A fit that is not confirmed counts at most this much less than the screen's log Bayes factor \[nats\].
+const MAX_DEFICIT: f64 = 3.0;
 
-/// The effects after projection out of what the base absorbs, by candidate.
+/// The changes of the candidates after projection out of those that the base absorbs.
 pub(super) struct Projected {
     /// Length of the change by one prior standard deviation of the strength, in standard deviations of the noise.
     lengths: BTreeMap<usize, f64>,
@@ -37,7 +37,7 @@ impl EffectSearch {
             let Some(k) = candidate else { continue };
             let better = best[k]
                 .as_ref()
-                .is_none_or(|other| fit.point.value < other.point.value);
+                .is_none_or(|best| fit.point.value < best.point.value);
             if better {
                 best[k] = Some(fit);
             }
@@ -60,19 +60,19 @@ impl EffectSearch {
     /// Whether the best fit so far contradicts the data.
     pub(super) fn is_wrong(&self) -> bool {
         let best = self.best(1).into_iter().find_map(|k| self.fit_of(k));
-        // A rough model is confirmed thoroughly only here, so a discrepancy, which takes up any misfit, does not count.
-        let of = match self.base_frame.roughness {
-            Roughness::Smooth => FitChiSquare::of,
-            Roughness::Rough | Roughness::Unknown => FitChiSquare::of_known_noise,
+        // For a rough model the result decides how thoroughly it is confirmed; a discrepancy, which takes up any misfit, must not count.
+        let chi_square_of = match self.base_frame.roughness {
+            Roughness::Smooth => FitChiSquare::of_fit,
+            Roughness::Rough | Roughness::Unknown => FitChiSquare::of_declared_noise,
         };
-        let chi_square = best.and_then(|fit| of(fit, &self.likelihood));
+        let chi_square = best.and_then(|fit| chi_square_of(fit, &self.likelihood));
         chi_square.is_some_and(|chi| chi.is_wrong())
     }
 
     /// Replaces the base's fit by a more probable one, and corrects all Bayes factors.
     pub(super) fn take_base(&mut self, batch: &FitBatch) {
-        let of_base = batch.fits.iter().filter(|(candidate, _)| candidate.is_none());
-        let best = of_base
+        let fits = batch.fits.iter().filter(|(candidate, _)| candidate.is_none());
+        let best = fits
             .map(|(_, fit)| fit)
             .reduce(|a, b| if b.point.value < a.point.value { b } else { a });
         let (Some(fit), Some(base)) = (best, &mut self.base) else {
@@ -105,18 +105,18 @@ impl EffectSearch {
         self.promises().into_iter().take(count).map(|(k, _)| k).collect()
     }
 
-    /// Candidates that were only screened, with a promise that the best fit does not put out of reach.
+    /// Candidates that were only screened and whose promise is not far below the best fit.
     pub(super) fn within_reach(&self) -> Vec<usize> {
         let is_fitted = |k: usize| self.fit_of(k).is_some();
-        let of = |k: usize| {
+        let log_bayes_factor = |k: usize| {
             self.candidates[k]
                 .estimate
                 .as_ref()
-                .map(|own| own.log_bayes_factor)
+                .map(|estimate| estimate.log_bayes_factor)
         };
         let fitted = (0..self.candidates.len()).filter(|k| is_fitted(*k));
-        let best = fitted.filter_map(of).fold(0.0, f64::max);
-        let Some(share) = self.depth.reach else {
+        let best = fitted.filter_map(log_bayes_factor).fold(0.0, f64::max);
+        let Some(share) = self.depth.extension.reach else {
             return Vec::new();
         };
         let promises = self.promises().into_iter();
@@ -124,29 +124,29 @@ impl EffectSearch {
         near.map(|(k, _)| k).collect()
     }
 
-    /// Candidates that are to be confirmed next: those near the best that are not confirmed yet; once there are none, of a
-    /// model with numerical noise those whose fits got stuck, once only, and those of the best one's class that fall short of it.
+    /// Candidates to confirm next: those near the best that are not confirmed. Once there are none and the model has numerical
+    /// noise: those whose fits got stuck (once), then members of the best candidate's class that fall short of it.
     pub(super) fn unconfirmed(&mut self) -> Vec<usize> {
         let promises = self.promises();
-        let Some(&(_, best)) = promises.first() else {
+        let (Some(&(_, best)), Some(depth)) = (promises.first(), &self.depth.confirmation) else {
             return Vec::new();
         };
-        // What the model refused from all starts, or has no evidence, would be open for ever.
-        let open = |k: usize| {
+        // A candidate that the model refused from all starts, or that has no evidence, would stay unconfirmed for ever.
+        let unconfirmed = |k: usize| {
             let state = &self.candidates[k];
             state.estimate.as_ref().filter(|_| !state.had_confirmation)
         };
         let is_stuck = |k: usize, promise: f64| {
-            open(k).is_some_and(|estimate| estimate.log_bayes_factor < promise - MOST_SHORT)
+            unconfirmed(k).is_some_and(|estimate| estimate.log_bayes_factor < promise - MAX_DEFICIT)
         };
-        let first = |wanted: &dyn Fn(usize, f64) -> bool, least: f64| -> Vec<usize> {
-            let above = promises.iter().filter(|(_, promise)| *promise > least);
-            let wanted = above.filter(|(k, promise)| wanted(*k, *promise));
-            wanted.map(|(k, _)| *k).take(confirmation::COUNT).collect()
+        let first = |accepts: &dyn Fn(usize, f64) -> bool, min_promise: f64| -> Vec<usize> {
+            let above = promises.iter().filter(|(_, promise)| *promise > min_promise);
+            let accepted = above.filter(|(k, promise)| accepts(*k, *promise));
+            accepted.map(|(k, _)| *k).take(confirmation::COUNT).collect()
         };
-        let near = (best - self.depth.within).max(confirmation::LEAST_PROMISE);
-        let next = first(&|k, _| open(k).is_some(), near);
-        // Where the model scatters, fits get stuck more often than elsewhere.
+        let near = (best - depth.within).max(confirmation::MIN_PROMISE);
+        let next = first(&|k, _| unconfirmed(k).is_some(), near);
+        // With numerical noise fits get stuck more often.
         if !next.is_empty() || self.numerical_noise_sds.is_empty() {
             return next;
         }
@@ -158,49 +158,50 @@ impl EffectSearch {
         if !stuck.is_empty() {
             return stuck;
         }
-        self.alike()
+        self.same_class()
     }
 
-    /// Candidates of the best one's class that fall short of it, the best first, once for each best one of the first few: what changes the
-    /// predictions alike fits alike, unless its fit got stuck.
-    fn alike(&mut self) -> Vec<usize> {
+    /// Members of the best candidate's class that fall short of it, once for each of the first few best candidates. Effects that
+    /// change the predictions alike fit alike, unless a fit got stuck.
+    fn same_class(&mut self) -> Vec<usize> {
         let promises = self.promises();
         let Some(&(best, nats)) = promises.first() else {
             return Vec::new();
         };
-        let had_turn = self.had_alike.len() >= confirmation::COUNT || self.had_alike.contains(&best);
+        let had_turn = self.compared_best.len() >= confirmation::COUNT || self.compared_best.contains(&best);
         if had_turn || nats <= DETECTED {
             return Vec::new();
         }
-        self.had_alike.push(best);
-        let least = nats - shortfall(nats);
-        let short = promises.into_iter().filter(|(_, own)| *own < least);
+        self.compared_best.push(best);
+        let expected = nats - log_bayes_factor_deficit(nats);
+        let short = promises.into_iter().filter(|(_, promise)| *promise < expected);
         let short = short.filter(|(k, _)| self.fit_of(*k).is_some() && self.in_place_of_best(*k).is_some());
         short.map(|(k, _)| k).take(confirmation::COUNT).collect()
     }
 
-    /// A start of a member of the best candidate's class that predicts as the best fit does: at the strength that changes the predictions
-    /// alike, with the base's parameters moved to absorb the rest. `None` of the best itself, of others, of what has not one strength,
-    /// and beyond the limits.
+    /// A start for a member of the best candidate's class that predicts as the best fit does: the strength gives an equal change, and the
+    /// base's parameters absorb the rest. `None` for the best itself, for other classes, without a single strength, and beyond the limits.
     pub(super) fn in_place_of_best(&self, candidate: usize) -> Option<Vec<f64>> {
         let best = self.best(1).pop().filter(|best| *best != candidate)?;
         let projected = self.projected()?;
-        let of_best = projected.classes.get(&best)?;
-        projected.classes.get(&candidate).filter(|own| *own == of_best)?;
+        let class = |k: usize| projected.classes.get(&k);
+        if class(candidate)? != class(best)? {
+            return None;
+        }
         let fit = self.fit_of(best)?;
-        let (of_best, absent) = fit.frame.strength()?;
+        let (strength_of_best, absent) = fit.frame.strength()?;
         let frame = &self.candidates[candidate].frame;
-        let given = frame.strength()?;
+        let strength = frame.strength()?;
         let screened = self.candidates[candidate].screened.as_ref()?;
-        let of_others = self.candidates[best].screened.as_ref()?.change.clone();
+        let change_of_best = self.candidates[best].screened.as_ref()?.change.clone();
         let projection = Projection::new(&self.base.as_ref()?.fit, &self.likelihood)?;
-        let step = fit.point.position[of_best] - absent;
-        let exchange = projection.exchange([screened.change.clone(), of_others], step);
-        // The change is that of the screen's shape.
+        let step = fit.point.position[strength_of_best] - absent;
+        let exchange = projection.exchange([screened.change.clone(), change_of_best], step);
+        // The change was computed at the screen's shape.
         let mut position = screened.point.position.clone();
         let base = self.base_frame.dimension();
         position[..base].copy_from_slice(&fit.point.position[..base]);
-        let position = exchange.applied_to(position, given);
+        let position = exchange.applied_to(position, strength);
         frame.holds(&position).then_some(position)
     }
 
@@ -212,8 +213,8 @@ impl EffectSearch {
             .filter_map(|(k, state)| {
                 let estimate = state.estimate.as_ref()?;
                 let screened = state.screened.as_ref().map(|s| s.log_bayes_factor);
-                // What the companion alone promised has no say once the model is fitted.
-                let is_of_model = state.by_companion.is_none() || state.is_screened_on_model;
+                // A promise of the low-fidelity model alone does not count once the model is fitted.
+                let is_of_model = state.low_fidelity.is_none() || state.is_screened_on_model;
                 let counts = estimate.method < EvidenceMethod::Confirmed && is_of_model;
                 let screened = screened.filter(|_| counts);
                 let highest = estimate
@@ -228,14 +229,14 @@ impl EffectSearch {
 
     pub(super) fn projected(&self) -> Option<Projected> {
         let states = self.candidates.iter().enumerate();
-        let (taken, changes): (Vec<usize>, Vec<Vec<f64>>) = states
+        let (indices, changes): (Vec<usize>, Vec<Vec<f64>>) = states
             .filter_map(|(k, state)| Some((k, state.screened.as_ref()?.change.clone())))
             .unzip();
         let products = Projection::new(&self.base.as_ref()?.fit, &self.likelihood)?.products(&changes);
-        let lengths = (0..taken.len()).map(|i| products[(i, i)].max(0.0).sqrt());
+        let lengths = (0..indices.len()).map(|i| products[(i, i)].max(0.0).sqrt());
         Some(Projected {
-            lengths: taken.iter().copied().zip(lengths).collect(),
-            classes: taken.iter().copied().zip(classes(&products)).collect(),
+            lengths: indices.iter().copied().zip(lengths).collect(),
+            classes: indices.iter().copied().zip(classes(&products)).collect(),
         })
     }
 
@@ -244,8 +245,27 @@ impl EffectSearch {
         let (Some(base), Some(projected)) = (&self.base, self.projected()) else {
             return;
         };
-        let likelihood = &self.likelihood;
-        let ranked = |candidate, frame: &NormalFrame, point: &FitPoint| RankedEffect {
+        let mut effects = vec![self.ranked(None, &self.base_frame, &base.fit.point)];
+        let classes = projected.classes.iter();
+        effects.extend(classes.filter_map(|(&k, class)| self.ranked_candidate(k, *class, &base.fit)));
+        let unseen = projected
+            .lengths
+            .iter()
+            .filter(|(_, length)| **length < MIN_VISIBLE);
+        let refused = (0..self.candidates.len()).filter(|k| self.candidates[*k].is_refused());
+        let mut ranking = EffectRanking {
+            effects,
+            cannot_exclude: unseen.map(|(k, _)| *k).collect(),
+            refused: refused.collect(),
+            evaluations: self.evaluations,
+        };
+        ranking.weigh(|_| Vec::new(), None, 1.0);
+        self.phase = Phase::Done(Box::new(ranking));
+    }
+
+    /// The entry of a model in the ranking, without evidence and probability.
+    fn ranked(&self, candidate: Option<usize>, frame: &NormalFrame, point: &FitPoint) -> RankedEffect {
+        RankedEffect {
             candidate,
             log_bayes_factor: 0.0,
             stated_log_bayes_factor: 0.0,
@@ -260,50 +280,37 @@ impl EffectSearch {
             predicted: point.values.clone(),
             at_bound: frame.at_bound(&point.position),
             evaluations: self.evaluations.base,
-        };
-        let mut effects = vec![ranked(None, &self.base_frame, &base.fit.point)];
-        for (&k, class) in &projected.classes {
-            let state = &self.candidates[k];
-            let (Some(estimate), Some(screened)) = (&state.estimate, &state.screened) else {
-                continue;
-            };
-            if state.is_refused() {
-                continue;
-            }
-            let point = estimate.fit.as_ref().map_or(&screened.point, |fit| &fit.point);
-            // A fit that falls far short of the screen's promise, and that is not confirmed, may be stuck.
-            let least = if self.depth.confirms && estimate.method < EvidenceMethod::Confirmed {
-                screened.log_bayes_factor - MOST_SHORT
-            } else {
-                f64::NEG_INFINITY
-            };
-            let of_fit = estimate.fit.as_ref().map(|fit| fit.point.values.clone());
-            let of_screen =
-                || extension::linearised(&state.frame, &base.fit, screened, likelihood, self.depth);
-            effects.push(RankedEffect {
-                predicted: of_fit.or_else(of_screen).unwrap_or_default(),
-                log_bayes_factor: estimate.log_bayes_factor.max(least),
-                stated_log_bayes_factor: estimate.stated_log_bayes_factor.max(least),
-                screen_log_bayes_factor: screened.log_bayes_factor,
-                method: estimate.method,
-                class: class + 1,
-                evaluations: state.evaluations,
-                ..ranked(Some(k), &state.frame, point)
-            });
         }
-        let unseen = projected
-            .lengths
-            .iter()
-            .filter(|(_, length)| **length < LEAST_SEEN);
-        let refused = (0..self.candidates.len()).filter(|k| self.candidates[*k].is_refused());
-        let mut ranking = EffectRanking {
-            effects,
-            cannot_exclude: unseen.map(|(k, _)| *k).collect(),
-            refused: refused.collect(),
-            evaluations: self.evaluations,
+    }
+
+    /// The entry of a candidate with its evidence; `None` if the model refused it.
+    fn ranked_candidate(&self, k: usize, class: usize, base: &LaplaceFit) -> Option<RankedEffect> {
+        let state = &self.candidates[k];
+        let (estimate, screened) = (state.estimate.as_ref()?, state.screened.as_ref()?);
+        if state.is_refused() {
+            return None;
+        }
+        let fitted = estimate.fit.as_ref().map(|fit| &fit.point);
+        // A fit that falls far short of the screen's promise, and that is not confirmed, may be stuck.
+        let min_factor = if self.depth.confirmation.is_some() && estimate.method < EvidenceMethod::Confirmed {
+            screened.log_bayes_factor - MAX_DEFICIT
+        } else {
+            f64::NEG_INFINITY
         };
-        ranking.weigh(|_| Vec::new(), None, 1.0);
-        self.phase = Phase::Done(Box::new(ranking));
+        let predicted = fitted.map(|point| point.values.clone()).or_else(|| {
+            let depth = &self.depth.extension;
+            extension::linearised(&state.frame, base, screened, &self.likelihood, depth)
+        });
+        Some(RankedEffect {
+            predicted: predicted.unwrap_or_default(),
+            log_bayes_factor: estimate.log_bayes_factor.max(min_factor),
+            stated_log_bayes_factor: estimate.stated_log_bayes_factor.max(min_factor),
+            screen_log_bayes_factor: screened.log_bayes_factor,
+            method: estimate.method,
+            class: class + 1,
+            evaluations: state.evaluations,
+            ..self.ranked(Some(k), &state.frame, fitted.unwrap_or(&screened.point))
+        })
     }
 }
 
@@ -317,16 +324,16 @@ mod tests {
 
     const DATA: usize = 12;
 
-    /// A line, and the same square on two scales, once with some of the line.
+    /// Predictions of a line and of two effects: a square, and twice the square with a part of the line.
     fn predicted(theta: &[f64], effect: Option<usize>) -> Vec<f64> {
         let at = |i: usize| {
             let x = i as f64 / 6.0 - 1.0;
-            let own = match effect {
+            let change = match effect {
                 None => 0.0,
                 Some(0) => theta[2] * x * x,
                 Some(_) => theta[2] * (2.0 * x * x - 0.5 * x),
             };
-            theta[0] + theta[1] * x + own
+            theta[0] + theta[1] * x + change
         };
         (0..DATA).map(at).collect()
     }
@@ -369,11 +376,11 @@ mod tests {
     fn a_start_in_place_of_the_best_predicts_as_the_best_does() {
         let search = searched();
         let best = search.best(1)[0];
-        let other = 1 - best;
-        let start = search.in_place_of_best(other).unwrap();
-        let theta = search.candidates[other].frame.theta(&start);
+        let rival = 1 - best;
+        let start = search.in_place_of_best(rival).unwrap();
+        let theta = search.candidates[rival].frame.theta(&start);
         let expected = &search.fit_of(best).unwrap().point.values;
-        for (value, expected) in predicted(&theta, Some(other)).iter().zip(expected) {
+        for (value, expected) in predicted(&theta, Some(rival)).iter().zip(expected) {
             assert!((value - expected).abs() < 0.01, "{value} {expected}");
         }
         assert_eq!(search.in_place_of_best(best), None);
@@ -387,7 +394,7 @@ mod tests {
         state.had_confirmation = false;
         let estimate = state.estimate.as_mut().unwrap();
         (estimate.method, estimate.fit) = (EvidenceMethod::Screen, None);
-        search.confirm_these(vec![refused]);
+        search.begin_confirmation(vec![refused]);
         for _ in 0..20 {
             let pending: Vec<_> = search.pending().collect();
             for (index, request) in pending.iter().enumerate() {
@@ -405,17 +412,17 @@ mod tests {
     fn what_changes_alike_and_falls_short_is_confirmed_once_for_each_best() {
         let mut search = searched();
         let best = search.best(1)[0];
-        let own = search.candidates[best]
+        let factor = search.candidates[best]
             .estimate
             .as_ref()
             .unwrap()
             .log_bayes_factor;
-        assert_eq!(search.alike(), []);
-        search.had_alike.clear();
-        let other = &mut search.candidates[1 - best];
-        other.screened.as_mut().unwrap().log_bayes_factor = own / 2.0;
-        other.estimate.as_mut().unwrap().log_bayes_factor = own / 2.0;
-        assert_eq!(search.alike(), [1 - best]);
-        assert_eq!(search.alike(), []);
+        assert_eq!(search.same_class(), []);
+        search.compared_best.clear();
+        let rival = &mut search.candidates[1 - best];
+        rival.screened.as_mut().unwrap().log_bayes_factor = factor / 2.0;
+        rival.estimate.as_mut().unwrap().log_bayes_factor = factor / 2.0;
+        assert_eq!(search.same_class(), [1 - best]);
+        assert_eq!(search.same_class(), []);
     }
 }

@@ -33,27 +33,27 @@ pub struct EffectSearch {
     pub(super) measures_noise: bool,
     /// Numerical noise sd of each channel, in its unit; empty where it is negligible.
     pub(crate) numerical_noise_sds: Vec<f64>,
-    /// Whether fits that got stuck were confirmed.
+    /// Whether fits that got stuck have been confirmed.
     pub(super) has_confirmed_stuck: bool,
-    /// The best ones so far of whose class those were that fall short.
-    pub(super) had_alike: Vec<usize>,
-    /// Log evidence of the models that were sampled, the base among them; `None` where the sampling failed.
+    /// The candidates that were the best when members of their class were confirmed.
+    pub(super) compared_best: Vec<usize>,
+    /// Log evidence of the sampled models; `None` where the sampling failed.
     pub(super) sampled: BTreeMap<Option<usize>, Option<f64>>,
     pub(super) evaluations: EvaluationCounts,
 }
 
-/// What is known of a candidate so far.
+/// The results of a candidate so far.
 #[derive(Debug, Clone)]
 pub(super) struct CandidateState {
-    /// The coordinates of the base with this candidate.
+    /// The coordinates of the base with this candidate added.
     pub(super) frame: NormalFrame,
-    /// The screen's result, of the model where that was asked.
+    /// The result of the screen, on the model if that was evaluated.
     pub(super) screened: Option<Screened>,
-    /// That of the companion's screen.
-    pub(super) by_companion: Option<Screened>,
+    /// The result of the low-fidelity screen.
+    pub(super) low_fidelity: Option<Screened>,
     pub(super) is_screened_on_model: bool,
     pub(super) estimate: Option<EvidenceEstimate>,
-    /// Whether it was fitted from several starts, even if the model refused all of them.
+    /// Whether it was fitted from several starts, or the model refused all of them.
     pub(super) had_confirmation: bool,
     /// Evaluations spent on it alone.
     pub(super) evaluations: usize,
@@ -63,7 +63,7 @@ pub(super) struct CandidateState {
 #[derive(Debug, Clone)]
 pub(super) struct EvidenceEstimate {
     pub(super) log_bayes_factor: f64,
-    /// The same with the stated prior of the strength.
+    /// The log Bayes factor with the stated prior of the strength.
     pub(super) stated_log_bayes_factor: f64,
     pub(super) method: EvidenceMethod,
     pub(super) fit: Option<LaplaceFit>,
@@ -71,34 +71,37 @@ pub(super) struct EvidenceEstimate {
 
 #[derive(Debug, Clone)]
 pub(super) enum Phase {
-    Starts,
+    /// The starts of the base's fits are evaluated.
+    BaseStarts,
     Base(FitBatch),
-    /// Of the base, with its fits, and the distance of neighbours on the line.
+    /// Holds the base's fits, and the distance of neighbouring positions on the line through the best of them.
     NumericalNoise(FitBatch, f64),
-    /// On the companion.
-    CompanionScreen,
-    /// On the model: index of the strength that is tried.
+    LowFidelityScreen,
+    /// Holds the index of the strengths in [`LEVELS`](crate::effect_search::screen::LEVELS).
     Screen(usize),
-    /// With less room for discrepancy.
-    Tightened(Likelihood, FitBatch),
+    /// Holds the likelihood with the reduced discrepancy.
+    ReducedDiscrepancy(Likelihood, FitBatch),
     Extensions(FitBatch),
-    /// Of those within reach of the best.
-    FurtherExtensions(FitBatch),
-    Polish(FitBatch),
-    /// The candidates that are confirmed.
+    /// Fits of candidates within reach of the best.
+    WithinReach(FitBatch),
+    Refinement(FitBatch),
+    /// Holds the candidates to confirm.
     ConfirmationStarts(Vec<usize>),
     Confirmation(FitBatch),
-    /// The models that are sampled, and how many draws each waits for.
+    /// Holds a sampler for each model, and how many draws each waits for.
     Sampling(Vec<(Option<usize>, ImportanceSampler)>, Vec<usize>),
     Done(Box<EffectRanking>),
     Failed(InferenceFailure),
 }
 
 impl CandidateState {
-    /// Whether the model refused it at every step of the screen or from all starts, or gave it no evidence: its screen's promise then
-    /// says nothing. True of all before the screen.
+    /// Whether the model refused it at every step of the screen or from all starts, or it has no evidence: the promise of its
+    /// screen is void then. This holds for all candidates before the screen.
     pub(super) fn is_refused(&self) -> bool {
-        let has_fit = self.estimate.as_ref().is_some_and(|own| own.fit.is_some());
+        let has_fit = self
+            .estimate
+            .as_ref()
+            .is_some_and(|estimate| estimate.fit.is_some());
         self.screened.is_none() || (self.had_confirmation && !has_fit)
     }
 }
@@ -114,7 +117,7 @@ impl EffectSearch {
         let candidates = candidates.iter().map(|candidate| CandidateState {
             frame: base_frame.with(candidate),
             screened: None,
-            by_companion: None,
+            low_fidelity: None,
             is_screened_on_model: false,
             estimate: None,
             had_confirmation: false,
@@ -126,29 +129,29 @@ impl EffectSearch {
             base_frame,
             round: ProposalRound::default(),
             asked: Vec::new(),
-            phase: Phase::Starts,
+            phase: Phase::BaseStarts,
             seed,
             depth: &FULL,
             base: None,
             measures_noise: false,
             numerical_noise_sds: Vec::new(),
             has_confirmed_stuck: false,
-            had_alike: Vec::new(),
+            compared_best: Vec::new(),
             sampled: BTreeMap::new(),
             evaluations: EvaluationCounts::default(),
         }
     }
 
-    /// Searches on as a model of this roughness is searched.
+    /// Continues the search at the depth of this roughness.
     pub(super) fn set_roughness(&mut self, roughness: Roughness) {
-        self.depth = Depth::of(roughness);
+        self.depth = Depth::for_roughness(roughness);
         self.base_frame.roughness = roughness;
         for candidate in &mut self.candidates {
             candidate.frame.roughness = roughness;
         }
     }
 
-    /// How the predictions follow the parameters, as far as that is known.
+    /// The roughness of the model, if it is known.
     pub(crate) fn roughness(&self) -> Roughness {
         self.base_frame.roughness
     }
@@ -169,14 +172,14 @@ impl EffectSearch {
 
     /// Begins a round.
     pub(super) fn ask(&mut self, asked: Vec<Asked>) {
-        let of_model = asked.iter().filter(|own| !own.is_companion);
-        for candidate in of_model.filter_map(|own| own.candidate) {
+        let of_model = asked.iter().filter(|asked| !asked.is_low_fidelity);
+        for candidate in of_model.filter_map(|asked| asked.candidate) {
             self.candidates[candidate].evaluations += 1;
         }
         let proposals = asked
             .iter()
             .enumerate()
-            .map(|(index, own)| Proposal::plain(index, self.frame(own.candidate).theta(&own.position)));
+            .map(|(index, asked)| Proposal::plain(index, self.frame(asked.candidate).theta(&asked.position)));
         let proposals = proposals.collect();
         self.round.ask(proposals);
         self.asked = asked;

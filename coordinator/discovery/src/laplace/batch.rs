@@ -9,28 +9,28 @@ pub(crate) struct Asked {
     /// The candidate that is switched on; `None`: the base.
     pub(crate) candidate: Option<usize>,
     pub(crate) position: Vec<f64>,
-    /// Of the model's companion.
-    pub(crate) is_companion: bool,
+    /// Whether the low-fidelity model is asked, in place of the model.
+    pub(crate) is_low_fidelity: bool,
 }
 
 impl Asked {
-    /// Of the model itself.
-    pub(crate) fn of_model(candidate: Option<usize>, position: Vec<f64>) -> Self {
+    /// A request to the model itself.
+    pub(crate) fn for_model(candidate: Option<usize>, position: Vec<f64>) -> Self {
         Self {
             candidate,
             position,
-            is_companion: false,
+            is_low_fidelity: false,
         }
     }
 
-    /// Each of these positions, of the model itself.
-    pub(crate) fn all_of_model(
+    /// Requests to the model itself.
+    pub(crate) fn all_for_model(
         candidate: Option<usize>,
         positions: Vec<Vec<f64>>,
     ) -> impl Iterator<Item = Self> {
         positions
             .into_iter()
-            .map(move |position| Self::of_model(candidate, position))
+            .map(move |position| Self::for_model(candidate, position))
     }
 }
 
@@ -38,7 +38,7 @@ impl Asked {
 #[derive(Debug, Clone)]
 pub(crate) struct FitBatch {
     pub(crate) fits: Vec<(Option<usize>, LaplaceFit)>,
-    /// How many evaluations each waits for.
+    /// How many evaluations each fit waits for.
     waiting: Vec<usize>,
 }
 
@@ -57,11 +57,11 @@ impl FitBatch {
         for (candidate, fit) in &mut self.fits {
             let positions = fit.ask(likelihood);
             self.waiting.push(positions.len());
-            let is_companion = fit.asks_companion();
+            let is_low_fidelity = fit.asks_low_fidelity();
             asked.extend(positions.into_iter().map(|position| Asked {
                 candidate: *candidate,
                 position,
-                is_companion,
+                is_low_fidelity,
             }));
         }
         asked
@@ -77,13 +77,12 @@ impl FitBatch {
         }
     }
 
-    /// The most probable fit, the first of equal ones.
+    /// The most probable fit; of equal ones the first.
     pub(crate) fn best(&self) -> Option<&LaplaceFit> {
         let fits = self.fits.iter().map(|(_, fit)| fit);
         fits.reduce(|a, b| if b.point.value < a.point.value { b } else { a })
     }
 
-    /// Evaluations spent by all.
     pub(crate) fn evaluations(&self) -> usize {
         self.fits.iter().map(|(_, fit)| fit.evaluations).sum()
     }

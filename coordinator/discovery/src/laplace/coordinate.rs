@@ -7,19 +7,20 @@ use crate::settings::Roughness;
 
 /// Limit of the search, in standard deviations of the prior.
 const FARTHEST: f64 = 7.5;
-/// A parameter of the best fit so close to that limit \[standard deviations\] contradicts its prior, and a better fit may lie beyond.
+/// A parameter of the best fit within this distance from the limit \[standard deviations\] contradicts its prior: a better fit may
+/// lie beyond.
 const NEAR_LIMIT: f64 = 1.0;
-/// Share of the distance from -1 to 1 sd by which a support goes on beyond a place that is not its end, in the sampling coordinate.
+/// A support ends at a place if its end, in the sampling coordinate, lies no farther away than this share of the distance from -1 to 1 sd.
 const BEYOND: f64 = 0.01;
 
 /// The map from a parameter to its coordinate.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Side {
-    /// Standard normal: `Phi(t) = P(X < x)`.
+    /// Standard normal, with `Phi(t) = P(X < x)`.
     Both,
-    /// Half-normal, 0 at the lower end of the support: `2 Phi(t) - 1 = P(X < x)`.
+    /// Half-normal and 0 at the lower end of the support, with `2 Phi(t) - 1 = P(X < x)`.
     Above,
-    /// Half-normal, 0 at the upper end.
+    /// Half-normal and 0 at the upper end of the support.
     Below,
 }
 
@@ -34,12 +35,12 @@ pub(crate) struct NormalCoordinate {
 #[derive(Debug, Clone)]
 pub(crate) struct NormalFrame {
     pub(crate) coordinates: Vec<NormalCoordinate>,
-    /// Of the base model; its correlations make the normal scores of its parameters from the coordinates.
+    /// Prior of the base model; its correlations relate the coordinates to the normal scores of the parameters.
     base: Prior,
-    /// How the predictions follow the parameters.
+    /// Whether the predictions are a smooth function of the parameters.
     pub(crate) roughness: Roughness,
-    /// Whether the model's companion has a form of the base and of every candidate.
-    pub(crate) has_companion: bool,
+    /// Whether the low-fidelity model has the base and every added candidate.
+    pub(crate) has_low_fidelity: bool,
     /// Index of each strength of the last candidate, and its coordinate at which the candidate is absent.
     pub(crate) strengths: Vec<(usize, f64)>,
     /// Indices of the single strengths of all candidates, whose priors are widened.
@@ -74,7 +75,7 @@ impl NormalCoordinate {
         self.limited(self.score(x))
     }
 
-    /// x of a coordinate.
+    /// The value of a parameter at a coordinate.
     pub(crate) fn value(&self, t: f64) -> f64 {
         match self.side {
             Side::Both => self.marginal.of_normal_score(t),
@@ -83,12 +84,12 @@ impl NormalCoordinate {
         }
     }
 
-    /// Whether the support ends at a coordinate, as a uniform density does at any far one.
+    /// Whether the support ends at a coordinate, as that of a uniform density does at a far one.
     fn ends_at(&self, t: f64) -> bool {
         let (lower, upper) = self.marginal.support();
         let end = self.marginal.coordinate(if t < 0.0 { lower } else { upper });
-        let [here, low, high] = [t, -1.0, 1.0].map(|t| self.marginal.coordinate(self.value(t)));
-        (end - here).abs() <= BEYOND * (high - low)
+        let [place, low, high] = [t, -1.0, 1.0].map(|t| self.marginal.coordinate(self.value(t)));
+        (end - place).abs() <= BEYOND * (high - low)
     }
 
     fn lower(&self) -> f64 {
@@ -109,16 +110,16 @@ impl NormalFrame {
             coordinates: prior.marginals().iter().map(NormalCoordinate::whole).collect(),
             base: prior.clone(),
             roughness,
-            has_companion: false,
+            has_low_fidelity: false,
             strengths: Vec::new(),
             widened: Vec::new(),
         }
     }
 
-    /// This frame of a model that may have a companion.
-    pub(crate) fn beside(self, has_companion: bool) -> Self {
+    /// This frame, with or without a low-fidelity model.
+    pub(crate) fn with_low_fidelity(self, has_low_fidelity: bool) -> Self {
         Self {
-            has_companion,
+            has_low_fidelity,
             ..self
         }
     }
@@ -129,22 +130,22 @@ impl NormalFrame {
         let first = coordinates.len();
         coordinates.extend(candidate.parameters.iter().map(NormalCoordinate::whole));
         let mut neutral = |strength: &usize| {
-            let own = &mut coordinates[first + strength];
-            let (lower, upper) = own.marginal.support();
+            let coordinate = &mut coordinates[first + strength];
+            let (lower, upper) = coordinate.marginal.support();
             let absent = if candidate.neutral <= lower {
-                own.side = Side::Above;
+                coordinate.side = Side::Above;
                 0.0
             } else if candidate.neutral >= upper {
-                own.side = Side::Below;
+                coordinate.side = Side::Below;
                 0.0
             } else {
-                own.position(candidate.neutral)
+                coordinate.position(candidate.neutral)
             };
             (first + strength, absent)
         };
         let strengths: Vec<(usize, f64)> = candidate.strengths.iter().map(&mut neutral).collect();
         let mut widened = self.widened.clone();
-        // The knots of a curve have a prior that was made for it.
+        // The prior of a curve's knots is not widened: it was made for them.
         if let [(only, _)] = strengths.as_slice() {
             widened.push(*only);
         }
@@ -152,14 +153,14 @@ impl NormalFrame {
             coordinates,
             base: self.base.clone(),
             roughness: self.roughness,
-            // A switch has no step along which the companion could stand for the model.
-            has_companion: self.has_companion && candidate.has_companion && !candidate.is_switch(),
+            // A switch has no step along which the low-fidelity model could be a control variate.
+            has_low_fidelity: self.has_low_fidelity && candidate.has_companion && !candidate.is_switch(),
             strengths,
             widened,
         }
     }
 
-    /// The strength of a candidate with a single one.
+    /// The strength, if the candidate has a single one.
     pub(crate) fn strength(&self) -> Option<(usize, f64)> {
         match self.strengths.as_slice() {
             [only] => Some(*only),
@@ -240,18 +241,18 @@ impl NormalFrame {
         lower.iter().all(|l| *l <= 0.0) && upper.iter().all(|u| *u >= 0.0)
     }
 
-    /// The parameter of the base that contradicts its prior most, and its coordinate; `None` without one. Where the support ends, the
-    /// bound is what the user declared.
+    /// The parameter of the base that contradicts its prior most, and its coordinate. `None` if there is none; a bound that the
+    /// user declared is no contradiction.
     pub(crate) fn implausible(&self, position: &[f64]) -> Option<(usize, f64)> {
-        let own = self.coordinates.iter().zip(position).take(self.base.dimension());
-        let far = own
+        let base = self.coordinates.iter().zip(position).take(self.base.dimension());
+        let far = base
             .enumerate()
             .filter(|(_, (coordinate, t))| t.abs() > FARTHEST - NEAR_LIMIT && !coordinate.ends_at(**t));
         far.map(|(k, (_, t))| (k, *t))
             .max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))
     }
 
-    /// Which parameters lie within 2 % of a bound of their range, or at the value at which a half-normal strength is absent.
+    /// Whether each parameter lies within 2 % of a bound of its range, or at the value at which a half-normal strength is absent.
     pub(crate) fn at_bound(&self, position: &[f64]) -> Vec<bool> {
         let near = |((coordinate, x), &t): ((&NormalCoordinate, f64), &f64)| {
             coordinate.marginal.at_bound(x, x) || (coordinate.is_half() && t <= 0.0)
@@ -290,8 +291,8 @@ mod tests {
     #[test]
     fn a_prior_is_contradicted_near_the_limit_of_the_search_unless_its_support_ends_there() {
         let far = |distribution, bounds, t: f64| {
-            let own = Marginal::new(distribution, bounds).unwrap();
-            let frame = NormalFrame::base(&Prior::new(vec![own]), Roughness::Smooth);
+            let marginal = Marginal::new(distribution, bounds).unwrap();
+            let frame = NormalFrame::base(&Prior::new(vec![marginal]), Roughness::Smooth);
             frame.implausible(&[t])
         };
         let normal = Distribution::Normal { mean: 1.0, sd: 0.1 };
@@ -318,7 +319,7 @@ mod tests {
             .correlated(vec![0, 1], &[vec![1.0, 0.6], vec![0.6, 1.0]])
             .unwrap();
         let frame = NormalFrame::base(&prior, Roughness::Smooth);
-        // The second given the first has the mean 0.6 t and the sd 0.8.
+        // Given the first, the second has the mean 0.6 t and the sd 0.8.
         let theta = frame.theta(&[1.0, -0.5]);
         assert!(
             (theta[0] - 3.0).abs() < 1e-9 && (theta[1] - 0.2).abs() < 1e-9,

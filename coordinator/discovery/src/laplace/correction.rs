@@ -1,15 +1,15 @@
-//! The companion of a model as a control variate of derivatives.
+//! The low-fidelity model as a control variate of derivatives.
 
-/// By how much a derivative of the model exceeds that of its companion.
+/// Derivative of the model minus derivative of the low-fidelity model.
 #[derive(Debug, Clone)]
 pub(crate) struct Correction {
     pub(crate) beyond: Vec<f64>,
-    /// Over a long step of the screen: good for steps of a fit, not for an evidence.
+    /// Whether it was taken over a long step of the screen, which suffices for the steps of a fit but not for an evidence.
     pub(crate) is_secant: bool,
 }
 
 impl Correction {
-    /// As if the model changed as its companion does, which a fit has to measure.
+    /// A correction of zero, which a fit must replace by a measured one.
     pub(crate) fn none(values: usize) -> Self {
         Self {
             beyond: vec![0.0; values],
@@ -17,19 +17,21 @@ impl Correction {
         }
     }
 
-    /// Of a derivative of the model and the companion's over the same step.
-    pub(crate) fn between(model: &[f64], companion: &[f64], is_secant: bool) -> Self {
-        let pairs = model.iter().zip(companion);
+    /// The correction from both derivatives over the same step.
+    pub(crate) fn between(model: &[f64], low_fidelity: &[f64], is_secant: bool) -> Self {
+        let pairs = model.iter().zip(low_fidelity);
         Self {
-            beyond: pairs.map(|(model, companion)| model - companion).collect(),
+            beyond: pairs.map(|(model, low_fidelity)| model - low_fidelity).collect(),
             is_secant,
         }
     }
 
-    /// The model's derivative where the companion has this one.
-    pub(crate) fn of_model(&self, companion: &[f64]) -> Vec<f64> {
-        let pairs = companion.iter().zip(&self.beyond);
-        pairs.map(|(companion, beyond)| companion + beyond).collect()
+    /// The model's derivative, from the low-fidelity derivative.
+    pub(crate) fn applied_to(&self, low_fidelity: &[f64]) -> Vec<f64> {
+        let pairs = low_fidelity.iter().zip(&self.beyond);
+        pairs
+            .map(|(low_fidelity, beyond)| low_fidelity + beyond)
+            .collect()
     }
 }
 

@@ -32,7 +32,7 @@ pub(crate) fn log_evidence(quadratic: &QuadraticModel, value: f64, halves: &[usi
     }
     let covariance = cholesky.inverse();
     let share = |&k: &usize| {
-        // -lower is where the coordinate stands above its bound.
+        // The coordinate lies -lower above its bound.
         let mean = -quadratic.lower[k] - to_mode[k];
         log_share_above_zero(mean, covariance[(k, k)])
     };
@@ -54,7 +54,7 @@ fn log_share_above_zero(mean: f64, variance: f64) -> f64 {
     libm::log(2.0) + normal::log_cdf(mean / variance.sqrt())
 }
 
-/// `ln sum exp`; minus infinity of an empty sum.
+/// `ln sum exp`; minus infinity for an empty sum.
 pub(crate) fn log_sum_exp(values: impl Iterator<Item = f64> + Clone) -> f64 {
     let highest = values.clone().fold(f64::NEG_INFINITY, f64::max);
     if !highest.is_finite() {

@@ -13,28 +13,27 @@ use inference::lm::QuadraticModel;
 use statistics::likelihood::Likelihood;
 
 /// Longest finite difference, in standard deviations of the prior; above the shortest it equals the coordinate's current posterior
-/// sd. Long differences average over the roughness of a model on a grid, short ones resolve a narrow posterior.
+/// sd. Long differences average over the numerical noise of a model on a grid, short ones resolve a narrow posterior.
 const DIFFERENCE: f64 = 0.15;
 /// The damping after the first rejected step, and the factor between successive dampings.
 const FIRST_DAMPING: f64 = 0.05;
 const DAMPING_FACTOR: f64 = 8.0;
-/// Most gain beyond the point that the evidence counts, though no step has reached it `[nats]`.
-const MOST_UNREACHED: f64 = 3.0;
+/// Limit of a predicted gain that no step has reached, in the evidence `[nats]`.
+const MAX_UNREACHED: f64 = 3.0;
 
 /// One step of the plan of a fit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum FitStep {
     /// Frees the coordinates that were held.
     Release,
-    /// Computes the Jacobian by finite differences: of the companion, as far as its difference from the model is known, and of the
-    /// model elsewhere.
+    /// Computes the Jacobian by finite differences: of the low-fidelity model where its correction is known, of the model elsewhere.
     Differences,
-    /// At most so many trial steps, one evaluation each. After a step that gains, the Jacobian follows the companion, with no
-    /// correction of what the companion alone has screened.
+    /// At most this number of trial steps, one evaluation each. After a step that gains, the low-fidelity model, if there is one,
+    /// updates the Jacobian.
     Trials(usize),
-    /// `Differences` and `Trials(trials)`, repeated at most so many times, until a new Jacobian predicts no gain, which ends the plan.
-    /// Of a rough model a round whose steps gain nothing ends the plan, too, with the Jacobian that its differences gave.
-    Rounds { most: usize, trials: usize },
+    /// `Differences` and `Trials(trials)`, repeated at most `max` times, until a new Jacobian predicts no gain, which ends the plan.
+    /// With numerical noise a round without a gain ends the plan too, with the Jacobian that its differences gave.
+    Rounds { max: usize, trials: usize },
 }
 
 /// A fit of one model.
@@ -44,29 +43,35 @@ pub(crate) struct LaplaceFit {
     pub(crate) point: FitPoint,
     /// The Jacobian: derivatives of the predicted values, one column for each coordinate.
     pub(crate) columns: Vec<Vec<f64>>,
-    /// Of each column that was measured on the model: the companion is a control variate of the differences.
+    /// Correction of each column that was measured on the model; the low-fidelity model is a control variate of the differences.
     pub(crate) corrections: Vec<Option<Correction>>,
-    /// Whether a difference follows the companion: an earlier fit measured it on the model, near by. This fit's own corrections are
-    /// those of wherever it passes.
-    follows: Vec<bool>,
-    /// On the model.
+    /// Whether a [`FitStep::Differences`] takes the column from the low-fidelity model, because an earlier fit measured the correction
+    /// near by. Corrections that this fit measures itself belong to the points that it passes.
+    reuses_correction: Vec<bool>,
+    /// Evaluations of the model, without those of the low-fidelity model.
     pub(crate) evaluations: usize,
     plan: VecDeque<FitStep>,
     damping: f64,
     failures: usize,
     /// Coordinates that are fixed until a [`FitStep::Release`].
     held: Vec<bool>,
-    /// No step was tried since the last Jacobian of a round.
-    is_fresh: bool,
-    /// A step has gained since then.
-    has_gained: bool,
-    /// The point has moved since the companion was asked.
+    progress: Progress,
+    /// Whether the point has moved since the last differences.
     has_moved: bool,
-    /// The companion's derivatives at the point, where they were just computed.
-    companion: Vec<Option<Vec<f64>>>,
-    /// The Jacobian that the differences of the round gave, before the updates by its steps.
-    of_round: Vec<Vec<f64>>,
+    /// The low-fidelity derivatives at the point, where they were just computed.
+    low_fidelity: Vec<Option<Vec<f64>>>,
     pending: Pending,
+}
+
+/// The achievement of the trial steps since the last [`FitStep::Rounds`] began a round.
+#[derive(Debug, Clone)]
+enum Progress {
+    /// No step was tried yet.
+    Untried,
+    /// Steps were tried and none has gained; the Jacobian is that of the round's differences, before its updates by the steps.
+    Stuck { jacobian: Vec<Vec<f64>> },
+    /// A step has gained, or no round has begun.
+    Gained,
 }
 
 /// A completed fit with its log evidence.
@@ -80,10 +85,16 @@ pub(crate) struct FittedModel {
 #[derive(Debug, Clone)]
 enum Pending {
     Nothing,
-    /// Of the companion, at each difference and at the point, and whether the model is asked for none.
-    Companion(Vec<(usize, f64)>, bool),
-    /// Of the model: index and offset of each difference, and whether this is the second attempt, with the opposite sign.
-    Differences(Vec<(usize, f64)>, bool),
+    /// Low-fidelity predictions at each offset and at the point.
+    LowFidelity {
+        offsets: Vec<Offset>,
+        purpose: Purpose,
+    },
+    /// Predictions of the model at each offset.
+    Differences {
+        offsets: Vec<Offset>,
+        attempt: Attempt,
+    },
     /// A trial position and its predicted gain.
     Trial {
         position: Vec<f64>,
@@ -91,13 +102,32 @@ enum Pending {
     },
 }
 
+/// Index of a coordinate and the length of its difference.
+type Offset = (usize, f64);
+
+/// Why derivatives of the low-fidelity model are computed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Purpose {
+    /// A full Jacobian; the model is asked for the columns without a correction to reuse.
+    Jacobian,
+    /// An update of the columns after a step; the model is asked for nothing.
+    Update,
+}
+
+/// A difference that the model rejects is attempted a second time.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Attempt {
+    First,
+    OppositeSign,
+}
+
 impl LaplaceFit {
     pub(crate) fn new(frame: NormalFrame, point: FitPoint, columns: Vec<Vec<f64>>, plan: &[FitStep]) -> Self {
         Self {
             held: vec![false; frame.dimension()],
             corrections: vec![None; frame.dimension()],
-            follows: vec![false; frame.dimension()],
-            companion: Vec::new(),
+            reuses_correction: vec![false; frame.dimension()],
+            low_fidelity: Vec::new(),
             frame,
             point,
             columns,
@@ -105,239 +135,254 @@ impl LaplaceFit {
             plan: plan.iter().copied().collect(),
             damping: 0.0,
             failures: 0,
-            is_fresh: false,
-            has_gained: true,
+            progress: Progress::Gained,
             has_moved: false,
-            of_round: Vec::new(),
             pending: Pending::Nothing,
         }
     }
 
-    /// The same fit continued with another plan.
+    /// This fit continued with another plan.
     pub(crate) fn continued(&self, plan: &[FitStep]) -> Self {
         self.measured_again(plan).corrected(&self.corrections)
     }
 
-    /// The same fit continued with another plan whose differences are the model's.
+    /// This fit continued with another plan, without its corrections: all differences are measured on the model again.
     pub(crate) fn measured_again(&self, plan: &[FitStep]) -> Self {
         Self::new(self.frame.clone(), self.point.clone(), self.columns.clone(), plan)
     }
 
-    /// With the corrections of a fit of the same model, or of one that it extends.
+    /// This fit with the corrections of a fit of the same model, or of one that it extends.
     pub(crate) fn corrected(mut self, corrections: &[Option<Correction>]) -> Self {
         self.corrections[..corrections.len()].clone_from_slice(corrections);
-        let is_near = |own: &Option<Correction>| own.as_ref().is_some_and(|own| !own.is_secant);
-        self.follows = self.corrections.iter().map(is_near).collect();
+        let is_local =
+            |slot: &Option<Correction>| slot.as_ref().is_some_and(|correction| !correction.is_secant);
+        self.reuses_correction = self.corrections.iter().map(is_local).collect();
         self
     }
 
-    /// Whether what it asked for last is to be evaluated by the companion.
-    pub(crate) fn asks_companion(&self) -> bool {
-        matches!(self.pending, Pending::Companion(..))
+    /// Whether the positions that it asked for last are to be evaluated by the low-fidelity model.
+    pub(crate) fn asks_low_fidelity(&self) -> bool {
+        matches!(self.pending, Pending::LowFidelity { .. })
     }
 
-    /// Fixes coordinates until [`FitStep::Release`].
     pub(crate) fn hold(&mut self, coordinates: impl Iterator<Item = usize>) {
         for k in coordinates {
             self.held[k] = true;
         }
     }
 
-    /// The most probable parameters.
     pub(crate) fn theta(&self) -> Vec<f64> {
         self.frame.theta(&self.point.position)
     }
 
     /// The positions to evaluate next; none once the plan is complete.
     pub(crate) fn ask(&mut self, likelihood: &Likelihood) -> Vec<Vec<f64>> {
-        if let Pending::Differences(wanted, _) = &self.pending {
-            return self.offset(wanted);
+        if let Pending::Differences { offsets, .. } = &self.pending {
+            return self.positions(offsets);
         }
         while let Some(step) = self.plan.pop_front() {
             match step {
                 FitStep::Release => {
                     self.held.fill(false);
-                    self.damping = 0.0;
-                    self.failures = 0;
+                    self.reset_damping();
                 }
                 FitStep::Differences => {
-                    let wanted = self.differences(likelihood);
-                    return self.ask_differences(wanted, false);
+                    let offsets = self.offsets(likelihood);
+                    return self.ask_differences(offsets, Purpose::Jacobian);
                 }
-                FitStep::Rounds { most: 0, .. } | FitStep::Trials(0) => {}
-                FitStep::Rounds { most, trials } => {
-                    let most = most - 1;
-                    self.plan.push_front(FitStep::Rounds { most, trials });
+                FitStep::Rounds { max: 0, .. } | FitStep::Trials(0) => {}
+                FitStep::Rounds { max, trials } => {
+                    let max = max - 1;
+                    self.plan.push_front(FitStep::Rounds { max, trials });
                     self.plan.push_front(FitStep::Trials(trials));
                     self.plan.push_front(FitStep::Differences);
-                    self.is_fresh = true;
-                    self.has_gained = false;
+                    self.progress = Progress::Untried;
                 }
-                FitStep::Trials(left) if self.frame.has_companion && std::mem::take(&mut self.has_moved) => {
+                FitStep::Trials(left)
+                    if self.frame.has_low_fidelity && std::mem::take(&mut self.has_moved) =>
+                {
                     self.plan.push_front(FitStep::Trials(left));
-                    let wanted = self.differences(likelihood);
-                    if wanted.iter().all(|(k, _)| self.corrections[*k].is_some()) {
-                        return self.ask_differences(wanted, true);
+                    let offsets = self.offsets(likelihood);
+                    if offsets.iter().all(|(k, _)| self.corrections[*k].is_some()) {
+                        return self.ask_differences(offsets, Purpose::Update);
                     }
                 }
                 FitStep::Trials(left) => {
                     if let Some((position, predicted)) = self.trial(likelihood) {
                         self.plan.push_front(FitStep::Trials(left - 1));
-                        if std::mem::take(&mut self.is_fresh) {
-                            self.of_round.clone_from(&self.columns);
-                        }
-                        self.pending = Pending::Trial {
-                            position: position.clone(),
-                            predicted,
-                        };
-                        return vec![position];
+                        return self.ask_trial(position, predicted);
                     }
-                    self.damping = 0.0;
-                    self.failures = 0;
-                    if self.is_fresh {
-                        self.plan.clear();
-                    } else if self.frame.roughness != Roughness::Smooth && !self.has_gained {
-                        // The evidence needs the slope at the point, not that to where the steps failed.
-                        self.columns = std::mem::take(&mut self.of_round);
-                        self.plan.clear();
-                    }
+                    self.end_trials();
                 }
             }
         }
         Vec::new()
     }
 
-    /// Index and offset of each difference.
-    fn differences(&self, likelihood: &Likelihood) -> Vec<(usize, f64)> {
+    fn ask_trial(&mut self, position: Vec<f64>, predicted: f64) -> Vec<Vec<f64>> {
+        if let Progress::Untried = self.progress {
+            self.progress = Progress::Stuck {
+                jacobian: self.columns.clone(),
+            };
+        }
+        self.pending = Pending::Trial {
+            position: position.clone(),
+            predicted,
+        };
+        vec![position]
+    }
+
+    /// Leaves trial steps that are no longer worth an evaluation, and the plan if its last round has gained nothing.
+    fn end_trials(&mut self) {
+        self.reset_damping();
+        let is_noisy = self.frame.roughness != Roughness::Smooth;
+        match &mut self.progress {
+            Progress::Untried => self.plan.clear(),
+            // The evidence needs the slope at the point, not the slope to where the steps failed.
+            Progress::Stuck { jacobian } if is_noisy => {
+                self.columns = std::mem::take(jacobian);
+                self.plan.clear();
+            }
+            Progress::Stuck { .. } | Progress::Gained => {}
+        }
+    }
+
+    fn reset_damping(&mut self) {
+        self.damping = 0.0;
+        self.failures = 0;
+    }
+
+    /// The difference of each coordinate that the predictions depend on and that is not held.
+    fn offsets(&self, likelihood: &Likelihood) -> Vec<Offset> {
         let (_, upper) = self.frame.room(&self.point.position);
         let uncertainty = self.quadratic(likelihood).uncertainty();
         let offset = |k: usize| {
             let length = uncertainty[k].unwrap_or(DIFFERENCE);
-            let length = length.clamp(self.frame.roughness.least_difference(), DIFFERENCE);
+            let length = length.clamp(self.frame.roughness.min_difference(), DIFFERENCE);
             if upper[k] >= length { length } else { -length }
         };
-        // Predictions do not depend on the noise sds.
-        let noise = noise::coordinates(likelihood);
-        let is_noise = |k: usize| noise.iter().any(|(own, _)| *own == k);
+        let noise_sds = noise::coordinates(likelihood);
+        let is_noise_sd = |k: usize| noise_sds.iter().any(|(sd, _)| *sd == k);
         (0..self.frame.dimension())
-            .filter(|k| !is_noise(*k) && !self.held[*k])
+            .filter(|k| !is_noise_sd(*k) && !self.held[*k])
             .map(|k| (k, offset(k)))
             .collect()
     }
 
-    /// # Arguments
-    /// - `follows`: the companion alone is asked, with whatever corrections there are.
-    fn ask_differences(&mut self, wanted: Vec<(usize, f64)>, follows: bool) -> Vec<Vec<f64>> {
-        let mut positions = self.offset(&wanted);
-        if self.frame.has_companion {
+    fn ask_differences(&mut self, offsets: Vec<Offset>, purpose: Purpose) -> Vec<Vec<f64>> {
+        let mut positions = self.positions(&offsets);
+        self.pending = if self.frame.has_low_fidelity {
             positions.push(self.point.position.clone());
-            self.pending = Pending::Companion(wanted, follows);
+            Pending::LowFidelity { offsets, purpose }
         } else {
-            self.pending = Pending::Differences(wanted, false);
-        }
+            Pending::Differences {
+                offsets,
+                attempt: Attempt::First,
+            }
+        };
         self.has_moved = false;
         positions
     }
 
-    fn offset(&self, wanted: &[(usize, f64)]) -> Vec<Vec<f64>> {
-        let moved = |&(k, offset): &(usize, f64)| {
+    fn positions(&self, offsets: &[Offset]) -> Vec<Vec<f64>> {
+        let moved = |&(k, offset): &Offset| {
             let mut position = self.point.position.clone();
             position[k] += offset;
             position
         };
-        wanted.iter().map(moved).collect()
+        offsets.iter().map(moved).collect()
     }
 
     /// The next trial position and its predicted gain; `None` where no step is worth an evaluation.
     fn trial(&self, likelihood: &Likelihood) -> Option<(Vec<f64>, f64)> {
-        if self.failures >= self.frame.roughness.most_failures() {
+        if self.failures >= self.frame.roughness.max_failures() {
             return None;
         }
         let quadratic = self.quadratic(likelihood);
         let step = quadratic.step(self.damping)?;
         let predicted = quadratic.decrease(&step);
         let pairs = self.point.position.iter().zip(&step);
-        (predicted > self.frame.roughness.least_gain())
+        (predicted > self.frame.roughness.min_gain())
             .then(|| (pairs.map(|(t, by)| t + by).collect(), predicted))
     }
 
-    /// Takes the predicted values at those positions; `None` where the model rejected one.
+    /// Takes the predicted values at the positions of [`ask`](Self::ask); `None` where the model rejected one.
     pub(crate) fn tell(&mut self, likelihood: &Likelihood, answers: Vec<Option<Vec<f64>>>) {
-        if !self.asks_companion() {
+        if !self.asks_low_fidelity() {
             self.evaluations += answers.len();
         }
         match std::mem::replace(&mut self.pending, Pending::Nothing) {
             Pending::Nothing => {}
-            Pending::Companion(wanted, follows) => self.after_companion(wanted, follows, answers),
-            Pending::Differences(wanted, again) => self.after_differences(wanted, again, answers),
+            Pending::LowFidelity { offsets, purpose } => self.take_low_fidelity(offsets, purpose, answers),
+            Pending::Differences { offsets, attempt } => self.take_differences(offsets, attempt, answers),
             Pending::Trial { position, predicted } => {
-                self.after_trial(
-                    likelihood,
-                    position,
-                    predicted,
-                    answers.into_iter().flatten().next(),
-                );
+                let values = answers.into_iter().flatten().next();
+                self.take_trial(likelihood, position, predicted, values);
             }
         }
     }
 
-    /// Columns whose correction is known are those of the companion with it; the others are asked of the model.
-    fn after_companion(
+    /// Takes the columns whose correction is known from the low-fidelity model; for a full Jacobian the model is asked for the others.
+    fn take_low_fidelity(
         &mut self,
-        wanted: Vec<(usize, f64)>,
-        follows: bool,
+        offsets: Vec<Offset>,
+        purpose: Purpose,
         mut answers: Vec<Option<Vec<f64>>>,
     ) {
-        let here = answers.pop().flatten();
-        self.companion = vec![None; self.frame.dimension()];
-        for ((k, offset), answer) in wanted.iter().zip(answers) {
-            let pair = answer.as_ref().zip(here.as_ref());
-            self.companion[*k] = pair.map(|(values, here)| quotient(values, here, *offset));
+        let at_point = answers.pop().flatten();
+        self.low_fidelity = vec![None; self.frame.dimension()];
+        for ((k, offset), answer) in offsets.iter().zip(answers) {
+            let pair = answer.as_ref().zip(at_point.as_ref());
+            self.low_fidelity[*k] = pair.map(|(values, at_point)| quotient(values, at_point, *offset));
         }
-        let mut measured = Vec::new();
-        for (k, offset) in wanted {
-            match (&self.companion[k], &self.corrections[k]) {
-                (Some(companion), Some(correction)) if follows || self.follows[k] => {
-                    self.columns[k] = correction.of_model(companion);
+        let mut unknown = Vec::new();
+        for (k, offset) in offsets {
+            let is_update = purpose == Purpose::Update;
+            match (&self.low_fidelity[k], &self.corrections[k]) {
+                (Some(derivative), Some(correction)) if is_update || self.reuses_correction[k] => {
+                    self.columns[k] = correction.applied_to(derivative);
                 }
-                _ if follows => {}
-                _ => measured.push((k, offset)),
+                _ if is_update => {}
+                _ => unknown.push((k, offset)),
             }
         }
-        if !measured.is_empty() {
-            self.pending = Pending::Differences(measured, false);
+        if !unknown.is_empty() {
+            self.pending = Pending::Differences {
+                offsets: unknown,
+                attempt: Attempt::First,
+            };
         }
     }
 
-    /// A rejected difference is tried once more with the opposite sign; if that fails too, the old column stays.
-    fn after_differences(
-        &mut self,
-        wanted: Vec<(usize, f64)>,
-        is_second: bool,
-        answers: Vec<Option<Vec<f64>>>,
-    ) {
+    /// Takes columns from the model. A rejected difference is attempted once more with the opposite sign; if the model rejects that
+    /// too, the old column stays.
+    fn take_differences(&mut self, offsets: Vec<Offset>, attempt: Attempt, answers: Vec<Option<Vec<f64>>>) {
         let (lower, upper) = self.frame.room(&self.point.position);
-        let mut again = Vec::new();
-        for ((k, offset), answer) in wanted.into_iter().zip(answers) {
+        let is_first = attempt == Attempt::First;
+        let mut rejected = Vec::new();
+        for ((k, offset), answer) in offsets.into_iter().zip(answers) {
             match answer {
                 Some(values) => {
                     self.columns[k] = quotient(&values, &self.point.values, offset);
-                    // The companion's difference is that of the first attempt.
-                    if let Some(Some(companion)) = self.companion.get(k).filter(|_| !is_second) {
-                        let own = Correction::between(&self.columns[k], companion, false);
-                        self.corrections[k] = Some(own);
+                    // The low-fidelity model was evaluated at the offset of the first attempt.
+                    if let Some(Some(derivative)) = self.low_fidelity.get(k).filter(|_| is_first) {
+                        let correction = Correction::between(&self.columns[k], derivative, false);
+                        self.corrections[k] = Some(correction);
                     }
                 }
-                None if !is_second && (lower[k]..=upper[k]).contains(&-offset) => again.push((k, -offset)),
+                None if is_first && (lower[k]..=upper[k]).contains(&-offset) => rejected.push((k, -offset)),
                 None => {}
             }
         }
-        if !again.is_empty() {
-            self.pending = Pending::Differences(again, true);
+        if !rejected.is_empty() {
+            self.pending = Pending::Differences {
+                offsets: rejected,
+                attempt: Attempt::OppositeSign,
+            };
         }
     }
 
-    fn after_trial(
+    fn take_trial(
         &mut self,
         likelihood: &Likelihood,
         position: Vec<f64>,
@@ -358,11 +403,11 @@ impl LaplaceFit {
                 let gain = self.point.value - point.value;
                 self.point = point;
                 self.has_moved = true;
-                if gain < self.frame.roughness.least_counted_gain() {
+                if gain < self.frame.roughness.min_counted_gain() {
                     return self.fail();
                 }
                 self.failures = 0;
-                self.has_gained = true;
+                self.progress = Progress::Gained;
                 self.damping = if gain > 0.5 * predicted && self.damping <= FIRST_DAMPING {
                     0.0
                 } else {
@@ -396,7 +441,6 @@ impl LaplaceFit {
         }
     }
 
-    /// The quadratic expansion at the point.
     pub(crate) fn quadratic(&self, likelihood: &Likelihood) -> QuadraticModel {
         QuadraticModel {
             held: self.held.clone(),
@@ -411,15 +455,15 @@ impl LaplaceFit {
     pub(crate) fn log_evidence(&self, likelihood: &Likelihood) -> Option<f64> {
         let quadratic = self.at_mode(likelihood);
         let (position, value) = (&self.point.position, self.point.value);
-        mixed_evidence(&self.frame, position, &quadratic, value, MOST_UNREACHED)
+        mixed_evidence(&self.frame, position, &quadratic, value, MAX_UNREACHED)
     }
 
-    /// The log evidence with the stated priors of the strengths less that with the widened ones; `None` as
-    /// [`log_evidence`](Self::log_evidence).
+    /// The log evidence with the stated priors of the strengths less that with the widened ones; `None` if the Hessian is not
+    /// positive definite.
     pub(crate) fn stated_gain(&self, likelihood: &Likelihood) -> Option<f64> {
         let quadratic = self.at_mode(likelihood);
         let (position, value) = (&self.point.position, self.point.value);
-        stated_less_mixed(&self.frame, position, &quadratic, value, MOST_UNREACHED)
+        stated_less_mixed(&self.frame, position, &quadratic, value, MAX_UNREACHED)
     }
 
     fn at_mode(&self, likelihood: &Likelihood) -> QuadraticModel {
@@ -456,11 +500,11 @@ mod tests {
         )
     }
 
-    /// The fit in rounds of a model of that datum from its prior's middle.
+    /// A fit of the model to that datum, in rounds from the prior's mean.
     fn fitted(roughness: Roughness, model: impl Fn(f64) -> f64) -> LaplaceFit {
         let (frame, likelihood) = one_datum(roughness);
         let start = FitPoint::new(&frame, &likelihood, vec![0.0], vec![model(0.0)]).unwrap();
-        let plan = [FitStep::Rounds { most: 6, trials: 12 }, FitStep::Differences];
+        let plan = [FitStep::Rounds { max: 6, trials: 12 }, FitStep::Differences];
         let mut fit = LaplaceFit::new(frame, start, vec![vec![0.0]], &plan);
         loop {
             let asked = fit.ask(&likelihood);
@@ -473,11 +517,11 @@ mod tests {
     }
 
     #[test]
-    fn a_derivative_that_was_measured_on_the_model_follows_the_companion() {
+    fn a_derivative_that_was_measured_on_the_model_follows_the_low_fidelity_model() {
         let (frame, likelihood) = one_datum(Roughness::Rough);
-        let frame = frame.beside(true);
-        // The model has another slope than its companion and the same curvature.
-        let companion = |t: f64| t + 0.5 * t * t;
+        let frame = frame.with_low_fidelity(true);
+        // The low-fidelity model has another slope and the same curvature.
+        let low_fidelity = |t: f64| t + 0.5 * t * t;
         let model = |t: f64| 2.0 * t + 0.5 * t * t;
         let differences = |mut fit: LaplaceFit| {
             let mut asked_model = 0;
@@ -486,10 +530,16 @@ mod tests {
                 if asked.is_empty() {
                     return (fit, asked_model);
                 }
-                let is_companion = fit.asks_companion();
-                asked_model += if is_companion { 0 } else { asked.len() };
-                let of = |t: f64| if is_companion { companion(t) } else { model(t) };
-                let answers = asked.iter().map(|position| Some(vec![of(position[0])]));
+                let is_low_fidelity = fit.asks_low_fidelity();
+                asked_model += if is_low_fidelity { 0 } else { asked.len() };
+                let value = |t: f64| {
+                    if is_low_fidelity {
+                        low_fidelity(t)
+                    } else {
+                        model(t)
+                    }
+                };
+                let answers = asked.iter().map(|position| Some(vec![value(position[0])]));
                 fit.tell(&likelihood, answers.collect());
             }
         };
@@ -511,7 +561,7 @@ mod tests {
 
     #[test]
     fn a_rough_fit_whose_steps_all_fail_keeps_the_jacobian_of_its_differences() {
-        // A slope of 1 that no step beyond the difference bears out.
+        // The difference sees a slope of 1; longer steps lead downwards.
         let fit = fitted(Roughness::Rough, |t| if t.abs() < 0.2 { t } else { -t.abs() });
         assert_eq!(fit.point.position, [0.0]);
         assert!((fit.columns[0][0] - 1.0).abs() < 1e-12, "{:?}", fit.columns);

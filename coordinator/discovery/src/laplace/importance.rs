@@ -12,45 +12,45 @@ use statistics::likelihood::Likelihood;
 use statistics::prior::LN_SQRT_TAU;
 use statistics::rng::Stream;
 
-/// Draws per round, and the most rounds.
+/// Draws per round, and the maximum number of rounds.
 const DRAWS: usize = 150;
 const ROUNDS: usize = 8;
-/// Effective sample size at which the sampling ends (a standard error of 0.13 nats), and the least for an estimate.
+/// Effective sample size at which the sampling ends (a standard error of 0.13 nats), and the smallest that gives an estimate.
 const ENOUGH: f64 = 60.0;
-const LEAST: f64 = 30.0;
+const MIN_SIZE: f64 = 30.0;
 /// Scale of the strength about its absence, in standard deviations of its prior.
 const WEAK: f64 = 0.5;
 /// Random streams of the draws, separate from those of any sampler.
 const STAGE: u64 = 1 << 42;
 
-/// The evidence of one model by draws from a t about its fit, adapted after each round; of an effect that may be absent also from one
-/// about its absence, where its shape may be anything.
+/// The evidence of one model, from draws of a t about its fit that is adapted after each round. If the effect may be absent, a
+/// second t lies about its absence, where its shape is unconstrained.
 ///
-/// The draws of all rounds count, each weighted by prior times likelihood over the mean density of all t's: a draw in a tail that the
-/// adapted t misses keeps a bounded weight.
+/// All rounds count. A draw is weighted by prior times likelihood over the mean density of all t's, so that a draw in a tail that
+/// the adapted t misses keeps a bounded weight.
 ///
 /// # Source
 /// Cornuet et al. 2012, doi:10.1111/j.1467-9469.2011.00756.x.
 #[derive(Debug, Clone)]
 pub(crate) struct ImportanceSampler {
     frame: NormalFrame,
-    /// The t of each round so far, and those of rounds that are certain.
+    /// The t of each round so far, and of the next rounds that are already decided.
     proposals: Vec<Student>,
     round: usize,
-    /// Draws of the round within the limits.
+    /// Draws of the current round within the limits.
     asked: Vec<Vec<f64>>,
     /// Draws of all rounds with their log prior times likelihood.
     drawn: Vec<(Vec<f64>, f64)>,
     log_evidence: Option<f64>,
-    /// Log evidence with the stated priors of the strengths, over that.
+    /// Log evidence with the stated priors of the strengths, less `log_evidence`.
     stated_gain: f64,
     is_done: bool,
 }
 
 impl ImportanceSampler {
-    /// About a fit; `None` where its Hessian is not positive definite.
+    /// Begins about a fit; `None` where its Hessian is not positive definite.
     pub(crate) fn new(fitted: &LaplaceFit, likelihood: &Likelihood) -> Option<Self> {
-        // Near absence the mixture's prior is narrower than the posterior's tail.
+        // Near absence the mixture's prior is narrower than the tail of the posterior.
         let quadratic = fitted.quadratic(likelihood);
         let stated = strength_prior::stated(&fitted.frame, &fitted.point.position, &quadratic);
         let covariance = Cholesky::new(stated.hessian)?.inverse();
@@ -67,19 +67,21 @@ impl ImportanceSampler {
         })
     }
 
-    /// The same with draws about the base's fit, where the effect is absent and its shape has its prior.
+    /// Adds a second t about the base's fit, where the effect is absent and its shape has its prior.
     pub(crate) fn or_absent(mut self, base: &LaplaceFit, likelihood: &Likelihood) -> Self {
         let mut position = base.point.position.clone();
         position.resize(self.frame.dimension(), 0.0);
         let mean = DVector::from_vec(self.frame.without(&position));
-        let of_base = Cholesky::new(base.quadratic(likelihood).hessian).map(|c| c.inverse());
-        let own = base.frame.dimension();
-        let scale = of_base.map(|of_base| {
-            DMatrix::from_fn(mean.len(), mean.len(), |k, l| match (k.max(l) < own, k == l) {
-                (true, _) => of_base[(k, l)],
-                (false, true) if self.frame.is_strength(k) => WEAK * WEAK,
-                (false, true) => 1.0,
-                (false, false) => 0.0,
+        let covariance = Cholesky::new(base.quadratic(likelihood).hessian).map(|c| c.inverse());
+        let base_dimension = base.frame.dimension();
+        let scale = covariance.map(|covariance| {
+            DMatrix::from_fn(mean.len(), mean.len(), |k, l| {
+                match (k.max(l) < base_dimension, k == l) {
+                    (true, _) => covariance[(k, l)],
+                    (false, true) if self.frame.is_strength(k) => WEAK * WEAK,
+                    (false, true) => 1.0,
+                    (false, false) => 0.0,
+                }
             })
         });
         let absent = scale.and_then(|scale| Student::new(mean, scale));
@@ -98,7 +100,8 @@ impl ImportanceSampler {
         self.asked.clone()
     }
 
-    /// Takes the predicted values at those positions; `None` where the model rejected one. Draws outside the support count as zero.
+    /// Takes the predicted values at the positions of [`ask`](Self::ask); `None` where the model rejected one. Draws without
+    /// likelihood count as zero.
     pub(crate) fn tell(&mut self, likelihood: &Likelihood, answers: Vec<Option<Vec<f64>>>) {
         let dimension = self.frame.dimension() as f64;
         // The prior of a half-normal coordinate is twice the normal one.
@@ -120,7 +123,7 @@ impl ImportanceSampler {
         let log_weights: Vec<f64> = self.drawn.iter().map(log_weight).collect();
         let shares = shares(&log_weights, 1.0);
         let effective = effective(&shares);
-        self.log_evidence = (effective >= LEAST).then(|| log_sum_exp(log_weights.iter().copied()));
+        self.log_evidence = (effective >= MIN_SIZE).then(|| log_sum_exp(log_weights.iter().copied()));
         let stated = self.drawn.iter().zip(&shares);
         let stated =
             stated.map(|((position, _), share)| share * libm::exp(stated_over_mixed(&self.frame, position)));
@@ -134,7 +137,7 @@ impl ImportanceSampler {
 
     /// The t with mean and scale of the weighted draws; `None` where their covariance is singular.
     fn adapted(&self, shares: &[f64]) -> Option<Student> {
-        let own = self.proposals.last()?.scale();
+        let old_scale = self.proposals.last()?.scale();
         let dimension = self.frame.dimension();
         let pairs = || self.drawn.iter().map(|(position, _)| position).zip(shares);
         let mean = DVector::from_fn(dimension, |k, _| pairs().map(|(t, share)| share * t[k]).sum());
@@ -143,7 +146,7 @@ impl ImportanceSampler {
                 .map(|(t, share)| share * (t[k] - mean[k]) * (t[l] - mean[l]))
                 .sum();
             // Averaged with the old scale, so that a few draws of large weight do not collapse it.
-            0.5 * (seen + own[(k, l)])
+            0.5 * (seen + old_scale[(k, l)])
         });
         Student::new(mean, scale)
     }
@@ -153,13 +156,13 @@ impl ImportanceSampler {
         self.log_evidence
     }
 
-    /// The log evidence with the stated priors of the strengths, less [`log_evidence`](Self::log_evidence).
+    /// The log evidence with the stated priors of the strengths less [`log_evidence`](Self::log_evidence).
     pub(crate) fn stated_gain(&self) -> f64 {
         self.stated_gain
     }
 }
 
-/// The share of each draw in the sum of the weights to a power.
+/// The share of each draw in the sum of the weights raised to a power.
 fn shares(log_weights: &[f64], power: f64) -> Vec<f64> {
     let log_sum = log_sum_exp(log_weights.iter().map(|w| power * w));
     log_weights
@@ -168,7 +171,7 @@ fn shares(log_weights: &[f64], power: f64) -> Vec<f64> {
         .collect()
 }
 
-/// The effective sample size; 0 without draws.
+/// The effective sample size of the shares; 0 without draws.
 fn effective(shares: &[f64]) -> f64 {
     if shares.is_empty() {
         return 0.0;
@@ -176,17 +179,17 @@ fn effective(shares: &[f64]) -> f64 {
     1.0 / shares.iter().map(|s| s * s).sum::<f64>()
 }
 
-/// The shares at the highest power of the weights, up to 1, that leaves the least effective sample size of an estimate: a t adapted to
+/// The shares at the highest power of the weights, up to 1, whose effective sample size suffices for an estimate: a t adapted to
 /// fewer draws would collapse.
 fn tempered(log_weights: &[f64]) -> Vec<f64> {
     let all = shares(log_weights, 1.0);
-    if effective(&all) >= LEAST {
+    if effective(&all) >= MIN_SIZE {
         return all;
     }
     let (mut low, mut high) = (0.0, 1.0);
     for _ in 0..30 {
         let middle = 0.5 * (low + high);
-        if effective(&shares(log_weights, middle)) >= LEAST {
+        if effective(&shares(log_weights, middle)) >= MIN_SIZE {
             low = middle;
         } else {
             high = middle;

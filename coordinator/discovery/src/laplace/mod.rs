@@ -3,9 +3,9 @@
 //! # Layout
 //! - `coordinate`: parameters as standard normal coordinates. `strength_prior`: the heavier tails of a candidate's strengths.
 //! - `point`: an evaluated position. `quadratic`: the expansion of the log posterior about it. `noise`: its part along noise sds.
-//! - `fit`: the minimisation for one model; `correction`: of the companion's derivatives. `batch`: several side by side.
+//! - `fit`: the posterior mode of one model; `correction`: its derivatives with a low-fidelity model. `batch`: several fits in parallel.
 //! - `evidence`: the integral over a quadratic. `importance`: the same integral by importance sampling. `draws`: posterior draws.
-//! - `spread`: points one standard deviation from the mode. `tightened`: the likelihood with less room for discrepancy.
+//! - `spread`: points one standard deviation from the mode. `reduced_discrepancy`: the likelihood of preliminary fits.
 
 pub(crate) mod batch;
 pub(crate) mod coordinate;
@@ -17,7 +17,7 @@ pub(crate) mod importance;
 pub(crate) mod noise;
 pub(crate) mod point;
 pub(crate) mod quadratic;
+pub(crate) mod reduced_discrepancy;
 pub(crate) mod spread;
 pub(crate) mod strength_prior;
 pub(crate) mod student;
-pub(crate) mod tightened;

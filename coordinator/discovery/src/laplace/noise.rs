@@ -9,7 +9,7 @@ use statistics::likelihood::{CommonErrorSize, ErrorSd, Likelihood};
 /// Half width of the central differences; the density is smooth and accurate to rounding.
 const DIFFERENCE: f64 = 1e-3;
 
-/// The coordinates that are sds: of noise, each with the number of data that share it, and of common errors, without.
+/// The coordinates that are sds: those of noise with the number of data that share them, those of common errors without.
 pub(crate) fn coordinates(likelihood: &Likelihood) -> Vec<(usize, Option<usize>)> {
     let inferred = |sd: ErrorSd| match sd {
         ErrorSd::Inferred { parameter } => Some(parameter),
@@ -23,7 +23,7 @@ pub(crate) fn coordinates(likelihood: &Likelihood) -> Vec<(usize, Option<usize>)
     for error in likelihood.common() {
         if let CommonErrorSize::Shift(sd) | CommonErrorSize::Sensitivity { sd, .. } = error.size
             && let Some(parameter) = inferred(sd)
-            && !coordinates.iter().any(|(own, _)| *own == parameter)
+            && !coordinates.iter().any(|(sd, _)| *sd == parameter)
         {
             coordinates.push((parameter, None));
         }
@@ -31,8 +31,8 @@ pub(crate) fn coordinates(likelihood: &Likelihood) -> Vec<(usize, Option<usize>)
     coordinates
 }
 
-/// Adds the gradient of `-log-likelihood` along the sds, and its curvature: the expected `2 N (d ln sd / dt)^2` of N data that
-/// share a noise; of a common error the actual one where that is positive, since the likelihood is flat towards 0.
+/// Adds gradient and curvature of `-log-likelihood` along the sds. The curvature is the expected one, `2 N (d ln sd / dt)^2`, for N
+/// data that share a noise, and the actual one for a common error, where it is positive: that likelihood is flat towards 0.
 pub(crate) fn add(
     frame: &NormalFrame,
     likelihood: &Likelihood,
@@ -56,8 +56,8 @@ pub(crate) fn add(
                 2.0 * count as f64 * stretch * stretch
             }
             None => {
-                let (_, here) = at(0.0);
-                ((2.0 * here - before - after) / (DIFFERENCE * DIFFERENCE)).max(0.0)
+                let (_, middle) = at(0.0);
+                ((2.0 * middle - before - after) / (DIFFERENCE * DIFFERENCE)).max(0.0)
             }
         };
         if slope.is_finite() && curvature.is_finite() {

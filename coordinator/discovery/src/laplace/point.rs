@@ -10,7 +10,7 @@ use statistics::log_likelihood::LogLikelihood;
 pub(crate) struct FitPoint {
     pub(crate) position: Vec<f64>,
     pub(crate) values: Vec<f64>,
-    /// `-log-likelihood - ln prior`, in nats: see [`strength_prior::penalty`].
+    /// `-log-likelihood - ln prior` \[nats\]; [`strength_prior::penalty`] defines the prior.
     pub(crate) value: f64,
 }
 
@@ -33,7 +33,7 @@ impl FitPoint {
         })
     }
 
-    /// ln p(data | t).
+    /// `ln p(data | t)`.
     pub(crate) fn log_likelihood(&self, frame: &NormalFrame) -> f64 {
         strength_prior::penalty(frame, &self.position) - self.value
     }

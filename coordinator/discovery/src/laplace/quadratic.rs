@@ -22,7 +22,7 @@ pub(crate) fn quadratic(
     let count = point.position.len();
     let mut gradient = point.position.clone();
     let mut hessian = DMatrix::identity(count, count);
-    // Values that cannot be whitened have no likelihood, and so are no point.
+    // An evaluated point has a likelihood, so its values can be whitened.
     if let Ok(whitening) = likelihood.whitening(&point.values, &frame.theta(&point.position)) {
         let scaled: Vec<Vec<f64>> = columns.iter().map(|column| whitening.apply(column)).collect();
         for k in 0..count {

@@ -1,4 +1,4 @@
-//! Points one standard deviation from the mode, which show how far a fit's predictions are uncertain.
+//! Points one standard deviation from the mode, which give the uncertainty of a fit's predictions.
 
 use nalgebra::Cholesky;
 
@@ -6,18 +6,18 @@ use crate::laplace::fit::LaplaceFit;
 use crate::settings::Roughness;
 use statistics::likelihood::Likelihood;
 
-/// Parameter vectors one standard deviation to either side of a fit's mode, along one column of the factor L of the posterior covariance
-/// L L' by Laplace's approximation.
+/// Parameter vectors one standard deviation to either side of a fit's mode, along a column of the factor L of the posterior
+/// covariance L L' by Laplace's approximation.
 #[derive(Debug, Clone)]
 pub(crate) struct Axis {
-    /// Those to evaluate, `None` beyond the limits: of a rough model, whose evaluations are dear, one.
+    /// The vectors to evaluate, `None` beyond the limits. A rough model, whose evaluations are expensive, is evaluated on one side only.
     pub(crate) sides: [Option<Vec<f64>>; 2],
-    /// The one to evaluate where the model rejects those.
+    /// The vector to evaluate if the model rejects these.
     pub(crate) spare: Option<Vec<f64>>,
 }
 
 impl Axis {
-    /// With one side to evaluate, and the other to spare.
+    /// This axis with one side to evaluate and the other in reserve.
     pub(crate) fn one_sided(self) -> Self {
         let [above, below] = self.sides;
         match above {
@@ -51,8 +51,8 @@ pub(crate) fn spread(fit: &LaplaceFit, likelihood: &Likelihood) -> Vec<Axis> {
     (0..mode.len())
         .map(|column| {
             let (above, below) = (theta(column, 1.0), theta(column, -1.0));
-            let is_dear = fit.frame.roughness != Roughness::Smooth && !fit.frame.has_companion;
-            if above.is_some() && is_dear {
+            let is_expensive = fit.frame.roughness != Roughness::Smooth && !fit.frame.has_low_fidelity;
+            if above.is_some() && is_expensive {
                 Axis {
                     sides: [above, None],
                     spare: below,

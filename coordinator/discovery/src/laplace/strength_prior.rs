@@ -6,15 +6,15 @@ use nalgebra::DMatrix;
 use crate::laplace::coordinate::NormalFrame;
 use crate::laplace::evidence::{log_evidence, log_sum_exp, log_volume};
 
-/// Weight and scale of each part, in standard deviations of the stated prior.
+/// Weight and scale of each component, in standard deviations of the stated prior.
 ///
-/// The stated width of a strength's prior is a judgement from the literature, often by orders of magnitude. With 40 % it is taken at
-/// its word; otherwise four times wider, or four or sixteen times narrower. A strength five standard deviations out costs 3.8 nats
-/// and not 12.5; one at a twentieth gains 1.3. Two effects that fit alike are then not told apart by the widths of their priors.
+/// The stated width of a strength's prior is a judgement from the literature, often by orders of magnitude. It holds with 40 %; otherwise
+/// the prior is four times wider, or four or sixteen times narrower. A strength of five standard deviations then costs 3.8 nats instead of
+/// 12.5; one of a twentieth gains 1.3. The widths of the priors alone do not separate two effects that fit alike.
 const PARTS: [(f64, f64); 4] = [(0.4, 1.0), (0.2, 4.0), (0.2, 0.25), (0.2, 0.0625)];
 
 /// `-ln` of the prior density of a position, relative to that of independent standard normals at the origin: `t^2 / 2` of the
-/// coordinates of the base, of shapes and of curves, and `-ln sum_i w_i exp(-t^2 / (2 s_i^2)) / s_i` of each other strength.
+/// coordinates of the base, of shapes and of curves, and `-ln sum_i w_i exp(-t^2 / (2 s_i^2)) / s_i` of the other strengths.
 pub(crate) fn penalty(frame: &NormalFrame, position: &[f64]) -> f64 {
     let all: f64 = position.iter().map(|t| t * t).sum();
     0.5 * all + stated_over_mixed(frame, position)
@@ -22,50 +22,49 @@ pub(crate) fn penalty(frame: &NormalFrame, position: &[f64]) -> f64 {
 
 /// Log of the density of the stated priors of the strengths over that of the mixture.
 pub(crate) fn stated_over_mixed(frame: &NormalFrame, position: &[f64]) -> f64 {
-    let of_strengths = frame.widened.iter().map(|&k| {
+    let log_ratios = frame.widened.iter().map(|&k| {
         let t = position[k];
         -log_sum_exp(log_parts(t)) - 0.5 * t * t
     });
-    of_strengths.sum()
+    log_ratios.sum()
 }
 
-/// Adds the difference from a normal prior to gradient and Hessian: with the strengths given, the mixture is a normal prior of the
-/// precision `sum_i r_i / s_i^2`, r the shares of the parts in its density.
+/// Adds the difference from a normal prior to gradient and Hessian. At given strengths the mixture equals a normal prior of the
+/// precision `sum_i r_i / s_i^2`, where r are the shares of the components in its density.
 pub(crate) fn add(frame: &NormalFrame, position: &[f64], gradient: &mut [f64], hessian: &mut DMatrix<f64>) {
     for &k in &frame.widened {
-        let more = precision(position[k]) - 1.0;
-        gradient[k] += more * position[k];
-        hessian[(k, k)] += more;
+        let excess = precision(position[k]) - 1.0;
+        gradient[k] += excess * position[k];
+        hessian[(k, k)] += excess;
     }
 }
 
-/// A part of the mixture: one of the normal priors for each strength.
+/// A component of the mixture: one of the normal priors for each strength.
 struct MixturePart {
-    /// With that prior.
     quadratic: QuadraticModel,
     value: f64,
-    /// Log density of that prior at its highest, relative to standard normals.
+    /// Log density of that prior at its peak, relative to standard normals.
     log_peak: f64,
 }
 
-/// Log evidence under the mixture: the parts are normal priors, so their evidences add.
+/// Log evidence under the mixture: its components are normal priors, whose evidences add.
 ///
 /// # Arguments
 /// - `quadratic`, `value`: the expansion at `position`, with the prior of [`add`] and [`penalty`].
-/// - `most_gain`: nats by which the likelihood may rise above that at `position` where a part's prior is wider than the mixture there.
-///   The expansion of a fit that a narrow part holds near absence predicts any gain, but no step has reached it.
+/// - `max_gain`: how far the likelihood may rise above that at `position`, in nats, where a component is wider than the mixture
+///   there. The expansion of a fit that a narrow component holds near absence predicts any gain, but no step has reached it.
 ///
 /// # Returns
 /// Nats; `None` where a Hessian is not positive definite.
 ///
 /// # Validity
-/// As [`log_evidence`]. Checked by `effect_search::evidence_of_a_linear_extension_is_exact`.
+/// That of [`log_evidence`]. Checked by `effect_search::evidence_of_a_linear_extension_is_exact`.
 pub(crate) fn mixed_evidence(
     frame: &NormalFrame,
     position: &[f64],
     quadratic: &QuadraticModel,
     value: f64,
-    most_gain: f64,
+    max_gain: f64,
 ) -> Option<f64> {
     let mut parts = vec![MixturePart {
         quadratic: quadratic.clone(),
@@ -74,54 +73,54 @@ pub(crate) fn mixed_evidence(
     }];
     for &k in &frame.widened {
         let t = position[k];
-        let own = -log_sum_exp(log_parts(t));
+        let log_mixture = -log_sum_exp(log_parts(t));
         let with = |part: &MixturePart| {
-            let of_part = |(log_part, (weight, scale)): (f64, (f64, f64))| MixturePart {
+            let component = |(log_part, (weight, scale)): (f64, (f64, f64))| MixturePart {
                 quadratic: with_precision(&part.quadratic, k, t, 1.0 / (scale * scale)),
-                value: part.value - own - log_part,
+                value: part.value - log_mixture - log_part,
                 log_peak: part.log_peak + libm::log(weight / scale),
             };
-            log_parts(t).zip(PARTS).map(of_part).collect::<Vec<_>>()
+            log_parts(t).zip(PARTS).map(component).collect::<Vec<_>>()
         };
         parts = parts.iter().flat_map(with).collect();
     }
     let halves = frame.halves();
-    let most = most_gain + highest(frame, position, value);
+    let limit = max_gain + highest(frame, position, value);
     let evidence = |part: &MixturePart| {
-        let own = log_evidence(&part.quadratic, part.value, &halves)?;
-        Some(own.min(most + part.log_peak + log_volume(&part.quadratic)?))
+        let evidence = log_evidence(&part.quadratic, part.value, &halves)?;
+        Some(evidence.min(limit + part.log_peak + log_volume(&part.quadratic)?))
     };
     let evidences: Option<Vec<f64>> = parts.iter().map(evidence).collect();
     Some(log_sum_exp(evidences?.into_iter()))
 }
 
-/// ln of likelihood times priors at a position of this `value`, with the half-normal priors doubled and without those of the widened
-/// strengths.
+/// `ln(likelihood times priors)` at a position of this `value`, with half-normal priors doubled and without the priors of the
+/// widened strengths.
 fn highest(frame: &NormalFrame, position: &[f64], value: f64) -> f64 {
-    let of_strengths = frame
+    let log_mixtures = frame
         .widened
         .iter()
         .map(|&k| -log_sum_exp(log_parts(position[k])));
-    libm::log(2.0) * frame.halves().len() as f64 - value + of_strengths.sum::<f64>()
+    libm::log(2.0) * frame.halves().len() as f64 - value + log_mixtures.sum::<f64>()
 }
 
-/// The log evidence under the stated priors less [`mixed_evidence`]: nats, `None` as there.
+/// The log evidence under the stated priors less [`mixed_evidence`] \[nats\]; `None` where a Hessian is not positive definite.
 ///
 /// # Arguments
-/// - `most_gain`: as of [`mixed_evidence`], for both: a bound for one alone would be the difference.
+/// - `max_gain`: bounds both evidences, because a bound of one alone would be the difference.
 pub(crate) fn stated_less_mixed(
     frame: &NormalFrame,
     position: &[f64],
     quadratic: &QuadraticModel,
     value: f64,
-    most_gain: f64,
+    max_gain: f64,
 ) -> Option<f64> {
     let stated = stated(frame, position, quadratic);
     let squares: f64 = position.iter().map(|t| t * t).sum();
     let stated_value = value - penalty(frame, position) + 0.5 * squares;
-    let most = most_gain + highest(frame, position, value) + log_volume(&stated)?;
-    let own = log_evidence(&stated, stated_value, &frame.halves())?.min(most);
-    Some(own - mixed_evidence(frame, position, quadratic, value, most_gain)?)
+    let limit = max_gain + highest(frame, position, value) + log_volume(&stated)?;
+    let evidence = log_evidence(&stated, stated_value, &frame.halves())?.min(limit);
+    Some(evidence - mixed_evidence(frame, position, quadratic, value, max_gain)?)
 }
 
 /// The expansion with the stated priors of the strengths.
@@ -132,12 +131,12 @@ pub(crate) fn stated(frame: &NormalFrame, position: &[f64], quadratic: &Quadrati
     })
 }
 
-/// The expansion with a normal prior of another precision of the strength `k`, at t.
-fn with_precision(quadratic: &QuadraticModel, k: usize, t: f64, own: f64) -> QuadraticModel {
+/// The expansion with a normal prior of another precision for the strength `k`, at t.
+fn with_precision(quadratic: &QuadraticModel, k: usize, t: f64, new_precision: f64) -> QuadraticModel {
     let mut changed = quadratic.clone();
-    let more = own - precision(t);
-    changed.gradient[k] += more * t;
-    changed.hessian[(k, k)] += more;
+    let excess = new_precision - precision(t);
+    changed.gradient[k] += excess * t;
+    changed.hessian[(k, k)] += excess;
     changed
 }
 
@@ -188,10 +187,10 @@ mod tests {
             held: vec![false],
         };
         let value = penalty(&frame, &position);
-        let evidence = |most| mixed_evidence(&frame, &position, &quadratic, value, most).unwrap();
+        let evidence = |max_gain| mixed_evidence(&frame, &position, &quadratic, value, max_gain).unwrap();
         assert!(evidence(f64::INFINITY) > 100.0);
         assert!(evidence(3.0) < 3.0 && evidence(3.0) > 0.0);
-        let stated = |most| stated_less_mixed(&frame, &position, &quadratic, value, most).unwrap();
+        let stated = |max_gain| stated_less_mixed(&frame, &position, &quadratic, value, max_gain).unwrap();
         assert!(stated(f64::INFINITY) < -100.0);
         assert!(stated(3.0).abs() < 2.0, "{}", stated(3.0));
     }

@@ -34,12 +34,10 @@ impl Student {
         })
     }
 
-    /// The scale matrix.
     pub(crate) fn scale(&self) -> DMatrix<f64> {
         &self.factor * self.factor.transpose()
     }
 
-    /// The next draw of a stream.
     pub(crate) fn draw(&self, stream: &mut Stream) -> Vec<f64> {
         let dimension = self.mean.len();
         let normals = stream.normals(dimension + FREEDOM);
@@ -49,7 +47,6 @@ impl Student {
         (&self.mean + &self.factor * z).iter().copied().collect()
     }
 
-    /// Log density at a position.
     pub(crate) fn log_density(&self, position: &[f64]) -> f64 {
         let off = DVector::from_column_slice(position) - &self.mean;
         let squares = self

@@ -4,14 +4,14 @@ use crate::effect_search::ranking::RankedEffect;
 use crate::effect_search::state::EffectSearch;
 use crate::search::query::{QueriedModel, Query};
 
-/// A search beyond a combination of effects, or a fit of the base without one of its own.
+/// A search beyond a combination of effects, or a fit of the base without one of its effects.
 #[derive(Debug, Clone)]
 pub(super) struct SearchBranch {
     /// The effects of its model beyond the base.
     pub(super) effects: Vec<usize>,
-    /// The base's own effect that it lacks.
+    /// The effect of the base that is left out.
     pub(super) reduction: Option<usize>,
-    /// The index in the task of each of its candidates.
+    /// The index in the task of each candidate of this search.
     candidates: Vec<usize>,
     pub(super) search: EffectSearch,
 }
@@ -34,7 +34,7 @@ impl SearchBranch {
         }
     }
 
-    /// The queries of its round; none once it is done.
+    /// The queries of the current round; none once the search is done.
     pub(super) fn queries(&self) -> Vec<Query> {
         if self.search.ranking().is_some() || self.search.failure().is_some() {
             return Vec::new();
@@ -54,16 +54,15 @@ impl SearchBranch {
         queries.collect()
     }
 
-    /// Takes all answers of its round.
     pub(super) fn take(&mut self, answers: Vec<Option<Vec<f64>>>) {
         for (index, values) in answers.into_iter().enumerate() {
             // The values were checked when they arrived, and each index is told once.
-            let told = self.search.tell(index, values.as_deref());
-            debug_assert!(told.is_ok(), "{told:?}");
+            let result = self.search.tell(index, values.as_deref());
+            debug_assert!(result.is_ok(), "{result:?}");
         }
     }
 
-    /// The candidates by falling Bayes factor, with their indices in the task.
+    /// The candidates by falling Bayes factor, each with its index in the task.
     pub(super) fn ranked(&self) -> Vec<(usize, &RankedEffect)> {
         let ranked = self
             .search

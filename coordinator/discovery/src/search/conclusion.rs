@@ -5,7 +5,7 @@ use crate::effect_search::ranking::EffectRanking;
 use crate::laplace::draws::draws;
 use crate::laplace::fit::LaplaceFit;
 use crate::probability::DETECTED;
-use crate::search::hypotheses::FittedLaw;
+use crate::search::hypotheses::{FittedLaw, Hypotheses};
 use crate::search::next_run::{InformativeRun, RunChoice};
 use crate::search::noise_support::unsupported_noise;
 use crate::search::state::SearchState;
@@ -13,20 +13,32 @@ use crate::search::verdict::SearchVerdict;
 use crate::search::weighing::{WeighedSet, Weighing};
 use crate::task::SearchTask;
 
-/// Most of the library's chi-square excess that a law outside the library may leave.
-const MOST_LEFT: f64 = 0.25;
-/// Posterior draws of a model, and their random streams, after those of the open explanations.
+/// A law outside the library explains the misfit if it leaves at most this share of the library's chi-square excess.
+const MAX_LEFT: f64 = 0.25;
+/// Number of posterior draws of a model, and the numbers of their random streams, which follow those of the open explanations.
 const DRAWS: usize = 33;
-const OF_BASE: u64 = 1000;
-const OF_BEST: u64 = 1001;
+const BASE_STREAM: u64 = 1000;
+const BEST_STREAM: u64 = 1001;
 
 /// A model with posterior draws of its parameters.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PosteriorModel {
-    /// Its effects beyond the base.
+    /// The effects added to the base.
     pub effects: Vec<usize>,
-    /// Draws of the base's parameters and theirs by Laplace's approximation, the mode first.
+    /// Draws of all parameters by Laplace's approximation, the mode first.
     pub draws: Vec<Vec<f64>>,
+}
+
+impl PosteriorModel {
+    /// # Arguments
+    /// - `fit`: of the model; `None` leaves it without draws. `stream`: number of the random streams.
+    fn new(task: &SearchTask, effects: Vec<usize>, fit: Option<&LaplaceFit>, stream: u64) -> Self {
+        let draws = fit.map(|fit| draws(fit, &task.likelihood, task.settings.seed, stream, DRAWS));
+        Self {
+            effects,
+            draws: draws.unwrap_or_default(),
+        }
+    }
 }
 
 /// A law outside the library.
@@ -34,26 +46,37 @@ pub struct PosteriorModel {
 pub struct OutsideLaw {
     /// Index of the law in the task.
     pub law: usize,
-    /// Its form, or its curve.
+    /// Index of the candidate: the best form of the law, or its curve.
     pub candidate: usize,
     /// Log evidence over that of the base.
     pub log_bayes_factor: f64,
-    /// Its most probable parameters.
+    /// The most probable parameters of the law.
     pub parameters: Vec<f64>,
-    /// Log predictive density of left-out levels over that of the base and of the library's best.
+    /// Log predictive density of left-out levels over that of the base, and over that of the library's best.
     pub left_out_nats: [f64; 2],
+}
+
+impl OutsideLaw {
+    fn new(task: &SearchTask, law: &FittedLaw) -> Self {
+        Self {
+            law: law.law,
+            candidate: law.candidate,
+            log_bayes_factor: law.log_bayes_factor,
+            parameters: law.fit.theta()[task.prior.dimension()..].to_vec(),
+            left_out_nats: law.left_out.unwrap_or([0.0; 2]),
+        }
+    }
 }
 
 /// The result of a search.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Conclusion {
-    /// What the data support.
+    /// The verdict that the data support.
     pub verdict: SearchVerdict,
-    /// The parameter of the base that the best explanation puts near the limit of the search, by its index, with its normal score:
-    /// evidences then measure how each explanation relieves that prior, and nothing is claimed. `None` without one.
+    /// Index and normal score of the base's parameter that the best explanation puts near the limit of the search. Evidences then
+    /// measure how each explanation relieves that prior, so nothing is claimed. `None` if there is none.
     pub implausible: Option<(usize, f64)>,
-    /// The inferred noise sds, by their parameters of the base, that are not known well enough for a claim: nothing is claimed then. Empty
-    /// where nothing was detected.
+    /// Indices of the inferred noise sds that are too uncertain for a claim; nothing is claimed then. Empty if nothing was detected.
     pub unsupported_noise: Vec<usize>,
     /// The single effects, with the probabilities of all explanations.
     pub ranking: EffectRanking,
@@ -63,14 +86,14 @@ pub struct Conclusion {
     pub predicted_by_law: Option<Vec<f64>>,
     /// Every model that was compared, by falling probability.
     pub sets: Vec<WeighedSet>,
-    /// The effect with which to begin, where the verdict is open but evidence and prediction agree on the best set.
+    /// The effect to begin with, if the verdict is open but evidence and prediction agree on the best set.
     pub agreed: Option<usize>,
-    /// Whether the best explanation leaves nothing to explain by the declared noise; `None` where the noise is not known.
+    /// Whether the best explanation fits the declared noise; `None` where the noise is not known.
     pub complete: Option<bool>,
-    /// The share of the base's excess chi-square that the best explanation takes away, 0 to 1; `None` without an excess, and where the
-    /// noise is not known.
+    /// The share of the base's excess chi-square that the best explanation removes, 0 to 1; `None` without an excess or with unknown noise.
     pub explained: Option<f64>,
-    /// What the best explanation leaves of each datum, in noise sds (declared and numerical); empty where it is complete or the noise is not known.
+    /// Residual of each datum under the best explanation, in noise sds (declared and numerical); empty if it is complete or the
+    /// noise unknown.
     pub remaining: Vec<f64>,
     /// Chi-square of the best explanation over its degrees of freedom, by which log Bayes factors are divided before they become
     /// probabilities; 1 where it fits.
@@ -79,101 +102,122 @@ pub struct Conclusion {
     pub outside: Option<OutsideLaw>,
     /// The effects of the best combination.
     pub combination: Vec<usize>,
-    /// Log Bayes factor of the base over each of its reductions; `None` where that cannot be fitted.
+    /// Log Bayes factor of the base over each of its reductions; `None` where the reduction cannot be fitted.
     pub gains: Vec<Option<f64>>,
     /// Goodness of fit of the base.
     pub chi_square: Option<FitChiSquare>,
     /// Goodness of fit of the best explanation.
     pub chi_square_best: Option<FitChiSquare>,
-    /// The base.
+    /// The base with posterior draws.
     pub base: PosteriorModel,
     /// The base with the law or the best combination.
     pub best: PosteriorModel,
     /// Runs to make next.
     pub next_runs: Vec<InformativeRun>,
-    /// Index of each proposed run with what it would tell by itself \[nats\]; empty where no explanations are compared.
+    /// Index of each proposed run with its information when made alone \[nats\]; empty where no explanations are compared.
     pub information: Vec<(usize, f64)>,
-    /// Scatter of the model's predictions about a smooth function of its parameters, which counts as noise: an sd for each channel by its
-    /// index, in its unit; empty where it is negligible.
+    /// Numerical noise sd of each channel by its index, in its unit, which counts as noise of the data; empty where it is negligible.
     pub numerical_noise_sds: Vec<f64>,
-    /// All evaluations; those of the search for one effect stand in the ranking.
+    /// Number of all evaluations; the ranking has those of the search for one effect.
     pub evaluations: usize,
 }
 
-/// Whether a law explains the misfit of the library's best: it fits, or leaves little of the excess.
-fn explains(task: &SearchTask, of_library: Option<FitChiSquare>, law: &FittedLaw) -> bool {
-    match (of_library, FitChiSquare::of(&law.fit, &task.likelihood)) {
-        (Some(library), Some(own)) => !own.is_wrong() || own.excess() < MOST_LEFT * library.excess(),
-        _ => true,
+/// The reasons for which a claim is withheld.
+struct Objections {
+    implausible: Option<(usize, f64)>,
+    unsupported_noise: Vec<usize>,
+}
+
+impl Objections {
+    /// - `explanation`: the fit of the law or combination that may be claimed. If only the base needs a parameter far out in its
+    ///   prior, that is no objection: a missing effect shows in this way.
+    fn new(
+        task: &SearchTask,
+        base: Option<&LaplaceFit>,
+        explanation: Option<&LaplaceFit>,
+        supported: SearchVerdict,
+    ) -> Self {
+        let explanation = explanation.filter(|_| supported != SearchVerdict::NothingDetectable);
+        Self {
+            implausible: explanation.and_then(|fit| fit.frame.implausible(&fit.point.position)),
+            unsupported_noise: match (base, explanation) {
+                (Some(base), Some(best)) => unsupported_noise(task, base, best),
+                _ => Vec::new(),
+            },
+        }
+    }
+
+    fn any(&self) -> bool {
+        self.implausible.is_some() || !self.unsupported_noise.is_empty()
     }
 }
 
-impl Conclusion {
-    pub(super) fn new(state: &SearchState, choice: RunChoice) -> Self {
-        let SearchState {
-            task,
-            hypotheses,
-            evaluations,
-            numerical_noise_sds,
-            ..
-        } = state;
-        let weighing = Weighing::new(task, hypotheses);
-        let chi_square = |fit: &LaplaceFit| FitChiSquare::of(fit, &task.likelihood);
-        let of_library = hypotheses.detected_of_library(task.library.len());
-        let of_library = of_library.map(|best| &best.fit).or(hypotheses.base_fit());
-        let law = hypotheses.confirmed_law();
-        let law = law.filter(|law| explains(task, of_library.and_then(chi_square), law));
-        let supported = SearchVerdict::new(
-            task,
-            &weighing,
-            hypotheses,
-            law,
-            hypotheses.is_incomplete(&task.likelihood),
-        );
-        let law = law.filter(|_| supported == SearchVerdict::NotInLibrary);
-        let detected = hypotheses.detected();
-        let base = hypotheses.base_fit();
-        let (effects, fit) = match (law, detected) {
-            (Some(law), _) => (vec![law.candidate], Some(&law.fit)),
-            (None, Some(best)) => (best.effects.clone(), Some(&best.fit)),
-            (None, None) => (Vec::new(), base),
-        };
-        // A parameter that only the base needs far out is how a missing effect shows.
-        let explained_by = law.map(|law| &law.fit).or(detected.map(|best| &best.fit));
-        let implausible = explained_by
-            .filter(|_| supported != SearchVerdict::NothingDetectable)
-            .and_then(|fit| fit.frame.implausible(&fit.point.position));
-        let unsupported_noise = match (base, explained_by) {
-            (Some(base), Some(best)) if supported != SearchVerdict::NothingDetectable => {
-                unsupported_noise(task, base, best)
-            }
-            _ => Vec::new(),
-        };
-        let is_withheld = implausible.is_some() || !unsupported_noise.is_empty();
-        let verdict = match supported {
-            claim if is_withheld && claim.is_claim() => SearchVerdict::Undecided,
-            supported => supported,
-        };
-        let model = |effects: Vec<usize>, fit: Option<&LaplaceFit>, number: u64| PosteriorModel {
-            effects,
-            draws: fit.map_or(Vec::new(), |fit| {
-                draws(fit, &task.likelihood, task.settings.seed, number, DRAWS)
-            }),
-        };
-        let known = |fit: &LaplaceFit| FitChiSquare::of_known_noise(fit, &task.likelihood);
-        let (before, after) = (base.and_then(known), fit.and_then(known));
+/// The misfit that the best explanation leaves, measured by the declared noise.
+struct Remainder {
+    complete: Option<bool>,
+    explained: Option<f64>,
+    residuals: Vec<f64>,
+}
+
+impl Remainder {
+    fn new(task: &SearchTask, base: Option<&LaplaceFit>, best: Option<&LaplaceFit>) -> Self {
+        let chi_square = |fit: &LaplaceFit| FitChiSquare::of_declared_noise(fit, &task.likelihood);
+        let (before, after) = (base.and_then(chi_square), best.and_then(chi_square));
         let excess = before.map(|chi| chi.excess()).filter(|excess| *excess > 0.0);
         let left = after.map(|chi| chi.excess().max(0.0));
-        let incomplete = fit.filter(|_| after.is_some_and(|chi| !chi.is_complete()));
+        let incomplete = best.filter(|_| after.is_some_and(|chi| !chi.is_complete()));
         Self {
-            verdict,
-            implausible,
-            unsupported_noise,
-            remaining: incomplete.map_or(Vec::new(), |fit| residuals(fit, &task.likelihood)),
             complete: after.map(|chi| chi.is_complete()),
             explained: excess
                 .zip(left)
                 .map(|(excess, left)| (1.0 - left / excess).max(0.0)),
+            residuals: incomplete.map_or(Vec::new(), |fit| residuals(fit, &task.likelihood)),
+        }
+    }
+}
+
+/// The confirmed law, if it fits or leaves little of the chi-square excess of the library's best.
+fn explaining_law<'a>(task: &SearchTask, hypotheses: &'a Hypotheses) -> Option<&'a FittedLaw> {
+    let library = hypotheses.detected_of_library(task.library.len());
+    let library = library.map(|best| &best.fit).or(hypotheses.base_fit());
+    let chi_square = |fit: &LaplaceFit| FitChiSquare::of_fit(fit, &task.likelihood);
+    let law = hypotheses.confirmed_law()?;
+    let explains = match (library.and_then(chi_square), chi_square(&law.fit)) {
+        (Some(library), Some(law)) => !law.is_wrong() || law.excess() < MAX_LEFT * library.excess(),
+        _ => true,
+    };
+    explains.then_some(law)
+}
+
+impl Conclusion {
+    pub(super) fn new(state: &SearchState, choice: RunChoice) -> Self {
+        let (task, hypotheses) = (&state.task, &state.hypotheses);
+        let likelihood = &task.likelihood;
+        let weighing = Weighing::new(task, hypotheses);
+        let law = explaining_law(task, hypotheses);
+        let is_incomplete = hypotheses.is_incomplete(likelihood);
+        let supported = SearchVerdict::new(task, &weighing, hypotheses, law, is_incomplete);
+        let law = law.filter(|_| supported == SearchVerdict::NotInLibrary);
+        let (base, detected) = (hypotheses.base_fit(), hypotheses.detected());
+        let explanation = law.map(|law| &law.fit).or(detected.map(|best| &best.fit));
+        let objections = Objections::new(task, base, explanation, supported);
+        let is_withheld = objections.any();
+        let verdict = if is_withheld && supported.is_claim() {
+            SearchVerdict::Undecided
+        } else {
+            supported
+        };
+        let remainder = Remainder::new(task, base, explanation.or(base));
+        let combination = detected.map_or(Vec::new(), |best| best.effects.clone());
+        let effects = law.map_or_else(|| combination.clone(), |law| vec![law.candidate]);
+        let chi_square = |fit: &LaplaceFit| FitChiSquare::of_fit(fit, likelihood);
+        Self {
+            verdict,
+            implausible: objections.implausible,
+            unsupported_noise: objections.unsupported_noise,
+            remaining: remainder.residuals,
+            complete: remainder.complete,
+            explained: remainder.explained,
             agreed: weighing
                 .agreed()
                 .filter(|_| verdict == SearchVerdict::Undecided && !is_withheld),
@@ -187,30 +231,22 @@ impl Conclusion {
             misfit: weighing.misfit,
             outside: law
                 .filter(|_| verdict == SearchVerdict::NotInLibrary)
-                .map(|law| OutsideLaw {
-                    law: law.law,
-                    candidate: law.candidate,
-                    log_bayes_factor: law.log_bayes_factor,
-                    parameters: law.fit.theta()[task.prior.dimension()..].to_vec(),
-                    left_out_nats: law.left_out.unwrap_or([0.0; 2]),
-                }),
-            combination: detected.map_or(Vec::new(), |best| best.effects.clone()),
+                .map(|law| OutsideLaw::new(task, law)),
+            combination,
             gains: hypotheses.gains.clone(),
             chi_square: base.and_then(chi_square),
-            chi_square_best: law.map_or_else(
-                || hypotheses.chi_square(&task.likelihood),
-                |law| chi_square(&law.fit),
-            ),
-            base: model(Vec::new(), base, OF_BASE),
-            best: model(effects, fit, OF_BEST),
+            chi_square_best: law
+                .map_or_else(|| hypotheses.chi_square(likelihood), |law| chi_square(&law.fit)),
+            base: PosteriorModel::new(task, Vec::new(), base, BASE_STREAM),
+            best: PosteriorModel::new(task, effects, explanation.or(base), BEST_STREAM),
             next_runs: choice.runs,
             information: choice.alone,
-            numerical_noise_sds: numerical_noise_sds.clone(),
-            evaluations: *evaluations,
+            numerical_noise_sds: state.numerical_noise_sds.clone(),
+            evaluations: state.evaluations,
         }
     }
 
-    /// The reductions without which the base loses no detectable evidence: effects that may be dropped.
+    /// The reductions that cost no detectable evidence: their effects may be dropped.
     pub fn redundant(&self) -> impl Iterator<Item = usize> {
         let gains = self.gains.iter().enumerate();
         gains

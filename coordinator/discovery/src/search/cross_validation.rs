@@ -1,4 +1,4 @@
-//! Cross-validation: models fitted without some of the data, and their prediction of these.
+//! Cross-validation: models are fitted without some of the data, and predict these.
 
 use std::collections::BTreeMap;
 
@@ -11,14 +11,14 @@ use statistics::likelihood::Likelihood;
 /// Refits begin at the fit to all data, so a few steps suffice.
 const PLAN: [FitStep; 2] = [FitStep::Differences, FitStep::Trials(6)];
 
-/// A model to compare: its effects, the number of parameters of its last one, and its fit to all data.
+/// A model to compare: its effects, the number of parameters of the last one, and its fit to all data.
 pub(super) type ComparedModel<'a> = (Vec<usize>, usize, &'a LaplaceFit);
 
 /// One model fitted without one level.
 #[derive(Debug, Clone)]
 struct Refit {
     part: Likelihood,
-    /// Index of each of the part's values among all.
+    /// Index among all data of each value of the part.
     places: Vec<usize>,
     fit: LaplaceFit,
     /// All predicted values at the fit's point.
@@ -31,22 +31,22 @@ fn bits(values: &[f64]) -> Vec<u64> {
     values.iter().map(|x| x.to_bits()).collect()
 }
 
-/// What the refits of a model follow from: likelihood and levels are those of the search, and of one model two fits to all data that
-/// end at the same point are the same fit.
+/// The identity of a refitted model. Likelihood and levels are those of the search, and two fits of one model that end at the same
+/// point have the same refits.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct ModelKey {
     effects: Vec<usize>,
-    /// Number of parameters of its last effect.
-    own: usize,
+    /// Number of parameters of the last effect.
+    last_parameters: usize,
     /// The bits of the coordinates of the fit to all data.
     position: Vec<u64>,
 }
 
 impl ModelKey {
-    fn of((effects, own, fit): &ComparedModel) -> Self {
+    fn new((effects, last_parameters, fit): &ComparedModel) -> Self {
         ModelKey {
             effects: effects.clone(),
-            own: *own,
+            last_parameters: *last_parameters,
             position: bits(&fit.point.position),
         }
     }
@@ -56,29 +56,29 @@ impl ModelKey {
 #[derive(Debug, Clone)]
 pub(super) struct RefittedModel {
     key: ModelKey,
-    /// Of each level; `None` where it cannot be fitted without the level.
+    /// The refit without each level; `None` where it is impossible.
     refits: Vec<Option<Refit>>,
 }
 
 impl RefittedModel {
     fn new(levels: &[LeftOutLevel], model: &ComparedModel) -> Self {
-        let (_, own, fit) = model;
+        let (_, last_parameters, fit) = model;
         let refit = |level: &LeftOutLevel| {
             let LeftOutLevel { part, kept, .. } = level;
-            let taken = |values: &[f64]| kept.iter().map(|&i| values[i]).collect::<Vec<f64>>();
+            let selected = |values: &[f64]| kept.iter().map(|&i| values[i]).collect::<Vec<f64>>();
             let position = fit.point.position.clone();
-            let point = FitPoint::new(&fit.frame, part, position, taken(&fit.point.values))?;
-            let columns = fit.columns.iter().map(|column| taken(column)).collect();
+            let point = FitPoint::new(&fit.frame, part, position, selected(&fit.point.values))?;
+            let columns = fit.columns.iter().map(|column| selected(column)).collect();
             let corrections = fit.corrections.iter();
-            let part_of = |own: &Correction| Correction {
-                beyond: taken(&own.beyond),
-                ..*own
+            let part_of = |correction: &Correction| Correction {
+                beyond: selected(&correction.beyond),
+                ..*correction
             };
-            let corrections: Vec<_> = corrections.map(|own| own.as_ref().map(part_of)).collect();
+            let corrections: Vec<_> = corrections.map(|slot| slot.as_ref().map(part_of)).collect();
             let refit = LaplaceFit::new(fit.frame.clone(), point, columns, &PLAN);
             let mut refit = refit.corrected(&corrections);
             // Shapes are held: a threshold that moves with every left-out level does not generalise.
-            let first = fit.frame.dimension() - own;
+            let first = fit.frame.dimension() - last_parameters;
             refit.hold((first..fit.frame.dimension()).filter(|k| !fit.frame.is_strength(*k)));
             Some(Refit {
                 fit: refit,
@@ -89,7 +89,7 @@ impl RefittedModel {
             })
         };
         RefittedModel {
-            key: ModelKey::of(model),
+            key: ModelKey::new(model),
             refits: levels.iter().map(refit).collect(),
         }
     }
@@ -99,15 +99,15 @@ impl RefittedModel {
 #[derive(Debug, Clone)]
 struct LeftOutLevel {
     left: Likelihood,
-    /// Index of each of its values among all.
+    /// Index among all data of each left-out value.
     places: Vec<usize>,
-    /// The other data, and the index of each of their values.
+    /// The remaining data, and the index of each of their values.
     part: Likelihood,
     kept: Vec<usize>,
 }
 
 impl LeftOutLevel {
-    /// `None` of no data and of all.
+    /// `None` if the level has no data, or all.
     fn new(likelihood: &Likelihood, left: &[usize]) -> Option<Self> {
         let count = likelihood.data().len();
         let kept: Vec<usize> = (0..count).filter(|i| !left.contains(i)).collect();
@@ -130,28 +130,28 @@ impl LeftOutLevel {
 pub(super) struct CrossValidation {
     levels: Vec<LeftOutLevel>,
     models: Vec<RefittedModel>,
-    /// Of each position that a refit waits for, in their order, the number of the query that answers it.
+    /// The number of the query that answers each position for which a refit waits.
     answered_by: Vec<usize>,
 }
 
 impl CrossValidation {
-    /// Empty levels and those with all data are left out.
+    /// Compares models on all levels; levels with no data or all data are skipped.
     ///
     /// # Arguments
-    /// - `known`: models that were refitted before, of the same likelihood and levels, and are not fitted again.
+    /// - `earlier`: models that were refitted with the same likelihood and levels, and are not fitted again.
     pub(super) fn new(
         likelihood: &Likelihood,
         levels: &[Vec<usize>],
         models: &[ComparedModel],
-        known: &BTreeMap<ModelKey, RefittedModel>,
+        earlier: &BTreeMap<ModelKey, RefittedModel>,
     ) -> Self {
         let levels = levels
             .iter()
             .filter_map(|left| LeftOutLevel::new(likelihood, left));
         let levels: Vec<LeftOutLevel> = levels.collect();
         let refitted = |model: &ComparedModel| {
-            let known = known.get(&ModelKey::of(model)).cloned();
-            known.unwrap_or_else(|| RefittedModel::new(&levels, model))
+            let earlier = earlier.get(&ModelKey::new(model)).cloned();
+            earlier.unwrap_or_else(|| RefittedModel::new(&levels, model))
         };
         Self {
             models: models.iter().map(refitted).collect(),
@@ -160,13 +160,13 @@ impl CrossValidation {
         }
     }
 
-    /// Its models, which another cross-validation need not fit again.
+    /// The refitted models, for use in another cross-validation.
     pub(super) fn refitted(&self) -> impl Iterator<Item = (ModelKey, RefittedModel)> {
         self.models.iter().map(|model| (model.key.clone(), model.clone()))
     }
 
-    /// The queries of the next round; none once all fits are complete. What several refits of a model ask, as where they begin at the
-    /// fit to all data with the same differences, is asked once.
+    /// The queries of the next round; none once all fits are complete. Refits of a model that ask for the same parameters, for
+    /// example the first differences at the fit to all data, share a query.
     pub(super) fn queries(&mut self) -> Vec<Query> {
         let mut queries = Vec::new();
         self.answered_by.clear();
@@ -175,17 +175,17 @@ impl CrossValidation {
             let effects = &model.key.effects;
             for refit in model.refits.iter_mut().flatten() {
                 refit.waiting = refit.fit.ask(&refit.part);
-                let is_companion = refit.fit.asks_companion();
+                let is_low_fidelity = refit.fit.asks_low_fidelity();
                 for position in &refit.waiting {
                     let theta = refit.fit.frame.theta(position);
-                    let key = (effects.clone(), is_companion, bits(&theta));
+                    let key = (effects.clone(), is_low_fidelity, bits(&theta));
                     let number = *asked.entry(key).or_insert(queries.len());
                     self.answered_by.push(number);
                     if number == queries.len() {
                         queries.push(Query {
                             model: QueriedModel::With(effects.clone()),
                             is_proposed: false,
-                            is_companion,
+                            is_companion: is_low_fidelity,
                             theta,
                         });
                     }
@@ -195,7 +195,6 @@ impl CrossValidation {
         queries
     }
 
-    /// Takes the answers of a round.
     pub(super) fn take(&mut self, answers: &[Option<Vec<f64>>]) {
         let mut answered_by = std::mem::take(&mut self.answered_by).into_iter();
         let refits = self
@@ -209,11 +208,11 @@ impl CrossValidation {
             }
             let numbers = answered_by.by_ref().take(waiting.len());
             let all: Vec<Option<&Vec<f64>>> = numbers.map(|number| answers[number].as_ref()).collect();
-            let taken = |values: &Vec<f64>| refit.places.iter().map(|&i| values[i]).collect::<Vec<f64>>();
-            let parts = all.iter().map(|values| values.map(taken)).collect();
-            let is_companion = refit.fit.asks_companion();
+            let selected = |values: &Vec<f64>| refit.places.iter().map(|&i| values[i]).collect::<Vec<f64>>();
+            let parts = all.iter().map(|values| values.map(selected)).collect();
+            let is_low_fidelity = refit.fit.asks_low_fidelity();
             refit.fit.tell(&refit.part, parts);
-            if is_companion {
+            if is_low_fidelity {
                 continue;
             }
             let at = waiting.iter().position(|w| *w == refit.fit.point.position);
@@ -223,8 +222,8 @@ impl CrossValidation {
         }
     }
 
-    /// Log predictive density of each model over that of the first, summed over the levels that all of them predict; `None` without
-    /// such a level.
+    /// Log predictive density of each model over that of the first, summed over the levels that all models predict; `None` if there
+    /// are none.
     pub(super) fn gains(&self) -> Option<Vec<f64>> {
         let mut sums = vec![0.0; self.models.len()];
         let mut predicted = 0;

@@ -11,7 +11,7 @@ use crate::task::SearchTask;
 use inference::{InferenceFailure, Proposal, ProposalRound, TellError, TellProgress};
 use statistics::likelihood::LikelihoodError;
 
-/// An ask/tell search for what a model is missing.
+/// An ask/tell search for the effects that a model is missing.
 ///
 /// Its state is a function of the task and the told values, whatever their order within a round.
 #[derive(Debug, Clone)]
@@ -26,7 +26,7 @@ impl DiscoverySearch {
     /// A search whose first round holds the starts of the base's fit.
     ///
     /// # Errors
-    /// [`CandidateError`].
+    /// [`CandidateError`] if the base has no parameter or a candidate is ill-defined.
     pub fn new(task: SearchTask) -> Result<Self, CandidateError> {
         task.candidates().iter().try_for_each(Candidate::check)?;
         let search = EffectSearch::new(
@@ -76,11 +76,12 @@ impl DiscoverySearch {
     /// Takes the values that answer a query; the last one of a round advances the search.
     ///
     /// # Arguments
-    /// - `values`: as [`Likelihood::log_likelihood`](statistics::Likelihood::log_likelihood) takes them; on the proposed runs each
+    /// - `values`: as [`Likelihood::log_likelihood`](statistics::Likelihood::log_likelihood) takes them; on proposed runs, each
     ///   channel of each run. `None` where the model rejected the parameters.
     ///
     /// # Errors
-    /// [`TellError`]: told before, never asked for, or not as many finite values as expected. Nothing is changed then.
+    /// [`TellError`] for an answer that was told before or never asked for, or with a wrong number of values or infinite ones. The
+    /// search is unchanged then.
     pub fn tell(&mut self, index: usize, values: Option<&[f64]>) -> Result<TellProgress, TellError> {
         if let (Some(values), Some(query)) = (values, self.queries.get(index)) {
             let (expected, given) = (self.expected(query), values.len());
@@ -135,7 +136,7 @@ impl DiscoverySearch {
         }
     }
 
-    /// Begins the next round, of this stage or of the next one with queries.
+    /// Begins the next round of this stage, or of the next stage that has queries.
     fn ask(&mut self) {
         while !matches!(self.stage, Stage::Done(_) | Stage::Failed(_)) {
             let queries = self.stage.queries();

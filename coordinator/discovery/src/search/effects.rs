@@ -12,9 +12,10 @@ use crate::search::state::SearchState;
 use crate::settings::{Roughness, SearchSettings, Starts};
 use inference::InferenceFailure;
 
-/// Beam width: combinations from which one more effect is searched.
+/// Beam width: number of combinations beyond which a further effect is searched.
 const BEAM: usize = 3;
-/// The same of single effects, where the best explanation so far contradicts the data: two that explain much together may explain little alone.
+/// Number of single effects beyond which a further effect is searched if the best explanation contradicts the data: two effects
+/// that explain much together may explain little alone.
 const WIDE_BEAM: usize = 6;
 
 impl SearchState {
@@ -58,20 +59,20 @@ impl SearchState {
         self.families()
     }
 
-    /// Searches one more effect beyond the best combinations of a size, unless the library fits.
+    /// Searches one more effect beyond the best combinations of a size, unless the library fits already.
     pub(super) fn beam_search(&mut self, size: usize) -> Stage {
         let hypotheses = &self.hypotheses;
         let is_wide = size == 1 && self.searches_widely();
         let combinations = hypotheses.combinations.iter();
-        let of_size = combinations
+        let eligible = combinations
             .filter(|c| c.effects.len() == size && (c.log_bayes_factor > DETECTED || is_wide))
-            // A model with a switch turned may lack what others have.
+            // A model with another setting may lack effects that the others have.
             .filter(|c| !c.effects.iter().any(|k| self.task.library[*k].is_switch()));
-        let mut best: Vec<&EffectCombination> = of_size.collect();
+        let mut best: Vec<&EffectCombination> = eligible.collect();
         let width = if is_wide { WIDE_BEAM } else { BEAM };
-        // The best set of a family goes on beside the others: what it lacks yet may hide that it leads.
+        // Keep each family's best set in the beam even if it ranks low: an effect not added yet may make it the winner.
         let is_of_family =
-            |c: &&EffectCombination| hypotheses.of_families.contains(&candidate_set(&c.effects));
+            |c: &&EffectCombination| hypotheses.family_sets.contains(&candidate_set(&c.effects));
         let family = best.iter().position(is_of_family).filter(|place| *place >= width);
         let family = family.map(|place| best[place]);
         best.truncate(width);
@@ -85,13 +86,13 @@ impl SearchState {
         let branches = best.into_iter().enumerate().map(|(rank, combination)| {
             let library = &self.task.library;
             let combines = |k: usize| {
-                let mut own = combination.effects.iter();
-                own.all(|own| *own != k && library[k].combines_with(&library[*own]))
+                let mut effects = combination.effects.iter();
+                effects.all(|effect| *effect != k && library[k].combines_with(&library[*effect]))
             };
-            let others: Vec<usize> = (0..library.len())
+            let further: Vec<usize> = (0..library.len())
                 .filter(|k| combines(*k) && !library[*k].is_switch())
                 .collect();
-            let candidates: Vec<_> = others.iter().map(|&k| self.task.library[k].clone()).collect();
+            let candidates: Vec<_> = further.iter().map(|&k| self.task.library[k].clone()).collect();
             let base = FittedModel {
                 fit: combination.fit.clone(),
                 log_evidence: hypotheses.base_evidence() + combination.log_bayes_factor,
@@ -100,7 +101,7 @@ impl SearchState {
             let seed = self.task.settings.seed;
             let depth = if rank < BEAM { &QUICK } else { &GLANCE };
             let search = EffectSearch::beyond(base, likelihood, &candidates, depth, seed);
-            SearchBranch::new(combination.effects.clone(), others, search)
+            SearchBranch::new(combination.effects.clone(), further, search)
         });
         Stage::BeamSearch(size, branches.collect())
     }
@@ -108,11 +109,11 @@ impl SearchState {
     pub(super) fn after_beam_search(&mut self, size: usize, branches: &[SearchBranch]) -> Stage {
         let base = self.hypotheses.base_evidence();
         for branch in branches {
-            let begun = branch
+            let extended = branch
                 .search
                 .base_fit()
-                .map_or(0.0, |own| own.log_evidence - base);
-            self.add_combinations(branch, begun);
+                .map_or(0.0, |model| model.log_evidence - base);
+            self.add_combinations(branch, extended);
         }
         let has_grown = self
             .hypotheses
@@ -125,24 +126,23 @@ impl SearchState {
         }
     }
 
-    /// Fits the best combination without each of its effects, from its own mode: later effects may have made an earlier one
-    /// redundant.
+    /// Fits the best combination without each of its effects, from its mode: a later effect may have made an earlier one redundant.
     fn backward_elimination(&mut self) -> Stage {
         let Some(best) = self.hypotheses.best().filter(|best| best.effects.len() > 1) else {
             return self.exchanges(0);
         };
         let branches = best.effects.iter().map(|&dropped| {
             let mut frame = self.task.frame();
-            let (own, mut rest) = best.fit.point.position.split_at(self.task.prior.dimension());
-            let mut start = own.to_vec();
+            let (base_position, mut rest) = best.fit.point.position.split_at(self.task.prior.dimension());
+            let mut start = base_position.to_vec();
             let mut effects = Vec::new();
             for &k in &best.effects {
                 let candidate = &self.hypotheses.candidates[k];
-                let (its, others) = rest.split_at(candidate.parameters.len());
-                rest = others;
+                let (coordinates, following) = rest.split_at(candidate.parameters.len());
+                rest = following;
                 if k != dropped {
                     frame = frame.with(candidate);
-                    start.extend_from_slice(its);
+                    start.extend_from_slice(coordinates);
                     effects.push(k);
                 }
             }
@@ -158,8 +158,8 @@ impl SearchState {
         self.exchanges(0)
     }
 
-    /// Whether the best explanation so far contradicts the data, with a model whose evaluations are cheap enough to look for combinations of
-    /// effects that explain little alone.
+    /// Whether combinations of effects that explain little alone are searched: the best explanation contradicts the data, and the
+    /// model's evaluations are cheap.
     pub(super) fn searches_widely(&self) -> bool {
         let is_smooth = self.task.settings.roughness == Roughness::Smooth;
         is_smooth && self.task.max_effects > 1 && self.hypotheses.is_incomplete(&self.task.likelihood)
@@ -179,17 +179,17 @@ impl SearchState {
         }
     }
 
-    /// Keeps the results of a branch: all single effects, and the combinations that improve detectably.
-    fn add_combinations(&mut self, branch: &SearchBranch, begun: f64) {
+    /// Keeps the results of a branch: all single effects, and the combinations with a detectable gain.
+    fn add_combinations(&mut self, branch: &SearchBranch, extended: f64) {
         for (candidate, ranked) in branch.ranked() {
             let improves = branch.effects.is_empty() || ranked.log_bayes_factor > DETECTED;
-            let own = ranked.candidate.and_then(|k| branch.search.fit_of(k));
-            if let (true, Some(fit)) = (improves, own) {
+            let fit = ranked.candidate.and_then(|k| branch.search.fit_of(k));
+            if let (true, Some(fit)) = (improves, fit) {
                 let mut effects = branch.effects.clone();
                 effects.push(candidate);
                 self.hypotheses.add(EffectCombination {
                     effects,
-                    log_bayes_factor: begun + ranked.log_bayes_factor,
+                    log_bayes_factor: extended + ranked.log_bayes_factor,
                     fit: fit.clone(),
                 });
             }

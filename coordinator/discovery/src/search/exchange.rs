@@ -1,6 +1,6 @@
-//! The stage that exchanges effects of the best combination for others of their class.
+//! The stage that replaces effects of the best combination by others of their class.
 
-use crate::effect_search::class::shortfall;
+use crate::effect_search::class::log_bayes_factor_deficit;
 use crate::effect_search::projection::Projection;
 use crate::effect_search::state::EffectSearch;
 use crate::laplace::coordinate::NormalFrame;
@@ -9,14 +9,13 @@ use crate::search::hypotheses::{EffectCombination, candidate_set};
 use crate::search::stage::Stage;
 use crate::search::state::SearchState;
 
-/// Most exchanges at once, and most times that they are made: what takes the place of the best may have others of its class.
-const MOST: usize = 4;
+/// Maximum number of exchanges in a round, and of rounds: the new best combination may have exchanges too.
+const MAX_EXCHANGES: usize = 4;
 const ROUNDS: usize = 2;
 
 impl SearchState {
-    /// Fits the best combination with each of its effects exchanged for others of its class that have a fit of their own. What changes
-    /// the predictions alike fits alike; on a model that scatters each fit may stop elsewhere, and evidences would tell the luck of the
-    /// fits.
+    /// Fits the best combination with each of its effects replaced by a member of its class that has a fit. Effects that change the
+    /// predictions alike fit alike, but with numerical noise each fit may stop at another local maximum, and evidences would reflect that.
     pub(super) fn exchanges(&mut self, round: usize) -> Stage {
         let branches = match self.hypotheses.detected() {
             Some(best) if round < ROUNDS && !self.numerical_noise_sds.is_empty() => self.exchanged(best),
@@ -38,76 +37,77 @@ impl SearchState {
     fn exchanged(&self, best: &EffectCombination) -> Vec<SearchBranch> {
         let ranking = &self.hypotheses.ranking;
         let class = |k: usize| Some(ranking.of(Some(k))?.class);
-        let alike = |own: &usize| -> Vec<usize> {
-            let others = ranking.ranked().into_iter().filter_map(|own| own.candidate);
-            others.filter(|other| class(*other) == class(*own)).collect()
+        let same_class = |effect: &usize| -> Vec<usize> {
+            let candidates = ranking.ranked().into_iter().filter_map(|ranked| ranked.candidate);
+            candidates.filter(|k| class(*k) == class(*effect)).collect()
         };
-        let alike: Vec<Vec<usize>> = best.effects.iter().map(alike).collect();
-        // The places take turns, each from its best.
+        let same_class: Vec<Vec<usize>> = best.effects.iter().map(same_class).collect();
+        // The effects take turns, each with its best substitute first.
         let turns = (0..ranking.effects.len()).flat_map(|turn| {
-            let places = alike.iter().enumerate();
-            places.filter_map(move |(place, own)| Some((place, *own.get(turn)?)))
+            let places = same_class.iter().enumerate();
+            places.filter_map(move |(place, candidates)| Some((place, *candidates.get(turn)?)))
         });
-        let branches = turns.filter_map(|(place, other)| {
+        let branches = turns.filter_map(|(place, substitute)| {
             let mut effects = best.effects.clone();
-            if effects.contains(&other) {
+            if effects.contains(&substitute) {
                 return None;
             }
             effects.remove(place);
-            let known = |effects: &[usize]| self.hypotheses.log_bayes_factor_of(&candidate_set(effects));
-            let gain = best.log_bayes_factor - known(&effects).unwrap_or(0.0);
-            effects.insert(place, other);
+            let log_bayes_factor =
+                |effects: &[usize]| self.hypotheses.log_bayes_factor_of(&candidate_set(effects));
+            let gain = best.log_bayes_factor - log_bayes_factor(&effects).unwrap_or(0.0);
+            effects.insert(place, substitute);
             let library = &self.task.library;
             let combines = effects
                 .iter()
-                .all(|k| *k == other || library[*k].combines_with(&library[other]));
-            let least = best.log_bayes_factor - shortfall(gain);
+                .all(|k| *k == substitute || library[*k].combines_with(&library[substitute]));
+            let expected = best.log_bayes_factor - log_bayes_factor_deficit(gain);
             let is_fitted = self.hypotheses.exchanged.contains(&candidate_set(&effects))
-                || known(&effects).is_some_and(|own| own > least);
+                || log_bayes_factor(&effects).is_some_and(|factor| factor > expected);
             if is_fitted || !combines {
                 return None;
             }
-            let (frame, start) = self.in_place(best, place, other)?;
+            let (frame, start) = self.in_place(best, place, substitute)?;
             let likelihood = self.task.likelihood.clone();
             let search = EffectSearch::refit(frame, vec![start], likelihood, self.task.settings.seed);
             Some(SearchBranch::new(effects, Vec::new(), search))
         });
-        branches.take(MOST).collect()
+        branches.take(MAX_EXCHANGES).collect()
     }
 
-    /// The frame of a combination with another effect in one place, and where it predicts as the combination's fit does.
+    /// The frame of a combination with one effect replaced, and a start where it predicts as the combination's fit does.
     fn in_place(
         &self,
         best: &EffectCombination,
         place: usize,
-        other: usize,
+        substitute: usize,
     ) -> Option<(NormalFrame, Vec<f64>)> {
         let candidates = &self.hypotheses.candidates;
         let base = self.task.prior.dimension();
-        let of_other = &self.hypotheses.single(other)?.fit;
-        let (own, mut rest) = best.fit.point.position.split_at(base);
-        let mut start = own.to_vec();
-        let (mut frame, mut known) = (self.task.frame(), self.task.frame());
+        let single = &self.hypotheses.single(substitute)?.fit;
+        let (base_position, mut rest) = best.fit.point.position.split_at(base);
+        let mut start = base_position.to_vec();
+        let (mut frame, mut old_frame) = (self.task.frame(), self.task.frame());
         let mut pair = None;
         for (i, &k) in best.effects.iter().enumerate() {
-            known = known.with(&candidates[k]);
-            let (its, others) = rest.split_at(candidates[k].parameters.len());
-            rest = others;
+            old_frame = old_frame.with(&candidates[k]);
+            let (coordinates, following) = rest.split_at(candidates[k].parameters.len());
+            rest = following;
             if i == place {
-                frame = frame.with(&candidates[other]);
-                start.extend_from_slice(&of_other.point.position[base..]);
-                pair = Some((known.strength()?, frame.strength()?));
+                frame = frame.with(&candidates[substitute]);
+                start.extend_from_slice(&single.point.position[base..]);
+                pair = Some((old_frame.strength()?, frame.strength()?));
             } else {
                 frame = frame.with(&candidates[k]);
-                start.extend_from_slice(its);
+                start.extend_from_slice(coordinates);
             }
         }
-        let ((taken, absent), given) = pair?;
-        let change = of_other.columns[of_other.frame.strength()?.0].clone();
-        let changes = [change, best.fit.columns[taken].clone()];
+        let ((replaced, absent), strength) = pair?;
+        let change = single.columns[single.frame.strength()?.0].clone();
+        let changes = [change, best.fit.columns[replaced].clone()];
         let projection = Projection::new(self.hypotheses.base_fit()?, &self.task.likelihood)?;
-        let exchange = projection.exchange(changes, best.fit.point.position[taken] - absent);
-        let start = exchange.applied_to(start, given);
+        let exchange = projection.exchange(changes, best.fit.point.position[replaced] - absent);
+        let start = exchange.applied_to(start, strength);
         frame.holds(&start).then_some((frame, start))
     }
 }

@@ -8,15 +8,15 @@ use crate::search::stage::Stage;
 use crate::search::state::SearchState;
 
 /// Families with more members are not tried: their subsets are too many.
-const MOST_MEMBERS: usize = 4;
-/// Distances of all strengths from their neutral values where a fit may begin at the base's fit, in standard deviations of their priors.
+const MAX_MEMBERS: usize = 4;
+/// Distances of all strengths from their neutral values at the starts about the base's fit, in standard deviations of their priors.
 const STRENGTHS: [f64; 2] = [0.3, 1.0];
-/// Further starts that fill the prior.
+/// Number of further starts, which fill the prior.
 const ANYWHERE: usize = 6;
 
 impl SearchState {
-    /// Fits every subset of a family. A law in pieces, such as a sinkage that grows with slip in drive, in skid and sideways, shows
-    /// little by each piece alone, so a search that adds one effect after the other may take others for it.
+    /// Fits every subset of a family. Each member alone may explain little, such as a sinkage that grows with slip in drive, in
+    /// skid and sideways; a search that adds one effect at a time may then choose others.
     pub(super) fn families(&mut self) -> Stage {
         if !self.searches_widely() {
             return self.beam_search(1);
@@ -31,38 +31,44 @@ impl SearchState {
     pub(super) fn after_families(&mut self, branches: &[SearchBranch]) -> Stage {
         self.add_fitted(branches);
         let fitted = branches.iter().map(|branch| candidate_set(&branch.effects));
-        self.hypotheses.of_families = fitted.collect();
+        self.hypotheses.family_sets = fitted.collect();
         self.beam_search(1)
     }
 
     /// The subsets of all families, of two effects and more.
     fn subsets(&self) -> Vec<Vec<usize>> {
         let library = &self.task.library;
-        let mut names: Vec<&String> = library.iter().filter_map(|own| own.family.as_ref()).collect();
+        let mut names: Vec<&String> = library
+            .iter()
+            .filter_map(|candidate| candidate.family.as_ref())
+            .collect();
         names.sort_unstable();
         names.dedup();
         let mut subsets = Vec::new();
         for name in names {
             let is_member = |k: &usize| library[*k].family.as_ref() == Some(name);
             let members: Vec<usize> = (0..library.len()).filter(is_member).collect();
-            if members.len() > MOST_MEMBERS {
+            if members.len() > MAX_MEMBERS {
                 continue;
             }
             for chosen in 0_u32..1 << members.len() {
-                let own = members.iter().enumerate();
-                let own: Vec<usize> = own
+                let chosen_members = members.iter().enumerate();
+                let effects: Vec<usize> = chosen_members
                     .filter(|(i, _)| chosen >> i & 1 == 1)
                     .map(|(_, k)| *k)
                     .collect();
                 let combines = |k: &usize| {
-                    own.iter()
+                    effects
+                        .iter()
                         .all(|l| k == l || library[*k].combines_with(&library[*l]))
                 };
-                // A set counts for a member with an evidence of its own.
-                let is_ranked = own.iter().any(|k| self.hypotheses.ranking.of(Some(*k)).is_some());
-                let is_possible = is_ranked && own.iter().all(combines);
-                if (2..=self.task.max_effects).contains(&own.len()) && is_possible {
-                    subsets.push(own);
+                // A set counts for a member that has an evidence alone.
+                let is_ranked = effects
+                    .iter()
+                    .any(|k| self.hypotheses.ranking.of(Some(*k)).is_some());
+                let is_possible = is_ranked && effects.iter().all(combines);
+                if (2..=self.task.max_effects).contains(&effects.len()) && is_possible {
+                    subsets.push(effects);
                 }
             }
         }

@@ -10,35 +10,33 @@ use crate::laplace::fit::{FittedModel, LaplaceFit};
 use crate::probability::DETECTED;
 use statistics::likelihood::Likelihood;
 
-/// Cost of each effect after the first \[nats\]: a bound of the gain by choosing from the library.
+/// Cost of each effect after the first \[nats\]: a bound of the gain by selection from the library.
 const COST_OF_CHOICE: f64 = 5.0;
 
 /// The results of the stages so far.
 #[derive(Debug, Clone)]
 pub(super) struct Hypotheses {
-    /// All candidates of the task.
     pub(super) candidates: Vec<Candidate>,
-    /// The base's fit.
     pub(super) base: Option<FittedModel>,
-    /// The search for one effect.
+    /// Result of the search for one effect.
     pub(super) ranking: EffectRanking,
-    /// Combinations by falling Bayes factor, single effects among them.
+    /// Combinations by falling Bayes factor, including single effects.
     pub(super) combinations: Vec<EffectCombination>,
     /// The sets of effects of one family that were fitted together.
-    pub(super) of_families: BTreeSet<CandidateSet>,
-    /// The sets that were fitted with an effect exchanged.
+    pub(super) family_sets: BTreeSet<CandidateSet>,
+    /// The sets that were fitted after an exchange of one effect.
     pub(super) exchanged: BTreeSet<CandidateSet>,
-    /// Log Bayes factor of the base over itself without each effect that may be dropped; `None` where that cannot be fitted.
+    /// Log Bayes factor of the base over itself without each effect that may be dropped; `None` where the reduction cannot be fitted.
     pub(super) gains: Vec<Option<f64>>,
     /// Laws outside the library beyond the base; `None`: not searched.
     pub(super) laws: Option<LawScan>,
-    /// The same beyond the best combination, where that leaves misfit.
+    /// Laws outside the library beyond the best combination; `None`: not searched.
     pub(super) further_laws: Option<LawScan>,
     /// The leading sets with their log predictive density of left-out levels over that of the base.
     pub(super) predictive: Vec<(Vec<usize>, f64)>,
 }
 
-/// Candidates that act together, in whatever order.
+/// Candidates that act together, in any order.
 pub(super) type CandidateSet = BTreeSet<usize>;
 
 pub(super) fn candidate_set(effects: &[usize]) -> CandidateSet {
@@ -48,9 +46,9 @@ pub(super) fn candidate_set(effects: &[usize]) -> CandidateSet {
 /// Effects that act together, with their fit.
 #[derive(Debug, Clone)]
 pub(super) struct EffectCombination {
-    /// In the order in which their parameters follow the base's.
+    /// The effects in the order in which their parameters follow the base's.
     pub(super) effects: Vec<usize>,
-    /// Over the base.
+    /// Log evidence over that of the base.
     pub(super) log_bayes_factor: f64,
     pub(super) fit: LaplaceFit,
 }
@@ -58,11 +56,9 @@ pub(super) struct EffectCombination {
 /// Laws outside the library, fitted beyond one model.
 #[derive(Debug, Clone)]
 pub(super) struct LawScan {
-    /// The effects of that model beyond the base.
     pub(super) beyond: Vec<usize>,
-    /// By falling Bayes factor, one for each quantity and variable.
+    /// The laws by falling Bayes factor, one for each quantity and variable.
     pub(super) laws: Vec<FittedLaw>,
-    /// The law that passed the cross-validation.
     pub(super) confirmed: Option<usize>,
 }
 
@@ -71,20 +67,20 @@ pub(super) struct LawScan {
 pub(super) struct FittedLaw {
     /// Index of the law in the task.
     pub(super) law: usize,
-    /// Its best description: a form, or the curve.
+    /// Index of the candidate that describes it best: a form, or the curve.
     pub(super) candidate: usize,
-    /// Over the model that was scanned.
+    /// Log evidence over that of the model that was scanned.
     pub(super) log_bayes_factor: f64,
-    /// Of the mean evidence of curve and forms.
+    /// Log Bayes factor of the mean evidence of curve and forms.
     pub(super) mean_log_bayes_factor: f64,
     pub(super) fit: LaplaceFit,
-    /// Log predictive density of the left-out data over that of the base and of the library's best combination.
+    /// Log predictive density of the left-out data over that of the base, and over that of the library's best combination.
     pub(super) left_out: Option<[f64; 2]>,
 }
 
 impl LawScan {
-    /// Log Bayes factor of a law outside the library over the model that was scanned: one of all that could be fitted; those that were
-    /// not count without evidence.
+    /// Log Bayes factor of a law outside the library over the model that was scanned: the mean over all possible laws, where one
+    /// that could not be fitted counts as without evidence.
     pub(super) fn log_bayes_factor(&self, possible: usize) -> f64 {
         let means = self.laws.iter().map(|law| law.mean_log_bayes_factor);
         log_sum_exp(means) - libm::log(possible.max(1) as f64)
@@ -98,7 +94,7 @@ impl Hypotheses {
             base: None,
             ranking: EffectRanking::default(),
             combinations: Vec::new(),
-            of_families: BTreeSet::new(),
+            family_sets: BTreeSet::new(),
             exchanged: BTreeSet::new(),
             gains: Vec::new(),
             laws: None,
@@ -107,7 +103,6 @@ impl Hypotheses {
         }
     }
 
-    /// The base's fit.
     pub(super) fn base_fit(&self) -> Option<&LaplaceFit> {
         self.base.as_ref().map(|base| &base.fit)
     }
@@ -117,12 +112,14 @@ impl Hypotheses {
         self.base.as_ref().map_or(0.0, |base| base.log_evidence)
     }
 
-    /// Adds a combination unless the same one has more evidence already.
+    /// Adds a combination, unless the same set has more evidence already.
     pub(super) fn add(&mut self, combination: EffectCombination) {
         let effects = candidate_set(&combination.effects);
-        let mut others = self.combinations.iter_mut();
-        match others.find(|other| candidate_set(&other.effects) == effects) {
-            Some(other) if other.log_bayes_factor < combination.log_bayes_factor => *other = combination,
+        let mut combinations = self.combinations.iter_mut();
+        match combinations.find(|existing| candidate_set(&existing.effects) == effects) {
+            Some(existing) if existing.log_bayes_factor < combination.log_bayes_factor => {
+                *existing = combination
+            }
             Some(_) => {}
             None => self.combinations.push(combination),
         }
@@ -130,12 +127,12 @@ impl Hypotheses {
             .sort_by(|a, b| b.log_bayes_factor.total_cmp(&a.log_bayes_factor));
     }
 
-    /// The best combination, each effect after the first at its cost.
+    /// The best combination, after the cost of each effect after the first.
     pub(super) fn best(&self) -> Option<&EffectCombination> {
         self.best_of(|_| true)
     }
 
-    /// The same of the library's effects alone: a combination that a law joined is no rival of that law.
+    /// The best combination of library effects alone: a combination that includes a law is no rival of that law.
     ///
     /// # Arguments
     /// - `library`: number of the library's effects, which come first among the candidates.
@@ -149,12 +146,12 @@ impl Hypotheses {
             .filter(|best| best.log_bayes_factor > DETECTED)
     }
 
-    fn best_of(&self, is_meant: impl Fn(&EffectCombination) -> bool) -> Option<&EffectCombination> {
+    fn best_of(&self, is_eligible: impl Fn(&EffectCombination) -> bool) -> Option<&EffectCombination> {
         let score =
             |c: &EffectCombination| c.log_bayes_factor - COST_OF_CHOICE * (c.effects.len() as f64 - 1.0);
         self.combinations
             .iter()
-            .filter(|combination| is_meant(combination))
+            .filter(|combination| is_eligible(combination))
             .reduce(|best, c| if score(c) > score(best) { c } else { best })
     }
 
@@ -163,24 +160,23 @@ impl Hypotheses {
         self.best().filter(|best| best.log_bayes_factor > DETECTED)
     }
 
-    /// A single effect.
     pub(super) fn single(&self, candidate: usize) -> Option<&EffectCombination> {
-        self.of(&[candidate])
+        self.combination(&[candidate])
     }
 
-    /// The combination of these effects, in this order.
-    pub(super) fn of(&self, effects: &[usize]) -> Option<&EffectCombination> {
+    /// The combination of these effects in this order.
+    pub(super) fn combination(&self, effects: &[usize]) -> Option<&EffectCombination> {
         self.combinations.iter().find(|c| c.effects == effects)
     }
 
     /// The log Bayes factor of these effects, if they were fitted together.
     pub(super) fn log_bayes_factor_of(&self, effects: &CandidateSet) -> Option<f64> {
         let mut combinations = self.combinations.iter();
-        let own = combinations.find(|own| candidate_set(&own.effects) == *effects)?;
-        Some(own.log_bayes_factor)
+        let combination = combinations.find(|c| candidate_set(&c.effects) == *effects)?;
+        Some(combination.log_bayes_factor)
     }
 
-    /// The scan for laws that is in progress or was the last.
+    /// The scan for laws that is in progress, or the last one.
     pub(super) fn current_scan(&mut self) -> Option<&mut LawScan> {
         self.further_laws.as_mut().or(self.laws.as_mut())
     }
@@ -194,16 +190,16 @@ impl Hypotheses {
     /// Goodness of fit of the detected combination, otherwise of the base.
     pub(super) fn chi_square(&self, likelihood: &Likelihood) -> Option<FitChiSquare> {
         let best = self.detected().map(|best| &best.fit);
-        FitChiSquare::of(best.or(self.base_fit())?, likelihood)
+        FitChiSquare::of_fit(best.or(self.base_fit())?, likelihood)
     }
 
-    /// Chi-square of the best explanation over its degrees of freedom: of the library's, or of a law that passed the
-    /// cross-validation and fits better. 1 where it fits or the noise is not known.
+    /// Chi-square over degrees of freedom of the best explanation, which is the library's or a law that passed the cross-validation
+    /// and fits better. 1 where it fits or the noise is not known.
     pub(super) fn misfit(&self, likelihood: &Likelihood) -> f64 {
         let library = self.chi_square(likelihood);
         let law = self
             .confirmed_law()
-            .and_then(|law| FitChiSquare::of(&law.fit, likelihood));
+            .and_then(|law| FitChiSquare::of_fit(&law.fit, likelihood));
         let best = [library, law]
             .into_iter()
             .flatten()
@@ -212,10 +208,10 @@ impl Hypotheses {
             .map_or(1.0, |chi| chi.ratio())
     }
 
-    /// Whether the best explanation contradicts the data, or with a model discrepancy the declared noise.
+    /// Whether the best explanation contradicts the data; with a model discrepancy, by the declared noise.
     pub(super) fn is_incomplete(&self, likelihood: &Likelihood) -> bool {
         let fit = self.detected().map(|best| &best.fit).or(self.base_fit());
-        let chi = fit.and_then(|fit| FitChiSquare::of_known_noise(fit, likelihood));
+        let chi = fit.and_then(|fit| FitChiSquare::of_declared_noise(fit, likelihood));
         chi.is_some_and(|chi| !chi.is_complete())
     }
 }

@@ -1,4 +1,4 @@
-//! The last stages: what the leading sets predict, and the runs to make next.
+//! The last stages: predictions of the leading sets, and the runs to make next.
 
 use crate::search::conclusion::Conclusion;
 use crate::search::cross_validation::{ComparedModel, CrossValidation};
@@ -8,7 +8,7 @@ use crate::search::state::SearchState;
 use crate::search::weighing::Weighing;
 
 impl SearchState {
-    /// Predicts left-out levels by the leading sets, where the evidence leaves several.
+    /// Lets the leading sets predict left-out levels, if the evidence leaves several.
     pub(super) fn predictions(&self) -> Stage {
         let weighing = Weighing::new(&self.task, &self.hypotheses);
         let Some(base) = self.hypotheses.base_fit() else {
@@ -21,8 +21,8 @@ impl SearchState {
         let mut models: Vec<ComparedModel> = vec![(Vec::new(), 0, base)];
         for set in &leading {
             let last = set.effects.last();
-            let own = last.map_or(0, |&k| self.hypotheses.candidates[k].parameters.len());
-            models.push((set.effects.clone(), own, &set.fit));
+            let last_parameters = last.map_or(0, |&k| self.hypotheses.candidates[k].parameters.len());
+            models.push((set.effects.clone(), last_parameters, &set.fit));
         }
         let validation = self.validated(&models);
         let sets = leading.iter().map(|set| set.effects.clone()).collect();
@@ -31,15 +31,15 @@ impl SearchState {
 
     pub(super) fn after_predictions(&mut self, sets: &[Vec<usize>], validation: &CrossValidation) -> Stage {
         let gains = validation.gains().unwrap_or_default();
-        // A measurement is left out once with the level of each of its conditions.
+        // A measurement is left out once for each condition whose level it belongs to.
         let left_out: usize = self.task.levels.iter().map(Vec::len).sum();
         let times = (left_out as f64 / self.task.likelihood.data().len() as f64).max(1.0);
-        // The base comes first.
-        let of_sets = sets
+        // The first gain is that of the base.
+        let predictive = sets
             .iter()
             .cloned()
             .zip(gains.into_iter().skip(1).map(|gain| gain / times));
-        self.hypotheses.predictive = of_sets.collect();
+        self.hypotheses.predictive = predictive.collect();
         self.next_runs()
     }
 

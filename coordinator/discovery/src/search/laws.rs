@@ -12,13 +12,13 @@ use crate::search::hypotheses::{EffectCombination, FittedLaw, LawScan};
 use crate::search::stage::Stage;
 use crate::search::state::SearchState;
 
-/// Laws whose simple forms are fitted and that are cross-validated, the best.
+/// Number of laws, the best, whose simple forms are fitted and that are cross-validated.
 const LAWS: usize = 3;
-/// A curve is kept where it beats the best simple form by more \[nats\].
+/// A curve is kept if its log Bayes factor exceeds that of the best simple form by more \[nats\].
 const CURVE_BEATS_FORM: f64 = 5.0;
 
 impl SearchState {
-    /// Searches curves outside the library, if the library leaves misfit or needs several effects: one law may stand behind them.
+    /// Searches curves outside the library if the library leaves misfit or needs several effects, behind which there may be one law.
     pub(super) fn curves(&mut self) -> Stage {
         let chi_square = self.hypotheses.chi_square(&self.task.likelihood);
         let leaves_misfit = match (chi_square, self.hypotheses.detected()) {
@@ -34,7 +34,7 @@ impl SearchState {
 
     /// Searches curves beyond the best combination, if it contradicts the data and no law beyond the base explains them.
     fn further_curves(&mut self) -> Stage {
-        let chi_square = |fit: &LaplaceFit| FitChiSquare::of_known_noise(fit, &self.task.likelihood);
+        let chi_square = |fit: &LaplaceFit| FitChiSquare::of_declared_noise(fit, &self.task.likelihood);
         let law = self
             .hypotheses
             .confirmed_law()
@@ -53,8 +53,10 @@ impl SearchState {
         }
     }
 
+    /// Fits the curves of all laws beyond a model.
+    ///
     /// # Arguments
-    /// - `beyond`: effects of a combination; none: the base. `chi_square`: of the best explanation so far.
+    /// - `beyond`: the effects of the model; none: the base. `chi_square`: goodness of fit of the best explanation so far.
     fn scan(&mut self, beyond: Vec<usize>, chi_square: Option<FitChiSquare>) -> Stage {
         let depth = if chi_square.is_some_and(|chi| chi.is_wrong()) {
             &ALL_CURVES
@@ -77,24 +79,24 @@ impl SearchState {
         candidates: Vec<usize>,
         depth: &'static Depth,
     ) -> Option<SearchBranch> {
-        let own: Vec<_> = candidates
+        let chosen: Vec<_> = candidates
             .iter()
             .map(|&k| self.hypotheses.candidates[k].clone())
             .collect();
         let base = if beyond.is_empty() {
             self.hypotheses.base.clone()?
         } else {
-            let combination = self.hypotheses.of(&beyond)?;
+            let combination = self.hypotheses.combination(&beyond)?;
             FittedModel {
                 fit: combination.fit.clone(),
                 log_evidence: self.hypotheses.base_evidence() + combination.log_bayes_factor,
             }
         };
-        if own.is_empty() {
+        if chosen.is_empty() {
             return None;
         }
         let likelihood = self.task.likelihood.clone();
-        let search = EffectSearch::beyond(base, likelihood, &own, depth, self.task.settings.seed);
+        let search = EffectSearch::beyond(base, likelihood, &chosen, depth, self.task.settings.seed);
         Some(SearchBranch::new(beyond, candidates, search))
     }
 
@@ -136,11 +138,11 @@ impl SearchState {
         };
         let ranked = branch.ranked();
         for law in &mut scan.laws {
-            let own = task.forms(law.law);
-            let forms: Vec<_> = ranked.iter().filter(|(k, _)| own.contains(k)).collect();
+            let indices = task.forms(law.law);
+            let forms: Vec<_> = ranked.iter().filter(|(k, _)| indices.contains(k)).collect();
             let factors = forms.iter().map(|(_, form)| form.log_bayes_factor);
             let all = factors.chain([law.log_bayes_factor]);
-            let count = 1.0 + own.len() as f64;
+            let count = 1.0 + indices.len() as f64;
             law.mean_log_bayes_factor = log_sum_exp(all) - libm::log(count);
             let best = forms.first().and_then(|(k, form)| {
                 let fit = branch.search.fit_of(form.candidate?)?;
@@ -158,7 +160,7 @@ impl SearchState {
         self.cross_validation(0)
     }
 
-    /// Cross-validates the law of a rank, if it is a detection.
+    /// Cross-validates the law of this rank if it is a detection.
     fn cross_validation(&mut self, rank: usize) -> Stage {
         let scan = self.hypotheses.current_scan();
         let law = scan.and_then(|scan| Some((scan.beyond.clone(), scan.laws.get(rank)?.clone())));
@@ -173,14 +175,14 @@ impl SearchState {
         });
         let mut effects = beyond;
         effects.push(law.candidate);
-        let of_law = (effects, parameters(law.candidate), &law.fit);
-        let fits = [(Vec::new(), 0, base), library, of_law];
+        let with_law = (effects, parameters(law.candidate), &law.fit);
+        let fits = [(Vec::new(), 0, base), library, with_law];
         Stage::CrossValidation(rank, self.validated(&fits))
     }
 
     pub(super) fn after_cross_validation(&mut self, rank: usize, validation: &CrossValidation) -> Stage {
         self.keep_refits(validation);
-        // Over the base, and over the library's best.
+        // Gains over the base, and over the library's best.
         let gains = validation.gains().and_then(|gains| match gains.as_slice() {
             &[base, library, law] => Some([law - base, law - library]),
             _ => None,
@@ -188,10 +190,10 @@ impl SearchState {
         let Some(scan) = self.hypotheses.current_scan() else {
             return self.predictions();
         };
-        // A law in place of the library's best need not predict better by much, one beyond it must.
-        let least = if scan.beyond.is_empty() { 0.0 } else { DETECTED };
+        // A law that replaces the library's best must not predict worse; a law beyond it must predict better by a detectable amount.
+        let min_gain = if scan.beyond.is_empty() { 0.0 } else { DETECTED };
         let passes =
-            gains.is_some_and(|[over_base, over_library]| over_base > DETECTED && over_library > least);
+            gains.is_some_and(|[over_base, over_library]| over_base > DETECTED && over_library > min_gain);
         if let Some(law) = scan.laws.get_mut(rank) {
             law.left_out = gains;
         }
@@ -202,19 +204,19 @@ impl SearchState {
         self.after_scan()
     }
 
-    /// A law beyond the best combination joins it.
+    /// Ends a scan; a law confirmed beyond the best combination joins it.
     fn after_scan(&mut self) -> Stage {
         let Some(scan) = &self.hypotheses.further_laws else {
             return self.further_curves();
         };
         let law = scan.confirmed.and_then(|rank| scan.laws.get(rank));
-        let begun = self.hypotheses.of(&scan.beyond);
-        if let (Some(law), Some(begun)) = (law, begun) {
+        let scanned = self.hypotheses.combination(&scan.beyond);
+        if let (Some(law), Some(scanned)) = (law, scanned) {
             let mut effects = scan.beyond.clone();
             effects.push(law.candidate);
             let with = EffectCombination {
                 effects,
-                log_bayes_factor: begun.log_bayes_factor + scan.log_bayes_factor(self.task.laws.len()),
+                log_bayes_factor: scanned.log_bayes_factor + scan.log_bayes_factor(self.task.laws.len()),
                 fit: law.fit.clone(),
             };
             self.hypotheses.add(with);

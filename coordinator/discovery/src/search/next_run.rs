@@ -1,4 +1,4 @@
-//! The runs to make next: those that together tell most about the explanations.
+//! The runs to make next: those that together discriminate best between the explanations.
 
 use crate::laplace::fit::LaplaceFit;
 use crate::laplace::spread::{Axis, spread};
@@ -6,17 +6,17 @@ use crate::search::query::{QueriedModel, Query};
 use crate::search::run_information::{Prediction, Predictive};
 use crate::task::{ProposedRuns, SearchTask};
 
-/// Most runs that are proposed.
-const MOST: usize = 3;
+/// Maximum number of proposed runs.
+const MAX_RUNS: usize = 3;
 /// A run that adds less information is not proposed \[nats\].
-const LEAST: f64 = 0.005;
-/// Of runs that add nearly as much as the best, the one closest to the measured range is proposed.
+const MIN_INFORMATION: f64 = 0.005;
+/// Among runs that add at least this share of the largest information, the one closest to the measured range is proposed.
 const NEARLY: f64 = 0.9;
 
 /// An explanation that remains open.
 #[derive(Debug, Clone)]
 pub(super) struct OpenHypothesis<'a> {
-    /// Its effects beyond the base.
+    /// The effects added to the base.
     pub(super) effects: Vec<usize>,
     pub(super) probability: f64,
     pub(super) fit: &'a LaplaceFit,
@@ -27,34 +27,34 @@ pub(super) struct OpenHypothesis<'a> {
 pub struct InformativeRun {
     /// Index among the proposed runs.
     pub run: usize,
-    /// Expected information on the explanations beyond that of the runs before it \[nats\].
+    /// Expected information on the explanations in addition to that of the runs before it \[nats\].
     pub information_nats: f64,
     /// The most probable explanation and those that the run distinguishes from it: combinations of candidates, empty for the base.
     pub separates: Vec<Vec<usize>>,
 }
 
-/// The runs to make next, and what every run would tell.
+/// The runs to make next, and the information of every run.
 #[derive(Debug, Clone, Default)]
 pub(super) struct RunChoice {
     pub(super) runs: Vec<InformativeRun>,
-    /// Index of each proposed run with its information by itself \[nats\].
+    /// Index of each proposed run with its information when made alone \[nats\].
     pub(super) alone: Vec<(usize, f64)>,
 }
 
-/// An explanation with the parameters at which it is asked for its predictions.
+/// An explanation with the parameters at which its predictions are evaluated.
 #[derive(Debug, Clone)]
 struct AskedHypothesis {
     effects: Vec<usize>,
     probability: f64,
-    /// `None` once it is told.
+    /// `None` once it is answered.
     mode: Option<Vec<f64>>,
-    /// Whether the companion is asked for the spread: at first, where there is one.
-    has_companion: bool,
-    /// What the spread is compared with: the prediction of the companion at the mode where that is asked, and of the model elsewhere.
+    /// Whether the low-fidelity model is asked for the spread, before the model.
+    asks_low_fidelity: bool,
+    /// The prediction that the spread is compared with: that of the low-fidelity model at the mode if it is asked, otherwise of the model.
     middle: Option<Vec<f64>>,
-    /// Those that are not told yet.
+    /// The axes that are not answered yet.
     spread: Vec<Axis>,
-    /// `None` before it is told, and where the model rejects the mode.
+    /// `None` before it is answered, and if the model rejects the mode.
     prediction: Option<Prediction>,
 }
 
@@ -67,27 +67,27 @@ pub(super) struct RunSelection {
 }
 
 impl AskedHypothesis {
-    /// The parameters to evaluate, each with whether it is the companion that is asked.
+    /// The parameters to evaluate, each with whether the low-fidelity model is asked.
     fn thetas(&self) -> impl Iterator<Item = (bool, &Vec<f64>)> {
         let sides = self.spread.iter().flat_map(|axis| axis.sides.iter().flatten());
-        let middle = self.mode.iter().filter(|_| self.has_companion);
+        let middle = self.mode.iter().filter(|_| self.asks_low_fidelity);
         let spread = middle.chain(sides);
         let of_model = self.mode.iter().map(|theta| (false, theta));
-        of_model.chain(spread.map(|theta| (self.has_companion, theta)))
+        of_model.chain(spread.map(|theta| (self.asks_low_fidelity, theta)))
     }
 
-    /// Takes the answers to [`thetas`](Self::thetas). Along an axis with one answer its difference from the mode counts; along one
-    /// without any the spare side is asked next, and without that nothing counts.
+    /// Takes the answers to [`thetas`](Self::thetas). Along an axis with one answer, its difference from the mode counts. Along an
+    /// axis without an answer the spare side is asked next; if that is rejected too, the axis is left out.
     fn take(&mut self, mut answers: impl Iterator<Item = Option<Vec<f64>>>) {
         if self.mode.take().is_some() {
             self.prediction = answers.next().flatten().map(|mean| Prediction {
                 mean,
                 columns: Vec::new(),
             });
-            self.middle = if self.has_companion {
+            self.middle = if self.asks_low_fidelity {
                 answers.next().flatten()
             } else {
-                self.prediction.as_ref().map(|own| own.mean.clone())
+                self.prediction.as_ref().map(|prediction| prediction.mean.clone())
             };
         }
         let axes = std::mem::take(&mut self.spread);
@@ -98,11 +98,11 @@ impl AskedHypothesis {
             a.iter().zip(b).map(|(a, b)| share * (a - b)).collect()
         };
         for axis in axes {
-            let told = axis
+            let answered = axis
                 .sides
                 .each_ref()
                 .map(|side| side.as_ref().and_then(|_| answers.next().flatten()));
-            let column = match (told, &self.middle) {
+            let column = match (answered, &self.middle) {
                 ([Some(above), Some(below)], _) => Some(half_difference(&above, &below, 0.5)),
                 ([Some(one), None] | [None, Some(one)], Some(middle)) => {
                     Some(half_difference(&one, middle, 1.0))
@@ -111,21 +111,21 @@ impl AskedHypothesis {
             };
             match column {
                 Some(column) => prediction.columns.push(column),
-                None if self.has_companion => self.spread.push(axis.one_sided()),
+                None if self.asks_low_fidelity => self.spread.push(axis.one_sided()),
                 None => self.spread.extend(axis.spare.map(|spare| Axis {
                     sides: [None, Some(spare)],
                     spare: None,
                 })),
             }
         }
-        // What the companion did not answer the model is asked.
-        self.has_companion = false;
+        // Ask the model for the points that the low-fidelity model rejected.
+        self.asks_low_fidelity = false;
         self.middle = Some(prediction.mean.clone());
     }
 }
 
 impl RunSelection {
-    /// `None` with fewer than two explanations or without proposed runs.
+    /// `None` if there are fewer than two explanations or no proposed runs.
     pub(super) fn new(task: &SearchTask, explanations: Vec<OpenHypothesis>) -> Option<Self> {
         if explanations.len() < 2 || task.proposed.values() == 0 {
             return None;
@@ -134,7 +134,7 @@ impl RunSelection {
             effects: explanation.effects,
             probability: explanation.probability,
             mode: Some(explanation.fit.theta()),
-            has_companion: explanation.fit.frame.has_companion,
+            asks_low_fidelity: explanation.fit.frame.has_low_fidelity,
             middle: None,
             spread: spread(explanation.fit, &task.likelihood),
             prediction: None,
@@ -147,67 +147,67 @@ impl RunSelection {
     }
 
     pub(super) fn queries(&self) -> Vec<Query> {
-        let of = |asked: &AskedHypothesis| {
+        let queries_of = |asked: &AskedHypothesis| {
             let model = QueriedModel::With(asked.effects.clone());
-            let queries = asked.thetas().map(|(is_companion, theta)| Query {
+            let queries = asked.thetas().map(|(is_low_fidelity, theta)| Query {
                 model: model.clone(),
                 is_proposed: true,
-                is_companion,
+                is_companion: is_low_fidelity,
                 theta: theta.clone(),
             });
             queries.collect::<Vec<_>>()
         };
-        self.asked.iter().flat_map(of).collect()
+        self.asked.iter().flat_map(queries_of).collect()
     }
 
     pub(super) fn take(&mut self, answers: Vec<Option<Vec<f64>>>) {
         let mut answers = answers.into_iter();
         for asked in &mut self.asked {
             let count = asked.thetas().count();
-            let own: Vec<_> = answers.by_ref().take(count).collect();
-            asked.take(own.into_iter());
+            let part: Vec<_> = answers.by_ref().take(count).collect();
+            asked.take(part.into_iter());
         }
     }
 
-    /// The most informative runs, each given those before it: the first tells most by itself, the next one most beyond the first.
+    /// The most informative runs: the first has the most information alone, each further one adds the most to those before it.
     pub(super) fn best(&self) -> RunChoice {
         let predicted = self
             .asked
             .iter()
-            .filter_map(|own| Some((own, own.prediction.as_ref()?)));
+            .filter_map(|asked| Some((asked, asked.prediction.as_ref()?)));
         let (asked, predictions): (Vec<&AskedHypothesis>, Vec<_>) = predicted
-            .map(|(own, prediction)| (own, (own.probability, prediction)))
+            .map(|(asked, prediction)| (asked, (asked.probability, prediction)))
             .unzip();
         if asked.len() < 2 {
             return RunChoice::default();
         }
-        let predictive = Predictive::new(predictions, &self.proposed.noise_sds, MOST, self.seed);
+        let predictive = Predictive::new(predictions, &self.proposed.noise_sds, MAX_RUNS, self.seed);
         let mut runs: Vec<InformativeRun> = Vec::new();
         let mut alone = Vec::new();
-        let mut known = 0.0;
-        while runs.len() < MOST {
+        let mut total = 0.0;
+        while runs.len() < MAX_RUNS {
             let chosen: Vec<usize> = runs.iter().map(|run| run.run).collect();
             let gain = |run: usize| {
                 let together: Vec<usize> = chosen.iter().copied().chain([run]).collect();
-                Some((run, predictive.information(&together)? - known))
+                Some((run, predictive.information(&together)? - total))
             };
             let left = (0..self.proposed.runs).filter(|run| !chosen.contains(run));
             let gains: Vec<(usize, f64)> = left.filter_map(gain).collect();
             if runs.is_empty() {
                 alone.clone_from(&gains);
             }
-            let most = gains.iter().map(|(_, gain)| *gain).fold(0.0, f64::max);
-            if most < LEAST {
+            let highest = gains.iter().map(|(_, gain)| *gain).fold(0.0, f64::max);
+            if highest < MIN_INFORMATION {
                 break;
             }
-            let nearly = gains.into_iter().filter(|(_, gain)| *gain >= NEARLY * most);
+            let nearly = gains.into_iter().filter(|(_, gain)| *gain >= NEARLY * highest);
             let beyond = |run: usize| self.proposed.beyond[run];
             let closest = nearly.reduce(|a, b| {
                 let order = beyond(b.0).total_cmp(&beyond(a.0)).then(a.1.total_cmp(&b.1));
                 if order.is_lt() { b } else { a }
             });
             let Some((run, gain)) = closest else { break };
-            known += gain;
+            total += gain;
             let separated = predictive.separated(run).into_iter();
             runs.push(InformativeRun {
                 run,
@@ -229,7 +229,7 @@ mod tests {
             effects: Vec::new(),
             probability: 0.5,
             mode: Some(vec![0.0]),
-            has_companion: false,
+            asks_low_fidelity: false,
             middle: None,
             spread: vec![Axis {
                 sides: sides.map(theta),
@@ -257,14 +257,14 @@ mod tests {
     }
 
     #[test]
-    fn the_spread_is_that_of_the_companion_about_the_prediction_of_the_model() {
+    fn the_spread_is_that_of_the_low_fidelity_model_about_the_prediction_of_the_model() {
         let mut asked = AskedHypothesis {
-            has_companion: true,
+            asks_low_fidelity: true,
             ..asked([Some(0.5), None], None)
         };
         let answers: Vec<_> = asked
             .thetas()
-            .map(|(is_companion, theta)| Some(vec![if is_companion { 3.0 * theta[0] } else { 7.0 }]))
+            .map(|(is_low_fidelity, theta)| Some(vec![if is_low_fidelity { 3.0 * theta[0] } else { 7.0 }]))
             .collect();
         asked.take(answers.into_iter());
         let prediction = asked.prediction.expect("the mode is answered");

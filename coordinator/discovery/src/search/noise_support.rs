@@ -1,8 +1,8 @@
 //! Which inferred noise sds are known well enough for a claim.
 //!
-//! An inferred sd is the misfit of the model that is fitted. Each effect that bends the model towards the data shrinks it, and the smaller
-//! sd makes the next effect count more. Two things end this: repeats of a condition, which no effect can follow, and data that are many
-//! beside the parameters, of which the misfit is a good estimate.
+//! An inferred sd measures the misfit of the fitted model. Each effect that bends the model towards the data shrinks it, and the
+//! smaller sd makes the next effect count more. Two things limit this: repeats of a condition, which no effect can follow, and many
+//! data per parameter, whose misfit is a good estimate.
 
 use std::collections::BTreeMap;
 
@@ -12,17 +12,17 @@ use crate::probability::DETECTED;
 use crate::task::SearchTask;
 use statistics::likelihood::{ErrorSd, Likelihood};
 
-/// Relative uncertainty up to which an inferred sd supports a claim. Log Bayes factors go with its square: of 10 nats, 4 are then open.
+/// Relative uncertainty up to which an inferred sd supports a claim. Log Bayes factors scale with its inverse square: of 10 nats, 4
+/// are then uncertain.
 const LARGEST_UNCERTAINTY: f64 = 0.2;
-/// Repeats from which a scatter is known, as of `"replicates"` in an experiment.
-const LEAST_REPEATS: usize = 3;
+/// Number of repeats from which the scatter is known, as for `"replicates"` in an experiment.
+const MIN_REPEATS: usize = 3;
 
-/// The inferred noise sds that support no claim, by their parameters; empty where the others support it.
+/// The parameters of inferred noise sds that do not support the claim; empty if the claim stands without them.
 ///
 /// An sd is supported by at least three repeats, or by `v` residual degrees of freedom with `1 / sqrt(2 v) <= 0.2`: the number of its data
 /// less its share of the fitted parameters. A claim that gains more than 3 nats in log-likelihood on the data of declared and supported
-/// noise alone needs no others. Checked by
-/// `inferred_noise::an_effect_is_named_on_inferred_noise_only_with_data_or_repeats_enough`.
+/// noise alone stands. Checked by `inferred_noise::an_effect_is_named_on_inferred_noise_only_with_data_or_repeats_enough`.
 ///
 /// # Arguments
 /// - `base`, `best`: the fits of the base and of the explanation that would be claimed.
@@ -49,19 +49,22 @@ fn data_of_sds(likelihood: &Likelihood) -> BTreeMap<usize, Vec<usize>> {
     data
 }
 
-/// Effective number of fitted parameters, sds left out: 1 - posterior variance over prior variance of each.
+/// Effective number of fitted parameters without sds, the sum of 1 - posterior variance over prior variance.
 fn fitted_parameters(fit: &LaplaceFit, likelihood: &Likelihood) -> f64 {
     let sds: Vec<usize> = noise::coordinates(likelihood)
         .into_iter()
         .map(|(k, _)| k)
         .collect();
     let uncertainty = fit.quadratic(likelihood).uncertainty();
-    let of_model = uncertainty.iter().enumerate().filter(|(k, _)| !sds.contains(k));
-    of_model.filter_map(|(_, sd)| *sd).map(|sd| 1.0 - sd * sd).sum()
+    let of_predictions = uncertainty.iter().enumerate().filter(|(k, _)| !sds.contains(k));
+    of_predictions
+        .filter_map(|(_, sd)| *sd)
+        .map(|sd| 1.0 - sd * sd)
+        .sum()
 }
 
 /// # Arguments
-/// - `data`: of the sd, of `count` in all. `fitted`: effective number of fitted parameters.
+/// - `data`: indices of the sd's data. `count`: number of all data. `fitted`: effective number of fitted parameters.
 fn is_supported(data: &[usize], count: usize, fitted: f64, conditions: &[Vec<usize>]) -> bool {
     let repeats = |condition: &Vec<usize>| {
         let measured = data.iter().filter(|place| condition.contains(place)).count();
@@ -69,11 +72,11 @@ fn is_supported(data: &[usize], count: usize, fitted: f64, conditions: &[Vec<usi
     };
     let share = data.len() as f64 / count as f64;
     let freedom = data.len() as f64 - share * fitted;
-    conditions.iter().map(repeats).sum::<usize>() >= LEAST_REPEATS
+    conditions.iter().map(repeats).sum::<usize>() >= MIN_REPEATS
         || 2.0 * freedom * LARGEST_UNCERTAINTY * LARGEST_UNCERTAINTY >= 1.0
 }
 
-/// What the explanation gains in log-likelihood on the data of other noise sds than these; 0 without such data.
+/// The explanation's gain in log-likelihood on the data of other noise sds than these; 0 without such data.
 fn gain_without(sds: &[usize], likelihood: &Likelihood, base: &LaplaceFit, best: &LaplaceFit) -> f64 {
     let is_of = |sd: ErrorSd| matches!(sd, ErrorSd::Inferred { parameter } if sds.contains(&parameter));
     let data = likelihood.data().iter().enumerate();

@@ -1,4 +1,4 @@
-//! The questions of a search to the model.
+//! The queries that a search makes to the model.
 
 /// The model that is evaluated.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
@@ -12,12 +12,12 @@ pub enum QueriedModel {
 /// A parameter vector to evaluate.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Query {
-    /// The model.
+    /// The model to evaluate.
     pub model: QueriedModel,
-    /// On the proposed runs instead of the measured ones.
+    /// Whether the proposed runs are predicted, in place of the measured ones.
     pub is_proposed: bool,
-    /// Of the model's companion.
+    /// Whether the low-fidelity model is asked, in place of the model.
     pub is_companion: bool,
-    /// The parameters.
+    /// The parameters, the base's first.
     pub theta: Vec<f64>,
 }

@@ -1,18 +1,18 @@
-//! The joint prediction of runs not yet made, and what they would tell about the explanations.
+//! The joint prediction of runs not yet made, and their information on the explanations.
 
 use nalgebra::{Cholesky, DMatrix, DVector};
 
 use crate::laplace::evidence::log_sum_exp;
 use statistics::rng::Stream;
 
-/// Outcomes of a set of runs that its information is averaged over, for each explanation.
+/// Number of simulated outcomes, for each explanation, over which the information is averaged.
 const OUTCOMES: usize = 200;
-/// A run distinguishes explanations whose predictions differ by more standard deviations.
+/// A run distinguishes two explanations whose predictions differ by more standard deviations.
 const APART: f64 = 2.0;
 /// Random streams of the outcomes, beside those of the posterior draws.
 const STAGE: u64 = (1 << 43) + 1;
 
-/// What an explanation predicts: each channel of the first run, then of the next.
+/// The prediction of an explanation: each channel of the first run, then of the next.
 #[derive(Debug, Clone)]
 pub(super) struct Prediction {
     pub(super) mean: Vec<f64>,
@@ -20,9 +20,7 @@ pub(super) struct Prediction {
     pub(super) columns: Vec<Vec<f64>>,
 }
 
-/// The predictions of all explanations.
 pub(super) struct Predictive<'a> {
-    /// With the probability of each.
     predictions: Vec<(f64, &'a Prediction)>,
     noise_sds: &'a [f64],
     /// Standard normal numbers of each outcome of each explanation.
@@ -37,7 +35,7 @@ struct JointNormal {
 }
 
 impl JointNormal {
-    /// Log density up to a constant that all share.
+    /// Log density up to a constant common to all explanations.
     fn log_density(&self, outcome: &DVector<f64>) -> f64 {
         -0.5 * self.whitened(&(outcome - &self.mean)).norm_squared() - self.half_log_determinant
     }
@@ -50,29 +48,31 @@ impl JointNormal {
 
 impl<'a> Predictive<'a> {
     /// # Arguments
-    /// - `predictions`: of each explanation, with its probability. `most`: runs that are looked at together.
+    /// - `predictions`: probability and prediction of each explanation. `max_runs`: largest number of runs made together.
     pub(super) fn new(
         predictions: Vec<(f64, &'a Prediction)>,
         noise_sds: &'a [f64],
-        most: usize,
+        max_runs: usize,
         seed: u64,
     ) -> Self {
         let total: f64 = predictions.iter().map(|(probability, _)| probability).sum();
-        let of = |m: usize| {
+        let outcomes = |m: usize| {
             let outcomes = (0..OUTCOMES as u64)
-                .map(|k| Stream::new(seed, STAGE, m as u64, k).normals(most * noise_sds.len()));
+                .map(|k| Stream::new(seed, STAGE, m as u64, k).normals(max_runs * noise_sds.len()));
             outcomes.collect()
         };
         Self {
-            normals: (0..predictions.len()).map(of).collect(),
-            predictions: predictions.into_iter().map(|(p, own)| (p / total, own)).collect(),
+            normals: (0..predictions.len()).map(outcomes).collect(),
+            predictions: predictions
+                .into_iter()
+                .map(|(p, prediction)| (p / total, prediction))
+                .collect(),
             noise_sds,
         }
     }
 
-    /// The expected information of runs made together, `sum_m P_m E_m[ln p(y | m) - ln sum_k P_k p(y | k)]`, with p the normal whose
-    /// covariance is that of noise and parameters. The parameters are those of all runs, so of two runs that a parameter moves
-    /// together the second tells little.
+    /// The expected information of runs made together, `sum_m P_m E_m[ln p(y | m) - ln sum_k P_k p(y | k)]`, where p is normal with the
+    /// covariance of noise and parameters. All runs share the parameters, so a run that a parameter moves like another adds little.
     ///
     /// # Returns
     /// Nats; `None` where a covariance is not positive definite.
@@ -83,15 +83,15 @@ impl<'a> Predictive<'a> {
         let normals: Option<Vec<JointNormal>> = self
             .predictions
             .iter()
-            .map(|(_, own)| self.normal(own, runs))
+            .map(|(_, prediction)| self.normal(prediction, runs))
             .collect();
         let normals = normals?;
         let mut nats = 0.0;
-        for (m, own) in normals.iter().enumerate() {
+        for (m, normal) in normals.iter().enumerate() {
             let mut sum = 0.0;
             for z in &self.normals[m] {
-                let z = DVector::from_column_slice(&z[..own.mean.len()]);
-                let outcome = &own.mean + &own.factor * z;
+                let z = DVector::from_column_slice(&z[..normal.mean.len()]);
+                let outcome = &normal.mean + &normal.factor * z;
                 let all = normals.iter().zip(&self.predictions);
                 let all = all.map(|(normal, (share, _))| libm::log(*share) + normal.log_density(&outcome));
                 let all: Vec<f64> = all.collect();
@@ -102,12 +102,12 @@ impl<'a> Predictive<'a> {
         Some(nats)
     }
 
-    /// The most probable explanation and those that a run distinguishes from it, all others if none.
+    /// The most probable explanation and those that a run distinguishes from it; all others if it distinguishes none.
     pub(super) fn separated(&self, run: usize) -> Vec<usize> {
         let normals: Option<Vec<JointNormal>> = self
             .predictions
             .iter()
-            .map(|(_, own)| self.normal(own, &[run]))
+            .map(|(_, prediction)| self.normal(prediction, &[run]))
             .collect();
         let share = |k: usize| self.predictions[k].0;
         let first = (0..self.predictions.len()).reduce(|a, b| if share(b) > share(a) { b } else { a });
@@ -120,30 +120,30 @@ impl<'a> Predictive<'a> {
                 .iter()
                 .all(|&i| normals[i].whitened(&difference).norm() > APART)
         };
-        let others: Vec<usize> = (0..self.predictions.len()).filter(|k| *k != first).collect();
-        let far: Vec<usize> = others.iter().copied().filter(apart).collect();
-        let named = if far.is_empty() { others } else { far };
+        let rivals: Vec<usize> = (0..self.predictions.len()).filter(|k| *k != first).collect();
+        let far: Vec<usize> = rivals.iter().copied().filter(apart).collect();
+        let named = if far.is_empty() { rivals } else { far };
         std::iter::once(first).chain(named).collect()
     }
 
     fn normal(&self, prediction: &Prediction, runs: &[usize]) -> Option<JointNormal> {
         let channels = self.noise_sds.len();
         let size = runs.len() * channels;
-        let of_runs = |values: &Vec<f64>| {
-            let own = runs
+        let selected = |values: &Vec<f64>| {
+            let chosen = runs
                 .iter()
                 .flat_map(|run| &values[run * channels..(run + 1) * channels]);
-            DVector::from_iterator(size, own.copied())
+            DVector::from_iterator(size, chosen.copied())
         };
         let noise = runs.iter().flat_map(|_| self.noise_sds).map(|sd| sd * sd);
         let mut covariance = DMatrix::from_diagonal(&DVector::from_iterator(size, noise));
         for column in &prediction.columns {
-            let column = of_runs(column);
+            let column = selected(column);
             covariance += &column * column.transpose();
         }
         let factor = Cholesky::new(covariance)?.l();
         Some(JointNormal {
-            mean: of_runs(&prediction.mean),
+            mean: selected(&prediction.mean),
             half_log_determinant: (0..size).map(|k| libm::log(factor[(k, k)])).sum(),
             factor,
         })
@@ -156,7 +156,7 @@ mod tests {
 
     /// The information of runs on two equally probable explanations.
     fn information(predictions: [&Prediction; 2], runs: &[usize]) -> f64 {
-        let predictions = predictions.map(|own| (0.3, own)).to_vec();
+        let predictions = predictions.map(|prediction| (0.3, prediction)).to_vec();
         let predictive = Predictive::new(predictions, &[1.0], 2, 1);
         predictive.information(runs).expect("the noise has a covariance")
     }
@@ -183,8 +183,8 @@ mod tests {
         let columns = [[5.0, 5.0, 0.0], [0.0, 0.0, 5.0]];
         let [a, b] = [[0.0; 3], [3.0; 3]].map(|mean| prediction(mean, &columns));
         let alone = information([&a, &b], &[0]);
-        let [copy, other] = [[0, 1], [0, 2]].map(|runs| information([&a, &b], &runs) - alone);
-        assert!(copy < 0.2 * other, "{copy} {other}");
+        let [copy, different] = [[0, 1], [0, 2]].map(|runs| information([&a, &b], &runs) - alone);
+        assert!(copy < 0.2 * different, "{copy} {different}");
     }
 
     #[test]

@@ -13,16 +13,16 @@ pub(super) enum Stage {
     SingleEffects(SearchBranch),
     BaseReduction(Vec<SearchBranch>),
     Families(Vec<SearchBranch>),
-    /// Beyond combinations of so many effects.
+    /// Holds the size of the combinations to extend.
     BeamSearch(usize, Vec<SearchBranch>),
     BackwardElimination(Vec<SearchBranch>),
-    /// After so many rounds of them.
+    /// Holds the number of earlier rounds of exchanges.
     Exchanges(usize, Vec<SearchBranch>),
     Curves(SearchBranch),
     Forms(SearchBranch),
-    /// Of the law of this rank.
+    /// Holds the rank of the law.
     CrossValidation(usize, CrossValidation),
-    /// Of the leading sets, by their effects.
+    /// Holds the effects of the leading sets.
     Predictions(Vec<Vec<usize>>, CrossValidation),
     NextRuns(RunSelection),
     Done(Box<Conclusion>),
@@ -30,7 +30,7 @@ pub(super) enum Stage {
 }
 
 impl Stage {
-    /// The queries of its next round; none once it is complete.
+    /// The queries of the next round; none once the stage is complete.
     pub(super) fn queries(&mut self) -> Vec<Query> {
         match self {
             Self::SingleEffects(branch) | Self::Curves(branch) | Self::Forms(branch) => branch.queries(),
@@ -45,7 +45,6 @@ impl Stage {
         }
     }
 
-    /// Takes the answers of a round.
     pub(super) fn take(&mut self, answers: Vec<Option<Vec<f64>>>) {
         match self {
             Self::SingleEffects(branch) | Self::Curves(branch) | Self::Forms(branch) => branch.take(answers),

@@ -30,18 +30,18 @@ impl SearchState {
         }
     }
 
-    /// The cross-validation of some models, which goes on from what is known of them.
+    /// The cross-validation of some models, which reuses earlier refits.
     pub(super) fn validated(&self, models: &[ComparedModel]) -> CrossValidation {
         CrossValidation::new(&self.task.likelihood, &self.task.levels, models, &self.refitted)
     }
 
-    /// Keeps the models of a cross-validation that is over.
+    /// Keeps the refits of a completed cross-validation.
     pub(super) fn keep_refits(&mut self, validation: &CrossValidation) {
         self.refitted.extend(validation.refitted());
     }
 
-    /// Counts the numerical noise that the search for one effect has found as noise of all data, measured or proposed, and keeps whether
-    /// the model is rough.
+    /// Adds the numerical noise that the search for one effect has measured to the noise of measured and proposed data, and keeps
+    /// the roughness of the model.
     pub(super) fn take_numerical_noise(&mut self, search: &EffectSearch) {
         let task = &mut self.task;
         task.settings.has_numerical_noise = false;

@@ -5,10 +5,10 @@ use crate::search::hypotheses::{FittedLaw, Hypotheses};
 use crate::search::weighing::Weighing;
 use crate::task::SearchTask;
 
-/// A class or an effect with more probability is named.
+/// A class or an effect is named if its probability is higher.
 const NAMED: f64 = 0.9;
 
-/// What the data support.
+/// The conclusion that the data support.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SearchVerdict {
     /// No explanation beats the base.
@@ -19,21 +19,22 @@ pub enum SearchVerdict {
     Class(usize),
     /// A law outside the library is missing.
     NotInLibrary,
-    /// Something is missing, and the data do not decide what.
+    /// Something is missing, and the data do not decide between the explanations.
     Undecided,
 }
 
 impl SearchVerdict {
-    /// Whether it says what is missing.
+    /// Whether the verdict names a missing effect, class or law.
     pub fn is_claim(self) -> bool {
         matches!(self, Self::Named(_) | Self::Class(_) | Self::NotInLibrary)
     }
 
-    /// A misfit that remains with the best explanation does not prevent a name: the probabilities account for it.
+    /// Derives the verdict from the probabilities. They account for a misfit that remains with the best explanation, so a misfit
+    /// does not prevent a name.
     ///
     /// # Arguments
-    /// - `law`: one that passed the cross-validation and explains the misfit. `is_incomplete`: the best explanation contradicts the
-    ///   data, or with a model discrepancy the declared noise.
+    /// - `law`: the law that passed the cross-validation and explains the misfit. `is_incomplete`: whether the best explanation
+    ///   contradicts the data; with a model discrepancy, the declared noise.
     pub(super) fn new(
         task: &SearchTask,
         weighing: &Weighing,
@@ -49,7 +50,7 @@ impl SearchVerdict {
             .not_in_library
             .map_or(0.0, |(_, probability)| probability);
         let law = law.filter(|law| is_detected(law.log_bayes_factor - library.max(0.0)));
-        // Without a detection in the library one of many laws may fit by chance; the probability accounts for their number.
+        // Without a detection in the library, one of many laws may fit by chance; the probability accounts for their number.
         if law.is_some() && probability > if is_detected(library) { 0.5 } else { NAMED } {
             return Self::NotInLibrary;
         }
@@ -70,14 +71,14 @@ impl SearchVerdict {
         match best {
             // Evidence and prediction contradict each other.
             Some(best) if best.candidate.is_some_and(|k| weighing.is_disputed(k)) => Self::Undecided,
-            // Where nothing missing is the most probable, no effect is claimed.
+            // If "nothing is missing" is the most probable explanation, no effect is claimed.
             Some(best) if best.probability > NAMED || best.candidate.is_none() => {
                 best.candidate.map_or(nothing, Self::Named)
             }
             Some(_) => {
                 let classes = effects.iter().map(|e| e.class).max().unwrap_or(0);
-                let class = (1..=classes).find(|&class| weighing.ranking.of_class(class) > NAMED);
-                // What remains open may be the effects beside a law, not the law.
+                let class = (1..=classes).find(|&class| weighing.ranking.class_probability(class) > NAMED);
+                // The remaining probability may belong to the effects beside a law, not to the law.
                 let is_shared =
                     |law: &FittedLaw| probability + weighing.beside_effects(task, law.law) > NAMED;
                 match class {

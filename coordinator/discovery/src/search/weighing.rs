@@ -4,24 +4,24 @@ use std::collections::BTreeMap;
 
 use crate::effect_search::ranking::{EffectRanking, EvidenceMethod, RankedEffect};
 use crate::laplace::evidence::log_sum_exp;
-use crate::probability::{DETECTED, ModelProbability};
+use crate::probability::{DETECTED, ModelProbability, Probabilities};
 use crate::search::hypotheses::{EffectCombination, Hypotheses};
 use crate::search::next_run::OpenHypothesis;
 use crate::task::SearchTask;
 
-/// Explanations with less probability are not compared by further runs.
+/// Further runs do not compare explanations that are less probable.
 const OPEN: f64 = 0.005;
-/// Most explanations that further runs compare.
-const MOST_OPEN: usize = 12;
-/// Sets with less probability are no rivals.
+/// Maximum number of explanations that further runs compare.
+const MAX_OPEN: usize = 12;
+/// Less probable sets are not compared by prediction.
 const LEADING: f64 = 0.01;
-/// Most sets that predict left-out levels.
-const MOST_LEADING: usize = 4;
+/// Maximum number of sets that predict left-out levels.
+const MAX_LEADING: usize = 4;
 
 /// A model that explains the data: nothing is missing, effects that act together, or a law outside the library.
 #[derive(Debug, Clone, PartialEq)]
 pub struct WeighedSet {
-    /// The effects; none: nothing is missing. `None`: a law outside the library.
+    /// The effects, empty if nothing is missing; `None` for a law outside the library.
     pub effects: Option<Vec<usize>>,
     /// Log evidence over that of the base.
     pub log_bayes_factor: f64,
@@ -29,12 +29,11 @@ pub struct WeighedSet {
     pub prior: f64,
     /// Posterior probability; over all sets they sum to 1.
     pub probability: f64,
-    /// Log predictive density of left-out levels over that of the base, each measurement counted once; `None` where it was not
-    /// computed.
+    /// Log predictive density of left-out levels over that of the base, each measurement counted once; `None` if it was not computed.
     pub predictive: Option<f64>,
 }
 
-/// The single effects with their probabilities, and those of everything else.
+/// The probabilities of single effects and of all other models.
 pub(super) struct Weighing {
     pub(super) ranking: EffectRanking,
     /// Log Bayes factor and probability of a law outside the library; `None`: not searched.
@@ -54,35 +53,36 @@ struct LedCombination<'a> {
     cost: f64,
 }
 
-/// What the combinations say of each effect of the library: the log of the summed weights of those that have it.
+/// Log of the summed weights of the combinations that include each effect of the library.
 type Inclusion = BTreeMap<usize, f64>;
 
-/// Effects within so many nats of the most included one are included alike: what tells them apart then is which poor combinations were tried.
+/// Two effects whose log inclusion weights differ by less count as equally included: such a difference depends on which poor
+/// combinations were tried.
 const SAME_WEIGHT: f64 = 0.01;
 
-fn inclusion(hypotheses: &Hypotheses, further: f64, misfit: f64) -> Inclusion {
+fn inclusion(hypotheses: &Hypotheses, cost: f64, misfit: f64) -> Inclusion {
     let mut weights: BTreeMap<usize, Vec<f64>> = BTreeMap::new();
     for combination in &hypotheses.combinations {
-        let cost = further * (combination.effects.len() as f64 - 1.0);
+        let cost = cost * (combination.effects.len() as f64 - 1.0);
         for &k in &combination.effects {
-            let own = weights.entry(k).or_default();
-            own.push(combination.log_bayes_factor / misfit - cost);
+            let factor = combination.log_bayes_factor / misfit - cost;
+            weights.entry(k).or_default().push(factor);
         }
     }
     let sum = |(k, weights): (usize, Vec<f64>)| (k, log_sum_exp(weights.into_iter()));
     weights.into_iter().map(sum).collect()
 }
 
-/// The effect of a combination that most of the weight includes, of several the one with the highest Bayes factor of its own; `None`
-/// without an effect of the library. An effect that every good combination has is thus not named after a rival that only some have.
+/// The effect of a combination with the highest inclusion weight; among equals, the one with the highest Bayes factor alone. `None`
+/// without an effect of the library. An effect that all good combinations have is thus not named after a rival that some have.
 fn leader(ranking: &EffectRanking, inclusion: &Inclusion, effects: &[usize]) -> Option<usize> {
     let ranked = || effects.iter().filter_map(|&k| ranking.of(Some(k)));
-    let weight = |of: &RankedEffect| {
-        let known = of.candidate.and_then(|k| inclusion.get(&k));
-        known.copied().unwrap_or(f64::NEG_INFINITY)
+    let weight = |effect: &RankedEffect| {
+        let weight = effect.candidate.and_then(|k| inclusion.get(&k));
+        weight.copied().unwrap_or(f64::NEG_INFINITY)
     };
-    let most = ranked().map(weight).fold(f64::NEG_INFINITY, f64::max);
-    let best = ranked().filter(|of| weight(of) >= most - SAME_WEIGHT);
+    let highest = ranked().map(weight).fold(f64::NEG_INFINITY, f64::max);
+    let best = ranked().filter(|effect| weight(effect) >= highest - SAME_WEIGHT);
     let best = best.reduce(|a, b| {
         let by_factor = b.log_bayes_factor.total_cmp(&a.log_bayes_factor);
         if by_factor.then(a.candidate.cmp(&b.candidate)).is_gt() {
@@ -94,14 +94,14 @@ fn leader(ranking: &EffectRanking, inclusion: &Inclusion, effects: &[usize]) -> 
     best.and_then(|effect| effect.candidate)
 }
 
-/// Whether a set without an effect predicts left-out levels better than every set with it. Sets that both have the effect contradict
-/// each other in the rest alone.
+/// Whether a set without an effect predicts left-out levels better than every set with it. Sets that have the effect differ in
+/// other effects only.
 fn disputes(sets: &[WeighedSet], effect: usize, misfit: f64) -> bool {
     let highest = |has: bool| {
-        let own = sets
+        let sets = sets
             .iter()
             .filter(|set| set.effects.as_ref().is_some_and(|e| e.contains(&effect)) == has);
-        own.filter_map(|set| set.predictive).reduce(f64::max)
+        sets.filter_map(|set| set.predictive).reduce(f64::max)
     };
     match (highest(true), highest(false)) {
         (Some(with), Some(without)) => (without - with) / misfit > DETECTED,
@@ -109,79 +109,107 @@ fn disputes(sets: &[WeighedSet], effect: usize, misfit: f64) -> bool {
     }
 }
 
-impl Weighing {
-    /// A combination counts for its member that most of the weight includes; each further effect has the prior of one among all.
-    pub(super) fn new(task: &SearchTask, hypotheses: &Hypotheses) -> Self {
-        let mut ranking = hypotheses.ranking.clone();
-        // The backward elimination may have found a better fit of a single effect.
-        for effect in &mut ranking.effects {
-            let single = effect.candidate.and_then(|k| hypotheses.single(k));
-            // A sampled evidence yields to another mode, not to Laplace's approximation of the same.
-            let known = match effect.method {
-                EvidenceMethod::Sampled => effect.log_bayes_factor + DETECTED,
-                _ => effect.log_bayes_factor,
-            };
-            if let Some(single) = single.filter(|s| s.log_bayes_factor > known) {
-                effect.log_bayes_factor = single.log_bayes_factor;
-                let gain = single.fit.stated_gain(&task.likelihood).unwrap_or(0.0);
-                effect.stated_log_bayes_factor = single.log_bayes_factor + gain;
-                effect.log_likelihood = single.fit.point.log_likelihood(&single.fit.frame);
-                effect.prior_sds = single.fit.frame.strength_distance(&single.fit.point.position);
-                effect.theta = single.fit.theta();
-                effect.predicted.clone_from(&single.fit.point.values);
-                effect.at_bound = single.fit.frame.at_bound(&single.fit.point.position);
-            }
+/// The ranking of the single effects, with the better fits that the backward elimination may have found.
+fn updated_ranking(task: &SearchTask, hypotheses: &Hypotheses) -> EffectRanking {
+    let mut ranking = hypotheses.ranking.clone();
+    for effect in &mut ranking.effects {
+        let single = effect.candidate.and_then(|k| hypotheses.single(k));
+        // Another mode replaces a sampled evidence; Laplace's approximation of the same mode does not.
+        let min_factor = match effect.method {
+            EvidenceMethod::Sampled => effect.log_bayes_factor + DETECTED,
+            _ => effect.log_bayes_factor,
+        };
+        if let Some(single) = single.filter(|s| s.log_bayes_factor > min_factor) {
+            effect.log_bayes_factor = single.log_bayes_factor;
+            let gain = single.fit.stated_gain(&task.likelihood).unwrap_or(0.0);
+            effect.stated_log_bayes_factor = single.log_bayes_factor + gain;
+            effect.log_likelihood = single.fit.point.log_likelihood(&single.fit.frame);
+            effect.prior_sds = single.fit.frame.strength_distance(&single.fit.point.position);
+            effect.theta = single.fit.theta();
+            effect.predicted.clone_from(&single.fit.point.values);
+            effect.at_bound = single.fit.frame.at_bound(&single.fit.point.position);
         }
-        let further = libm::log(task.library.len().max(1) as f64);
+    }
+    ranking
+}
+
+/// The combinations of two effects and more, by their leading effect.
+struct LedCombinations<'a>(BTreeMap<usize, Vec<LedCombination<'a>>>);
+
+impl<'a> LedCombinations<'a> {
+    /// # Arguments
+    /// - `cost`: log prior cost of each effect after the first.
+    fn new(hypotheses: &'a Hypotheses, ranking: &EffectRanking, inclusion: &Inclusion, cost: f64) -> Self {
         let mut led: BTreeMap<usize, Vec<LedCombination>> = BTreeMap::new();
-        let misfit = hypotheses.misfit(&task.likelihood);
-        let inclusion = inclusion(hypotheses, further, misfit);
         for combination in hypotheses.combinations.iter().filter(|c| c.effects.len() > 1) {
-            if let Some(leader) = leader(&ranking, &inclusion, &combination.effects) {
+            if let Some(leader) = leader(ranking, inclusion, &combination.effects) {
                 led.entry(leader).or_default().push(LedCombination {
                     effects: &combination.effects,
                     log_bayes_factor: combination.log_bayes_factor,
-                    cost: further * (combination.effects.len() as f64 - 1.0),
+                    cost: cost * (combination.effects.len() as f64 - 1.0),
                 });
             }
         }
-        let led_by = |k: usize| led.get(&k).map_or(&[][..], Vec::as_slice);
+        Self(led)
+    }
+
+    fn led_by(&self, effect: usize) -> &[LedCombination<'a>] {
+        self.0.get(&effect).map_or(&[], Vec::as_slice)
+    }
+
+    /// The set of a model; `None` if the model is unknown.
+    fn set(&self, ranking: &EffectRanking, model: &ModelProbability) -> Option<WeighedSet> {
+        let effect = ranking.effects.get(model.explanation)?;
+        let (effects, log_bayes_factor) = match (model.combination, effect.candidate) {
+            (None, candidate) => (candidate.into_iter().collect(), effect.log_bayes_factor),
+            (Some(place), Some(k)) => {
+                let combination = self.led_by(k).get(place)?;
+                (combination.effects.to_vec(), combination.log_bayes_factor)
+            }
+            (Some(_), None) => return None,
+        };
+        Some(WeighedSet {
+            effects: Some(effects),
+            log_bayes_factor,
+            prior: model.prior,
+            probability: model.posterior,
+            predictive: None,
+        })
+    }
+}
+
+/// The set of a law outside the library, if it was searched.
+fn outside_set(outside: Option<f64>, probabilities: &Probabilities) -> Option<WeighedSet> {
+    Some(WeighedSet {
+        effects: None,
+        log_bayes_factor: outside?,
+        prior: probabilities.outside_prior?,
+        probability: probabilities.outside?,
+        predictive: None,
+    })
+}
+
+impl Weighing {
+    /// Computes all probabilities. A combination counts for its leading effect; each further effect has the prior 1 / number of candidates.
+    pub(super) fn new(task: &SearchTask, hypotheses: &Hypotheses) -> Self {
+        let mut ranking = updated_ranking(task, hypotheses);
+        let cost = libm::log(task.library.len().max(1) as f64);
+        let misfit = hypotheses.misfit(&task.likelihood);
+        let inclusion = inclusion(hypotheses, cost, misfit);
+        let led = LedCombinations::new(hypotheses, &ranking, &inclusion, cost);
         let outside = hypotheses.laws.as_ref();
         let outside = outside.map(|scan| scan.log_bayes_factor(task.laws.len()));
-        let weights = |k: usize| led_by(k).iter().map(|c| (c.log_bayes_factor, c.cost)).collect();
-        let probabilities = ranking.weigh(weights, outside, misfit);
-        let of_model = |model: &ModelProbability| {
-            let effect = ranking.effects.get(model.explanation)?;
-            let (effects, log_bayes_factor) = match (model.combination, effect.candidate) {
-                (None, candidate) => (candidate.into_iter().collect(), effect.log_bayes_factor),
-                (Some(place), Some(k)) => {
-                    let own = led_by(k).get(place)?;
-                    (own.effects.to_vec(), own.log_bayes_factor)
-                }
-                (Some(_), None) => return None,
-            };
-            Some(WeighedSet {
-                effects: Some(effects),
-                log_bayes_factor,
-                prior: model.prior,
-                probability: model.posterior,
-                predictive: None,
-            })
+        let weights = |k: usize| {
+            let combinations = led.led_by(k).iter();
+            combinations.map(|c| (c.log_bayes_factor, c.cost)).collect()
         };
-        let mut sets: Vec<WeighedSet> = probabilities.of_models.iter().filter_map(of_model).collect();
-        let law = outside
-            .zip(probabilities.outside)
-            .zip(probabilities.outside_prior);
-        sets.extend(law.map(|((log_bayes_factor, probability), prior)| WeighedSet {
-            effects: None,
-            log_bayes_factor,
-            prior,
-            probability,
-            predictive: None,
-        }));
+        let probabilities = ranking.weigh(weights, outside, misfit);
+        let models = probabilities.models.iter();
+        let mut sets: Vec<WeighedSet> = models.filter_map(|model| led.set(&ranking, model)).collect();
+        sets.extend(outside_set(outside, &probabilities));
         for set in &mut sets {
-            let mut known = hypotheses.predictive.iter();
-            set.predictive = known
+            let mut predictive = hypotheses.predictive.iter();
+            set.predictive = predictive
                 .find(|(effects, _)| set.effects.as_ref() == Some(effects))
                 .map(|(_, gain)| *gain);
         }
@@ -207,38 +235,38 @@ impl Weighing {
         let effects = effects
             .filter_map(|set| set.effects.as_ref())
             .filter(|e| !e.is_empty());
-        let found = effects.filter_map(|own| hypotheses.of(own));
-        found.take(MOST_LEADING).collect()
+        let combinations = effects.filter_map(|effects| hypotheses.combination(effects));
+        combinations.take(MAX_LEADING).collect()
     }
 
-    /// The effect with which to begin, where the data leave several sets but evidence and prediction have the same best: each rival
-    /// predicts left-out levels worse by a detectable amount.
+    /// The effect to begin with, if several sets remain and evidence and prediction agree on the best: every rival predicts
+    /// left-out levels worse by a detectable amount.
     pub(super) fn agreed(&self) -> Option<usize> {
         let best = self.sets.first()?;
-        let (effects, own) = (best.effects.as_ref()?, best.predictive?);
+        let (effects, best_gain) = (best.effects.as_ref()?, best.predictive?);
         let rivals = self.sets.iter().skip(1);
         let mut predicted = rivals.filter_map(|rival| rival.predictive).peekable();
         predicted.peek()?;
-        let is_beaten = |gain: f64| (own - gain) / self.misfit > DETECTED;
-        let others_are_improbable = self
+        let is_beaten = |gain: f64| (best_gain - gain) / self.misfit > DETECTED;
+        let unpredicted_are_improbable = self
             .sets
             .iter()
             .filter(|set| set.predictive.is_none())
             .all(|set| set.probability < LEADING);
         let leader = leader(&self.ranking, &self.inclusion, effects);
-        leader.filter(|_| predicted.all(is_beaten) && others_are_improbable)
+        leader.filter(|_| predicted.all(is_beaten) && unpredicted_are_improbable)
     }
 
     /// The sets that count for an effect, by falling probability.
     fn led_by(&self, effect: usize) -> impl Iterator<Item = &[usize]> {
         let sets = self.sets.iter().filter_map(|set| set.effects.as_deref());
-        sets.filter(move |own| leader(&self.ranking, &self.inclusion, own) == Some(effect))
+        sets.filter(move |effects| leader(&self.ranking, &self.inclusion, effects) == Some(effect))
     }
 
-    /// Probability of the sets in which a law outside the library stands beside effects.
+    /// Probability of the sets that contain both this law and effects.
     pub(super) fn beside_effects(&self, task: &SearchTask, law: usize) -> f64 {
         let is_law = |k: &usize| *k == task.curve(law) || task.forms(law).contains(k);
-        let has_law = |set: &&WeighedSet| set.effects.as_ref().is_some_and(|own| own.iter().any(is_law));
+        let has_law = |set: &&WeighedSet| set.effects.as_ref().is_some_and(|k| k.iter().any(is_law));
         self.sets.iter().filter(has_law).map(|set| set.probability).sum()
     }
 
@@ -259,9 +287,11 @@ impl Weighing {
                 probability: effect.probability,
                 fit: base,
             }),
-            // An effect's probability is that of the sets that it leads; the most probable of them stands for it.
+            // An effect's probability is the sum over the sets that it leads; the most probable of them represents it.
             Some(k) => {
-                let set = self.led_by(k).find_map(|own| hypotheses.of(own))?;
+                let set = self
+                    .led_by(k)
+                    .find_map(|effects| hypotheses.combination(effects))?;
                 Some(OpenHypothesis {
                     effects: set.effects.clone(),
                     probability: effect.probability,
@@ -279,7 +309,7 @@ impl Weighing {
             });
         }
         open.sort_by(|a, b| b.probability.total_cmp(&a.probability));
-        open.truncate(MOST_OPEN);
+        open.truncate(MAX_OPEN);
         open
     }
 }
@@ -323,7 +353,7 @@ mod tests {
             effects: vec![ranked(1, 9.0), ranked(2, 11.0), ranked(3, 4.0)],
             ..EffectRanking::default()
         };
-        // The third has a little more than the first, as poor combinations add.
+        // The third has a little more weight than the first, as poor combinations add.
         let inclusion = BTreeMap::from([(1, 30.0), (2, 29.9), (3, 30.0 + 1e-6)]);
         assert_eq!(leader(&ranking, &inclusion, &[1, 2]), Some(1));
         assert_eq!(leader(&ranking, &inclusion, &[3, 1]), Some(1));
@@ -344,7 +374,7 @@ mod tests {
         assert!(disputes(&sets, 2, 1.0));
         assert!(!disputes(&sets, 3, 1.0));
         assert!(disputes(&sets, 4, 1.0));
-        // A misfit makes the difference mean less; what predicted nothing is not disputed.
+        // A misfit reduces the difference; an effect without a prediction is not disputed.
         assert!(!disputes(&sets, 4, 4.0) && !disputes(&sets, 5, 1.0));
     }
 }

@@ -1,15 +1,15 @@
-//! Draws of the parameters, and how they came about.
+//! Draws of the parameters, and statistics of the sampler.
 
-use record::{Sample, StageRow};
+use inference::Particle;
+use record::StageRow;
 use result::FinishedCalibration;
 
 use crate::inference_data::VariableGroup;
 use crate::variable::{Values, Variable};
 
-/// Chains of a population: its draws are exchangeable.
+/// Number of chains of a population: its draws are exchangeable.
 const CHAINS: usize = 1;
 
-/// The labels of chain and draw.
 pub(super) fn draw_labels(draws: Vec<i64>) -> Vec<Variable> {
     vec![
         Variable::labels("chain", Values::Whole(vec![0])),
@@ -17,12 +17,10 @@ pub(super) fn draw_labels(draws: Vec<i64>) -> Vec<Variable> {
     ]
 }
 
-/// Numbers from 0.
 pub(super) fn numbers(count: usize) -> Vec<i64> {
     (0_i64..).take(count).collect()
 }
 
-/// One variable for each parameter.
 fn parameters<'a>(
     name: &str,
     calibration: &FinishedCalibration,
@@ -44,37 +42,42 @@ fn parameters<'a>(
 
 /// The equally weighted draws of the posterior.
 pub(super) fn posterior(calibration: &FinishedCalibration) -> VariableGroup {
-    let draws = calibration.posterior.iter().map(|sample| sample.theta.as_slice());
+    let draws = calibration
+        .posterior()
+        .iter()
+        .map(|sample| sample.theta.as_slice());
     parameters("posterior", calibration, draws)
 }
 
-/// The draws from the prior that the sampler began with; none of a normal approximation.
+/// The draws from the prior with which the sampler began; none for a normal approximation.
 pub(super) fn prior(calibration: &FinishedCalibration) -> VariableGroup {
-    let draws = calibration.prior_draws.iter().map(|draw| draw.theta.as_slice());
+    let draws = calibration.prior_draws().iter().map(|draw| draw.theta.as_slice());
     parameters("prior", calibration, draws)
 }
 
 /// The density of each draw, and the stages of the sampler.
 pub(super) fn sample_stats(calibration: &FinishedCalibration) -> VariableGroup {
-    let draws = &calibration.posterior;
+    let draws = calibration.posterior();
     let dims = [("chain", CHAINS), ("draw", draws.len())];
-    let of_draw = |name: &str, meaning: &str, value: &dyn Fn(&Sample) -> f64| {
+    let draw_variable = |name: &str, meaning: &str, value: &dyn Fn(&Particle) -> f64| {
         let values = draws.iter().map(value).collect();
         Variable::new(name, &dims, "", meaning, Values::Real(values))
     };
-    let log_likelihood = |draw: &Sample| draw.log_likelihood.unwrap_or(f64::NEG_INFINITY);
-    let stages = &calibration.stages;
+    let log_likelihood = |draw: &Particle| draw.log_likelihood.value();
+    let stages = calibration.stages();
     let along = [("stage", stages.len())];
-    let of_stage = |name: &str, meaning: &str, value: &dyn Fn(&StageRow) -> f64| {
+    let stage_variable = |name: &str, meaning: &str, value: &dyn Fn(&StageRow) -> f64| {
         let values = stages.iter().map(value).collect();
         Variable::new(name, &along, "", meaning, Values::Real(values))
     };
-    let meaning = match calibration.approximated {
+    let meaning = match calibration.approximated() {
         Some(_) => {
             "log-likelihood of the linearised model, which the normal approximation is of; that of the model itself is in the group log_likelihood"
         }
         None => "log-likelihood",
     };
+    let evaluations = stages.iter().map(|stage| stage.evaluations.cast_signed());
+    let evaluations = Values::Whole(evaluations.collect());
     let mut coords = draw_labels(numbers(draws.len()));
     let stage_numbers = stages.iter().map(|stage| i64::from(stage.stage)).collect();
     coords.push(Variable::labels("stage", Values::Whole(stage_numbers)));
@@ -82,37 +85,26 @@ pub(super) fn sample_stats(calibration: &FinishedCalibration) -> VariableGroup {
         name: "sample_stats".to_owned(),
         coords,
         data_vars: vec![
-            of_draw(
+            draw_variable(
                 "lp",
                 "log-density of the posterior, without its constant",
                 &|draw| log_likelihood(draw) + draw.log_prior,
             ),
-            of_draw("log_likelihood", meaning, &log_likelihood),
-            of_draw("log_prior", "log-density of the prior", &|draw| draw.log_prior),
-            of_stage("tempering_exponent", "power of the likelihood", &|stage| {
+            draw_variable("log_likelihood", meaning, &log_likelihood),
+            draw_variable("log_prior", "log-density of the prior", &|draw| draw.log_prior),
+            stage_variable("tempering_exponent", "power of the likelihood", &|stage| {
                 stage.tempering_exponent
             }),
-            of_stage(
+            stage_variable(
                 "acceptance",
                 "acceptance rate of the moves; of independent draws, their effective share",
                 &|stage| stage.acceptance,
             ),
-            of_stage("ess", "effective sample size of the weights", &|stage| stage.ess),
-            of_stage("log_evidence_increment", "share of the log-evidence", &|stage| {
+            stage_variable("ess", "effective sample size of the weights", &|stage| stage.ess),
+            stage_variable("log_evidence_increment", "share of the log-evidence", &|stage| {
                 stage.log_evidence_increment
             }),
-            Variable::new(
-                "evaluations",
-                &along,
-                "",
-                "evaluations spent",
-                Values::Whole(
-                    stages
-                        .iter()
-                        .map(|stage| stage.evaluations.cast_signed())
-                        .collect(),
-                ),
-            ),
+            Variable::new("evaluations", &along, "", "evaluations spent", evaluations),
         ],
     }
 }

@@ -1,4 +1,4 @@
-//! What a calibration has to say, group by group.
+//! The content of an export, group by group.
 //!
 //! # Layout
 //! - `draws`: posterior, prior and statistics of the sampler.
@@ -18,9 +18,9 @@ use runs::Part;
 /// A finished calibration as inference data.
 ///
 /// # Errors
-/// [`ExportError::NoDraws`] of a fit without draws.
+/// [`ExportError::NoDraws`] for a fit without draws.
 pub fn inference_data(calibration: &FinishedCalibration) -> Result<InferenceData, ExportError> {
-    if calibration.posterior.is_empty() {
+    if calibration.posterior().is_empty() {
         return Err(ExportError::NoDraws(calibration.row.id));
     }
     let fitted = Part::fitted(calibration);
@@ -33,7 +33,7 @@ pub fn inference_data(calibration: &FinishedCalibration) -> Result<InferenceData
         fitted.measured("observed_data"),
         fitted.conditions("constant_data"),
     ];
-    // What was never fitted is a prediction, with the measurements that judge it.
+    // A run that was never fitted is a prediction, with the measurements to judge it.
     if !calibration.spec.holdout_runs.is_empty() {
         let held_out = Part::held_out(calibration);
         groups.push(held_out.predictive("predictions"));
@@ -49,7 +49,6 @@ pub fn inference_data(calibration: &FinishedCalibration) -> Result<InferenceData
     })
 }
 
-/// What is said of the whole.
 fn attributes(calibration: &FinishedCalibration) -> BTreeMap<String, String> {
     let row = &calibration.row;
     let campaign = calibration
@@ -58,7 +57,7 @@ fn attributes(calibration: &FinishedCalibration) -> BTreeMap<String, String> {
         .campaign
         .as_ref()
         .map(CampaignWords::from);
-    let said = [
+    let attributes = [
         (
             "created_by",
             Some(concat!("grouser ", env!("CARGO_PKG_VERSION")).to_owned()),
@@ -79,13 +78,14 @@ fn attributes(calibration: &FinishedCalibration) -> BTreeMap<String, String> {
         ),
         (
             "posterior",
-            Some(match calibration.approximated {
+            Some(match calibration.approximated() {
                 Some(_) => "draws of a normal approximation".to_owned(),
                 None => "equally weighted draws of a sample".to_owned(),
             }),
         ),
     ];
-    let said = said.into_iter();
-    said.filter_map(|(name, value)| Some((name.to_owned(), value?)))
+    let attributes = attributes.into_iter();
+    attributes
+        .filter_map(|(name, value)| Some((name.to_owned(), value?)))
         .collect()
 }

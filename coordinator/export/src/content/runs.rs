@@ -1,4 +1,4 @@
-//! Runs: what was set, what was measured, and what the model says at the draws that were simulated on every run.
+//! Runs: conditions, measurements, and predictions at the draws that were simulated on every run.
 
 use record::Prediction;
 use result::{Component, FinishedCalibration, NewMeasurements};
@@ -11,42 +11,39 @@ use super::draws::{draw_labels, numbers};
 use crate::inference_data::VariableGroup;
 use crate::variable::{Values, Variable};
 
-/// The name that measured values, their predictions and their log-likelihoods share.
+/// The name shared by measured values, their predictions and their log-likelihoods.
 const MEASUREMENT: &str = "measurement";
 
-/// The dimension of measurements where not every run has every channel.
+/// The dimension of measurements if not every run has every channel.
 const OBSERVATION: &str = "observation";
 
-/// Names the random numbers of new measurements among those of a seed: no sampler has so many stages.
+/// Stage number of the random streams of new measurements: no sampler has so many stages.
 const NEW: u64 = u64::MAX;
 
 /// The fitted runs of a calibration, or those held out.
 pub(super) struct Part<'a> {
     calibration: &'a FinishedCalibration,
-    /// Its runs, as positions in the experiment.
+    /// Indices of the runs in the experiment.
     places: &'a [usize],
     runs: Vec<&'a TestRun>,
     /// The channels that some run of the experiment has measured.
     channels: Vec<Channel>,
 }
 
-/// A fitted measurement.
 struct Cell {
-    /// Its place in the data of the likelihood.
+    /// Index among the data of the likelihood.
     datum: usize,
-    /// Its run, as a position among the fitted runs.
+    /// Index of the run among the fitted runs.
     run: usize,
-    /// Its channel, as a position among those exported.
+    /// Index of the channel among those exported.
     channel: usize,
 }
 
 impl<'a> Part<'a> {
-    /// The fitted runs.
     pub(super) fn fitted(calibration: &'a FinishedCalibration) -> Self {
         Part::new(calibration, &calibration.spec.fit_runs)
     }
 
-    /// The runs that are not fitted.
     pub(super) fn held_out(calibration: &'a FinishedCalibration) -> Self {
         Part::new(calibration, &calibration.spec.holdout_runs)
     }
@@ -62,7 +59,6 @@ impl<'a> Part<'a> {
         }
     }
 
-    /// The labels of run and channel.
     fn labels(&self) -> Vec<Variable> {
         let channels = self.channels.iter().map(|channel| channel.column().to_owned());
         vec![
@@ -71,8 +67,8 @@ impl<'a> Part<'a> {
         ]
     }
 
-    fn texts(&self, of: impl Fn(&TestRun) -> &String) -> Vec<String> {
-        self.runs.iter().map(|run| of(run).clone()).collect()
+    fn texts(&self, text: impl Fn(&TestRun) -> &String) -> Vec<String> {
+        self.runs.iter().map(|run| text(run).clone()).collect()
     }
 
     fn dims(&self) -> [(&'static str, usize); 2] {
@@ -92,12 +88,12 @@ impl<'a> Part<'a> {
     fn over<const N: usize>(
         &self,
         group: &str,
-        others: &[(&str, usize)],
+        further: &[(&str, usize)],
         labels: Vec<Variable>,
         variables: [(&str, &str, Vec<f64>); N],
     ) -> VariableGroup {
         let draws = self.calibration.predictive_draws();
-        let dims = [&[("chain", 1), ("draw", draws.len())], others].concat();
+        let dims = [&[("chain", 1), ("draw", draws.len())], further].concat();
         let mut coords = draw_labels(places(self.calibration));
         coords.extend(labels);
         let variable = |(name, meaning, values): (&str, &str, Vec<f64>)| {
@@ -110,7 +106,7 @@ impl<'a> Part<'a> {
         }
     }
 
-    /// What the model says, and new measurements with the errors that the calibration found; NaN where it rejects a draw.
+    /// The model's predictions, and new measurements with the errors that the calibration found; NaN where it rejects a draw.
     pub(super) fn predictive(&self, group: &str) -> VariableGroup {
         let law = self.calibration.spec.likelihood.law();
         let seed = self.calibration.spec.algorithm.seed();
@@ -120,11 +116,15 @@ impl<'a> Part<'a> {
         let (mut values, mut measurements) = (empty.clone(), empty);
         for (run, &place) in self.places.iter().enumerate() {
             for (column, &channel) in self.channels.iter().enumerate() {
-                for said in new.at(place, channel) {
-                    let mut stream =
-                        Stream::new(seed, NEW, said.draw as u64, (4 * place + channel.index()) as u64);
-                    let at = said.draw * size + run * self.channels.len() + column;
-                    if let Some(component) = chosen(&said.components, stream.uniform()) {
+                for prediction in new.at(place, channel) {
+                    let mut stream = Stream::new(
+                        seed,
+                        NEW,
+                        prediction.draw as u64,
+                        (4 * place + channel.index()) as u64,
+                    );
+                    let at = prediction.draw * size + run * self.channels.len() + column;
+                    if let Some(component) = chosen(&prediction.components, stream.uniform()) {
                         values[at] = component.mean;
                         let error = error(law, [stream.uniform(), stream.uniform()]);
                         measurements[at] = component.mean + component.scale.unwrap_or(0.0) * error;
@@ -140,8 +140,8 @@ impl<'a> Part<'a> {
         )
     }
 
-    /// The log-density of each fitted measurement by itself. Where a run lacks a channel, measurements have one dimension: sums
-    /// over runs and channels, as leave-one-out makes them, would be NaN.
+    /// The log-density of each fitted measurement. If a run lacks a channel, measurements have one dimension, because the sums over
+    /// runs and channels of leave-one-out would be NaN.
     pub(super) fn log_likelihood(&self) -> VariableGroup {
         let likelihood = &self.calibration.spec.likelihood;
         let cells = self.cells();
@@ -150,8 +150,8 @@ impl<'a> Part<'a> {
             let fitted = draw.fit.as_ref().ok();
             let predicted = fitted.map(|observables| self.calibration.spec.predicted_values(observables));
             let densities = predicted.and_then(|p| likelihood.log_densities(&p, &draw.theta).ok());
-            let of_cell = |cell: &Cell| densities.as_ref().map_or(f64::NAN, |all| all[cell.datum]);
-            values.extend(cells.iter().map(of_cell));
+            let density = |cell: &Cell| densities.as_ref().map_or(f64::NAN, |all| all[cell.datum]);
+            values.extend(cells.iter().map(density));
         }
         let is_alone = (0..likelihood.data().len()).all(|datum| likelihood.is_alone(datum));
         let meaning = match is_alone {
@@ -183,14 +183,14 @@ impl<'a> Part<'a> {
     /// The fitted measurements of these runs, by run and channel.
     fn cells(&self) -> Vec<Cell> {
         let data = self.calibration.spec.likelihood.data().iter().enumerate();
-        let cell = |(datum, of): (usize, &statistics::Datum)| {
+        let cell = |(datum, measured): (usize, &statistics::Datum)| {
             let channel = self
                 .channels
                 .iter()
-                .position(|channel| channel.index() == of.channel)?;
+                .position(|channel| channel.index() == measured.channel)?;
             Some(Cell {
                 datum,
-                run: of.run,
+                run: measured.run,
                 channel,
             })
         };
@@ -199,13 +199,13 @@ impl<'a> Part<'a> {
         cells
     }
 
-    /// What was measured; NaN where nothing was.
+    /// The measured values; NaN where none was measured.
     pub(super) fn measured(&self, group: &str) -> VariableGroup {
-        let of_run = |run: &&TestRun| -> Vec<f64> {
+        let measured = |run: &&TestRun| -> Vec<f64> {
             let value = |channel: &Channel| run.measured[channel.index()].unwrap_or(f64::NAN);
             self.channels.iter().map(value).collect()
         };
-        let values = self.runs.iter().flat_map(of_run).collect();
+        let values = self.runs.iter().flat_map(measured).collect();
         let meaning = "measured value, in the unit of the channel";
         VariableGroup {
             name: group.to_owned(),
@@ -220,11 +220,11 @@ impl<'a> Part<'a> {
         }
     }
 
-    /// What the rig was set to.
+    /// The conditions that were set on the rig.
     pub(super) fn conditions(&self, group: &str) -> VariableGroup {
         let [run, channel] = self.dims();
-        let real = |name: &str, unit: &str, of: fn(&TestRun) -> f64| {
-            let values = self.runs.iter().map(|run| of(run)).collect();
+        let real = |name: &str, unit: &str, value: fn(&TestRun) -> f64| {
+            let values = self.runs.iter().map(|run| value(run)).collect();
             Variable::new(name, &[run], unit, "", Values::Real(values))
         };
         let text = |name: &str, values| Variable::new(name, &[run], "", "", Values::Text(values));
@@ -247,20 +247,20 @@ impl<'a> Part<'a> {
     }
 }
 
-/// The component in which a probability falls.
+/// The component that contains a probability.
 fn chosen(components: &[Component], mut probability: f64) -> Option<&Component> {
-    let found = components.iter().find(|component| {
+    let component = components.iter().find(|component| {
         probability -= component.weight;
         probability < 0.0
     });
-    // Rounding may leave a rest behind the last one.
-    found.or(components.last())
+    // Rounding may leave a remainder behind the last component.
+    component.or(components.last())
 }
 
 /// A random error of scale 1 from two uniform numbers.
 ///
 /// # Source
-/// Box & Muller 1958, doi:10.1214/aoms/1177706645; of Student's t Bailey 1994, Math. Comp. 62:779, doi:10.2307/2153537.
+/// Box & Muller 1958, doi:10.1214/aoms/1177706645; for Student's t, Bailey 1994, Math. Comp. 62:779, doi:10.2307/2153537.
 fn error(law: ErrorLaw, [first, second]: [f64; 2]) -> f64 {
     let squared = match law {
         ErrorLaw::Gaussian => -2.0 * libm::log(first),
@@ -271,14 +271,14 @@ fn error(law: ErrorLaw, [first, second]: [f64; 2]) -> f64 {
     squared.sqrt() * libm::cos(std::f64::consts::TAU * second)
 }
 
-/// Where the simulated draws stand in the posterior, which they are equally spaced draws of.
+/// Index in the posterior of each simulated draw; these are equally spaced draws of it.
 fn places(calibration: &FinishedCalibration) -> Vec<i64> {
     let draws = calibration.predictive_draws();
     let is_same = |a: &[f64], b: &[f64]| a.iter().map(|x| x.to_bits()).eq(b.iter().map(|x| x.to_bits()));
-    let mut posterior = calibration.posterior.iter().zip(0_i64..);
+    let mut posterior = calibration.posterior().iter().zip(0_i64..);
     let place = |draw: &Prediction| {
-        let found = posterior.find(|(sample, _)| is_same(&sample.theta, &draw.theta));
-        found.map(|(_, place)| place)
+        let place = posterior.find(|(sample, _)| is_same(&sample.theta, &draw.theta));
+        place.map(|(_, place)| place)
     };
     let places: Option<Vec<i64>> = draws.iter().map(place).collect();
     places.unwrap_or_else(|| numbers(draws.len()))
@@ -303,7 +303,7 @@ mod tests {
             for z in [-2.0, -0.5, 0.0, 1.0, 3.0] {
                 let below = errors.iter().filter(|&&e| e < z).count() as f64 / errors.len() as f64;
                 let expected = law.cumulative(z);
-                // Four standard errors of a share.
+                // The tolerance is four standard errors of a share.
                 let bound = 4.0 * (expected * (1.0 - expected) / errors.len() as f64).sqrt();
                 assert!(
                     (below - expected).abs() < bound,

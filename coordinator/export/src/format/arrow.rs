@@ -10,10 +10,10 @@ use arrow_schema::{DataType, Field, Schema};
 use crate::draw_table::DrawTable;
 use crate::error::ExportError;
 
-/// The table as a file; each column says its unit in its metadata.
+/// The table as a file; the metadata of each column state its unit.
 ///
 /// # Errors
-/// [`ExportError::Arrow`].
+/// [`ExportError::Arrow`] if the library refuses the table.
 pub fn arrow(table: &DrawTable) -> Result<Vec<u8>, ExportError> {
     let mut fields = Vec::new();
     let mut columns: Vec<ArrayRef> = Vec::new();

@@ -1,7 +1,7 @@
-//! The files: bytes that a program elsewhere reads.
+//! The file formats of an export.
 //!
 //! # Layout
-//! - `zarr`: a Zarr v3 hierarchy; `netcdf`: one NetCDF file. Both take inference data as it is.
+//! - `zarr`: a Zarr v3 hierarchy; `netcdf`: one NetCDF file. Both take inference data.
 //! - `arrow`, `parquet`: the table of draws.
 
 mod arrow;

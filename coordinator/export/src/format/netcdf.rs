@@ -1,12 +1,11 @@
 //! A NetCDF file in the classic format with 64-bit offsets (CDF-2), which needs no HDF5.
 //!
-//! The format has no groups: variables and dimensions are named `GROUP.NAME`. It has no text either: texts are characters along a
-//! dimension of their own, in UTF-8 as the attribute `_Encoding` says. A variable without values is left out, because a dimension
-//! of length 0 means something else here.
+//! The format has no groups: variables and dimensions are named `GROUP.NAME`. It has no text either: texts are characters along an
+//! additional dimension, in UTF-8 as the attribute `_Encoding` says. A variable without values is left out, because a dimension of
+//! length 0 is the record dimension here.
 //!
 //! # Source
-//! *The NetCDF Classic Format Specification*, Unidata
-//! (<https://docs.unidata.ucar.edu/netcdf-c/current/file_format_specifications.html>).
+//! *The NetCDF Classic Format Specification*, Unidata (<https://docs.unidata.ucar.edu/netcdf-c/current/file_format_specifications.html>).
 
 use std::collections::BTreeMap;
 
@@ -20,7 +19,7 @@ const DIMENSIONS: u32 = 10;
 const VARIABLES: u32 = 11;
 const ATTRIBUTES: u32 = 12;
 
-/// What stands in the header of a variable, and its values.
+/// The header of a variable, and its values.
 struct Entry {
     name: String,
     dimensions: Vec<usize>,
@@ -32,7 +31,7 @@ struct Entry {
 /// Inference data as one file.
 ///
 /// # Errors
-/// [`ExportError::Size`] of what the format cannot count.
+/// [`ExportError::Size`] if a count exceeds the format.
 pub fn netcdf(data: &InferenceData) -> Result<Vec<u8>, ExportError> {
     let mut dimensions = Dimensions::default();
     let mut entries = Vec::new();
@@ -42,7 +41,7 @@ pub fn netcdf(data: &InferenceData) -> Result<Vec<u8>, ExportError> {
             entries.push(entry(&group.name, variable, &mut dimensions)?);
         }
     }
-    // Where the values begin does not change how long the header is.
+    // The length of the header does not depend on the offset of the values.
     let length = header(data, &dimensions, &entries, 0)?.len();
     let mut file = header(data, &dimensions, &entries, length)?;
     for entry in entries {
@@ -104,21 +103,21 @@ fn entry(group: &str, variable: &Variable, dimensions: &mut Dimensions) -> Resul
     })
 }
 
-/// Whole numbers of 32 bits: the classic format has no longer ones.
+/// Whole numbers of 32 bits: the classic format has no longer type.
 fn whole(values: &[i64]) -> Result<Vec<u8>, ExportError> {
     let mut bytes = Vec::with_capacity(4 * values.len());
     for &value in values {
         let short = i32::try_from(value).map_err(|_| ExportError::Size {
             what: "a whole number",
             count: usize::try_from(value.unsigned_abs()).unwrap_or(usize::MAX),
-            most: i32::MAX.unsigned_abs().into(),
+            max: i32::MAX.unsigned_abs().into(),
         })?;
         bytes.extend(short.to_be_bytes());
     }
     Ok(bytes)
 }
 
-/// The header, for values that begin behind `begin` bytes.
+/// The header, for values that begin at byte `begin`.
 fn header(
     data: &InferenceData,
     dimensions: &Dimensions,
@@ -131,8 +130,8 @@ fn header(
         text(&mut bytes, name)?;
         number(&mut bytes, *length)?;
     }
-    let said = data.attrs.iter().map(|(name, text)| (name.as_str(), text));
-    add_attributes(&mut bytes, said)?;
+    let attributes = data.attrs.iter().map(|(name, text)| (name.as_str(), text));
+    add_attributes(&mut bytes, attributes)?;
     list(&mut bytes, VARIABLES, entries.len())?;
     for entry in entries {
         text(&mut bytes, &entry.name)?;
@@ -140,8 +139,8 @@ fn header(
         for &dimension in &entry.dimensions {
             number(&mut bytes, dimension)?;
         }
-        let said = entry.attributes.iter().map(|(name, text)| (*name, text));
-        add_attributes(&mut bytes, said)?;
+        let attributes = entry.attributes.iter().map(|(name, text)| (*name, text));
+        add_attributes(&mut bytes, attributes)?;
         bytes.extend(entry.kind.to_be_bytes());
         number(&mut bytes, entry.values.len())?;
         bytes.extend((begin as u64).to_be_bytes());
@@ -152,10 +151,10 @@ fn header(
 
 fn add_attributes<'a>(
     bytes: &mut Vec<u8>,
-    said: impl ExactSizeIterator<Item = (&'a str, &'a String)>,
+    attributes: impl ExactSizeIterator<Item = (&'a str, &'a String)>,
 ) -> Result<(), ExportError> {
-    list(bytes, ATTRIBUTES, said.len())?;
-    for (name, value) in said {
+    list(bytes, ATTRIBUTES, attributes.len())?;
+    for (name, value) in attributes {
         text(bytes, name)?;
         bytes.extend(2_u32.to_be_bytes());
         text(bytes, value)?;
@@ -163,7 +162,7 @@ fn add_attributes<'a>(
     Ok(())
 }
 
-/// The beginning of a list; one without elements has no kind.
+/// The beginning of a list; an empty one has no tag.
 fn list(bytes: &mut Vec<u8>, kind: u32, count: usize) -> Result<(), ExportError> {
     let kind = if count == 0 { 0 } else { kind };
     bytes.extend(kind.to_be_bytes());
@@ -171,11 +170,11 @@ fn list(bytes: &mut Vec<u8>, kind: u32, count: usize) -> Result<(), ExportError>
 }
 
 fn number(bytes: &mut Vec<u8>, count: usize) -> Result<(), ExportError> {
-    let most = i32::MAX;
+    let max = i32::MAX;
     let number = i32::try_from(count).map_err(|_| ExportError::Size {
         what: "a length",
         count,
-        most: most.unsigned_abs().into(),
+        max: max.unsigned_abs().into(),
     })?;
     bytes.extend(number.to_be_bytes());
     Ok(())
@@ -188,7 +187,7 @@ fn text(bytes: &mut Vec<u8>, text: &str) -> Result<(), ExportError> {
     Ok(())
 }
 
-/// Everything begins at a multiple of 4 bytes.
+/// Values and lists begin at multiples of 4 bytes.
 fn pad(bytes: &mut Vec<u8>) {
     bytes.resize(bytes.len().next_multiple_of(4), 0);
 }

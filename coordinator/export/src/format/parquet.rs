@@ -12,10 +12,10 @@ use parquet::schema::types::{Type, TypePtr};
 use crate::draw_table::DrawTable;
 use crate::error::ExportError;
 
-/// The table as a file of one row group; the metadata says the unit of each column, as `unit.COLUMN`.
+/// The table as a file of one row group; the metadata state the unit of each column as `unit.COLUMN`.
 ///
 /// # Errors
-/// [`ExportError::Parquet`].
+/// [`ExportError::Parquet`] if the library refuses the table.
 pub fn parquet(table: &DrawTable) -> Result<Vec<u8>, ExportError> {
     let numbers = table.numbers.iter().map(|(name, _)| field(name, Kind::INT64));
     let columns = table

@@ -19,7 +19,7 @@ const METADATA: &str = "zarr.json";
 /// Inference data as files by their paths below the folder of the hierarchy.
 ///
 /// # Errors
-/// [`ExportError::Size`] of a text that is too long.
+/// [`ExportError::Size`] if a text is too long.
 pub fn zarr(data: &InferenceData) -> Result<BTreeMap<String, Vec<u8>>, ExportError> {
     let mut files = BTreeMap::new();
     let mut nodes = Map::new();
@@ -47,12 +47,10 @@ fn text(metadata: &Value) -> Vec<u8> {
     format!("{metadata:#}\n").into_bytes()
 }
 
-/// Metadata of a group.
 fn node(attributes: &Value) -> Value {
     json!({"zarr_format": 3, "node_type": "group", "attributes": attributes})
 }
 
-/// Metadata of a variable.
 fn array(variable: &Variable) -> Value {
     let (data_type, fill_value, codec) = match variable.values {
         Values::Real(_) => ("float64", json!("NaN"), little_endian()),
@@ -63,9 +61,12 @@ fn array(variable: &Variable) -> Value {
             json!({"name": "vlen-utf8", "configuration": {}}),
         ),
     };
-    let said = [("units", &variable.unit), ("long_name", &variable.meaning)];
-    let attributes: BTreeMap<_, _> = said.into_iter().filter(|(_, text)| !text.is_empty()).collect();
-    // A chunk has at least one place along each dimension, also where there are no values.
+    let attributes = [("units", &variable.unit), ("long_name", &variable.meaning)];
+    let attributes: BTreeMap<_, _> = attributes
+        .into_iter()
+        .filter(|(_, text)| !text.is_empty())
+        .collect();
+    // A chunk has at least one place along each dimension, even without values.
     let chunk: Vec<usize> = variable.shape.iter().map(|&length| length.max(1)).collect();
     json!({
         "zarr_format": 3,
@@ -105,7 +106,7 @@ fn length(count: usize) -> Result<[u8; 4], ExportError> {
     let length = u32::try_from(count).map_err(|_| ExportError::Size {
         what: "texts, or bytes of a text",
         count,
-        most: u32::MAX.into(),
+        max: u32::MAX.into(),
     })?;
     Ok(length.to_le_bytes())
 }

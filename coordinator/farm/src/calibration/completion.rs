@@ -5,34 +5,16 @@ use shared::api::CalibrationState;
 use shared::outcome::Observables;
 use statistics::{LikelihoodError, LogLikelihood};
 
-use super::engine::{CalibrationResult, EvaluationScore};
+use super::Calibration;
+use super::engine::CalibrationResult;
 use super::faults::NOBODY;
-use super::final_draws::{FinalDraws, final_draws};
-use super::process::Calibration;
-use super::second_answer::{Answer, SecondAnswers, StoredAnswer};
-use super::simulation_result::SimulationResult;
+use super::final_draws::FinalDraws;
+use super::phase::Phase;
+use super::second_answer::{Answer, SecondAnswers};
+use super::simulation_result::{ResultError, SimulationResult};
 use crate::lease::{Completion, LeaseQueue};
 use job::AlgorithmSettings;
-use record::{EvaluationKey, EvaluationRow, Fact, Kept};
-
-/// A message that is no result: the calibration and the reason.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-pub enum ResultError {
-    /// The observables do not have one entry per run.
-    #[error("the observables of evaluation {evaluation} do not cover the {runs} conditions of the variant")]
-    WrongShape {
-        /// The evaluation.
-        evaluation: u64,
-        /// How many entries are expected.
-        runs: usize,
-    },
-    /// A subchain's end where none was asked for, or none where one was, or one that cannot be.
-    #[error("the result of evaluation {evaluation} does not answer what its lease asked for")]
-    OtherQuestion {
-        /// The evaluation.
-        evaluation: u64,
-    },
-}
+use record::{EvaluationKey, EvaluationRow, Fact, Kept, RejectionReason};
 
 impl Calibration {
     /// Takes the result of an evaluation; late duplicates change nothing.
@@ -44,12 +26,11 @@ impl Calibration {
     pub fn complete(
         &mut self,
         evaluation: u64,
-        computed: impl Into<SimulationResult>,
+        computed: SimulationResult,
         worker: &str,
     ) -> Result<(Vec<Fact>, bool), ResultError> {
-        let computed = computed.into();
-        if let Err(error) = self.check_shape(evaluation, &computed) {
-            self.forget_verification(evaluation);
+        if let Err(error) = self.check(evaluation, &computed) {
+            self.witness.forget_unanswered(evaluation);
             return Err(error);
         }
         let answer = Answer {
@@ -62,105 +43,81 @@ impl Calibration {
                 return Ok((self.compare(evaluation, answer), false));
             }
         }
-        let asked = self
-            .theta(evaluation)
-            .expect("the queue holds only evaluations asked for");
-        let theta = computed.end.as_ref().map_or(asked, |end| &end.theta).to_vec();
-        let fingerprint = answer.fingerprint;
-        let rejected = computed.is_refused();
-        let SimulationResult { end, outcome } = computed;
-        let scored = if self.draws.is_some() || self.engine.discovery().is_some() {
-            Ok(None)
-        } else {
-            outcome.as_ref().map(|o| self.score(o, &theta)).transpose()
-        };
-        let log_likelihood = match scored {
-            Ok(scored) => scored,
+        let row = match self.row(evaluation, computed, &answer) {
+            Ok(row) => row,
             Err(error) => {
                 let mut facts = Vec::new();
                 self.finish(CalibrationState::Failed, Some(error.to_string()), &mut facts);
                 return Ok((facts, false));
             }
         };
-        let coarse = match &outcome {
-            Some(Ok(observables)) if self.draws.is_none() => observables.coarse.clone(),
-            _ => None,
-        };
-        let kept = self.kept(evaluation, outcome);
-        let fitted = match &kept {
-            Kept::Fitted(values) => Some(values.as_slice()),
-            Kept::Scored | Kept::Whole(_) | Kept::Rejected(_) => None,
-        };
-        let scored = self.draws.is_none().then(|| EvaluationScore {
-            // Where a subchain stayed there is nothing to score, and nothing is asked of the score.
-            log_likelihood: log_likelihood.unwrap_or(LogLikelihood::Impossible),
-            fitted,
-            coarse: coarse.as_deref(),
-            end: end.as_ref(),
-        });
         let mut consequences = Vec::new();
-        self.given_up += usize::from(worker == NOBODY);
-        self.answered_first(evaluation, &answer);
-        let is_confirmed = false;
-        self.done
-            .insert(evaluation, StoredAnswer { answer, is_confirmed });
-        self.record(evaluation, rejected, scored, &mut consequences);
-        let row = EvaluationRow {
-            evaluation,
-            theta,
-            log_likelihood: log_likelihood.map(LogLikelihood::value).filter(|l| l.is_finite()),
-            kept,
-            coarse,
-            end,
-            fingerprint,
-            worker: worker.to_owned(),
-        };
-        let mut facts = vec![Fact::Evaluated {
-            calibration: self.identity.id,
-            row,
-        }];
+        self.answered_first(answer, evaluation);
+        self.advance(&row, &mut consequences);
+        let calibration = self.identity.id;
+        let mut facts = vec![Fact::Evaluated { calibration, row }];
         facts.append(&mut consequences);
         Ok((facts, true))
     }
 
-    /// Checks that a result answers what is asked for at present; of what is not, nothing is known.
-    fn check_shape(&self, evaluation: u64, computed: &SimulationResult) -> Result<(), ResultError> {
-        if self.theta(evaluation).is_none() {
+    /// Checks that a result answers what is asked for at present; what an earlier round has asked is not known.
+    fn check(&self, evaluation: u64, computed: &SimulationResult) -> Result<(), ResultError> {
+        let Some(question) = self.question(evaluation) else {
             return Ok(());
-        }
-        let subchain = self.subchain(evaluation).is_some();
+        };
         let moves = self.spec.algorithm.metamodel_moves();
-        if !computed.answers(subchain, moves, || self.spec.prior()) {
+        if !computed.answers(question.subchain.is_some(), moves, || self.spec.prior()) {
             return Err(ResultError::OtherQuestion { evaluation });
         }
-        let searched = self.searched(evaluation).and_then(|(hash, _)| self.variant(hash));
-        let variant = match (self.key(evaluation), &self.spec.holdout_variant, &self.histories) {
-            _ if searched.is_some() => searched.unwrap_or(&self.spec.fit_variant),
-            (EvaluationKey::Prediction { holdout: true, .. }, Some(variant), _) => variant,
-            (EvaluationKey::HoldoutRun { run, .. }, ..) => {
-                self.apart.get(run).map_or(&self.spec.fit_variant, |(_, own)| own)
-            }
-            (EvaluationKey::Likeliest, _, Some((_, variant))) => variant,
-            (EvaluationKey::Sampling { .. }, ..) => &self.sampled.1,
-            _ => &self.spec.fit_variant,
+        let (Some(Ok(observables)), Some(variant)) = (&computed.outcome, self.variant(question.variant))
+        else {
+            return Ok(());
         };
         let values = self.spec.likelihood.values();
-        match &computed.outcome {
-            Some(Ok(observables))
-                if !observables.covers(variant)
-                    || observables.coarse.as_ref().is_some_and(|c| c.len() != values) =>
-            {
-                let runs = variant.conditions.len();
-                Err(ResultError::WrongShape { evaluation, runs })
-            }
-            _ => Ok(()),
+        let is_coarse_short = observables.coarse.as_ref().is_some_and(|c| c.len() != values);
+        if !observables.covers(variant) || is_coarse_short {
+            let runs = variant.conditions.len();
+            return Err(ResultError::WrongShape { evaluation, runs });
         }
+        Ok(())
+    }
+
+    /// What the store keeps of a result, and the engine is told.
+    fn row(
+        &self,
+        evaluation: u64,
+        computed: SimulationResult,
+        answer: &Answer,
+    ) -> Result<EvaluationRow, LikelihoodError> {
+        let SimulationResult { end, mut outcome } = computed;
+        let asked = self
+            .theta(evaluation)
+            .expect("the queue holds only evaluations asked for");
+        let theta = end.as_ref().map_or(asked, |end| &end.theta).to_vec();
+        let is_scored = self.phase.is_sampling() && self.engine.discovery().is_none();
+        let score = |outcome| self.score(outcome, &theta);
+        // Where a subchain stayed there is nothing to score, and nothing is asked of the score.
+        let log_likelihood = outcome.as_ref().filter(|_| is_scored).map(score).transpose()?;
+        let coarse = match &mut outcome {
+            Some(Ok(observables)) if self.phase.is_sampling() => observables.coarse.take(),
+            _ => None,
+        };
+        Ok(EvaluationRow {
+            evaluation,
+            theta,
+            log_likelihood: log_likelihood.map(LogLikelihood::value).filter(|l| l.is_finite()),
+            kept: self.kept(evaluation, outcome),
+            coarse,
+            end,
+            fingerprint: answer.fingerprint,
+            worker: answer.worker.clone(),
+        })
     }
 
     /// The log-likelihood of an outcome.
     fn score(
         &self,
-        outcome: &Result<Observables, String>,
+        outcome: &Result<Observables, RejectionReason>,
         theta: &[f64],
     ) -> Result<LogLikelihood, LikelihoodError> {
         let Ok(observables) = outcome else {
@@ -174,138 +131,15 @@ impl Calibration {
         }
     }
 
-    /// Lets a completed evaluation take effect on counts, engine and phase.
-    pub(super) fn record(
-        &mut self,
-        evaluation: u64,
-        rejected: bool,
-        scored: Option<EvaluationScore>,
-        facts: &mut Vec<Fact>,
-    ) {
-        // A subchain that stayed where it was has evaluated nothing.
-        let stayed = scored.is_some_and(|s| s.end.is_some_and(|end| end.accepted == 0));
-        // Held-out runs of a draw are no further parameter vector.
-        let counts = !self.key(evaluation).is_of_holdout() && !stayed;
-        self.simulations += u64::from(!stayed);
-        self.evaluations += u64::from(counts);
-        self.rejected += u64::from(counts && rejected);
-        let Some(scored) = scored else {
-            if rejected {
-                self.note_refused(evaluation);
-            }
-            if self.done.len() == self.queue.len() {
-                self.after_draws(facts);
-            }
-            return;
-        };
-        let EvaluationKey::Sampling { particle, .. } = self.key(evaluation) else {
-            return;
-        };
-        let stages = self.engine.stages().len();
-        let progress = self.engine.tell(particle, scored);
-        for record in &self.engine.stages()[stages..] {
-            facts.push(Fact::Stage {
-                calibration: self.identity.id,
-                record: Box::new(record.clone()),
-                busy_ms: self.busy_ms,
-            });
-        }
-        match progress {
-            Ok(TellProgress::Waiting) => {}
-            Ok(TellProgress::NextRound | TellProgress::StageFinished) => self.ask(),
-            Ok(TellProgress::Finished) => {
-                let calibration = self.identity.id;
-                match self.engine.finding() {
-                    Some(CalibrationResult::Posterior(posterior)) => {
-                        self.draws = Some(final_draws(&posterior.particles, None));
-                        facts.push(Fact::Posterior {
-                            calibration,
-                            posterior: Box::new(posterior.clone()),
-                        });
-                    }
-                    Some(CalibrationResult::Estimate(estimate)) => {
-                        self.draws = Some(match &estimate.approximation {
-                            Some(approximation) => final_draws(&approximation.draws, Some(&estimate.theta)),
-                            None => FinalDraws::new(
-                                vec![estimate.theta.clone()],
-                                self.histories.is_some().then(|| estimate.theta.clone()),
-                            ),
-                        });
-                        facts.push(Fact::Estimate {
-                            calibration,
-                            estimate: Box::new(estimate.clone()),
-                        });
-                    }
-                    Some(CalibrationResult::Discovery(record)) => {
-                        facts.push(Fact::Discovery { calibration, record });
-                        return self.conclude(facts);
-                    }
-                    None => {}
-                }
-                self.ask();
-            }
-            Ok(TellProgress::Failed(failure)) => {
-                self.finish(CalibrationState::Failed, Some(failure.to_string()), facts);
-            }
-            Err(error) => self.finish(CalibrationState::Failed, Some(error.to_string()), facts),
-        }
-    }
-
-    /// Notes that the model refuses the holdout runs of a draw together. Where there is one alone, or where a machine failed,
-    /// asking again would bring nothing.
-    fn note_refused(&mut self, evaluation: u64) {
-        let EvaluationKey::Prediction { draw, holdout: true } = self.key(evaluation) else {
-            return;
-        };
-        let is_model_s = self
-            .done
-            .get(&evaluation)
-            .is_some_and(|d| d.answer.worker != NOBODY);
-        if let Some(draws) = self.draws.as_mut().filter(|_| is_model_s)
-            && self.spec.holdout_runs.len() > 1
-        {
-            draws.refused.insert(draw);
-        }
-    }
-
-    /// What follows when all that was asked for of the final draws is there.
-    fn after_draws(&mut self, facts: &mut Vec<Fact>) {
-        match &mut self.draws {
-            Some(draws) if !draws.apart && !draws.refused.is_empty() => {
-                draws.apart = true;
-                self.ask();
-            }
-            _ => self.conclude(facts),
-        }
-    }
-
-    pub(super) fn finish(&mut self, state: CalibrationState, message: Option<String>, facts: &mut Vec<Fact>) {
-        self.queue = LeaseQueue::default();
-        self.second = SecondAnswers::default();
-        self.change_state(state, message, facts);
-    }
-
-    /// Changes the state and says so to the store.
-    pub fn change_state(&mut self, state: CalibrationState, message: Option<String>, facts: &mut Vec<Fact>) {
-        self.state = state;
-        self.message.clone_from(&message);
-        facts.push(Fact::State {
-            calibration: self.identity.id,
-            state,
-            message,
-            busy_ms: self.busy_ms,
-        });
-    }
-
-    fn kept(&self, evaluation: u64, outcome: Option<Result<Observables, String>>) -> Kept {
+    fn kept(&self, evaluation: u64, outcome: Option<Result<Observables, RejectionReason>>) -> Kept {
         let searched = |observables: &Observables| {
             let particle = self.proposal(evaluation)?.particle;
             self.engine.discovery()?.values(particle, observables)
         };
         match outcome {
             None => Kept::Scored,
-            Some(Err(reason)) => Kept::Rejected(reason),
-            Some(Ok(observables)) if self.draws.is_some() => Kept::Whole(Box::new(observables)),
+            Some(Err(reason)) => Kept::Rejected(reason.0),
+            Some(Ok(observables)) if !self.phase.is_sampling() => Kept::Whole(Box::new(observables)),
             Some(Ok(observables)) if self.keeps_values() => Kept::Fitted(
                 searched(&observables).unwrap_or_else(|| self.spec.predicted_values(&observables)),
             ),
@@ -318,5 +152,122 @@ impl Calibration {
     fn keeps_values(&self) -> bool {
         let samples = matches!(self.spec.algorithm, AlgorithmSettings::Sample(_));
         self.spec.algorithm.is_told_values() || (samples && self.engine.round() == 0)
+    }
+
+    /// Lets a completed evaluation take effect on counts, engine and phase.
+    pub(super) fn advance(&mut self, row: &EvaluationRow, facts: &mut Vec<Fact>) {
+        self.count(row);
+        if !self.phase.is_sampling() {
+            self.note_refused(row);
+            if self.witness.answered() == self.queue.len() {
+                self.end_phase(facts);
+            }
+            return;
+        }
+        let EvaluationKey::Sampling { particle, .. } = self.key(row.evaluation) else {
+            return;
+        };
+        let stages = self.engine.stages().len();
+        let progress = self.engine.tell(particle, row);
+        for record in &self.engine.stages()[stages..] {
+            facts.push(Fact::Stage {
+                calibration: self.identity.id,
+                record: Box::new(record.clone()),
+                busy_ms: self.cost.busy_ms,
+            });
+        }
+        match progress {
+            Ok(TellProgress::Waiting) => {}
+            Ok(TellProgress::NextRound | TellProgress::StageFinished) => self.ask(),
+            Ok(TellProgress::Finished) => self.end_sampling(facts),
+            Ok(TellProgress::Failed(failure)) => {
+                self.finish(CalibrationState::Failed, Some(failure.to_string()), facts);
+            }
+            Err(error) => self.finish(CalibrationState::Failed, Some(error.to_string()), facts),
+        }
+    }
+
+    fn count(&mut self, row: &EvaluationRow) {
+        // A subchain that stayed where it was has evaluated nothing.
+        let is_simulated = row.end.as_ref().is_none_or(|end| end.accepted > 0);
+        // Held-out runs of a draw are no further parameter vector.
+        let is_counted = is_simulated && !self.key(row.evaluation).is_of_holdout();
+        self.cost.simulations += u64::from(is_simulated);
+        self.cost.evaluations += u64::from(is_counted);
+        self.cost.rejected += u64::from(is_counted && row.kept.is_rejected());
+    }
+
+    /// Stores what the engine has found, and asks for the final draws; a search has none.
+    fn end_sampling(&mut self, facts: &mut Vec<Fact>) {
+        let calibration = self.identity.id;
+        let (draws, fact) = match self.engine.finding() {
+            Some(CalibrationResult::Posterior(posterior)) => {
+                let draws = FinalDraws::of_posterior(posterior);
+                let posterior = Box::new(posterior.clone());
+                (
+                    Some(draws),
+                    Fact::Posterior {
+                        calibration,
+                        posterior,
+                    },
+                )
+            }
+            Some(CalibrationResult::Estimate(estimate)) => {
+                let draws = FinalDraws::of_estimate(estimate, self.variants.has_histories());
+                let estimate = Box::new(estimate.clone());
+                (
+                    Some(draws),
+                    Fact::Estimate {
+                        calibration,
+                        estimate,
+                    },
+                )
+            }
+            Some(CalibrationResult::Discovery(record)) => (None, Fact::Discovery { calibration, record }),
+            None => return,
+        };
+        facts.push(fact);
+        match draws {
+            Some(draws) => {
+                self.phase = Phase::FinalDraws(draws);
+                self.ask();
+            }
+            None => self.end_phase(facts),
+        }
+    }
+
+    /// Notes that the model refuses the holdout runs of a draw together. Where there is one alone, or where a machine failed,
+    /// asking again would bring nothing.
+    fn note_refused(&mut self, row: &EvaluationRow) {
+        if let EvaluationKey::Prediction { draw, holdout: true } = self.key(row.evaluation)
+            && row.kept.is_rejected()
+            && row.worker != NOBODY
+            && self.spec.holdout_runs.len() > 1
+            && let Phase::FinalDraws(draws) = &mut self.phase
+        {
+            draws.refused.insert(draw);
+        }
+    }
+
+    /// What follows when everything is there that the phase asks for.
+    fn end_phase(&mut self, facts: &mut Vec<Fact>) {
+        self.phase = std::mem::take(&mut self.phase).next();
+        match self.phase {
+            Phase::Comparing(_) => self.settle(facts),
+            Phase::Sampling | Phase::FinalDraws(_) | Phase::RefusedRuns(_) => self.ask(),
+        }
+    }
+
+    /// Ends a calibration that has nothing left to do, not even to compare.
+    pub fn settle(&mut self, facts: &mut Vec<Fact>) {
+        if self.is_concluded() && self.witness.second.waiting() == 0 {
+            self.finish(CalibrationState::Finished, None, facts);
+        }
+    }
+
+    fn finish(&mut self, state: CalibrationState, message: Option<String>, facts: &mut Vec<Fact>) {
+        self.queue = LeaseQueue::default();
+        self.witness.second = SecondAnswers::default();
+        self.change_state(state, message, facts);
     }
 }

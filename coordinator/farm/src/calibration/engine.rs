@@ -4,10 +4,10 @@ use inference::evolution::Evolution;
 use inference::lm::LmFit;
 use inference::point_estimate::ModeEstimate;
 use inference::{EvaluationResult, PosteriorSample, Proposal, Sampler, StageRecord, TellError, TellProgress};
-use statistics::{LogLikelihood, Metamodel, ModelPair, SubchainEnd};
+use statistics::{LogLikelihood, Metamodel, ModelPair, NotANumber};
 
 use job::{AlgorithmSettings, AlgorithmSettingsError, Spec};
-use record::Discovery;
+use record::{Discovery, EvaluationRow};
 use search::{DiscoveryError, RunningDiscovery, SearchModels};
 
 /// What asks for evaluations and is told their results.
@@ -46,37 +46,32 @@ pub(super) enum EngineError {
     /// What follows cannot be asked.
     #[error(transparent)]
     Discovery(#[from] DiscoveryError),
+    /// Its log-likelihood is no number.
+    #[error(transparent)]
+    Score(#[from] NotANumber),
 }
 
-/// The result of an evaluation, scored.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct EvaluationScore<'a> {
-    /// ln p(data | theta) at the parameters that were asked for.
-    pub log_likelihood: LogLikelihood,
-    /// The predicted values that the likelihood takes; `None` where the model refused.
-    pub fitted: Option<&'a [f64]>,
-    /// The same of the quasi-static model, where it was asked.
-    pub coarse: Option<&'a [f64]>,
-    /// Where the subchain ended that was asked for.
-    pub end: Option<&'a SubchainEnd>,
+/// What a sampler is told of an evaluation.
+fn sampled(row: &EvaluationRow) -> Result<EvaluationResult, NotANumber> {
+    let log_likelihood = log_likelihood(row)?;
+    let pair = row.kept.fitted().zip(row.coarse.as_ref());
+    let pair = pair.map(|(fine, coarse)| ModelPair {
+        fine: fine.to_vec(),
+        coarse: coarse.clone(),
+    });
+    Ok(match &row.end {
+        None => EvaluationResult::AtProposal { log_likelihood, pair },
+        Some(end) => EvaluationResult::AtSubchainEnd {
+            found: (end.accepted > 0).then_some((log_likelihood, pair)),
+            end: end.clone(),
+        },
+    })
 }
 
-impl EvaluationScore<'_> {
-    /// What a sampler is told.
-    fn answer(&self) -> EvaluationResult {
-        let log_likelihood = self.log_likelihood;
-        let pair = self.fitted.zip(self.coarse).map(|(fine, coarse)| ModelPair {
-            fine: fine.to_vec(),
-            coarse: coarse.to_vec(),
-        });
-        match self.end {
-            None => EvaluationResult::AtProposal { log_likelihood, pair },
-            Some(end) => EvaluationResult::AtSubchainEnd {
-                found: (end.accepted > 0).then_some((log_likelihood, pair)),
-                end: end.clone(),
-            },
-        }
-    }
+/// ln p(data | theta) at the parameters that were asked for; where the model refused, the data are impossible.
+pub(super) fn log_likelihood(row: &EvaluationRow) -> Result<LogLikelihood, NotANumber> {
+    row.log_likelihood
+        .map_or(Ok(LogLikelihood::Impossible), LogLikelihood::new)
 }
 
 /// What an engine ends with.
@@ -140,17 +135,13 @@ impl CalibrationEngine {
         }
     }
 
-    /// Takes the result of a pending particle.
-    pub(super) fn tell(
-        &mut self,
-        particle: usize,
-        scored: EvaluationScore,
-    ) -> Result<TellProgress, EngineError> {
+    /// Takes the result of a pending particle: log-likelihood and the kept values.
+    pub(super) fn tell(&mut self, particle: usize, row: &EvaluationRow) -> Result<TellProgress, EngineError> {
         Ok(match self {
-            CalibrationEngine::Sampler(sampler) => sampler.tell(particle, scored.answer())?,
-            CalibrationEngine::Fit(fit) => fit.tell(particle, scored.fitted)?,
-            CalibrationEngine::Evolution(evolution) => evolution.tell(particle, scored.log_likelihood)?,
-            CalibrationEngine::Discovery(discovery) => discovery.tell(particle, scored.fitted)?,
+            CalibrationEngine::Sampler(sampler) => sampler.tell(particle, sampled(row)?)?,
+            CalibrationEngine::Fit(fit) => fit.tell(particle, row.kept.fitted())?,
+            CalibrationEngine::Evolution(evolution) => evolution.tell(particle, log_likelihood(row)?)?,
+            CalibrationEngine::Discovery(discovery) => discovery.tell(particle, row.kept.fitted())?,
         })
     }
 

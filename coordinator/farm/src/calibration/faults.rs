@@ -7,12 +7,12 @@
 use shared::api::CalibrationState;
 use statistics::SubchainEnd;
 
-use super::process::Calibration;
+use super::Calibration;
 use super::simulation_result::SimulationResult;
 use crate::lease::{LeaseFailure, MAX_ATTEMPTS, MAX_UNSTARTED};
 use record::Fact;
 
-/// So many of the evaluations of a round may be given up, rounded to the next whole number: none of fewer than 50 `[%]`.
+/// The share of a round's evaluations that may be given up, rounded to the next whole number: none of fewer than 50 `[%]`.
 const GIVEN_UP_PERCENT: usize = 1;
 /// The worker of an evaluation that was given up.
 pub(super) const NOBODY: &str = "";
@@ -41,8 +41,8 @@ impl Calibration {
             "evaluation {evaluation} at theta = {theta:?} failed on {} attempts, the last on worker {}: {message}",
             failure.attempt, failure.worker
         );
-        let most = (GIVEN_UP_PERCENT * self.queue.len() + 50) / 100;
-        if failure.is_evaluations_own() && self.given_up < most {
+        let max_given_up = (GIVEN_UP_PERCENT * self.queue.len() + 50) / 100;
+        if failure.is_evaluations_own() && self.witness.given_up() < max_given_up {
             tracing::warn!(
                 calibration = self.identity.id,
                 what,
@@ -80,8 +80,8 @@ impl Calibration {
         let exhausted = failed
             .iter()
             .filter(|(evaluation, workers)| {
-                let open = !self.done.contains_key(evaluation) && self.theta(**evaluation).is_some();
-                skip_faults && open && workers.len() >= MAX_ATTEMPTS as usize
+                let is_open = !self.witness.is_answered(**evaluation) && self.theta(**evaluation).is_some();
+                skip_faults && is_open && workers.len() >= MAX_ATTEMPTS as usize
             })
             .map(|(&evaluation, _)| evaluation)
             .collect::<Vec<u64>>();
@@ -93,13 +93,11 @@ impl Calibration {
             worker: NOBODY.into(),
             message: "given new attempts by a user".into(),
         }));
-        let (done, given_up) = (std::mem::take(&mut self.done), self.given_up);
-        self.ask();
-        self.second.drop_idle(|_, _| false);
-        for &evaluation in done.keys() {
+        self.fill_queue();
+        self.witness.second.drop_idle(|_, _| false);
+        for evaluation in self.witness.answered_evaluations() {
             self.queue.complete(evaluation);
         }
-        (self.done, self.given_up) = (done, given_up);
         self.change_state(CalibrationState::Running, None, facts);
         for evaluation in exhausted {
             self.give_up(evaluation, "skipped by a user after failed attempts", facts);
@@ -119,10 +117,12 @@ impl Calibration {
                 scaled: 0,
                 scaled_accepted: 0,
             });
-        let rejected = || Err(format!("fault: given up: {message}"));
-        let given_up = SimulationResult {
-            outcome: stayed.is_none().then(rejected),
-            end: stayed,
+        let given_up = match stayed {
+            None => SimulationResult::refused(format!("fault: given up: {message}")),
+            Some(end) => SimulationResult {
+                outcome: None,
+                end: Some(end),
+            },
         };
         match self.complete(evaluation, given_up, NOBODY) {
             Ok((more, _)) => facts.extend(more),

@@ -2,7 +2,9 @@
 
 use std::collections::BTreeSet;
 
-use inference::Particle;
+use inference::point_estimate::ModeEstimate;
+use inference::{Particle, PosteriorSample};
+use record::EvaluationKey;
 
 /// What is simulated once the posterior, or the estimate, is known.
 #[derive(Debug)]
@@ -13,31 +15,68 @@ pub(super) struct FinalDraws {
     pub(super) likeliest: Option<Vec<f64>>,
     /// The draws at which the model refuses one of several holdout runs.
     pub(super) refused: BTreeSet<usize>,
-    /// Whether all are simulated, so that the holdout runs of these are asked for one by one.
-    pub(super) apart: bool,
 }
 
 impl FinalDraws {
-    pub(super) fn new(thetas: Vec<Vec<f64>>, likeliest: Option<Vec<f64>>) -> Self {
+    fn new(thetas: Vec<Vec<f64>>, likeliest: Option<Vec<f64>>) -> Self {
         FinalDraws {
             thetas,
             likeliest,
             refused: BTreeSet::new(),
-            apart: false,
         }
+    }
+
+    /// The draws of a posterior.
+    pub(super) fn of_posterior(posterior: &PosteriorSample) -> Self {
+        spread(&posterior.particles, None)
+    }
+
+    /// The draws of an estimate's normal approximation; without one, the estimate alone.
+    ///
+    /// # Arguments
+    /// - `has_histories`: whether the model knows time, so that the estimate is simulated once more.
+    pub(super) fn of_estimate(estimate: &ModeEstimate, has_histories: bool) -> Self {
+        match &estimate.approximation {
+            Some(approximation) => spread(&approximation.draws, Some(&estimate.theta)),
+            None => FinalDraws::new(
+                vec![estimate.theta.clone()],
+                has_histories.then(|| estimate.theta.clone()),
+            ),
+        }
+    }
+
+    /// The evaluations of all draws.
+    pub(super) fn keys(&self, has_holdout: bool) -> Vec<EvaluationKey> {
+        let parts = if has_holdout {
+            [false, true].as_slice()
+        } else {
+            &[false]
+        };
+        let draws = (0..self.thetas.len()).flat_map(|draw| {
+            let key = move |&holdout| EvaluationKey::Prediction { draw, holdout };
+            parts.iter().map(key)
+        });
+        draws
+            .chain(self.likeliest.iter().map(|_| EvaluationKey::Likeliest))
+            .collect()
+    }
+
+    /// The evaluations of so many holdout runs, one by one, at the draws at which the model refuses them together.
+    pub(super) fn keys_of_refused(&self, runs: usize) -> Vec<EvaluationKey> {
+        let key = |&draw: &usize| (0..runs).map(move |run| EvaluationKey::HoldoutRun { draw, run });
+        self.refused.iter().flat_map(key).collect()
     }
 }
 
 /// The draws that are simulated on every run: the most probable parameters, by default the particle's, then evenly spaced
-/// draws; beside, the likeliest.
-pub(super) fn final_draws(particles: &[Particle], mode: Option<&[f64]>) -> FinalDraws {
+/// draws; and the likeliest draw once more.
+fn spread(particles: &[Particle], mode: Option<&[f64]>) -> FinalDraws {
     let highest = |score: &dyn Fn(usize) -> f64| {
         (0..particles.len()).reduce(|a, b| if score(b) > score(a) { b } else { a })
     };
     let log_likelihood = |i: usize| particles[i].log_likelihood.value();
     let likeliest = highest(&log_likelihood);
-    let spread = job::PREDICTION_DRAWS - 1;
-    let count = particles.len().min(spread);
+    let count = particles.len().min(job::PREDICTION_DRAWS - 1);
     let even = (0..count).map(|k| k * particles.len() / count);
     let theta = |i: usize| particles[i].theta.clone();
     let best = mode.map(<[f64]>::to_vec).or_else(|| {

@@ -2,24 +2,333 @@
 //!
 //! Pure: it is told outcomes and answers with facts to store. The same [`Calibration::complete`] serves a
 //! living worker and a replay from the store, so a restart cannot take another path.
+//!
+//! # Layout
+//! - `mod`: [`Calibration`], and what it asks for.
+//! - `completion`: what follows from a result. `replay`: the same from the store.
+//! - `phase`, `final_draws`: where a calibration is. `variants`: what it evaluates there.
+//! - `engine`: sampler, fit, evolution or search.
+//! - `faults`: evaluations that machines failed at.
+//! - `witness`, `second_answer`, `verification`: whether answers of two workers agree.
+//! - `question`, `simulation_result`: what an evaluation is leased with, and its result.
 
 mod completion;
-mod confirmation;
 mod engine;
 mod faults;
 mod final_draws;
-mod process;
+mod phase;
 mod question;
 mod replay;
 mod second_answer;
 mod simulation_result;
+mod variants;
 mod verification;
+mod witness;
 
-pub use completion::ResultError;
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use inference::Proposal;
+use shared::api::CalibrationState;
+use shared::file::FileSet;
+use shared::model::ModelVariant;
+use statistics::Subchain;
+
+use self::phase::Phase;
+use self::variants::Variants;
+use crate::lease::{LeaseQueue, SlowLease};
+use job::{AlgorithmSettings, Spec};
+use record::{EvaluationKey, Fact, SealKey};
+use search::{DiscoveryError, SearchModels};
+
 pub use engine::{BeginError, CalibrationEngine, CalibrationResult};
-pub use process::{Calibration, CalibrationIdentity};
 pub use question::Question;
 pub use replay::ReplayError;
 pub use second_answer::{Answer, SecondAnswers, Verdict};
-pub use simulation_result::{SimulationResult, result_of};
+pub use simulation_result::{ResultError, SimulationResult};
 pub use verification::Verification;
+pub use witness::Witness;
+
+/// The largest number of effects that a search looks for together.
+const MAX_EFFECTS_TOGETHER: usize = 3;
+
+/// What the farm needs to know of a calibration besides its specification.
+#[derive(Debug, Clone)]
+pub struct CalibrationIdentity {
+    /// Id in the store.
+    pub id: i64,
+    /// Name for lists.
+    pub name: String,
+    /// The study it belongs to.
+    pub study: i64,
+    /// The experiment it is about.
+    pub experiment: i64,
+}
+
+/// What a calibration has cost so far.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Cost {
+    /// Wall time spent `[ms]`.
+    pub busy_ms: u64,
+    /// Evaluations completed, over all stages.
+    pub evaluations: u64,
+    /// The number of these that the model refused.
+    pub rejected: u64,
+    /// Simulations completed: evaluations, and those of held-out runs.
+    pub simulations: u64,
+}
+
+/// A calibration in progress.
+#[derive(Debug)]
+pub struct Calibration {
+    /// Its identity.
+    pub identity: CalibrationIdentity,
+    /// Its specification.
+    pub spec: Arc<Spec>,
+    /// Its state.
+    pub state: CalibrationState,
+    /// Why it is paused or failed.
+    pub message: Option<String>,
+    /// Version of the equations and the effects, pinned by the first result.
+    pub model_version: Option<String>,
+    /// Evaluations asked for at present, and who holds them.
+    pub queue: LeaseQueue,
+    /// What it has cost.
+    pub cost: Cost,
+    /// What is known of the workers that answered.
+    pub witness: Witness,
+    engine: CalibrationEngine,
+    phase: Phase,
+    variants: Variants,
+    /// The workers of failed leases by evaluation, kept over a restart.
+    failed: BTreeMap<u64, Vec<String>>,
+}
+
+impl Calibration {
+    /// A fresh calibration; its first evaluations are draws from the prior.
+    ///
+    /// # Errors
+    /// [`BeginError`]: the settings do not fit the prior, or this is a search, which [`Calibration::from_files`] begins.
+    pub fn new(identity: CalibrationIdentity, spec: Arc<Spec>) -> Result<Self, BeginError> {
+        Self::begin(identity, spec, None)
+    }
+
+    /// A fresh calibration or search; a search for a missing effect makes its models from the texts of job and experiment.
+    ///
+    /// # Errors
+    /// [`BeginError`]: the settings do not fit the prior, or a model of a search cannot be made.
+    pub fn from_files(
+        identity: CalibrationIdentity,
+        spec: Arc<Spec>,
+        job: &FileSet,
+        experiment: &FileSet,
+    ) -> Result<Self, BeginError> {
+        let models = match spec.algorithm {
+            AlgorithmSettings::Discover { .. } => {
+                let models = SearchModels::new(job, experiment, MAX_EFFECTS_TOGETHER);
+                Some(models.map_err(DiscoveryError::from)?)
+            }
+            AlgorithmSettings::Sample(_) | AlgorithmSettings::Fit(_) | AlgorithmSettings::Evolve(_) => None,
+        };
+        Self::begin(identity, spec, models)
+    }
+
+    fn begin(
+        identity: CalibrationIdentity,
+        spec: Arc<Spec>,
+        models: Option<SearchModels>,
+    ) -> Result<Self, BeginError> {
+        let mut calibration = Calibration {
+            identity,
+            engine: CalibrationEngine::new(&spec, models)?,
+            variants: Variants::new(&spec),
+            spec,
+            state: CalibrationState::Queued,
+            message: None,
+            model_version: None,
+            queue: LeaseQueue::default(),
+            cost: Cost::default(),
+            witness: Witness::default(),
+            phase: Phase::Sampling,
+            failed: BTreeMap::new(),
+        };
+        calibration.ask();
+        Ok(calibration)
+    }
+
+    /// Has a share of the answers compared with those of a second worker. A model that is not ours may answer in two ways on honest
+    /// machines: a worker asks it twice itself, and nobody is blamed.
+    ///
+    /// # Arguments
+    /// - `share`: the share of the evaluations that a second worker computes as well, in [0, 1].
+    /// - `key`: the key of the calibration, which the choice depends on.
+    #[must_use]
+    pub fn verified(mut self, share: f64, key: SealKey) -> Self {
+        let share = match &self.spec.model.external {
+            None => share,
+            Some(_) => 0.0,
+        };
+        self.witness.verification = Verification { share, key };
+        self
+    }
+
+    /// What asks for evaluations, for progress.
+    pub fn engine(&self) -> &CalibrationEngine {
+        &self.engine
+    }
+
+    /// Whether evaluations may be leased.
+    pub fn is_open(&self) -> bool {
+        matches!(self.state, CalibrationState::Queued | CalibrationState::Running)
+    }
+
+    /// Whether nothing is left but to compare answers.
+    pub fn is_concluded(&self) -> bool {
+        matches!(self.phase, Phase::Comparing(_)) && !self.state.is_final()
+    }
+
+    /// What an evaluation is leased with; `None` of an evaluation that is not asked for at present.
+    pub fn question(&self, evaluation: u64) -> Option<Question<'_>> {
+        let theta = self.theta(evaluation)?;
+        let subchain = self.subchain(evaluation);
+        let (variant, theta) = match (self.searched(evaluation), subchain) {
+            (Some(searched), _) => searched,
+            (None, Some(_)) => (self.variants.with_metamodel()?, theta),
+            (None, None) => {
+                let variant = self.variants.of_key(self.key(evaluation))?;
+                (variant, self.spec.model_theta(theta))
+            }
+        };
+        Some(Question {
+            variant,
+            theta,
+            subchain,
+        })
+    }
+
+    /// The variant of a hash, if it is one of this calibration's.
+    pub fn variant(&self, hash: &str) -> Option<&ModelVariant> {
+        let searched = || self.engine.discovery()?.variant(hash);
+        let repeated = || self.witness.second.variant(hash);
+        self.variants.get(hash).or_else(searched).or_else(repeated)
+    }
+
+    /// Asks a second worker for an evaluation that is asked for at present; what an earlier one has asked is not known any more.
+    ///
+    /// # Arguments
+    /// - `slow`: the lease that is too slow: the first answer is enough. Without one, the answers are compared.
+    pub fn ask_second(&mut self, evaluation: u64, slow: Option<&SlowLease>) {
+        let Some(question) = self.question(evaluation) else {
+            return;
+        };
+        let (hash, theta) = (question.variant.to_owned(), question.theta.to_vec());
+        let question = Question {
+            variant: &hash,
+            theta: &theta,
+            subchain: question.subchain,
+        };
+        let variant = self.variant(&hash).cloned();
+        self.witness.second.ask(evaluation, question, variant, slow);
+    }
+
+    /// Lets the answer to an evaluation, which is about to come, be compared with that of a second worker.
+    pub fn verify(&mut self, evaluation: u64) {
+        if self.witness.verification.is_on() && self.queue.is_asked(evaluation) {
+            self.ask_second(evaluation, None);
+        }
+    }
+
+    /// Stops asking beside slow leases that have ended, or that are suspects: a suspect is alone wherever it is. An evaluation
+    /// that has been leased anew is not slow yet.
+    pub fn drop_idle_seconds(&mut self) {
+        let queue = &self.queue;
+        self.witness.second.drop_idle(|evaluation, slow| {
+            queue.lease_of(evaluation) == Some(slow) && !queue.is_suspect(evaluation)
+        });
+    }
+
+    /// Changes the state and says so to the store.
+    pub fn change_state(&mut self, state: CalibrationState, message: Option<String>, facts: &mut Vec<Fact>) {
+        self.state = state;
+        self.message.clone_from(&message);
+        facts.push(Fact::State {
+            calibration: self.identity.id,
+            state,
+            message,
+            busy_ms: self.cost.busy_ms,
+        });
+    }
+
+    /// Variant and parameters that a search leases an evaluation with; `None` of any other evaluation.
+    fn searched(&self, evaluation: u64) -> Option<(&str, &[f64])> {
+        let particle = self.proposal(evaluation)?.particle;
+        self.engine.discovery()?.lease(particle)
+    }
+
+    /// What an evaluation is for.
+    fn key(&self, evaluation: u64) -> EvaluationKey {
+        EvaluationKey::of(evaluation, self.spec.algorithm.width())
+    }
+
+    /// The whole parameter vector of an evaluation that is asked for at present; of a subchain, where it starts.
+    fn theta(&self, evaluation: u64) -> Option<&[f64]> {
+        match (self.key(evaluation), self.phase.draws()) {
+            (
+                EvaluationKey::Prediction { draw, .. } | EvaluationKey::HoldoutRun { draw, .. },
+                Some(draws),
+            ) => draws.thetas.get(draw).map(Vec::as_slice),
+            (EvaluationKey::Likeliest, Some(draws)) => draws.likeliest.as_deref(),
+            _ => self.proposal(evaluation).map(|p| p.theta.as_slice()),
+        }
+    }
+
+    /// The proposal of an evaluation that is asked for at present, while sampling.
+    fn proposal(&self, evaluation: u64) -> Option<&Proposal> {
+        let pending = self.engine.pending();
+        match self.key(evaluation) {
+            EvaluationKey::Sampling { round, particle }
+                if self.phase.is_sampling() && round == self.engine.round() =>
+            {
+                let place = pending.binary_search_by_key(&particle, |p| p.particle).ok()?;
+                Some(&pending[place])
+            }
+            _ => None,
+        }
+    }
+
+    /// The subchain that an evaluation asks for.
+    fn subchain(&self, evaluation: u64) -> Option<Subchain> {
+        self.proposal(evaluation).and_then(|p| p.subchain)
+    }
+
+    /// Begins a round.
+    fn ask(&mut self) {
+        self.witness.begin_round();
+        self.fill_queue();
+    }
+
+    /// Asks for the evaluations of the present round.
+    fn fill_queue(&mut self) {
+        let keys: Vec<EvaluationKey> = match &self.phase {
+            Phase::Sampling => {
+                self.variants.prepare_stage(self.engine.metamodel());
+                let round = self.engine.round();
+                let key = |p: &Proposal| EvaluationKey::Sampling {
+                    round,
+                    particle: p.particle,
+                };
+                self.engine.pending().iter().map(key).collect()
+            }
+            Phase::FinalDraws(draws) => draws.keys(self.spec.holdout_variant.is_some()),
+            Phase::RefusedRuns(draws) => {
+                self.variants.split_holdout(self.spec.holdout_variant.as_ref());
+                draws.keys_of_refused(self.variants.holdout_runs())
+            }
+            Phase::Comparing(_) => return,
+        };
+        let particles = self.spec.algorithm.width();
+        let failed = |evaluation| self.failed.get(&evaluation).cloned().unwrap_or_default();
+        self.queue
+            .ask(keys.into_iter().map(|key| key.number(particles)), failed);
+    }
+}

@@ -1,14 +1,15 @@
 //! Replay of a calibration from the store.
 
-use shared::api::CalibrationState;
-use statistics::LogLikelihood;
+use std::mem::discriminant;
 
-use super::engine::EvaluationScore;
-use super::faults::NOBODY;
-use super::process::Calibration;
-use super::second_answer::{Answer, StoredAnswer};
+use shared::api::CalibrationState;
+
+use super::Calibration;
+use super::engine::log_likelihood;
+use super::phase::Phase;
+use super::second_answer::Answer;
 use job::EffectsChanged;
-use record::{Fact, Stored, StoredEvaluation};
+use record::{EvaluationRow, Fact, Stored};
 
 /// Why a stored calibration cannot go on.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -48,27 +49,27 @@ impl Calibration {
             self.spec.check_effects(pinned)?;
         }
         self.model_version = stored.model_version;
-        self.busy_ms = stored.busy_ms;
-        self.is_rewound = stored.is_rewound;
+        self.cost.busy_ms = stored.busy_ms;
+        self.witness.is_rewound = stored.is_rewound;
         self.failed = stored.failed;
         self.ask();
         let mut facts = Vec::new();
         loop {
-            let (round, drawing) = (self.engine.round(), self.drawing());
+            let (round, phase) = (self.engine.round(), discriminant(&self.phase));
             for evaluation in self.queue.asked() {
                 if let Some(row) = stored.evaluations.get(&evaluation) {
-                    self.tell_again(evaluation, row, &mut facts)?;
+                    self.tell_again(row, stored.confirmed.contains(&evaluation), &mut facts)?;
                 }
             }
-            let moved = self.engine.round() != round || self.drawing() != drawing;
-            if !moved || self.state.is_final() {
+            let has_moved = self.engine.round() != round || discriminant(&self.phase) != phase;
+            if !has_moved || matches!(self.phase, Phase::Comparing(_)) || self.state.is_final() {
                 break;
             }
         }
         if !self.state.is_final() {
             self.state = match stored.state {
                 Some(CalibrationState::Paused) => CalibrationState::Paused,
-                _ if self.evaluations == 0 => CalibrationState::Queued,
+                _ if self.cost.evaluations == 0 => CalibrationState::Queued,
                 _ => CalibrationState::Running,
             };
             self.message = stored.message;
@@ -76,54 +77,34 @@ impl Calibration {
         Ok(facts)
     }
 
-    /// Whether final draws are asked for: together, then those that are refused run by run.
-    fn drawing(&self) -> Option<bool> {
-        self.draws.as_ref().map(|draws| draws.apart)
-    }
-
     fn tell_again(
         &mut self,
-        evaluation: u64,
-        stored: &StoredEvaluation,
+        row: &EvaluationRow,
+        is_confirmed: bool,
         facts: &mut Vec<Fact>,
     ) -> Result<(), ReplayError> {
+        let evaluation = row.evaluation;
         let proposed = self.theta(evaluation).unwrap_or_default().to_vec();
         // Of a subchain the store has the end, not the start; that it was asked for is all that can be compared.
-        let same = match &stored.end {
+        let is_same = match &row.end {
             Some(_) => self.subchain(evaluation).is_some(),
-            None => same_bits(&proposed, &stored.theta),
+            None => same_bits(&proposed, &row.theta),
         };
-        if !same {
+        if !is_same {
             return Err(ReplayError::OtherTheta {
                 evaluation,
-                stored: stored.theta.clone(),
+                stored: row.theta.clone(),
                 proposed,
             });
         }
-        let scored = match (self.draws.is_some(), stored.log_likelihood) {
-            (true, _) => None,
-            (false, None) => Some(LogLikelihood::Impossible),
-            (false, Some(value)) => {
-                Some(LogLikelihood::new(value).map_err(|_| ReplayError::NotANumber { evaluation })?)
-            }
-        };
+        log_likelihood(row).map_err(|_| ReplayError::NotANumber { evaluation })?;
         let answer = Answer {
-            worker: stored.worker.clone(),
-            fingerprint: stored.fingerprint,
+            worker: row.worker.clone(),
+            fingerprint: row.fingerprint,
         };
         self.queue.complete(evaluation);
-        self.replay_confirmation(evaluation, &answer, stored.is_confirmed);
-        let is_confirmed = stored.is_confirmed;
-        self.done
-            .insert(evaluation, StoredAnswer { answer, is_confirmed });
-        self.given_up += usize::from(stored.worker == NOBODY);
-        let scored = scored.map(|log_likelihood| EvaluationScore {
-            log_likelihood,
-            fitted: stored.fitted.as_deref(),
-            coarse: stored.coarse.as_deref(),
-            end: stored.end.as_ref(),
-        });
-        self.record(evaluation, stored.rejected, scored, facts);
+        self.answered_before(answer, evaluation, is_confirmed);
+        self.advance(row, facts);
         Ok(())
     }
 }
@@ -140,11 +121,10 @@ mod tests {
     use shared::file::FileSet;
     use shared::outcome::{Observables, SimulatedHistory};
 
-    use super::super::process::CalibrationIdentity;
+    use super::super::{CalibrationIdentity, SimulationResult};
     use super::*;
     use job::Spec;
-    use record::fact::{EvaluationRow, Kept};
-    use record::{EvaluationKey, HOLDOUT_RUNS_FROM, LIKELIEST, PREDICTIONS_FROM};
+    use record::{EvaluationKey, HOLDOUT_RUNS_FROM, Kept, LIKELIEST, PREDICTIONS_FROM, RejectionReason};
 
     const JOB: &str = "[model]\nkind = \"quasi_static\"\n[priors]\nlog10_p_ref = { uniform = [4.0, 5.6] }\nkappa = 0.0\nn = { uniform = [0.8, 1.4] }\nfriction_angle_deg = 30.0\n[sampler]\nparticles = 20\nmoves = [2, 4]\n";
     const EXPERIMENT: &str = "runs = \"runs.csv\"\n[wheel.w]\nradius_m = 0.125\nwidth_m = 0.112\n[soil.s]\n[noise]\ndrawbar_pull_n = 0.05\n";
@@ -218,9 +198,9 @@ mod tests {
     const TOO_STEEP: f64 = 0.8;
 
     /// A model of one line, refusing a corner of the prior.
-    fn toy(theta: &[f64], runs: usize) -> Result<Observables, String> {
+    fn toy(theta: &[f64], runs: usize) -> Result<Observables, RejectionReason> {
         if theta[1] > 1.35 {
-            return Err("no_support: condition 0: toy".into());
+            return Err(RejectionReason("no_support: condition 0: toy".into()));
         }
         let values = vec![theta[0] + 0.1 * theta[1]; runs];
         Ok(Observables {
@@ -237,8 +217,15 @@ mod tests {
         })
     }
 
-    /// Completes up to `most` evaluations, the last asked for first if `backwards`.
-    fn work(calibration: &mut Calibration, most: usize, backwards: bool) -> Vec<Fact> {
+    fn computed(outcome: Result<Observables, RejectionReason>) -> SimulationResult {
+        SimulationResult {
+            end: None,
+            outcome: Some(outcome),
+        }
+    }
+
+    /// Completes up to `max` evaluations, the last asked for first if `backwards`.
+    fn work(calibration: &mut Calibration, max: usize, backwards: bool) -> Vec<Fact> {
         let mut facts = Vec::new();
         let mut done = 0;
         while !calibration.state.is_final() {
@@ -251,10 +238,10 @@ mod tests {
                     break;
                 };
                 let conditions = &calibration.variant(question.variant).unwrap().conditions;
-                let timed = calibration.histories.is_some();
+                let timed = calibration.variants.has_histories();
                 let mut outcome = toy(question.theta, conditions.len());
                 if let Some(steep) = conditions.iter().position(|c| c.slip > TOO_STEEP) {
-                    outcome = Err(format!("no_support: condition {steep}: toy"));
+                    outcome = Err(RejectionReason(format!("no_support: condition {steep}: toy")));
                 }
                 if let (Ok(observables), true) = (&mut outcome, evaluation == LIKELIEST && timed) {
                     let samples = vec![0.25; 3];
@@ -265,10 +252,11 @@ mod tests {
                         lateral_force_n: samples,
                     }];
                 }
-                let (new, counted) = calibration.complete(evaluation, outcome, "toy").unwrap();
+                let computed = computed(outcome);
+                let (new, counted) = calibration.complete(evaluation, computed, "toy").unwrap();
                 facts.extend(new);
                 done += usize::from(counted);
-                if done == most {
+                if done == max {
                     return facts;
                 }
             }
@@ -290,26 +278,8 @@ mod tests {
     }
 
     fn stored(facts: &[Fact]) -> Stored {
-        let evaluations = rows(facts)
-            .into_iter()
-            .map(|row| {
-                let evaluation = StoredEvaluation {
-                    theta: row.theta.clone(),
-                    log_likelihood: row.log_likelihood,
-                    rejected: matches!(row.kept, Kept::Rejected(_)),
-                    worker: row.worker.clone(),
-                    fingerprint: row.fingerprint,
-                    is_confirmed: false,
-                    fitted: match &row.kept {
-                        Kept::Fitted(values) => Some(values.clone()),
-                        _ => None,
-                    },
-                    coarse: row.coarse.clone(),
-                    end: row.end.clone(),
-                };
-                (row.evaluation, evaluation)
-            })
-            .collect();
+        let rows = rows(facts).into_iter();
+        let evaluations = rows.map(|row| (row.evaluation, row.clone())).collect();
         Stored {
             evaluations,
             ..Stored::default()
@@ -345,7 +315,7 @@ mod tests {
             let first = work(&mut fresh(), cut, false);
             let mut again = fresh();
             again.replay(stored(&first)).unwrap();
-            assert_eq!(again.evaluations, vectors(&first));
+            assert_eq!(again.cost.evaluations, vectors(&first));
             let mut all = first;
             all.extend(work(&mut again, usize::MAX, true));
             assert_eq!(sorted(&all), whole, "cut after {cut}");
@@ -374,7 +344,7 @@ mod tests {
                 let begun = work(&mut fresh_fit(sampler), cut, true);
                 let mut again = fresh_fit(sampler);
                 let lost = again.replay(stored(&begun)).unwrap();
-                assert_eq!(again.evaluations, vectors(&begun));
+                assert_eq!(again.cost.evaluations, vectors(&begun));
                 let rest = work(&mut again, usize::MAX, false);
                 let all: Vec<Fact> = begun.iter().chain(&rest).cloned().collect();
                 assert_eq!(sorted(&all), whole, "cut after {cut}");
@@ -482,10 +452,10 @@ mod tests {
             |row: &&EvaluationRow| row.evaluation < PREDICTIONS_FROM && matches!(row.kept, Kept::Rejected(_));
         let refused = rows(&facts).into_iter().filter(refused).count() as u64;
         assert_eq!(
-            (counted.evaluations, counted.rejected),
+            (counted.cost.evaluations, counted.cost.rejected),
             (vectors(&facts), refused)
         );
-        assert_eq!(counted.simulations, rows(&facts).len() as u64);
+        assert_eq!(counted.cost.simulations, rows(&facts).len() as u64);
         assert_eq!(sorted(&work(&mut with_a_refused_run(), usize::MAX, true)), whole);
         for cut in [30, whole.len() - 63, whole.len() - 62, whole.len() - 1] {
             let begun = work(&mut with_a_refused_run(), cut, true);
@@ -508,12 +478,11 @@ mod tests {
                     break;
                 };
                 let holdout = evaluation >= PREDICTIONS_FROM && evaluation % 2 == 1;
-                let outcome = if holdout {
-                    Err("no_support: condition 0: toy".into())
-                } else {
-                    toy(question.theta, 1)
+                let computed = match holdout {
+                    true => SimulationResult::refused("no_support: condition 0: toy"),
+                    false => computed(toy(question.theta, 1)),
                 };
-                facts.extend(calibration.complete(evaluation, outcome, "toy").unwrap().0);
+                facts.extend(calibration.complete(evaluation, computed, "toy").unwrap().0);
             }
         }
         let drawn = |r: &&&EvaluationRow| r.evaluation >= PREDICTIONS_FROM;

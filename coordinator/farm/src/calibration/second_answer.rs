@@ -13,7 +13,8 @@ use statistics::Subchain;
 use super::question::Question;
 use crate::lease::{LeaseQueue, SlowLease};
 
-/// So many evaluations wait for a second answer at most; more are not verified: a farm of one worker would gather them without end.
+/// The largest number of evaluations that wait for a second answer. More are not verified: a farm of one worker would gather them
+/// without end.
 const MAX_WAITING: usize = 1_000;
 
 /// Who answered, and what.
@@ -21,17 +22,8 @@ const MAX_WAITING: usize = 1_000;
 pub struct Answer {
     /// The worker.
     pub worker: String,
-    /// Of its result.
+    /// The fingerprint of its result.
     pub fingerprint: Fingerprint,
-}
-
-/// An answer that is stored.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct StoredAnswer {
-    /// The answer.
-    pub answer: Answer,
-    /// Whether another worker has given the same.
-    pub is_confirmed: bool,
 }
 
 /// What is known after an answer.
@@ -70,9 +62,9 @@ pub struct SecondAnswers {
     /// Who holds them.
     pub queue: LeaseQueue,
     repeated: BTreeMap<u64, Repeated>,
-    /// Of these, those of which one answer is enough: the slow lease that each stands beside.
+    /// The repeated evaluations of which one answer is enough, each with the slow lease that it stands beside.
     uncompared: BTreeMap<u64, u64>,
-    /// What they evaluate, where the calibration may forget it.
+    /// The variants that they evaluate, which the calibration may forget.
     variants: BTreeMap<String, ModelVariant>,
 }
 

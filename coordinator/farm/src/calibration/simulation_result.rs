@@ -1,8 +1,7 @@
 //! The result of an evaluation: observables or a rejection.
 
-use record::Fingerprint;
-use shared::exchange::WorkResult;
-use shared::outcome::{Observables, Outcome};
+use record::{Fingerprint, RejectionReason};
+use shared::outcome::{Fault, Observables, Outcome};
 use statistics::{Prior, SubchainEnd};
 
 /// The result of an evaluation that no machine failed at.
@@ -11,27 +10,55 @@ pub struct SimulationResult {
     /// Where the subchain ended, if one was asked for.
     pub end: Option<SubchainEnd>,
     /// Observables, or why the model refused; `None` where a subchain stayed at its start.
-    pub outcome: Option<Result<Observables, String>>,
+    pub outcome: Option<Result<Observables, RejectionReason>>,
 }
 
-impl From<Result<Observables, String>> for SimulationResult {
-    fn from(outcome: Result<Observables, String>) -> Self {
-        SimulationResult {
-            end: None,
-            outcome: Some(outcome),
-        }
-    }
+/// Why a message is no result. It is the fault of the machine, and nothing is recorded.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum ResultError {
+    /// The machine failed.
+    #[error("{0}")]
+    Fault(String),
+    /// The observables do not have one entry per run.
+    #[error("the observables of evaluation {evaluation} do not cover the {runs} conditions of the variant")]
+    WrongShape {
+        /// The evaluation.
+        evaluation: u64,
+        /// How many entries are expected.
+        runs: usize,
+    },
+    /// A subchain's end where none was asked for, or none where one was, or one that cannot be.
+    #[error("the result of evaluation {evaluation} does not answer what its lease asked for")]
+    OtherQuestion {
+        /// The evaluation.
+        evaluation: u64,
+    },
 }
 
 impl SimulationResult {
     /// Turns what a worker says into what a calibration takes.
     ///
     /// # Errors
-    /// What the machine said that failed: a fault is no result.
-    pub fn of(result: WorkResult) -> Result<SimulationResult, String> {
-        let outcome = result.outcome.map(result_of).transpose()?;
-        let end = result.end;
+    /// [`ResultError::Fault`]: what the machine said that failed.
+    pub fn new(outcome: Option<Outcome>, end: Option<SubchainEnd>) -> Result<Self, ResultError> {
+        let outcome = match outcome {
+            None => None,
+            Some(Outcome::Evaluated(observables)) => Some(Ok(observables)),
+            Some(Outcome::Rejected(r)) => {
+                let reason = format!("{}: condition {}: {}", r.kind, r.condition, r.message);
+                Some(Err(RejectionReason(reason)))
+            }
+            Some(Outcome::Fault(Fault { message })) => return Err(ResultError::Fault(message)),
+        };
         Ok(SimulationResult { end, outcome })
+    }
+
+    /// A refusal of the model.
+    pub fn refused(reason: impl Into<String>) -> Self {
+        SimulationResult {
+            end: None,
+            outcome: Some(Err(RejectionReason(reason.into()))),
+        }
     }
 
     /// Whether it answers what was asked: of a subchain of so many moves its end, at parameters that the prior allows, with
@@ -59,6 +86,7 @@ impl SimulationResult {
             Some(Ok(observables)) => observables.fingerprint().cast_signed(),
             // A refusal is compared by its text.
             Some(Err(reason)) => reason
+                .0
                 .bytes()
                 .fold(7, |hash: i64, b| hash.wrapping_mul(31).wrapping_add(i64::from(b))),
         };
@@ -71,26 +99,6 @@ impl SimulationResult {
         Fingerprint(bits.fold(outcome, |hash, bits| {
             hash.wrapping_mul(31).wrapping_add(bits.cast_signed())
         }))
-    }
-
-    /// Whether the model refused.
-    pub(super) fn is_refused(&self) -> bool {
-        matches!(self.outcome, Some(Err(_)))
-    }
-}
-
-/// Turns an outcome into observables or a refusal.
-///
-/// # Errors
-/// What the machine said that failed.
-pub fn result_of(outcome: Outcome) -> Result<Result<Observables, String>, String> {
-    match outcome {
-        Outcome::Evaluated(observables) => Ok(Ok(observables)),
-        Outcome::Rejected(r) => Ok(Err(format!(
-            "{}: condition {}: {}",
-            r.kind, r.condition, r.message
-        ))),
-        Outcome::Fault(fault) => Err(fault.message),
     }
 }
 

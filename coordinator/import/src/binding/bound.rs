@@ -8,7 +8,7 @@ use super::maker::{Maker, dimension};
 use super::source::{From, Input, Output, Source};
 use crate::complaint::{Complaint, Complaints};
 use crate::field::{Field, RowUse};
-use crate::map::{Map, Origin};
+use crate::map::{Entry, Map, Origin};
 use crate::number;
 use crate::table::{Cell, Row, spaced};
 use crate::title::Titled;
@@ -18,12 +18,12 @@ use crate::title::Titled;
 pub(crate) struct Binding {
     inputs: Vec<Input>,
     pub(crate) outputs: Vec<Output>,
-    /// The columns that runs.csv has as they are, up to their units.
+    /// The columns that have the names and units of runs.csv.
     pub(crate) mapped: BTreeSet<usize>,
     missing: BTreeSet<String>,
 }
 
-/// The cells above, where blank ones count as these.
+/// The cells above a row, by which blank cells may be filled.
 #[derive(Debug, Default)]
 pub(crate) struct Above(Vec<Option<Cell>>);
 
@@ -65,51 +65,30 @@ impl Binding {
             mapped: BTreeSet::new(),
             missing: map.missing.clone(),
         };
-        let mut names: Vec<(String, Dimension)> = Vec::new();
-        for entry in &map.quantities {
-            if let Some((input, dimension)) = maker.quantity(entry) {
-                names.push((entry.name.clone(), dimension));
-                binding.inputs.push(input);
-            }
-        }
+        let mut names = binding.bind_quantities(map, &mut maker);
         let by_name = |field: &Field| map.columns.iter().find(|entry| entry.name == field.name);
         let mut formulas = Vec::new();
         for (field, entry) in fields.iter().filter_map(|field| Some((field, by_name(field)?))) {
             let source = match (&entry.origin, field.quantity()) {
                 (Origin::Formula(text), Some(quantity)) => {
                     formulas.push((field, entry, text, quantity));
-                    continue;
+                    None
                 }
                 (Origin::Formula(_), None) => {
-                    maker.complain(
-                        entry,
-                        format!("{} is no quantity: a formula cannot give it", field.name),
-                    );
-                    continue;
+                    let message = format!("{} is no quantity: a formula cannot give it", field.name);
+                    maker.complain(entry, message);
+                    None
                 }
-                (_, Some(quantity)) => match maker.input(entry, Some(quantity)) {
-                    Some((input, _)) => {
-                        names.push((field.name.clone(), dimension(quantity)));
-                        binding.inputs.push(input);
-                        Source::Input(binding.inputs.len() - 1)
-                    }
-                    None => continue,
-                },
-                (_, None) => match maker.text(entry) {
-                    Some(from) => Source::Text(from),
-                    None => continue,
-                },
+                (_, Some(quantity)) => maker.input(entry, Some(quantity)).map(|(input, _)| {
+                    names.push((field.name.clone(), dimension(quantity)));
+                    binding.inputs.push(input);
+                    Source::Input(binding.inputs.len() - 1)
+                }),
+                (_, None) => maker.text(entry).map(Source::Text),
             };
-            if let Origin::Column(title) = &entry.origin
-                && let Ok(column) = titled.column(title)
-            {
-                binding.mapped.insert(column);
+            if let Some(source) = source {
+                binding.bind(field, entry, source, titled);
             }
-            binding.outputs.push(Output {
-                field: field.clone(),
-                source,
-                words: entry.words.clone(),
-            });
         }
         for (field, entry, text, quantity) in formulas {
             if let Some(expression) = maker.formula(entry, text, quantity, &names) {
@@ -124,6 +103,31 @@ impl Binding {
         binding.outputs.sort_by_key(place);
         maker.settle_decimals(&mut binding.inputs);
         binding
+    }
+
+    /// The names of the quantities in formulas, with their dimensions.
+    fn bind_quantities(&mut self, map: &Map, maker: &mut Maker) -> Vec<(String, Dimension)> {
+        let mut names = Vec::new();
+        for entry in &map.quantities {
+            if let Some((input, dimension)) = maker.quantity(entry) {
+                names.push((entry.name.clone(), dimension));
+                self.inputs.push(input);
+            }
+        }
+        names
+    }
+
+    fn bind(&mut self, field: &Field, entry: &Entry, source: Source, titled: &Titled) {
+        if let Origin::Column(title) = &entry.origin
+            && let Ok(column) = titled.column(title)
+        {
+            self.mapped.insert(column);
+        }
+        self.outputs.push(Output {
+            field: field.clone(),
+            source,
+            words: entry.words.clone(),
+        });
     }
 
     /// The numbers of a row in SI units, in the order of the names of formulas; `None` where the cell is blank.
@@ -142,7 +146,7 @@ impl Binding {
                 with,
             } => {
                 let cell = above.cell(row, *column, *fills_down);
-                let found = match cell {
+                let number = match cell {
                     Cell::Blank => None,
                     Cell::Number(value) if value.is_finite() => Some(Ok(*value)),
                     Cell::Number(value) => Some(Err(format!("{value} is no finite number"))),
@@ -150,10 +154,10 @@ impl Binding {
                     Cell::Text(text) => with.writing.map(|writing| number::read(text, writing)),
                     Cell::NoResult => Some(Err("the formula of this cell has no stored result: open the file in its program, let it compute, and save it again".into())),
                 };
-                match found? {
+                match number? {
                     Ok(value) => Some(value * with.si),
                     Err(message) => {
-                        complaints.add_cell(of_cell(titled, row, *column, &input.name, message));
+                        complaints.add_cell(cell_complaint(titled, row, *column, &input.name, message));
                         None
                     }
                 }
@@ -182,7 +186,7 @@ impl Binding {
         }
     }
 
-    /// The rows without those that a word of theirs says are no runs, and the lines of these.
+    /// The rows of runs, and the lines that a word marks as no runs.
     pub(crate) fn chosen<'a>(&self, rows: Vec<&'a Row>) -> (Vec<&'a Row>, Vec<usize>) {
         let leaves_out = |output: &&Output| output.words.values().any(|word| *word == RowUse::Skip);
         let Some(output) = self.outputs.iter().find(leaves_out) else {
@@ -195,7 +199,7 @@ impl Binding {
         (kept, left_out.iter().map(|row| row.line).collect())
     }
 
-    /// Whether a row itself lacks what every run needs: a cell is blank, or has no number where one is needed.
+    /// Whether a row lacks a value that every run needs: its cell is blank, or has no number where one is needed.
     pub(crate) fn lacks(&self, row: &Row) -> bool {
         let needed = self.outputs.iter().filter(|output| output.field.is_needed);
         let lacks_input = |input: &usize| {
@@ -221,21 +225,21 @@ impl Binding {
         }
     }
 
-    /// The name in the map and the column of the first blank cell that a column of runs.csv needs of a row.
+    /// The name in the map and the column of the first blank cell that a column of runs.csv needs.
     pub(crate) fn blank<'a>(&'a self, output: &'a Output, row: &Row) -> Option<(&'a str, usize)> {
-        let of_input = |input: &usize| {
+        let blank_input = |input: &usize| {
             let input = self.inputs.get(*input)?;
             let column = input.column().filter(|column| self.is_blank(row.cell(*column)))?;
             Some((input.name.as_str(), column))
         };
         match &output.source {
-            Source::Input(input) => of_input(input),
-            Source::Formula(expression) => expression.used().iter().find_map(of_input),
+            Source::Input(input) => blank_input(input),
+            Source::Formula(expression) => expression.used().iter().find_map(blank_input),
             Source::Text(from) => Some((output.field.name.as_str(), from.column()?)),
         }
     }
 
-    /// The value of a column of runs.csv in its unit, from the numbers of a row; `None` where one that it needs is blank.
+    /// The value of a column of runs.csv in its unit, from the numbers of a row; `None` if a needed one is blank.
     pub(crate) fn value(&self, output: &Output, numbers: &[Option<f64>]) -> Option<f64> {
         let si = match &output.source {
             Source::Input(input) => numbers.get(*input).copied().flatten()?,
@@ -252,7 +256,7 @@ impl Binding {
         Some(si / output.field.si_per_unit())
     }
 
-    /// A complaint about what a row gives for a column of runs.csv: at its cell, where it comes from one.
+    /// A complaint about a row's value for a column of runs.csv, at the cell that gives it.
     pub(crate) fn complaint(
         &self,
         titled: &Titled,
@@ -266,7 +270,7 @@ impl Binding {
             Source::Formula(_) => None,
         };
         match column {
-            Some(column) => of_cell(titled, row, column, &output.field.name, message),
+            Some(column) => cell_complaint(titled, row, column, &output.field.name, message),
             None => Complaint {
                 line: Some(row.line),
                 field: Some(output.field.name.clone()),
@@ -276,8 +280,13 @@ impl Binding {
     }
 }
 
-/// A complaint about a cell.
-pub(crate) fn of_cell(titled: &Titled, row: &Row, column: usize, field: &str, message: String) -> Complaint {
+pub(crate) fn cell_complaint(
+    titled: &Titled,
+    row: &Row,
+    column: usize,
+    field: &str,
+    message: String,
+) -> Complaint {
     Complaint {
         column: titled.titles.get(column).map(|title| title.text.clone()),
         field: Some(field.to_owned()),

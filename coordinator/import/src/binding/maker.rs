@@ -1,4 +1,4 @@
-//! Entries of a map, bound to the columns of a table, with every mistake.
+//! Binds the entries of a map to the columns of a table, and collects every mistake.
 
 use formula::expression::Expression;
 use formula::unit::Unit as Dimension;
@@ -9,10 +9,10 @@ use crate::field::Field;
 use crate::map::{Entry, Map, Origin, QUESTION, quantity_of};
 use crate::number::{self, Decimal, Evidence, Writing};
 use crate::table::Cell;
-use crate::title::{Stated, Titled};
+use crate::title::{Stated, Title, Titled};
 use crate::unit::{self, Quantity, Unit};
 
-/// What the binding is made from.
+/// The input and the progress of a binding.
 pub(super) struct Maker<'a> {
     pub(super) map: &'a Map,
     pub(super) map_file: &'a str,
@@ -29,7 +29,7 @@ fn column_name(entry: &Entry) -> &str {
     }
 }
 
-/// The dimension that formulas know a quantity by.
+/// The dimension that formulas have for a quantity.
 pub(super) fn dimension(quantity: Quantity) -> Dimension {
     Dimension::parse(quantity.si()).unwrap_or(Dimension::ONE)
 }
@@ -45,7 +45,7 @@ impl<'a> Maker<'a> {
         });
     }
 
-    /// Asks for what an entry leaves open; `plain` is the question for people who see no map.
+    /// Asks for a missing answer of an entry; `plain` is the question for users who see no map.
     fn ask(&mut self, entry: &Entry, message: &str, plain: String) {
         self.complaints.add(Complaint {
             file: self.map_file.to_owned(),
@@ -57,19 +57,18 @@ impl<'a> Maker<'a> {
         });
     }
 
-    /// Words for people of a column of runs.csv.
+    /// The description of a column of runs.csv for users.
     fn words(&self, entry: &Entry) -> Option<&'a str> {
         let field = self.fields.iter().find(|field| field.name == entry.name);
         field.map(|field| field.words.as_str())
     }
 
-    /// The column of an entry.
     fn column(&mut self, entry: &Entry) -> Option<usize> {
-        let found = self.titled.column(column_name(entry));
-        found.map_err(|message| self.complain(entry, message)).ok()
+        let result = self.titled.column(column_name(entry));
+        result.map_err(|message| self.complain(entry, message)).ok()
     }
 
-    /// The unit: as the map states it, else as the title does.
+    /// The unit that the map states, otherwise that of the title.
     fn unit(
         &mut self,
         entry: &Entry,
@@ -81,59 +80,44 @@ impl<'a> Maker<'a> {
             Some(Stated::Unit(unit)) => Some(unit),
             _ => None,
         };
-        let choices = || {
-            quantity.map_or_else(
-                || "a unit".to_owned(),
-                |quantity| quantity.units().collect::<Vec<_>>().join(", "),
-            )
-        };
+        if entry.unit.as_deref() == Some(QUESTION) {
+            self.ask_unit(entry, title.as_ref(), quantity);
+            return None;
+        }
         let read = |text: &str| match quantity.or_else(|| quantity_of(text)) {
             Some(quantity) => unit::read(text, quantity),
             None => Err(format!("unknown unit \"{text}\"")),
         };
-        if entry.unit.as_deref() == Some(QUESTION) {
-            let message = format!(
-                "unit = \"?\" asks for an answer, which the file does not state: one of {}",
-                choices()
-            );
-            let what = title.map_or_else(|| "it".to_owned(), |title| format!("\"{}\"", title.text));
-            self.ask(
-                entry,
-                &message,
-                format!("In which unit is {what}? The file does not state it."),
-            );
-            return None;
-        }
-        let found = match (&entry.unit, stated, &title) {
+        let result = match (&entry.unit, stated, &title) {
             (Some(text), _, _) => read(text),
             (None, Some(stated), _) => read(stated.name),
             (None, None, Some(title)) => Err(match &title.unknown {
-                Some(said) => format!(
-                    "the title says \"{said}\"; {}; state `unit` in the map",
-                    read(said).err().unwrap_or_default()
+                Some(unknown) => format!(
+                    "the title says \"{unknown}\"; {}; state `unit` in the map",
+                    read(unknown).err().unwrap_or_default()
                 ),
                 None => format!(
                     "the title \"{}\" states no unit: state `unit` in the map, one of {}",
                     title.text,
-                    choices()
+                    choices(quantity)
                 ),
             }),
             (None, None, None) => Err(format!(
                 "a value needs its unit: state `unit`, one of {}",
-                choices()
+                choices(quantity)
             )),
         };
-        match found {
-            Ok(found) => {
+        match result {
+            Ok(result) => {
                 if let (Some(stated), Some(title)) = (stated, title)
-                    && stated.name != found.name
+                    && stated.name != result.name
                 {
                     self.remarks.push(format!(
                         "\"{}\" is read in {}, as the map says",
-                        title.text, found.name
+                        title.text, result.name
                     ));
                 }
-                Some(found)
+                Some(result)
             }
             Err(message) => {
                 self.complain(entry, message);
@@ -142,37 +126,42 @@ impl<'a> Maker<'a> {
         }
     }
 
-    /// Where a number is read, and its unit.
+    fn ask_unit(&mut self, entry: &Entry, title: Option<&Title>, quantity: Option<Quantity>) {
+        let message = format!(
+            "unit = \"?\" asks for an answer, which the file does not state: one of {}",
+            choices(quantity)
+        );
+        let what = title.map_or_else(|| "it".to_owned(), |title| format!("\"{}\"", title.text));
+        self.ask(
+            entry,
+            &message,
+            format!("In which unit is {what}? The file does not state it."),
+        );
+    }
+
+    /// The column or value of a number, and its unit.
     pub(super) fn input(
         &mut self,
         entry: &Entry,
         quantity: Option<Quantity>,
     ) -> Option<(Input, &'static Unit)> {
-        let input = |from, fixed| Input {
-            name: entry.name.clone(),
-            from,
-            fixed,
-        };
         match &entry.origin {
             Origin::Column(_) => {
                 let column = self.column(entry)?;
                 let unit = self.unit(entry, Some(column), quantity)?;
-                let reading = Reading {
+                let with = Reading {
                     writing: None,
                     stated_decimal: entry.decimal,
                     si: unit.si,
                 };
-                Some((
-                    input(
-                        From::Column {
-                            column,
-                            fills_down: entry.fills_down,
-                            with: reading,
-                        },
-                        0.0,
-                    ),
-                    unit,
-                ))
+                let from = From::Column {
+                    column,
+                    fills_down: entry.fills_down,
+                    with,
+                };
+                let name = entry.name.clone();
+                let fixed = 0.0;
+                Some((Input { name, from, fixed }, unit))
             }
             Origin::Value(text) if text == QUESTION => {
                 let what = self.words(entry).map_or_else(
@@ -188,37 +177,7 @@ impl<'a> Maker<'a> {
                 );
                 None
             }
-            Origin::Value(text) => {
-                let unit = self.unit(entry, None, quantity);
-                // A value in TOML is a number; one in quotes may be written as in the file.
-                let decimal = entry.decimal.or(self.map.decimal).unwrap_or(Decimal::Point);
-                let value = text
-                    .parse::<f64>()
-                    .ok()
-                    .filter(|value| value.is_finite())
-                    .map_or_else(
-                        || {
-                            number::read(
-                                text,
-                                Writing {
-                                    decimal,
-                                    has_thousands: false,
-                                },
-                            )
-                        },
-                        Ok,
-                    );
-                match (unit, value) {
-                    (Some(unit), Ok(value)) => {
-                        Some((input(From::Fixed(text.clone()), value * unit.si), unit))
-                    }
-                    (_, Err(message)) => {
-                        self.complain(entry, message);
-                        None
-                    }
-                    (None, Ok(_)) => None,
-                }
-            }
+            Origin::Value(text) => self.fixed(entry, text, quantity),
             Origin::Formula(_) => {
                 self.complain(
                     entry,
@@ -227,6 +186,36 @@ impl<'a> Maker<'a> {
                 None
             }
         }
+    }
+
+    /// A value for all rows, and its unit.
+    fn fixed(
+        &mut self,
+        entry: &Entry,
+        text: &str,
+        quantity: Option<Quantity>,
+    ) -> Option<(Input, &'static Unit)> {
+        let unit = self.unit(entry, None, quantity);
+        // A value in TOML is a number; one in quotes may be written as in the file.
+        let writing = Writing {
+            decimal: entry.decimal.or(self.map.decimal).unwrap_or(Decimal::Point),
+            has_thousands: false,
+        };
+        let value = text.parse::<f64>().ok().filter(|value| value.is_finite());
+        let value = match value.map_or_else(|| number::read(text, writing), Ok) {
+            Ok(value) => value,
+            Err(message) => {
+                self.complain(entry, message);
+                return None;
+            }
+        };
+        let unit = unit?;
+        let input = Input {
+            name: entry.name.clone(),
+            from: From::Fixed(text.to_owned()),
+            fixed: value * unit.si,
+        };
+        Some((input, unit))
     }
 
     pub(super) fn quantity(&mut self, entry: &Entry) -> Option<(Input, Dimension)> {
@@ -292,22 +281,22 @@ impl<'a> Maker<'a> {
             .split(|c: char| !(c.is_ascii_alphanumeric() || c == '_'))
             .collect();
         let entries = self.map.quantities.iter().chain(&self.map.columns);
-        let unbound = entries.filter(|other| {
-            words.contains(&other.name.as_str()) && !names.iter().any(|(known, _)| *known == other.name)
+        let unbound = entries.filter(|entry| {
+            words.contains(&entry.name.as_str()) && !names.iter().any(|(bound, _)| *bound == entry.name)
         });
         let unbound: Vec<&Entry> = unbound.collect();
-        if let Some(other) = unbound
+        if let Some(blocking) = unbound
             .iter()
-            .find(|other| matches!(other.origin, Origin::Formula(_)))
+            .find(|entry| matches!(entry.origin, Origin::Formula(_)))
         {
             let message = format!(
                 "formula \"{text}\": {} has a formula itself: write it out",
-                other.name
+                blocking.name
             );
             self.complain(entry, message);
         }
         if !unbound.is_empty() {
-            // What else is not bound has a complaint of its own.
+            // Other unbound names have complaints already.
             return None;
         }
         let expected = dimension(quantity);
@@ -332,7 +321,7 @@ impl<'a> Maker<'a> {
         }
     }
 
-    /// How numbers are written: as the map states, else as the texts of all columns tell.
+    /// The notation of numbers: as the map states it, otherwise as the texts of all columns show.
     pub(super) fn settle_decimals(&mut self, inputs: &mut [Input]) {
         let stated = self.map.decimal;
         let columns: Vec<usize> = inputs
@@ -351,7 +340,7 @@ impl<'a> Maker<'a> {
                     _ => None,
                 })
         };
-        let found = match stated {
+        let result = match stated {
             Some(decimal) => Some(decimal),
             None => match number::decimal_of(texts()) {
                 Evidence::Found(decimal) => Some(decimal),
@@ -359,7 +348,7 @@ impl<'a> Maker<'a> {
                 Evidence::Ambiguous => None,
             },
         };
-        if found.is_none() {
+        if result.is_none() {
             let example = texts()
                 .find(|text| text.contains([',', '.']))
                 .unwrap_or_default()
@@ -373,11 +362,19 @@ impl<'a> Maker<'a> {
         for input in inputs {
             if let From::Column { with, .. } = &mut input.from {
                 let has_thousands = self.map.has_thousands && with.stated_decimal.is_none();
-                with.writing = with.stated_decimal.or(found).map(|decimal| Writing {
+                with.writing = with.stated_decimal.or(result).map(|decimal| Writing {
                     decimal,
                     has_thousands,
                 });
             }
         }
     }
+}
+
+/// The units of a quantity in a sentence.
+fn choices(quantity: Option<Quantity>) -> String {
+    quantity.map_or_else(
+        || "a unit".to_owned(),
+        |quantity| quantity.units().collect::<Vec<_>>().join(", "),
+    )
 }

@@ -1,4 +1,4 @@
-//! What is read from a row, and what a column of runs.csv is made of.
+//! The inputs that are read from a row, and the sources of the columns of runs.csv.
 
 use std::collections::BTreeMap;
 
@@ -7,7 +7,7 @@ use formula::expression::Expression;
 use crate::field::{Field, Kind, RowUse};
 use crate::number::{Decimal, Writing};
 
-/// Where a number or a text is read.
+/// The origin of a number or a text.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum From<T> {
     Column {
@@ -19,7 +19,6 @@ pub(super) enum From<T> {
 }
 
 impl<T> From<T> {
-    /// The column that it is read from.
     pub(super) fn column(&self) -> Option<usize> {
         match self {
             From::Column { column, .. } => Some(*column),
@@ -27,7 +26,7 @@ impl<T> From<T> {
         }
     }
 
-    /// The text that all rows have.
+    /// The text if it is equal in all rows.
     pub(super) fn fixed(&self) -> Option<String> {
         match self {
             From::Column { .. } => None,
@@ -36,12 +35,12 @@ impl<T> From<T> {
     }
 }
 
-/// How a number is read.
+/// The conversion of a number.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Reading {
     pub(super) writing: Option<Writing>,
     pub(super) stated_decimal: Option<Decimal>,
-    /// One of the unit in SI units.
+    /// One unit in SI units.
     pub(super) si: f64,
 }
 
@@ -54,13 +53,12 @@ pub(super) struct Input {
 }
 
 impl Input {
-    /// The column that it is read from.
     pub(super) fn column(&self) -> Option<usize> {
         self.from.column()
     }
 }
 
-/// What a column of runs.csv is made of.
+/// The source of a column of runs.csv.
 #[derive(Debug)]
 pub(super) enum Source {
     Input(usize),
@@ -73,7 +71,7 @@ pub(super) enum Source {
 pub(crate) struct Output {
     pub(crate) field: Field,
     pub(super) source: Source,
-    /// What the words of its column mean; empty where they mean themselves.
+    /// The meanings of its column's words; empty if the words are those of runs.csv.
     pub(super) words: BTreeMap<String, RowUse>,
 }
 

@@ -1,4 +1,4 @@
-//! What a proposal shows: the columns of a file and of runs.csv.
+//! The columns of a file and of runs.csv, as a proposal shows them.
 
 use serde::Serialize;
 
@@ -7,83 +7,83 @@ use crate::field::RowUse;
 /// A column of the file.
 #[derive(Debug, Clone, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct ColumnCard {
-    /// Its letters: `A`.
+    /// Letters of the column, for example `A`.
     pub letter: String,
-    /// Its title.
+    /// Title of the column.
     pub title: String,
-    /// How a map names it: by its title, or by its letters where the title is another column's too.
+    /// Name of the column in a map: its title, or its letters if another column has the same title.
     pub name: String,
     /// The unit that the file states.
     pub unit: Option<String>,
-    /// Its first cells.
+    /// First cells of the column.
     pub sample: Vec<String>,
-    /// Its different words, where they are few enough to say what each means for the use of a run.
+    /// Different words of the column, if they are few enough to mark the use of a run.
     pub words: Vec<WordCard>,
 }
 
 /// A word of a column.
 #[derive(Debug, Clone, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct WordCard {
-    /// The word.
+    /// Text of the word.
     pub word: String,
-    /// The number of rows that have this word.
+    /// Number of rows with this word.
     pub count: usize,
-    /// What it means for the use of a run, as proposed; null where the file does not tell.
+    /// Proposed meaning for the use of a run; null if the file does not tell.
     pub means: Option<RowUse>,
 }
 
-/// Where a column of runs.csv comes from, as proposed.
+/// The proposed source of a column of runs.csv.
 #[derive(Debug, Clone, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct FieldGuess {
-    /// The column of runs.csv.
+    /// Name of the column.
     pub name: String,
-    /// Words for people.
+    /// Description for users.
     pub words: String,
     /// Whether every run needs it.
     pub is_needed: bool,
-    /// The units that it can be given in; none of a name.
+    /// The units that it can be given in; none for a name.
     pub units: Vec<String>,
-    /// The proposed column, as a map names it.
+    /// The proposed column by its name in a map.
     pub column: Option<String>,
-    /// Its unit; null where the file does not state it.
+    /// Unit of the proposed column; null if the file does not state it.
     pub unit: Option<String>,
     /// The proposed formula.
     pub formula: Option<String>,
-    /// What the words of the proposed column mean, of `use` alone.
+    /// Meanings of the proposed column's words, for `use` only.
     pub meanings: Vec<WordCard>,
-    /// What must be answered before the map can be used.
+    /// Questions that must be answered before the map can be used.
     pub question: Option<String>,
 }
 
 /// A quantity that a proposed formula needs.
 #[derive(Debug, Clone, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct QuantityGuess {
-    /// Its name in formulas.
+    /// Name of the quantity in formulas.
     pub name: String,
-    /// Words for people.
+    /// Description for users.
     pub words: String,
     /// The units that it can be given in.
     pub units: Vec<String>,
-    /// The proposed column; null where a value for all rows is asked for.
+    /// The proposed column; null if a value for all rows is asked for.
     pub column: Option<String>,
-    /// Its unit; null where the file does not state it.
+    /// Unit of the proposed column; null if the file does not state it.
     pub unit: Option<String>,
-    /// What must be answered before the map can be used.
+    /// Questions that must be answered before the map can be used.
     pub question: Option<String>,
 }
 
-/// A proposed map, and what it is made from.
+/// A proposed map with the data that it was made from.
 #[derive(Debug, Clone, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct Guess {
     /// The text of the map.
     pub map: String,
-    /// The sheet that is read; null where the file has none.
+    /// The sheet that is read; null if the file has none.
     pub sheet: Option<String>,
     /// All sheets of the file.
     pub sheets: Vec<String>,
-    /// The line of the titles; 0 where there are none.
+    /// The line of the titles; 0 if there are none.
     pub title_line: usize,
-    /// The line of the units below them; null where there is none.
+    /// The line of the units below the titles; null if there is none.
     pub unit_line: Option<usize>,
     /// The columns of the file.
     pub columns: Vec<ColumnCard>,
@@ -91,8 +91,8 @@ pub struct Guess {
     pub fields: Vec<FieldGuess>,
     /// The quantities of proposed formulas.
     pub quantities: Vec<QuantityGuess>,
-    /// The decimal mark of numbers that are texts: `.` or `,`; `?` where they can be read in two ways; null where there are none.
+    /// The decimal mark of numbers in texts: `.` or `,`; `?` if they can be read in two ways; null if there are none.
     pub decimal: Option<String>,
-    /// Remarks on what the reader found out about the file.
+    /// Remarks on detected properties of the file.
     pub remarks: Vec<String>,
 }

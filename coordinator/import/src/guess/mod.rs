@@ -1,8 +1,8 @@
-//! A map proposed from the titles; what they do not state is asked.
+//! Proposes a map from the titles of a file; missing statements become questions.
 //!
 //! # Layout
-//! - here: which column is which.
-//! - `card`: what a proposal shows. `word`: the words of columns, and which of them mark runs that are held out.
+//! - this file: the column of each field.
+//! - `card`: the contents of a proposal. `word`: the words of columns, and those that mark held-out runs.
 //! - `proposal`: the text of a proposed map.
 
 mod card;
@@ -19,10 +19,10 @@ use crate::table::{Cell, letter};
 use crate::title::{self, Stated, Title, Titled};
 use crate::unit::Quantity;
 
-/// Cells of a column that are shown.
+/// Number of cells of a column that are shown.
 const SAMPLE: usize = 5;
 
-/// Proposes a map for a file. Of several sheets, that with the most cells is taken where `sheet` names none.
+/// Proposes a map for a file. If `sheet` names none of several sheets, the one with the most cells is taken.
 ///
 /// # Errors
 /// The complaint about a file that cannot be read. Checked by `tests/guesses.rs`.
@@ -36,16 +36,16 @@ pub fn guess(source: &SourceFile<'_>, sheet: Option<&str>) -> Result<Guess, Box<
     let titled = title::find(read::read(source, &hints)?, (None, None), &all)?;
     let decimal = decimal(&titled);
     let columns = cards(&titled);
-    let mut taken = vec![false; titled.titles.len()];
+    let mut used = vec![false; titled.titles.len()];
     let mut fields = vec![None; all.len()];
     let names: Vec<String> = titled.titles.iter().map(|title| plain(&title.name)).collect();
-    // The names of runs.csv first: no other title is as certain.
+    // Names of runs.csv come first, because no other title is as certain.
     for is_exact in [true, false] {
         for (field, place) in all.iter().zip(&mut fields) {
             if place.is_none() {
-                let found = column_for(field, (&titled.titles, &names), &taken, is_exact);
-                if let Some(column) = found {
-                    taken[column] = true;
+                let column = column_for(field, (&titled.titles, &names), &used, is_exact);
+                if let Some(column) = column {
+                    used[column] = true;
                     *place = Some(column);
                 }
             }
@@ -54,11 +54,11 @@ pub fn guess(source: &SourceFile<'_>, sheet: Option<&str>) -> Result<Guess, Box<
     let mut guessed: Vec<FieldGuess> = all
         .iter()
         .zip(fields)
-        .map(|(field, column)| of_field(field, column, &titled, &columns))
+        .map(|(field, column)| field_guess(field, column, &titled, &columns))
         .collect();
-    let quantities = from_rotation(&mut guessed, &titled, &columns, &mut taken);
-    from_words(&mut guessed, &columns, &mut taken);
-    let mut found = Guess {
+    let quantities = from_rotation(&mut guessed, &titled, &columns, &mut used);
+    from_words(&mut guessed, &columns, &mut used);
+    let mut proposal = Guess {
         map: String::new(),
         sheet: titled.table.sheet.clone(),
         sheets: titled.table.sheets.clone(),
@@ -70,8 +70,8 @@ pub fn guess(source: &SourceFile<'_>, sheet: Option<&str>) -> Result<Guess, Box<
         decimal,
         remarks: titled.table.remarks.clone(),
     };
-    found.map = proposal::text(source.name, &found, titled.table.form, titled.data().count());
-    Ok(found)
+    proposal.map = proposal::text(source.name, &proposal, titled.table.form, titled.data().count());
+    Ok(proposal)
 }
 
 fn decimal(titled: &Titled) -> Option<String> {
@@ -105,7 +105,7 @@ fn cards(titled: &Titled) -> Vec<ColumnCard> {
         letter: letter(column),
         title: title.text.clone(),
         name: match titled.column(&title.text) {
-            Ok(found) if found == column => title.text.clone(),
+            Ok(number) if number == column => title.text.clone(),
             _ => letter(column),
         },
         unit: match title.stated {
@@ -122,7 +122,7 @@ fn cards(titled: &Titled) -> Vec<ColumnCard> {
     titled.titles.iter().enumerate().map(card).collect()
 }
 
-/// A title in lower case, without umlauts, each word by itself.
+/// A title in lower case, without umlauts, as separate words.
 fn plain(text: &str) -> String {
     let text = text
         .to_lowercase()
@@ -139,34 +139,34 @@ fn plain(text: &str) -> String {
         .join(" ")
 }
 
-/// How well the plain name of a title fits: 3 the same, 2 the same words first or last, 1 within a compound.
+/// The quality of a title's fit: 3 for the same name, 2 for the same words first or last, 1 for a part of a compound.
 fn fit(field: &Field, name: &str) -> usize {
     let is_certain = matches!(field.kind, Kind::Measured(_));
-    let of = |known: &String| {
+    let fit = |title: &String| {
         let is_first = || {
-            name.strip_prefix(known.as_str())
+            name.strip_prefix(title.as_str())
                 .is_some_and(|rest| rest.starts_with(' '))
         };
         let is_last = || {
-            name.strip_suffix(known.as_str())
+            name.strip_suffix(title.as_str())
                 .is_some_and(|rest| rest.ends_with(' '))
         };
-        if name == known {
+        if name == title {
             3
         } else if is_certain && (is_first() || is_last()) {
             2
         } else {
-            usize::from(is_certain && known.chars().count() > 5 && name.contains(known.as_str()))
+            usize::from(is_certain && title.chars().count() > 5 && name.contains(title.as_str()))
         }
     };
-    field.titles.iter().map(of).max().unwrap_or(0)
+    field.titles.iter().map(fit).max().unwrap_or(0)
 }
 
-/// The column whose title fits a field best; one that states a unit of another quantity does not.
+/// The column whose title fits a field best; a column whose unit measures another quantity does not fit.
 fn column_for(
     field: &Field,
     (titles, names): (&[Title], &[String]),
-    taken: &[bool],
+    used: &[bool],
     is_exact: bool,
 ) -> Option<usize> {
     let fits = |column: &usize| {
@@ -180,11 +180,11 @@ fn column_for(
             _ => fit(field, &names[*column]),
         }
     };
-    let free = (0..titles.len()).filter(|&column| !taken[column]).rev();
+    let free = (0..titles.len()).filter(|&column| !used[column]).rev();
     free.max_by_key(fits).filter(|column| fits(column) > 0)
 }
 
-fn of_field(field: &Field, column: Option<usize>, titled: &Titled, columns: &[ColumnCard]) -> FieldGuess {
+fn field_guess(field: &Field, column: Option<usize>, titled: &Titled, columns: &[ColumnCard]) -> FieldGuess {
     let units: Vec<String> = field
         .quantity()
         .map(|quantity| quantity.units().map(str::to_owned).collect())
@@ -224,12 +224,12 @@ fn of_field(field: &Field, column: Option<usize>, titled: &Titled, columns: &[Co
     }
 }
 
-/// Where one of slip and sled speed has no column and another column has the wheel's rotation: the one from the other.
+/// If only one of slip and sled speed has a column and another column has the wheel's rotation, the other follows from it.
 fn from_rotation(
     fields: &mut [FieldGuess],
     titled: &Titled,
     columns: &[ColumnCard],
-    taken: &mut [bool],
+    used: &mut [bool],
 ) -> Vec<QuantityGuess> {
     let has = |fields: &[FieldGuess], name: &str| {
         fields
@@ -249,58 +249,64 @@ fn from_rotation(
     };
     let turning = (0..columns.len()).find(|&column| {
         let title = &titled.titles[column];
-        !taken[column]
-            && matches!(title.stated, Stated::Unit(unit) if unit.quantity == Quantity::AngularSpeed)
+        !used[column] && matches!(title.stated, Stated::Unit(unit) if unit.quantity == Quantity::AngularSpeed)
     });
     let derived = fields.iter_mut().find(|field| field.name == name);
     let (Some(derived), Some(turning)) = (derived, turning) else {
         return Vec::new();
     };
-    taken[turning] = true;
+    used[turning] = true;
     derived.formula = Some(formula.into());
     derived.question = None;
     let radius = (0..columns.len())
-        .find(|&column| !taken[column] && plain(&titled.titles[column].name).contains("radius"));
-    let quantity = |name: &str, words: &str, quantity: Quantity, column: Option<usize>| {
-        let unit = column.and_then(|column| match titled.titles[column].stated {
-            Stated::Unit(unit) if unit.quantity == quantity => Some(unit.name.to_owned()),
-            _ => None,
-        });
-        QuantityGuess {
-            name: name.into(),
-            words: words.into(),
-            units: quantity.units().map(str::to_owned).collect(),
-            column: column.map(|column| columns[column].name.clone()),
-            question: unit
-                .is_none()
-                .then(|| format!("what is the {words}, and in which unit")),
-            unit,
-        }
-    };
+        .find(|&column| !used[column] && plain(&titled.titles[column].name).contains("radius"));
+    let column = |column: usize| (&titled.titles[column], &columns[column]);
     vec![
-        quantity(
+        quantity_guess(
             "omega",
             "rotational speed of the wheel",
             Quantity::AngularSpeed,
-            Some(turning),
+            Some(column(turning)),
         ),
-        quantity(
+        quantity_guess(
             "r",
             "radius with which the rig converts slip to rim speed",
             Quantity::Length,
-            radius,
+            radius.map(column),
         ),
     ]
 }
 
-/// Where no title says which runs are held out, the words of a column may.
-fn from_words(fields: &mut [FieldGuess], columns: &[ColumnCard], taken: &mut [bool]) {
-    let marking = (0..columns.len()).find(|&column| !taken[column] && word::marks_held_out(&columns[column]));
+fn quantity_guess(
+    name: &str,
+    words: &str,
+    quantity: Quantity,
+    column: Option<(&Title, &ColumnCard)>,
+) -> QuantityGuess {
+    let unit = column.and_then(|(title, _)| match title.stated {
+        Stated::Unit(unit) if unit.quantity == quantity => Some(unit.name.to_owned()),
+        _ => None,
+    });
+    QuantityGuess {
+        name: name.into(),
+        words: words.into(),
+        units: quantity.units().map(str::to_owned).collect(),
+        column: column.map(|(_, card)| card.name.clone()),
+        question: unit
+            .is_none()
+            .then(|| format!("what is the {words}, and in which unit")),
+        unit,
+    }
+}
+
+/// If no title says which runs are held out, the words of a column may.
+fn from_words(fields: &mut [FieldGuess], columns: &[ColumnCard], used: &mut [bool]) {
+    let marking = (0..columns.len()).find(|&column| !used[column] && word::marks_held_out(&columns[column]));
     let open = fields
         .iter_mut()
         .find(|field| field.name == "use" && field.column.is_none());
     if let (Some(field), Some(column)) = (open, marking) {
-        taken[column] = true;
+        used[column] = true;
         field.column = Some(columns[column].name.clone());
         field.meanings = word::meanings(&columns[column]);
     }

@@ -1,11 +1,11 @@
 //! The text of a proposed map.
 
-use super::card::{ColumnCard, Guess, WordCard};
+use super::card::{ColumnCard, FieldGuess, Guess, WordCard};
 use super::word;
 use crate::field::RowUse;
 use crate::table::Form;
 
-/// A text of TOML in quotes.
+/// A text in quotes, as a TOML string.
 fn quoted(text: &str) -> String {
     let escaped = text.chars().map(|c| match c {
         '"' | '\\' => format!("\\{c}"),
@@ -15,8 +15,26 @@ fn quoted(text: &str) -> String {
     format!("\"{}\"", escaped.collect::<String>())
 }
 
-/// The text of a proposed map.
 pub(super) fn text(file: &str, guess: &Guess, form: Form, rows: usize) -> String {
+    let mut text = header(file, guess, form);
+    for field in &guess.fields {
+        text += &column_table(field).unwrap_or_default();
+    }
+    for quantity in &guess.quantities {
+        let origin = match &quantity.column {
+            Some(column) => format!("column = {}\n", quoted(column)),
+            None => format!("value = \"?\"                   # {}\n", quantity.words),
+        };
+        text += &format!(
+            "\n[quantities.{}]\n{origin}{}",
+            quantity.name,
+            unit_line(quantity.unit.as_deref(), &quantity.units)
+        );
+    }
+    text + &unmapped(guess, rows)
+}
+
+fn header(file: &str, guess: &Guess, form: Form) -> String {
     let name: String = file.chars().filter(|c| !c.is_control()).collect();
     let mut text = format!("# How {name} becomes runs.csv. What is marked with \"?\" must be answered.\n");
     if let Some(sheet) = &guess.sheet {
@@ -38,39 +56,36 @@ pub(super) fn text(file: &str, guess: &Guess, form: Form, rows: usize) -> String
         Some(mark) => text += &format!("decimal = \"{mark}\"\n"),
         None => {}
     }
-    for field in &guess.fields {
-        let origin = match (&field.column, &field.formula) {
-            (Some(column), _) => format!("column = {}\n", quoted(column)),
-            (None, Some(formula)) => format!("formula = {}\n", quoted(formula)),
-            (None, None) if field.is_needed => format!(
-                "value = \"?\"                   # the same in all rows; or column = \"…\": {}\n",
-                field.words
-            ),
-            (None, None) => continue,
-        };
-        text += &format!("\n[columns.{}]\n{origin}", field.name);
-        if field.formula.is_none() && !field.units.is_empty() {
-            text += &unit_line(field.unit.as_deref(), &field.units);
-        }
-        if !field.meanings.is_empty() {
-            text += &format!(
-                "words = {}   # fit, holdout (never fitted) or skip (no run)\n",
-                meanings(&field.meanings)
-            );
-        }
+    text
+}
+
+/// The table of a column; `None` if the file lacks it and no run needs it.
+fn column_table(field: &FieldGuess) -> Option<String> {
+    let origin = match (&field.column, &field.formula) {
+        (Some(column), _) => format!("column = {}\n", quoted(column)),
+        (None, Some(formula)) => format!("formula = {}\n", quoted(formula)),
+        (None, None) if field.is_needed => format!(
+            "value = \"?\"                   # the same in all rows; or column = \"…\": {}\n",
+            field.words
+        ),
+        (None, None) => return None,
+    };
+    let mut text = format!("\n[columns.{}]\n{origin}", field.name);
+    if field.formula.is_none() && !field.units.is_empty() {
+        text += &unit_line(field.unit.as_deref(), &field.units);
     }
-    for quantity in &guess.quantities {
-        let origin = match &quantity.column {
-            Some(column) => format!("column = {}\n", quoted(column)),
-            None => format!("value = \"?\"                   # {}\n", quantity.words),
-        };
+    if !field.meanings.is_empty() {
         text += &format!(
-            "\n[quantities.{}]\n{origin}{}",
-            quantity.name,
-            unit_line(quantity.unit.as_deref(), &quantity.units)
+            "words = {}   # fit, holdout (never fitted) or skip (no run)\n",
+            meanings(&field.meanings)
         );
     }
-    let mapped = |column: &&ColumnCard| {
+    Some(text)
+}
+
+/// The columns that the map does not use, the first that could mark held-out runs with an example.
+fn unmapped(guess: &Guess, rows: usize) -> String {
+    let is_mapped = |column: &&ColumnCard| {
         let name = Some(&column.name);
         guess.fields.iter().any(|field| field.column.as_ref() == name)
             || guess
@@ -78,11 +93,12 @@ pub(super) fn text(file: &str, guess: &Guess, form: Form, rows: usize) -> String
                 .iter()
                 .any(|quantity| quantity.column.as_ref() == name)
     };
-    let rest: Vec<&ColumnCard> = guess.columns.iter().filter(|column| !mapped(column)).collect();
+    let rest: Vec<&ColumnCard> = guess.columns.iter().filter(|column| !is_mapped(column)).collect();
     let is_open = guess
         .fields
         .iter()
         .any(|field| field.name == "use" && field.column.is_none());
+    let mut text = String::new();
     if let Some(column) = rest
         .iter()
         .find(|column| is_open && word::could_mark(column, rows))
@@ -100,7 +116,7 @@ pub(super) fn text(file: &str, guess: &Guess, form: Form, rows: usize) -> String
     text
 }
 
-/// The table of words; what the file does not tell is asked.
+/// The table of words; missing meanings become questions.
 fn meanings(words: &[WordCard]) -> String {
     let entry = |card: &WordCard| {
         let means = card.means.map_or("?", RowUse::name);

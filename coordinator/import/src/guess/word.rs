@@ -1,4 +1,4 @@
-//! The words of columns, and which of them mark runs that are held out.
+//! The words of columns, and those that mark held-out runs.
 
 use std::collections::BTreeMap;
 
@@ -6,9 +6,9 @@ use super::card::{ColumnCard, WordCard};
 use crate::field::RowUse;
 use crate::table::{Row, spaced};
 
-/// The largest number of different words of a column that a proposal lists.
+/// Maximum number of different words of a column in a proposal.
 const MAX_WORDS: usize = 12;
-/// Longest word that is listed, in bytes.
+/// Maximum length of a listed word, in bytes.
 const MAX_WORD_BYTES: usize = 60;
 /// The first word of a remark about a run that is held out, in lower case.
 const HELD_OUT: [&str; 13] = [
@@ -27,7 +27,7 @@ const HELD_OUT: [&str; 13] = [
     "gegenprobe",
 ];
 
-/// The different words of a column in alphabetical order; none where they are too many, or too long, to say what each means.
+/// The different words of a column in alphabetical order; none if they are too many or too long.
 pub(super) fn words<'a>(rows: impl Iterator<Item = &'a Row>, column: usize) -> Vec<WordCard> {
     let mut counts: BTreeMap<String, usize> = BTreeMap::new();
     for row in rows.filter(|row| !row.cell(column).is_blank()) {
@@ -37,10 +37,10 @@ pub(super) fn words<'a>(rows: impl Iterator<Item = &'a Row>, column: usize) -> V
         }
         *counts.entry(word).or_default() += 1;
     }
-    // Beside a word that marks what is held out, the others mark what is not.
+    // If one word marks held-out runs, the others mark fitted ones.
     let is_marked = counts.keys().any(|word| is_held_out(word));
     let means = |word: &str| {
-        let stated = RowUse::ALL.iter().find(|known| known.name() == word);
+        let stated = RowUse::ALL.iter().find(|row_use| row_use.name() == word);
         match stated {
             Some(stated) => Some(*stated),
             None if is_held_out(word) => Some(RowUse::Holdout),
@@ -69,12 +69,12 @@ pub(super) fn marks_held_out(column: &ColumnCard) -> bool {
     column.words.iter().any(|card| is_held_out(&card.word))
 }
 
-/// What a map must say about the words of a column of `use`: nothing, where they are those of runs.csv.
+/// The question of a map about the words of a column for `use`; none if they are those of runs.csv.
 pub(super) fn meanings(column: &ColumnCard) -> Vec<WordCard> {
     let is_of_runs_csv = |card: &WordCard| {
         [RowUse::Fit, RowUse::Holdout]
             .iter()
-            .any(|known| known.name() == card.word)
+            .any(|row_use| row_use.name() == card.word)
     };
     if column.words.iter().all(is_of_runs_csv) {
         Vec::new()
@@ -83,7 +83,7 @@ pub(super) fn meanings(column: &ColumnCard) -> Vec<WordCard> {
     }
 }
 
-/// Whether the words of a column could mark runs: some of them stand in several rows, or not in all.
+/// Whether the words of a column could mark runs: some occur in several rows, or some rows have none.
 pub(super) fn could_mark(column: &ColumnCard, rows: usize) -> bool {
     let filled: usize = column.words.iter().map(|card| card.count).sum();
     let is_word = |card: &WordCard| !crate::number::is_number(&card.word);

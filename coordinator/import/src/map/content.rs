@@ -1,4 +1,4 @@
-//! What a map states, as written.
+//! The content of a map.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -7,33 +7,32 @@ use crate::number::Decimal;
 use crate::read::Hints;
 use crate::unit::Quantity;
 
-/// The mark of a question in a map.
+/// The mark of an open question in a map.
 pub(crate) const QUESTION: &str = "?";
 
-/// Where a column comes from, as written.
+/// The stated origin of a column.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Origin {
     /// A column by its title or letter.
     Column(String),
-    /// The same in all rows.
+    /// A value for all rows.
     Value(String),
     /// A formula over `[quantities]` and other columns.
     Formula(String),
 }
 
-/// A column of runs.csv, or a quantity for formulas, as written.
+/// The entry of a column of runs.csv, or of a quantity for formulas.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Entry {
-    /// `slip`, or the name of the quantity.
+    /// Name of the column, for example `slip`, or of the quantity.
     pub(crate) name: String,
-    /// The line of its table.
     pub(crate) line: usize,
     pub(crate) origin: Origin,
     pub(crate) unit: Option<String>,
     pub(crate) decimal: Option<Decimal>,
     /// Whether a blank cell has the value of the cell above.
     pub(crate) fills_down: bool,
-    /// What the words of the column mean, of `use` alone; the blank word is that of a blank cell.
+    /// Meanings of the column's words, for `use` only; the blank word is that of a blank cell.
     pub(crate) words: BTreeMap<String, RowUse>,
 }
 
@@ -41,20 +40,20 @@ pub(crate) struct Entry {
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Recording {
     pub(crate) line: usize,
-    /// The column of the time, and its unit.
+    /// Column and unit of the time.
     pub(crate) time: String,
     pub(crate) time_unit: String,
-    /// The column that changes from run to run.
+    /// Column that changes from run to run.
     pub(crate) marker: String,
-    /// What it holds between runs.
+    /// Value of that column between runs.
     pub(crate) between: BTreeSet<String>,
-    /// What is averaged, from the beginning of each run `[s]`.
+    /// Interval that is averaged, from the beginning of each run `[s]`.
     pub(crate) window_s: Option<(f64, f64)>,
     /// Whether the channels are written as histories, not as averages.
     pub(crate) histories: bool,
 }
 
-/// A map without what is wrong with it.
+/// A map without its mistaken parts.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Map {
     pub(crate) hints: Hints,
@@ -69,7 +68,7 @@ pub(crate) struct Map {
     pub(crate) recording: Option<Recording>,
 }
 
-/// What a quantity for formulas may be: told by its unit.
+/// The admissible units of a quantity for formulas.
 pub(crate) fn quantity_of(unit: &str) -> Option<Quantity> {
     crate::unit::find(unit).map(|unit| unit.quantity)
 }

@@ -37,14 +37,14 @@ impl Source<'_> {
     }
 }
 
-/// A table of a map; every key that is asked for is known.
+/// A table of a map; it remembers the keys that were asked for.
 pub(super) struct Keys<'a> {
     source: &'a Source<'a>,
     table: &'a dyn TableLike,
-    /// `[columns.slip]`; blank for the map itself.
+    /// Place of the table, for example `[columns.slip]`; blank for the map itself.
     name: String,
     field: Option<String>,
-    known: Vec<&'static str>,
+    asked: Vec<&'static str>,
     pub(super) is_right: bool,
 }
 
@@ -60,12 +60,11 @@ impl<'a> Keys<'a> {
             table,
             name: name.to_owned(),
             field: field.map(str::to_owned),
-            known: Vec::new(),
+            asked: Vec::new(),
             is_right: true,
         }
     }
 
-    /// What messages about it begin with.
     fn place(&self) -> String {
         if self.name.is_empty() {
             String::new()
@@ -85,56 +84,55 @@ impl<'a> Keys<'a> {
     }
 
     fn item(&mut self, key: &'static str) -> Option<&'a Item> {
-        self.known.push(key);
+        self.asked.push(key);
         self.table.get(key)
     }
 
-    /// A text.
     pub(super) fn text(&mut self, complaints: &mut Complaints, key: &'static str) -> Option<String> {
         let item = self.item(key)?;
-        let found = item.as_str();
-        if found.is_none() {
+        let value = item.as_str();
+        if value.is_none() {
             self.wrong(complaints, Some(item), format!("{key} must be a text in quotes"));
         }
-        found.map(str::to_owned)
+        value.map(str::to_owned)
     }
 
     /// A text, a number or a whole number, as a text.
     pub(super) fn scalar(&mut self, complaints: &mut Complaints, key: &'static str) -> Option<String> {
         let item = self.item(key)?;
-        let found = scalar(item);
-        if found.is_none() {
+        let value = scalar(item);
+        if value.is_none() {
             self.wrong(
                 complaints,
                 Some(item),
                 format!("{key} must be a number or a text in quotes"),
             );
         }
-        found
+        value
     }
 
     pub(super) fn flag(&mut self, complaints: &mut Complaints, key: &'static str) -> bool {
         let Some(item) = self.item(key) else {
             return false;
         };
-        let found = item.as_bool();
-        if found.is_none() {
+        let value = item.as_bool();
+        if value.is_none() {
             self.wrong(complaints, Some(item), format!("{key} must be true or false"));
         }
-        found.unwrap_or(false)
+        value.unwrap_or(false)
     }
 
     pub(super) fn line_number(&mut self, complaints: &mut Complaints, key: &'static str) -> Option<usize> {
         let item = self.item(key)?;
-        let found = item.as_integer().and_then(|number| usize::try_from(number).ok());
-        if found.is_none() {
+        let value = item.as_integer().and_then(|number| usize::try_from(number).ok());
+        if value.is_none() {
             self.wrong(
                 complaints,
                 Some(item),
                 format!("{key} must be the number of a line, 0 where there is none"),
             );
         }
-        found
+        value
     }
 
     /// A list of numbers or texts, as texts.
@@ -142,22 +140,22 @@ impl<'a> Keys<'a> {
         let Some(item) = self.item(key) else {
             return Vec::new();
         };
-        let found: Option<Vec<String>> = item.as_array().and_then(|list| {
+        let value: Option<Vec<String>> = item.as_array().and_then(|list| {
             list.iter()
                 .map(|value| scalar(&Item::Value(value.clone())))
                 .collect()
         });
-        if found.is_none() {
+        if value.is_none() {
             self.wrong(
                 complaints,
                 Some(item),
                 format!("{key} must be a list of numbers or texts"),
             );
         }
-        found.unwrap_or_default()
+        value.unwrap_or_default()
     }
 
-    /// A table of words and what they mean, one of [`RowUse`] each.
+    /// A table of words and their meanings, each a [`RowUse`].
     pub(super) fn words(
         &mut self,
         complaints: &mut Complaints,
@@ -169,8 +167,8 @@ impl<'a> Keys<'a> {
         };
         for (word, item) in table.iter() {
             let stated = item.as_str().unwrap_or_default();
-            if let Some(known) = RowUse::ALL.iter().find(|known| known.name() == stated) {
-                words.insert(spaced(word), *known);
+            if let Some(row_use) = RowUse::ALL.iter().find(|row_use| row_use.name() == stated) {
+                words.insert(spaced(word), *row_use);
                 continue;
             }
             let is_open = stated == QUESTION;
@@ -195,18 +193,18 @@ impl<'a> Keys<'a> {
         words
     }
 
-    /// A table within it, with the byte at which it begins.
+    /// A table within this one, with the byte at which it begins.
     pub(super) fn table(
         &mut self,
         complaints: &mut Complaints,
         key: &'static str,
     ) -> Option<&'a dyn TableLike> {
         let item = self.item(key)?;
-        let found = item.as_table_like();
-        if found.is_none() {
+        let value = item.as_table_like();
+        if value.is_none() {
             self.wrong(complaints, Some(item), format!("{key} must be a table"));
         }
-        found
+        value
     }
 
     /// A complaint about a key that is there, or about the table.
@@ -215,7 +213,7 @@ impl<'a> Keys<'a> {
         self.wrong(complaints, item, message.into());
     }
 
-    /// Asks for the answer that a key of the map leaves open; `plain` is the question for people who see no map.
+    /// Asks for the missing answer to a key of the map; `plain` is the question for users who see no map.
     pub(super) fn ask(&mut self, complaints: &mut Complaints, key: &str, message: &str, plain: &str) {
         let byte = self.table.get(key).and_then(Item::span).map(|span| span.start);
         self.is_right = false;
@@ -227,14 +225,14 @@ impl<'a> Keys<'a> {
         });
     }
 
-    /// Complains about all keys that nobody has asked for.
+    /// Complains about all keys that are not asked for.
     pub(super) fn end(&mut self, complaints: &mut Complaints) {
         for (key, item) in self.table.iter() {
-            if !self.known.contains(&key) {
+            if !self.asked.contains(&key) {
                 self.wrong(
                     complaints,
                     Some(item),
-                    unknown_word("key", key, self.known.clone()),
+                    unknown_word("key", key, self.asked.clone()),
                 );
             }
         }

@@ -1,9 +1,9 @@
-//! The map of an import: where each column of runs.csv comes from, as its file says.
+//! The map of an import: the origin of each column of runs.csv.
 //!
 //! # Layout
-//! - `content`: what a map states.
+//! - `content`: the content of a map.
 //! - `entry`: keys of a table of the map, read with all their mistakes.
-//! - `read`: the text of a map to a [`Map`].
+//! - `read`: parses the text of a map.
 
 mod content;
 mod entry;

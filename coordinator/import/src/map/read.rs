@@ -1,4 +1,4 @@
-//! The text of a map to a [`Map`].
+//! Parses the text of a map.
 
 use std::collections::BTreeMap;
 
@@ -13,14 +13,14 @@ use crate::field::Field;
 use crate::number::Decimal;
 use crate::read::Hints;
 
-/// Deepest nesting of brackets; a map needs three.
+/// Maximum nesting of brackets; a map needs three.
 const DEEPEST: usize = 16;
-/// The largest number of columns or quantities in a map. A runs.csv has about two dozen, and each is looked for among all titles.
+/// Maximum number of columns or quantities in a map. A runs.csv has about two dozen, and each is compared with all titles.
 const MAX_ENTRIES: usize = 200;
-/// Largest map `[bytes]`.
+/// Maximum size of a map `[bytes]`.
 const LARGEST: usize = 1 << 20;
 
-/// Reads a map, with all its mistakes; what is wrong is left out of it.
+/// Parses a map, with all its mistakes; mistaken parts are left out.
 pub(crate) fn read(file: &str, text: &str, fields: &[Field], complaints: &mut Complaints) -> Map {
     let source = Source { file, text };
     let mut map = Map::default();
@@ -77,17 +77,17 @@ pub(crate) fn read(file: &str, text: &str, fields: &[Field], complaints: &mut Co
 
 fn decimal(keys: &mut Keys<'_>, complaints: &mut Complaints) -> Option<Decimal> {
     let mark = keys.text(complaints, "decimal")?;
-    let found = Decimal::of(&mark);
+    let decimal = Decimal::from_mark(&mark);
     if mark == QUESTION {
         keys.ask(complaints, "decimal", "decimal = \"?\" asks for an answer: write \",\" where 1,234 is a little more than one, \".\" where it is more than a thousand", "Is 1,234 a little more than one, or more than a thousand?");
-    } else if found.is_none() {
+    } else if decimal.is_none() {
         keys.complain(
             complaints,
             "decimal",
             format!("decimal \"{mark}\" must be \".\" or \",\""),
         );
     }
-    found
+    decimal
 }
 
 fn thousands(keys: &mut Keys<'_>, complaints: &mut Complaints, decimal: Option<Decimal>) -> bool {
@@ -108,27 +108,27 @@ fn thousands(keys: &mut Keys<'_>, complaints: &mut Complaints, decimal: Option<D
 fn entries(
     source: &Source<'_>,
     tables: &dyn TableLike,
-    of: &str,
+    kind: &str,
     complaints: &mut Complaints,
     fields: Option<&[Field]>,
 ) -> Vec<Entry> {
     let mut entries = Vec::new();
     if tables.len() > MAX_ENTRIES {
-        let message = format!("[{of}]: {} tables must be at most {MAX_ENTRIES}", tables.len());
+        let message = format!("[{kind}]: {} tables must be at most {MAX_ENTRIES}", tables.len());
         complaints.add(source.complaint(None, None, message));
         return entries;
     }
     for (name, item) in tables.iter() {
         let byte = item.span().map(|span| span.start);
-        let place = format!("[{of}.{name}]");
+        let place = format!("[{kind}.{name}]");
         if let Some(fields) = fields
             && !fields.iter().any(|field| field.name == name)
         {
-            let known = fields.iter().map(|field| field.name.as_str());
+            let names = fields.iter().map(|field| field.name.as_str());
             complaints.add(source.complaint(
                 byte,
                 None,
-                format!("{place}: {}", unknown_word("column of runs.csv", name, known)),
+                format!("{place}: {}", unknown_word("column of runs.csv", name, names)),
             ));
             continue;
         }
@@ -140,43 +140,56 @@ fn entries(
             ));
             continue;
         };
-        let mut keys = Keys::new(source, table, &place, Some(name));
-        let column = keys.text(complaints, "column").map(Origin::Column);
-        let value = keys.scalar(complaints, "value").map(Origin::Value);
-        let formula = keys.text(complaints, "formula").map(Origin::Formula);
-        let unit = keys.text(complaints, "unit");
-        let decimal = decimal(&mut keys, complaints);
-        let fills_down = keys.flag(complaints, "fill_down");
-        let words = if name == "use" && fields.is_some() {
-            keys.words(complaints, "words")
-        } else {
-            BTreeMap::new()
-        };
-        keys.end(complaints);
-        let mut origins = [column, value, formula].into_iter().flatten();
-        match (origins.next(), origins.next()) {
-            (Some(origin), None) if keys.is_right => {
-                let line = byte.map_or(1, |byte| source.line(byte));
-                entries.push(Entry {
-                    name: name.to_owned(),
-                    line,
-                    origin,
-                    unit,
-                    decimal,
-                    fills_down,
-                    words,
-                });
-            }
-            (Some(_), None) => {}
-            (None, _) if !keys.is_right => {}
-            _ => complaints.add(source.complaint(
+        let has_words = name == "use" && fields.is_some();
+        entries.extend(entry(source, (name, byte), table, &place, has_words, complaints));
+    }
+    entries
+}
+
+/// An entry at a byte of the map; `None` if it has a mistake.
+fn entry(
+    source: &Source<'_>,
+    (name, byte): (&str, Option<usize>),
+    table: &dyn TableLike,
+    place: &str,
+    has_words: bool,
+    complaints: &mut Complaints,
+) -> Option<Entry> {
+    let mut keys = Keys::new(source, table, place, Some(name));
+    let column = keys.text(complaints, "column").map(Origin::Column);
+    let value = keys.scalar(complaints, "value").map(Origin::Value);
+    let formula = keys.text(complaints, "formula").map(Origin::Formula);
+    let unit = keys.text(complaints, "unit");
+    let decimal = decimal(&mut keys, complaints);
+    let fills_down = keys.flag(complaints, "fill_down");
+    let words = if has_words {
+        keys.words(complaints, "words")
+    } else {
+        BTreeMap::new()
+    };
+    keys.end(complaints);
+    let mut origins = [column, value, formula].into_iter().flatten();
+    match (origins.next(), origins.next()) {
+        (Some(origin), None) if keys.is_right => Some(Entry {
+            name: name.to_owned(),
+            line: byte.map_or(1, |byte| source.line(byte)),
+            origin,
+            unit,
+            decimal,
+            fills_down,
+            words,
+        }),
+        (Some(_), None) => None,
+        (None, _) if !keys.is_right => None,
+        _ => {
+            complaints.add(source.complaint(
                 byte,
                 Some(name),
                 format!("{place} must have one of column, value and formula"),
-            )),
+            ));
+            None
         }
     }
-    entries
 }
 
 fn read_recording(

@@ -1,10 +1,10 @@
-//! A file of any kind, told by its content.
+//! A file of any format, recognised by its content.
 
 use super::source_file::{Hints, SourceFile};
 use crate::complaint::Complaint;
 use crate::table::Table;
 
-/// Reads a file of any kind, told by its content.
+/// Reads a file of any format, recognised by its content.
 pub(crate) fn read(source: &SourceFile<'_>, hints: &Hints) -> Result<Table, Box<Complaint>> {
     let begins = |magic: &[u8]| source.bytes.starts_with(magic);
     let wrong = |message: String| {

@@ -4,12 +4,12 @@ use std::io::{Cursor, Read};
 
 use zip::ZipArchive;
 
-/// Most bytes of all parts together.
-const MOST_BYTES: u64 = 512 << 20;
-/// Bytes of the shared strings in which their number is stated.
+/// Maximum size of all parts together.
+const MAX_BYTES: u64 = 512 << 20;
+/// Number of bytes at the beginning of the shared strings in which their number is stated.
 const HEAD: u64 = 2000;
 
-/// What keeps an archive from being unpacked, in words.
+/// The reason for which an archive is not unpacked, in words.
 pub(super) fn check(bytes: &[u8]) -> Result<(), String> {
     let damaged = |e: zip::result::ZipError| {
         format!("the file is damaged ({e}): open it in its program and save it again")
@@ -19,12 +19,12 @@ pub(super) fn check(bytes: &[u8]) -> Result<(), String> {
     for part in 0..archive.len() {
         size = size.saturating_add(archive.by_index_raw(part).map_err(damaged)?.size());
     }
-    if size > MOST_BYTES {
+    if size > MAX_BYTES {
         return Err(format!(
-            "the unpacked file has {size} bytes, and may have at most {MOST_BYTES}: export the sheet as .csv"
+            "the unpacked file has {size} bytes, and may have at most {MAX_BYTES}: export the sheet as .csv"
         ));
     }
-    // The reader makes room for as many strings as are stated.
+    // The reader allocates memory for as many strings as are stated.
     let Ok(part) = archive.by_name("xl/sharedStrings.xml") else {
         return Ok(());
     };

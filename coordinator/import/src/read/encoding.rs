@@ -2,7 +2,7 @@
 
 use encoding_rs::{Encoding, UTF_8, UTF_16BE, UTF_16LE, WINDOWS_1252};
 
-/// The text, and in words which encoding was found where it is not UTF-8.
+/// The text, and a remark on the detected encoding if it is not UTF-8.
 pub(super) fn decode(bytes: &[u8], stated: Option<&str>) -> Result<(String, Option<String>), String> {
     if let Some(label) = stated {
         let encoding = Encoding::for_label(label.as_bytes()).ok_or_else(|| {
@@ -18,7 +18,7 @@ pub(super) fn decode(bytes: &[u8], stated: Option<&str>) -> Result<(String, Opti
             Ok((text.into_owned(), None))
         };
     }
-    let encoding = found(bytes);
+    let encoding = detect(bytes);
     let (text, used, has_errors) = encoding.decode(bytes);
     if has_errors || text.contains('\0') {
         return Err(format!(
@@ -32,7 +32,7 @@ pub(super) fn decode(bytes: &[u8], stated: Option<&str>) -> Result<(String, Opti
 }
 
 /// The encoding: stated by its first bytes; UTF-16 where every second byte is 0; UTF-8 where it fits; else that of Western Windows.
-fn found(bytes: &[u8]) -> &'static Encoding {
+fn detect(bytes: &[u8]) -> &'static Encoding {
     if let Some((encoding, _)) = Encoding::for_bom(bytes) {
         return encoding;
     }

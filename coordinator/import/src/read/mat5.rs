@@ -9,25 +9,22 @@ use flate2::read::ZlibDecoder;
 
 use super::variable::{Value, Variables};
 
-/// Bytes before the first element.
 const HEADER: usize = 128;
-/// Most bytes that a compressed variable may unpack to.
-const MOST_BYTES: u64 = 256 << 20;
-/// Deepest nesting of structs and cells.
+/// Maximum size of an unpacked variable.
+const MAX_BYTES: u64 = 256 << 20;
+/// Maximum nesting of structs and cells.
 const DEEPEST: usize = 8;
 
 /// Types of elements.
 const MATRIX: u32 = 14;
 const COMPRESSED: u32 = 15;
 
-/// What is wrong, in words.
 type Damaged = String;
 
 fn cut() -> Damaged {
     "the file is damaged or cut off: save it again with save('NAME.mat', '-v7')".into()
 }
 
-/// Elements one after the other.
 struct Elements<'a> {
     rest: &'a [u8],
     is_big: bool,
@@ -47,9 +44,9 @@ impl<'a> Elements<'a> {
     }
 
     fn take(&mut self, bytes: usize) -> Result<&'a [u8], Damaged> {
-        let (taken, rest) = self.rest.split_at_checked(bytes).ok_or_else(cut)?;
+        let (data, rest) = self.rest.split_at_checked(bytes).ok_or_else(cut)?;
         self.rest = rest;
-        Ok(taken)
+        Ok(data)
     }
 
     /// The next element; a short one has its data in its tag.
@@ -63,14 +60,14 @@ impl<'a> Elements<'a> {
         let bytes = self.word(&tag[4..]) as usize;
         let data = self.take(bytes)?;
         if kind != COMPRESSED {
-            // Elements begin at multiples of 8 bytes; the last one may not be filled up.
+            // Elements begin at multiples of 8 bytes; the last one may not be padded.
             self.take(bytes.wrapping_neg() % 8)
                 .or_else(|_| self.take(self.rest.len()))?;
         }
         Ok((kind, data))
     }
 
-    /// The numbers of an element, of whatever type.
+    /// The numbers of an element of any type.
     fn numbers(&self, (kind, data): Element<'_>) -> Result<Vec<f64>, Damaged> {
         fn each<const N: usize>(data: &[u8], is_big: bool, read: impl Fn([u8; N]) -> f64) -> Vec<f64> {
             let chunks = data
@@ -102,7 +99,6 @@ impl<'a> Elements<'a> {
     }
 }
 
-/// The variables of a file.
 pub(super) fn read(bytes: &[u8]) -> Result<Variables, Damaged> {
     let body = bytes.get(HEADER..).ok_or_else(cut)?;
     let is_big = match &bytes[HEADER - 2..HEADER] {
@@ -114,15 +110,15 @@ pub(super) fn read(bytes: &[u8]) -> Result<Variables, Damaged> {
     let mut variables = Vec::new();
     while !elements.rest.is_empty() {
         let (kind, data) = elements.next()?;
-        let found = match kind {
+        let variable = match kind {
             MATRIX => matrix(data, is_big, 0)?,
             COMPRESSED => {
                 let mut unpacked = Vec::new();
-                let mut decoder = ZlibDecoder::new(data).take(MOST_BYTES + 1);
+                let mut decoder = ZlibDecoder::new(data).take(MAX_BYTES + 1);
                 decoder.read_to_end(&mut unpacked).map_err(|_| cut())?;
-                if unpacked.len() as u64 > MOST_BYTES {
+                if unpacked.len() as u64 > MAX_BYTES {
                     return Err(format!(
-                        "a variable has more than {MOST_BYTES} bytes: save the columns of the measurements alone"
+                        "a variable has more than {MAX_BYTES} bytes: save the columns of the measurements alone"
                     ));
                 }
                 let mut inner = Elements {
@@ -136,9 +132,9 @@ pub(super) fn read(bytes: &[u8]) -> Result<Variables, Damaged> {
             }
             _ => continue,
         };
-        // A variable without a name is MATLAB's own, for objects.
-        if !found.0.is_empty() {
-            variables.push(found);
+        // Variables without a name are internal to MATLAB, for objects.
+        if !variable.0.is_empty() {
+            variables.push(variable);
         }
     }
     Ok(variables)
@@ -155,19 +151,20 @@ fn matrix(data: &[u8], is_big: bool, depth: usize) -> Result<(String, Value), Da
     }
     let mut parts = Elements { rest: data, is_big };
     if data.is_empty() {
+        let (rows, columns, values) = (0, 0, Vec::new());
         return Ok((
             String::new(),
             Value::Numbers {
-                rows: 0,
-                columns: 0,
-                values: Vec::new(),
+                rows,
+                columns,
+                values,
             },
         ));
     }
     let (_, flags) = parts.next()?;
     let flags = parts.word(flags);
     let (class, is_complex) = (flags & 0xff, flags & 0x0800 != 0);
-    // Objects have their name where others have their size.
+    // Objects have their name in the place of the size.
     if class == 17 {
         return Ok((
             text(parts.next()?.1),
@@ -186,39 +183,43 @@ fn matrix(data: &[u8], is_big: bool, depth: usize) -> Result<(String, Value), Da
     );
     let value = match class {
         _ if size.len() > 2 => Value::Other("an array of more than two dimensions"),
-        1 => {
-            let mut texts = Vec::new();
-            while !parts.rest.is_empty() {
-                let (_, data) = parts.next()?;
-                texts.push(matrix(data, is_big, depth + 1)?.1);
-            }
-            list(texts)
-        }
+        1 => cells(&mut parts, depth)?,
         2 | 3 => fields(&mut parts, elements, depth)?,
         4 => {
             let element = parts.next()?;
             Value::Texts(lines(&characters(&parts, element)?, rows, columns))
         }
         6..=15 if is_complex => Value::Other("complex numbers"),
-        6..=15 => {
-            let element = parts.next()?;
-            let values = parts.numbers(element)?;
-            if (values.len() as f64 - elements).abs() > 0.0 {
-                return Err(cut());
-            }
-            Value::Numbers {
-                rows,
-                columns,
-                values,
-            }
-        }
+        6..=15 => numbers(&mut parts, elements, rows, columns)?,
         5 => Value::Other("a sparse matrix"),
         _ => Value::Other("an object of MATLAB"),
     };
     Ok((name, value))
 }
 
-/// A cell array: texts, or numbers each of which stands alone.
+fn cells(parts: &mut Elements, depth: usize) -> Result<Value, Damaged> {
+    let mut values = Vec::new();
+    while !parts.rest.is_empty() {
+        let (_, data) = parts.next()?;
+        values.push(matrix(data, parts.is_big, depth + 1)?.1);
+    }
+    Ok(list(values))
+}
+
+fn numbers(parts: &mut Elements, count: f64, rows: usize, columns: usize) -> Result<Value, Damaged> {
+    let element = parts.next()?;
+    let values = parts.numbers(element)?;
+    if (values.len() as f64 - count).abs() > 0.0 {
+        return Err(cut());
+    }
+    Ok(Value::Numbers {
+        rows,
+        columns,
+        values,
+    })
+}
+
+/// A cell array of texts, or of single numbers.
 fn list(values: Vec<Value>) -> Value {
     let shown = |value: Value| match value {
         Value::Texts(texts) if texts.len() <= 1 => Some(texts.into_iter().next().unwrap_or_default()),
@@ -259,7 +260,7 @@ fn fields(parts: &mut Elements<'_>, elements: f64, depth: usize) -> Result<Value
     Ok(Value::Fields(fields))
 }
 
-/// The characters of a char matrix, column after column.
+/// The characters of a char matrix in column order.
 fn characters(parts: &Elements<'_>, element: Element<'_>) -> Result<Vec<char>, Damaged> {
     if element.0 == 16 {
         return Ok(String::from_utf8_lossy(element.1).chars().collect());
@@ -271,7 +272,7 @@ fn characters(parts: &Elements<'_>, element: Element<'_>) -> Result<Vec<char>, D
         .collect())
 }
 
-/// The rows of a char matrix, without the spaces that fill them up.
+/// The rows of a char matrix, without padding.
 pub(super) fn lines(characters: &[char], rows: usize, columns: usize) -> Vec<String> {
     if rows == 0 || columns == 0 {
         return vec![String::new()];

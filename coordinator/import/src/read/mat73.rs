@@ -11,35 +11,33 @@ use hdf5_reader::{Dataset, Datatype, Hdf5File, OpenOptions};
 use super::mat5::lines;
 use super::variable::{Value, Variables};
 
-/// Most bytes of one variable.
-const MOST_BYTES: usize = 256 << 20;
-/// Where the parts of cell arrays lie.
+/// Maximum size of a variable.
+const MAX_BYTES: usize = 256 << 20;
+/// Group that contains the parts of cell arrays.
 const PARTS: &str = "#refs#";
-/// Most cells of all cell arrays.
-const MOST_CELLS: usize = 1_000_000;
+/// Maximum number of cells in all cell arrays.
+const MAX_CELLS: usize = 1_000_000;
 
-/// What is wrong, in words.
 type Damaged = String;
 
 fn damaged(error: hdf5_reader::error::Error) -> Damaged {
     format!("the file cannot be read ({error}): save it again with save('NAME.mat', '-v7')")
 }
 
-/// The parts of cell arrays by their addresses.
+/// The parts of cell arrays by address.
 type Parts = BTreeMap<u64, Dataset>;
 
-/// The variables of a file.
 pub(super) fn read(bytes: &[u8]) -> Result<Variables, Damaged> {
     let bounds = OpenOptions::default()
-        .with_max_read_bytes(MOST_BYTES)
-        .with_max_chunk_bytes(MOST_BYTES);
+        .with_max_read_bytes(MAX_BYTES)
+        .with_max_chunk_bytes(MAX_BYTES);
     let file = Hdf5File::from_bytes_with_options(bytes, bounds).map_err(damaged)?;
     let root = file.root_group().map_err(damaged)?;
     let (groups, datasets) = root.members().map_err(damaged)?;
     let mut parts = Parts::new();
-    if let Some(own) = groups.iter().find(|group| base(group.name()) == PARTS) {
-        for dataset in own.datasets().map_err(damaged)? {
-            if parts.len() < MOST_CELLS {
+    if let Some(group) = groups.iter().find(|group| base(group.name()) == PARTS) {
+        for dataset in group.datasets().map_err(damaged)? {
+            if parts.len() < MAX_CELLS {
                 parts.insert(dataset.address(), dataset);
             }
         }
@@ -54,12 +52,12 @@ pub(super) fn read(bytes: &[u8]) -> Result<Variables, Damaged> {
     Ok(variables)
 }
 
-/// A name without the groups before it.
+/// A name without its groups.
 fn base(name: &str) -> &str {
     name.rsplit('/').next().unwrap_or(name)
 }
 
-/// A struct; of a struct array, each field has a list of references.
+/// A struct; in a struct array each field has a list of references.
 fn fields(group: &Group, parts: &Parts) -> Result<Value, Damaged> {
     let mut fields = Vec::new();
     for dataset in group.datasets().map_err(damaged)? {
@@ -84,22 +82,22 @@ fn class(dataset: &Dataset) -> Option<String> {
     dataset.attribute("MATLAB_class").ok()?.read_string().ok()
 }
 
-/// The values that a dataset of references refers to.
+/// The values to which a dataset of references refers.
 fn referred(dataset: &Dataset, parts: &Parts) -> Result<Vec<Value>, Damaged> {
     let addresses = dataset.read_native_bytes().map_err(damaged)?;
     let addresses = addresses
         .chunks_exact(8)
         .filter_map(|chunk| chunk.try_into().ok())
         .map(u64::from_le_bytes);
-    let of = |address: u64| match parts.get(&address) {
-        // A cell within a cell is no text, and could refer to itself.
+    let value = |address: u64| match parts.get(&address) {
+        // A cell within a cell is no text, and might refer to itself.
         Some(part) if matches!(part.dtype(), Datatype::Reference { .. }) => {
             Ok(Value::Other("a cell array within a cell array"))
         }
         Some(part) => value(part, parts),
         None => Ok(Value::Other("a struct in a cell array")),
     };
-    addresses.map(of).collect()
+    addresses.map(value).collect()
 }
 
 fn value(dataset: &Dataset, parts: &Parts) -> Result<Value, Damaged> {
@@ -161,7 +159,7 @@ fn value(dataset: &Dataset, parts: &Parts) -> Result<Value, Damaged> {
     })
 }
 
-/// The numbers of a dataset, in the order of MATLAB's columns; none where it has none.
+/// The numbers of a dataset in MATLAB's column order; none for an empty one.
 fn numbers(dataset: &Dataset) -> Result<Option<Vec<f64>>, Damaged> {
     let read = || dataset.read_native_bytes().map_err(damaged);
     fn each<const N: usize>(bytes: &[u8], read: impl Fn([u8; N]) -> f64) -> Option<Vec<f64>> {

@@ -1,8 +1,8 @@
 //! From the bytes of a file to a table of cells.
 //!
 //! # Layout
-//! - `source_file`: the file, and what the map states about it. `any`: a file of any kind, told by its content.
-//! - `text`: text with separators; `encoding`, `separator`: what of it is found out.
+//! - `source_file`: the file, and the map's statements about it. `any`: a file of any format, recognised by its content.
+//! - `text`: text with separators; `encoding`, `separator`: their detection.
 //! - `sheet`: spreadsheets; `archive`: their size before they are unpacked.
 //! - `variable`: the variables of a MATLAB file as a table; `mat5`, `mat73`: its two formats.
 

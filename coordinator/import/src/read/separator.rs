@@ -1,11 +1,11 @@
-//! What stands between the fields of a text, and the fields of its lines.
+//! The separator of a text, and the fields of its lines.
 
 use std::collections::BTreeMap;
 
 use crate::number;
 use crate::table::{Cell, MAX_COLUMNS, Row, too_wide};
 
-/// What stands between fields.
+/// The separator between fields.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Separator {
     Byte(u8),
@@ -13,7 +13,7 @@ pub(super) enum Separator {
     Spaces,
 }
 
-/// Names in a map, the likeliest first where several fit a file as well.
+/// Names in a map; where several fit equally, the likeliest is first.
 const NAMES: [(&str, Separator); 5] = [
     ("tab", Separator::Byte(b'\t')),
     (";", Separator::Byte(b';')),
@@ -21,25 +21,25 @@ const NAMES: [(&str, Separator); 5] = [
     (",", Separator::Byte(b',')),
     ("space", Separator::Spaces),
 ];
-/// Lines that are looked at, and so many bytes of them: the first two lines are looked at whole.
+/// Number of lines and of bytes that are examined; the first two lines are examined as a whole.
 const SAMPLE: usize = 200;
 const SAMPLE_BYTES: usize = 1 << 20;
-/// Fields of a line that are judged to be numbers or none.
+/// Number of fields of a line that are tested for numbers.
 const SAMPLE_FIELDS: usize = 1000;
 
 impl Separator {
     pub(super) fn named(name: &str) -> Result<Self, String> {
-        let found = NAMES
+        let entry = NAMES
             .iter()
-            .find(|(known, _)| *known == name || (*known == "tab" && name == "\t"));
-        let known = NAMES.map(|(name, _)| format!("\"{name}\"")).join(", ");
-        found
+            .find(|(candidate, _)| *candidate == name || (*candidate == "tab" && name == "\t"));
+        let names = NAMES.map(|(name, _)| format!("\"{name}\"")).join(", ");
+        entry
             .map(|(_, separator)| *separator)
-            .ok_or_else(|| format!("unknown separator \"{name}\"; known are {known}"))
+            .ok_or_else(|| format!("unknown separator \"{name}\"; known are {names}"))
     }
 
     /// The separator of a text: the one by which the most lines have as many fields, and the most fields are numbers.
-    pub(super) fn found(text: &str) -> Option<Self> {
+    pub(super) fn detect(text: &str) -> Option<Self> {
         let (mut sample, mut lines) = (String::new(), 0);
         for line in text.lines().filter(|line| !line.trim().is_empty()) {
             if lines == SAMPLE || (lines >= 2 && sample.len() + line.len() > SAMPLE_BYTES) {
@@ -65,14 +65,14 @@ impl Separator {
             }
             rows.push(Row {
                 line,
-                cells: fields.iter().map(|field| Cell::of_text(field)).collect(),
+                cells: fields.iter().map(|field| Cell::from_text(field)).collect(),
             });
             Ok(())
         })?;
         Ok(rows)
     }
 
-    /// Gives every line's number and fields to `take`, one line after the other: a large text is never held twice.
+    /// Passes number and fields of each line to `take`, so that a large text is held only once.
     fn each(
         self,
         text: &str,
@@ -101,7 +101,7 @@ impl Separator {
                 return Ok(());
             }
             let line = number(record.position().map_or(1, csv::Position::line));
-            // Blank lines before a record belong to its position.
+            // Blank lines before a record count as part of it.
             let byte = number(record.position().map_or(0, csv::Position::byte));
             let blank = text
                 .get(byte..)
@@ -117,7 +117,7 @@ impl Separator {
     }
 }
 
-/// How well a separator fits: the share of the lines with the usual number of fields, and the share of numbers among theirs.
+/// The quality of a separator: the share of lines with the usual number of fields, and the share of numbers among their fields.
 fn score(sample: &str, separator: Separator) -> Option<f64> {
     let (mut rows, mut counts) = (Vec::new(), BTreeMap::<usize, usize>::new());
     let judged = separator.each(sample, |_, fields| {
@@ -141,9 +141,9 @@ fn score(sample: &str, separator: Separator) -> Option<f64> {
         .filter(|(fields, _)| **fields > 1)
         .max_by_key(|(fields, lines)| (**lines, **fields))?;
     let (mut cells, mut numbers) = (0, 0);
-    for (_, of_filled, of_numbers) in rows.iter().filter(|(fields, ..)| *fields == usual) {
-        cells += of_filled;
-        numbers += of_numbers;
+    for (_, filled, numeric) in rows.iter().filter(|(fields, ..)| *fields == usual) {
+        cells += filled;
+        numbers += numeric;
     }
     Some(lines as f64 / rows.len() as f64 + numbers as f64 / cells.max(1) as f64)
 }
@@ -168,9 +168,9 @@ mod tests {
                 Separator::Byte(b','),
             ),
         ] {
-            assert_eq!(Separator::found(text), Some(separator), "{text}");
+            assert_eq!(Separator::detect(text), Some(separator), "{text}");
         }
-        assert_eq!(Separator::found("one\ntwo\n"), None);
+        assert_eq!(Separator::detect("one\ntwo\n"), None);
     }
 
     #[test]

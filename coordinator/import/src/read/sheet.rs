@@ -10,10 +10,10 @@ use super::source_file::{Hints, SourceFile};
 use crate::complaint::Complaint;
 use crate::table::{Cell, Form, Row, Table};
 
-/// Most columns that a table may have.
-const MOST_COLUMNS: u32 = 1000;
-/// Most cells of a sheet.
-const MOST_CELLS: usize = 5_000_000;
+/// Maximum number of columns of a table.
+const MAX_COLUMNS: u32 = 1000;
+/// Maximum number of cells of a sheet.
+const MAX_CELLS: usize = 5_000_000;
 
 /// The cells of a sheet by row and column, counted from 0.
 type Cells = BTreeMap<u32, BTreeMap<u32, Cell>>;
@@ -65,7 +65,7 @@ fn empty(source: &SourceFile<'_>) -> Table {
     }
 }
 
-/// The stated sheet; else the only one with cells, or the one with the most where that is asked for.
+/// The stated sheet; otherwise the only one with cells, or on request the one with the most.
 fn choose(
     mut table: Table,
     names: Vec<String>,
@@ -89,8 +89,8 @@ fn choose(
                 .and_then(|number| names.get(number.checked_sub(1)?))
         };
         let Some(name) = names.iter().find(|name| *name == stated).or_else(by_number) else {
-            let known = names.iter().map(String::as_str);
-            return Err(table.refusal(shared::file::unknown_word("sheet", stated, known)));
+            let names = names.iter().map(String::as_str);
+            return Err(table.refusal(shared::file::unknown_word("sheet", stated, names)));
         };
         (name.clone(), cells_of(name)?)
     } else {
@@ -134,22 +134,22 @@ fn rows(cells: Cells) -> Vec<Row> {
     cells.into_iter().map(row).collect()
 }
 
-/// Takes in a cell; an error where the sheet is beyond all tables.
+/// Adds a cell; an error if the sheet is too large.
 fn put(cells: &mut Cells, count: &mut usize, (row, column): (u32, u32), cell: Cell) -> Result<(), String> {
     if cell.is_blank() {
         return Ok(());
     }
     *count += 1;
-    if column >= MOST_COLUMNS || *count > MOST_CELLS {
+    if column >= MAX_COLUMNS || *count > MAX_CELLS {
         return Err(format!(
-            "the sheet has cells beyond column {MOST_COLUMNS} or more than {MOST_CELLS}: copy the table into a sheet of its own"
+            "the sheet has cells beyond column {MAX_COLUMNS} or more than {MAX_CELLS}: copy the table into a sheet of its own"
         ));
     }
     cells.entry(row).or_default().insert(column, cell);
     Ok(())
 }
 
-/// The cells of an .xlsx sheet, one after the other: a single cell far away costs nothing.
+/// The cells of an .xlsx sheet in sequence: a single cell far away costs nothing.
 fn cells_of_xlsx(book: &mut Xlsx<Bytes<'_>>, name: &str) -> Result<Cells, String> {
     let damaged = |e: calamine::XlsxError| format!("the sheet cannot be read: {e}");
     let (mut cells, mut count) = (Cells::new(), 0);
@@ -183,7 +183,7 @@ where
             cell(value),
         )?;
     }
-    // A sheet whose formulas cannot be listed has values all the same.
+    // A sheet whose formulas cannot be listed still has values.
     if let Ok(formulas) = book.worksheet_formula(name) {
         let (row, column) = formulas.start().unwrap_or((0, 0));
         for (r, c, formula) in formulas.used_cells() {
@@ -197,15 +197,15 @@ where
     Ok(cells)
 }
 
-/// A merged cell counts for all that it covers.
+/// A merged cell counts for its whole area.
 fn fill(cells: &mut Cells, merged: Vec<Dimensions>) {
     for area in merged {
         let first = cells.get(&area.start.0).and_then(|row| row.get(&area.start.1));
-        let (Some(first), true) = (first.cloned(), area.len() <= u64::from(MOST_COLUMNS) * 100) else {
+        let (Some(first), true) = (first.cloned(), area.len() <= u64::from(MAX_COLUMNS) * 100) else {
             continue;
         };
         for row in area.start.0..=area.end.0 {
-            for column in area.start.1..=area.end.1.min(MOST_COLUMNS - 1) {
+            for column in area.start.1..=area.end.1.min(MAX_COLUMNS - 1) {
                 cells
                     .entry(row)
                     .or_default()
@@ -222,7 +222,7 @@ fn cell(value: &Data) -> Cell {
         Data::Float(value) => Cell::Number(*value),
         Data::Int(value) => Cell::Number(*value as f64),
         Data::Bool(value) => Cell::Text(value.to_string()),
-        Data::String(text) | Data::DateTimeIso(text) | Data::DurationIso(text) => Cell::of_text(text),
+        Data::String(text) | Data::DateTimeIso(text) | Data::DurationIso(text) => Cell::from_text(text),
         Data::Error(error) => Cell::Text(error.to_string()),
         Data::DateTime(time) if time.is_duration() => Cell::Text(format!("{} d", time.as_f64())),
         Data::DateTime(time) => {

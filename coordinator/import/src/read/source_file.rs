@@ -1,22 +1,22 @@
-//! A file as its user sent it, and what the map states about it as a whole.
+//! A file of a user, and the map's statements about it as a whole.
 
-/// A file as its user sent it.
+/// A file of a user.
 #[derive(Debug, Clone, Copy)]
 pub struct SourceFile<'a> {
-    /// Its name.
+    /// Name of the file.
     pub name: &'a str,
-    /// Its content.
+    /// Content of the file.
     pub bytes: &'a [u8],
-    /// Whether whoever sent it runs this program: a reader of old Excel files takes as much memory as a damaged one asks for.
+    /// Whether the user runs this program. The reader of old Excel files allocates as much memory as a damaged file asks for.
     pub is_own: bool,
 }
 
-/// What the map states about the file as a whole.
+/// The map's statements about the file as a whole.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Hints {
     pub(crate) sheet: Option<String>,
     pub(crate) encoding: Option<String>,
     pub(crate) separator: Option<String>,
-    /// Takes the sheet with the most rows where none is stated, as for a guess.
+    /// Whether the sheet with the most cells is taken if none is stated, for a proposal.
     pub(crate) takes_largest: bool,
 }

@@ -20,7 +20,7 @@ pub(super) fn read(source: &SourceFile<'_>, hints: &Hints) -> Result<Table, Box<
     let stated = hints.separator.as_deref().map(Separator::named).transpose();
     let separator = match stated.map_err(|e| table.complaint(e))? {
         Some(separator) => separator,
-        None => Separator::found(&text).ok_or_else(|| {
+        None => Separator::detect(&text).ok_or_else(|| {
             table.complaint("no line has two fields or more: a table with , ; | tab or spaces between its columns is expected")
         })?,
     };
@@ -28,7 +28,7 @@ pub(super) fn read(source: &SourceFile<'_>, hints: &Hints) -> Result<Table, Box<
         line: Some(line),
         ..table.complaint(message)
     })?;
-    // Excel writes the separator into the first line; it is no row.
+    // Excel writes the separator into the first line, which is no row.
     let is_statement = |row: &Row| {
         row.line == 1 && matches!(row.cell(0), Cell::Text(text) if text.to_lowercase().starts_with("sep="))
     };

@@ -4,10 +4,10 @@ use super::source_file::Hints;
 use crate::complaint::Complaint;
 use crate::table::{Cell, Form, Row, Table};
 
-/// A value of MATLAB's.
+/// A MATLAB value.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Value {
-    /// A matrix, column after column.
+    /// A matrix in column order.
     Numbers {
         rows: usize,
         columns: usize,
@@ -15,19 +15,17 @@ pub(super) enum Value {
     },
     /// A list of texts: a char matrix, or a cell array of texts.
     Texts(Vec<String>),
-    /// A struct: values by the names of its fields; several elements of a struct array in one list.
+    /// A struct: values by the names of its fields; the elements of a struct array are one list.
     Fields(Vec<(String, Vec<Value>)>),
-    /// What has no place in a table, in words.
+    /// A value that does not fit into a table, in words.
     Other(&'static str),
 }
 
-/// Variables by name.
 pub(super) type Variables = Vec<(String, Value)>;
 
 /// A column with its title.
 type Column = (String, Vec<Cell>);
 
-/// The columns of a value.
 fn columns(name: &str, value: &Value) -> Result<Vec<Column>, String> {
     let number = |value: &f64| {
         if value.is_nan() {
@@ -50,7 +48,7 @@ fn columns(name: &str, value: &Value) -> Result<Vec<Column>, String> {
         }
         Value::Texts(texts) => Ok(vec![(
             name.to_owned(),
-            texts.iter().map(|text| Cell::of_text(text)).collect(),
+            texts.iter().map(|text| Cell::from_text(text)).collect(),
         )]),
         Value::Fields(_) => Err("a struct within a struct".into()),
         Value::Other(words) => Err((*words).to_owned()),
@@ -63,7 +61,7 @@ fn columns_of_elements(field: &str, values: &[Value]) -> Result<Column, String> 
         Value::Numbers { values, .. } if values.is_empty() => Ok(Cell::Blank),
         Value::Numbers { values, .. } if values.len() == 1 => Ok(Cell::Number(values[0])),
         Value::Texts(texts) if texts.len() <= 1 => {
-            Ok(texts.first().map_or(Cell::Blank, |text| Cell::of_text(text)))
+            Ok(texts.first().map_or(Cell::Blank, |text| Cell::from_text(text)))
         }
         Value::Other(words) => Err((*words).to_owned()),
         _ => Err("a list in an element of a struct array".to_owned()),
@@ -74,7 +72,7 @@ fn columns_of_elements(field: &str, values: &[Value]) -> Result<Column, String> 
     ))
 }
 
-/// Columns that make a table, by the name of the struct that they stand in; `""` outside of structs.
+/// Columns of a table, by the name of the struct that contains them; `""` outside of structs.
 struct Group {
     name: String,
     columns: Vec<Column>,
@@ -90,8 +88,8 @@ impl Group {
         }
     }
 
-    fn take(&mut self, name: &str, found: Result<Vec<Column>, String>) {
-        match found {
+    fn take(&mut self, name: &str, columns: Result<Vec<Column>, String>) {
+        match columns {
             Ok(columns) => self.columns.extend(columns),
             Err(words) => self.left_out.push(format!("{name} ({words})")),
         }
@@ -128,7 +126,46 @@ fn groups(variables: &Variables) -> Vec<Group> {
     all
 }
 
-/// The table of variables as long as each other; a scalar counts for every row.
+/// The index of the group that is read.
+fn chosen(groups: &[Group], table: &Table, hints: &Hints) -> Result<usize, Box<Complaint>> {
+    if let Some(stated) = &hints.sheet {
+        let position = groups.iter().position(|group| group.name == *stated);
+        return position.ok_or_else(|| {
+            let names = groups.iter().map(|group| group.name.as_str());
+            table.refusal(shared::file::unknown_word("struct", stated, names))
+        });
+    }
+    let long = groups.iter().filter(|group| group.length() > 1).count();
+    if long > 1 && !hints.takes_largest {
+        let names: Vec<String> = table.sheets.iter().map(|name| format!("\"{name}\"")).collect();
+        let message = format!(
+            "several structs have columns (\"\" is outside of all): state `sheet = ` in the map, one of {}",
+            names.join(", ")
+        );
+        return Err(table.refusal(message));
+    }
+    let largest = (0..groups.len())
+        .rev()
+        .max_by_key(|&k| (groups[k].length().min(2), groups[k].columns.len()));
+    largest.ok_or_else(|| table.refusal("the file has no variable with numbers or texts: save the columns as vectors, or a struct of vectors (a MATLAB table as table2struct(t, 'ToScalar', true))"))
+}
+
+/// A row of the table; a scalar is repeated.
+fn row(columns: &[Column], index: usize) -> Row {
+    let cell = |(_, cells): &Column| {
+        cells
+            .get(index)
+            .or(cells.first().filter(|_| cells.len() == 1))
+            .cloned()
+            .unwrap_or(Cell::Blank)
+    };
+    Row {
+        line: index + 1,
+        cells: columns.iter().map(cell).collect(),
+    }
+}
+
+/// The table of variables of equal length; a scalar counts for every row.
 pub(super) fn table(
     file: &str,
     variables: Result<Variables, String>,
@@ -144,33 +181,9 @@ pub(super) fn table(
     };
     let mut groups = groups(&variables.map_err(|e| table.complaint(e))?);
     table.sheets = groups.iter().map(|group| group.name.clone()).collect();
-    let chosen = match &hints.sheet {
-        Some(stated) => groups
-            .iter()
-            .position(|group| group.name == *stated)
-            .ok_or_else(|| {
-                let known = groups.iter().map(|group| group.name.as_str());
-                table.complaint(shared::file::unknown_word("struct", stated, known))
-            })?,
-        None => {
-            let long = groups.iter().filter(|group| group.length() > 1).count();
-            if long > 1 && !hints.takes_largest {
-                let names: Vec<String> = table.sheets.iter().map(|name| format!("\"{name}\"")).collect();
-                let message = format!(
-                    "several structs have columns (\"\" is outside of all): state `sheet = ` in the map, one of {}",
-                    names.join(", ")
-                );
-                return Err(table.refusal(message));
-            }
-            let largest = (0..groups.len())
-                .rev()
-                .max_by_key(|&k| (groups[k].length().min(2), groups[k].columns.len()));
-            largest.ok_or_else(|| table.complaint("the file has no variable with numbers or texts: save the columns as vectors, or a struct of vectors (a MATLAB table as table2struct(t, 'ToScalar', true))"))?
-        }
-    };
-    let mut group = groups.swap_remove(chosen);
+    let mut group = groups.swap_remove(chosen(&groups, &table, hints)?);
     table.sheet = (!group.name.is_empty()).then(|| group.name.clone());
-    // The length that most columns have, the longer of two; scalars do not vote.
+    // The length of most columns, the longer of two; scalars are not counted.
     let lengths = |length: usize| {
         group
             .columns
@@ -185,12 +198,12 @@ pub(super) fn table(
         .filter(|&n| n > 1)
         .max_by_key(|&n| (lengths(n), n))
         .unwrap_or(1);
-    let (fitting, others): (Vec<Column>, Vec<Column>) = group
+    let (fitting, misfits): (Vec<Column>, Vec<Column>) = group
         .columns
         .into_iter()
         .partition(|(_, cells)| cells.len() == rows || cells.len() == 1);
     group.left_out.extend(
-        others
+        misfits
             .iter()
             .map(|(name, cells)| format!("{name} ({} values where the others have {rows})", cells.len())),
     );
@@ -204,18 +217,6 @@ pub(super) fn table(
         line: 0,
         cells: fitting.iter().map(|(name, _)| Cell::Text(name.clone())).collect(),
     });
-    for row in 0..rows {
-        let cell = |(_, cells): &Column| {
-            cells
-                .get(row)
-                .or(cells.first().filter(|_| cells.len() == 1))
-                .cloned()
-                .unwrap_or(Cell::Blank)
-        };
-        table.rows.push(Row {
-            line: row + 1,
-            cells: fitting.iter().map(cell).collect(),
-        });
-    }
+    table.rows.extend((0..rows).map(|index| row(&fitting, index)));
     Ok(table)
 }

@@ -8,17 +8,16 @@ use statistics::prior::Prior;
 /// Directions whose posterior variance is above this share of the prior's are left out: too little information.
 const INFORMED: f64 = 0.75;
 
-/// How far the posterior lies out in the prior.
+/// The distance of the posterior from the prior.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Conflict {
-    /// For each parameter the probability of a posterior so far out, were the prior right; `None` where the data say too
-    /// little.
+    /// For each parameter the probability of a posterior this far out, if the prior is right; `None` where the data say too little.
     pub parameters: Vec<Option<f64>>,
     /// Squared distance of the posterior's mean over all directions that the data inform.
     pub statistic: f64,
     /// Number of these directions.
     pub degrees_of_freedom: usize,
-    /// Probability of so large a distance; `None` where no direction is informed.
+    /// Probability of a distance this large; `None` where no direction is informed.
     pub p: Option<f64>,
 }
 
@@ -34,9 +33,8 @@ pub struct Conflict {
 /// - `draws`: equally weighted draws of the posterior, in the order of the prior.
 ///
 /// # Validity
-/// Exact where predictions are linear in the scores and errors normal with known sds; D is then the check of Evans and
-/// Moshonov on the minimal sufficient statistic. Directions whose variance is above 0.75 of the prior's are left out:
-/// 1 - l would be sampling error.
+/// Exact where predictions are linear in the scores and errors normal with known sds; D is then the check of Evans and Moshonov on the
+/// minimal sufficient statistic. Directions whose variance is above 0.75 of the prior's are left out: 1 - l would be sampling error.
 ///
 /// # Source
 /// Evans & Moshonov 2006, *Checking for prior-data conflict*, Bayesian Analysis 1:893, doi:10.1214/06-BA129, section 3. Checked by

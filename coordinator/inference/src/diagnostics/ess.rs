@@ -19,8 +19,7 @@ pub fn weight_cov(weights: &[f64]) -> f64 {
     }
 }
 
-/// Spearman's rank correlation of two equally long slices, ties at their mean rank; `None` if a slice is
-/// constant or the lengths differ.
+/// Spearman's rank correlation of two equally long slices, ties at their mean rank; `None` if a slice is constant or the lengths differ.
 #[must_use]
 pub fn rank_correlation(first: &[f64], second: &[f64]) -> Option<f64> {
     if first.len() != second.len() {

@@ -9,19 +9,18 @@ use statistics::likelihood::Datum;
 /// The prior predictive spread of a channel against its errors.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ChannelSignal {
-    /// Data of the channel.
+    /// Number of data of the channel.
     pub data: usize,
     /// Root mean square over the data of the prior predictive standard deviation [unit of the channel].
     pub prior_sd: f64,
     /// Root mean square of the errors' standard deviations [unit of the channel].
     pub error_sd: f64,
-    /// Root mean square of the one over the other; below 1 a datum holds less information than the prior.
+    /// Root mean square of the ratio of both; below 1 a datum holds less information than the prior.
     pub ratio: f64,
 }
 
 impl ChannelSignal {
-    /// Whether all data of the channel together, as independent measurements of one quantity, would hold as much information
-    /// as the prior.
+    /// Whether all data of the channel together, as independent measurements of one quantity, would hold as much information as the prior.
     #[must_use]
     pub fn is_heard_together(&self) -> bool {
         self.ratio * (self.data as f64).sqrt() >= 1.0
@@ -31,7 +30,7 @@ impl ChannelSignal {
 /// The signal of every channel that has data; empty with fewer than two draws.
 ///
 /// # Arguments
-/// - `error_variances`: of each datum, as [`Likelihood::error_variances`](statistics::Likelihood::error_variances) gives them.
+/// - `error_variances`: the variance of each datum, as [`Likelihood::error_variances`](statistics::Likelihood::error_variances) gives it.
 /// - `prior_draws`: predictions at draws from the prior that the model accepted.
 ///
 /// Checked by `diagnostics::the_signal_of_a_linear_model_is_its_slope`.

@@ -1,17 +1,17 @@
-//! Which of several quantities follows from others.
+//! Linear dependence among several quantities.
 
 use nalgebra::{Cholesky, DMatrix, DVector};
 
-/// Share of its variance below which what others leave of a quantity is rounding.
+/// A remaining share of a quantity's variance below this is rounding.
 const REMAINING: f64 = 1e-12;
 /// Weight, in standard deviations, from which a quantity counts.
 const WEIGHT: f64 = 1e-6;
 
-/// The first quantity that is a linear function of those before it, with those that it depends on.
+/// The first quantity that is a linear function of earlier ones, with the quantities that it depends on.
 ///
 /// # Equation
-/// Quantity k is regressed on those before it: the weights are `w = C^-1 c`, with C their correlations among each other and c those with
-/// k; what they leave of its variance is `1 - w'c`, at least 1e-12 where k is not determined. A dependency counts from `|w| = 1e-6`.
+/// Quantity k is regressed on those before it: the weights are `w = C^-1 c`, with C their correlations among each other and c those with k;
+/// the unexplained share of its variance is `1 - w'c`, at least 1e-12 where k is not determined. A dependency counts from `|w| = 1e-6`.
 ///
 /// # Arguments
 /// - `correlations`: a row for each quantity, symmetric, 1 on the diagonal.
@@ -23,12 +23,12 @@ pub fn linear_dependence(correlations: &[Vec<f64>]) -> Option<(usize, Vec<usize>
     (1..correlations.len()).find_map(|last| {
         let before = DMatrix::from_fn(last, last, |i, j| correlations[i][j]);
         let with = DVector::from_fn(last, |i, _| correlations[i][last]);
-        // Of those before, none follows from the others, or it would have been found.
+        // The earlier quantities are independent, or a dependence would have been found before.
         let weights = Cholesky::new(before)?.solve(&with);
         let is_determined = 1.0 - weights.dot(&with) < REMAINING;
         is_determined.then(|| {
-            let others = (0..last).filter(|&i| weights[i].abs() > WEIGHT);
-            (last, others.collect())
+            let terms = (0..last).filter(|&i| weights[i].abs() > WEIGHT);
+            (last, terms.collect())
         })
     })
 }
@@ -39,9 +39,9 @@ mod tests {
 
     #[test]
     fn a_sum_follows_from_its_terms_alone() {
-        // Of three independent quantities x, y, z and (x + z) / sqrt(2).
+        // Correlations of three independent quantities x, y, z and (x + z) / sqrt(2).
         let half = 0.5_f64.sqrt();
-        let row = |own: [f64; 4]| own.to_vec();
+        let row = |values: [f64; 4]| values.to_vec();
         let mut correlations = vec![
             row([1.0, 0.0, 0.0, half]),
             row([0.0, 1.0, 0.0, 0.0]),

@@ -1,6 +1,6 @@
 //! Summaries and tests of draws and predictions: pure functions on slices.
 //!
-//! What is undefined, as the mean of an empty slice, is `None`.
+//! An undefined value, such as the mean of an empty slice, is `None`.
 //!
 //! # Layout
 //! - `moments`, `quantile`, `ess`: draws of one parameter.
@@ -9,9 +9,9 @@
 //! - `density`: kernel densities, and highest-density regions.
 //! - `predicted_draw`: draws with their predictions. `information`: the prior signal of a channel. `residual`: studentised
 //!   residuals and their chi-square. `trend`: trends of residuals with a regressor.
-//! - `linear_dependence`: which of several quantities follows from others.
+//! - `linear_dependence`: a quantity that is a linear function of others.
 //! - `region`: where in the prior failures concentrate.
-//! - `subset_shift`: how far some of the data would move parameters, were they fitted alone.
+//! - `subset_shift`: the shift of parameters if some of the data were fitted alone.
 //! - `tail`: tail probabilities of test statistics.
 
 mod conflict;

@@ -3,9 +3,9 @@
 /// A parameter vector and the predicted values that the likelihood takes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PredictedDraw {
-    /// Parameters, inferred standard deviations among them.
+    /// Parameters, including inferred standard deviations.
     pub theta: Vec<f64>,
-    /// One for each datum, then the sensitivities, as many as [`Likelihood::values`](statistics::Likelihood::values) says.
+    /// A value for each datum, then the sensitivities; [`Likelihood::values`](statistics::Likelihood::values) is their number.
     pub values: Vec<f64>,
 }
 
@@ -14,8 +14,8 @@ impl PredictedDraw {
     #[must_use]
     pub fn mean(draws: &[PredictedDraw]) -> Option<PredictedDraw> {
         let first = draws.first().filter(|_| draws.len() > 1)?;
-        let mean = |count: usize, of: fn(&PredictedDraw) -> &[f64]| {
-            let average = |i: usize| draws.iter().map(|d| of(d)[i]).sum::<f64>() / draws.len() as f64;
+        let mean = |count: usize, part: fn(&PredictedDraw) -> &[f64]| {
+            let average = |i: usize| draws.iter().map(|d| part(d)[i]).sum::<f64>() / draws.len() as f64;
             (0..count).map(average).collect()
         };
         Some(PredictedDraw {

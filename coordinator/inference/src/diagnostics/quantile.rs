@@ -23,7 +23,7 @@ pub fn summary(values: &[f64]) -> Option<DrawSummary> {
     let (mean, sd) = mean_and_sd(values)?;
     let mut sorted = values.to_vec();
     sorted.sort_by(f64::total_cmp);
-    let [q05, q50, q95] = [0.05, 0.5, 0.95].map(|p| of_sorted(&sorted, p));
+    let [q05, q50, q95] = [0.05, 0.5, 0.95].map(|p| quantile_of_sorted(&sorted, p));
     Some(DrawSummary {
         mean,
         sd,
@@ -43,11 +43,11 @@ pub fn quantile(values: &[f64], p: f64) -> Option<f64> {
     }
     let mut sorted = values.to_vec();
     sorted.sort_by(f64::total_cmp);
-    Some(of_sorted(&sorted, p))
+    Some(quantile_of_sorted(&sorted, p))
 }
 
-/// For a non-empty ascending slice and p in [0, 1].
-fn of_sorted(sorted: &[f64], p: f64) -> f64 {
+/// The quantile of a non-empty ascending slice, for p in [0, 1].
+fn quantile_of_sorted(sorted: &[f64], p: f64) -> f64 {
     let position = (sorted.len() - 1) as f64 * p;
     let below = libm::floor(position) as usize;
     let above = (below + 1).min(sorted.len() - 1);

@@ -21,11 +21,11 @@ pub struct Side {
 pub struct Region {
     /// One side, or two that must both hold.
     pub sides: Vec<Side>,
-    /// Draws in the region.
+    /// Number of draws in the region.
     pub drawn: usize,
-    /// Failures among them.
+    /// Number of failures among them.
     pub failed: usize,
-    /// Probability of so many failures there by chance, times the number of regions tested; at most 1.
+    /// Probability of this many failures by chance, times the number of regions tested; at most 1.
     pub p: f64,
 }
 
@@ -38,7 +38,7 @@ pub fn bin(probability: f64) -> usize {
 /// The region with the least probability by chance, among the ends of every parameter and of every pair; `None` where all
 /// draws failed or none did.
 ///
-/// Of equal regions the first; one parameter goes before two.
+/// Among equal regions the first one is taken; one parameter goes before two.
 ///
 /// # Equation
 /// Fisher's exact test: with N draws, R failures and K draws in a region, the failures there are hypergeometric if
@@ -75,7 +75,7 @@ pub fn concentration(draws: &[(Vec<usize>, bool)]) -> Option<Region> {
             failed += usize::from(*failure);
         }
         let chance = ln_hypergeometric_tail(draws.len(), failures, drawn, failed);
-        if best.as_ref().is_none_or(|(least, _)| chance < *least) {
+        if best.as_ref().is_none_or(|(lowest, _)| chance < *lowest) {
             let p = libm::exp((chance + tried).min(0.0));
             let region = Region {
                 sides,

@@ -13,22 +13,22 @@ pub struct Residual {
     pub error_sd: f64,
     /// Leverage h, the share of the error's variance that the fit absorbs; 1 or more where the linear identity fails.
     pub leverage: f64,
-    /// The residual over its own standard deviation; `None` where h is 1 or more, or no other data show its noise.
+    /// The residual over its standard deviation; `None` where h is 1 or more, or no other data show its noise.
     pub studentised: Option<f64>,
-    /// Two-sided probability of one so large.
+    /// Two-sided probability of a residual this large.
     pub p: Option<f64>,
 }
 
 /// The sum of squares of the whitened residuals.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ResidualChiSquare {
-    /// The sum.
+    /// The sum of squares.
     pub value: f64,
-    /// Data that count: those whose noise is known.
+    /// Number of data whose noise is known; only these count.
     pub data: usize,
     /// The effective number of parameters.
     pub effective_parameters: f64,
-    /// Probability of so large a sum; `None` where no degree of freedom is left.
+    /// Probability of a sum this large; `None` where no degree of freedom is left.
     pub p: Option<f64>,
 }
 
@@ -43,31 +43,27 @@ impl ResidualChiSquare {
 /// Every residual of the posterior's mean prediction, studentised for its leverage.
 ///
 /// # Equation
-/// `t_i = r_i / sqrt(R_ii - V_i)`, R the covariance of the errors, `V_i` the posterior variance of the prediction;
-/// for independent errors `r_i / (sigma_i sqrt(1 - h_i))` with `h_i = V_i / sigma_i^2`. A noise sd that is
-/// inferred is re-estimated from the other data that share it: `s^2 = mean_j r_j^2 / (1 - h_j)`, j not i, with
-/// `sum (1 - h) - 1` degrees of freedom (external studentisation).
+/// `t_i = r_i / sqrt(R_ii - V_i)`, R the covariance of the errors, `V_i` the posterior variance of the prediction; for independent errors
+/// `r_i / (sigma_i sqrt(1 - h_i))` with `h_i = V_i / sigma_i^2`. A noise sd that is inferred is re-estimated from the other data that share
+/// it: `s^2 = mean_j r_j^2 / (1 - h_j)`, j not i, with `sum (1 - h) - 1` degrees of freedom (external studentisation).
 ///
 /// # Arguments
-/// - `draws`: of the posterior, equally weighted, with their predictions; with fewer than two the result is empty.
+/// - `draws`: equally weighted draws of the posterior with their predictions; with fewer than two the result is empty.
 ///
 /// # Returns
-/// One for each datum, in their order. The probability is by the likelihood's law, by Student's t where the sd is
-/// estimated.
+/// A residual for each datum, in their order. The probability follows the likelihood's law, or Student's t where the sd is estimated.
 ///
 /// # Errors
-/// Those of [`Likelihood::log_likelihood`].
+/// The errors of [`Likelihood::log_likelihood`].
 ///
 /// # Validity
-/// `Cov(r) = R - X S X'` holds exactly for predictions that are linear in normal parameters, with R known; R is taken at
-/// the posterior mean. Where predictions bend over the posterior, or R is inferred among errors in common, it is an
-/// approximation. Where the sd is estimated, false alarms are a little rarer than stated: 4.2 % at 5 %, with twelve data and two
-/// parameters.
+/// `Cov(r) = R - X S X'` holds exactly for predictions that are linear in normal parameters, with R known; R is taken at the posterior
+/// mean. Where predictions bend over the posterior, or R is inferred among errors in common, it is an approximation. Where the sd is
+/// estimated, false alarms are a little rarer than stated: 4.2 % at 5 %, with twelve data and two parameters.
 ///
 /// # Source
-/// Cook & Weisberg 1982, *Residuals and Influence in Regression*, section 2.2, with the posterior covariance S in place of
-/// `(X'X)^-1`. Checked by `diagnostics::leverage_of_a_line_is_its_closed_form` and
-/// `diagnostics::studentised_residuals_keep_their_level`.
+/// Cook & Weisberg 1982, *Residuals and Influence in Regression*, section 2.2, with the posterior covariance S in place of `(X'X)^-1`.
+/// Checked by `diagnostics::leverage_of_a_line_is_its_closed_form` and `diagnostics::studentised_residuals_keep_their_level`.
 pub fn residuals(likelihood: &Likelihood, draws: &[PredictedDraw]) -> Result<Vec<Residual>, LikelihoodError> {
     let Some(mean) = PredictedDraw::mean(draws) else {
         return Ok(Vec::new());
@@ -148,7 +144,7 @@ fn against_peers(row: Residual, peers: &[Residual]) -> Option<(f64, f64)> {
 /// An unknown discrepancy enters with each of its values, weighted by its posterior probability.
 ///
 /// # Errors
-/// Those of [`Likelihood::log_likelihood`].
+/// The errors of [`Likelihood::log_likelihood`].
 ///
 /// # Validity
 /// The mean is exact for linear predictions and normal errors; the tail is exact where H is a projection (a weak prior),
@@ -163,9 +159,9 @@ pub fn chi_square(
     draws: &[PredictedDraw],
     keep: impl Fn(usize) -> bool,
 ) -> Result<Option<ResidualChiSquare>, LikelihoodError> {
-    let known = |i: usize| matches!(likelihood.data()[i].sd, ErrorSd::Known(_));
+    let is_known = |i: usize| matches!(likelihood.data()[i].sd, ErrorSd::Known(_));
     let kept: Vec<usize> = (0..likelihood.data().len())
-        .filter(|&i| known(i) && keep(i))
+        .filter(|&i| is_known(i) && keep(i))
         .collect();
     let Some(mean) = PredictedDraw::mean(draws).filter(|_| likelihood.law() == ErrorLaw::Gaussian) else {
         return Ok(None);
@@ -174,8 +170,8 @@ pub fn chi_square(
         return Ok(None);
     }
     let (part, places) = likelihood.subset(&kept)?;
-    let of = |values: &[f64]| -> Vec<f64> { places.iter().map(|&place| values[place]).collect() };
-    let centre = of(&mean.values);
+    let selected = |values: &[f64]| -> Vec<f64> { places.iter().map(|&place| values[place]).collect() };
+    let centre = selected(&mean.values);
     let whitening = part.whitening(&centre, &mean.theta)?;
     let squares = |difference: &[f64]| {
         let whitened = whitening.apply(difference);
@@ -190,7 +186,11 @@ pub fn chi_square(
     let spread: f64 = draws
         .iter()
         .map(|draw| {
-            let difference: Vec<f64> = of(&draw.values).iter().zip(&centre).map(|(v, m)| v - m).collect();
+            let difference: Vec<f64> = selected(&draw.values)
+                .iter()
+                .zip(&centre)
+                .map(|(v, m)| v - m)
+                .collect();
             squares(&difference)
         })
         .sum();

@@ -21,8 +21,7 @@ pub struct Direction {
 ///   shares of the prior's: 1 where the data say nothing.
 ///
 /// # Validity
-/// Where two variances are nearly equal, their directions are arbitrary within the plane that they span.
-/// Checked by `spectrum::tests`.
+/// Where two variances are nearly equal, their directions are arbitrary within the plane that they span. Checked by `spectrum::tests`.
 #[must_use]
 pub fn principal_directions(draws: &[Vec<f64>]) -> Vec<Direction> {
     let Some((_, covariance)) = mean_and_covariance(draws) else {

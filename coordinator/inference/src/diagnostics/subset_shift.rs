@@ -1,34 +1,34 @@
-//! How far some of the data would move parameters, were these data fitted alone.
+//! The shift of parameters if some of the data were fitted alone.
 
 use nalgebra::{Cholesky, DMatrix, DVector};
 
 use statistics::likelihood::ErrorLaw;
 
-/// What some of the data say of parameters that all of the data have determined.
+/// The information of some of the data on parameters that all data have determined.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SubsetShift {
-    /// By parameter, how far these data would move it [its unit].
+    /// Shift of each parameter by these data [its unit].
     pub shift: Vec<f64>,
     /// Standard deviation of each shift.
     pub sd: Vec<f64>,
-    /// By parameter, the probability of so large a shift in either direction where all data agree.
+    /// For each parameter, the two-sided probability of a shift this large if all data agree.
     pub p: Vec<f64>,
     /// Root mean square of the residuals.
     pub rms_before: f64,
-    /// The same after the shift.
+    /// Root mean square of the residuals after the shift.
     pub rms_after: f64,
 }
 
 /// The least-squares step that residuals ask for, with a standard deviation that holds where the errors of a group are common.
 ///
 /// # Equation
-/// With J the derivatives and r the residuals, `d = (J'J)^-1 J'r`, `e = r − J d`, and over the G groups g of k parameters
-/// `Cov(d) = G / (G − k) (J'J)^-1 (sum_g J_g' e_g e_g' J_g) (J'J)^-1`; `d_i / sd_i` is compared with Student's t of G − k degrees.
-/// Where all data agree, d has a smaller variance than that: the parameters have been fitted to these data too. So p is too large
-/// rather than too small.
+/// With J the derivatives and r the residuals, `d = (J'J)^-1 J'r`, `e = r − J d`, and over the G groups g of k parameters `Cov(d) = G / (G
+/// − k) (J'J)^-1 (sum_g J_g' e_g e_g' J_g) (J'J)^-1`; `d_i / sd_i` is compared with Student's t of G − k degrees. If all data agree, d has
+/// a smaller variance than that, because the parameters have been fitted to these data too. So p is too large rather than too small.
 ///
 /// # Arguments
-/// - `derivatives`: of each prediction by each parameter. `residuals`: measured minus predicted. `groups`: the group of each.
+/// - `derivatives`: the derivatives of each prediction by each parameter. `residuals`: measured minus predicted. `groups`: the
+///   group of each datum.
 ///
 /// # Returns
 /// `None` with fewer than k + 3 groups, or where the derivatives do not determine the parameters.
@@ -67,7 +67,7 @@ pub fn subset_shift(derivatives: &[Vec<f64>], residuals: &[f64], groups: &[usize
     };
     let sds: Vec<f64> = (0..k).map(|j| covariance[(j, j)].sqrt()).collect();
     let rms = |values: &DVector<f64>| (values.norm_squared() / n as f64).sqrt();
-    let found = SubsetShift {
+    let shift = SubsetShift {
         shift: (0..k).map(|j| shift[j] / norms[j]).collect(),
         sd: (0..k).map(|j| sds[j] / norms[j]).collect(),
         p: (0..k)
@@ -76,23 +76,23 @@ pub fn subset_shift(derivatives: &[Vec<f64>], residuals: &[f64], groups: &[usize
         rms_before: rms(&before),
         rms_after: rms(&after),
     };
-    found.p.iter().all(|p| p.is_finite()).then_some(found)
+    shift.p.iter().all(|p| p.is_finite()).then_some(shift)
 }
 
 /// The derivatives of predictions by parameters, from draws: the least-squares plane through them.
 ///
 /// # Arguments
-/// - `parameters`: of each draw. `predicted`: the predictions of each.
+/// - `parameters`: the parameters of each draw. `predicted`: its predictions.
 ///
 /// # Returns
-/// By prediction its derivative by each parameter; `None` with fewer draws than parameters + 2, or where these lie in a plane.
+/// For each prediction its derivative by each parameter; `None` with fewer draws than parameters + 2, or where these lie in a plane.
 #[must_use]
 pub fn derivatives_from_draws(parameters: &[Vec<f64>], predicted: &[Vec<f64>]) -> Option<Vec<Vec<f64>>> {
     let (draws, k) = (parameters.len(), parameters.first()?.len());
     if draws < k + 2 || predicted.len() != draws {
         return None;
     }
-    let mean = |of: &dyn Fn(usize) -> f64| (0..draws).map(of).sum::<f64>() / draws as f64;
+    let mean = |value: &dyn Fn(usize) -> f64| (0..draws).map(value).sum::<f64>() / draws as f64;
     let means: Vec<f64> = (0..k).map(|j| mean(&|d| parameters[d][j])).collect();
     let sds: Vec<f64> = (0..k)
         .map(|j| mean(&|d| (parameters[d][j] - means[j]).powi(2)).sqrt())
@@ -120,7 +120,7 @@ mod tests {
         stream.normal_pair().0
     }
 
-    /// Twelve groups of five readings of a line with a shift of each group, measured less predicted by a line that is off by `off`.
+    /// Readings of twelve groups of five on a line that is off by `off`, with a shift of each group, less the prediction.
     fn shifted(off: [f64; 2], seed: u64) -> Option<SubsetShift> {
         let mut stream = Stream::new(seed, 0, 0, 0);
         let (mut derivatives, mut residuals, mut groups) = (Vec::new(), Vec::new(), Vec::new());
@@ -138,13 +138,13 @@ mod tests {
 
     #[test]
     fn a_shift_is_found_with_its_size_and_none_where_the_data_agree() {
-        let found = shifted([0.5, 0.0], 1).unwrap();
+        let shift = shifted([0.5, 0.0], 1).unwrap();
         assert!(
-            (found.shift[0] - 0.5).abs() < 3.0 * found.sd[0] && found.p[0] < 1e-4,
-            "{found:?}"
+            (shift.shift[0] - 0.5).abs() < 3.0 * shift.sd[0] && shift.p[0] < 1e-4,
+            "{shift:?}"
         );
-        assert!(found.rms_after < 0.3 * found.rms_before);
-        // Of 400 experiments in which nothing is wrong, at most a few have a probability below 0.01 in either parameter.
+        assert!(shift.rms_after < 0.3 * shift.rms_before);
+        // In 400 experiments without an error, at most a few have a probability below 0.01 in either parameter.
         let alarms = (0..400).filter(|&seed| {
             let p = shifted([0.0, 0.0], 10 + seed).unwrap().p;
             p.iter().any(|p| *p < 0.005)
@@ -176,8 +176,8 @@ mod tests {
             .iter()
             .map(|p| vec![3.0 + 2e-5 * p[0] - p[1], 4.0 * p[1]])
             .collect();
-        let found = derivatives_from_draws(&parameters, &predicted).unwrap();
-        for (row, expected) in found.iter().zip([[2e-5, -1.0], [0.0, 4.0]]) {
+        let shift = derivatives_from_draws(&parameters, &predicted).unwrap();
+        for (row, expected) in shift.iter().zip([[2e-5, -1.0], [0.0, 4.0]]) {
             assert!(
                 (row[0] - expected[0]).abs() < 1e-12 && (row[1] - expected[1]).abs() < 1e-9,
                 "{row:?}"

@@ -1,6 +1,6 @@
 //! Tail probabilities of test statistics.
 
-/// Terms after which the series and the fraction have settled for any degrees of freedom below 1e6.
+/// Number of terms after which the series and the fraction have converged for any degrees of freedom below 1e6.
 const TERMS: u32 = 10_000;
 
 /// P(chi-square with these degrees of freedom >= `x`); the degrees of freedom need not be whole. 1 for `x` <= 0.
@@ -65,15 +65,15 @@ fn upper_fraction(a: f64, x: f64) -> f64 {
     fraction
 }
 
-/// ln P(X >= `hits`), X the marked ones among `drawn` of `all`, of which `marked` are marked: the hypergeometric tail.
+/// `ln P(X >= hits)`, where X is the number of marked ones among `drawn` of `all`, of which `marked` are marked: the hypergeometric tail.
 ///
 /// # Source
 /// Fisher's exact test, one-sided. Checked by `tail::tests`.
 pub(super) fn ln_hypergeometric_tail(all: usize, marked: usize, drawn: usize, hits: usize) -> f64 {
     let ln_factorial = |n: usize| libm::lgamma(n as f64 + 1.0);
     let ln_choose = |n: usize, k: usize| ln_factorial(n) - ln_factorial(k) - ln_factorial(n - k);
-    let least = (marked + drawn).saturating_sub(all);
-    if hits <= least {
+    let lowest = (marked + drawn).saturating_sub(all);
+    if hits <= lowest {
         return 0.0;
     }
     let terms: Vec<f64> = (hits..=marked.min(drawn))
@@ -104,12 +104,12 @@ mod tests {
             let tail = chi_square_tail(x, nu).unwrap();
             assert!((tail / p - 1.0).abs() < 1e-4, "{nu} {x}: {tail}");
         }
-        // Of two degrees of freedom exp(-x/2), far out as well.
+        // With two degrees of freedom the tail is exp(-x/2), far out as well.
         for x in [0.1, 1.0, 7.0, 300.0] {
             let tail = chi_square_tail(x, 2.0).unwrap();
             assert!((tail / libm::exp(-0.5 * x) - 1.0).abs() < 1e-12, "{x}");
         }
-        // Q(a + 1, x) = Q(a, x) + x^a exp(-x) / Gamma(a + 1), of degrees of freedom that are not whole.
+        // Q(a + 1, x) = Q(a, x) + x^a exp(-x) / Gamma(a + 1), here with degrees of freedom that are not whole.
         let (a, x) = (1.3, 2.1);
         let step = libm::exp(a * libm::log(x) - x - libm::lgamma(a + 1.0));
         let [low, high] = [a, a + 1.0].map(|a| chi_square_tail(2.0 * x, 2.0 * a).unwrap());
@@ -126,14 +126,14 @@ mod tests {
 
     #[test]
     fn hypergeometric_tails_by_hand() {
-        // Two of four are marked, two drawn: both with 1/6, at least one with 5/6, none asked for 1.
+        // Two of four are marked, two are drawn: both are marked with 1/6, at least one with 5/6, at least none with 1.
         let tail = |hits| libm::exp(ln_hypergeometric_tail(4, 2, 2, hits));
         assert!((tail(2) - 1.0 / 6.0).abs() < 1e-12);
         assert!((tail(1) - 5.0 / 6.0).abs() < 1e-12);
         assert!((tail(0) - 1.0).abs() < 1e-12);
         // More are drawn than are unmarked: one hit is sure.
         assert!((libm::exp(ln_hypergeometric_tail(4, 3, 2, 1)) - 1.0).abs() < 1e-12);
-        // More than there are.
+        // More hits than marked ones are impossible.
         assert!(ln_hypergeometric_tail(4, 1, 2, 2) < -1e300);
     }
 }

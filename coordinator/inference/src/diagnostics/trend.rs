@@ -1,4 +1,4 @@
-//! Score test for a trend of the residuals with a regressor, after what the fit absorbs of it.
+//! Score test for a trend of the residuals with a regressor, after the part that the fit absorbs.
 
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
@@ -8,13 +8,13 @@ use super::spectrum::mean_and_covariance;
 use statistics::likelihood::{ErrorLaw, Likelihood, LikelihoodError, Whitening};
 use statistics::prior::Prior;
 
-/// Where the fit absorbs all but this share of a regressor, the rest is an error of the linear model.
-const LEAST_SHARE: f64 = 0.02;
+/// If the fit absorbs all but this share of a regressor, the rest is an error of the linear model.
+const MIN_SHARE: f64 = 0.02;
 
 /// The slope of the residuals along a regressor.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Trend {
-    /// Measured minus predicted for one unit of the regressor, corrected for what the fit absorbs [unit of the data].
+    /// Measured minus predicted for one unit of the regressor, corrected for the part that the fit absorbs [unit of the data].
     pub slope: f64,
     /// Standard deviation of the slope where there is no trend.
     pub sd: f64,
@@ -22,30 +22,27 @@ pub struct Trend {
     pub share_left: f64,
     /// The slope over its standard deviation; where the noise is inferred, the latter is estimated from the residuals.
     pub statistic: f64,
-    /// Two-sided probability of so large a statistic.
+    /// Two-sided probability of a statistic this large.
     pub p: f64,
 }
 
 /// The posterior as a linear model with normal parameters, to test any number of regressors.
 ///
 /// # Equation
-/// With the parameters as independent standard normal scores u, predictions are `f + X (u - m)`, m the posterior mean of u
-/// and X the regression of the predictions on u over the draws. A regressor x, added with an unknown factor, has the
-/// efficient score and information
-/// `U = x' R^-1 r - a' (X' R^-1 r - m)`, `I = x' R^-1 x - a' X' R^-1 x`, `a = (1 + X' R^-1 X)^-1 X' R^-1 x`,
-/// with r the residuals and R the covariance of the errors. `slope = U / I`, `sd = 1 / sqrt(I)`, and `U / sqrt(I)` is standard
-/// normal where nothing is missing: `I = x' C^-1 x`, C the prior predictive covariance of the data. Where the noise sd of all
-/// data of a regressor is inferred, it is re-estimated from the residuals without the trend, and the statistic is
-/// Student's.
+/// With the parameters as independent standard normal scores u, predictions are `f + X (u - m)`, m the posterior mean of u and X the
+/// regression of the predictions on u over the draws. A regressor x, added with an unknown factor, has the efficient score and information
+/// `U = x' R^-1 r - a' (X' R^-1 r - m)`, `I = x' R^-1 x - a' X' R^-1 x`, `a = (1 + X' R^-1 X)^-1 X' R^-1 x`, with r the residuals and R the
+/// covariance of the errors. `slope = U / I`, `sd = 1 / sqrt(I)`, and `U / sqrt(I)` is standard normal where nothing is missing: `I = x'
+/// C^-1 x`, C the prior predictive covariance of the data. Where the noise sd of all data of a regressor is inferred, it is re-estimated
+/// from the residuals without the trend, and the statistic is Student's.
 ///
 /// # Validity
 /// Exact for predictions that are linear in normal scores and normal errors of known covariance (or one unknown sd, under a
 /// weak prior); under Student's errors asymptotic. A small distance of the posterior mean from the mode has no effect at first order.
 ///
 /// # Source
-/// Cox & Hinkley 1974, *Theoretical Statistics*, section 9.3 (score test with nuisance parameters); Neyman 1959 (C(alpha)).
-/// Checked by `trends::a_trend_of_a_line_is_its_closed_form`, `trends::trends_keep_their_level` and
-/// `trends::a_real_trend_is_found`.
+/// Cox & Hinkley 1974, *Theoretical Statistics*, section 9.3 (score test with nuisance parameters); Neyman 1959 (C(alpha)). Checked by
+/// `trends::a_trend_of_a_line_is_its_closed_form`, `trends::trends_keep_their_level` and `trends::a_real_trend_is_found`.
 #[derive(Debug)]
 pub struct TrendTest<'a> {
     likelihood: &'a Likelihood,
@@ -54,7 +51,7 @@ pub struct TrendTest<'a> {
     residuals: Vec<f64>,
     /// Columns of X.
     sensitivities: Vec<Vec<f64>>,
-    /// The same, whitened.
+    /// Columns of X, whitened.
     whitened: Vec<Vec<f64>>,
     /// `X' R^-1 r - m`: 0 at the mode.
     gradient: DVector<f64>,
@@ -70,10 +67,10 @@ impl<'a> TrendTest<'a> {
     ///
     /// # Arguments
     /// - `prior`: the prior of all parameters, in the order of theta.
-    /// - `draws`: of the posterior, equally weighted, with their predictions.
+    /// - `draws`: equally weighted draws of the posterior with their predictions.
     ///
     /// # Errors
-    /// Those of [`Likelihood::log_likelihood`].
+    /// The errors of [`Likelihood::log_likelihood`].
     pub fn new(
         likelihood: &'a Likelihood,
         prior: &Prior,
@@ -133,8 +130,8 @@ impl<'a> TrendTest<'a> {
         let absorbed = self.precision.solve(&overlap);
         let information = whole - absorbed.dot(&overlap);
         let share_left = information / whole;
-        // NaN where the regressor is 0.
-        if share_left.is_nan() || share_left < LEAST_SHARE {
+        // The share is NaN where the regressor is 0.
+        if share_left.is_nan() || share_left < MIN_SHARE {
             return None;
         }
         let slope = (self.whitening.slope(&x) - absorbed.dot(&self.gradient)) / information;
@@ -184,9 +181,9 @@ impl<'a> TrendTest<'a> {
         let in_sds = |i: usize, value: f64| value / self.rows[i].0;
         // Share of the error i that remains in the residual j.
         let left_of_error = |i: usize, j: usize| {
-            let taken = self.rows[i].1.dot(&self.rows[j].1);
+            let by_fit = self.rows[i].1.dot(&self.rows[j].1);
             let by_trend = sd * sd * in_sds(i, left[i]) * in_sds(j, left[j]);
-            f64::from(u8::from(i == j)) - taken - by_trend
+            f64::from(u8::from(i == j)) - by_fit - by_trend
         };
         let (mut squares, mut expected, mut half_variance) = (0.0, 0.0, 0.0);
         for &i in &peers {
@@ -195,8 +192,8 @@ impl<'a> TrendTest<'a> {
             half_variance += peers.iter().map(|&j| left_of_error(i, j).powi(2)).sum::<f64>();
         }
         let degrees_of_freedom = expected * expected / half_variance;
-        let known = squares > 0.0 && expected > 0.0 && degrees_of_freedom >= 1.0;
-        known.then(|| ((squares / expected).sqrt(), degrees_of_freedom))
+        let is_known = squares > 0.0 && expected > 0.0 && degrees_of_freedom >= 1.0;
+        is_known.then(|| ((squares / expected).sqrt(), degrees_of_freedom))
     }
 }
 

@@ -1,4 +1,4 @@
-//! How the discrepancies of two conditions vary together.
+//! The covariance of the discrepancies of two conditions.
 
 use nalgebra::{Cholesky, DMatrix, Dyn};
 
@@ -10,17 +10,16 @@ use crate::gaussian_process::matern;
 pub(super) struct Covariance {
     /// Standard deviation of the smooth part.
     pub(super) sd: f64,
-    /// Standard deviation of what each condition misses by itself.
+    /// Standard deviation of the local part of each condition.
     pub(super) local_sd: f64,
     /// Correlation of two groups in the same condition.
     pub(super) between_groups: f64,
-    /// Length scale of each coordinate.
     pub(super) lengths: Vec<f64>,
 }
 
 impl Covariance {
-    /// Of the smooth parts of two conditions.
-    pub(super) fn of(&self, a: (&[f64], usize), b: (&[f64], usize)) -> f64 {
+    /// The covariance of the smooth parts of two conditions.
+    pub(super) fn between(&self, a: (&[f64], usize), b: (&[f64], usize)) -> f64 {
         let groups = if a.1 == b.1 { 1.0 } else { self.between_groups };
         self.sd * self.sd * groups * matern(a.0, b.0, &self.lengths)
     }
@@ -31,7 +30,7 @@ impl Covariance {
         let mut matrix = DMatrix::zeros(n, n);
         for (i, a) in misfits.iter().enumerate() {
             for (j, b) in misfits.iter().enumerate().take(i + 1) {
-                matrix[(i, j)] = self.of((&a.point, a.group), (&b.point, b.group));
+                matrix[(i, j)] = self.between((&a.point, a.group), (&b.point, b.group));
             }
             matrix[(i, i)] += self.local_sd * self.local_sd + a.noise_variance;
         }

@@ -1,8 +1,7 @@
-//! What a model misses, as a process over the conditions of the rig.
+//! The discrepancy of a model, as a process over the conditions of the rig.
 //!
 //! - `misfit`: measured minus model in one condition. `process`: the discrepancy there and between.
-//! - `covariance`: how the discrepancies of two conditions vary together. `posterior`: its parameters, as probable as the misfits make
-//!   them.
+//! - `covariance`: the covariance of two conditions. `posterior`: the posterior of its parameters.
 
 mod covariance;
 mod misfit;

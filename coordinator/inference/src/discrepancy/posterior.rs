@@ -1,4 +1,4 @@
-//! The parameters of the covariance, as probable as the misfits make them.
+//! The posterior of the parameters of the covariance.
 
 use std::collections::BTreeMap;
 
@@ -10,65 +10,66 @@ use crate::gaussian_process::representative;
 
 /// Standard deviations of the smooth part, over the root mean square of the misfits.
 const SDS: [f64; 5] = [0.25, 0.5, 1.0, 2.0, 4.0];
-/// Standard deviations of what each condition misses by itself, over that of the noise of a mean.
+/// Standard deviations of the local part of each condition, over that of the noise of a mean.
 const LOCAL_SDS: [f64; 4] = [0.0, 1.0, 2.0, 4.0];
 /// Correlations of two groups.
 const BETWEEN: [f64; 4] = [0.0, 0.5, 0.8, 0.95];
 /// Length scales over the range of a coordinate.
 const LENGTHS: [f64; 6] = [0.1, 0.2, 0.4, 0.8, 1.6, 3.2];
-/// Parameters less probable than the best by so much `[nats]` are not followed.
+/// Parameters less probable than the best by this many nats are not followed.
 const REACH: f64 = 6.0;
-/// Most parameters that are looked at.
-const MOST: usize = 2000;
-/// Of more misfits so many say what is probable: the cost grows with the cube of their number.
-const MOST_MISFITS: usize = 100;
-/// Share of the probability that is kept, and the most parameters that hold it: of so many misfits as say what is probable, and fewer of
-/// more, because each takes the square of their number in memory.
+/// Maximum number of parameters that are evaluated.
+const MAX_PLACES: usize = 2000;
+/// With more misfits, this many represent all: the cost grows with the cube of their number.
+const MAX_MISFITS: usize = 100;
+/// Share of the probability that is kept, and the maximum number of parameters that hold it. With more misfits fewer are kept,
+/// because each takes memory proportional to the square of their number.
 const KEPT: f64 = 0.99;
-const MOST_KEPT: usize = 64;
+const MAX_KEPT: usize = 64;
 
 /// Places on the grid: sd, local sd, correlation of groups, then the lengths.
 type Place = Vec<usize>;
 
-/// The covariances that hold nearly all of the probability, with their shares of it, the most probable first; the prior is the same at
-/// every place of the grid. Starting in the middle, the most probable place whose neighbours are not known is opened next.
+/// The covariances that hold nearly all of the probability, with their shares of it, the most probable first. The prior is equal at
+/// all places of the grid. The search begins in the middle; next it evaluates the neighbours of the most probable place that has
+/// unevaluated ones.
 pub(super) fn posterior(misfits: &[Misfit]) -> Vec<(Covariance, f64)> {
-    let grid = Grid::of(misfits);
-    let mut known: BTreeMap<Place, f64> = BTreeMap::new();
+    let grid = Grid::new(misfits);
+    let mut open: BTreeMap<Place, f64> = BTreeMap::new();
     let mut opened: BTreeMap<Place, f64> = BTreeMap::new();
     let mut next = Some(grid.middle());
-    while let Some(place) = next.filter(|_| known.len() + opened.len() < MOST) {
-        let own = known
+    while let Some(place) = next.filter(|_| open.len() + opened.len() < MAX_PLACES) {
+        let nats = open
             .remove(&place)
             .unwrap_or_else(|| grid.log_probability(&place));
-        opened.insert(place.clone(), own);
+        opened.insert(place.clone(), nats);
         for neighbour in grid.neighbours(&place) {
-            if !opened.contains_key(&neighbour) && !known.contains_key(&neighbour) {
-                let own = grid.log_probability(&neighbour);
-                known.insert(neighbour, own);
+            if !opened.contains_key(&neighbour) && !open.contains_key(&neighbour) {
+                let nats = grid.log_probability(&neighbour);
+                open.insert(neighbour, nats);
             }
         }
         let best = opened
             .values()
-            .chain(known.values())
+            .chain(open.values())
             .copied()
             .fold(f64::NEG_INFINITY, f64::max);
-        let open = known.iter().max_by(|a, b| a.1.total_cmp(b.1));
-        next = open
-            .filter(|(_, own)| **own >= best - REACH)
+        let best_open = open.iter().max_by(|a, b| a.1.total_cmp(b.1));
+        next = best_open
+            .filter(|(_, nats)| **nats >= best - REACH)
             .map(|(place, _)| place.clone());
     }
-    opened.extend(known);
+    opened.extend(open);
     let mut all: Vec<(Place, f64)> = opened.into_iter().collect();
     all.sort_by(|a, b| b.1.total_cmp(&a.1));
-    let best = all.first().map_or(0.0, |(_, own)| *own);
-    let weights: Vec<f64> = all.iter().map(|(_, own)| libm::exp(own - best)).collect();
+    let best = all.first().map_or(0.0, |(_, nats)| *nats);
+    let weights: Vec<f64> = all.iter().map(|(_, nats)| libm::exp(nats - best)).collect();
     let total: f64 = weights.iter().sum();
     let mut held = 0.0;
-    let most_kept = MOST_KEPT * MOST_MISFITS * MOST_MISFITS / (misfits.len() * misfits.len()).max(1);
+    let max_kept = MAX_KEPT * MAX_MISFITS * MAX_MISFITS / (misfits.len() * misfits.len()).max(1);
     let kept = weights
         .iter()
-        .take(most_kept.clamp(1, MOST_KEPT))
+        .take(max_kept.clamp(1, MAX_KEPT))
         .take_while(|weight| {
             let is_short = held < KEPT * total;
             held += **weight;
@@ -82,7 +83,7 @@ pub(super) fn posterior(misfits: &[Misfit]) -> Vec<(Covariance, f64)> {
         .collect()
 }
 
-/// The grid of covariances, and the misfits that say how probable each is.
+/// The grid of covariances, and the misfits that determine the probability of each.
 struct Grid {
     misfits: Vec<Misfit>,
     values: DVector<f64>,
@@ -93,22 +94,22 @@ struct Grid {
 }
 
 impl Grid {
-    fn of(misfits: &[Misfit]) -> Self {
-        let has_groups = misfits.iter().any(|own| own.group != misfits[0].group);
-        // A group of few misfits is represented, too.
+    fn new(misfits: &[Misfit]) -> Self {
+        let has_groups = misfits.iter().any(|misfit| misfit.group != misfits[0].group);
+        // A group of few misfits is represented too.
         let places = misfits
             .iter()
-            .map(|own| own.point.iter().copied().chain([own.group as f64]));
+            .map(|misfit| misfit.point.iter().copied().chain([misfit.group as f64]));
         let places: Vec<Vec<f64>> = places.map(Iterator::collect).collect();
         let points: Vec<&[f64]> = places.iter().map(Vec::as_slice).collect();
-        let chosen = representative(&points, MOST_MISFITS);
+        let chosen = representative(&points, MAX_MISFITS);
         let misfits: Vec<Misfit> = chosen.into_iter().map(|i| misfits[i].clone()).collect();
-        let mean = |of: fn(&Misfit) -> f64| misfits.iter().map(of).sum::<f64>() / misfits.len() as f64;
+        let mean = |value: fn(&Misfit) -> f64| misfits.iter().map(value).sum::<f64>() / misfits.len() as f64;
         Grid {
-            values: DVector::from_iterator(misfits.len(), misfits.iter().map(|own| own.value)),
-            rms: mean(|own| own.value * own.value).sqrt(),
-            noise_sd: mean(|own| own.noise_variance).sqrt(),
-            dimension: misfits.first().map_or(0, |own| own.point.len()),
+            values: DVector::from_iterator(misfits.len(), misfits.iter().map(|misfit| misfit.value)),
+            rms: mean(|misfit| misfit.value * misfit.value).sqrt(),
+            noise_sd: mean(|misfit| misfit.noise_variance).sqrt(),
+            dimension: misfits.first().map_or(0, |misfit| misfit.point.len()),
             has_groups,
             misfits,
         }
@@ -142,11 +143,11 @@ impl Grid {
             sd: SDS[place[0]] * self.rms,
             local_sd: LOCAL_SDS[place[1]] * self.noise_sd,
             between_groups: BETWEEN[place[2]],
-            lengths: place[3..].iter().map(|&own| LENGTHS[own]).collect(),
+            lengths: place[3..].iter().map(|&length| LENGTHS[length]).collect(),
         }
     }
 
-    /// Logarithm of the density of the misfits, but for a constant.
+    /// Log density of the misfits, up to a constant.
     fn log_probability(&self, place: &Place) -> f64 {
         let Some(factor) = self.covariance(place).factor(&self.misfits) else {
             return f64::NEG_INFINITY;
@@ -174,21 +175,21 @@ mod tests {
     }
 
     /// Mean of a property over the posterior.
-    fn mean(misfits: &[Misfit], of: fn(&Covariance) -> f64) -> f64 {
+    fn mean(misfits: &[Misfit], value: fn(&Covariance) -> f64) -> f64 {
         posterior(misfits)
             .iter()
-            .map(|(own, share)| share * of(own))
+            .map(|(covariance, share)| share * value(covariance))
             .sum()
     }
 
     #[test]
     fn the_probability_is_that_of_a_normal_density() {
         let misfits = &along(|_, x| 1.0 + x)[..2];
-        let grid = Grid::of(misfits);
+        let grid = Grid::new(misfits);
         let place = grid.middle();
-        let own = grid.covariance(&place);
-        let between = own.of((&misfits[0].point, 0), (&misfits[1].point, 0));
-        let alone = own.sd * own.sd + own.local_sd * own.local_sd + 0.01;
+        let covariance = grid.covariance(&place);
+        let between = covariance.between((&misfits[0].point, 0), (&misfits[1].point, 0));
+        let alone = covariance.sd * covariance.sd + covariance.local_sd * covariance.local_sd + 0.01;
         let (a, b) = (misfits[0].value, misfits[1].value);
         let determinant = alone * alone - between * between;
         let square = (alone * (a * a + b * b) - 2.0 * between * a * b) / determinant;
@@ -199,27 +200,27 @@ mod tests {
     #[test]
     fn the_search_finds_what_the_whole_grid_has() {
         let misfits = along(|group, x| libm::sin(5.0 * x) + 0.3 * group as f64);
-        let grid = Grid::of(&misfits);
+        let grid = Grid::new(&misfits);
         let mut best = (grid.middle(), f64::NEG_INFINITY);
         for (a, b) in (0..SDS.len()).flat_map(|a| (0..LOCAL_SDS.len()).map(move |b| (a, b))) {
             for (c, d) in (0..BETWEEN.len()).flat_map(|c| (0..LENGTHS.len()).map(move |d| (c, d))) {
                 let place = vec![a, b, c, d];
-                let own = grid.log_probability(&place);
-                if own > best.1 {
-                    best = (place, own);
+                let nats = grid.log_probability(&place);
+                if nats > best.1 {
+                    best = (place, nats);
                 }
             }
         }
-        let found = posterior(&misfits);
-        assert_eq!(found[0].0, grid.covariance(&best.0));
-        assert!((found.iter().map(|(_, share)| share).sum::<f64>() - 1.0).abs() < 1e-12);
+        let covariances = posterior(&misfits);
+        assert_eq!(covariances[0].0, grid.covariance(&best.0));
+        assert!((covariances.iter().map(|(_, share)| share).sum::<f64>() - 1.0).abs() < 1e-12);
     }
 
     #[test]
     fn groups_that_miss_alike_are_correlated_and_others_are_not() {
         let alike = along(|_, x| libm::sin(7.0 * x));
         let apart = along(|group, x| libm::sin(7.0 * x + 2.0 * group as f64));
-        let correlation = |misfits: &[Misfit]| mean(misfits, |own| own.between_groups);
+        let correlation = |misfits: &[Misfit]| mean(misfits, |covariance| covariance.between_groups);
         assert!(correlation(&alike) > 0.85, "{}", correlation(&alike));
         assert!(correlation(&apart) < 0.5, "{}", correlation(&apart));
     }
@@ -235,19 +236,22 @@ mod tests {
         };
         let many = (0..240).map(|i| (0, i)).chain((0..6).map(|k| (1, 10 * k)));
         let many: Vec<Misfit> = many.map(misfit).collect();
-        let found = posterior(&many);
+        let covariances = posterior(&many);
         assert!(
-            found.len() <= MOST_KEPT * 100 * 100 / (246 * 246),
+            covariances.len() <= MAX_KEPT * 100 * 100 / (246 * 246),
             "{}",
-            found.len()
+            covariances.len()
         );
-        let correlation: f64 = found.iter().map(|(own, share)| share * own.between_groups).sum();
+        let correlation: f64 = covariances
+            .iter()
+            .map(|(covariance, share)| share * covariance.between_groups)
+            .sum();
         assert!(correlation > 0.5, "{correlation}");
     }
 
     #[test]
     fn a_line_has_a_longer_scale_than_a_wave() {
-        let length = |misfits: &[Misfit]| mean(misfits, |own| own.lengths[0]);
+        let length = |misfits: &[Misfit]| mean(misfits, |covariance| covariance.lengths[0]);
         let (line, wave) = (along(|_, x| x - 0.5), along(|_, x| libm::sin(12.0 * x)));
         assert!(length(&line) > 2.0 * length(&wave));
     }

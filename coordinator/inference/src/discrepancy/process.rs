@@ -9,13 +9,13 @@ use crate::gaussian_process::UnitRange;
 
 /// The discrepancy of a model as a Gaussian process through its misfits.
 ///
-/// `y_i = d(x_i, g_i) + u_i + e_i`: misfit of condition `x_i` of group `g_i`, smooth discrepancy d, what the condition misses by itself u
+/// `y_i = d(x_i, g_i) + u_i + e_i`: misfit of condition `x_i` of group `g_i`, smooth discrepancy d, local discrepancy u of the condition
 /// and noise e. `cov(d(x, g), d(x', g')) = s^2 c (1 + r + r^2 / 3) exp(-r)`, `r^2 = 5 sum_k ((x_k - x'_k) / l_k)^2` (Matérn, 5/2),
-/// coordinates over their range, c = 1 within a group and one correlation between groups. The mean is 0: far from the misfits the
-/// model stands as it is. s, the sd of u, c and the `l_k` are averaged over a grid by their posterior probability.
+/// coordinates over their range, c = 1 within a group and one correlation between groups. The mean is 0: far from the misfits the model
+/// stands as it is. s, the sd of u, c and the `l_k` are averaged over a grid by their posterior probability.
 ///
-/// The model's parameters are those of its own calibration, which knows nothing of d (modularisation): a process that is as flexible
-/// as the model would otherwise take from the model what the model can explain.
+/// The model's parameters are those of its calibration, which ignores d (modularisation): a process as flexible as the model would
+/// otherwise absorb what the model can explain.
 ///
 /// # Source
 /// Kennedy & O'Hagan 2001, doi:10.1111/1467-9868.00294; Liu, Bayarri & Berger 2009, doi:10.1214/09-BA404. Checked by
@@ -39,9 +39,9 @@ struct Part {
 /// The discrepancy in one condition: a mixture of normal laws.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Discrepancy {
-    /// What each misfit counts for in the mean.
+    /// Weight of each misfit in the mean.
     pub weights: Vec<f64>,
-    /// One law for each covariance.
+    /// A normal law for each covariance.
     pub components: Vec<DiscrepancyComponent>,
 }
 
@@ -52,7 +52,7 @@ pub struct DiscrepancyComponent {
     pub mean: f64,
     /// Variance, without noise [unit squared].
     pub variance: f64,
-    /// Its probability.
+    /// Probability of this law.
     pub probability: f64,
 }
 
@@ -60,18 +60,18 @@ impl Discrepancy {
     /// The mean [unit of the channel].
     #[must_use]
     pub fn mean(&self) -> f64 {
-        self.components.iter().map(|own| own.probability * own.mean).sum()
+        self.components.iter().map(|law| law.probability * law.mean).sum()
     }
 }
 
 impl DiscrepancyProcess {
-    /// Fewest misfits of so many coordinates.
+    /// Minimum number of misfits for this number of coordinates.
     #[must_use]
     pub fn least_misfits(coordinates: usize) -> usize {
         coordinates + 3
     }
 
-    /// Most misfits: a matrix of the square of their number is inverted.
+    /// Maximum number of misfits: a matrix of the square of their number is inverted.
     pub const MOST_MISFITS: usize = 500;
 
     /// The process through misfits whose points have the same coordinates, each of which must vary, and whose noise is above 0; `None`
@@ -80,16 +80,16 @@ impl DiscrepancyProcess {
     #[must_use]
     pub fn through(misfits: &[Misfit]) -> Option<Self> {
         let dimension = misfits.first()?.point.len();
-        let is_usable = misfits.iter().any(|own| own.value.abs() > 0.0);
+        let is_usable = misfits.iter().any(|misfit| misfit.value.abs() > 0.0);
         let numbers = Self::least_misfits(dimension)..=Self::MOST_MISFITS;
         if dimension == 0 || !numbers.contains(&misfits.len()) || !is_usable {
             return None;
         }
-        let points: Vec<&[f64]> = misfits.iter().map(|own| own.point.as_slice()).collect();
-        let unit = UnitRange::of(&points);
-        let scaled = |own: &Misfit| Misfit {
-            point: unit.scaled(&own.point),
-            ..own.clone()
+        let points: Vec<&[f64]> = misfits.iter().map(|misfit| misfit.point.as_slice()).collect();
+        let unit = UnitRange::new(&points);
+        let scaled = |misfit: &Misfit| Misfit {
+            point: unit.scaled(&misfit.point),
+            ..misfit.clone()
         };
         let misfits: Vec<Misfit> = misfits.iter().map(scaled).collect();
         let part = |(covariance, probability): (Covariance, f64)| {
@@ -105,16 +105,16 @@ impl DiscrepancyProcess {
         (!parts.is_empty()).then_some(DiscrepancyProcess { unit, misfits, parts })
     }
 
-    /// The discrepancy of a group in a condition. A group without a misfit has what it shares with the others.
+    /// The discrepancy of a group in a condition. A group without a misfit has only the part that it shares with the others.
     #[must_use]
     pub fn at(&self, point: &[f64], group: usize) -> Discrepancy {
         let point = self.unit.scaled(point);
         self.mixture(|part| {
-            let own = (point.as_slice(), group);
+            let place = (point.as_slice(), group);
             let shared = self
                 .misfits
                 .iter()
-                .map(|m| part.covariance.of((&m.point, m.group), own));
+                .map(|m| part.covariance.between((&m.point, m.group), place));
             let shared = DVector::from_iterator(self.misfits.len(), shared);
             let weights = part.factor.solve(&shared);
             let covariance = &part.covariance;
@@ -124,32 +124,33 @@ impl DiscrepancyProcess {
         })
     }
 
-    /// The discrepancy in the condition of a misfit, as the other misfits say it; the covariance remains.
+    /// The discrepancy in the condition of a misfit, predicted from the other misfits; the covariance stays the same.
     ///
     /// # Arguments
     /// - `left_out`: number of the misfit.
     #[must_use]
     pub fn without(&self, left_out: usize) -> Discrepancy {
         self.mixture(|part| {
-            let own = part.inverse[(left_out, left_out)];
-            let mut weights = -part.inverse.column(left_out) / own;
+            let precision = part.inverse[(left_out, left_out)];
+            let mut weights = -part.inverse.column(left_out) / precision;
             weights[left_out] = 0.0;
-            (weights, 1.0 / own - self.misfits[left_out].noise_variance)
+            (weights, 1.0 / precision - self.misfits[left_out].noise_variance)
         })
     }
 
-    /// Of the weights and the variance that each covariance gives.
-    fn mixture(&self, of: impl Fn(&Part) -> (DVector<f64>, f64)) -> Discrepancy {
-        let values = DVector::from_iterator(self.misfits.len(), self.misfits.iter().map(|own| own.value));
+    /// The mixture from the weights and the variance that each covariance gives.
+    fn mixture(&self, law: impl Fn(&Part) -> (DVector<f64>, f64)) -> Discrepancy {
+        let values =
+            DVector::from_iterator(self.misfits.len(), self.misfits.iter().map(|misfit| misfit.value));
         let mut sum = DVector::zeros(self.misfits.len());
         let mut components = Vec::with_capacity(self.parts.len());
         let total: f64 = self.parts.iter().map(|part| part.probability).sum();
         for part in &self.parts {
             let probability = part.probability / total;
-            let (weights, variance) = of(part);
+            let (weights, variance) = law(part);
             components.push(DiscrepancyComponent {
                 mean: weights.dot(&values),
-                // Rounding may leave less than nothing.
+                // Rounding may leave a variance slightly below 0.
                 variance: variance.max(0.0),
                 probability,
             });
@@ -176,8 +177,8 @@ mod tests {
             value: value(group, slip, angle),
             noise_variance: 0.01,
         };
-        let of_group = |group| slips.into_iter().flat_map(move |s| angles.map(|a| (group, s, a)));
-        let places = [0, 1].into_iter().flat_map(of_group);
+        let group_places = |group| slips.into_iter().flat_map(move |s| angles.map(|a| (group, s, a)));
+        let places = [0, 1].into_iter().flat_map(group_places);
         places
             .map(|(group, slip, angle)| misfit(group, slip, angle))
             .collect()
@@ -191,11 +192,11 @@ mod tests {
     fn a_smooth_misfit_is_found_between_the_conditions() {
         let process = DiscrepancyProcess::through(&misfits(surface)).unwrap();
         for (group, slip, angle) in [(0, 0.3, 30.0), (1, -0.4, 50.0), (1, 0.1, 10.0)] {
-            let found = process.at(&[slip, angle], group);
-            let error = found.mean() - surface(group, slip, angle);
-            // Of a range of 8.
+            let discrepancy = process.at(&[slip, angle], group);
+            let error = discrepancy.mean() - surface(group, slip, angle);
+            // The values have a range of 8.
             assert!(error.abs() < 0.3, "{group} {slip} {angle}: {error}");
-            let sd = found.components[0].variance.sqrt();
+            let sd = discrepancy.components[0].variance.sqrt();
             assert!(sd < 1.0 && error.abs() < 3.0 * sd, "{sd}");
         }
     }
@@ -203,7 +204,7 @@ mod tests {
     #[test]
     fn far_from_the_misfits_the_model_stands_as_it_is() {
         let process = DiscrepancyProcess::through(&misfits(surface)).unwrap();
-        let sd = |own: &Discrepancy| own.components[0].variance.sqrt();
+        let sd = |discrepancy: &Discrepancy| discrepancy.components[0].variance.sqrt();
         let (near, far) = (process.at(&[0.5, 62.0], 0), process.at(&[30.0, 2000.0], 0));
         assert!(far.mean().abs() < 0.05 && sd(&far) > 5.0 * sd(&near));
     }
@@ -214,14 +215,15 @@ mod tests {
         let process = DiscrepancyProcess::through(&all).unwrap();
         let left = process.without(7);
         let part = &process.parts[0];
-        let mut others = process.misfits.clone();
-        let own = others.remove(7);
-        let factor = part.covariance.factor(&others).unwrap();
-        let shared = others
-            .iter()
-            .map(|m| part.covariance.of((&m.point, m.group), (&own.point, own.group)));
-        let shared = DVector::from_iterator(others.len(), shared);
-        let values = DVector::from_iterator(others.len(), others.iter().map(|m| m.value));
+        let mut rest = process.misfits.clone();
+        let left_out = rest.remove(7);
+        let factor = part.covariance.factor(&rest).unwrap();
+        let shared = rest.iter().map(|m| {
+            part.covariance
+                .between((&m.point, m.group), (&left_out.point, left_out.group))
+        });
+        let shared = DVector::from_iterator(rest.len(), shared);
+        let values = DVector::from_iterator(rest.len(), rest.iter().map(|m| m.value));
         let mean = factor.solve(&shared).dot(&values);
         assert!(
             (left.components[0].mean - mean).abs() < 1e-7,
@@ -239,9 +241,14 @@ mod tests {
     fn the_weights_are_those_of_the_mean() {
         let all = misfits(surface);
         let process = DiscrepancyProcess::through(&all).unwrap();
-        for found in [process.at(&[0.2, 33.0], 1), process.without(3)] {
-            let by_weights: f64 = found.weights.iter().zip(&all).map(|(w, m)| w * m.value).sum();
-            assert!((by_weights - found.mean()).abs() < 1e-9);
+        for discrepancy in [process.at(&[0.2, 33.0], 1), process.without(3)] {
+            let by_weights: f64 = discrepancy
+                .weights
+                .iter()
+                .zip(&all)
+                .map(|(w, m)| w * m.value)
+                .sum();
+            assert!((by_weights - discrepancy.mean()).abs() < 1e-9);
         }
     }
 
@@ -249,14 +256,14 @@ mod tests {
     fn one_wheel_s_misfits_speak_for_another_that_misses_alike() {
         let alike = |_: usize, slip: f64, angle: f64| surface(0, slip, angle);
         let mut fewer = misfits(alike);
-        // Of the second wheel, straight ahead alone.
-        fewer.retain(|own| own.group == 0 || own.point[1] < 1.0);
-        let found = DiscrepancyProcess::through(&fewer).unwrap().at(&[0.5, 40.0], 1);
+        // The second wheel has misfits straight ahead only.
+        fewer.retain(|misfit| misfit.group == 0 || misfit.point[1] < 1.0);
+        let discrepancy = DiscrepancyProcess::through(&fewer).unwrap().at(&[0.5, 40.0], 1);
         let expected = alike(1, 0.5, 40.0);
         assert!(
-            (found.mean() - expected).abs() < 0.2 * expected,
+            (discrepancy.mean() - expected).abs() < 0.2 * expected,
             "{} {expected}",
-            found.mean()
+            discrepancy.mean()
         );
     }
 

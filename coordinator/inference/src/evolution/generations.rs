@@ -23,12 +23,11 @@ pub struct Evolution {
     settings: EvolutionSettings,
     round: ProposalRound<LogLikelihood>,
     phase: RunPhase<(), ModeEstimate>,
-    /// The best so far; the first of equals.
+    /// The best individual so far; among equals the first.
     best: Option<Individual>,
     history: Vec<Generation>,
     count: EvaluationCount,
     strategy: Strategy,
-    /// Positions of the pending proposals.
     positions: Vec<Vec<f64>>,
 }
 
@@ -109,11 +108,11 @@ impl Evolution {
         let rejections = generation.iter().map(|i| i.log_likelihood.is_impossible());
         self.count.add(rejections);
         for individual in &generation {
-            let least = self
+            let lowest = self
                 .best
                 .as_ref()
                 .map_or(f64::NEG_INFINITY, Individual::log_posterior);
-            if individual.log_posterior() > least {
+            if individual.log_posterior() > lowest {
                 self.best = Some(individual.clone());
             }
         }
@@ -135,8 +134,7 @@ impl Evolution {
         });
     }
 
-    /// Asks for the next generation, if there is one; fails when the model has rejected half of the budget and accepted
-    /// nothing.
+    /// Asks for the next generation, if there is one; fails when the model has rejected half of the budget and accepted nothing.
     fn ask(&mut self) {
         let budget = self.settings.max_evaluations();
         match self.strategy.next(&self.space, budget - self.count.evaluations) {

@@ -20,13 +20,12 @@ impl Individual {
         self.log_likelihood.value() + self.log_prior
     }
 
-    /// Whether the model accepted the parameters.
     pub(crate) fn is_possible(&self) -> bool {
         self.log_posterior() > f64::NEG_INFINITY
     }
 
     /// The order of rank: the better first.
-    pub(crate) fn rank(&self, other: &Self) -> Ordering {
-        other.log_posterior().total_cmp(&self.log_posterior())
+    pub(crate) fn rank(&self, rival: &Self) -> Ordering {
+        rival.log_posterior().total_cmp(&self.log_posterior())
     }
 }

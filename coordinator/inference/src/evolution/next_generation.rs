@@ -2,7 +2,7 @@
 
 use crate::point_estimate::StopReason;
 
-/// What a strategy asks for.
+/// The request of a strategy.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum NextGeneration {
     /// A generation at these positions, all within the bounds.

@@ -29,13 +29,11 @@ impl PriorSpace {
         self.axes.len()
     }
 
-    /// The position of the prior mean.
     pub(crate) fn centre(&self) -> Vec<f64> {
         let mean: Vec<f64> = self.prior.marginals().iter().map(|m| m.mean()).collect();
         self.position(&mean)
     }
 
-    /// The position of a prior draw.
     pub(crate) fn draw(&self, stream: &mut Stream) -> Vec<f64> {
         self.position(&self.prior.sample(stream))
     }
@@ -65,13 +63,12 @@ impl PriorSpace {
         pairs.map(|(axis, &t)| axis.value(t)).collect()
     }
 
-    /// Which coordinates of a position are at a bound.
+    /// Whether each coordinate of a position is at a bound.
     pub(crate) fn at_bound(&self, position: &[f64]) -> Vec<bool> {
         let pairs = self.axes.iter().zip(position);
         pairs.map(|(axis, &t)| axis.is_bound(t)).collect()
     }
 
-    /// An evaluated position.
     pub(crate) fn individual(
         &self,
         position: Vec<f64>,

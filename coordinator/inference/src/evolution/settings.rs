@@ -14,6 +14,9 @@ pub enum EvolutionSettings {
 }
 
 impl EvolutionSettings {
+    /// Largest population: more than any farm has workers.
+    pub const MAX_POPULATION: usize = 100_000;
+
     /// Seed of all random numbers.
     #[must_use]
     pub fn seed(&self) -> u64 {
@@ -23,7 +26,7 @@ impl EvolutionSettings {
         }
     }
 
-    /// Most evaluations, all generations together.
+    /// Maximum number of evaluations of all generations together.
     #[must_use]
     pub fn max_evaluations(&self) -> usize {
         match self {

@@ -1,69 +1,71 @@
-//! Why the settings of an evolution are refused.
+//! Errors in the settings of an evolution.
 
-/// Largest population: more than any farm has workers.
-const MOST_INDIVIDUALS: usize = 100_000;
+use super::settings::EvolutionSettings;
 
-/// Why settings are refused.
+/// A setting outside its bounds.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum EvolutionSettingsError {
     /// The prior has no parameters.
     #[error("the prior has no parameters")]
     NoParameters,
     /// The population is too small or too large.
-    #[error("population = {population} is not from {least} to {MOST_INDIVIDUALS}")]
+    #[error(
+        "population = {population} is not from {min} to {}",
+        EvolutionSettings::MAX_POPULATION
+    )]
     Population {
-        /// The setting.
+        /// The population as given.
         population: usize,
-        /// The least population.
-        least: usize,
+        /// The smallest possible population.
+        min: usize,
     },
     /// The generations are too few or too many.
-    #[error("generations = {generations} is not from 2 to {most}")]
+    #[error("generations = {generations} is not from 2 to {max}")]
     Generations {
-        /// The setting.
+        /// The generations as given.
         generations: usize,
-        /// The most generations.
-        most: usize,
+        /// The largest possible number of generations.
+        max: usize,
     },
     /// The elite is empty, or leaves too few children.
     #[error("elite = {elite} is not from 1 to half of the population, {population}")]
     Elite {
-        /// The setting.
+        /// The elite as given.
         elite: usize,
         /// The population.
         population: usize,
     },
     /// The budget is too large, or too small for a second generation.
-    #[error("max_evaluations = {max_evaluations} is not from {least} (two generations) to {most}")]
+    #[error("max_evaluations = {max_evaluations} is not from {min} (two generations) to {max}")]
     Evaluations {
-        /// The setting.
+        /// The budget as given.
         max_evaluations: usize,
-        /// The least budget.
-        least: usize,
-        /// The most evaluations.
-        most: usize,
+        /// The smallest possible budget.
+        min: usize,
+        /// The largest possible budget.
+        max: usize,
     },
     /// The restarts double the population too often.
-    #[error("restarts = {restarts} is above {most}")]
+    #[error("restarts = {restarts} is above {max}")]
     Restarts {
-        /// The setting.
+        /// The restarts as given.
         restarts: usize,
-        /// The most restarts.
-        most: usize,
+        /// The largest possible number of restarts.
+        max: usize,
     },
     /// The tolerance is not a finite number above 0.
     #[error("tolerance = {value} is not a finite number above 0")]
     Tolerance {
-        /// The setting.
+        /// The tolerance as given.
         value: f64,
     },
 }
 
 /// Refuses a population out of bounds.
-pub(crate) fn check_population(population: usize, least: usize) -> Result<(), EvolutionSettingsError> {
-    if (least..=MOST_INDIVIDUALS).contains(&population) {
+pub(crate) fn check_population(population: usize, min: usize) -> Result<(), EvolutionSettingsError> {
+    if (min..=EvolutionSettings::MAX_POPULATION).contains(&population) {
         Ok(())
     } else {
-        Err(EvolutionSettingsError::Population { population, least })
+        Err(EvolutionSettingsError::Population { population, min })
     }
 }

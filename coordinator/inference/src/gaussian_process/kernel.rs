@@ -21,7 +21,6 @@ pub(crate) fn matern(a: &[f64], b: &[f64], lengths: &[f64]) -> f64 {
 /// A plane and a process about it of unit variance.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Kernel {
-    /// Length scale of each coordinate.
     pub(super) lengths: Vec<f64>,
     /// Variance of the noise of one measurement.
     pub(super) noise: f64,
@@ -34,7 +33,6 @@ impl Kernel {
         PLANE * (1.0 + product) + matern(a, b, &self.lengths)
     }
 
-    /// Covariance of the observations, noise included.
     pub(super) fn matrix(&self, observations: &[Observation]) -> DMatrix<f64> {
         let n = observations.len();
         let mut matrix = DMatrix::zeros(n, n);

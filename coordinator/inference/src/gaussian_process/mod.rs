@@ -1,8 +1,8 @@
 //! Interpolation of measurements over several conditions by a Gaussian process.
 //!
 //! - `observation`: a measurement. `process`: the process and its mean between the measurements.
-//! - `smoothness`: length scales and noise, chosen by leaving out one measurement after the other. `representative`: which measurements
-//!   choose. `kernel`: covariances. `unit_range`: coordinates over their range.
+//! - `smoothness`: length scales and noise, chosen by leaving out one measurement after the other. `representative`: the
+//!   measurements that determine them. `kernel`: covariances. `unit_range`: coordinates over their range.
 
 mod kernel;
 mod observation;

@@ -3,7 +3,7 @@
 /// The mean of the repeats at one point.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Observation {
-    /// Its coordinates, each in its own unit.
+    /// Coordinates of the point, each in its unit.
     pub point: Vec<f64>,
     /// The mean [unit of the values].
     pub value: f64,

@@ -9,11 +9,11 @@ use super::unit_range::UnitRange;
 
 /// A Gaussian process through observations: a plane and a smooth process about it.
 ///
-/// `y(x) = a + b'x + f(x) + e`, with `f` of the covariance `s^2 (1 + r + r^2 / 3) exp(-r)`, `r^2 = 5 sum_k ((x_k - x'_k) / l_k)^2`
-/// (Matérn, 5/2), coordinates over their range, and noise `e` of the variance `s^2 q / repeats`. Between observations the mean
-/// interpolates; beyond them it returns to the plane. The `l_k`, from 0.1 to 3.2 of the range, and `q`, from 1e-4 to 1, are those with
-/// the least squared error of the observations when each is left out; of more than 150, of so many that represent every
-/// level of every coordinate. A coordinate of two levels has the longest `l_k`: between them the process is nearly straight.
+/// `y(x) = a + b'x + f(x) + e`, with `f` of the covariance `s^2 (1 + r + r^2 / 3) exp(-r)`, `r^2 = 5 sum_k ((x_k - x'_k) / l_k)^2` (Matérn,
+/// 5/2), coordinates over their range, and noise `e` of the variance `s^2 q / repeats`. Between observations the mean interpolates; beyond
+/// them it returns to the plane. The `l_k`, from 0.1 to 3.2 of the range, and `q`, from 1e-4 to 1, are those with the smallest squared
+/// error of the observations when each is left out; with more than 150 observations, of 150 that represent every level of every coordinate.
+/// A coordinate of two levels has the longest `l_k`: between them the process is nearly straight.
 ///
 /// # Source
 /// Rasmussen & Williams 2006, Gaussian Processes for Machine Learning, Eqs. 2.25, 4.17 (covariance) and 5.12 (leaving one out),
@@ -28,7 +28,7 @@ pub struct GaussianProcess {
 }
 
 impl GaussianProcess {
-    /// Fewest observations of so many coordinates: those that determine a plane, and one more.
+    /// Minimum number of observations for this number of coordinates: those that determine a plane, and one more.
     #[must_use]
     pub fn least_observations(coordinates: usize) -> usize {
         coordinates + 2
@@ -43,7 +43,7 @@ impl GaussianProcess {
             return None;
         }
         let points: Vec<&[f64]> = observations.iter().map(|o| o.point.as_slice()).collect();
-        let unit = UnitRange::of(&points);
+        let unit = UnitRange::new(&points);
         let mean = observations.iter().map(|o| o.value).sum::<f64>() / observations.len() as f64;
         let scaled = |o: &Observation| Observation {
             point: unit.scaled(&o.point),
@@ -106,7 +106,7 @@ mod tests {
         let process = GaussianProcess::through(&grid(surface)).unwrap();
         for point in [[-0.4, 22.0], [0.0, 50.0], [0.6, 7.0]] {
             let error = process.mean(&point) - surface(point[0], point[1]);
-            // Of a range of 85.
+            // A share of a range of 85.
             assert!(error.abs() < 0.8, "{point:?}: {error}");
         }
         assert!(process.reaches(&[0.0, 60.5]) && !process.reaches(&[0.0, 75.0]));

@@ -1,10 +1,10 @@
 //! Points that represent many.
 
-/// Values within so much of the range are one level.
+/// Values within this share of the range are one level.
 const ONE_LEVEL: f64 = 0.1;
 
-/// The least values of the levels of a coordinate over its range, ascending: a value further than [`ONE_LEVEL`] above the first of its
-/// level opens the next, so values without a gap are many levels.
+/// The smallest value of each level of a coordinate over its range, ascending. A value further than [`ONE_LEVEL`] above the start
+/// of a level begins the next, so values without a gap form many levels.
 pub(super) fn levels(points: &[&[f64]], coordinate: usize) -> Vec<f64> {
     let mut values: Vec<f64> = points.iter().map(|point| point[coordinate]).collect();
     values.sort_by(f64::total_cmp);
@@ -17,10 +17,10 @@ pub(super) fn levels(points: &[&[f64]], coordinate: usize) -> Vec<f64> {
     levels
 }
 
-/// The numbers of at most so many points, ascending, which represent every level of every coordinate: the next is the one whose least
-/// represented level is represented least, then the one whose levels together are, then the first.
-pub(crate) fn representative(points: &[&[f64]], most: usize) -> Vec<usize> {
-    if points.len() <= most {
+/// The ascending numbers of at most `max` points that represent every level of every coordinate. The next point is the one whose
+/// least represented level is represented least; among equals the one whose levels together are; then the first.
+pub(crate) fn representative(points: &[&[f64]], max: usize) -> Vec<usize> {
+    if points.len() <= max {
         return (0..points.len()).collect();
     }
     let dimension = points.first().map_or(0, |point| point.len());
@@ -30,17 +30,17 @@ pub(crate) fn representative(points: &[&[f64]], most: usize) -> Vec<usize> {
         .iter()
         .map(|point| (0..dimension).map(|k| place(point, k)).collect())
         .collect();
-    let mut chosen_at: Vec<Vec<usize>> = starts.iter().map(|own| vec![0; own.len() + 1]).collect();
+    let mut chosen_at: Vec<Vec<usize>> = starts.iter().map(|levels| vec![0; levels.len() + 1]).collect();
     let mut left: Vec<usize> = (0..points.len()).collect();
     let mut chosen = Vec::new();
-    for _ in 0..most {
-        let counts = |i: usize| places[i].iter().zip(&chosen_at).map(|(&at, own)| own[at]);
+    for _ in 0..max {
+        let counts = |i: usize| places[i].iter().zip(&chosen_at).map(|(&at, counts)| counts[at]);
         let next = (0..left.len()).min_by_key(|&k| (counts(left[k]).min(), counts(left[k]).sum::<usize>()));
         let Some(next) = next.map(|k| left.remove(k)) else {
             break;
         };
-        for (&at, own) in places[next].iter().zip(&mut chosen_at) {
-            own[at] += 1;
+        for (&at, counts) in places[next].iter().zip(&mut chosen_at) {
+            counts[at] += 1;
         }
         chosen.push(next);
     }
@@ -74,12 +74,12 @@ mod tests {
         let all: Vec<Vec<f64>> = (0..360).map(at).collect();
         let chosen = representative(&slices(&all), 150);
         assert_eq!(chosen.len(), 150);
-        for (coordinate, of_each) in [(0, 30), (1, 25)] {
+        for (coordinate, count) in [(0, 30), (1, 25)] {
             for level in levels(&slices(&all), coordinate) {
-                let own = chosen
+                let points = chosen
                     .iter()
                     .filter(|&&i| (all[i][coordinate] - level).abs() < 0.01);
-                assert_eq!(own.count(), of_each, "coordinate {coordinate} at {level}");
+                assert_eq!(points.count(), count, "coordinate {coordinate} at {level}");
             }
         }
         assert!(chosen.windows(2).all(|pair| pair[0] < pair[1]));

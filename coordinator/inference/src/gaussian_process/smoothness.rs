@@ -10,19 +10,19 @@ use super::representative::{levels, representative};
 const LENGTHS: [f64; 6] = [0.1, 0.2, 0.4, 0.8, 1.6, 3.2];
 /// Variances of the noise of one measurement that are tried, over that of the process.
 const NOISES: [f64; 5] = [1e-4, 1e-3, 1e-2, 1e-1, 1.0];
-/// A coordinate of fewer levels says nothing of its scale, and has the longest.
-const LEAST_LEVELS: usize = 3;
-/// Most rounds over all coordinates.
+/// A coordinate of fewer levels does not determine its scale, and has the longest.
+const MIN_LEVELS: usize = 3;
+/// Maximum number of rounds over all coordinates.
 const ROUNDS: usize = 8;
-/// Of more observations so many choose: the cost grows with the cube of their number.
-const MOST: usize = 150;
+/// With more observations this many determine the kernel: the cost grows with the cube of their number.
+const MAX_OBSERVATIONS: usize = 150;
 
 /// The kernel with the least squared errors of the observations left out one by one, by steps along one coordinate at a time.
 pub(super) fn smoothest(observations: &[Observation], dimension: usize) -> Kernel {
     let points: Vec<&[f64]> = observations.iter().map(|o| o.point.as_slice()).collect();
-    let chosen = representative(&points, MOST).into_iter();
+    let chosen = representative(&points, MAX_OBSERVATIONS).into_iter();
     let chosen: Vec<Observation> = chosen.map(|i| observations[i].clone()).collect();
-    let is_free = |k: &usize| levels(&points, *k).len() >= LEAST_LEVELS;
+    let is_free = |k: &usize| levels(&points, *k).len() >= MIN_LEVELS;
     let free: Vec<usize> = (0..dimension).filter(is_free).collect();
     let length = |k: usize| match free.contains(&k) {
         true => LENGTHS[LENGTHS.len() / 2],
@@ -32,14 +32,14 @@ pub(super) fn smoothest(observations: &[Observation], dimension: usize) -> Kerne
         lengths: (0..dimension).map(length).collect(),
         noise: NOISES[NOISES.len() / 2],
     };
-    let mut least = left_out_squares(&chosen, &best);
+    let mut lowest = left_out_squares(&chosen, &best);
     for _ in 0..ROUNDS {
         let before = best.clone();
         for &coordinate in free.iter().chain([&dimension]) {
             for trial in trials(&best, coordinate) {
                 let squares = left_out_squares(&chosen, &trial);
-                if squares < least {
-                    (best, least) = (trial, squares);
+                if squares < lowest {
+                    (best, lowest) = (trial, squares);
                 }
             }
         }
@@ -106,18 +106,15 @@ mod tests {
         };
         let mut squares = 0.0;
         for left in 0..all.len() {
-            let mut others = all.clone();
-            let own = others.remove(left);
-            let factor = Cholesky::new(kernel.matrix(&others)).unwrap();
-            let weights = factor.solve(&DVector::from_iterator(
-                others.len(),
-                others.iter().map(|o| o.value),
-            ));
-            let terms = others.iter().zip(weights.iter());
+            let mut rest = all.clone();
+            let left_out = rest.remove(left);
+            let factor = Cholesky::new(kernel.matrix(&rest)).unwrap();
+            let weights = factor.solve(&DVector::from_iterator(rest.len(), rest.iter().map(|o| o.value)));
+            let terms = rest.iter().zip(weights.iter());
             let mean: f64 = terms
-                .map(|(o, weight)| weight * kernel.covariance(&o.point, &own.point))
+                .map(|(o, weight)| weight * kernel.covariance(&o.point, &left_out.point))
                 .sum();
-            squares += (own.value - mean) * (own.value - mean);
+            squares += (left_out.value - mean) * (left_out.value - mean);
         }
         let by_inverse = left_out_squares(&all, &kernel);
         assert!(

@@ -8,8 +8,8 @@ pub(crate) struct UnitRange {
 }
 
 impl UnitRange {
-    /// Of points that all have the coordinates of the first.
-    pub(crate) fn of(points: &[&[f64]]) -> Self {
+    /// The range of points that all have the coordinates of the first.
+    pub(crate) fn new(points: &[&[f64]]) -> Self {
         let dimension = points.first().map_or(0, |point| point.len());
         let extreme = |k: usize, pick: fn(f64, f64) -> f64| {
             let values = points.iter().map(|point| point[k]);
@@ -22,10 +22,8 @@ impl UnitRange {
 
     /// A point, 0 at the least value of each coordinate and 1 at the greatest.
     pub(crate) fn scaled(&self, point: &[f64]) -> Vec<f64> {
-        let of_range = point.iter().zip(&self.origin).zip(&self.range);
-        of_range
-            .map(|((x, origin), range)| (x - origin) / range)
-            .collect()
+        let scaled = point.iter().zip(&self.origin).zip(&self.range);
+        scaled.map(|((x, origin), range)| (x - origin) / range).collect()
     }
 }
 
@@ -35,7 +33,7 @@ mod tests {
 
     #[test]
     fn the_ends_of_each_coordinate_are_0_and_1() {
-        let unit = UnitRange::of(&[&[-0.7, 60.0], &[0.9, 0.0], &[0.1, 15.0]]);
+        let unit = UnitRange::new(&[&[-0.7, 60.0], &[0.9, 0.0], &[0.1, 15.0]]);
         assert_eq!(unit.scaled(&[-0.7, 0.0]), [0.0, 0.0]);
         assert_eq!(unit.scaled(&[0.9, 60.0]), [1.0, 1.0]);
         let beyond = unit.scaled(&[2.5, 90.0]);

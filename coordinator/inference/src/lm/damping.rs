@@ -2,17 +2,17 @@
 
 /// Dampings of neighbouring trials differ by this factor.
 const SPREAD: f64 = 8.0;
-/// The dampings of a round, in units of the least.
+/// The dampings of a round, in units of the smallest.
 const TRIALS: [f64; 3] = [1.0, SPREAD, SPREAD * SPREAD];
 /// The initial damping: a tenth of the curvature.
 const FIRST: f64 = 0.1;
-/// The least damping; less has no effect.
-const LEAST: f64 = 1e-9;
+/// The smallest damping; less has no effect.
+const MIN_DAMPING: f64 = 1e-9;
 
 /// The damping of the next trials.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Damping {
-    least: f64,
+    lowest: f64,
     growth: f64,
     undamped: bool,
 }
@@ -20,7 +20,7 @@ pub(super) struct Damping {
 impl Default for Damping {
     fn default() -> Self {
         Self {
-            least: FIRST,
+            lowest: FIRST,
             growth: 2.0,
             undamped: true,
         }
@@ -28,30 +28,30 @@ impl Default for Damping {
 }
 
 impl Damping {
-    /// The dampings of a round: none, then ever more.
+    /// The dampings of a round: none, then increasing ones.
     pub(super) fn trials(&self) -> Vec<f64> {
         let whole = self.undamped.then_some(0.0);
-        let damped = TRIALS.into_iter().map(|factor| self.least * factor);
+        let damped = TRIALS.into_iter().map(|factor| self.lowest * factor);
         whole.into_iter().chain(damped).collect()
     }
 
-    /// After a step whose decrease is `ratio` times the predicted one.
+    /// The damping after a step whose decrease is `ratio` times the predicted one.
     ///
     /// Nielsen's rule, `damping * max(1/3, 1 - (2 ratio - 1)^3)`, with 1/[`SPREAD`] in place of 1/3 because several
     /// dampings are tried at once.
     pub(super) fn accept(&mut self, damping: f64, ratio: f64) {
-        let from = damping.max(self.least / SPREAD);
+        let from = damping.max(self.lowest / SPREAD);
         let miss = 2.0 * ratio - 1.0;
         let factor = (1.0 - miss * miss * miss).clamp(1.0 / SPREAD, SPREAD);
         *self = Self {
-            least: (from * factor).max(LEAST),
+            lowest: (from * factor).max(MIN_DAMPING),
             ..Self::default()
         };
     }
 
-    /// After a round without a decrease: more damping than any tried, growing ever faster.
+    /// The damping after a round without a decrease: more than any tried, growing ever faster.
     pub(super) fn reject(&mut self) {
-        self.least *= TRIALS[TRIALS.len() - 1] * self.growth;
+        self.lowest *= TRIALS[TRIALS.len() - 1] * self.growth;
         self.growth *= 2.0;
         self.undamped = false;
     }
@@ -78,7 +78,7 @@ mod tests {
         let after = |ratio| {
             let mut damping = Damping::default();
             damping.accept(0.8, ratio);
-            damping.least
+            damping.lowest
         };
         assert!(after(1.0) < 0.8 && after(0.1) > 0.8);
     }

@@ -24,24 +24,22 @@ pub struct LmFit {
     pub(super) settings: LmSettings,
     pub(super) round: ProposalRound<PredictedValues>,
     pub(super) phase: RunPhase<FitRound, ModeEstimate>,
-    /// The best point so far.
     pub(super) best: Option<FitPoint>,
     /// The last known Jacobian: at the best point, or at one before it.
     pub(super) columns: Vec<Column>,
-    /// The differences around the best point.
     pub(super) stencil: Stencil,
-    /// The sides to which they were last taken.
+    /// The sides of the last differences.
     pub(super) sides: Sides,
     /// Their steps along the axes.
     pub(super) lengths: Vec<f64>,
     pub(super) damping: Damping,
-    /// The last step decreased f too little to continue.
+    /// Whether the last step decreased f too little to continue.
     pub(super) settled: bool,
     pub(super) steps: usize,
     pub(super) count: EvaluationCount,
 }
 
-/// What the fit waits for.
+/// The pending evaluations of a fit.
 #[derive(Debug, Clone)]
 pub(super) enum FitRound {
     Starts,
@@ -99,13 +97,13 @@ impl LmFit {
         self.phase.failure()
     }
 
-    /// Evaluations told so far in completed rounds.
+    /// Number of evaluations in completed rounds.
     #[must_use]
     pub fn count(&self) -> EvaluationCount {
         self.count
     }
 
-    /// Steps taken so far.
+    /// Number of steps so far.
     #[must_use]
     pub fn steps(&self) -> usize {
         self.steps
@@ -117,7 +115,8 @@ impl LmFit {
     /// - `predicted`: the model's values as [`Likelihood::log_likelihood`] takes them; `None` where the model rejected the parameters.
     ///
     /// # Errors
-    /// [`TellError`]: told before, not pending, not as many finite values as the likelihood takes. The fit is then unchanged.
+    /// [`TellError`] for an answer that was told before or is not pending, or with a wrong number of values or infinite ones. The
+    /// fit is unchanged then.
     pub fn tell(&mut self, particle: usize, predicted: Option<&[f64]>) -> Result<TellProgress, TellError> {
         if let Some(values) = predicted {
             self.check(values)?;

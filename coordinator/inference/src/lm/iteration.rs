@@ -1,4 +1,4 @@
-//! The iteration of a fit: starts, differences, trials, and what their results lead to.
+//! The iteration of a fit: starts, differences, trials, and the next round after each.
 
 use super::damping::Damping;
 use super::fit::{FitRound, LmFit, PredictedValues};
@@ -10,7 +10,7 @@ use crate::round::Proposal;
 use crate::tell::InferenceFailure;
 use statistics::rng::Stream;
 
-/// Differences must be so many times longer to be worth another Jacobian.
+/// A further Jacobian is worth its evaluations if its differences are this many times longer.
 const MUCH_LONGER: f64 = 1.5;
 
 impl LmFit {
@@ -27,8 +27,8 @@ impl LmFit {
         self.ask(FitRound::Starts, starts.into_iter());
     }
 
-    /// The point with the least f; the first of equals.
-    fn least<'a>(
+    /// The point with the lowest f; among equals the first.
+    fn lowest<'a>(
         &self,
         proposals: &'a [Proposal],
         answers: &'a [PredictedValues],
@@ -40,18 +40,18 @@ impl LmFit {
                 let point = self.objective.point(&proposal.theta, answer.as_ref()?)?;
                 Some((proposal, point))
             })
-            .reduce(|least, other| {
-                if other.1.value < least.1.value {
-                    other
+            .reduce(|lowest, point| {
+                if point.1.value < lowest.1.value {
+                    point
                 } else {
-                    least
+                    lowest
                 }
             })
     }
 
     /// Continues from the best start; if all were rejected, draws more, up to half of the budget.
     pub(super) fn after_starts(&mut self, proposals: &[Proposal], answers: &[PredictedValues]) {
-        match self.least(proposals, answers) {
+        match self.lowest(proposals, answers) {
             Some((_, point)) => self.go_on_from(point, Sides::One),
             None if 2 * (self.count.evaluations + self.settings.starts) <= self.settings.max_evaluations => {
                 self.ask_starts();
@@ -66,7 +66,7 @@ impl LmFit {
     fn go_on_from(&mut self, point: FitPoint, sides: Sides) {
         self.best = Some(point);
         if self.objective.axes.is_empty() {
-            // Only noise sds: they are profiled already.
+            // The model has noise sds only, which are profiled already.
             self.finish(StopReason::Decrease);
         } else if !self.differentiate(sides) {
             self.finish(StopReason::Budget);
@@ -104,8 +104,7 @@ impl LmFit {
         better && self.differentiate(Sides::Both)
     }
 
-    /// Asks for the missing differences; `false` if none is missing or the budget has no room for them and, one-sided,
-    /// for a trial.
+    /// Asks for the missing differences; `false` if none is missing or the budget has no room for them and, one-sided, for a trial.
     fn ask_differences(&mut self, sides: Sides) -> bool {
         let Some(point) = &self.best else { return false };
         let differences = self.stencil.ask(sides);
@@ -138,7 +137,7 @@ impl LmFit {
         self.decide();
     }
 
-    /// With a Jacobian at the best point: finish there, or try steps.
+    /// Continues with a Jacobian at the best point: finishes there, or tries steps.
     fn decide(&mut self) {
         let Some(point) = &self.best else { return };
         let parabola = self.objective.quadratic(point, &self.columns);
@@ -146,7 +145,7 @@ impl LmFit {
         let promised = parabola
             .step(0.0)
             .map_or(f64::INFINITY, |step| parabola.decrease(&step));
-        if self.settled || promised <= self.least_decrease(point) {
+        if self.settled || promised <= self.min_decrease(point) {
             // A better Jacobian confirms the optimum or gives one more step.
             if !self.refine() {
                 self.finish(StopReason::Decrease);
@@ -156,7 +155,7 @@ impl LmFit {
         }
     }
 
-    fn least_decrease(&self, point: &FitPoint) -> f64 {
+    fn min_decrease(&self, point: &FitPoint) -> f64 {
         self.settings.decrease_tolerance * (1.0 + point.value.abs())
     }
 
@@ -205,7 +204,7 @@ impl LmFit {
     ) {
         let Some(best) = &self.best else { return };
         let gained = self
-            .least(proposals, answers)
+            .lowest(proposals, answers)
             .filter(|(_, point)| point.value < best.value);
         let Some((proposal, point)) = gained else {
             self.damping.reject();
@@ -213,7 +212,7 @@ impl LmFit {
         };
         let decrease = best.value - point.value;
         let (damping, promised) = trials[proposal.particle];
-        self.settled = decrease <= self.least_decrease(best);
+        self.settled = decrease <= self.min_decrease(best);
         self.damping.accept(damping, decrease / promised);
         self.steps += 1;
         let sides = if self.settled { Sides::Both } else { Sides::One };

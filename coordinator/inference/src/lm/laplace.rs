@@ -23,8 +23,8 @@ impl Objective {
         let hessian = self.quadratic(point, columns).hessian;
         let free: Vec<usize> = (0..self.axes.len())
             .filter(|&k| {
-                let known = columns.get(k).is_some_and(Option::is_some);
-                known && !at_bound[self.axes[k].parameter] && hessian[(k, k)] > 0.0
+                let has_column = columns.get(k).is_some_and(Option::is_some);
+                has_column && !at_bound[self.axes[k].parameter] && hessian[(k, k)] > 0.0
             })
             .collect();
         let curvature = DMatrix::from_fn(free.len(), free.len(), |i, j| hessian[(free[i], free[j])]);

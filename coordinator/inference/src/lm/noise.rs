@@ -3,18 +3,16 @@
 use statistics::likelihood::{ErrorSd, Likelihood};
 use statistics::prior::{Marginal, Prior};
 
-/// Where the prior reaches down to 0, the least noise sd as a share of the prior's sd: vanishing residuals would have
-/// no most probable one.
-const LEAST_SHARE: f64 = 1e-9;
+/// If the prior reaches down to 0, the smallest noise sd as a share of the prior's sd: vanishing residuals would have no most probable one.
+const MIN_SHARE: f64 = 1e-9;
 /// Cells of the grid on which the minimum is bracketed.
 const CELLS: u32 = 64;
 /// Bisections of the bracket: below one unit in the last place.
 const HALVINGS: u32 = 80;
 
-/// An inferred noise sd and the data that share it.
+/// An inferred noise sd, and the data that share it.
 #[derive(Debug, Clone)]
 pub(super) struct InferredNoise {
-    /// Index in theta.
     pub(super) parameter: usize,
     marginal: Marginal,
     data: Vec<usize>,
@@ -38,8 +36,8 @@ impl InferredNoise {
             .iter()
             .enumerate()
             .filter_map(|(parameter, marginal)| {
-                let own = ErrorSd::Inferred { parameter };
-                let data: Vec<usize> = (0..data.len()).filter(|&i| data[i].sd == own).collect();
+                let sd = ErrorSd::Inferred { parameter };
+                let data: Vec<usize> = (0..data.len()).filter(|&i| data[i].sd == sd).collect();
                 (!data.is_empty()).then(|| Self {
                     parameter,
                     marginal: marginal.clone(),
@@ -52,22 +50,21 @@ impl InferredNoise {
     /// Minimises `n ln sd + S / (2 sd^2) - ln p(sd)` with S the sum of the squares of the n residuals.
     ///
     /// # Arguments
-    /// - `residuals`: measured minus predicted, of all data, in the unit of the datum.
+    /// - `residuals`: measured minus predicted for all data, each in its unit.
     ///
     /// # Returns
-    /// The sd in the unit of its data. It lies between the optimum of the likelihood, sqrt(S/n), and the mode of the prior;
-    /// along ln sd the minimum is bracketed on a grid and refined by bisection.
-    /// Checked by `lm::noise_has_its_closed_form`.
+    /// The sd in the unit of its data. It lies between the optimum of the likelihood, sqrt(S/n), and the mode of the prior; along ln sd the
+    /// minimum is bracketed on a grid and refined by bisection. Checked by `lm::noise_has_its_closed_form`.
     pub(super) fn profile(&self, residuals: &[f64]) -> Profiled {
         let squares: f64 = self.data.iter().map(|&i| residuals[i] * residuals[i]).sum();
         let count = self.data.len() as f64;
         let (lower, upper) = self.marginal.support();
-        let lower = lower.max(LEAST_SHARE * self.marginal.sd());
+        let lower = lower.max(MIN_SHARE * self.marginal.sd());
         let within = |sd: f64| sd.max(lower).min(upper);
         let likely = within((squares / count).sqrt());
         let usual = within(self.mode(lower, upper));
-        let (least, most) = (likely.min(usual), likely.max(usual));
-        let (low, high) = (libm::log(least), libm::log(most));
+        let (lower_sd, upper_sd) = (likely.min(usual), likely.max(usual));
+        let (low, high) = (libm::log(lower_sd), libm::log(upper_sd));
         let value = |v: f64| {
             let sd = libm::exp(v);
             count * v + 0.5 * squares / sd / sd - self.marginal.log_density(within(sd))
@@ -88,9 +85,9 @@ impl InferredNoise {
         let v = 0.5 * (left + right);
         // The ends do not pass through their logarithm, so that a bound is met exactly.
         let sd = if best == 0 && slope(low) >= 0.0 {
-            least
+            lower_sd
         } else if best == CELLS && slope(high) <= 0.0 {
-            most
+            upper_sd
         } else {
             within(libm::exp(v))
         };
@@ -129,7 +126,7 @@ impl InferredNoise {
         } else if slope > 0.0 {
             lower
         } else {
-            // Flat: any value serves, as the optimum of the likelihood is inside or at an end.
+            // The density is flat: any value serves, as the optimum of the likelihood is inside or at an end.
             0.5 * (lower + upper)
         }
     }

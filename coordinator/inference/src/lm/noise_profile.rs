@@ -10,7 +10,7 @@ const FARTHEST_SCORE: f64 = 4.0;
 const AT_END: f64 = 0.01;
 /// Sections of that interval: down to a width of 2e-4.
 const SECTIONS: u32 = 22;
-/// Most passes over the sds, and the change of the scores at which they end.
+/// Maximum number of passes over the sds, and the change of the scores at which they end.
 const PASSES: u32 = 6;
 const SETTLED: f64 = 1e-3;
 /// Half the width of the second difference along a score.
@@ -44,9 +44,8 @@ impl NoiseProfile {
 
     /// The most probable sds at predicted values; those of theta are ignored.
     ///
-    /// Entangled sds maximise the density of their normal scores, one after the other by golden sections. A scatter that the
-    /// data do not show has its most probable value at 0, where nothing follows for its uncertainty; its score has an
-    /// inner mode.
+    /// Entangled sds maximise the density of their normal scores, one after the other by golden sections. A scatter that the data do not
+    /// show has its most probable value at 0, where nothing follows for its uncertainty; its score has an inner mode.
     pub(super) fn profile(
         &self,
         prior: &Prior,
@@ -64,7 +63,7 @@ impl NoiseProfile {
         }
     }
 
-    /// What the log-density of entangled sds gains where their scores take their place; 0 of separate ones.
+    /// The gain of the log-density when scores replace entangled sds; 0 for separate ones.
     pub(super) fn change_of_measure(&self, prior: &Prior, theta: &[f64]) -> f64 {
         match self {
             Self::Separate(_) => 0.0,
@@ -82,13 +81,13 @@ impl NoiseProfile {
 
 /// Every inferred sd, of noise and of common errors, by ascending parameter.
 fn inferred_sds(likelihood: &Likelihood) -> Vec<usize> {
-    let of_common = likelihood.common().iter().filter_map(|error| match error.size {
+    let common_sds = likelihood.common().iter().filter_map(|error| match error.size {
         CommonErrorSize::Shift(sd) | CommonErrorSize::Sensitivity { sd, .. } => Some(sd),
         CommonErrorSize::Discrepancy { .. } => None,
     });
-    let of_data = likelihood.data().iter().map(|datum| datum.sd);
-    let mut parameters: Vec<usize> = of_data
-        .chain(of_common)
+    let data_sds = likelihood.data().iter().map(|datum| datum.sd);
+    let mut parameters: Vec<usize> = data_sds
+        .chain(common_sds)
         .filter_map(|sd| match sd {
             ErrorSd::Inferred { parameter } => Some(parameter),
             ErrorSd::Known(_) => None,
@@ -131,12 +130,12 @@ fn entangled(
             break;
         }
     }
-    let here = density(&scores);
+    let middle = density(&scores);
     (0..scores.len())
         .map(|i| {
             let value = |score| marginal(i).of_normal_score(score);
             let (low, high) = (scores[i] - DIFFERENCE, scores[i] + DIFFERENCE);
-            let bend = 2.0 * here - along(&scores, i, low) - along(&scores, i, high);
+            let bend = 2.0 * middle - along(&scores, i, low) - along(&scores, i, high);
             let curvature = bend / (DIFFERENCE * DIFFERENCE);
             let rate = (value(high) - value(low)) / (2.0 * DIFFERENCE);
             let at_bound = scores[i].abs() > FARTHEST_SCORE - AT_END;

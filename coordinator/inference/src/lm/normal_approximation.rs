@@ -13,7 +13,7 @@ use statistics::rng::Stream;
 const DRAWS: u64 = 1 << 42;
 /// A parameter at a bound begins at this score: the score of the bound itself is infinite.
 const FARTHEST_START: f64 = 3.0;
-/// Most steps to the mode of the scores; most halvings of a step; the gain at which it is reached \[nats\].
+/// Maximum number of steps to the mode of the scores, and of halvings of a step; the gain at which the mode is reached \[nats\].
 const STEPS: u32 = 50;
 const HALVINGS: u32 = 30;
 const NO_GAIN: f64 = 1e-9;
@@ -41,8 +41,7 @@ impl Objective {
     ///
     /// `None` where q has no finite mode. Draws whose log-likelihood is minus infinity are left out.
     ///
-    /// Checked by `lm::draws_of_a_linear_model_have_its_closed_form_and_evidence`,
-    /// `lm::draws_stay_within_bounds_where_the_mode_is_at_one`.
+    /// Checked by `lm::draws_of_a_linear_model_have_its_closed_form_and_evidence`, `lm::draws_stay_within_bounds_where_the_mode_is_at_one`.
     pub(super) fn approximation(
         &self,
         point: &FitPoint,
@@ -103,7 +102,7 @@ impl LinearisedPosterior<'_> {
             .objective
             .likelihood
             .log_likelihood(&self.predicted(theta), theta);
-        // A sd from the flank of a prior that reaches zero.
+        // The sd was drawn from the flank of a prior that reaches zero.
         scored.unwrap_or(LogLikelihood::Impossible)
     }
 
@@ -112,10 +111,10 @@ impl LinearisedPosterior<'_> {
         let theta = self.theta(scores);
         let prior = &self.objective.prior;
         let marginals = prior.marginals().iter().zip(&theta);
-        let of_marginals: f64 = marginals.map(|(marginal, &x)| marginal.log_density(x)).sum();
-        let of_scores: f64 = scores.iter().map(|z| -0.5 * z * z - LN_SQRT_TAU).sum();
-        let of_correlation = prior.log_density(&theta) - of_marginals;
-        self.log_likelihood(&theta).value() + of_scores + of_correlation
+        let marginals_density: f64 = marginals.map(|(marginal, &x)| marginal.log_density(x)).sum();
+        let scores_density: f64 = scores.iter().map(|z| -0.5 * z * z - LN_SQRT_TAU).sum();
+        let correlation_density = prior.log_density(&theta) - marginals_density;
+        self.log_likelihood(&theta).value() + scores_density + correlation_density
     }
 
     /// The mode of q, ln q there, and its precision; by Newton steps that are halved until they gain.
@@ -163,16 +162,16 @@ impl LinearisedPosterior<'_> {
             .filter_map(|(axis, column)| {
                 let (k, column) = (axis.parameter, column.as_ref()?);
                 let log_density = prior.marginals()[k].log_density(theta[k]);
-                let of_score = libm::exp(-0.5 * scores[k] * scores[k] - LN_SQRT_TAU - log_density);
-                let rate = of_score / axis.rate(axis.position(theta[k]));
+                let score_density = libm::exp(-0.5 * scores[k] * scores[k] - LN_SQRT_TAU - log_density);
+                let rate = score_density / axis.rate(axis.position(theta[k]));
                 let moved: Vec<f64> = column.iter().map(|change| rate * change).collect();
                 Some((k, whitening.apply(&moved)))
             })
             .collect();
-        for (k, own) in &whitened {
-            gradient[*k] += whitening.slope(own);
-            for (l, other) in &whitened {
-                hessian[(*k, *l)] += whitening.curvature(own, other);
+        for (k, column) in &whitened {
+            gradient[*k] += whitening.slope(column);
+            for (l, row) in &whitened {
+                hessian[(*k, *l)] += whitening.curvature(column, row);
             }
         }
         for k in self.objective.noises.parameters() {
@@ -182,20 +181,20 @@ impl LinearisedPosterior<'_> {
                 let scored = likelihood.log_likelihood(&predicted, &theta);
                 scored.map_or(f64::NEG_INFINITY, |l| l.value())
             };
-            let (below, here, above) = (at(-DIFFERENCE), at(0.0), at(DIFFERENCE));
+            let (below, middle, above) = (at(-DIFFERENCE), at(0.0), at(DIFFERENCE));
             let slope = (above - below) / (2.0 * DIFFERENCE);
-            let bend = (2.0 * here - below - above) / (DIFFERENCE * DIFFERENCE);
+            let bend = (2.0 * middle - below - above) / (DIFFERENCE * DIFFERENCE);
             if slope.is_finite() && bend.is_finite() {
                 gradient[k] += slope;
-                // The likelihood is flat towards a scatter of 0: the prior's own curvature remains.
+                // The likelihood is flat towards an sd of 0: the curvature of the prior remains.
                 hessian[(k, k)] += bend.max(0.0);
             }
         }
-        let of_prior = prior.slopes_of_correlation(&theta);
-        for (k, slope) in of_prior.slopes {
+        let correlation = prior.slopes_of_correlation(&theta);
+        for (k, slope) in correlation.slopes {
             gradient[k] -= slope;
         }
-        for (k, l, curvature) in of_prior.curvatures {
+        for (k, l, curvature) in correlation.curvatures {
             hessian[(k, l)] += curvature;
         }
         Some((gradient, hessian))

@@ -13,12 +13,11 @@ use statistics::prior::Prior;
 /// A column of the Jacobian: the change of every predicted value along one axis; `None` where it is not known.
 pub(super) type Column = Option<Vec<f64>>;
 
-/// What is minimised.
+/// The objective function.
 #[derive(Debug, Clone)]
 pub(super) struct Objective {
     pub(super) prior: Prior,
     pub(super) likelihood: Likelihood,
-    /// The parameters of the model.
     pub(super) axes: Vec<PriorAxis>,
     /// The inferred sds of noise and common errors.
     pub(super) noises: NoiseProfile,
@@ -27,7 +26,6 @@ pub(super) struct Objective {
 /// An evaluated point with the most probable noise sds there.
 #[derive(Debug, Clone)]
 pub(super) struct FitPoint {
-    /// Position along every axis.
     pub(super) position: Vec<f64>,
     pub(super) theta: Vec<f64>,
     pub(super) predicted: Vec<f64>,
@@ -35,7 +33,7 @@ pub(super) struct FitPoint {
     pub(super) value: f64,
     pub(super) log_likelihood: f64,
     pub(super) log_prior: f64,
-    /// One for each parameter of [`Objective::noises`].
+    /// A noise sd for each entry of [`Objective::noises`].
     pub(super) noise: Vec<Profiled>,
 }
 
@@ -97,12 +95,11 @@ impl Objective {
         theta
     }
 
-    /// The parabola of f along the axes around a point: slopes
-    /// `-sum_i J_ik r_i / sd_i^2 + (-ln p_k)'`, curvatures `sum_i J_ik J_il / sd_i^2 + (-ln p_k)''`; of correlated or
-    /// heavy-tailed data with [`Whitening`](statistics::likelihood::Whitening) in place of the sds.
+    /// The parabola of f along the axes around a point: slopes `-sum_i J_ik r_i / sd_i^2 + (-ln p_k)'`, curvatures `sum_i J_ik J_il /
+    /// sd_i^2 + (-ln p_k)''`; of correlated or heavy-tailed data with [`Whitening`](statistics::likelihood::Whitening) in place of the sds.
     ///
-    /// The Gauss-Newton approximation: without the model's own curvature, nor that of the noise sds, whose mixed
-    /// curvature with the axes has expectation zero. Axes without a column do not move.
+    /// This is the Gauss-Newton approximation: it leaves out the model's curvature and that of the noise sds, whose mixed curvature
+    /// with the axes has expectation zero. Axes without a column do not move.
     pub(super) fn quadratic(&self, point: &FitPoint, columns: &[Column]) -> QuadraticModel {
         // A point has a finite f, so it can be whitened.
         let whitening = self.likelihood.whitening(&point.predicted, &point.theta).ok();
@@ -117,26 +114,26 @@ impl Objective {
             let (slope, curvature) = axis.slope(point.position[k]);
             gradient[k] = slope;
             hessian[(k, k)] = curvature;
-            let (Some(own), Some(whitening)) = (&scaled[k], &whitening) else {
+            let (Some(column), Some(whitening)) = (&scaled[k], &whitening) else {
                 continue;
             };
-            gradient[k] -= whitening.slope(own);
-            for (l, other) in scaled.iter().enumerate() {
-                if let Some(other) = other {
-                    hessian[(k, l)] += whitening.curvature(own, other);
+            gradient[k] -= whitening.slope(column);
+            for (l, row) in scaled.iter().enumerate() {
+                if let Some(row) = row {
+                    hessian[(k, l)] += whitening.curvature(column, row);
                 }
             }
         }
         // The width of a normal marginal's axis is its standard deviation, the correlations' unit.
-        let of_prior = self.prior.slopes_of_correlation(&point.theta);
+        let correlation = self.prior.slopes_of_correlation(&point.theta);
         let axis_of = |parameter: usize| self.axes.iter().position(|axis| axis.parameter == parameter);
-        for (parameter, slope) in of_prior.slopes {
+        for (parameter, slope) in correlation.slopes {
             if let Some(k) = axis_of(parameter) {
                 gradient[k] += slope;
             }
         }
-        for (parameter, other, curvature) in of_prior.curvatures {
-            if let (Some(k), Some(l)) = (axis_of(parameter), axis_of(other)) {
+        for (parameter, second, curvature) in correlation.curvatures {
+            if let (Some(k), Some(l)) = (axis_of(parameter), axis_of(second)) {
                 hessian[(k, l)] += curvature;
             }
         }
@@ -157,7 +154,7 @@ impl Objective {
             .collect()
     }
 
-    /// A position moved by a step; exactly at a bound where the step ends there.
+    /// The position after a step; exactly at a bound if the step ends there.
     pub(super) fn moved(&self, point: &FitPoint, step: &[f64]) -> Vec<f64> {
         self.axes
             .iter()

@@ -9,19 +9,18 @@ pub struct QuadraticModel {
     pub gradient: Vec<f64>,
     /// Second derivatives, symmetric.
     pub hessian: DMatrix<f64>,
-    /// How far each axis may move down: 0 or less.
+    /// Distance that each axis may move down: 0 or less.
     pub lower: Vec<f64>,
-    /// How far each axis may move up: 0 or more.
+    /// Distance that each axis may move up: 0 or more.
     pub upper: Vec<f64>,
     /// Axes that do not move.
     pub held: Vec<bool>,
 }
 
 impl QuadraticModel {
-    /// The minimum of the parabola with `damping D` added to H, D = max(diagonal of H, 1); `None` where it has
-    /// none.
+    /// The minimum of the parabola with `damping D` added to H, D = max(diagonal of H, 1); `None` where it has none.
     ///
-    /// Marquardt's scale, but each axis is damped at least as a prior of one width would do.
+    /// This is Marquardt's scale, but each axis is damped at least as a prior of one width would do.
     ///
     /// Active set: an axis at a bound from which the slope points outwards does not move. Of the axes that the step
     /// would carry over a bound, the first to reach it is fixed there, and the others are solved again.
@@ -49,7 +48,7 @@ impl QuadraticModel {
                     continue;
                 };
                 let share = bound / target;
-                if first.is_none_or(|(_, least)| share < least) {
+                if first.is_none_or(|(_, lowest)| share < lowest) {
                     first = Some((position, share));
                     step[k] = bound;
                 }
@@ -111,9 +110,9 @@ impl QuadraticModel {
     /// The decrease of the undamped parabola at a step.
     pub fn decrease(&self, step: &[f64]) -> f64 {
         let mut decrease = 0.0;
-        for (k, own) in step.iter().enumerate() {
+        for (k, component) in step.iter().enumerate() {
             let pull: f64 = (0..step.len()).map(|l| self.hessian[(k, l)] * step[l]).sum();
-            decrease -= own * (self.gradient[k] + 0.5 * pull);
+            decrease -= component * (self.gradient[k] + 0.5 * pull);
         }
         decrease
     }

@@ -1,4 +1,4 @@
-//! The settings of a fit, and why some are refused.
+//! The settings of a fit, and their errors.
 
 use super::stencil::Sides;
 use crate::tmcmc::MAX_PARTICLES;
@@ -8,20 +8,19 @@ use crate::tmcmc::MAX_PARTICLES;
 pub struct LmSettings {
     /// Points of the first round: the prior mean, then prior draws.
     pub starts: usize,
-    /// Most evaluations, all rounds together.
+    /// Maximum number of evaluations of all rounds together.
     pub max_evaluations: usize,
-    /// Draws from the normal approximation about the result; 0: a point estimate alone.
+    /// Number of draws from the normal approximation about the result; 0 gives a point estimate alone.
     pub draws: usize,
     /// Shortest step of the differences, in units of the prior's width: its standard deviation, or that of a uniform
     /// density between its bounds where these are closer.
     ///
-    /// The error of a difference over h is the model's curvature times h/2 plus its noise times 2/h. A model on a grid has
-    /// noise of about 0.3 % of a force; over one width of its prior an influential parameter changes a force by a third
-    /// or more, so 2 % of a width changes it by twice the noise: enough for the direction of descent from dozens of
-    /// data. It is not enough where parameters can compensate each other: there the noise looks like information. So
-    /// once the parabola gives the uncertainty of a parameter, steps grow to a quarter of it and, for the last Jacobian,
-    /// to all of it, taken to both sides; to at most ten times the setting.
-    /// Checked by `lm::a_model_with_the_noise_of_a_grid_is_fitted_within_its_uncertainty`.
+    /// The error of a difference over h is the model's curvature times h/2 plus its noise times 2/h. A model on a grid has noise of about
+    /// 0.3 % of a force; over one width of its prior an influential parameter changes a force by a third or more, so 2 % of a width changes
+    /// it by twice the noise: enough for the direction of descent from dozens of data. It is not enough where parameters can compensate
+    /// each other: there the noise looks like information. So once the parabola gives the uncertainty of a parameter, steps grow to a
+    /// quarter of it and, for the last Jacobian, to all of it, taken to both sides; to at most ten times the setting. Checked by
+    /// `lm::a_model_with_the_noise_of_a_grid_is_fitted_within_its_uncertainty`.
     pub difference_step: f64,
     /// Seed of the prior draws.
     pub seed: u64,
@@ -46,19 +45,15 @@ impl Default for LmSettings {
     }
 }
 
-/// Most evaluations of a fit.
-const MOST_EVALUATIONS: usize = 1_000_000;
-/// Least draws: intervals are their quantiles.
-const LEAST_DRAWS: usize = 20;
-/// Longest difference: a step to one side always fits between the bounds.
-const LONGEST_DIFFERENCE: f64 = 0.5;
+/// Minimum number of draws: intervals are their quantiles.
+const MIN_DRAWS: usize = 20;
 
-/// A step grows with the uncertainty to at most so many times the setting.
+/// A step grows with the uncertainty to at most this multiple of the setting.
 const LONGER: f64 = 10.0;
 /// One-sided steps as a share of the uncertainty: short, because the model's curvature biases them.
 const SHARE_TO_ONE_SIDE: f64 = 0.25;
 
-/// Why settings are refused.
+/// A setting outside its bounds.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum LmSettingsError {
     /// The prior has no parameters.
@@ -69,60 +64,71 @@ pub enum LmSettingsError {
     NoStart,
     /// The budget does not suffice for a first step.
     #[error(
-        "max_evaluations = {max_evaluations} is below {least}: {starts} starts, {dimension} differences and one step"
+        "max_evaluations = {max_evaluations} is below {min}: {starts} starts, {dimension} differences and one step"
     )]
     TooFewEvaluations {
-        /// The setting.
+        /// The budget as given.
         max_evaluations: usize,
-        /// The least budget.
-        least: usize,
-        /// Starts.
+        /// The smallest possible budget.
+        min: usize,
+        /// Number of starts.
         starts: usize,
         /// Number of parameters.
         dimension: usize,
     },
     /// The budget is too large.
-    #[error("max_evaluations = {max_evaluations} is above {MOST_EVALUATIONS}")]
+    #[error(
+        "max_evaluations = {max_evaluations} is above {}",
+        LmSettings::MAX_EVALUATIONS
+    )]
     TooManyEvaluations {
-        /// The setting.
+        /// The budget as given.
         max_evaluations: usize,
     },
     /// The step of the differences is not in (0, 0.5].
-    #[error("difference_step = {value} prior widths is not above 0 and at most {LONGEST_DIFFERENCE}")]
+    #[error(
+        "difference_step = {value} prior widths is not above 0 and at most {}",
+        LmSettings::MAX_DIFFERENCE_STEP
+    )]
     DifferenceStep {
-        /// The setting.
+        /// The step as given.
         value: f64,
     },
     /// Too few draws for an interval.
-    #[error("particles = {draws} must be 0 or at least {LEAST_DRAWS}")]
+    #[error("particles = {draws} must be 0 or at least {MIN_DRAWS}")]
     TooFewDraws {
-        /// The setting.
+        /// The draws as given.
         draws: usize,
     },
     /// More draws than a store keeps well.
     #[error("particles = {draws} must be at most {MAX_PARTICLES}")]
     TooManyDraws {
-        /// The setting.
+        /// The draws as given.
         draws: usize,
     },
     /// A tolerance is not a finite number above 0.
     #[error("{name} = {value} is not a finite number above 0")]
     Tolerance {
-        /// The setting.
+        /// Name of the setting.
         name: &'static str,
-        /// Its value.
+        /// The tolerance as given.
         value: f64,
     },
 }
 
 impl LmSettings {
+    /// Largest number of evaluations of a fit.
+    pub const MAX_EVALUATIONS: usize = 1_000_000;
+    /// Longest difference: a step to one side always fits between the bounds.
+    pub const MAX_DIFFERENCE_STEP: f64 = 0.5;
+
     /// Step of a difference along an axis with this uncertainty, if it is known; both in prior widths.
     pub(super) fn difference(&self, sides: Sides, uncertainty: Option<f64>) -> f64 {
         let share = match sides {
             Sides::One => SHARE_TO_ONE_SIDE,
             Sides::Both => 1.0,
         };
-        let longest = (LONGER * self.difference_step).min(LONGEST_DIFFERENCE);
+        let longest = (LONGER * self.difference_step).min(Self::MAX_DIFFERENCE_STEP);
         uncertainty.map_or(self.difference_step, |sd| {
             (share * sd).min(longest).max(self.difference_step)
         })
@@ -139,31 +145,31 @@ impl LmSettings {
             difference_step: value,
             ..
         } = self;
-        let least = starts.saturating_add(dimension + 1);
+        let min = starts.saturating_add(dimension + 1);
         if dimension == 0 {
             return Err(LmSettingsError::NoParameters);
         }
         if starts == 0 {
             return Err(LmSettingsError::NoStart);
         }
-        if max_evaluations < least {
+        if max_evaluations < min {
             return Err(LmSettingsError::TooFewEvaluations {
                 max_evaluations,
-                least,
+                min,
                 starts,
                 dimension,
             });
         }
-        if max_evaluations > MOST_EVALUATIONS {
+        if max_evaluations > Self::MAX_EVALUATIONS {
             return Err(LmSettingsError::TooManyEvaluations { max_evaluations });
         }
-        if (1..LEAST_DRAWS).contains(&self.draws) {
+        if (1..MIN_DRAWS).contains(&self.draws) {
             return Err(LmSettingsError::TooFewDraws { draws: self.draws });
         }
         if self.draws > MAX_PARTICLES {
             return Err(LmSettingsError::TooManyDraws { draws: self.draws });
         }
-        if !(value > 0.0 && value <= LONGEST_DIFFERENCE) {
+        if !(value > 0.0 && value <= Self::MAX_DIFFERENCE_STEP) {
             return Err(LmSettingsError::DifferenceStep { value });
         }
         for (name, value) in [

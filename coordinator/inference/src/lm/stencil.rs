@@ -3,7 +3,7 @@
 use super::objective::Column;
 use crate::point_estimate::PriorAxis;
 
-/// The sides to which differences are taken.
+/// The sides of the differences.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Sides {
     /// One side, away from a bound: enough for the direction of descent.
@@ -12,10 +12,10 @@ pub(super) enum Sides {
     Both,
 }
 
-/// A rejected difference is tried on the other side, then so much shorter on both.
+/// A rejected difference is tried on the other side, then shorter by this factor on both.
 const SHORTER: f64 = 0.25;
 
-/// The known differences around a point.
+/// The measured differences around a point.
 #[derive(Debug, Clone)]
 pub(super) struct Stencil {
     axes: Vec<Differences>,
@@ -26,7 +26,7 @@ pub(super) struct Stencil {
 #[derive(Debug, Clone, Default)]
 struct Differences {
     /// Offset and predicted values there.
-    known: Vec<(f64, Vec<f64>)>,
+    measured: Vec<(f64, Vec<f64>)>,
     /// Offsets within the bounds that have not been tried, the preferred first.
     untried: Vec<f64>,
 }
@@ -38,7 +38,7 @@ impl Stencil {
             let inside = |offset: &f64| (axis.lower..=axis.upper).contains(&(t + offset));
             let untried = [step, -step, SHORTER * step, -SHORTER * step];
             Differences {
-                known: Vec::new(),
+                measured: Vec::new(),
                 untried: untried.into_iter().filter(inside).collect(),
             }
         };
@@ -55,9 +55,9 @@ impl Stencil {
     pub(super) fn ask(&mut self, sides: Sides) -> &[(usize, f64)] {
         self.asked.clear();
         for (k, axis) in self.axes.iter().enumerate() {
-            let known = axis.known.first().map(|(offset, _)| *offset);
+            let first = axis.measured.first().map(|(offset, _)| *offset);
             let across = |from: f64| axis.untried.iter().copied().find(|offset| offset * from < 0.0);
-            match (known, axis.known.len(), sides) {
+            match (first, axis.measured.len(), sides) {
                 (None, ..) => {
                     let first = axis.untried.first().copied();
                     self.asked.extend(first.map(|offset| (k, offset)));
@@ -78,7 +78,7 @@ impl Stencil {
         for ((k, offset), answer) in self.asked.drain(..).zip(answers) {
             let axis = &mut self.axes[k];
             axis.untried.retain(|untried| (untried - offset).abs() > 0.0);
-            axis.known.extend(answer.map(|values| (offset, values)));
+            axis.measured.extend(answer.map(|values| (offset, values)));
         }
     }
 
@@ -86,22 +86,22 @@ impl Stencil {
     pub(super) fn is_incomplete(&self) -> bool {
         self.axes
             .iter()
-            .any(|axis| axis.known.is_empty() && !axis.untried.is_empty())
+            .any(|axis| axis.measured.is_empty() && !axis.untried.is_empty())
     }
 
     /// The columns of the Jacobian. With differences at a and, on the other side, b: the slope of the parabola through
     /// all three points: `(b^2 (m_a - m) - a^2 (m_b - m)) / (a b (b - a))`.
     pub(super) fn columns(&self, predicted: &[f64]) -> Vec<Column> {
-        let column = |axis: &Differences| match axis.known.as_slice() {
+        let column = |axis: &Differences| match axis.measured.as_slice() {
             [] => None,
             [(a, at_a)] => Some(at_a.iter().zip(predicted).map(|(x, m)| (x - m) / a).collect()),
             [(a, at_a), (b, at_b), ..] => {
                 let divisor = a * b * (b - a);
-                let (of_a, of_b) = (b * b / divisor, a * a / divisor);
+                let (weight_a, weight_b) = (b * b / divisor, a * a / divisor);
                 let values = at_a.iter().zip(at_b).zip(predicted);
                 Some(
                     values
-                        .map(|((x, y), m)| of_a * (x - m) - of_b * (y - m))
+                        .map(|((x, y), m)| weight_a * (x - m) - weight_b * (y - m))
                         .collect(),
                 )
             }

@@ -6,7 +6,7 @@ use nalgebra::{Cholesky, DMatrix};
 pub(super) const DEGREES_OF_FREEDOM: usize = 5;
 
 /// Smallest diagonal entry of a correlation's factor: below, rounding decides.
-const LEAST_PIVOT: f64 = 1e-7;
+const MIN_PIVOT: f64 = 1e-7;
 
 /// A weighted t-density.
 #[derive(Debug, Clone, PartialEq)]
@@ -41,7 +41,7 @@ impl Component {
             }
         });
         let lower = Cholesky::new(correlation)?.unpack();
-        if !(0..dimension).all(|i| lower[(i, i)] > LEAST_PIVOT) {
+        if !(0..dimension).all(|i| lower[(i, i)] > MIN_PIVOT) {
             return None;
         }
         let mut factor = vec![0.0; dimension * dimension];
@@ -69,9 +69,9 @@ impl Component {
         scratch.clear();
         let mut sum = 0.0;
         for (row, x) in x.iter().enumerate() {
-            let known = &self.factor[row * dimension..row * dimension + row];
+            let row_values = &self.factor[row * dimension..row * dimension + row];
             let mut value = x - self.mean[row];
-            for (l, z) in known.iter().zip(scratch.iter()) {
+            for (l, z) in row_values.iter().zip(scratch.iter()) {
                 value -= l * z;
             }
             value *= self.inverse_diagonal[row];
@@ -97,8 +97,8 @@ impl Component {
         let dimension = self.mean.len();
         (0..dimension)
             .map(|row| {
-                let known = &self.factor[row * dimension..=row * dimension + row];
-                let step: f64 = known.iter().zip(normals).map(|(l, z)| l * z).sum();
+                let row_values = &self.factor[row * dimension..=row * dimension + row];
+                let step: f64 = row_values.iter().zip(normals).map(|(l, z)| l * z).sum();
                 self.mean[row] + scale * step
             })
             .collect()

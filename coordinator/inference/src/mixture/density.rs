@@ -9,7 +9,7 @@ pub(crate) struct Mixture {
     pub(super) components: Vec<Component>,
     /// Weight over root determinant of each component, relative to the largest.
     pub(super) factors: Vec<f64>,
-    /// ln of what the factors are relative to, with the constant of the t-density.
+    /// ln of the scale of the factors, with the constant of the t-density.
     log_scale: f64,
 }
 
@@ -34,14 +34,13 @@ impl Mixture {
         })
     }
 
-    /// Number of components.
     pub(crate) fn size(&self) -> usize {
         self.components.len()
     }
 
-    /// This mixture with every component's weight moved by `share` towards the mean weight, so that a region whose
-    /// weight was underestimated keeps its draws.
-    pub(crate) fn levelled(&self, share: f64) -> Self {
+    /// Moves the weight of every component by `share` towards the mean weight (a defensive mixture), so that a region whose weight
+    /// was underestimated keeps its draws.
+    pub(crate) fn defensive(&self, share: f64) -> Self {
         let level = share / self.components.len() as f64;
         let mut components = self.components.clone();
         for component in &mut components {
@@ -59,7 +58,6 @@ impl Mixture {
         self.log_scale + libm::log(sum)
     }
 
-    /// A draw from the mixture.
     pub(crate) fn draw(&self, stream: &mut Stream) -> Vec<f64> {
         let mut rest = stream.uniform();
         let last = self.components.len() - 1;
@@ -89,12 +87,12 @@ mod tests {
         let points = |coordinates| WeightedPoints::new(2, coordinates, vec![0.0; 1000], vec![1.0; 1000]);
         let (wide, _) = fitted(&points(coordinates), 1, &mut stream).unwrap();
         let shifted: Vec<f64> = stream.normals(2000).iter().map(|z| 3.3 + 0.8 * z).collect();
-        let (other, _) = fitted(&points(shifted), 4, &mut stream).unwrap();
+        let (reference, _) = fitted(&points(shifted), 4, &mut stream).unwrap();
         let mut scratch = Vec::new();
         let ratios: Vec<f64> = (0..40_000)
             .map(|draw| {
                 let x = wide.draw(&mut Stream::new(2, 0, draw, 0));
-                libm::exp(other.log_density(&x, &mut scratch) - wide.log_density(&x, &mut scratch))
+                libm::exp(reference.log_density(&x, &mut scratch) - wide.log_density(&x, &mut scratch))
             })
             .collect();
         let (mean, sd) = crate::diagnostics::mean_and_sd(&ratios).unwrap();
@@ -106,7 +104,7 @@ mod tests {
         let mut stream = Stream::new(1, 0, 0, 0);
         let points = WeightedPoints::new(1, stream.normals(500), vec![0.0; 500], vec![1.0; 500]);
         let (mixture, _) = fitted(&points, 8, &mut stream).unwrap();
-        let levelled = mixture.levelled(0.3);
+        let defensive = mixture.defensive(0.3);
         let mut scratch = Vec::new();
         let mut integral = |mixture: &Mixture| -> f64 {
             (-4000..4000)
@@ -114,7 +112,7 @@ mod tests {
                 .sum()
         };
         // The tails beyond 40 hold 1e-6.
-        for mixture in [&mixture, &levelled] {
+        for mixture in [&mixture, &defensive] {
             let sum = integral(mixture);
             assert!((sum - 1.0).abs() < 1e-3, "{sum}");
         }

@@ -6,18 +6,17 @@ use super::points::WeightedPoints;
 use statistics::rng::Stream;
 
 /// Effective points below which a component is dropped.
-const LEAST_POINTS: f64 = 0.2;
+const MIN_POINTS: f64 = 0.2;
 
-/// Effective points, for each dimension and two more, with which the mean scatter within components enters each
-/// component's own: a component of few points takes the common shape.
+/// Number of effective points, for each dimension and two more, with which the mean scatter within components enters each
+/// component's scatter: a component of few points takes the common shape.
 const COMMON_POINTS: f64 = 1.0;
 
 /// A mixture of `size` components after `rounds` rounds; components that lose their points are dropped.
 ///
-/// The start: means drawn by weight and square distance from the means so far (k-means++, Arthur & Vassilvitskii 2007),
-/// scatters that of all points, shrunk by `size^(-2/d)`. Each round updates weights, means and scatters as Peel and
-/// `McLachlan` 2000 do (Stat. Comput. 10:339, doi:10.1023/A:1008981510081), each point counted by its weight. `None` if
-/// the points' scatter is singular.
+/// The start: means drawn by weight and square distance from the means so far (k-means++, Arthur & Vassilvitskii 2007), scatters that of
+/// all points, shrunk by `size^(-2/d)`. Each round updates weights, means and scatters as Peel and `McLachlan` 2000 do (Stat. Comput.
+/// 10:339, doi:10.1023/A:1008981510081), each point counted by its weight. `None` if the points' scatter is singular.
 pub(super) fn em(
     points: &WeightedPoints,
     size: usize,
@@ -32,7 +31,7 @@ pub(super) fn em(
 }
 
 fn start(points: &WeightedPoints, size: usize, stream: &mut Stream) -> Option<Vec<Component>> {
-    let all = Moments::of(
+    let all = Moments::new(
         points,
         points.weights.iter().copied(),
         points.weights.iter().copied(),
@@ -92,10 +91,15 @@ fn round(mixture: &Mixture, points: &WeightedPoints) -> Option<Vec<Component>> {
     }
     let updates: Vec<Moments> = (0..size)
         .map(|k| {
-            let of = |values: &'_ [f64]| values.iter().skip(k).step_by(size).copied().collect::<Vec<f64>>();
-            Moments::of(points, of(&shares).into_iter(), of(&pulls).into_iter())
+            let of_component =
+                |values: &'_ [f64]| values.iter().skip(k).step_by(size).copied().collect::<Vec<f64>>();
+            Moments::new(
+                points,
+                of_component(&shares).into_iter(),
+                of_component(&pulls).into_iter(),
+            )
         })
-        .filter(|update| update.weight * effective > LEAST_POINTS)
+        .filter(|update| update.weight * effective > MIN_POINTS)
         .collect();
     let total: f64 = updates.iter().map(|update| update.weight).sum();
     let common: Vec<f64> = (0..points.dimension * points.dimension)
@@ -105,9 +109,9 @@ fn round(mixture: &Mixture, points: &WeightedPoints) -> Option<Vec<Component>> {
     let components: Vec<Component> = updates
         .into_iter()
         .filter_map(|update| {
-            let own = update.weight * effective;
+            let points = update.weight * effective;
             let scatter = update.scatter.iter().zip(&common);
-            let scatter = scatter.map(|(c, common)| (own * c + prior * common) / (own + prior));
+            let scatter = scatter.map(|(c, common)| (points * c + prior * common) / (points + prior));
             Component::new(update.weight, update.mean, scatter.collect())
         })
         .collect();
@@ -123,7 +127,7 @@ struct Moments {
 
 impl Moments {
     /// mean = sum p x / sum p and scatter = sum p (x - mean)(x - mean)' / sum r, with shares r and pulls p.
-    fn of(
+    fn new(
         points: &WeightedPoints,
         shares: impl Iterator<Item = f64>,
         pulls: impl Iterator<Item = f64> + Clone,

@@ -52,7 +52,6 @@ impl WeightedPoints {
         self.coordinates.chunks_exact(self.dimension)
     }
 
-    /// Kish's effective number of points.
     pub(super) fn effective_number(&self) -> f64 {
         1.0 / self.weights.iter().map(|w| w * w).sum::<f64>()
     }

@@ -12,16 +12,16 @@ const ROUNDS: usize = 25;
 /// Sizes in a row that may predict worse before the search ends.
 const PATIENCE: usize = 2;
 
-/// The mixture of 1, 2, 4, ... up to `most` components whose fit to one half of the points predicts the other best, and how
-/// well: the mean of ln (q / reference) over both halves.
+/// The mixture of 1, 2, 4, ... up to `max` components whose fit to one half of the points predicts the other best, and the quality
+/// of that prediction: the mean of ln (q / reference) over both halves.
 ///
 /// # Returns
 /// `None` if the points' scatter is singular.
-pub(crate) fn fitted(points: &WeightedPoints, most: usize, stream: &mut Stream) -> Option<(Mixture, f64)> {
+pub(crate) fn fitted(points: &WeightedPoints, max: usize, stream: &mut Stream) -> Option<(Mixture, f64)> {
     let halves = [points.half(0), points.half(1)];
     let (mut best, mut size_of_best, mut worse) = (f64::NEG_INFINITY, 1, 0);
     let mut size = 1;
-    while size <= most && worse < PATIENCE {
+    while size <= max && worse < PATIENCE {
         match score(&halves, size, stream) {
             Some(value) if value > best => (best, size_of_best, worse) = (value, size, 0),
             _ => worse += 1,

@@ -5,7 +5,6 @@ use statistics::prior::Marginal;
 /// One parameter of the model, with t = u / width; u is the sampling coordinate of its marginal.
 #[derive(Debug, Clone)]
 pub(crate) struct PriorAxis {
-    /// Index in theta.
     pub(crate) parameter: usize,
     pub(crate) lower: f64,
     pub(crate) upper: f64,
@@ -44,7 +43,7 @@ impl PriorAxis {
         }
     }
 
-    /// Whether t is a bound.
+    /// Whether t lies at a bound.
     pub(crate) fn is_bound(&self, t: f64) -> bool {
         t <= self.lower || t >= self.upper
     }

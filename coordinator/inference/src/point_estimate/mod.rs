@@ -1,6 +1,6 @@
-//! What every point estimate of the parameters shares: the axes it moves along, and its result.
+//! The common parts of all point estimates: the axes and the result.
 //!
-//! Maximised is ln p(data | theta) + ln p(theta), the second term the density of the parameters as declared: another
+//! The maximised function is ln p(data | theta) + ln p(theta), the second term the density of the parameters as declared: another
 //! parametrisation of the same prior (a lognormal x, a normal ln x) has another maximum.
 //!
 //! # Layout

@@ -1,10 +1,10 @@
-//! The mode of the posterior: where it lies, its uncertainty, and why the optimisation stopped.
+//! The mode of the posterior: its place, its uncertainty, and the reason for which the optimisation stopped.
 
 use serde::{Deserialize, Serialize};
 
 use crate::tmcmc::Particle;
 
-/// Why an optimisation stopped.
+/// The reason for which an optimisation stopped.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum StopReason {
@@ -21,7 +21,7 @@ pub enum StopReason {
 }
 
 impl StopReason {
-    /// Every reason.
+    /// All reasons.
     pub const ALL: [Self; 5] = [
         Self::Decrease,
         Self::Step,
@@ -64,7 +64,7 @@ impl StopReason {
 /// Tierney & Kadane 1986, J. Am. Stat. Assoc. 81:82, doi:10.1080/01621459.1986.10478240.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Laplace {
-    /// Standard deviation of each parameter, the others free; `None` at a bound and where it is not determined.
+    /// Standard deviation of each parameter with the others free; `None` at a bound and where it is not determined.
     pub sd: Vec<Option<f64>>,
     /// Covariance in the units of the parameters: the inverse of the curvature of f, without the model's own curvature.
     /// Rows and columns of parameters without a standard deviation are 0.
@@ -83,7 +83,7 @@ pub struct NormalApproximation {
 /// The state of an evolution after a generation.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Generation {
-    /// Evaluations so far.
+    /// Number of evaluations so far.
     pub evaluations: u64,
     /// Highest log-posterior so far, in nats; `None` while the model rejected everything.
     pub best: Option<f64>,
@@ -102,15 +102,15 @@ pub struct ModeEstimate {
     pub log_prior: f64,
     /// Whether each parameter lies exactly at a bound of its prior.
     pub at_bound: Vec<bool>,
-    /// Their uncertainty, where the algorithm knows the curvature.
+    /// The uncertainty, if the algorithm knows the curvature.
     pub laplace: Option<Laplace>,
-    /// Draws about the mode, where the algorithm gives any.
+    /// Draws about the mode, if the algorithm gives any.
     pub approximation: Option<NormalApproximation>,
-    /// Evaluations spent.
+    /// Number of evaluations.
     pub evaluations: u64,
-    /// Those that the model rejected.
+    /// Number of evaluations that the model rejected.
     pub rejected: u64,
-    /// Why the optimisation stopped.
+    /// The reason for which the optimisation stopped.
     pub stop: StopReason,
     /// The generations of an evolution; empty for a fit by steps.
     pub history: Vec<Generation>,

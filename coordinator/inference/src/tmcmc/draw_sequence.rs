@@ -12,12 +12,12 @@ use crate::phase::RunPhase;
 use crate::tell::InferenceFailure;
 use statistics::metamodel::Pool;
 
-/// |z| of the difference between the last stage's draws and what the stage before predicts of them, above which the last are
-/// not trusted. Draws of earlier stages only lead to them, and raise no alarm. Weights have heavier tails than a normal
-/// variable: over 180 runs with right answers the largest is 5.2.
+/// The last stage's draws are not trusted if |z| of their difference from the prediction of the stage before is larger. Earlier
+/// stages only lead to them, and raise no alarm. Weights have heavier tails than a normal variable: over 180 runs with right
+/// answers the largest is 5.2.
 const DISAGREEMENT: f64 = 6.0;
 
-/// Relative difference that counts as none.
+/// A smaller relative difference counts as none.
 const ROUNDING: f64 = 1e-9;
 
 impl Sampler {
@@ -43,7 +43,7 @@ impl Sampler {
         })
     }
 
-    /// Continues a stage of draws, ends it, or falls back to moves.
+    /// Continues a stage of draws, ends it, or resorts to moves.
     pub(super) fn after_draws(
         &mut self,
         mut stage: Box<DrawStage>,
@@ -145,9 +145,9 @@ impl Sampler {
             log_evidence,
             log_evidence_variance,
         } = stage.forecast;
-        let found = stage.sample.mean_log_likelihood(weights);
-        // Log-likelihoods that are all alike differ by rounding alone.
-        let rounding = ROUNDING * (1.0 + found.mean.abs());
+        let measured = stage.sample.mean_log_likelihood(weights);
+        // Log-likelihoods that are all equal differ by rounding alone.
+        let rounding = ROUNDING * (1.0 + measured.mean.abs());
         let z = |change: f64, variance: f64| {
             if change.abs() > rounding && variance > 0.0 {
                 change / variance.sqrt()
@@ -155,7 +155,10 @@ impl Sampler {
                 0.0
             }
         };
-        let drift_z = z(found.mean - expected.mean, found.variance + expected.variance);
+        let drift_z = z(
+            measured.mean - expected.mean,
+            measured.variance + expected.variance,
+        );
         let weight_drift_z = z(
             weights.log_mean - log_evidence,
             weights.log_mean_variance() + stage.proposal.inside_variance + log_evidence_variance,

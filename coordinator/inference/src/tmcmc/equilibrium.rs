@@ -14,7 +14,7 @@ const DRIFT_ALARM: f64 = 3.0;
 /// The z-score of a change whose spread is unknown: alarming, and finite, so that JSON can hold it.
 const DRIFT_UNKNOWN: f64 = 1e6;
 
-/// How far the log-likelihoods of a stage moved.
+/// The movement of the log-likelihoods of a stage.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Drift {
     /// z-score of the mean change of the log-likelihood.
@@ -26,11 +26,10 @@ pub(super) struct Drift {
 }
 
 impl Drift {
-    /// Drift of particles from `start` to `end`, those of one cluster being dependent.
+    /// Drift of particles from `start` to `end`; particles of one cluster are dependent.
     ///
-    /// `step` is the growth of the exponent before; `moved` decides where the log-likelihoods are all equal
-    /// and have no ranks.
-    pub(super) fn of(start: &[f64], end: &[f64], clusters: &[usize], step: f64, moved: bool) -> Self {
+    /// `step` is the growth of the exponent before; `moved` decides where the log-likelihoods are all equal and have no ranks.
+    pub(super) fn new(start: &[f64], end: &[f64], clusters: &[usize], step: f64, moved: bool) -> Self {
         let correlation = rank_correlation(start, end).unwrap_or(if moved { 0.0 } else { 1.0 });
         let max = start
             .iter()
@@ -79,11 +78,10 @@ pub(super) fn pooled_z(z: impl ExactSizeIterator<Item = f64>) -> f64 {
 /// z-score of the mean of paired changes whose members of one cluster may be dependent:
 /// `z = sum d_i / sqrt(sum_c (sum_{i in c} (d_i - mean d))^2)`.
 ///
-/// Chains that start from one ancestor share their start, so only clusters are independent. The start's own
-/// sampling error is covered: a chain that forgets its start changes by (new - start), and the clusters' sums
-/// of the starts have the variance of the weighted sample they were drawn from. 0 when nothing changes. Where
-/// the clusters do not show the spread (one cluster, or all alike) the z-score is unbounded; it is then
-/// [`DRIFT_UNKNOWN`], with the sign of the change.
+/// Chains that start from one ancestor share their start, so only clusters are independent. The start's own sampling error is covered: a
+/// chain that forgets its start changes by (new - start), and the clusters' sums of the starts have the variance of the weighted sample
+/// they were drawn from. 0 when nothing changes. Where the clusters do not show the spread (one cluster, or all alike) the z-score is
+/// unbounded; it is then [`DRIFT_UNKNOWN`], with the sign of the change.
 fn clustered_z(changes: &[f64], clusters: &[usize]) -> f64 {
     let total: f64 = changes.iter().sum();
     if total.abs() <= 0.0 || changes.is_empty() {

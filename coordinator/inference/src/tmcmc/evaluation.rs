@@ -1,4 +1,4 @@
-//! The result of an evaluation, as a sampler is told it.
+//! The result of an evaluation, as it is told to a sampler.
 
 use statistics::log_likelihood::LogLikelihood;
 use statistics::metamodel::{ModelPair, SubchainEnd};
@@ -10,12 +10,12 @@ pub enum EvaluationResult {
     AtProposal {
         /// ln p(data | theta) there.
         log_likelihood: LogLikelihood,
-        /// The predictions of both models there, where a metamodel learns from them.
+        /// The predictions of both models there, if a metamodel learns from them.
         pair: Option<ModelPair>,
     },
     /// The model was evaluated at the end of a subchain.
     AtSubchainEnd {
-        /// The end.
+        /// The parameters at the end.
         end: SubchainEnd,
         /// ln p(data | theta) and the pair there; `None` where no move was accepted, so that no evaluation was needed.
         found: Option<(LogLikelihood, Option<ModelPair>)>,
@@ -32,12 +32,10 @@ impl From<LogLikelihood> for EvaluationResult {
 }
 
 impl EvaluationResult {
-    /// Whether the model was evaluated.
     pub(super) fn is_evaluated(&self) -> bool {
         !matches!(self, Self::AtSubchainEnd { found: None, .. })
     }
 
-    /// Whether the model rejected the parameters.
     pub(super) fn is_rejected(&self) -> bool {
         match self {
             Self::AtProposal { log_likelihood, .. } => log_likelihood.is_impossible(),

@@ -33,7 +33,7 @@ pub struct Sampler {
     pub(super) count: EvaluationCount,
 }
 
-/// What the sampler waits for.
+/// The pending evaluations of the sampler.
 #[derive(Debug, Clone)]
 pub(super) enum SamplerRound {
     /// The prior draws.
@@ -44,7 +44,7 @@ pub(super) enum SamplerRound {
     Moves(Box<Stage>),
 }
 
-/// Where a sampler is.
+/// The position of a sampler in its sequence of stages.
 pub(super) type SamplerPhase = RunPhase<SamplerRound, PosteriorSample>;
 
 impl Sampler {
@@ -78,7 +78,7 @@ impl Sampler {
     /// A sampler whose chains move by a metamodel between evaluations.
     ///
     /// # Arguments
-    /// - `settings`: of [`Algorithm::Tmcmc`](super::Algorithm::Tmcmc); with `metamodel_moves` = 0 there is no metamodel.
+    /// - `settings`: settings of [`Algorithm::Tmcmc`](super::Algorithm::Tmcmc); with `metamodel_moves` = 0 there is no metamodel.
     /// - `likelihood`: scores the metamodel's predictions; the told results must be scored by the same one.
     ///
     /// # Errors

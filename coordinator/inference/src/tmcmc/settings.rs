@@ -1,22 +1,20 @@
-//! The settings of the sampler, and why some are refused.
+//! The settings of the sampler, and their errors.
 
 /// How the population moves at an exponent.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Algorithm {
     /// Every particle moves by several steps of a mixed, self-scaling proposal; the default.
     Tmcmc,
-    /// The original sampler: each particle is one step of a chain that is as long as its leader's
-    /// multiplicity.
+    /// The original sampler: each particle is one step of a chain that is as long as its leader's multiplicity.
     ///
     /// Ching & Chen 2007, doi:10.1061/(ASCE)0733-9399(2007)133:7(816). Kept because published calibrations used it. Its
     /// chains are too short to forget their start, so its runs are reported as not equilibrated.
     ChingChen2007,
     /// BASIS: every resampled particle takes one step of the original sampler's random walk.
     ///
-    /// Wu, Angelikopoulos, Papadimitriou & Koumoutsakos 2018, ASCE-ASME J. Risk Uncertainty B 4:011008,
-    /// doi:10.1115/1.4037450, with their chain length of 1. All chains are equally long, which removes the bias of the
-    /// original sampler, and a stage takes one round. One step forgets even less than the original sampler's chains, so
-    /// its runs are reported as not equilibrated.
+    /// Wu, Angelikopoulos, Papadimitriou & Koumoutsakos 2018, ASCE-ASME J. Risk Uncertainty B 4:011008, doi:10.1115/1.4037450, with their
+    /// chain length of 1. All chains are equally long, which removes the bias of the original sampler, and a stage takes one round. One
+    /// step forgets even less than the original sampler's chains, so its runs are reported as not equilibrated.
     Basis,
 }
 
@@ -27,7 +25,7 @@ impl Algorithm {
     }
 }
 
-/// How a stage of [`Algorithm::Tmcmc`] gets its particles.
+/// The method by which a stage of [`Algorithm::Tmcmc`] gets its particles.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum StageMethod {
     /// Independent draws from a mixture fitted to the weighted draws of the last stage; the default.
@@ -39,21 +37,21 @@ pub enum StageMethod {
 /// Settings of a sampler.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TmcmcSettings {
-    /// The algorithm.
+    /// The algorithm of the stages.
     pub algorithm: Algorithm,
-    /// How a stage gets its particles ([`Algorithm::Tmcmc`] only).
+    /// The method by which a stage gets its particles ([`Algorithm::Tmcmc`] only).
     pub stages: StageMethod,
     /// Size of the population, and the number of draws in a stage.
     pub particles: usize,
-    /// Most components of the mixture that draws come from.
+    /// Maximum number of components of the mixture that proposes draws.
     pub components: usize,
-    /// Least and most steps per particle and stage of moves ([`Algorithm::Tmcmc`] only).
+    /// Minimum and maximum number of steps per particle and stage of moves ([`Algorithm::Tmcmc`] only).
     pub moves: [usize; 2],
     /// Seed of all random numbers.
     pub seed: u64,
     /// Coefficient of variation of the incremental weights by which moves choose the next exponent.
     pub target_cov: f64,
-    /// Moves by the metamodel between two evaluations; 0: no metamodel ([`Algorithm::Tmcmc`] only).
+    /// Number of moves by the metamodel between two evaluations; 0: no metamodel ([`Algorithm::Tmcmc`] only).
     pub metamodel_moves: usize,
 }
 
@@ -73,80 +71,82 @@ impl Default for TmcmcSettings {
     }
 }
 
-/// Most particles of a sample, and most draws of a normal approximation: at 310 bytes each, they take 31 MB.
+/// Maximum number of particles of a sample, and of draws of a normal approximation: at 310 bytes each, they take 31 MB.
 pub const MAX_PARTICLES: usize = 100_000;
-/// Fewest particles of a stage of draws, for each of d + 1 numbers: a fifth of them is the least effective sample that a fit
-/// rests on.
+/// Minimum number of particles of a stage of draws, for each of d + 1 numbers: a fifth of them is the smallest effective sample for a fit.
 const DRAWN_PARTICLES: usize = 8;
 
-/// Most components of a mixture: a fit takes time in proportion.
-const MOST_COMPONENTS: usize = 256;
-/// Most moves in a stage.
-const MOST_MOVES: usize = 10_000;
-
-/// Why settings are refused.
+/// A setting outside its bounds.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum TmcmcSettingsError {
     /// The prior has no parameters.
     #[error("the prior has no parameters")]
     NoParameters,
     /// The population cannot span the parameter space.
-    #[error("{particles} particles are too few for {dimension} parameters, which need at least {least}")]
+    #[error("{particles} particles are too few for {dimension} parameters, which need at least {min}")]
     TooFewParticles {
-        /// The setting.
+        /// The particles as given.
         particles: usize,
         /// Number of parameters.
         dimension: usize,
-        /// The least population.
-        least: usize,
+        /// The smallest possible population.
+        min: usize,
     },
     /// The population does not fit into memory.
     #[error("particles = {particles} must be at most {MAX_PARTICLES}")]
     TooManyParticles {
-        /// The setting.
+        /// The particles as given.
         particles: usize,
     },
     /// The moves are not 1 <= least <= most <= 10,000.
-    #[error("moves [{least}, {most}] are not 1 <= least <= most <= {MOST_MOVES}")]
+    #[error(
+        "moves [{min}, {max}] are not 1 <= least <= most <= {}",
+        TmcmcSettings::MAX_MOVES
+    )]
     Moves {
-        /// Least moves.
-        least: usize,
-        /// Most moves.
-        most: usize,
+        /// The minimum number of moves as given.
+        min: usize,
+        /// The maximum number of moves as given.
+        max: usize,
     },
     /// The mixture has no components, or too many.
-    #[error("components {value} is not 1 to {MOST_COMPONENTS}")]
+    #[error("components {value} is not 1 to {}", TmcmcSettings::MAX_COMPONENTS)]
     Components {
-        /// The setting.
+        /// The components as given.
         value: usize,
     },
     /// A metamodel takes moves, and the stages take none.
     #[error("metamodel_moves {value} needs stages = \"moves\": independent draws take no moves")]
     MetamodelNeedsMoves {
-        /// The setting.
+        /// The moves of the metamodel as given.
         value: usize,
     },
     /// The metamodel has more moves than a worker should take at a time.
-    #[error("metamodel_moves {value} is more than {MOST_MOVES}")]
+    #[error("metamodel_moves {value} is more than {}", TmcmcSettings::MAX_MOVES)]
     MetamodelMoves {
-        /// The setting.
+        /// The moves of the metamodel as given.
         value: usize,
     },
     /// The algorithm does not support a metamodel.
     #[error("metamodel_moves {value}: only tmcmc takes a metamodel")]
     NoMetamodel {
-        /// The setting.
+        /// The moves of the metamodel as given.
         value: usize,
     },
     /// The target coefficient of variation is not a finite number above 0.
     #[error("target_cov {value} is not a finite number above 0")]
     TargetCov {
-        /// The setting.
+        /// The coefficient as given.
         value: f64,
     },
 }
 
 impl TmcmcSettings {
+    /// Largest number of components of a mixture: a fit takes time in proportion.
+    pub const MAX_COMPONENTS: usize = 256;
+    /// Largest number of moves in a stage.
+    pub const MAX_MOVES: usize = 10_000;
+
     /// Whether stages of a problem of `dimension` parameters are drawn: small populations move from the start.
     pub(crate) fn draws(&self, dimension: usize) -> bool {
         self.stages == StageMethod::Draws
@@ -159,27 +159,30 @@ impl TmcmcSettings {
     /// # Errors
     /// [`TmcmcSettingsError`] with the setting and its bound.
     pub fn check(&self, dimension: usize) -> Result<(), TmcmcSettingsError> {
-        let least = 2 * dimension + 2;
-        let [fewest, most] = self.moves;
+        let min = 2 * dimension + 2;
+        let [min_moves, max_moves] = self.moves;
         if dimension == 0 {
             Err(TmcmcSettingsError::NoParameters)
-        } else if self.particles < least {
+        } else if self.particles < min {
             Err(TmcmcSettingsError::TooFewParticles {
                 particles: self.particles,
                 dimension,
-                least,
+                min,
             })
         } else if self.particles > MAX_PARTICLES {
             Err(TmcmcSettingsError::TooManyParticles {
                 particles: self.particles,
             })
-        } else if fewest == 0 || fewest > most || most > MOST_MOVES {
-            Err(TmcmcSettingsError::Moves { least: fewest, most })
-        } else if self.metamodel_moves > MOST_MOVES {
+        } else if min_moves == 0 || min_moves > max_moves || max_moves > Self::MAX_MOVES {
+            Err(TmcmcSettingsError::Moves {
+                min: min_moves,
+                max: max_moves,
+            })
+        } else if self.metamodel_moves > Self::MAX_MOVES {
             Err(TmcmcSettingsError::MetamodelMoves {
                 value: self.metamodel_moves,
             })
-        } else if self.components == 0 || self.components > MOST_COMPONENTS {
+        } else if self.components == 0 || self.components > Self::MAX_COMPONENTS {
             Err(TmcmcSettingsError::Components {
                 value: self.components,
             })

@@ -32,7 +32,7 @@ struct Step {
     kind: Kind,
 }
 
-/// How a step finds its candidate.
+/// The kind of candidate of a step.
 #[derive(Debug, Clone)]
 enum Kind {
     /// Outside the prior's support: rejected without evaluation.
@@ -43,7 +43,6 @@ enum Kind {
     Delayed,
 }
 
-/// The decision on a step.
 struct Decision {
     state: Option<ChainState>,
     scaled: u32,

@@ -16,7 +16,7 @@ use crate::round::Proposal;
 use crate::tell::InferenceFailure;
 use statistics::metamodel::{ChainState, Metamodel, MetamodelStage, Pool};
 
-/// Steps between two checks of a stage's equilibrium; one with a metamodel, whose steps hold many moves.
+/// Number of steps between two checks of a stage's equilibrium; with a metamodel, whose steps hold many moves, it is one.
 const BLOCK: usize = 5;
 
 impl Sampler {
@@ -110,11 +110,11 @@ impl Sampler {
 
     /// Continues a stage, or ends it and starts the next or finishes.
     pub(super) fn after_step(&mut self, stage: Box<Stage>) -> Result<SamplerPhase, InferenceFailure> {
-        let [least, _] = self.settings.moves;
+        let [min_moves, _] = self.settings.moves;
         let mut drift = None;
         if self.settings.algorithm == Algorithm::Tmcmc
-            && stage.step >= least
-            && (stage.step - least).is_multiple_of(if stage.metamodel.is_some() { 1 } else { BLOCK })
+            && stage.step >= min_moves
+            && (stage.step - min_moves).is_multiple_of(if stage.metamodel.is_some() { 1 } else { BLOCK })
         {
             drift = Some(self.drift(&stage)).filter(|drift| drift.is_settled());
         }
@@ -132,7 +132,7 @@ impl Sampler {
                 0.0,
             );
         }
-        // Draws of earlier stages only led here.
+        // The draws of earlier stages only led to this one.
         let moved: Vec<&StageRecord> = self.stages.iter().filter(|stage| stage.scale > 0.0).collect();
         let drift_z = pooled_z(moved.iter().map(|stage| stage.drift_z));
         let weight_drift_z = pooled_z(moved.iter().map(|stage| stage.weight_drift_z));
@@ -154,9 +154,8 @@ impl Sampler {
         })))
     }
 
-    /// Drift of a stage: of its chains from start to end or, in the original sampler, of every particle from the
-    /// leader of its chain (the same in BASIS, which takes one step). The chains have moved if they accepted one step
-    /// each on average.
+    /// Drift of a stage: of its chains from start to end or, in the original sampler and in BASIS, of every particle from the
+    /// leader of its chain. The chains have moved if they accepted one step each on average.
     fn drift(&self, stage: &Stage) -> Drift {
         let chains = &stage.chains;
         let moved = stage.accepted >= chains.len() as u64;
@@ -168,10 +167,9 @@ impl Sampler {
         };
         let start: Vec<f64> = members.iter().map(|&chain| chains[chain].start.value()).collect();
         let clusters: Vec<usize> = members.iter().map(|&chain| chains[chain].ancestor).collect();
-        Drift::of(&start, &end, &clusters, self.passage.step, moved)
+        Drift::new(&start, &end, &clusters, self.passage.step, moved)
     }
 
-    /// Records a finished stage.
     fn record(&mut self, stage: &Stage, drift: Drift) {
         let Passage {
             step,

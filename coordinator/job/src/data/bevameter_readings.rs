@@ -30,9 +30,9 @@ pub struct Reading<C> {
 /// The measured readings of an experiment.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct BevameterReadings {
-    /// Of plates, in the order of the file.
+    /// The readings of plates, in the order of the file.
     pub plates: Vec<Reading<PlateCondition>>,
-    /// Of rings.
+    /// The readings of rings, in the order of the file.
     pub rings: Vec<Reading<RingCondition>>,
 }
 
@@ -116,9 +116,9 @@ impl BevameterReadings {
         fixed: &std::collections::BTreeMap<String, f64>,
         parameters: &mut Vec<FreeParameter>,
     ) -> Result<(), DataError> {
-        let said = |name: &str| fixed.contains_key(name) || parameters.iter().any(|p| p.name == name);
+        let is_stated = |name: &str| fixed.contains_key(name) || parameters.iter().any(|p| p.name == name);
         if self.rings.is_empty() {
-            return match said(RING_TRANSFER) {
+            return match is_stated(RING_TRANSFER) {
                 true => Err(DataError::NoRing(RING_TRANSFER)),
                 false => Ok(()),
             };
@@ -128,7 +128,7 @@ impl BevameterReadings {
         if let Some(name) = free.chain(fixed.keys()).find(|n| n.starts_with(of_one_wheel)) {
             return Err(DataError::ModulusOfOneWheel(name.clone()));
         }
-        if !said(RING_TRANSFER) {
+        if !is_stated(RING_TRANSFER) {
             let (mean, sd) = (0.0, TRANSFER_SD);
             parameters.push(FreeParameter {
                 name: RING_TRANSFER.to_owned(),

@@ -54,7 +54,7 @@ impl SetCondition {
 }
 
 impl ConfoundedOrder {
-    /// What it means, in a sentence.
+    /// A sentence that says what follows from it.
     pub fn words(self) -> String {
         let condition = self.condition.words();
         format!(

@@ -3,7 +3,7 @@
 use statistics::{LikelihoodError, PriorError};
 
 /// Fewest repeats that a scatter is estimated from.
-pub(crate) const LEAST_FREEDOM: usize = 3;
+pub(crate) const MIN_FREEDOM: usize = 3;
 
 /// Why measurements cannot be fitted as the job and the experiment say.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -24,7 +24,7 @@ pub(crate) enum DataError {
     NotNeeded {
         /// The parameter.
         name: String,
-        /// What might have needed it.
+        /// The measurements that would need it.
         nothing: &'static str,
     },
     /// A measurement without a standard deviation.
@@ -41,7 +41,7 @@ pub(crate) enum DataError {
     },
     /// A scatter from too few repeats.
     #[error(
-        "[noise] {column} = \"replicates\": the fit runs repeat conditions only {freedom} times, at least {LEAST_FREEDOM} repeats are needed"
+        "[noise] {column} = \"replicates\": the fit runs repeat conditions only {freedom} times, at least {MIN_FREEDOM} repeats are needed"
     )]
     FewRepeats {
         /// The channel.

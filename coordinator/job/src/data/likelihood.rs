@@ -32,8 +32,8 @@ pub(crate) fn likelihood(
         for condition in noise::conditions(experiment, fit_runs) {
             for (channel, discrepancy) in settings.discrepancies.iter().enumerate() {
                 if *discrepancy != Discrepancy::None {
-                    let own = members(&data, &|d| d.channel == channel && condition.contains(&d.run));
-                    common.push((own, CommonErrorSize::Discrepancy { group: channel }));
+                    let affected = members(&data, &|d| d.channel == channel && condition.contains(&d.run));
+                    common.push((affected, CommonErrorSize::Discrepancy { group: channel }));
                 }
             }
         }

@@ -6,7 +6,7 @@ use shared::parameters::{NOISE_PREFIX, noise_parameter, scatter_parameter};
 use statistics::{Datum, Distribution, ErrorSd, Marginal};
 
 use super::bevameter_readings::BevameterReadings;
-use super::error::{DataError, LEAST_FREEDOM};
+use super::error::{DataError, MIN_FREEDOM};
 use crate::table::prior_entry::FreeParameter;
 
 /// Prior scale of an unknown noise sd where the job states none: the run-to-run scatter that is usual
@@ -116,7 +116,7 @@ pub(crate) fn preparations(experiment: &Experiment, fit_runs: &[usize]) -> Vec<V
         let id = experiment.runs[i].prepared.as_deref();
         match preparations
             .iter_mut()
-            .find(|(own, _)| own.is_some() && *own == id)
+            .find(|(known, _)| known.is_some() && *known == id)
         {
             Some((_, positions)) => positions.push(position),
             None => preparations.push((id, vec![position])),
@@ -206,13 +206,13 @@ pub(crate) fn data(
 /// The scatter of fitted repeats with its degrees of freedom; `None` with fewer than three.
 pub fn repeat_scatter(experiment: &Experiment, fit_runs: &[usize], channel: Channel) -> Option<(f64, usize)> {
     let (sd, freedom) = pooled(experiment, fit_runs, channel);
-    (freedom >= LEAST_FREEDOM).then_some((sd, freedom))
+    (freedom >= MIN_FREEDOM).then_some((sd, freedom))
 }
 
 fn pooled_sd(experiment: &Experiment, fit_runs: &[usize], channel: Channel) -> Result<f64, DataError> {
     let column = channel.column();
     match pooled(experiment, fit_runs, channel) {
-        (_, freedom) if freedom < LEAST_FREEDOM => Err(DataError::FewRepeats { column, freedom }),
+        (_, freedom) if freedom < MIN_FREEDOM => Err(DataError::FewRepeats { column, freedom }),
         (sd, _) if sd > 0.0 => Ok(sd),
         _ => Err(DataError::EqualRepeats(column)),
     }

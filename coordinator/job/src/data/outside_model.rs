@@ -37,7 +37,7 @@ pub(crate) fn check(
     if likelihood
         .sensitive()
         .iter()
-        .any(|own| own.derivative == BY_STIFFNESS)
+        .any(|error| error.derivative == BY_STIFFNESS)
     {
         wrong.push(format!(
             "scatter of the soil's stiffness needs derivatives by the stiffness, which {name} does not give: set it to 0 under [noise]"

@@ -21,10 +21,10 @@ pub(crate) fn predicted_values(likelihood: &Likelihood, radii_m: &[f64]) -> Vec<
             run: d.run,
         },
     };
-    let sensitive = likelihood.sensitive().iter().map(|own| {
-        let Datum { channel, run, .. } = data[own.datum];
+    let sensitive = likelihood.sensitive().iter().map(|sensitive| {
+        let Datum { channel, run, .. } = data[sensitive.datum];
         let channel = Channel::ALL[channel];
-        match own.derivative {
+        match sensitive.derivative {
             BY_STRENGTH => PredictedValue::Strength {
                 channel,
                 run,

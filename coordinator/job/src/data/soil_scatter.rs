@@ -65,7 +65,7 @@ impl SoilScatter {
     pub(crate) fn errors(&self, data: &[Datum]) -> Vec<CommonError> {
         // The strength of the soil does not carry the wheel: its sinkage stays.
         let feels = |d: &Datum| self.derivative == BY_STIFFNESS || d.channel != Channel::Sinkage.index();
-        let of = |runs: &Vec<usize>| CommonError {
+        let error = |runs: &Vec<usize>| CommonError {
             data: (0..data.len())
                 .filter(|&i| runs.contains(&data[i].run) && feels(&data[i]))
                 .collect(),
@@ -74,7 +74,7 @@ impl SoilScatter {
                 derivative: self.derivative,
             },
         };
-        self.groups.iter().map(of).collect()
+        self.groups.iter().map(error).collect()
     }
 
     /// One sd of what it does to the measurement of a channel in a run [channel's unit].

@@ -7,7 +7,7 @@ use crate::Spec;
 
 /// The first effect of the model that changes something at its neutral value.
 pub(super) fn questions(spec: &Spec) -> Option<Question> {
-    // What was read once is read again.
+    // The texts were read when the specification was made, so they can be read again.
     let effects = EffectSet::read(&spec.fit_variant.effects).unwrap_or_default();
     let words = effects.iter().find_map(|effect| effect.change_at_neutral())?;
     Some(Question::new(NEUTRAL, words))

@@ -10,7 +10,7 @@ use crate::Spec;
 
 /// No soil gives a pull beyond this share of the load, no rig measures only one below.
 const PULL: [f64; 2] = [1e-3, 2.0];
-/// The same of the torque, in shares of load times radius.
+/// The bounds of the torque, in shares of load times radius.
 const TORQUE: [f64; 2] = [1e-4, 3.0];
 /// A wheel that sinks deeper than this share of its radius has its axle near the ground.
 const SINKAGE: f64 = 0.9;
@@ -60,7 +60,7 @@ fn share(
     scale_words: &str,
     scale: impl Fn(&TestRun) -> f64,
 ) -> Option<Question> {
-    // Where the load itself is odd, nothing can be held against it.
+    // An odd load is no measure of other values.
     let has_odd_load = |run: &TestRun| limit::of("wheel_load_n")?.unusual(run.wheel_load_n);
     let judged = experiment.runs.iter().filter(|run| has_odd_load(run).is_none());
     let sizes = judged.filter_map(|run| {

@@ -22,9 +22,9 @@ pub(super) fn sign_name(channel: Channel) -> String {
 /// Something that is possible, but was probably not meant.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Question {
-    /// What it is about: the name by which it is accepted.
+    /// The name by which it is accepted; it says what the question is about.
     pub name: String,
-    /// What is odd, with place, value, unit and bound.
+    /// A sentence that says what is odd, with place, value, unit and bound.
     pub words: String,
 }
 

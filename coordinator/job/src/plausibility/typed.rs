@@ -121,7 +121,7 @@ fn base(name: &str) -> &str {
     name.split_once('.').map_or(name, |(base, _)| base)
 }
 
-/// What the files say of a quantity: the place of each value, and the value.
+/// The values that the files state for a quantity, each with its place.
 fn values(spec: &Spec, limit: &Limit) -> Vec<(String, f64)> {
     let experiment = &spec.experiment;
     let runs = |value: fn(&TestRun) -> f64| {

@@ -13,14 +13,14 @@ pub enum AlgorithmSettings {
     Fit(LmSettings),
     /// The most probable parameters, by generations.
     Evolve(EvolutionSettings),
-    /// What the model is missing.
+    /// A search for effects that the model misses.
     Discover {
         /// Seed of the draws.
         seed: u64,
     },
 }
 
-/// No round of a search for a missing effect has more questions.
+/// Largest number of questions in a round of a search for a missing effect.
 const DISCOVERY_WIDTH: usize = 100_000;
 
 /// Settings that do not fit the prior.
@@ -39,39 +39,34 @@ pub enum AlgorithmSettingsError {
 
 /// An algorithm by its name in files.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[serde(into = "&str", try_from = "String")]
 pub enum AlgorithmName {
     /// Transitional Markov chain Monte Carlo.
-    #[serde(rename = "tmcmc")]
     Tmcmc,
-    /// The same as published by Ching and Chen in 2007.
-    #[serde(rename = "ching-chen-2007")]
+    /// TMCMC as published by Ching and Chen in 2007.
     ChingChen2007,
     /// BASIS.
-    #[serde(rename = "basis")]
     Basis,
     /// Levenberg-Marquardt.
-    #[serde(rename = "lm")]
     Lm,
     /// Genetic algorithm.
-    #[serde(rename = "ga")]
     Ga,
     /// Covariance matrix adaptation.
-    #[serde(rename = "cma-es")]
     CmaEs,
-    /// Search for a missing effect.
-    #[serde(rename = "discovery")]
+    /// Search for a missing effect, which a study starts by itself: no job states it.
     Discovery,
 }
 
 impl AlgorithmName {
-    /// The algorithms that a job may state. The search for a missing effect is none of them: a study starts it by itself.
-    pub const STATED: [AlgorithmName; 6] = [
+    /// Every algorithm.
+    const ALL: [AlgorithmName; 7] = [
         AlgorithmName::Tmcmc,
         AlgorithmName::ChingChen2007,
         AlgorithmName::Basis,
         AlgorithmName::Lm,
         AlgorithmName::Ga,
         AlgorithmName::CmaEs,
+        AlgorithmName::Discovery,
     ];
 
     /// The algorithms that find the most probable parameters, which a job may ask for beside a sample.
@@ -89,6 +84,21 @@ impl AlgorithmName {
             AlgorithmName::CmaEs => "cma-es",
             AlgorithmName::Discovery => "discovery",
         }
+    }
+}
+
+impl From<AlgorithmName> for &'static str {
+    fn from(algorithm: AlgorithmName) -> Self {
+        algorithm.name()
+    }
+}
+
+impl TryFrom<String> for AlgorithmName {
+    type Error = String;
+
+    fn try_from(name: String) -> Result<Self, String> {
+        let known = AlgorithmName::ALL.into_iter().find(|known| known.name() == name);
+        known.ok_or_else(|| format!("unknown algorithm \"{name}\""))
     }
 }
 
@@ -193,7 +203,7 @@ impl AlgorithmSettings {
         }
     }
 
-    /// More proposals than this are in no round: evaluations are numbered by it.
+    /// Largest number of proposals in a round: evaluations are numbered by it.
     pub fn width(&self) -> usize {
         match self {
             AlgorithmSettings::Sample(settings) => settings.particles,
@@ -204,7 +214,7 @@ impl AlgorithmSettings {
         }
     }
 
-    /// Most evaluations, where the job says so.
+    /// Largest number of evaluations, where the settings state one.
     pub fn max_evaluations(&self) -> Option<usize> {
         match self {
             AlgorithmSettings::Sample(_) | AlgorithmSettings::Discover { .. } => None,

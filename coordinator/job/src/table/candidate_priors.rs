@@ -31,7 +31,7 @@ pub fn candidate_priors(toml: &str) -> BTreeMap<String, toml::Value> {
 }
 
 /// Its entries by full names: a dotted key without quotes is a table under the effect's name.
-fn by_name(table: &toml::Table) -> BTreeMap<String, toml::Value> {
+pub(crate) fn by_name(table: &toml::Table) -> BTreeMap<String, toml::Value> {
     let mut named = BTreeMap::new();
     for (key, value) in table {
         match value.as_table() {
@@ -72,7 +72,8 @@ pub(super) fn check(table: &toml::Table) -> Result<(), TableError> {
             lower: f64::NEG_INFINITY,
             upper: f64::INFINITY,
         };
-        let fail = |e: PriorEntryError| TableError::Unknown(e.of(format!("priors: {name}")).to_string());
+        let fail =
+            |e: PriorEntryError| TableError::Unknown(e.in_parameter(format!("priors: {name}")).to_string());
         marginal(&value, &unbounded).map_err(fail)?;
     }
     Ok(())

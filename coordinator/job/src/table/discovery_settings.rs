@@ -7,15 +7,15 @@ use super::algorithm_settings::AlgorithmSettings;
 use super::candidate_priors;
 use super::error::TableError;
 
-/// Most effects that a job may allow: as many as a model takes.
-const MOST_EFFECTS: usize = 10;
+/// Largest number of effects that a job may allow: as many as a model takes.
+const MAX_EFFECTS: usize = 10;
 
-/// What a study does about effects that its model misses.
+/// The settings of the search for effects that a model misses.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct DiscoverySettings {
     /// Who decides.
     pub apply: Apply,
-    /// Most effects that are added to the job's own.
+    /// Largest number of effects that are added to those of the job.
     pub max_effects: usize,
     /// Whether the other forward model is a candidate.
     pub other_kind: bool,
@@ -39,7 +39,7 @@ pub(crate) struct RawDiscovery {
     apply: String,
     max_effects: usize,
     other_kind: bool,
-    priors: toml::Table,
+    pub(crate) priors: toml::Table,
 }
 
 impl Default for RawDiscovery {
@@ -57,8 +57,8 @@ impl RawDiscovery {
     /// The settings of a job with this algorithm.
     pub(crate) fn settings(&self, algorithm: &AlgorithmSettings) -> Result<DiscoverySettings, TableError> {
         let max_effects = self.max_effects;
-        if !(1..=MOST_EFFECTS).contains(&max_effects) {
-            let rule = format!("must lie in [1, {MOST_EFFECTS}]");
+        if !(1..=MAX_EFFECTS).contains(&max_effects) {
+            let rule = format!("must lie in [1, {MAX_EFFECTS}]");
             return Err(TableError::value("max_effects", max_effects, rule));
         }
         let apply = match self.apply.as_str() {
@@ -88,11 +88,11 @@ impl RawDiscovery {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::JobFile;
+    use crate::Job;
 
     fn parse(sampler: &str, discovery: &str) -> Result<DiscoverySettings, String> {
         let job = format!("[model]\nkind = \"scm\"\n[sampler]\n{sampler}\n{discovery}\n");
-        JobFile::parse("job.toml", &job)
+        Job::parse("job.toml", &job)
             .map(|job| job.discovery)
             .map_err(|e| e.to_string())
     }

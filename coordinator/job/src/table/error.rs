@@ -13,7 +13,7 @@ pub(crate) enum TableError {
         key: &'static str,
         /// Its value as written.
         value: String,
-        /// What it must be.
+        /// The rule that the value breaks.
         rule: String,
     },
     /// Normal errors have no degrees of freedom.
@@ -49,7 +49,7 @@ pub(crate) enum TableError {
         key: &'static str,
         /// Its value as written.
         value: String,
-        /// What is expected, with its verb.
+        /// The value that is expected, with a verb.
         expected: &'static str,
     },
     /// Moduli that the draws do not have.

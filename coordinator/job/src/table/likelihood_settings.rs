@@ -11,7 +11,7 @@ use super::error::TableError;
 /// Degrees of freedom of Student's t where a job says nothing.
 const USUAL_FREEDOM: f64 = 5.0;
 
-/// How measurements scatter around the model: what a job says of it.
+/// The scatter of measurements around the model, as a job states it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LikelihoodSettings {
     /// The law of the errors.
@@ -26,7 +26,7 @@ impl LikelihoodSettings {
         self.discrepancies.iter().any(|d| *d != Discrepancy::None)
     }
 
-    /// What is unusual about it, a sentence each; none of independent normal errors.
+    /// A sentence for each property that differs from independent normal errors.
     pub fn words(&self) -> Vec<String> {
         let mut words = Vec::new();
         if let ErrorLaw::StudentT { degrees_of_freedom } = self.law {
@@ -43,23 +43,24 @@ impl LikelihoodSettings {
             "m of each channel is marginalised over {DISCREPANCY_LEVELS} values from {LEAST_DISCREPANCY} to {GREATEST_DISCREPANCY}, uniform in log m"
         );
         let first = self.discrepancies[0];
-        if self.discrepancies.iter().all(|own| *own == first) {
+        if self.discrepancies.iter().all(|discrepancy| *discrepancy == first) {
             match first {
                 Discrepancy::None => {}
                 Discrepancy::Known(m) => words.push(off(&m.to_string())),
                 Discrepancy::Unknown => words.push(format!("{}; {inferred}", off("m"))),
             }
         } else {
-            let own = Channel::ALL.iter().zip(self.discrepancies).map(|(channel, own)| {
-                let m = match own {
+            let channels = Channel::ALL.iter().zip(self.discrepancies);
+            let words_of = channels.map(|(channel, discrepancy)| {
+                let m = match discrepancy {
                     Discrepancy::None => "0".to_owned(),
                     Discrepancy::Known(m) => m.to_string(),
                     Discrepancy::Unknown => "m".to_owned(),
                 };
                 format!("{m} ({})", channel.words())
             });
-            let own: Vec<String> = own.collect();
-            words.push(format!("{}; {inferred}", off(&own.join(", "))));
+            let by_channel: Vec<String> = words_of.collect();
+            words.push(format!("{}; {inferred}", off(&by_channel.join(", "))));
         }
         words
     }
@@ -129,13 +130,13 @@ impl RawLikelihood {
                 discrepancies[channel.index()] = discrepancy(KEYS[channel.index()], value)?;
             }
         }
-        let own = [
+        let stated = [
             &self.of_drawbar_pull,
             &self.of_torque,
             &self.of_sinkage,
             &self.of_lateral_force,
         ];
-        for (i, value) in own.into_iter().enumerate() {
+        for (i, value) in stated.into_iter().enumerate() {
             if let Some(value) = value {
                 discrepancies[i] = discrepancy(KEYS[i], value)?;
             }

@@ -9,7 +9,7 @@ use shared::parameters::of_models;
 
 use super::prior_entry::PriorEntry;
 
-/// Fewest and most models that a job compares.
+/// The numbers of models that a job can compare.
 const COMPARED: std::ops::RangeInclusive<usize> = 2..=8;
 
 /// The values of a table with their places in the text.
@@ -20,12 +20,14 @@ type Spanned = BTreeMap<String, toml::Spanned<toml::Value>>;
 pub(crate) struct ModelEntry {
     /// Line of its `[[models]]`; `None` of a table `[model]`.
     pub(crate) line: Option<usize>,
+    /// The table without its priors.
+    pub(crate) table: toml::Table,
     pub(crate) settings: ModelSettings,
     /// Its priors: those of all models that it has, then its own.
     pub(crate) priors: Vec<PriorEntry>,
 }
 
-/// What is read once more for the lines.
+/// The part of a job that is read once more for its lines.
 #[derive(Deserialize)]
 struct Lines {
     #[serde(default)]
@@ -52,74 +54,87 @@ pub(crate) fn model_entries(
     models: Vec<toml::Table>,
     shared: Spanned,
 ) -> Result<(ModelEntry, Vec<ModelEntry>), FileError> {
-    let line_at = |start: usize| toml[..start].matches('\n').count() + 1;
-    let entries = |table: Spanned| -> Vec<PriorEntry> {
-        let mut table: Vec<_> = table.into_iter().collect();
-        table.sort_by_key(|(_, value)| value.span().start);
-        let entry = |(name, value): (String, toml::Spanned<toml::Value>)| PriorEntry {
-            name,
-            line: line_at(value.span().start),
-            value: value.into_inner(),
-        };
-        table.into_iter().map(entry).collect()
-    };
-    let shared = entries(shared);
+    let shared = entries(toml, shared);
     let whole = |message: &str| FileError::whole(name, message);
-    let Some(table) = model else {
-        if models.is_empty() {
-            return Err(whole("[model] is missing, or [[models]] for several to compare"));
-        }
-        if !COMPARED.contains(&models.len()) {
-            let (count, least, most) = (models.len(), COMPARED.start(), COMPARED.end());
-            return Err(FileError::whole(
-                name,
-                format!(
-                    "[[models]] has {count}; a comparison takes {least} to {most}, a single one is [model]"
-                ),
-            ));
-        }
-        let lines: Lines = parse_toml(name, toml)?;
-        let mut read = Vec::new();
-        for (mut table, spanned) in models.into_iter().zip(lines.models) {
-            let line = line_at(spanned.span().start);
-            table.remove("priors");
-            let settings = ModelSettings::from_table(&table)
-                .map_err(|e| FileError::at(name, line, format!("[[models]] {e}")))?;
-            let own = entries(spanned.into_inner().priors);
-            let inherited = shared
-                .iter()
-                .filter(|entry| is_shared_by(settings.kind, &entry.name))
-                .filter(|entry| own.iter().all(|own| own.name != entry.name))
-                .filter(|entry| !settings.fixed.contains_key(&entry.name));
-            let priors = inherited.map(PriorEntry::clone).chain(own.iter().cloned());
-            read.push(ModelEntry {
-                line: Some(line),
-                priors: priors.collect(),
-                settings,
-            });
-        }
-        let idle = |entry: &&PriorEntry| read.iter().all(|m| !is_shared_by(m.settings.kind, &entry.name));
-        if let Some(entry) = shared.iter().find(idle) {
-            let kinds: Vec<&str> = read.iter().map(|m| m.settings.kind.name()).collect();
-            let message = format!("{} is a parameter of none of {}", entry.name, kinds.join(", "));
-            return Err(FileError::at(name, entry.line, message));
-        }
-        let first = read.remove(0);
-        return Ok((first, read));
-    };
-    if !models.is_empty() {
-        return Err(whole(
+    match model {
+        None if models.is_empty() => Err(whole("[model] is missing, or [[models]] for several to compare")),
+        None => compared_entries(name, toml, models, &shared),
+        Some(_) if !models.is_empty() => Err(whole(
             "[model] and [[models]] exclude each other: a model to compare is one of [[models]]",
-        ));
+        )),
+        Some(table) => {
+            let settings = ModelSettings::from_table(&table);
+            let entry = ModelEntry {
+                line: None,
+                settings: settings.map_err(|e| whole(&format!("[model] {e}")))?,
+                table,
+                priors: shared,
+            };
+            Ok((entry, Vec::new()))
+        }
     }
-    let settings =
-        ModelSettings::from_table(&table).map_err(|e| FileError::whole(name, format!("[model] {e}")))?;
-    let entry = ModelEntry {
-        line: None,
-        settings,
-        priors: shared,
+}
+
+/// The entries of `[[models]]`.
+fn compared_entries(
+    name: &str,
+    toml: &str,
+    models: Vec<toml::Table>,
+    shared: &[PriorEntry],
+) -> Result<(ModelEntry, Vec<ModelEntry>), FileError> {
+    if !COMPARED.contains(&models.len()) {
+        let (count, least, most) = (models.len(), COMPARED.start(), COMPARED.end());
+        let message =
+            format!("[[models]] has {count}; a comparison takes {least} to {most}, a single one is [model]");
+        return Err(FileError::whole(name, message));
+    }
+    let lines: Lines = parse_toml(name, toml)?;
+    let mut read = Vec::new();
+    for (mut table, spanned) in models.into_iter().zip(lines.models) {
+        let line = line_at(toml, spanned.span().start);
+        table.remove("priors");
+        let settings = ModelSettings::from_table(&table)
+            .map_err(|e| FileError::at(name, line, format!("[[models]] {e}")))?;
+        let stated = entries(toml, spanned.into_inner().priors);
+        let inherited = shared
+            .iter()
+            .filter(|entry| is_shared_by(settings.kind, &entry.name))
+            .filter(|entry| stated.iter().all(|stated| stated.name != entry.name))
+            .filter(|entry| !settings.fixed.contains_key(&entry.name));
+        let priors = inherited.chain(&stated).cloned().collect();
+        read.push(ModelEntry {
+            line: Some(line),
+            priors,
+            settings,
+            table,
+        });
+    }
+    let is_idle = |entry: &&PriorEntry| read.iter().all(|m| !is_shared_by(m.settings.kind, &entry.name));
+    if let Some(entry) = shared.iter().find(is_idle) {
+        let kinds: Vec<&str> = read.iter().map(|m| m.settings.kind.name()).collect();
+        let message = format!("{} is a parameter of none of {}", entry.name, kinds.join(", "));
+        return Err(entry.error(name, message));
+    }
+    let first = read.remove(0);
+    Ok((first, read))
+}
+
+/// The entries of a table of priors, in the order of the file.
+fn entries(toml: &str, table: Spanned) -> Vec<PriorEntry> {
+    let mut table: Vec<_> = table.into_iter().collect();
+    table.sort_by_key(|(_, value)| value.span().start);
+    let entry = |(name, value): (String, toml::Spanned<toml::Value>)| PriorEntry {
+        name,
+        line: Some(line_at(toml, value.span().start)),
+        has_header: value.get_ref().is_table() && toml[value.span().start..].starts_with('['),
+        value: value.into_inner(),
     };
-    Ok((entry, Vec::new()))
+    table.into_iter().map(entry).collect()
+}
+
+/// The line, counted from 1, in which a byte of a text stands.
+fn line_at(text: &str, byte: usize) -> usize {
+    text[..byte].matches('\n').count() + 1
 }
 
 /// Whether a line of `[priors]` concerns a model among several: a base parameter only where the model has it.

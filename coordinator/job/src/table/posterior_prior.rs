@@ -36,8 +36,8 @@ pub struct PosteriorPrior {
 /// Which parameters another calibration's posterior is the prior of.
 #[derive(Debug, Clone, PartialEq)]
 pub struct JointPrior {
-    /// The job's own words.
-    pub said: PosteriorPrior,
+    /// The keys of the job that ask for it.
+    pub stated: PosteriorPrior,
     /// Number of draws in the file.
     pub draws: usize,
     /// The correlated parameters: the first of the parameter vector, in this order.
@@ -111,7 +111,7 @@ impl PosteriorPrior {
 
     /// Fits the joint prior to the draws in the file's text: its parameters with their normal marginals.
     ///
-    /// Covered are the columns of parameters of which the job says nothing itself (`is_said`); `fixed` has its numbers. Draws count equally; means and
+    /// Covered are the columns of parameters of which the job says nothing itself (`is_stated`); `fixed` has its numbers. Draws count equally; means and
     /// covariances are those of the sample, the covariance times `transfer`. Nothing is truncated: what the model cannot be
     /// evaluated at, it refuses.
     ///
@@ -121,7 +121,7 @@ impl PosteriorPrior {
         self,
         text: &str,
         fixed: impl Fn(&str) -> Option<f64>,
-        is_said: impl Fn(&str) -> bool,
+        is_stated: impl Fn(&str) -> bool,
         scope: &ParameterScope,
     ) -> Result<(JointPrior, Vec<FreeParameter>), FileError> {
         let file = self.file.clone();
@@ -141,7 +141,7 @@ impl PosteriorPrior {
                 continue;
             }
             match shared::model::lookup(name, scope) {
-                Ok(quantity) if !is_said(name) => covered.push((position, name.clone(), quantity)),
+                Ok(quantity) if !is_stated(name) => covered.push((position, name.clone(), quantity)),
                 _ => unused.push(name.clone()),
             }
         }
@@ -162,7 +162,7 @@ impl PosteriorPrior {
         let mut free = Vec::new();
         for ((_, name, quantity), column) in covered.iter().zip(&columns) {
             let (mean, sd) = mean_and_sd(column).unwrap_or_default();
-            // what a sum of equal numbers is off by is no spread
+            // The rounding error of a sum of equal numbers is no spread.
             if sd <= ROUNDING * mean.abs() {
                 return Err(whole(format!(
                     "{name} is {} in every draw and has no density: fix it in the job",
@@ -203,7 +203,7 @@ impl PosteriorPrior {
             unused,
             moduli,
             of_plates,
-            said: self,
+            stated: self,
         };
         Ok((joint, free))
     }
@@ -222,9 +222,9 @@ fn is_of_wheel(column: &str) -> bool {
 }
 
 impl JointPrior {
-    /// What it is, for a terminal.
+    /// Lines for a terminal that describe the prior.
     pub fn words(&self) -> Vec<String> {
-        let PosteriorPrior { file, transfer, .. } = &self.said;
+        let PosteriorPrior { file, transfer, .. } = &self.stated;
         let (names, draws) = (self.parameters.join(", "), self.draws);
         let mut lines = vec![format!(
             "{names}: jointly normal as {draws} draws of {file}, covariance times {transfer}"

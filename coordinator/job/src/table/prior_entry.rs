@@ -1,6 +1,7 @@
 //! The entries of `[priors]`.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::LazyLock;
 
 use formula::{Effect, Parameter};
 use shared::channel::Channel;
@@ -29,19 +30,40 @@ pub struct FreeParameter {
 pub struct PriorEntry {
     /// The parameter.
     pub name: String,
-    /// Line in the job file.
-    pub line: usize,
+    /// Line in the job's file; `None` of an entry that was added to the value.
+    pub line: Option<usize>,
+    /// Whether it is a table with a header of its own, `[priors.NAME]`.
+    pub(crate) has_header: bool,
     /// A number, or a table with one distribution.
     pub value: toml::Value,
 }
 
-/// What an entry means.
+/// The priors that models state for their parameters, by their texts.
+static USUAL_PRIORS: LazyLock<BTreeMap<&'static str, toml::Value>> = LazyLock::new(|| {
+    let value = |prior: &'static str| {
+        prior
+            .parse()
+            .unwrap_or_else(|_| toml::Value::String(prior.to_owned()))
+    };
+    let texts = parameters::of_models().filter_map(|parameter| parameter.prior);
+    texts.map(|prior| (prior, value(prior))).collect()
+});
+
+/// An entry that is read: a number or a prior.
 pub(crate) enum ParsedPrior {
     Fixed(f64),
     Free(FreeParameter),
 }
 
 impl PriorEntry {
+    /// An error of this entry of a job.
+    pub(crate) fn error(&self, job: &str, message: String) -> FileError {
+        match self.line {
+            Some(line) => FileError::at(job, line, message),
+            None => FileError::whole(job, message),
+        }
+    }
+
     /// Reads the entry and checks it against the parameter's physical bounds.
     pub(crate) fn parse(&self, scope: &ParameterScope) -> Result<ParsedPrior, PriorEntryError> {
         self.check_quotes(scope.wheels, scope.effects)?;
@@ -52,7 +74,7 @@ impl PriorEntry {
             }
             return Ok(ParsedPrior::Fixed(value));
         }
-        let marginal = marginal(&self.value, &quantity).map_err(|e| e.of(&self.name))?;
+        let marginal = marginal(&self.value, &quantity).map_err(|e| e.in_parameter(&self.name))?;
         Ok(ParsedPrior::Free(FreeParameter {
             name: self.name.clone(),
             unit: quantity.unit,
@@ -66,8 +88,9 @@ impl PriorEntry {
             return Ok(());
         };
         let of_effect = |key: &str| {
-            let own = effects.iter().chain(formula::catalogue::catalogue());
-            own.filter(|e| e.name == self.name)
+            let known = effects.iter().chain(formula::catalogue::catalogue());
+            known
+                .filter(|e| e.name == self.name)
                 .any(|e| e.parameter(key).is_some())
         };
         let dotted = |key: &&String| {
@@ -87,20 +110,20 @@ impl PriorEntry {
 }
 
 impl ParsedPrior {
-    /// The prior of a model's own parameter that the job does not mention.
-    pub(crate) fn usual(own: &BaseParameter, prior: &str) -> Result<FreeParameter, PriorEntryError> {
-        let value: Option<toml::Value> = prior.parse().ok();
-        let quantity = ParameterBounds::from(own);
-        let value = value.unwrap_or_else(|| toml::Value::String(prior.to_owned()));
-        let marginal = marginal(&value, &quantity).map_err(|e| e.of(own.name))?;
-        Ok(FreeParameter {
-            name: own.name.to_owned(),
-            unit: quantity.unit,
+    /// The prior of a parameter of the model itself that the job does not mention; `None` where the model states none.
+    pub(crate) fn usual(parameter: &BaseParameter) -> Option<Result<FreeParameter, PriorEntryError>> {
+        let value = USUAL_PRIORS.get(parameter.prior?)?;
+        let quantity = ParameterBounds::from(parameter);
+        let free = |marginal| FreeParameter {
+            name: parameter.name.to_owned(),
+            unit: quantity.unit.clone(),
             marginal,
-        })
+        };
+        let marginal = marginal(value, &quantity).map_err(|e| e.in_parameter(parameter.name));
+        Some(marginal.map(free))
     }
 
-    /// What the file of an effect says of a parameter that the job does not mention, but for its name there.
+    /// The value or prior that an effect's file states for a parameter that the job does not mention.
     pub(crate) fn of_effect(name: &str, parameter: &Parameter) -> Result<ParsedPrior, PriorEntryError> {
         if let Some(value) = number(&parameter.prior) {
             return Ok(ParsedPrior::Fixed(value));
@@ -111,7 +134,7 @@ impl ParsedPrior {
             upper: f64::INFINITY,
         };
         let marginal = marginal(&parameter.prior, &quantity)
-            .map_err(|e| e.of(format!("prior of parameter {}", parameter.name)))?;
+            .map_err(|e| e.in_parameter(format!("prior of parameter {}", parameter.name)))?;
         Ok(ParsedPrior::Free(FreeParameter {
             name: name.to_owned(),
             unit: quantity.unit,

@@ -21,9 +21,9 @@ pub enum PriorEntryError {
     /// A dotted name without quotes.
     #[error("write the name in quotes: \"{name}.{key}\"")]
     Unquoted {
-        /// What stands before the dot.
+        /// The text before the dot.
         name: String,
-        /// What stands behind it.
+        /// The text behind the dot.
         key: String,
     },
     /// The prior of one parameter.
@@ -31,7 +31,7 @@ pub enum PriorEntryError {
     Of {
         /// The parameter.
         name: String,
-        /// What is wrong.
+        /// The error.
         error: Box<PriorEntryError>,
     },
     /// Neither a number nor a table.
@@ -50,7 +50,7 @@ pub enum PriorEntryError {
         key: String,
         /// Its value as written.
         value: String,
-        /// What it takes.
+        /// The arguments that it takes.
         expected: &'static str,
     },
     /// The prior reaches beyond the physical bounds.
@@ -76,8 +76,8 @@ pub enum PriorEntryError {
 }
 
 impl PriorEntryError {
-    /// The same, of a parameter.
-    pub(crate) fn of(self, name: impl Into<String>) -> Self {
+    /// The error with the name of its parameter.
+    pub(crate) fn in_parameter(self, name: impl Into<String>) -> Self {
         PriorEntryError::Of {
             name: name.into(),
             error: Box::new(self),

@@ -23,11 +23,27 @@ export function verdictWords(verdict, added = []) {
 
 /** How far a calibration has come: `stage 5, exponent 0.012, 2300 evaluations, about 12 s to go`. */
 export function progressWords(/** @type {any} */ progress) {
-  const parts = [`stage ${progress.stage}`];
-  if (progress.stage > 0 && progress.tempering_exponent < 1) parts.push(`exponent ${digits(progress.tempering_exponent, 2)}`);
-  parts.push(`${progress.evaluations} evaluations`);
+  const parts = [...positionWords(progress.position), `${progress.evaluations} evaluations`];
   if (progress.remaining_s !== null) parts.push(`about ${duration(progress.remaining_s)} to go`);
   return parts.join(", ");
+}
+
+/** Where an algorithm is, by its kind. */
+function positionWords(/** @type {any} */ position) {
+  switch (position.kind) {
+    case "sampler": {
+      const climbs = position.stage > 0 && position.tempering_exponent < 1;
+      return [`stage ${position.stage}`, ...(climbs ? [`exponent ${digits(position.tempering_exponent, 2)}`] : [])];
+    }
+    case "fit":
+      return [`step ${position.steps}`];
+    case "evolution":
+      return [`generation ${position.generations}`];
+    case "search":
+      return [`round ${position.rounds}`];
+    default:
+      return [];
+  }
 }
 
 /** How long ago something was heard of. */

@@ -54,13 +54,10 @@ pub(crate) fn flags(calibration: &FinishedCalibration, diagnostics: &Diagnostics
             flag(FlagKind::NoInformation, text);
         }
     }
-    if let Some(estimate) = calibration
-        .estimate
-        .as_ref()
-        .or(calibration.approximated.as_ref())
+    if let Some(estimate) = calibration.mode()
         && estimate.stop.is_early()
     {
-        let (what, rough) = match (&estimate.sd, &calibration.approximated) {
+        let (what, rough) = match (&estimate.sd, calibration.approximated()) {
             (_, Some(_)) => ("fit", ", and the normal approximation is not about the mode"),
             (Some(_), None) => ("fit", ", and the standard deviations are approximate"),
             (None, None) => ("search", ""),
@@ -71,7 +68,7 @@ pub(crate) fn flags(calibration: &FinishedCalibration, diagnostics: &Diagnostics
         );
         flag(FlagKind::NotEquilibrated, text);
     }
-    if let Some(estimate) = &calibration.estimate {
+    if let Some(estimate) = calibration.estimate() {
         if calibration.spec.algorithm.has_posterior() {
             let text = "the density about the fit is not that of a normal distribution along every parameter, so there is no normal approximation: no posterior, no ledger, no search; let tmcmc sample";
             flag(FlagKind::NotEquilibrated, text.into());
@@ -149,7 +146,7 @@ fn unbalanced(calibration: &FinishedCalibration) -> Option<Flag> {
     if calibration.row.equilibrated != Some(false) {
         return None;
     }
-    let stages = calibration.stages.iter().filter(|s| !s.equilibrated);
+    let stages = calibration.stages().iter().filter(|s| !s.equilibrated);
     let stages: Vec<String> = stages.map(|s| s.stage.to_string()).collect();
     let doubt = "neither the draws nor the evidence can be trusted, nor any flag derived from them";
     let text = if stages.is_empty() {

@@ -46,7 +46,7 @@ fn against_posterior(calibration: &FinishedCalibration) -> Option<Flag> {
         .collect();
     let prior = marginal_prior(calibration, joint, &places)?;
     let draws: Vec<Vec<f64>> = calibration
-        .posterior
+        .posterior()
         .iter()
         .map(|sample| places.iter().map(|&i| sample.theta[i]).collect())
         .collect();
@@ -89,7 +89,7 @@ fn against_posterior(calibration: &FinishedCalibration) -> Option<Flag> {
         false => number::list(&compared),
     };
     let refused = calibration
-        .prior_draws
+        .prior_draws()
         .iter()
         .filter(|draw| draw.result.is_err())
         .count();
@@ -97,11 +97,11 @@ fn against_posterior(calibration: &FinishedCalibration) -> Option<Flag> {
         0 => String::new(),
         refused => format!(
             "; the model refuses {refused} of {} of the prior, and cannot go where it refuses",
-            number::count(calibration.prior_draws.len(), "draw")
+            number::count(calibration.prior_draws().len(), "draw")
         ),
     };
     // Where the model ends, the wheel has not been asked.
-    let (who, why) = match 2 * refused > calibration.prior_draws.len() {
+    let (who, why) = match 2 * refused > calibration.prior_draws().len() {
         true => (
             "the posterior of the wheel lies far from that",
             "the model's limits may be the cause; else an effect is missing, or a wheel is no plate and transfer is too small",
@@ -113,10 +113,10 @@ fn against_posterior(calibration: &FinishedCalibration) -> Option<Flag> {
     };
     let text = format!(
         "{who} of the plates in {} ({} among {}): {what}, their covariance times {}{limits}: {why}",
-        joint.said.file,
+        joint.stated.file,
         p_words(p),
         number::count(tests, "test"),
-        joint.said.transfer
+        joint.stated.transfer
     );
     Some(Flag {
         p: Some(p),
@@ -296,13 +296,13 @@ mod tests {
         let names = ["log10_p_ref", "kappa", "n"];
         let parameters = &calibration.spec.parameters;
         let places = names.map(|name| parameters.iter().position(|p| p.name == name).unwrap());
-        let draws = about(centre, sds, calibration.posterior.len());
+        let draws = about(centre, sds, calibration.posterior().len());
         let set = |theta: &mut Vec<f64>, draw: &[f64; 3]| {
             for (&place, value) in places.iter().zip(draw) {
                 theta[place] = *value;
             }
         };
-        for (sample, draw) in calibration.posterior.iter_mut().zip(&draws) {
+        for (sample, draw) in fixture::sampled(&mut calibration).draws.iter_mut().zip(&draws) {
             set(&mut sample.theta, draw);
         }
         for (prediction, draw) in calibration.predictions.iter_mut().zip(&draws) {
@@ -403,7 +403,8 @@ mod tests {
         let refuse = |draw: &mut PriorDraw| {
             draw.result = Err(RejectionReason("no_convergence: condition 0: x".into()))
         };
-        calibration.prior_draws.iter_mut().take(refused).for_each(refuse);
+        let prior_draws = &mut fixture::sampled(&mut calibration).prior_draws;
+        prior_draws.iter_mut().take(refused).for_each(refuse);
         plates_conflict(&calibration)
     }
 

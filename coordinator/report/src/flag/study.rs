@@ -62,11 +62,12 @@ fn incomplete(study: &Study) -> Option<Flag> {
 
 /// Flags of the calibrations whose best parameters are far less probable than those that another one of the study found.
 pub(crate) fn missed_modes(study: &Study) -> Vec<Flag> {
-    let best = |calibration: &FinishedCalibration| match &calibration.estimate {
+    let best = |calibration: &FinishedCalibration| match calibration.estimate() {
         Some(estimate) => Some(estimate.log_likelihood + estimate.log_prior),
         None => {
-            let sample = calibration.most_probable()?;
-            Some(sample.log_likelihood? + sample.log_prior)
+            let particle = calibration.most_probable()?;
+            let log_posterior = particle.log_likelihood.value() + particle.log_prior;
+            (!particle.log_likelihood.is_impossible()).then_some(log_posterior)
         }
     };
     let found: Vec<(&str, f64)> = study
@@ -93,6 +94,7 @@ pub(crate) fn missed_modes(study: &Study) -> Vec<Flag> {
 mod tests {
     use super::*;
     use crate::fixture;
+    use result::Outcome;
 
     #[test]
     fn a_search_that_leaves_misfit_is_flagged() {
@@ -128,7 +130,7 @@ mod tests {
             found.map(|f| f.text.clone()).collect::<Vec<String>>()
         };
         assert_eq!(missed(&study), Vec::<String>::new());
-        if let Some(estimate) = &mut study.point_estimates[0].estimate {
+        if let Outcome::Estimated(estimate) = &mut study.point_estimates[0].outcome {
             estimate.log_likelihood += 100.0;
         }
         let texts = missed(&study);

@@ -114,6 +114,8 @@ fn algorithm(calibration: &FinishedCalibration) -> String {
 
 #[cfg(test)]
 mod tests {
+    use std::sync::Arc;
+
     use super::*;
     use crate::fixture;
 
@@ -141,7 +143,7 @@ mod tests {
     fn a_campaign_stands_in_the_notes_and_digitised_data_are_called_so() {
         let mut calibration = fixture::calibration();
         assert!(!provenance(&calibration).data.contains("digitised"));
-        calibration.spec.experiment.campaign = Some(fixture::campaign());
+        Arc::make_mut(&mut calibration.spec.experiment).campaign = Some(fixture::campaign());
         let provenance = provenance(&calibration);
         assert!(provenance.data.ends_with("; digitised"), "{}", provenance.data);
         assert_eq!(provenance.notes[3], "Doubt: few rows.");

@@ -22,14 +22,14 @@ use result::words::number;
 
 /// How the calibration ended, and its errors.
 pub(super) fn sentences(calibration: &FinishedCalibration, comparison: &Comparison) -> Vec<String> {
-    let mut text = vec![match &calibration.estimate {
+    let mut text = vec![match calibration.estimate() {
         Some(estimate) => format!(
             "A {} found the most probable parameters in {}; it stopped because {}. It does not show which other parameters the data allow.",
             if estimate.sd.is_some() { "fit" } else { "search" },
             number::count(calibration.row.evaluations.unwrap_or(0) as usize, "evaluation"),
             reason(estimate.stop)
         ),
-        None => match &calibration.approximated {
+        None => match calibration.approximated() {
             Some(mode) => format!(
                 "A fit found the most probable parameters in {}; it stopped because {}. Draws, intervals and evidence below are those of a normal approximation about them: exact where the posterior is normal in the normal scores of the parameters.",
                 number::count(calibration.row.evaluations.unwrap_or(0) as usize, "evaluation"),
@@ -53,9 +53,9 @@ pub(super) fn sentences(calibration: &FinishedCalibration, comparison: &Comparis
 }
 
 fn equilibrium(calibration: &FinishedCalibration) -> String {
-    let stages = number::count(calibration.stages.len(), "stage");
+    let stages = number::count(calibration.stages().len(), "stage");
     let unsettled: Vec<String> = calibration
-        .stages
+        .stages()
         .iter()
         .filter(|s| !s.equilibrated)
         .map(|s| s.stage.to_string())
@@ -67,7 +67,7 @@ fn equilibrium(calibration: &FinishedCalibration) -> String {
         Some(false) if unsettled.is_empty() => {
             "The sampler did not reach equilibrium: no number below can be trusted.".into()
         }
-        Some(false) if unsettled.len() == calibration.stages.len() => {
+        Some(false) if unsettled.len() == calibration.stages().len() => {
             format!(
                 "The sampler did not reach equilibrium in any of its {stages}: no number below can be trusted."
             )
@@ -251,7 +251,7 @@ fn inferred_noise(calibration: &FinishedCalibration) -> Option<String> {
             .parameters
             .iter()
             .position(|p| p.name == noise_parameter(channel))?;
-        let (value, sd) = match &calibration.estimate {
+        let (value, sd) = match calibration.estimate() {
             Some(estimate) => {
                 let sd = estimate.sd.as_ref().and_then(|sd| sd[parameter]);
                 (estimate.theta[parameter], sd.unwrap_or(0.0))
@@ -282,7 +282,7 @@ fn inferred_noise(calibration: &FinishedCalibration) -> Option<String> {
         format!(
             "The noise sd was inferred from these misfits: {}. The part above the scatter of repeats is model error, so {} for the model.",
             inferred.join("; "),
-            if calibration.estimate.is_none() {
+            if calibration.estimate().is_none() {
                 "neither the width of the intervals nor an error of one noise sd is evidence"
             } else {
                 "an error of one noise sd is no evidence"

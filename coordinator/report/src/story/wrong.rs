@@ -272,6 +272,8 @@ fn runs(usage: RunUse) -> &'static str {
 
 #[cfg(test)]
 mod tests {
+    use std::sync::Arc;
+
     use super::*;
     use crate::fixture;
 
@@ -300,7 +302,7 @@ mod tests {
         let mut calibration = fixture::with_held_out_runs(8, 8.0);
         // Four of the runs move beyond the fitted slips, where the model is worse.
         for &run in &calibration.spec.holdout_runs[4..] {
-            calibration.spec.experiment.runs[run].slip = 0.9;
+            Arc::make_mut(&mut calibration.spec.experiment).runs[run].slip = 0.9;
         }
         for holdout in calibration
             .predictions

@@ -102,7 +102,7 @@ impl CalibrationSummary {
 
 /// The calibration's line of the ledger; `None` without draws: point estimates stand apart.
 pub fn calibration_summary(calibration: &FinishedCalibration) -> Option<CalibrationSummary> {
-    if calibration.estimate.is_some() {
+    if calibration.estimate().is_some() {
         return None;
     }
     let comparison = calibration.comparison();
@@ -124,20 +124,20 @@ pub fn calibration_summary(calibration: &FinishedCalibration) -> Option<Calibrat
         held_out_runs: calibration.spec.holdout_runs.len(),
         effects: calibration.effects(),
         algorithm: calibration.spec.algorithm.algorithm_name(),
-        normal_approximation: calibration.approximated.is_some(),
+        normal_approximation: calibration.approximated().is_some(),
         log_evidence: calibration.row.log_evidence,
         log_evidence_se: calibration.row.log_evidence_se,
         equilibrated: calibration.row.equilibrated,
         evaluations: calibration.row.evaluations,
         rejected: calibration.row.rejected,
         wall_s: calibration.row.busy_ms as f64 / 1000.0,
-        metamodel: calibration.subchains.map(|s| MetamodelSummary {
+        metamodel: calibration.subchains().map(|s| MetamodelSummary {
             moves: s.moves,
             subchains: s.subchains,
             moved: s.moved,
         }),
         stages: calibration
-            .stages
+            .stages()
             .iter()
             .map(|s| StageSummary {
                 tempering_exponent: s.tempering_exponent,

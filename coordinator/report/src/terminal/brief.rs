@@ -35,6 +35,8 @@ pub(super) fn cautions(study: &Study) -> String {
 
 #[cfg(test)]
 mod tests {
+    use std::sync::Arc;
+
     use super::*;
     use crate::{fixture, terminal};
 
@@ -67,7 +69,7 @@ mod tests {
     #[test]
     fn digitised_rows_are_called_so() {
         let mut calibration = fixture::calibration();
-        calibration.spec.experiment.campaign = Some(fixture::campaign());
+        Arc::make_mut(&mut calibration.spec.experiment).campaign = Some(fixture::campaign());
         let study = calibration.into();
         for text in [brief(&study), terminal::study(&study)] {
             assert!(

@@ -19,13 +19,13 @@ use result::words::number;
 /// `hidden-effect: 14 stages, 16658 evaluations (3 rejected by the model), 1.5 s, log-evidence -1347.66`.
 pub(super) fn headline(calibration: &FinishedCalibration) -> String {
     let row = &calibration.row;
-    let how = match fit_of(calibration) {
+    let how = match calibration.mode() {
         Some(estimate) => format!(
             "{} stopped by {}",
             calibration.spec.algorithm.name(),
             estimate.stop.name()
         ),
-        None => number::count(calibration.stages.len(), "stage"),
+        None => number::count(calibration.stages().len(), "stage"),
     };
     let rejected = match row.rejected {
         None | Some(0) => String::new(),
@@ -41,21 +41,13 @@ pub(super) fn headline(calibration: &FinishedCalibration) -> String {
     )
 }
 
-/// The fit behind a point or a normal approximation.
-fn fit_of(calibration: &FinishedCalibration) -> Option<&EstimateRow> {
-    calibration
-        .estimate
-        .as_ref()
-        .or(calibration.approximated.as_ref())
-}
-
 /// The result of a calibration: model against measurement, errors, parameters, findings, flags.
 pub(super) fn summary(calibration: &FinishedCalibration) -> String {
     let compared = calibration.comparison();
     let mut text = headline(calibration) + "\n";
     let row = &calibration.row;
-    let fit = fit_of(calibration);
-    if let Some(metamodel) = &calibration.subchains {
+    let fit = calibration.mode();
+    if let Some(metamodel) = calibration.subchains() {
         let _ = writeln!(
             text,
             "metamodel: {} of quasi_static in {}, {} of which moved and were evaluated",
@@ -64,11 +56,11 @@ pub(super) fn summary(calibration: &FinishedCalibration) -> String {
             metamodel.moved
         );
     }
-    if calibration.approximated.is_some() {
+    if calibration.approximated().is_some() {
         let _ = writeln!(
             text,
             "normal approximation: {} about the most probable parameters",
-            number::count(calibration.posterior.len(), "draw")
+            number::count(calibration.posterior().len(), "draw")
         );
     }
     match (row.log_evidence, row.log_evidence_se) {
@@ -92,7 +84,7 @@ pub(super) fn summary(calibration: &FinishedCalibration) -> String {
     for error in reading_errors(calibration) {
         let _ = writeln!(text, "{}", error.words());
     }
-    text.push_str(&match &calibration.estimate {
+    text.push_str(&match calibration.estimate() {
         Some(estimate) => point(calibration, estimate),
         None => parameters(calibration),
     });

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use shared::api::CalibrationStatus;
+use shared::api::{CalibrationStatus, Position};
 use shared::sentence::one_line;
 
 use super::column::cell;
@@ -22,8 +22,8 @@ pub fn status_table(statuses: &[CalibrationStatus]) -> String {
             s.study,
             one_line(&s.name),
             s.state.name(),
-            cell(p, |p| p.stage.to_string()),
-            cell(p, |p| format!("{:.3e}", p.tempering_exponent)),
+            cell(p, |p| count(p.position).to_string()),
+            cell(p.and_then(|p| exponent(p.position)), |x| format!("{x:.3e}")),
             cell(p, |p| p.evaluations.to_string()),
             cell(p, |p| format!("{:.0}", p.evaluations_per_s)),
             cell(p.and_then(|p| p.remaining_s), |s| format!("{s:.0}"))
@@ -33,4 +33,23 @@ pub fn status_table(statuses: &[CalibrationStatus]) -> String {
         }
     }
     text
+}
+
+/// Stages, steps, generations or rounds so far.
+fn count(position: Position) -> u32 {
+    match position {
+        Position::Sampler { stage, .. } => stage,
+        Position::Fit { steps } => steps,
+        Position::Evolution { generations } => generations,
+        Position::Search { rounds } => rounds,
+    }
+}
+
+fn exponent(position: Position) -> Option<f64> {
+    match position {
+        Position::Sampler {
+            tempering_exponent, ..
+        } => Some(tempering_exponent),
+        Position::Fit { .. } | Position::Evolution { .. } | Position::Search { .. } => None,
+    }
 }

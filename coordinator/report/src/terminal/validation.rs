@@ -133,6 +133,8 @@ fn notes(validation: &Validation) -> Vec<String> {
 
 #[cfg(test)]
 mod tests {
+    use std::sync::Arc;
+
     use super::*;
     use crate::fixture;
     use job::AlgorithmName;
@@ -183,8 +185,8 @@ mod tests {
         let (h0, runs) = (place("h0").unwrap(), ["h0", "h1", "h2", "h3"]);
         let mut wheels = others.spec.experiment.wheels.clone();
         wheels.insert("b".into(), wheels["a"].clone());
-        others.spec.experiment.wheels = wheels;
-        others.spec.experiment.runs[h0].wheel = "b".into();
+        Arc::make_mut(&mut others.spec.experiment).wheels = wheels;
+        Arc::make_mut(&mut others.spec.experiment).runs[h0].wheel = "b".into();
         let level = LeftOutLevel {
             name: "load 25.0 N".into(),
             from: Some(25.0),

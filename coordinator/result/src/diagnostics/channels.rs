@@ -185,7 +185,7 @@ fn signals(
     calibration: &FinishedCalibration,
     residuals: &[ResidualDiagnostics],
 ) -> BTreeMap<usize, ChannelSignal> {
-    let prior = calibration.prior_draws.iter().filter_map(|draw| {
+    let prior = calibration.prior_draws().iter().filter_map(|draw| {
         Some(PredictedDraw {
             theta: draw.theta.clone(),
             values: draw.result.as_ref().ok()?.clone(),

@@ -93,7 +93,7 @@ fn whitened(calibration: &FinishedCalibration, parameters: &[usize]) -> Vec<Vec<
         };
         scales.iter().map(coordinate).collect()
     };
-    calibration.posterior.iter().map(|s| draw(&s.theta)).collect()
+    calibration.posterior().iter().map(|s| draw(&s.theta)).collect()
 }
 
 /// A sentence on the worst-known direction.
@@ -191,7 +191,7 @@ mod tests {
             .map(|p| p.marginal.clone())
             .collect();
         // n wanders over half its prior and the friction angle with it; everything else stands still.
-        for (k, sample) in calibration.posterior.iter_mut().enumerate() {
+        for (k, sample) in fixture::sampled(&mut calibration).draws.iter_mut().enumerate() {
             let share = 0.25 + 0.5 * (k as f64 + 0.5) / 40.0;
             sample.theta = priors
                 .iter()

@@ -37,15 +37,19 @@ const CUT: f64 = 0.05;
 
 /// Every parameter, in the order of the job, and all of them together.
 pub fn parameters(calibration: &FinishedCalibration) -> (Vec<ParameterDiagnostics>, Option<PriorConflict>) {
-    let draws: Vec<&[f64]> = calibration.posterior.iter().map(|s| s.theta.as_slice()).collect();
+    let draws: Vec<&[f64]> = calibration
+        .posterior()
+        .iter()
+        .map(|s| s.theta.as_slice())
+        .collect();
     let accepted: Vec<&[f64]> = calibration
-        .prior_draws
+        .prior_draws()
         .iter()
         .filter(|draw| draw.result.is_ok())
         .map(|draw| draw.theta.as_slice())
         .collect();
-    let refused = calibration.prior_draws.len() - accepted.len();
-    let is_cut = refused as f64 > CUT * calibration.prior_draws.len() as f64;
+    let refused = calibration.prior_draws().len() - accepted.len();
+    let is_cut = refused as f64 > CUT * calibration.prior_draws().len() as f64;
     // The data never act where the model rejects: the effective prior differs from the declared one.
     let conflict = if is_cut {
         None
@@ -63,7 +67,7 @@ pub fn parameters(calibration: &FinishedCalibration) -> (Vec<ParameterDiagnostic
                     .and_then(|before| contraction(free, &draws, before)),
                 false => contraction(free, &draws, free.marginal.coordinate_moments().1),
             },
-            at_bound: match &calibration.estimate {
+            at_bound: match calibration.estimate() {
                 Some(estimate) => estimate.at_bound[i],
                 None => diagnostics::summary(&draws).is_some_and(|s| free.marginal.at_bound(s.q05, s.q95)),
             },
@@ -136,10 +140,14 @@ mod tests {
         let (whole, conflict) = parameters(&calibration);
         assert!(conflict.is_some());
         // Of the draws from the prior the model now takes only those in the lower half of the first parameter.
-        let mut first: Vec<f64> = calibration.prior_draws.iter().map(|draw| draw.theta[0]).collect();
+        let mut first: Vec<f64> = calibration
+            .prior_draws()
+            .iter()
+            .map(|draw| draw.theta[0])
+            .collect();
         first.sort_by(f64::total_cmp);
         let middle = first[first.len() / 2];
-        for draw in &mut calibration.prior_draws {
+        for draw in &mut fixture::sampled(&mut calibration).prior_draws {
             if draw.theta[0] > middle {
                 draw.result = Err(RejectionReason("no_support: condition 0: toy".into()));
             }

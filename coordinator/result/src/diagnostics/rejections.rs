@@ -83,7 +83,7 @@ pub struct RegionSide {
 
 /// Counts of the draws from the prior.
 pub fn rejections(calibration: &FinishedCalibration) -> RejectionDiagnostics {
-    let draws = &calibration.prior_draws;
+    let draws = calibration.prior_draws();
     // Noise standard deviations do not enter the model that rejects.
     let free = &calibration.spec.parameters[..calibration.spec.fit_variant.parameters.len()];
     let bin_of = |draw: &PriorDraw| -> Vec<usize> {
@@ -238,11 +238,11 @@ mod tests {
             .map(|p| p.marginal.clone())
             .collect();
         let kept = calibration
-            .prior_draws
+            .prior_draws()
             .iter()
             .find_map(|d| d.result.as_ref().ok().cloned())
             .unwrap();
-        calibration.prior_draws = (0..200)
+        fixture::sampled(&mut calibration).prior_draws = (0..200)
             .map(|k| {
                 let share = |i: usize| (f64::from(k / 5_i32.pow(i as u32) % 5) + 0.5) / 5.0;
                 PriorDraw {

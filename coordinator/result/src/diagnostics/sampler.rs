@@ -24,15 +24,15 @@ pub struct SamplerDiagnostics {
 /// None of a fit.
 pub fn sampler(calibration: &FinishedCalibration) -> Option<SamplerDiagnostics> {
     let bits = |theta: &[f64]| theta.iter().map(|x| x.to_bits()).collect::<Vec<u64>>();
-    let distinct: BTreeSet<Vec<u64>> = calibration.posterior.iter().map(|s| bits(&s.theta)).collect();
-    calibration.estimate.is_none().then(|| SamplerDiagnostics {
+    let distinct: BTreeSet<Vec<u64>> = calibration.posterior().iter().map(|s| bits(&s.theta)).collect();
+    calibration.estimate().is_none().then(|| SamplerDiagnostics {
         equilibrated: calibration.row.equilibrated,
-        draws: calibration.posterior.len(),
+        draws: calibration.posterior().len(),
         distinct_draws: distinct.len(),
         effective_sample_size: calibration
-            .stages
+            .stages()
             .last()
-            .map(|stage| stage.ess.min(calibration.posterior.len() as f64)),
-        stages: calibration.stages.clone(),
+            .map(|stage| stage.ess.min(calibration.posterior().len() as f64)),
+        stages: calibration.stages().to_vec(),
     })
 }

@@ -1,8 +1,8 @@
 //! Convergence of searches and sampler: the source paper's Fig. 5.
 
+use inference::Particle;
 use inference::diagnostics;
 use job::AlgorithmName;
-use record::Sample;
 
 use super::axis_parameter::AxisParameter;
 use crate::finished_calibration::FinishedCalibration;
@@ -71,7 +71,7 @@ pub struct StagePopulation {
 
 /// Convergence of a search; `None` of a sample, and of a fit by steps, which keeps no history.
 pub(super) fn search(calibration: &FinishedCalibration) -> Option<SearchConvergence> {
-    let history = generations(&calibration.estimate.as_ref()?.history);
+    let history = generations(&calibration.estimate()?.history);
     (!history.is_empty()).then(|| SearchConvergence {
         algorithm: calibration.spec.algorithm.algorithm_name(),
         history,
@@ -83,12 +83,12 @@ struct Population<'a> {
     stage: u32,
     tempering_exponent: f64,
     evaluations: u64,
-    samples: &'a [Sample],
+    samples: &'a [Particle],
 }
 
 /// The populations from the prior, which is stage 0, to the posterior.
 fn all(calibration: &FinishedCalibration) -> Vec<Population<'_>> {
-    let Some((prior, later)) = calibration.populations.split_first() else {
+    let Some((prior, later)) = calibration.populations().split_first() else {
         return Vec::new();
     };
     let mut evaluations = prior.len() as u64;
@@ -98,8 +98,8 @@ fn all(calibration: &FinishedCalibration) -> Vec<Population<'_>> {
         evaluations,
         samples: prior,
     }];
-    let later = later.iter().chain([&calibration.posterior]);
-    for (row, samples) in calibration.stages.iter().zip(later) {
+    let later = later.iter().map(Vec::as_slice).chain([calibration.posterior()]);
+    for (row, samples) in calibration.stages().iter().zip(later) {
         evaluations += row.evaluations;
         populations.push(Population {
             stage: row.stage,
@@ -122,8 +122,12 @@ pub(super) fn stages(calibration: &FinishedCalibration) -> Vec<StageConvergence>
     all(calibration).iter().map(stage).collect()
 }
 
-fn range(population: &[Sample]) -> Option<LogLikelihoodRange> {
-    let values: Vec<f64> = population.iter().filter_map(|s| s.log_likelihood).collect();
+fn range(population: &[Particle]) -> Option<LogLikelihoodRange> {
+    let values: Vec<f64> = population
+        .iter()
+        .map(|p| p.log_likelihood.value())
+        .filter(|value| value.is_finite())
+        .collect();
     let summary = diagnostics::summary(&values)?;
     Some(LogLikelihoodRange {
         q05: summary.q05,
@@ -188,7 +192,7 @@ mod tests {
         assert_eq!(stages, [0, 1, 3]);
         assert_eq!(populations.parameters[1].unit, "deg");
         assert!(populations.stages.iter().all(|s| s.points.len() == 40));
-        calibration.populations.clear();
+        fixture::sampled(&mut calibration).populations.clear();
         assert!(super::populations(&calibration).is_none());
     }
 }

@@ -37,7 +37,7 @@ impl Study {
         let beside = self
             .submitted()
             .filter(|own| is_submitted && own.row.id != calibration.row.id);
-        let sample = Some(calibration).filter(|calibration| calibration.estimate.is_none());
+        let sample = Some(calibration).filter(|calibration| calibration.estimate().is_none());
         CalibrationFigures {
             calibration: calibration.row.id,
             searches: std::iter::once(calibration)

@@ -57,7 +57,7 @@ impl FinishedCalibration {
     /// model without time. Both have gone through the same filter.
     pub fn histories(&self) -> Option<Vec<ChannelHistory>> {
         let simulated = self.simulated_histories.as_ref()?;
-        let label = match self.estimate {
+        let label = match self.estimate() {
             None => "maximum likelihood".to_owned(),
             Some(_) => format!("{} optimum", self.spec.algorithm.name().to_uppercase()),
         };

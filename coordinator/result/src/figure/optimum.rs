@@ -13,7 +13,7 @@ impl Study {
         let is_submitted = self.submitted().any(|own| own.row.id == sample.row.id);
         let fitted = self
             .submitted()
-            .filter(move |calibration| is_submitted && calibration.estimate.is_some());
+            .filter(move |calibration| is_submitted && calibration.estimate().is_some());
         fitted.map(|calibration| {
             let name = calibration.spec.algorithm.name().to_uppercase();
             (format!("{name} optimum"), calibration)

@@ -185,7 +185,7 @@ fn marks(
     for (label, calibration) in study.optima_beside(sample) {
         let value = |name: &str| {
             let place = calibration.spec.parameters.iter().position(|p| p.name == name)?;
-            Some(calibration.estimate.as_ref()?.theta[place])
+            Some(calibration.estimate()?.theta[place])
         };
         marks.push(Mark::new(MarkKind::PointEstimate, label, names.map(value).into()));
     }

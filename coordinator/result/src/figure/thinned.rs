@@ -7,11 +7,11 @@ const DRAWS: usize = 2000;
 
 /// The draws of every parameter; of more than [`DRAWS`] as many equally spaced ones.
 pub(super) fn thinned_draws(sample: &FinishedCalibration) -> Vec<Vec<f64>> {
-    let count = sample.posterior.len();
+    let count = sample.posterior().len();
     let kept: Vec<usize> = (0..count.min(DRAWS))
         .map(|k| k * count / count.min(DRAWS))
         .collect();
-    let draws = |i: usize| kept.iter().map(|&k| sample.posterior[k].theta[i]).collect();
+    let draws = |i: usize| kept.iter().map(|&k| sample.posterior()[k].theta[i]).collect();
     (0..sample.spec.parameters.len()).map(draws).collect()
 }
 
@@ -29,8 +29,8 @@ mod tests {
     fn few_draws_are_all_kept_and_many_are_equally_spaced() {
         let mut calibration = fixture::calibration();
         assert_eq!(thinned_draws(&calibration)[0], calibration.draws(0));
-        let draws = calibration.posterior.clone();
-        calibration.posterior = (0..125).flat_map(|_| draws.clone()).collect();
+        let draws = calibration.posterior().to_vec();
+        fixture::sampled(&mut calibration).draws = (0..125).flat_map(|_| draws.clone()).collect();
         let thinned = thinned_draws(&calibration);
         assert_eq!(thinned[0].len(), 2000);
         let all = calibration.draws(0);

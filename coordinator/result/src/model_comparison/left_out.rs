@@ -49,7 +49,7 @@ impl LeftOut {
             })
             .collect();
         let conditions = conditions(spec.fit_runs.iter().map(|&run| &spec.experiment.runs[run]));
-        if draws.is_empty() || conditions.len() < 2 || calibration.estimate.is_some() {
+        if draws.is_empty() || conditions.len() < 2 || calibration.estimate().is_some() {
             return None;
         }
         let mut left_out = LeftOut {

@@ -56,6 +56,8 @@ fn weights(models: &[&Comparison], channel: Channel) -> Vec<f64> {
 
 #[cfg(test)]
 mod tests {
+    use std::sync::Arc;
+
     use super::*;
     use crate::fixture;
 
@@ -142,7 +144,11 @@ mod tests {
             for own in [&mut study.lead, &mut study.extensions[0]] {
                 let held_out = own.spec.holdout_runs.clone();
                 for run in held_out {
-                    for measured in own.spec.experiment.runs[run].measured.iter_mut().flatten() {
+                    for measured in Arc::make_mut(&mut own.spec.experiment).runs[run]
+                        .measured
+                        .iter_mut()
+                        .flatten()
+                    {
                         *measured += by;
                     }
                 }

@@ -102,7 +102,7 @@ fn fixed_sigma(first: &FinishedCalibration, channel: Channel) -> Option<FixedSig
     let inferred = || {
         let name = shared::parameters::noise_parameter(channel);
         let place = spec.parameters.iter().position(|p| p.name == name)?;
-        match &first.estimate {
+        match first.estimate() {
             Some(estimate) => Some(estimate.theta[place]),
             None => inference::diagnostics::mean(&first.draws(place)),
         }

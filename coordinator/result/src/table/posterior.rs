@@ -20,10 +20,10 @@ impl FinishedCalibration {
             .chain(parameters)
             .collect();
         let rows = self
-            .posterior
+            .posterior()
             .iter()
             .map(|s| {
-                let head = [s.log_likelihood.unwrap_or(f64::NEG_INFINITY), s.log_prior];
+                let head = [s.log_likelihood.value(), s.log_prior];
                 head.into_iter().chain(s.theta.iter().copied()).collect()
             })
             .collect();

@@ -72,7 +72,7 @@ pub fn predictive(
     Some(Predictive {
         mean,
         interval: calibration
-            .estimate
+            .estimate()
             .is_none()
             .then(|| [0.05, 0.95].map(|p| quantile(&components, law, p))),
         noise_sd: inference::diagnostics::mean(&sds),

@@ -1,8 +1,7 @@
 //! The files of a law that a job can take beside those that it has.
 
-use job::effect_name;
+use job::{NamedFiles, effect_name};
 use record::Extension;
-use shared::file::FileSet;
 use shared::model::EffectText;
 
 use super::dependence::Dependence;
@@ -24,10 +23,10 @@ impl LawFiles {
     /// by `tests::a_law_that_a_job_has_is_not_offered_again`.
     ///
     /// # Arguments
-    /// - `effects`: those of the job.
+    /// - `files`, `effects`: the files and the effects that the job has.
     pub(crate) fn addable(
         dependence: &Dependence,
-        job: &FileSet,
+        files: &NamedFiles,
         effects: &[EffectText],
     ) -> Option<LawFiles> {
         let is_new = |law: &CandidateEffect| {
@@ -40,19 +39,19 @@ impl LawFiles {
         let forms = LawForm::ALL.iter().map(|form| (*form, form.of(dependence)));
         let forms = forms.filter(|(_, law)| is_new(law));
         Some(LawFiles {
-            curve: beside(dependence.curve(), job),
-            forms: forms.map(|(form, law)| (form, beside(law, job))).collect(),
+            curve: beside(dependence.curve(), files),
+            forms: forms.map(|(form, law)| (form, beside(law, files))).collect(),
         })
         .filter(|files| is_new(&files.curve))
     }
 }
 
 /// The law in a file that the job does not have yet.
-fn beside(law: CandidateEffect, job: &FileSet) -> CandidateEffect {
+fn beside(law: CandidateEffect, files: &NamedFiles) -> CandidateEffect {
     match law.extension {
         Extension::File { name, text } => CandidateEffect {
             extension: Extension::File {
-                name: free_name(name.trim_end_matches(".toml"), job),
+                name: free_name(name.trim_end_matches(".toml"), files),
                 text,
             },
             ..law
@@ -62,21 +61,20 @@ fn beside(law: CandidateEffect, job: &FileSet) -> CandidateEffect {
 }
 
 /// `NAME.toml`, or with a number where the job has such a file of another effect.
-pub(crate) fn free_name(name: &str, job: &FileSet) -> String {
+pub(crate) fn free_name(name: &str, files: &NamedFiles) -> String {
     let numbered = (2..).map(|number| format!("{name}-{number}.toml"));
     let mut names = std::iter::once(format!("{name}.toml")).chain(numbered);
-    names
-        .find(|name| !job.files.contains_key(name))
-        .unwrap_or_default()
+    names.find(|name| files.get(name).is_none()).unwrap_or_default()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::candidate::{extended, spec};
-    use crate::fixture::read;
+    use crate::candidate::extended;
+    use crate::fixture::{read, spec_of};
     use crate::law::dependence::dependences;
     use job::Spec;
+    use shared::file::FileSet;
 
     /// The shear stress against the normal velocity.
     fn dependence(spec: &Spec) -> Dependence {
@@ -86,8 +84,12 @@ mod tests {
 
     /// Names of the curve and of the forms that the job can add, for the shear stress against the normal velocity.
     fn addable(job: &FileSet, experiment: &FileSet) -> Option<(String, Vec<String>)> {
-        let spec = spec(job, experiment).unwrap();
-        let files = LawFiles::addable(&dependence(&spec), job, &spec.fit_variant.effects)?;
+        let spec = spec_of(job, experiment).unwrap();
+        let files = LawFiles::addable(
+            &dependence(&spec),
+            &NamedFiles::from(&job.files),
+            &spec.fit_variant.effects,
+        )?;
         let forms = files.forms.iter();
         let names = forms.map(|(form, law)| format!("{}: {}", form.name(), file(law)));
         Some((file(&files.curve), names.collect()))
@@ -101,7 +103,7 @@ mod tests {
     }
 
     fn law(job: &FileSet, experiment: &FileSet, form: Option<LawForm>) -> Extension {
-        let dependence = dependence(&spec(job, experiment).unwrap());
+        let dependence = dependence(&spec_of(job, experiment).unwrap());
         form.map_or_else(|| dependence.curve(), |form| form.of(&dependence))
             .extension
     }

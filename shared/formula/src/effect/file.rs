@@ -16,11 +16,11 @@ use crate::unit::Unit;
 use crate::variable::{Variable, Variables};
 use crate::word::unknown_word;
 
-/// Most parameters of an effect.
-const MOST_PARAMETERS: usize = 16;
-/// Most definitions of an effect.
-const MOST_DEFINITIONS: usize = 32;
-/// Deepest nesting of tables and arrays: a prior's arguments need 5.
+/// The maximum number of parameters of an effect.
+const MAX_PARAMETERS: usize = 16;
+/// The maximum number of definitions of an effect.
+const MAX_DEFINITIONS: usize = 32;
+/// The maximum nesting of tables and arrays: a prior's arguments need 5.
 const DEEPEST: usize = 8;
 
 #[derive(Deserialize)]
@@ -81,12 +81,12 @@ impl Effect {
     /// Reads an effect file.
     ///
     /// # Errors
-    /// [`EffectError`] with the line and the column of the first mistake found, and with the nearest known name or all that are
-    /// expected; without a place where the whole file is to blame. Checked by `messages::every_message_is_as_written` and, for
-    /// any text, by `fuzzed::any_text_is_read_or_refused_at_a_place_that_is_there`.
+    /// [`EffectError`] with the line and the column of the first mistake, and with the nearest known name or all expected names;
+    /// without a place if the whole file is to blame. Checked by `messages::every_message_is_as_written` and, for any text, by
+    /// `fuzzed::any_text_is_read_or_refused_at_a_place_that_is_there`.
     ///
     /// # Validity
-    /// Time and memory are bounded by [`Effect::LONGEST`]; so is the depth of the stack, far below that of a thread.
+    /// Time, memory and stack depth are bounded by [`Effect::LONGEST`]; the stack stays far below that of a thread.
     pub fn read(text: &str) -> Result<Effect, EffectError> {
         read(text)
     }
@@ -94,17 +94,17 @@ impl Effect {
 
 fn read(text: &str) -> Result<Effect, EffectError> {
     if text.len() > Effect::LONGEST {
-        let (length, most) = (text.len(), Effect::LONGEST);
+        let (length, max) = (text.len(), Effect::LONGEST);
         return Err(whole(format!(
-            "an effect file of {length} bytes must have at most {most}"
+            "an effect file of {length} bytes must have at most {max}"
         )));
     }
     let junk = |c: char| c == '\u{fffd}' || c.is_control() && !matches!(c, '\t' | '\n' | '\r');
-    if let Some((byte, found)) = text.char_indices().find(|&(_, c)| junk(c)) {
+    if let Some((byte, actual)) = text.char_indices().find(|&(_, c)| junk(c)) {
         return Err(at(
             text,
             byte,
-            format!("{found:?} is not allowed in a UTF-8 text file"),
+            format!("{actual:?} is not allowed in a UTF-8 text file"),
         ));
     }
     let raw = tables(text)?;
@@ -136,11 +136,11 @@ fn read(text: &str) -> Result<Effect, EffectError> {
         let in_formula = |mistake: Mistake| in_formula(text, formula, mistake);
         let result = parse(formula.get_ref(), &scope, &mut graph).map_err(in_formula)?;
         let target = hook.target();
-        if let (Some(found), Some(expected)) = (graph.unit(result), target.unit())
-            && found != expected
+        if let (Some(actual), Some(expected)) = (graph.unit(result), target.unit())
+            && actual != expected
         {
             let message = format!(
-                "{} must be in {}, not in {found}",
+                "{} must be in {}, not in {actual}",
                 hook.name(),
                 target.unit_name()
             );
@@ -192,7 +192,7 @@ fn read(text: &str) -> Result<Effect, EffectError> {
     })
 }
 
-/// The file's keys and tables.
+/// Parses the file's keys and tables.
 fn tables(text: &str) -> Result<RawEffect, EffectError> {
     if let Some(byte) = too_deep(text, DEEPEST) {
         let message = format!("brackets must be nested at most {DEEPEST} deep");
@@ -214,12 +214,12 @@ fn tables(text: &str) -> Result<RawEffect, EffectError> {
     RawEffect::deserialize(toml::Deserializer::from(table)).map_err(|e| toml_error(text, &e))
 }
 
-/// Checks the parameters; gives their names and units in the order of the file.
+/// Checks the parameters; returns their names and units in the order of the file.
 fn parameters(text: &str, raw: &RawEffect) -> Result<Vec<(String, Unit)>, EffectError> {
     let mut entries: Vec<_> = raw.parameters.iter().collect();
     entries.sort_by_key(|(_, entry)| entry.span().start);
-    if let Some((_, first_too_many)) = entries.get(MOST_PARAMETERS) {
-        let message = format!("{} parameters, must be at most {MOST_PARAMETERS}", entries.len());
+    if let Some((_, first_too_many)) = entries.get(MAX_PARAMETERS) {
+        let message = format!("{} parameters, must be at most {MAX_PARAMETERS}", entries.len());
         return Err(at(text, first_too_many.span().start, message));
     }
     let mut parameters = Vec::new();
@@ -267,7 +267,7 @@ fn parameters(text: &str, raw: &RawEffect) -> Result<Vec<(String, Unit)>, Effect
     Ok(parameters)
 }
 
-/// The operations behind the definitions.
+/// Adds the operations of the definitions to the graph.
 fn define(
     text: &str,
     raw: &RawEffect,
@@ -276,11 +276,8 @@ fn define(
 ) -> Result<BTreeMap<String, Definition>, EffectError> {
     let mut entries: Vec<_> = raw.definitions.iter().collect();
     entries.sort_by_key(|(_, formula)| formula.span().start);
-    if let Some((_, first_too_many)) = entries.get(MOST_DEFINITIONS) {
-        let message = format!(
-            "{} definitions, must be at most {MOST_DEFINITIONS}",
-            entries.len()
-        );
+    if let Some((_, first_too_many)) = entries.get(MAX_DEFINITIONS) {
+        let message = format!("{} definitions, must be at most {MAX_DEFINITIONS}", entries.len());
         return Err(at(text, first_too_many.span().start, message));
     }
     for &(name, formula) in &entries {
@@ -291,7 +288,7 @@ fn define(
             return Err(at(text, start, message));
         }
     }
-    let mut known = BTreeMap::new();
+    let mut definitions = BTreeMap::new();
     let mut waiting = entries;
     while !waiting.is_empty() {
         let is_waiting = |name: &str| waiting.iter().any(|(waiting, _)| *waiting == name);
@@ -312,19 +309,19 @@ fn define(
         };
         let (name, formula) = waiting.remove(ready);
         let scope = Scope {
-            variables: Variables::of(&Variable::ALL),
+            variables: Variables::new(&Variable::ALL),
             parameters,
-            definitions: &known,
+            definitions: &definitions,
             place: "a definition",
         };
         let result = parse(formula.get_ref(), &scope, graph).map_err(|m| in_formula(text, formula, m))?;
         let uses = graph.variables(result);
-        known.insert(name.clone(), Definition { result, uses });
+        definitions.insert(name.clone(), Definition { result, uses });
     }
-    Ok(known)
+    Ok(definitions)
 }
 
-/// Goes from name to name until one comes again; gives those from its first to its second time.
+/// Follows `next` from name to name until one repeats; returns the names from its first to its second visit.
 fn circle<'a>(first: &'a str, next: impl Fn(&'a str) -> &'a str) -> Vec<&'a str> {
     let mut path = vec![first];
     loop {
@@ -337,7 +334,7 @@ fn circle<'a>(first: &'a str, next: impl Fn(&'a str) -> &'a str) -> Vec<&'a str>
     }
 }
 
-/// The names in a formula, as far as it can be cut into words.
+/// Returns the names in a formula, up to the first character that is no token.
 fn names_in(formula: &Spanned<String>) -> impl Iterator<Item = &str> {
     let mut tokens = Tokens::new(formula.get_ref());
     std::iter::from_fn(move || match tokens.take() {
@@ -350,7 +347,7 @@ fn names_in(formula: &Spanned<String>) -> impl Iterator<Item = &str> {
     })
 }
 
-/// Checks that every definition serves a formula, by itself or through others.
+/// Checks that every definition serves a formula, directly or through other definitions.
 fn check_definitions_used(text: &str, raw: &RawEffect) -> Result<(), EffectError> {
     let formulas = Hook::ALL.iter().filter_map(|&hook| raw.formula(hook));
     let mut waiting: Vec<&Spanned<String>> = formulas.collect();
@@ -380,7 +377,7 @@ fn whole(message: String) -> EffectError {
     }
 }
 
-/// An error at a byte of the file.
+/// Returns an error at a byte of the file.
 fn at(text: &str, byte: usize, message: impl ToString) -> EffectError {
     let (line, column) = place::line_and_column(text, byte);
     EffectError {
@@ -390,7 +387,7 @@ fn at(text: &str, byte: usize, message: impl ToString) -> EffectError {
     }
 }
 
-/// An error within a formula.
+/// Returns an error within a formula.
 fn in_formula(text: &str, formula: &Spanned<String>, mistake: Mistake) -> EffectError {
     let span = formula.span();
     let raw = text.get(span.clone()).unwrap_or_default();
@@ -398,7 +395,7 @@ fn in_formula(text: &str, formula: &Spanned<String>, mistake: Mistake) -> Effect
     at(text, byte, mistake.message)
 }
 
-/// The message of the TOML parser, with the nearest known key.
+/// Returns the message of the TOML parser with the nearest known key.
 fn toml_error(text: &str, error: &toml::de::Error) -> EffectError {
     let message = error.message();
     let mut quoted = message.split('`').skip(1).step_by(2);
@@ -412,13 +409,13 @@ fn toml_error(text: &str, error: &toml::de::Error) -> EffectError {
     }
 }
 
-/// The message of the TOML parser, in the wording of these messages.
+/// Rewords the message of the TOML parser to match the messages of this crate.
 fn in_our_words(message: &str) -> String {
     let wrong_type = message.trim_end().strip_prefix("invalid type: ");
     let message = match wrong_type.and_then(|rest| rest.rsplit_once(", expected ")) {
-        Some((found, "f64")) => format!("expected a number, found {found}"),
-        Some((found, "a string")) => format!("expected a text in quotes, found {found}"),
-        Some((found, expected)) => format!("expected {expected}, found {found}"),
+        Some((actual, "f64")) => format!("expected a number, found {actual}"),
+        Some((actual, "a string")) => format!("expected a text in quotes, found {actual}"),
+        Some((actual, expected)) => format!("expected {expected}, found {actual}"),
         None => message.trim_end().replace("missing field", "missing key"),
     };
     let message = message

@@ -13,20 +13,20 @@ use crate::variable::{Variable, Variables};
 
 /// A mechanism that may be missing from the model: formulas for some of its quantities, with their parameters.
 ///
-/// At the neutral value of its strengths an effect is not evaluated: the model is then without it, bit for bit.
+/// At the neutral value of its strengths an effect is not evaluated, so the model equals the model without it, bit for bit.
 #[derive(Debug, Clone)]
 pub struct Effect {
     /// Name in jobs and results.
     pub name: String,
-    /// What it is, in a line.
+    /// One line that describes the effect.
     pub summary: String,
-    /// Where it comes from.
+    /// The source that describes the effect.
     pub source: String,
-    /// The part of a model that has this effect without formulas, where one has.
+    /// The part of a model that has this effect in code, if any.
     pub mechanism: Option<Mechanism>,
-    /// Its parameters, in the order of the file.
+    /// The parameters, in the order of the file.
     pub parameters: Vec<Parameter>,
-    /// The file itself.
+    /// The text of the file.
     pub text: String,
     formulas: Vec<(Hook, Id)>,
     graph: Graph,
@@ -37,13 +37,13 @@ pub struct Effect {
 pub struct Parameter {
     /// Name within the effect; `EFFECT.NAME` elsewhere.
     pub name: String,
-    /// Unit as the file says it.
+    /// Unit as the file states it.
     pub unit: String,
     /// The value at which the effect is absent; `None` for a parameter that only shapes it.
     pub neutral: Option<f64>,
     /// The value at which tables show the effect.
     pub typical: Option<f64>,
-    /// A number, which fixes it, or a table with a distribution, as written.
+    /// The prior as written: a number, which fixes the parameter, or a table with a distribution.
     pub prior: toml::Value,
     /// Line in the file.
     pub line: usize,
@@ -85,7 +85,7 @@ impl Mechanism {
         }
     }
 
-    /// The parameters that it takes, in their order.
+    /// The parameters that it takes, in order.
     pub fn parameters(self) -> &'static [&'static str] {
         match self {
             Mechanism::Rebound => &["compliance_m_pa"],
@@ -96,10 +96,10 @@ impl Mechanism {
         }
     }
 
-    /// The variables that it uses beside those of the effect's formulas.
+    /// The variables that it uses in addition to those of the effect's formulas.
     fn uses(self) -> Variables {
         match self {
-            Mechanism::SideWall => Variables::of(&[Variable::Density, Variable::Gravity]),
+            Mechanism::SideWall => Variables::new(&[Variable::Density, Variable::Gravity]),
             Mechanism::Rebound | Mechanism::FlatPatch | Mechanism::Digging | Mechanism::EndWall => {
                 Variables::default()
             }
@@ -111,11 +111,11 @@ impl Mechanism {
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{}{message}", prefix(*line, *column))]
 pub struct EffectError {
-    /// Line, counted from 1, where one is to blame.
+    /// Line, counted from 1; `None` if the whole file is to blame.
     pub line: Option<usize>,
-    /// Column, counted from 1, where one is to blame.
+    /// Column, counted from 1; `None` if no column is to blame.
     pub column: Option<usize>,
-    /// What is wrong.
+    /// Description of the mistake.
     pub message: String,
 }
 
@@ -128,7 +128,7 @@ fn prefix(line: Option<usize>, column: Option<usize>) -> String {
 }
 
 impl Effect {
-    /// Most bytes of a file.
+    /// The maximum size of a file, in bytes.
     pub const LONGEST: usize = 32_768;
 
     /// The quantities that its formulas replace, in the order of evaluation.
@@ -136,7 +136,8 @@ impl Effect {
         self.formulas.iter().map(|(hook, _)| *hook)
     }
 
-    /// The formula for a quantity, ready where the variables `local` differ from point to point; none if it leaves it alone.
+    /// Compiles the formula for a quantity, where the variables `local` differ from point to point; `None` if the
+    /// effect has no such formula.
     ///
     /// `local` may hold the first [`Variable::LOCAL`] variables: only they have columns in a [`Block`](crate::evaluation::block::Block). The
     /// choice changes no bit of a value. Checked by `fuzzed::any_formula_has_the_same_bits_at_one_point_and_in_blocks`.
@@ -153,11 +154,11 @@ impl Effect {
         Some(Program::compile(&self.graph, result, local))
     }
 
-    /// Whether its formula at a hook is what it replaces times something that does not depend on it.
+    /// Returns whether its formula at a hook is the replaced quantity times a factor that does not depend on that quantity.
     pub fn only_scales(&self, hook: Hook) -> bool {
         self.formulas
             .iter()
-            .find(|(own, _)| *own == hook)
+            .find(|(candidate, _)| *candidate == hook)
             .is_some_and(|(_, result)| is_proportional(&self.graph, *result, hook.target()))
     }
 
@@ -171,8 +172,8 @@ impl Effect {
         uses.fold(mechanism, Variables::union)
     }
 
-    /// Whether it needs the laws of a soil at a point, by Bekker, Mohr and Coulomb: it enters where they do, or asks for their
-    /// parameters. A model without these laws cannot express it.
+    /// Returns whether it needs the laws of Bekker and Mohr-Coulomb for the soil at a point: it replaces a quantity of these
+    /// laws, or uses their parameters. A model without these laws cannot express it.
     pub fn needs_soil_laws(&self) -> bool {
         const HOOKS: [Hook; 4] = [
             Hook::SinkageExponent,
@@ -187,22 +188,23 @@ impl Effect {
             Variable::ShearVelocity,
             Variable::KStar,
         ];
-        self.hooks().any(|hook| HOOKS.contains(&hook)) || self.uses().meets(Variables::of(&PARAMETERS))
+        self.hooks().any(|hook| HOOKS.contains(&hook)) || self.uses().meets(Variables::new(&PARAMETERS))
     }
 
-    /// Position of a parameter.
+    /// Position of a parameter by name.
     pub fn parameter(&self, name: &str) -> Option<usize> {
         self.parameters.iter().position(|p| p.name == name)
     }
 
-    /// Whether all strengths are neutral at these values of the parameters, so that the effect changes nothing. An effect
-    /// without strengths always acts. `values` are those of its parameters, in their order and units; −0 is 0, and NaN is
-    /// not neutral. Checked by `evaluation::zero_of_either_sign_is_neutral`.
+    /// Returns whether all strengths are neutral at these values of the parameters, so that the effect changes nothing.
+    ///
+    /// An effect without strengths always acts. `values` are in the order and units of the parameters; −0 counts as 0, and
+    /// NaN is not neutral. Checked by `evaluation::zero_of_either_sign_is_neutral`.
     pub fn is_neutral(&self, values: &[f64]) -> bool {
         let mut strengths = self.parameters.iter().zip(values);
         let any = self.parameters.iter().any(|p| p.neutral.is_some());
         any && strengths.all(|(p, value)| {
-            // 0 and -0 are the same strength; NaN is not neutral
+            // the difference treats 0 and -0 alike, and NaN as not neutral
             p.neutral.is_none_or(|neutral| value - neutral == 0.0)
         })
     }

@@ -23,7 +23,7 @@ pub(super) enum NameError {
     Unknown(String),
 }
 
-/// Longest name.
+/// The maximum length of a name.
 const LONGEST: usize = 60;
 
 /// Checks the form of a name: lower-case letters, digits and underscores, a letter first.
@@ -41,7 +41,7 @@ pub(super) fn check_form(what: &'static str, name: &str) -> Result<(), NameError
     Ok(())
 }
 
-/// Checks that a parameter or definition does not take a name that means something already.
+/// Checks that a parameter or definition does not take a name that already has a meaning.
 pub(super) fn check_free(what: &'static str, name: &str) -> Result<(), NameError> {
     check_form(what, name)?;
     let taken = |owner| {
@@ -59,9 +59,9 @@ pub(super) fn check_free(what: &'static str, name: &str) -> Result<(), NameError
     }
 }
 
-/// The mechanism of a name.
+/// Finds the mechanism of a name.
 pub(super) fn mechanism(name: &str) -> Result<Mechanism, NameError> {
-    let known = Mechanism::ALL.map(Mechanism::name);
-    let found = Mechanism::ALL.into_iter().find(|m| m.name() == name);
-    found.ok_or_else(|| NameError::Unknown(unknown_word("mechanism", name, known)))
+    let names = Mechanism::ALL.map(Mechanism::name);
+    let mechanism = Mechanism::ALL.into_iter().find(|m| m.name() == name);
+    mechanism.ok_or_else(|| NameError::Unknown(unknown_word("mechanism", name, names)))
 }

@@ -1,21 +1,22 @@
-//! Whether an effect is absent at the neutral value of its strengths.
+//! Check that an effect is absent at the neutral value of its strengths.
 
 use super::{Effect, Mechanism, Parameter};
 use crate::hook::Hook;
 use crate::variable::{Variable, Variables};
 
-/// Relative difference that rounding explains.
+/// Relative difference that rounding can cause.
 const ROUNDING: f64 = 1e-9;
-/// Where formulas are tried: shares of the size of each variable.
+/// Shares of the size of each variable at which formulas are evaluated.
 const SHARES: [f64; 3] = [0.31, 0.74, 1.0];
 
 impl Effect {
-    /// What the effect changes at the neutral values of all its strengths, where it should change nothing, in words: since it is not
-    /// evaluated there, the model jumps.
+    /// Describes what the effect changes at the neutral values of all its strengths; `None` if it changes nothing, as it should.
     ///
-    /// Formulas are tried at three states of a wheel, at the values that other parameters have or may have. What is not finite there
-    /// says nothing: a limit may be neutral that cannot be evaluated. Checked by
-    /// `tests::an_effect_that_acts_at_its_neutral_value_says_where`.
+    /// Because an effect is not evaluated there, such a change would be a jump of the model.
+    ///
+    /// Formulas are evaluated at three states of a wheel, at actual or possible values of the other parameters. A value
+    /// that is not finite is skipped: a limit may be neutral that cannot be evaluated. Checked by
+    /// `tests::an_effect_that_acts_at_its_neutral_value_is_named_with_its_quantity`.
     pub fn change_at_neutral(&self) -> Option<String> {
         let strengths: Vec<String> = self
             .parameters
@@ -34,8 +35,9 @@ impl Effect {
         ))
     }
 
-    /// Whether the effect changes nothing where variables have these values, at the typical values of its strengths. What a mechanism
-    /// does is not known here, and counts as a change; but a side wall pushes at a slip angle alone.
+    /// Returns whether the effect changes nothing when variables have these values, at the typical values of its strengths.
+    ///
+    /// The change by a mechanism is not known here and counts as a change, except that a side wall acts only at a slip angle.
     ///
     /// Checked by `tests::an_effect_of_the_slip_angle_is_absent_straight_ahead`.
     pub fn is_absent_at(&self, held: &[(Variable, f64)]) -> bool {
@@ -50,7 +52,7 @@ impl Effect {
         !can_act && self.change(&parameters, held).is_none()
     }
 
-    /// The first change that is found at three states of a wheel: of which quantity, from what to what.
+    /// Returns the first change found at three states of a wheel: the quantity, its value before and its value after.
     fn change(&self, parameters: &[f64], held: &[(Variable, f64)]) -> Option<(Hook, f64, f64)> {
         for hook in self.hooks() {
             let Some(program) = self.program(hook, Variables::default()) else {
@@ -75,7 +77,7 @@ impl Effect {
     }
 }
 
-/// A value that a parameter has, or may have.
+/// Returns the fixed value of a parameter, or a possible one.
 fn value(parameter: &Parameter) -> f64 {
     let number = |value: &toml::Value| value.as_float().or_else(|| value.as_integer().map(|i| i as f64));
     let of_prior = || {
@@ -90,7 +92,7 @@ fn value(parameter: &Parameter) -> f64 {
         .unwrap_or(1.0)
 }
 
-/// The size of a variable at the wheel of a small rover, in its SI unit.
+/// Returns the size of a variable for the wheel of a small rover, in its SI unit.
 fn size(variable: Variable) -> f64 {
     match variable {
         Variable::P => 1e4,
@@ -130,7 +132,7 @@ mod tests {
     }
 
     #[test]
-    fn an_effect_that_acts_at_its_neutral_value_says_where() {
+    fn an_effect_that_acts_at_its_neutral_value_is_named_with_its_quantity() {
         let words = effect("drawbar_pull * (1 + a)", 1.0).change_at_neutral();
         assert_eq!(
             words.unwrap(),
@@ -167,7 +169,7 @@ mod tests {
     }
 
     #[test]
-    fn the_catalogue_is_neutral_where_it_says_so() {
+    fn the_catalogue_is_neutral_at_its_neutral_values() {
         for effect in catalogue::catalogue() {
             assert_eq!(effect.change_at_neutral(), None, "{}", effect.name);
         }

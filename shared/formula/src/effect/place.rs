@@ -1,6 +1,6 @@
 //! The place of a mistake in a file.
 
-/// Line and column of a byte, each counted from 1; columns in characters.
+/// Returns line and column of a byte, each counted from 1; columns count characters.
 pub(super) fn line_and_column(text: &str, byte: usize) -> (usize, usize) {
     let before = text.get(..byte).unwrap_or(text);
     let start_of_line = before.rfind('\n').map_or(0, |newline| newline + 1);
@@ -8,14 +8,14 @@ pub(super) fn line_and_column(text: &str, byte: usize) -> (usize, usize) {
     (line, before[start_of_line..].chars().count() + 1)
 }
 
-/// The byte of a TOML string, with its quotes as it stands in the file, at which a character of its content begins.
+/// Returns the byte, in a quoted TOML string as it stands in the file, at which a character of its content begins.
 pub(super) fn in_string(raw: &str, content: &str, character: usize) -> usize {
     let lines = raw.starts_with("\"\"\"") || raw.starts_with("'''");
     let escapes = raw.starts_with('"');
     let rest = |at: usize| raw.get(at..).unwrap_or_default();
     let mut at = if lines { 3 } else { 1 };
     if lines {
-        // a newline right after the quotes is no part of the content
+        // a newline right after the quotes does not belong to the content
         at += rest(at).len() - rest(at).trim_start_matches('\r').len();
         at += usize::from(rest(at).starts_with('\n'));
     }
@@ -28,14 +28,14 @@ pub(super) fn in_string(raw: &str, content: &str, character: usize) -> usize {
     };
     at = past_joint(at);
     for written in content.chars().take(character) {
-        let here = rest(at);
-        at += match here.as_bytes() {
+        let remainder = rest(at);
+        at += match remainder.as_bytes() {
             [b'\\', b'u', ..] if escapes => 6,
             [b'\\', b'U', ..] if escapes => 10,
             [b'\\', b'x', ..] if escapes => 4,
             [b'\\', ..] if escapes => 2,
             [b'\r', b'\n', ..] if written == '\n' => 2,
-            _ => here.chars().next().map_or(0, char::len_utf8),
+            _ => remainder.chars().next().map_or(0, char::len_utf8),
         };
         at = past_joint(at);
     }
@@ -77,10 +77,10 @@ mod tests {
             let table: toml::Table = toml::from_str(&format!("a = {raw}")).unwrap();
             let content = table["a"].as_str().unwrap();
             let character = content.chars().position(|c| c == '!').unwrap();
-            let found = &raw[in_string(raw, content, character)..];
+            let remainder = &raw[in_string(raw, content, character)..];
             assert!(
-                found.starts_with('!') || found.starts_with("\\U"),
-                "{raw:?}: {found:?}"
+                remainder.starts_with('!') || remainder.starts_with("\\U"),
+                "{raw:?}: {remainder:?}"
             );
         }
     }

@@ -3,14 +3,14 @@
 use crate::evaluation::arithmetic::LANES;
 use crate::variable::Variable;
 
-/// Most points of a block.
+/// The maximum number of points of a block.
 pub const BLOCK: usize = 128;
 
-/// Numbers in the columns of variables, which come before the registers of programs.
+/// Count of the numbers in the columns of variables, which precede the registers of programs.
 pub(crate) const COLUMNS: usize = Variable::LOCAL * BLOCK;
 
-/// Address of an argument or a result in the memory of a block: that of the first group of points, and the step from one
-/// group to the next.
+/// Address of an argument or a result in the memory of a block: the address of the first group of points, and the step
+/// from one group to the next.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Address {
     first: u32,
@@ -34,7 +34,7 @@ impl Address {
         }
     }
 
-    /// A value that all points share; constants follow the registers.
+    /// The address of a value that all points share; constants follow the registers.
     pub(crate) fn constant(registers: usize, constant: usize) -> Self {
         Self {
             first: Self::register(registers).first + (constant * LANES) as u32,

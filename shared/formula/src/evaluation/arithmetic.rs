@@ -1,21 +1,21 @@
 //! One operation, at one point or at many, with the same bits.
 //!
-//! The functions that vectorise, [`elementary`]'s, are used wherever they are defined and `libm`'s elsewhere, at one point
-//! as at many, so that no comparison and no table can tell how a formula was evaluated.
+//! The functions that vectorise (module [`elementary`]) are used wherever they are defined, and those of `libm`
+//! elsewhere, at one point as in a block, so that the result does not depend on how a formula is evaluated.
 
 use crate::evaluation::elementary;
 use crate::syntax::graph::{Binary, Unary};
 
-/// Points are computed so many at a time: a multiple of the width of vector registers.
+/// Number of points computed together: a multiple of the width of vector registers.
 pub(crate) const LANES: usize = 8;
 
-/// A quantity at so many points.
+/// The values of a quantity at [`LANES`] points.
 pub(crate) type Lanes = [f64; LANES];
 
-/// The greatest argument of the exponential that vectorises; below its negative e^x is 0.
+/// The greatest argument of the exponential that vectorises; below its negative, e^x is 0.
 const GREATEST: f64 = 700.0;
 
-/// The value of an operation at one point.
+/// Computes an operation of one argument at one point.
 pub(crate) fn unary(operation: Unary, a: f64) -> f64 {
     match operation {
         Unary::Negate => -a,
@@ -30,7 +30,7 @@ pub(crate) fn unary(operation: Unary, a: f64) -> f64 {
     }
 }
 
-/// The same for two arguments. A minimum or maximum of NaN is NaN; comparisons give 1 or 0.
+/// Computes an operation of two arguments at one point. A minimum or maximum of NaN is NaN; comparisons give 1 or 0.
 #[inline(always)]
 pub(crate) fn binary(operation: Binary, a: f64, b: f64) -> f64 {
     let truth = |holds: bool| if holds { 1.0 } else { 0.0 };
@@ -61,13 +61,14 @@ pub(crate) fn binary(operation: Binary, a: f64, b: f64) -> f64 {
     }
 }
 
-/// The second where the first is not 0, else the third.
+/// Returns `a` where the condition is not 0, else `b`.
 #[inline(always)]
 pub(crate) fn choose(condition: f64, a: f64, b: f64) -> f64 {
     if condition.abs() > 0.0 { a } else { b }
 }
 
-/// The values of an operation at many points. Inlined where the operation is known: one loop for each.
+/// Computes an operation of one argument at many points. It is inlined where the operation is known, so that each gets
+/// its own loop.
 #[inline(always)]
 pub(crate) fn unary_lanes(operation: Unary, a: &Lanes) -> Lanes {
     match operation {
@@ -83,7 +84,7 @@ pub(crate) fn unary_lanes(operation: Unary, a: &Lanes) -> Lanes {
     }
 }
 
-/// The same for two arguments.
+/// Computes an operation of two arguments at many points.
 #[inline(always)]
 pub(crate) fn binary_lanes(operation: Binary, a: &Lanes, b: &Lanes) -> Lanes {
     match operation {
@@ -120,19 +121,19 @@ fn map_both(a: &Lanes, b: &Lanes, f: impl Fn(f64, f64) -> f64) -> Lanes {
     out
 }
 
-/// What a function without branches gives, if it is defined at all points; else another at one point after the other.
+/// Computes a function without branches if it is defined at all points, else the general one point by point.
 #[inline(always)]
 fn vector_or_each(a: &Lanes, vector: impl Fn(f64) -> (f64, bool), each: impl Fn(f64) -> f64) -> Lanes {
     let (mut out, mut defined) = ([0.0; LANES], true);
     for lane in 0..LANES {
-        let (value, here) = vector(a[lane]);
+        let (value, is_valid) = vector(a[lane]);
         out[lane] = value;
-        defined &= here; // without a way out, so that it vectorises
+        defined &= is_valid; // no early exit, so that the loop vectorises
     }
     if defined { out } else { map(a, each) }
 }
 
-/// e^a, and whether that is valid: not for large arguments and NaN.
+/// Returns e^a and whether it is valid: not for large arguments and NaN.
 #[inline(always)]
 fn exp_in_reach(a: f64) -> (f64, bool) {
     let value = elementary::exp(a);
@@ -146,7 +147,7 @@ fn exp(a: f64) -> f64 {
     }
 }
 
-/// Whether the vectorised logarithm is defined.
+/// Returns whether the vectorised logarithm is defined.
 #[inline(always)]
 fn has_logarithm(x: f64) -> bool {
     (x >= f64::MIN_POSITIVE) & x.is_finite()
@@ -160,7 +161,7 @@ fn log(a: f64) -> f64 {
     }
 }
 
-/// Whether a power is 0 because its base is: at the edge of a contact, and where a block has no points.
+/// Returns whether a power is 0 because its base is: at the edge of a contact, and in the unused points of a block.
 #[inline(always)]
 fn is_zero_power(a: f64, b: f64) -> bool {
     (a.to_bits() == 0) & (b > 0.0)
@@ -193,7 +194,7 @@ fn power_lanes(a: &Lanes, b: &Lanes) -> Lanes {
     if vectorises { out } else { map_both(a, b, power) }
 }
 
-/// tanh without branches: by its series near 0, where 1 − e would cancel.
+/// Computes tanh without branches; near 0 by its series, where 1 − e would cancel.
 fn tanh(x: f64) -> f64 {
     let square = x * x;
     let series = x

@@ -1,4 +1,4 @@
-//! Evaluation of formulas at many points at a time.
+//! Evaluation of formulas at many points together.
 
 pub use crate::evaluation::address::BLOCK;
 use crate::evaluation::address::{Address, COLUMNS};
@@ -7,14 +7,14 @@ use crate::evaluation::program::{Arithmetic, Operation, Program, Then};
 use crate::syntax::graph::{Binary, Unary};
 use crate::variable::Variable;
 
-/// Variables at so many points, and room to compute with them.
+/// Variables at up to [`BLOCK`] points, with working memory.
 ///
 /// # Example
 /// ```
 /// use formula::{Effect, Hook, Variable, block::Block, variable::Variables};
 /// let effect = Effect::read("name = \"softer\"\nsummary = \"softer soil\"\nsource = \"none\"\npressure = \"p * (1 - a)\"\n\
 ///     [parameters.a]\nunit = \"1\"\nneutral = 0\nprior = { half_normal = 0.1 }\n").unwrap();
-/// let local = Variables::of(&[Variable::P]);
+/// let local = Variables::new(&[Variable::P]);
 /// let program = effect.program(Hook::Pressure, local).unwrap();
 /// let (mut block, mut scalars) = (Block::default(), Vec::new());
 /// program.settle(&[0.0; Variable::COUNT], &[0.25], &mut scalars);
@@ -24,7 +24,7 @@ use crate::variable::Variable;
 /// ```
 #[derive(Debug, Clone)]
 pub struct Block {
-    /// The columns of variables, one after the other; then what programs keep.
+    /// The columns of variables, one after the other, then the memory of programs.
     memory: Vec<f64>,
 }
 
@@ -40,14 +40,14 @@ impl Block {
     /// A variable at all points; zero where nothing was written.
     ///
     /// # Panics
-    /// For a variable that is none of the first [`Variable::LOCAL`].
+    /// Panics for a variable beyond the first [`Variable::LOCAL`].
     #[inline]
     pub fn column(&self, variable: Variable) -> &[f64] {
         let first = variable as usize * BLOCK;
         &self.memory[..COLUMNS][first..first + BLOCK]
     }
 
-    /// The same, to be written.
+    /// The column of a variable, writable.
     #[inline]
     pub fn column_mut(&mut self, variable: Variable) -> &mut [f64] {
         let first = variable as usize * BLOCK;
@@ -62,8 +62,8 @@ impl Block {
 
     /// Replaces a variable at the first `points` points, at most [`BLOCK`], by the values of a program.
     ///
-    /// `scalars` are those that [`Program::settle`] left. Values beyond the last point are unspecified. Each value has the
-    /// bits that [`Program::settle`] gives where nothing differs from point to point. Checked by
+    /// `scalars` are the values that [`Program::settle`] left. Values beyond the last point are unspecified. Each value
+    /// has the bits that [`Program::settle`] gives when nothing differs from point to point. Checked by
     /// `evaluation::every_operation_agrees_with_one_point_at_a_time` and `fuzz`.
     pub fn replace(&mut self, variable: Variable, program: &Program, scalars: &[f64], points: usize) {
         let constants = |constant| Address::constant(program.registers, constant).at(0);
@@ -83,7 +83,7 @@ impl Block {
     }
 
     fn compute(&mut self, operation: Operation<Address>, out: Address, groups: usize) {
-        // each arm knows its operation while it is compiled
+        // each arm has a constant operation, so that the compiler specialises it
         macro_rules! unary {
             ($a:ident, $operation:ident, $($name:ident)*) => {
                 match $operation {

@@ -15,7 +15,7 @@ const TWO_52: f64 = 4_503_599_627_370_496.0;
 /// The least argument of [`exp`] that is distinguished from smaller ones.
 pub const EXP_LEAST: f64 = -700.0;
 
-/// e^x for x ≤ 700; below [`EXP_LEAST`] it gives e^−700 (1e-304), which no sum in this crate can tell from 0.
+/// Computes e^x for x ≤ 700; below [`EXP_LEAST`] it gives e^−700 (1e-304), which no sum in this crate can tell from 0.
 #[inline]
 pub fn exp(x: f64) -> f64 {
     let x = if x > EXP_LEAST { x } else { EXP_LEAST };
@@ -30,11 +30,11 @@ pub fn exp(x: f64) -> f64 {
     let middle = (1.0 / 24.0 + r * (1.0 / 120.0)) + r2 * (1.0 / 720.0 + r * (1.0 / 5_040.0));
     let high = (1.0 / 40_320.0 + r * (1.0 / 362_880.0)) + r2 * (1.0 / 3_628_800.0 + r * (1.0 / 39_916_800.0));
     let series = low + r4 * (middle + r4 * (high + r4 * (1.0 / 479_001_600.0)));
-    // Multiplying by 2^k: k + 1023 put in the exponent field; higher bits of k fall off.
+    // Multiplies by 2^k: k + 1023 goes into the exponent field; higher bits of k are shifted out.
     series * f64::from_bits((shifted.to_bits() << 52).wrapping_add(ONE))
 }
 
-/// The natural logarithm of a positive, normal x. Anything else gives an unspecified number.
+/// Computes the natural logarithm of a positive, normal x. Any other x gives an unspecified number.
 #[inline]
 pub fn ln(x: f64) -> f64 {
     // x = 2^k m with sqrt(1/2) ≤ m < sqrt(2).
@@ -53,7 +53,7 @@ pub fn ln(x: f64) -> f64 {
     k * LN_2_HIGH + (twice + (twice * q * series + k * LN_2_LOW))
 }
 
-/// `base^exponent` for 0 < base ≤ 1 and exponent ≥ 0; never below e^−700 (see [`exp`]).
+/// Computes `base^exponent` for 0 < base ≤ 1 and exponent ≥ 0; never below e^−700 (see [`exp`]).
 #[inline]
 pub fn fraction_pow(base: f64, exponent: f64) -> f64 {
     exp(exponent * ln(base))

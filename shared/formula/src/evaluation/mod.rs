@@ -1,4 +1,4 @@
-//! From operations to numbers.
+//! Evaluation of a graph of operations.
 //!
 //! # Layout
 //! - [`program`]: a compiled formula; [`block`]: its evaluation at many points.

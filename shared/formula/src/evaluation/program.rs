@@ -1,18 +1,18 @@
-//! A compiled formula: values that all points share are computed once, the others point by point.
+//! A compiled formula: values that all points share are computed once, the rest point by point.
 
 use crate::evaluation::address::Address;
 use crate::evaluation::arithmetic::{binary, choose, unary};
 use crate::syntax::graph::{Binary, Graph, Id, Node, Unary};
 use crate::variable::{Variable, Variables};
 
-/// Where an operation at a point finds a number.
+/// The source of a number that an operation at a point reads.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Operand {
-    /// The same for all points: position among the scalars.
+    /// A value that all points share: its position among the scalars.
     Scalar(u16),
     /// A variable that differs from point to point.
     Column(Variable),
-    /// What an earlier operation gave.
+    /// The result of an earlier operation.
     Register(u16),
 }
 
@@ -22,7 +22,7 @@ pub(crate) enum Operation<T> {
     Unary(Unary, T),
     Binary(Binary, T, T),
     If(T, T, T),
-    /// One of the four operations of arithmetic, followed at once by another on its result.
+    /// One of the four operations of arithmetic, followed at once by a second one on its result.
     Pair(Arithmetic, T, T, Then<T>),
 }
 
@@ -36,7 +36,7 @@ pub(crate) enum Arithmetic {
 }
 
 impl Arithmetic {
-    fn of(operation: Binary) -> Option<Self> {
+    fn new(operation: Binary) -> Option<Self> {
         match operation {
             Binary::Add => Some(Self::Add),
             Binary::Subtract => Some(Self::Subtract),
@@ -51,16 +51,16 @@ impl Arithmetic {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Then<T> {
     Exp,
-    /// The result to the power of another.
+    /// The result to a power.
     Power(T),
-    /// An operation on the result and another.
+    /// An operation with the result as its left argument.
     Left(Arithmetic, T),
-    /// An operation on another and the result.
+    /// An operation with the result as its right argument.
     Right(Arithmetic, T),
 }
 
 impl<T> Operation<T> {
-    /// The same operation with its arguments mapped.
+    /// Returns the same operation with its arguments mapped.
     fn map<U>(self, mut f: impl FnMut(T) -> U) -> Operation<U> {
         match self {
             Operation::Unary(operation, a) => Operation::Unary(operation, f(a)),
@@ -83,18 +83,17 @@ impl<T> Operation<T> {
 /// A compiled formula, for one choice of the variables that differ from point to point.
 #[derive(Debug, Clone)]
 pub struct Program {
-    /// The values that all points share; arguments are positions in this list.
+    /// The nodes whose values all points share; arguments are positions in this list.
     scalars: Vec<Node>,
     /// The operations at every point with their registers, except the last.
     pub(crate) operations: Vec<(Operation<Address>, Address)>,
-    /// The operation that gives the result, if one at every point does.
+    /// The operation that gives the result, if it is computed point by point.
     pub(crate) last: Option<Operation<Address>>,
-    /// How many registers there are.
     pub(crate) registers: usize,
-    /// The scalars that operations at points work on.
+    /// The scalars that operations at points read.
     pub(crate) constants: Vec<u16>,
     pub(crate) result: Address,
-    /// The result among the scalars, where it is the same at all points.
+    /// The position of the result among the scalars, if all points share it.
     scalar: Option<u16>,
     uses: Variables,
     local: Variables,
@@ -103,7 +102,7 @@ pub struct Program {
 }
 
 impl Program {
-    /// Compiles the result of a graph, where the variables `local` differ from point to point.
+    /// Compiles the result of a graph; the variables `local` differ from point to point.
     pub(crate) fn compile(graph: &Graph, result: Id, local: Variables) -> Self {
         let behind = graph.behind(result);
         let mut compiler = Compiler {
@@ -123,15 +122,15 @@ impl Program {
             compiler.places[usize::from(id.0)] = Some(place);
             compiler.registers.release(graph, id, &compiler.places);
         }
-        let result_operand = compiler.of(result);
-        let registers = compiler.registers.most;
+        let result_operand = compiler.operand(result);
+        let registers = compiler.registers.count;
         let mut constants = Vec::new();
         let mut place = |operand: Operand| match operand {
             Operand::Column(variable) => Address::column(variable),
             Operand::Register(register) => Address::register(usize::from(register)),
             Operand::Scalar(scalar) => {
-                let known = constants.iter().position(|&s| s == scalar);
-                let constant = known.unwrap_or_else(|| {
+                let position = constants.iter().position(|&s| s == scalar);
+                let constant = position.unwrap_or_else(|| {
                     constants.push(scalar);
                     constants.len() - 1
                 });
@@ -184,7 +183,7 @@ impl Program {
         &self.parameters
     }
 
-    /// The variables on which it depends where the result has a kink or a jump.
+    /// The variables on which the result depends through a kink or a jump.
     pub fn kinks(&self) -> Variables {
         self.kinks
     }
@@ -194,16 +193,16 @@ impl Program {
     /// # Arguments
     /// - `variables`: by [`Variable`], in their units; those that differ from point to point are not read.
     /// - `parameters`: of the effect, in its order and its units.
-    /// - `scalars`: takes the numbers, for [`Block::replace`]; its allocation is used again.
+    /// - `scalars`: receives the numbers for [`Block::replace`]; its allocation is reused.
     ///
     /// # Returns
-    /// The result in the unit of what the formula replaces, not held to [`Hook::admits`]; `None` where it differs from point to
-    /// point. Never an error: what is undefined is NaN, as the [crate](crate#numbers) says.
+    /// The result in the unit of the quantity that the formula replaces, not checked by [`Hook::admits`]; `None` if it
+    /// differs from point to point. Undefined values are NaN, as the [crate](crate#numbers) says; there is no error.
     ///
     /// # Panics
     /// If there are fewer parameters than the effect has.
     ///
-    /// Checked by `evaluation::operators_bind_as_in_mathematics` and `fuzzed::formulas_mean_what_their_signs_say`.
+    /// Checked by `evaluation::operators_bind_as_in_mathematics` and `fuzzed::formulas_follow_the_precedence_of_their_operators`.
     ///
     /// [`Block::replace`]: crate::evaluation::block::Block::replace
     /// [`Hook::admits`]: crate::Hook::admits
@@ -215,14 +214,14 @@ impl Program {
     ) -> Option<f64> {
         scalars.clear();
         for &node in &self.scalars {
-            let of = |id: Id| scalars[usize::from(id.0)];
+            let argument = |id: Id| scalars[usize::from(id.0)];
             let value = match node {
                 Node::Number(bits) => f64::from_bits(bits),
                 Node::Variable(variable) => variables[variable as usize],
                 Node::Parameter(place) => parameters[usize::from(place)],
-                Node::Unary(operation, a) => unary(operation, of(a)),
-                Node::Binary(operation, a, b) => binary(operation, of(a), of(b)),
-                Node::If(condition, a, b) => choose(of(condition), of(a), of(b)),
+                Node::Unary(operation, a) => unary(operation, argument(a)),
+                Node::Binary(operation, a, b) => binary(operation, argument(a), argument(b)),
+                Node::If(condition, a, b) => choose(argument(condition), argument(a), argument(b)),
             };
             scalars.push(value);
         }
@@ -243,7 +242,7 @@ fn kinks_by(graph: &Graph, id: Id) -> Variables {
     }
 }
 
-/// The powers that formulas use most need no logarithm: x^2 is x x, and x^0.5 the square root.
+/// Replaces the most frequent powers: x^2 by x x, and x^0.5 by the square root.
 fn without_power(graph: &Graph, node: Node) -> Node {
     let Node::Binary(Binary::Power, a, b) = node else {
         return node;
@@ -258,14 +257,14 @@ fn without_power(graph: &Graph, node: Node) -> Node {
 struct Compiler {
     scalars: Vec<Node>,
     operations: Vec<(Operation<Operand>, u16)>,
-    /// Where the value of each operation of the graph stands.
+    /// The place of the value of each operation of the graph.
     places: Vec<Option<Operand>>,
     registers: Registers,
 }
 
 impl Compiler {
-    fn of(&self, id: Id) -> Operand {
-        // arguments stand before what uses them
+    fn operand(&self, id: Id) -> Operand {
+        // arguments precede the operations that use them
         self.places[usize::from(id.0)].unwrap_or(Operand::Scalar(0))
     }
 
@@ -282,11 +281,15 @@ impl Compiler {
         };
         let same_everywhere = match node {
             Node::Number(_) | Node::Variable(_) | Node::Parameter(_) => Some(node),
-            Node::Unary(operation, a) => scalar(self.of(a)).map(|a| Node::Unary(operation, a)),
-            Node::Binary(operation, a, b) => scalar(self.of(a))
-                .zip(scalar(self.of(b)))
+            Node::Unary(operation, a) => scalar(self.operand(a)).map(|a| Node::Unary(operation, a)),
+            Node::Binary(operation, a, b) => scalar(self.operand(a))
+                .zip(scalar(self.operand(b)))
                 .map(|(a, b)| Node::Binary(operation, a, b)),
-            Node::If(c, a, b) => match (scalar(self.of(c)), scalar(self.of(a)), scalar(self.of(b))) {
+            Node::If(c, a, b) => match (
+                scalar(self.operand(c)),
+                scalar(self.operand(a)),
+                scalar(self.operand(b)),
+            ) {
                 (Some(c), Some(a), Some(b)) => Some(Node::If(c, a, b)),
                 _ => None,
             },
@@ -296,9 +299,9 @@ impl Compiler {
             return Operand::Scalar((self.scalars.len() - 1) as u16);
         }
         let operation = match node {
-            Node::Unary(operation, a) => Operation::Unary(operation, self.of(a)),
-            Node::Binary(operation, a, b) => Operation::Binary(operation, self.of(a), self.of(b)),
-            Node::If(c, a, b) => Operation::If(self.of(c), self.of(a), self.of(b)),
+            Node::Unary(operation, a) => Operation::Unary(operation, self.operand(a)),
+            Node::Binary(operation, a, b) => Operation::Binary(operation, self.operand(a), self.operand(b)),
+            Node::If(c, a, b) => Operation::If(self.operand(c), self.operand(a), self.operand(b)),
             Node::Number(_) | Node::Variable(_) | Node::Parameter(_) => return Operand::Scalar(0),
         };
         let operation = self.without_sign(node, operation);
@@ -308,7 +311,7 @@ impl Compiler {
         Operand::Register(register)
     }
 
-    /// (−x) s or (−x) / s with what is the same everywhere as x (−s) or x / (−s): the same bits, and no loop for the sign.
+    /// Rewrites (−x) s or (−x) / s, with s equal at all points, as x (−s) or x / (−s): the same bits without a loop for the sign.
     fn without_sign(&mut self, node: Node, operation: Operation<Operand>) -> Operation<Operand> {
         if let Node::Binary(_, x, _) = node
             && let Operation::Binary(
@@ -328,8 +331,7 @@ impl Compiler {
         operation
     }
 
-    /// The operation together with the one before it, where that gives an argument that nothing else needs: less to read and
-    /// write, and to dispatch.
+    /// Joins the operation with the preceding one if only it uses that result: this saves reading, writing and dispatch.
     fn paired(&mut self, node: Node, operation: Operation<Operand>) -> Operation<Operand> {
         let Some(&(Operation::Binary(first, a, b), register)) = self.operations.last() else {
             return operation;
@@ -339,18 +341,19 @@ impl Compiler {
             Operation::Unary(Unary::Exp, x) if is_first(x) => Some(Then::Exp),
             Operation::Binary(Binary::Power, x, y) if is_first(x) && !is_first(y) => Some(Then::Power(y)),
             Operation::Binary(second, x, y) if is_first(x) && !is_first(y) => {
-                Arithmetic::of(second).map(|second| Then::Left(second, y))
+                Arithmetic::new(second).map(|second| Then::Left(second, y))
             }
             Operation::Binary(second, x, y) if is_first(y) && !is_first(x) => {
-                Arithmetic::of(second).map(|second| Then::Right(second, x))
+                Arithmetic::new(second).map(|second| Then::Right(second, x))
             }
             _ => None,
         };
-        let Some((first, then)) = Arithmetic::of(first).zip(then) else {
+        let Some((first, then)) = Arithmetic::new(first).zip(then) else {
             return operation;
         };
         let mut arguments = node.arguments();
-        let alone = arguments.any(|id| is_first(self.of(id)) && self.registers.uses[usize::from(id.0)] == 1);
+        let alone =
+            arguments.any(|id| is_first(self.operand(id)) && self.registers.uses[usize::from(id.0)] == 1);
         if !alone {
             return operation;
         }
@@ -359,10 +362,10 @@ impl Compiler {
     }
 }
 
-/// Which registers are free, and how often each value is still needed.
+/// The free registers, and the number of uses that each value still has.
 struct Registers {
     free: Vec<u16>,
-    most: usize,
+    count: usize,
     uses: Vec<u32>,
 }
 
@@ -376,20 +379,20 @@ impl Registers {
         }
         Self {
             free: Vec::new(),
-            most: 0,
+            count: 0,
             uses,
         }
     }
 
     fn take(&mut self) -> u16 {
         self.free.pop().unwrap_or_else(|| {
-            self.most += 1;
-            (self.most - 1) as u16
+            self.count += 1;
+            (self.count - 1) as u16
         })
     }
 
-    /// Frees the registers of arguments that nothing needs any more. They are never the result's own: an operation does
-    /// not overwrite what it reads.
+    /// Frees the registers of arguments that have no further use. The register of the result is never among them,
+    /// because an operation does not overwrite its arguments.
     fn release(&mut self, graph: &Graph, id: Id, places: &[Option<Operand>]) {
         for argument in graph.node(id).arguments() {
             let left = &mut self.uses[usize::from(argument.0)];
@@ -409,12 +412,12 @@ mod tests {
     use crate::effect::Effect;
     use crate::hook::Hook;
 
-    /// A formula made ready where z differs from point to point.
+    /// Compiles a formula where z differs from point to point.
     fn program(formula: &str) -> Program {
         let text = format!("name = \"a\"\nsummary = \"a\"\nsource = \"a\"\npressure = \"{formula}\"\n");
         let effect = Effect::read(&text).unwrap();
         effect
-            .program(Hook::Pressure, Variables::of(&[Variable::Z]))
+            .program(Hook::Pressure, Variables::new(&[Variable::Z]))
             .unwrap()
     }
 
@@ -430,7 +433,7 @@ mod tests {
         places[usize::from(e.0)] = Some(Operand::Register(registers.take()));
         places[usize::from(square.0)] = Some(Operand::Register(registers.take()));
         registers.release(&graph, square, &places);
-        // freed twice, it would be given to two values at once
+        // a register freed twice would be given to two values at once
         assert_eq!(registers.free, [0]);
     }
 
@@ -443,8 +446,8 @@ mod tests {
             ("-z * 1", 1),
         ] {
             let program = program(formula);
-            let found = program.operations.len() + usize::from(program.last.is_some());
-            assert_eq!(found, loops, "{formula}");
+            let count = program.operations.len() + usize::from(program.last.is_some());
+            assert_eq!(count, loops, "{formula}");
         }
     }
 }

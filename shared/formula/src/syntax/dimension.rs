@@ -1,12 +1,12 @@
 //! Check of the units of a formula.
 //!
-//! Only a certain contradiction is an error. A number has whatever unit its neighbour needs, as in `v_t / 0.02` or
-//! `1.5 * p`; so has a quantity whose unit depends on a parameter, such as `k_star` or `z^n`.
+//! Only a certain contradiction is an error. A number takes the unit that its neighbour needs, as in `v_t / 0.02` or
+//! `1.5 * p`; so does a quantity whose unit depends on a parameter, such as `k_star` or `z^n`.
 
 use crate::syntax::graph::{Binary, Graph, Id, Node, Unary};
 use crate::unit::Unit;
 
-/// A contradiction between units, with the operation that it is in.
+/// A contradiction between units, with its operation.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum Contradiction {
     #[error("{0} needs an angle in rad, not in deg: multiply it by pi / 180")]
@@ -17,7 +17,7 @@ pub(crate) enum Contradiction {
     Unlike(&'static str, Unit, Unit),
 }
 
-/// The unit of an operation on others of a graph, as far as units tell.
+/// Returns the unit of an operation on nodes of a graph, if the units of its arguments determine it.
 ///
 /// `parameters` are the units of the effect's parameters. Checked by `gallery::every_message_is_as_written`.
 pub(crate) fn unit_of(
@@ -25,21 +25,21 @@ pub(crate) fn unit_of(
     node: Node,
     parameters: impl Fn(u8) -> Unit,
 ) -> Result<Option<Unit>, Contradiction> {
-    let of = |id: Id| graph.unit(id);
+    let unit = |id: Id| graph.unit(id);
     match node {
         Node::Number(_) => Ok(None),
         Node::Variable(variable) => Ok(variable.unit()),
         Node::Parameter(place) => Ok(Some(parameters(place))),
-        Node::Unary(operation, a) => unary(operation, of(a)),
-        Node::Binary(operation, a, b) => binary(operation, of(a), of(b), graph.node(b)),
-        Node::If(_, a, b) => same("both branches of if", of(a), of(b)),
+        Node::Unary(operation, a) => unary(operation, unit(a)),
+        Node::Binary(operation, a, b) => binary(operation, unit(a), unit(b), graph.node(b)),
+        Node::If(_, a, b) => same("both branches of if", unit(a), unit(b)),
     }
 }
 
-fn unary(operation: Unary, of: Option<Unit>) -> Result<Option<Unit>, Contradiction> {
+fn unary(operation: Unary, argument: Option<Unit>) -> Result<Option<Unit>, Contradiction> {
     let name = match operation {
-        Unary::Negate | Unary::Abs => return Ok(of),
-        Unary::Sqrt => return Ok(of.and_then(|unit| unit.to_the(0.5))),
+        Unary::Negate | Unary::Abs => return Ok(argument),
+        Unary::Sqrt => return Ok(argument.and_then(|unit| unit.to_the(0.5))),
         Unary::Exp => "exp",
         Unary::Log => "log",
         Unary::Tanh => "tanh",
@@ -47,9 +47,9 @@ fn unary(operation: Unary, of: Option<Unit>) -> Result<Option<Unit>, Contradicti
         Unary::Cos => "cos",
         Unary::Tan => "tan",
     };
-    match (operation, of) {
+    match (operation, argument) {
         (Unary::Sin | Unary::Cos | Unary::Tan, Some(Unit::DEGREE)) => Err(Contradiction::Degrees(name)),
-        _ => plain(name, of).map(|()| Some(Unit::ONE)),
+        _ => plain(name, argument).map(|()| Some(Unit::ONE)),
     }
 }
 
@@ -82,7 +82,7 @@ fn binary(
     }
 }
 
-/// What must have no unit.
+/// Checks that an argument has no unit.
 fn plain(what: &'static str, unit: Option<Unit>) -> Result<(), Contradiction> {
     match unit {
         Some(unit) if unit != Unit::ONE => Err(Contradiction::HasUnit(what, unit)),
@@ -90,7 +90,7 @@ fn plain(what: &'static str, unit: Option<Unit>) -> Result<(), Contradiction> {
     }
 }
 
-/// Two that must have the same unit, which is known from either.
+/// Checks that two arguments have the same unit, and returns it if either has one.
 fn same(what: &'static str, left: Option<Unit>, right: Option<Unit>) -> Result<Option<Unit>, Contradiction> {
     match (left, right) {
         (Some(a), Some(b)) if a != b => Err(Contradiction::Unlike(what, a, b)),

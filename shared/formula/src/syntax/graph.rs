@@ -49,12 +49,12 @@ pub(crate) enum Node {
     Parameter(u8),
     Unary(Unary, Id),
     Binary(Binary, Id, Id),
-    /// The second where the first is not 0, else the third.
+    /// The second argument where the first is not 0, else the third.
     If(Id, Id, Id),
 }
 
 impl Node {
-    /// What it works on.
+    /// The arguments of the operation.
     pub(crate) fn arguments(self) -> impl Iterator<Item = Id> {
         let arguments = match self {
             Node::Number(_) | Node::Variable(_) | Node::Parameter(_) => [None; 3],
@@ -66,44 +66,44 @@ impl Node {
     }
 }
 
-/// The operations of an effect; the arguments of each stand before it.
+/// The operations of an effect; arguments precede the operations that use them.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Graph {
     nodes: Vec<Node>,
-    /// The unit of each, as far as units tell.
+    /// The unit of each operation, if it is determined.
     units: Vec<Option<Unit>>,
-    known: BTreeMap<Node, Id>,
+    positions: BTreeMap<Node, Id>,
 }
 
 impl Graph {
-    /// Most operations of an effect.
-    pub(crate) const MOST: usize = 1000;
+    /// The maximum number of operations of an effect.
+    pub(crate) const MAX_OPERATIONS: usize = 1000;
 
-    /// An operation, new or known already, and its unit; none if there are too many.
+    /// Adds an operation with its unit, unless it is there already; `None` if there are too many.
     pub(crate) fn add(&mut self, node: Node, unit: Option<Unit>) -> Option<Id> {
-        if let Some(&id) = self.known.get(&node) {
+        if let Some(&id) = self.positions.get(&node) {
             return Some(id);
         }
-        if self.nodes.len() >= Self::MOST {
+        if self.nodes.len() >= Self::MAX_OPERATIONS {
             return None;
         }
         let id = Id(self.nodes.len() as u16);
         self.nodes.push(node);
         self.units.push(unit);
-        self.known.insert(node, id);
+        self.positions.insert(node, id);
         Some(id)
     }
 
-    /// Where an operation stands, if it is known.
+    /// The position of an operation, if it is in the graph.
     pub(crate) fn find(&self, node: Node) -> Option<Id> {
-        self.known.get(&node).copied()
+        self.positions.get(&node).copied()
     }
 
     pub(crate) fn node(&self, id: Id) -> Node {
         self.nodes[usize::from(id.0)]
     }
 
-    /// The unit of an operation, as far as units tell.
+    /// The unit of an operation, if it is determined.
     pub(crate) fn unit(&self, id: Id) -> Option<Unit> {
         self.units[usize::from(id.0)]
     }
@@ -112,7 +112,7 @@ impl Graph {
         self.nodes.len()
     }
 
-    /// The operations that a result rests on, itself last, arguments first.
+    /// The operations that a result depends on: arguments first, the result last.
     pub(crate) fn behind(&self, result: Id) -> Vec<Id> {
         let mut needed = vec![false; usize::from(result.0) + 1];
         needed[usize::from(result.0)] = true;

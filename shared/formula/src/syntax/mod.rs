@@ -1,7 +1,7 @@
-//! From the text of a formula to operations.
+//! Parsing of the text of a formula into operations.
 //!
 //! # Layout
-//! - `token`, `parse`: the text to a graph of operations.
+//! - `token`, `parse`: parse the text into a graph of operations.
 //! - `graph`: the operations of one effect, without repetition.
 //! - `dimension`: check of units; `proportion`: whether a formula only scales the quantity that it replaces.
 

@@ -1,4 +1,4 @@
-//! Parser: the text of a formula to operations.
+//! Parser from the text of a formula to operations.
 //!
 //! ```text
 //! sum     = product { ("+" | "-") product }
@@ -18,9 +18,9 @@ use crate::unit::Unit;
 use crate::variable::{Variable, Variables};
 use crate::word::unknown_word;
 
-/// Most characters of a formula.
+/// The maximum number of characters of a formula.
 pub(crate) const LONGEST: usize = 2000;
-/// Deepest nesting of parentheses, signs and functions.
+/// The maximum nesting of parentheses, signs and functions.
 const DEEPEST: u32 = 50;
 
 const UNARY: [(&str, Unary); 8] = [
@@ -36,7 +36,7 @@ const UNARY: [(&str, Unary); 8] = [
 
 const BINARY: [(&str, Binary); 3] = [("min", Binary::Min), ("max", Binary::Max), ("pow", Binary::Power)];
 
-/// The names that mean an operation or a constant everywhere.
+/// The names that mean an operation or a constant in every formula.
 pub(crate) fn reserved() -> impl Iterator<Item = &'static str> {
     let functions = UNARY.iter().map(|f| f.0).chain(BINARY.iter().map(|f| f.0));
     functions.chain(["if", "pi"])
@@ -46,14 +46,13 @@ pub(crate) fn reserved() -> impl Iterator<Item = &'static str> {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Scope<'a> {
     pub(crate) variables: Variables,
-    /// Names and units of the parameters, in their order.
+    /// Names and units of the parameters, in order.
     pub(crate) parameters: &'a [(String, Unit)],
     pub(crate) definitions: &'a BTreeMap<String, Definition>,
-    /// Where the formula stands, for messages: `pressure`.
+    /// The key of the formula, for messages: `pressure`.
     pub(crate) place: &'a str,
 }
 
-/// A definition.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Definition {
     pub(crate) result: Id,
@@ -61,7 +60,7 @@ pub(crate) struct Definition {
     pub(crate) uses: Variables,
 }
 
-/// Reads a formula into a graph; gives the operation of its result.
+/// Parses a formula into a graph; returns the operation of its result.
 pub(crate) fn parse(text: &str, scope: &Scope, graph: &mut Graph) -> Result<Id, Mistake> {
     let length = text.chars().count();
     if length > LONGEST {
@@ -83,21 +82,21 @@ pub(crate) fn parse(text: &str, scope: &Scope, graph: &mut Graph) -> Result<Id, 
         Token::Sign("<" | "<=" | ">" | ">=" | "==" | "!=") => {
             Err(parser.wrong("a comparison is allowed only in if(condition, then, else)"))
         }
-        found => {
-            let hint = match found {
+        token => {
+            let hint = match token {
                 Token::Number(_) | Token::Name(_) | Token::Sign("(") => "; write * to multiply",
                 Token::Sign(",") => "; use a point for decimals; a comma only separates arguments",
                 Token::Sign(")") => "; there is no open parenthesis",
                 _ => "",
             };
-            Err(parser.wrong(format!("expected an operator or the end, found {found}{hint}")))
+            Err(parser.wrong(format!("expected an operator or the end, found {token}{hint}")))
         }
     }
 }
 
 struct Parser<'a, 'b> {
     tokens: Tokens<'a>,
-    /// The next word, and where it stands.
+    /// The next token, and its place.
     token: Token<'a>,
     at: usize,
     depth: u32,
@@ -121,10 +120,10 @@ impl Parser<'_, '_> {
         let parameter = |place: u8| self.scope.parameters[usize::from(place)].1;
         let unit = unit_of(self.graph, node, parameter).map_err(|e| Mistake::new(at, e.to_string()))?;
         self.graph.add(node, unit).ok_or_else(|| {
-            let most = Graph::MOST;
+            let max = Graph::MAX_OPERATIONS;
             Mistake::new(
                 at,
-                format!("an effect must have at most {most} different operations"),
+                format!("an effect must have at most {max} different operations"),
             )
         })
     }
@@ -199,18 +198,18 @@ impl Parser<'_, '_> {
                 self.expect(")", "to close \"(\"")?;
                 Ok(inside)
             }
-            found => {
-                let hint = match found {
+            token => {
+                let hint = match token {
                     Token::Sign("*") => "; a power is written with ^",
                     _ => "",
                 };
-                let message = format!("expected a number, a name or \"(\", found {found}{hint}");
+                let message = format!("expected a number, a name or \"(\", found {token}{hint}");
                 Err(self.wrong(message))
             }
         }
     }
 
-    /// Takes a sign that must stand here; `why` is for the message.
+    /// Takes a sign that must come next; `why` is for the message.
     fn expect(&mut self, sign: &str, why: &str) -> Result<(), Mistake> {
         if self.token == Token::Sign(sign) {
             return self.advance();
@@ -244,11 +243,11 @@ impl Parser<'_, '_> {
             return mistake(format!("{name} needs its arguments in parentheses"));
         }
         if called {
-            let known = UNARY.iter().map(|f| f.0).chain(BINARY.iter().map(|f| f.0));
-            let known: Vec<&str> = known.chain(["if"]).collect();
-            return mistake(match self.known(name) {
+            let functions = UNARY.iter().map(|f| f.0).chain(BINARY.iter().map(|f| f.0));
+            let functions: Vec<&str> = functions.chain(["if"]).collect();
+            return mistake(match self.is_declared(name) {
                 true => format!("{name} is not a function; write * to multiply"),
-                false => format!("unknown function \"{name}\"; there are {}", known.join(", ")),
+                false => format!("unknown function \"{name}\"; there are {}", functions.join(", ")),
             });
         }
         if name == "pi" {
@@ -279,7 +278,7 @@ impl Parser<'_, '_> {
         }
     }
 
-    /// A message that a variable is not visible here, with the hooks that see it.
+    /// Returns the message that a variable is not visible here, with the hooks that see it.
     fn hidden(&self, variable: Variable) -> String {
         let hooks = Hook::ALL.iter().filter(|hook| hook.sees().contains(variable));
         let hooks: Vec<&str> = hooks.map(|hook| hook.name()).collect();
@@ -292,7 +291,7 @@ impl Parser<'_, '_> {
         )
     }
 
-    fn known(&self, name: &str) -> bool {
+    fn is_declared(&self, name: &str) -> bool {
         self.scope.definitions.contains_key(name)
             || self.scope.parameters.iter().any(|(p, _)| p == name)
             || Variable::ALL.iter().any(|v| v.name() == name)
@@ -301,17 +300,17 @@ impl Parser<'_, '_> {
     /// The names that are visible.
     fn names(&self) -> Vec<&str> {
         let scope = self.scope;
-        let own = scope
+        let declared = scope
             .parameters
             .iter()
             .map(|(p, _)| p)
             .chain(scope.definitions.keys());
-        let mut names: Vec<&str> = own.map(String::as_str).collect();
+        let mut names: Vec<&str> = declared.map(String::as_str).collect();
         names.extend(scope.variables.iter().map(|variable| variable.name()));
         names
     }
 
-    /// `(left < right, then, else)` of an `if` that stands at a place.
+    /// Parses `(left < right, then, else)` of an `if` at a place.
     fn choice(&mut self, at: usize) -> Result<Id, Mistake> {
         self.advance()?;
         let left = self.sum()?;

@@ -1,40 +1,40 @@
-//! Whether a formula only scales the quantity that it replaces.
+//! Check that a formula only scales the quantity that it replaces.
 
 use crate::syntax::graph::{Binary, Graph, Id, Node, Unary};
 use crate::variable::Variable;
 
-/// How a value depends on a variable.
+/// The dependence of a value on a variable.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Dependence {
     Free,
-    /// The variable times something free of it.
+    /// Proportional: the variable times a factor free of it.
     Proportional,
     Other,
 }
 
-/// Whether a result is a variable times something that does not depend on it, as far as its form shows.
+/// Returns whether the form of a result shows that it is the variable times a factor free of it.
 pub(crate) fn is_proportional(graph: &Graph, result: Id, variable: Variable) -> bool {
     use Dependence::{Free, Other, Proportional};
-    let mut known = vec![Other; graph.len()];
+    let mut dependences = vec![Other; graph.len()];
     for id in graph.behind(result) {
-        let of = |id: Id| known[usize::from(id.0)];
+        let at = |id: Id| dependences[usize::from(id.0)];
         let dependence = match graph.node(id) {
-            Node::Variable(own) if own == variable => Proportional,
+            Node::Variable(candidate) if candidate == variable => Proportional,
             Node::Number(_) | Node::Parameter(_) | Node::Variable(_) => Free,
-            Node::Unary(Unary::Negate, a) => of(a),
-            node if node.arguments().all(|argument| of(argument) == Free) => Free,
-            Node::Binary(Binary::Multiply, a, b) => match (of(a), of(b)) {
+            Node::Unary(Unary::Negate, a) => at(a),
+            node if node.arguments().all(|argument| at(argument) == Free) => Free,
+            Node::Binary(Binary::Multiply, a, b) => match (at(a), at(b)) {
                 (Proportional, Free) | (Free, Proportional) => Proportional,
                 _ => Other,
             },
-            Node::Binary(Binary::Divide, a, b) if (of(a), of(b)) == (Proportional, Free) => Proportional,
-            Node::Binary(Binary::Add | Binary::Subtract, a, b) if of(a) == of(b) => of(a),
-            Node::If(condition, a, b) if of(condition) == Free && of(a) == of(b) => of(a),
+            Node::Binary(Binary::Divide, a, b) if (at(a), at(b)) == (Proportional, Free) => Proportional,
+            Node::Binary(Binary::Add | Binary::Subtract, a, b) if at(a) == at(b) => at(a),
+            Node::If(condition, a, b) if at(condition) == Free && at(a) == at(b) => at(a),
             Node::Unary(..) | Node::Binary(..) | Node::If(..) => Other,
         };
-        known[usize::from(id.0)] = dependence;
+        dependences[usize::from(id.0)] = dependence;
     }
-    known[usize::from(result.0)] == Proportional
+    dependences[usize::from(result.0)] == Proportional
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! The tokens of a formula.
 
-/// A word of a formula.
+/// A token of a formula.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Token<'a> {
     Number(f64),
@@ -21,7 +21,7 @@ impl core::fmt::Display for Token<'_> {
     }
 }
 
-/// What is wrong with a formula, and where: characters from its beginning, from 0 on.
+/// A mistake in a formula, and its place: characters from the beginning, counted from 0.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Mistake {
     pub(crate) at: usize,
@@ -37,13 +37,13 @@ impl Mistake {
     }
 }
 
-/// The words of a formula, one after the other.
+/// The tokens of a formula, one after the other.
 #[derive(Debug, Clone)]
 pub(crate) struct Tokens<'a> {
     text: &'a str,
-    /// Bytes read.
+    /// The number of bytes read.
     read: usize,
-    /// Where the word last taken begins, in bytes.
+    /// The byte at which the last token begins.
     begin: usize,
 }
 
@@ -56,12 +56,12 @@ impl<'a> Tokens<'a> {
         }
     }
 
-    /// Where the word last taken begins, in characters.
+    /// The character at which the last token begins.
     pub(crate) fn place(&self) -> usize {
         self.text[..self.begin].chars().count()
     }
 
-    /// The next word.
+    /// Takes the next token.
     pub(crate) fn take(&mut self) -> Result<Token<'a>, Mistake> {
         let rest = self.text[self.read..].trim_start();
         self.begin = self.text.len() - rest.len();
@@ -114,7 +114,7 @@ impl<'a> Tokens<'a> {
     }
 }
 
-/// Bytes of a number: digits, a point, an exponent.
+/// Returns the length of a number in bytes: digits, a point, an exponent.
 fn number_length(text: &str) -> usize {
     let bytes = text.as_bytes();
     let mut end = 0;

@@ -1,4 +1,4 @@
-//! What is wrong with a wheel's surface.
+//! Errors of a wheel's surface.
 
 use crate::file::FileError;
 
@@ -12,17 +12,17 @@ pub enum MeshError {
     #[error("the file has no triangle")]
     Empty,
     /// There are too many triangles.
-    #[error("the surface has {triangles} triangles, at most {most} are allowed")]
+    #[error("the surface has {triangles} triangles, at most {max} are allowed")]
     TooMany {
         /// Number of triangles.
         triangles: usize,
         /// The largest number allowed.
-        most: usize,
+        max: usize,
     },
     /// A coordinate is not a finite number.
     #[error("vertex {vertex}: coordinate {value} m is not finite")]
     NotFinite {
-        /// The vertex.
+        /// Number of the vertex.
         vertex: usize,
         /// Its coordinate `[m]`.
         value: f64,
@@ -30,9 +30,9 @@ pub enum MeshError {
     /// A face refers to a vertex that does not exist.
     #[error("face {face}: vertex {vertex} is not among the {vertices} vertices")]
     NoVertex {
-        /// The face.
+        /// Number of the face.
         face: usize,
-        /// The vertex.
+        /// Number of the missing vertex.
         vertex: u64,
         /// Number of vertices.
         vertices: usize,

@@ -1,14 +1,14 @@
 //! A wheel given as a surface of triangles.
 //!
 //! # Layout
-//! - here: reading a mesh in the text form in which it travels.
+//! - This file: reading a mesh in the text form in which it is sent.
 //! - `surface`: the triangles and their bounds.
 //! - `stl`: STL files, ASCII and binary.
 //! - `obj`: Wavefront OBJ files.
 //!
-//! Files travel as text. ASCII STL and OBJ are text as they are; binary STL becomes ASCII STL when it is read from disk
-//! ([`Experiment::read_files`](super::Experiment::read_files)), without a change in any coordinate. A client of
-//! the service sends ASCII STL or OBJ.
+//! Files are sent as text. ASCII STL and OBJ are text already; binary STL becomes ASCII STL when it is read from disk
+//! ([`Experiment::read_files`](super::Experiment::read_files)), with every coordinate unchanged. A client of the service
+//! sends ASCII STL or OBJ.
 
 mod error;
 mod obj;
@@ -18,13 +18,13 @@ mod surface;
 use std::path::Path;
 
 pub use error::MeshError;
-pub use surface::{MOST_TRIANGLES, WheelMesh};
+pub use surface::{MAX_TRIANGLES, WheelMesh};
 
 use crate::file::FileError;
 use crate::text_file::read_text;
 
-/// Largest file; the service accepts bodies of 64 MiB.
-pub const MOST_BYTES: usize = 48 << 20;
+/// The maximum size of a file `[bytes]`; the service accepts bodies of 64 MiB.
+pub const MAX_BYTES: usize = 48 << 20;
 
 impl WheelMesh {
     /// Reads a mesh from the text of an STL or OBJ file, by the ending of the file's name.
@@ -62,7 +62,7 @@ pub(super) fn check_name(file: &str) -> Result<(), MeshError> {
     format(file).map(|_| ())
 }
 
-/// Reads a mesh file from disk in the text form that travels.
+/// Reads a mesh file from disk in the text form in which it is sent.
 pub(super) fn read(path: &Path) -> Result<String, FileError> {
     let file = path.display().to_string();
     let whole = |message: String| FileError::whole(&file, message);
@@ -75,10 +75,10 @@ pub(super) fn read(path: &Path) -> Result<String, FileError> {
 }
 
 fn check_size(file: &str, bytes: usize) -> Result<(), FileError> {
-    if bytes <= MOST_BYTES {
+    if bytes <= MAX_BYTES {
         return Ok(());
     }
-    let message = format!("the file has {bytes} bytes, at most {MOST_BYTES} are allowed");
+    let message = format!("the file has {bytes} bytes, at most {MAX_BYTES} are allowed");
     Err(FileError::whole(file, message))
 }
 
@@ -87,7 +87,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_ending_of_the_name_says_the_format() {
+    fn the_ending_of_the_name_gives_the_format() {
         let message = WheelMesh::parse("w.ply", "ply").unwrap_err().to_string();
         assert_eq!(message, "w.ply: mesh = \"w.ply\" must end in .stl or .obj");
     }

@@ -46,15 +46,15 @@ pub(super) fn parse(file: &str, text: &str) -> Result<WheelMesh, FileError> {
     Ok(mesh)
 }
 
-/// The vertices and faces of a file, each in its line; what else stands there is left out, so that nothing wrong with it
-/// keeps a surface from being read.
+/// Returns only the vertices and faces of a file, at their lines, so that a mistake in any unused element cannot keep a
+/// surface from being read.
 fn shape(text: &str) -> String {
     let mut shape = String::with_capacity(text.len());
     for line in text.trim_start_matches('\u{feff}').lines() {
         let line = line.split('#').next().unwrap_or_default();
         let words = || line.split_whitespace();
         match words().next() {
-            // Behind the three coordinates stands a weight, or a colour of three numbers.
+            // A weight, or a colour of three numbers, may follow the three coordinates.
             Some("v") if words().count() > 5 => {
                 words().take(4).for_each(|word| shape.extend([word, " "]));
             }
@@ -73,7 +73,7 @@ fn line_at(text: &str, end: usize) -> usize {
     ended + usize::from(read.last().is_some_and(|&b| b != b'\n'))
 }
 
-/// Names the first face that refers to a vertex that is not there.
+/// Names the first face that refers to a missing vertex.
 fn missing_vertex(file: &str, text: &str) -> FileError {
     let words = |line: &str, key: &str| {
         let mut words = line.split_whitespace();

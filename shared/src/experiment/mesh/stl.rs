@@ -8,7 +8,7 @@ use stl_io::{Triangle, create_stl_reader};
 use super::surface::{WheelMesh, check_count};
 use crate::file::FileError;
 
-/// Bytes before the first triangle of a binary file, and of each triangle.
+/// Number of bytes before the first triangle of a binary file.
 const HEADER: usize = 84;
 const TRIANGLE: usize = 50;
 
@@ -31,7 +31,7 @@ pub(super) fn parse(file: &str, text: &str) -> Result<WheelMesh, FileError> {
             "the last line is not \"endsolid\": is the file cut off?",
         ));
     }
-    // The reader stops behind the first solid and knows small letters alone, so it is given one solid in such.
+    // The reader stops after the first solid and knows lower case only, so it gets one solid in lower case.
     let mut one = String::with_capacity(text.len());
     one.push_str("solid wheel\n");
     for line in lines.filter(|line| !is(Some(line), "solid") && !is(Some(line), "endsolid")) {
@@ -43,9 +43,9 @@ pub(super) fn parse(file: &str, text: &str) -> Result<WheelMesh, FileError> {
     Ok(indexed(&triangles))
 }
 
-/// The text form of a file: ASCII as it is, binary as ASCII with every bit of its coordinates.
+/// The text form of a file: ASCII unchanged, binary as ASCII with every bit of its coordinates.
 pub(super) fn text(file: &str, mut bytes: Vec<u8>) -> Result<String, FileError> {
-    // The word "solid" begins many binary files, too; their length gives them away.
+    // Many binary files begin with the word "solid", too; their length identifies them.
     let count = bytes
         .get(HEADER - 4..HEADER)
         .and_then(|c| c.try_into().ok())
@@ -74,7 +74,7 @@ pub(super) fn text(file: &str, mut bytes: Vec<u8>) -> Result<String, FileError> 
     Ok(text)
 }
 
-/// The triangles of a file; what is wrong names the face, counted from 1.
+/// Reads the triangles of a file; an error names the face, counted from 1.
 fn triangles(file: &str, bytes: Vec<u8>) -> Result<Vec<Triangle>, FileError> {
     let mut cursor = Cursor::new(bytes);
     let reader = create_stl_reader(&mut cursor).map_err(|e| FileError::whole(file, e.to_string()))?;
@@ -92,7 +92,7 @@ fn triangles(file: &str, bytes: Vec<u8>) -> Result<Vec<Triangle>, FileError> {
     Ok(triangles)
 }
 
-/// Vertices in the order of their first use, each once.
+/// Indexes the vertices, each once, in the order of their first use.
 fn indexed(triangles: &[Triangle]) -> WheelMesh {
     let mut positions = std::collections::BTreeMap::new();
     let mut vertices_m = Vec::new();
@@ -102,7 +102,7 @@ fn indexed(triangles: &[Triangle]) -> WheelMesh {
             t.vertices.map(|v| {
                 *positions.entry(v.0.map(f32::to_bits)).or_insert_with(|| {
                     vertices_m.push(v.0.map(f64::from));
-                    // Three vertices for each of at most 200,000 triangles.
+                    // There are three vertices for each of at most 200,000 triangles.
                     (vertices_m.len() - 1) as u32
                 })
             })

@@ -4,17 +4,17 @@ use serde::{Deserialize, Serialize};
 
 use super::error::MeshError;
 
-/// Largest number of triangles: a wheel needs no finer surface than the soil's grid.
-pub const MOST_TRIANGLES: usize = 200_000;
+/// The maximum number of triangles: a wheel needs no finer surface than the soil's grid.
+pub const MAX_TRIANGLES: usize = 200_000;
 
 /// Relative tolerance of the radius: coordinates of STL files have 24 bits.
 const ROUNDING: f64 = 1e-6;
-/// The surface reaches at most so many times `radius_m` from the axle: grousers are no longer.
+/// The maximum distance of the surface from the axle, in units of `radius_m`: grousers are no longer.
 const LARGEST_REACH: f64 = 1.5;
-/// The surface is at most so many times `width_m` wide.
+/// The maximum width of the surface, in units of `width_m`.
 const LARGEST_WIDTH: f64 = 1.05;
 
-/// The surface of a rigid wheel as it stands at an angle of rotation of 0.
+/// The surface of a rigid wheel at an angle of rotation of 0.
 ///
 /// The axle is the y axis through the origin, z points up, x forward. Vertices are shared by triangles or not; the order
 /// of a triangle's vertices does not count, and neither does a gap.
@@ -28,10 +28,7 @@ pub struct WheelMesh {
 }
 
 impl WheelMesh {
-    /// Checks that the fields are consistent.
-    ///
-    /// # Errors
-    /// [`MeshError`] names the vertex or triangle, the value and the bound.
+    /// Checks that the fields are consistent; [`MeshError`] names the vertex or triangle, the value and the bound.
     pub fn check(&self) -> Result<(), MeshError> {
         let (vertices, triangles) = (self.vertices_m.len(), self.triangles.len());
         check_count(triangles)?;
@@ -67,33 +64,30 @@ impl WheelMesh {
         y().fold(f64::NEG_INFINITY, f64::max) - y().fold(f64::INFINITY, f64::min)
     }
 
-    /// Checks the surface against the nominal radius and width that stand beside it.
-    ///
-    /// # Errors
-    /// [`MeshError::Extent`].
+    /// Checks the surface against the nominal radius and width; [`MeshError::Extent`] if it does not fit.
     pub(in crate::experiment) fn check_against(&self, radius_m: f64, width_m: f64) -> Result<(), MeshError> {
         let extent = |message: String| Err(MeshError::Extent(message));
         let (reach, width) = (self.reach_m(), self.width_m());
-        let (most_reach, most_width) = (LARGEST_REACH * radius_m, LARGEST_WIDTH * width_m);
+        let (max_reach, max_width) = (LARGEST_REACH * radius_m, LARGEST_WIDTH * width_m);
         if reach < radius_m * (1.0 - ROUNDING) {
             return extent(format!(
                 "the surface reaches {} m from the axle, but radius_m is {radius_m} m: metres are expected, and the axle is the y axis",
                 shown(reach)
             ));
         }
-        if reach > most_reach {
+        if reach > max_reach {
             return extent(format!(
                 "the surface reaches {} m from the axle, more than {LARGEST_REACH} radius_m = {} m: {}",
                 shown(reach),
-                shown(most_reach),
+                shown(max_reach),
                 mistake(reach / radius_m)
             ));
         }
-        if width > most_width {
+        if width > max_width {
             return extent(format!(
                 "the surface is {} m wide along y, more than {LARGEST_WIDTH} width_m = {} m: {}",
                 shown(width),
-                shown(most_width),
+                shown(max_width),
                 mistake(width / width_m)
             ));
         }
@@ -101,7 +95,7 @@ impl WheelMesh {
     }
 }
 
-/// A length in six digits, for a person to read.
+/// Rounds a length to six digits for display.
 fn shown(metres: f64) -> f64 {
     format!("{metres:.5e}").parse().unwrap_or(metres)
 }
@@ -119,10 +113,10 @@ fn mistake(ratio: f64) -> &'static str {
 pub(super) fn check_count(triangles: usize) -> Result<(), MeshError> {
     match triangles {
         0 => Err(MeshError::Empty),
-        1..=MOST_TRIANGLES => Ok(()),
+        1..=MAX_TRIANGLES => Ok(()),
         _ => Err(MeshError::TooMany {
             triangles,
-            most: MOST_TRIANGLES,
+            max: MAX_TRIANGLES,
         }),
     }
 }
@@ -150,12 +144,12 @@ mod tests {
         let mesh = spindle();
         assert!((mesh.reach_m() - 0.1).abs() < 1e-15 && (mesh.width_m() - 0.04).abs() < 1e-15);
         assert_eq!(mesh.check(), Ok(()));
-        // An STL file says 0.1f32 = 0.100000001…; a radius of 0.1000000 may be missed by that.
+        // An STL file states 0.1f32 = 0.100000001…, which may differ from a radius of 0.1000000.
         assert_eq!(mesh.check_against(0.100_000_05, 0.04), Ok(()));
     }
 
     #[test]
-    fn a_surface_that_does_not_fit_its_wheel_says_what_was_mistaken() {
+    fn a_surface_that_does_not_fit_its_wheel_names_the_likely_mistake() {
         let mesh = spindle();
         for (radius, width, message) in [
             (
@@ -201,7 +195,7 @@ mod tests {
             "vertex 4: coordinate NaN m is not finite"
         );
         let mut mesh = spindle();
-        mesh.triangles = vec![[0, 1, 2]; MOST_TRIANGLES + 1];
+        mesh.triangles = vec![[0, 1, 2]; MAX_TRIANGLES + 1];
         assert_eq!(
             mesh.check().unwrap_err().to_string(),
             "the surface has 200001 triangles, at most 200000 are allowed"

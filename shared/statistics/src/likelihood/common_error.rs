@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::datum::{Datum, ErrorSd, LikelihoodError};
 
-/// An error that several data have in common: it adds `v v'` to their covariance.
+/// An error that several data share: it adds `v v'` to their covariance.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct CommonError {
     /// Indices of the data, ascending.
@@ -13,23 +13,25 @@ pub struct CommonError {
     pub size: CommonErrorSize,
 }
 
-/// How a common error acts on each of its data.
+/// The effect of a common error on each of its data.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub enum CommonErrorSize {
-    /// Shifts all equally: `v_i` = this sd, in the unit of the data, >= 0.
+    /// Shifts all data equally: `v_i` = this sd, in the unit of the data, >= 0.
     Shift(ErrorSd),
-    /// Shifts all equally by the inadequacy of the model: `v_i = m sigma`, sigma the root mean square of their noise
-    /// sds and m of the [`Discrepancy`] of a group of data, such as a channel.
+    /// Shifts all data equally by the inadequacy of the model: `v_i = m sigma`, sigma the root mean square of their noise
+    /// sds and m the [`Discrepancy`] of a group of data, such as a channel.
     Discrepancy {
-        /// The number of the group.
+        /// Index of the group.
         group: usize,
     },
-    /// Shifts each along a sensitivity: `v_i` = this sd times a derivative of the prediction, which the predicted values
-    /// include. A datum may have several, along one derivative or along different ones.
+    /// Shifts each datum along a sensitivity: `v_i` = this sd times a derivative of the prediction; the predicted values
+    /// include the derivatives.
+    ///
+    /// A datum may have several, along one derivative or different ones.
     Sensitivity {
-        /// The sd.
+        /// Standard deviation of the factor along the sensitivity.
         sd: ErrorSd,
-        /// The number of the derivative.
+        /// Index of the derivative.
         derivative: usize,
     },
 }
@@ -37,22 +39,24 @@ pub enum CommonErrorSize {
 /// A derivative of the prediction of a datum, among the predicted values.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Sensitive {
-    /// The number of the derivative.
+    /// Index of the derivative.
     pub derivative: usize,
-    /// The datum.
+    /// Index of the datum.
     pub datum: usize,
 }
 
 /// The inadequacy of the model for a group of data, in noise sds.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub enum Discrepancy {
-    /// None.
+    /// The model is adequate.
     #[default]
     None,
-    /// m itself, > 0.
+    /// The known m, > 0.
     Known(f64),
-    /// m is marginalised over [`DISCREPANCY_LEVELS`] values from [`LEAST_DISCREPANCY`] to [`GREATEST_DISCREPANCY`], equally probable and equally spaced in
-    /// ln m. Groups whose errors are correlated share one m.
+    /// m is marginalised over [`DISCREPANCY_LEVELS`] values from [`LEAST_DISCREPANCY`] to [`GREATEST_DISCREPANCY`], equally
+    /// probable and equally spaced in ln m.
+    ///
+    /// Groups with correlated errors share one m.
     Unknown,
 }
 
@@ -60,7 +64,7 @@ pub enum Discrepancy {
 pub const DISCREPANCY_LEVELS: usize = 17;
 /// The least value of an unknown m.
 pub const LEAST_DISCREPANCY: f64 = 0.25;
-/// The largest value of an unknown m: a model that is off by more is of no use.
+/// The largest value of an unknown m: a model with larger errors is useless.
 pub const GREATEST_DISCREPANCY: f64 = 64.0;
 
 /// The values of an unknown m, each with the same prior probability.
@@ -91,9 +95,9 @@ pub(super) struct ErrorBlock {
     pub(super) data: Vec<usize>,
     /// Indices of the common errors, ascending.
     pub(super) common: Vec<usize>,
-    /// The groups with an unknown discrepancy among them, ascending.
+    /// The groups with an unknown discrepancy in this block, ascending.
     unknown: Vec<usize>,
-    /// Which m of those that are marginalised it has.
+    /// Index of its unknown m; blocks with the same index share it.
     pub(super) family: Option<usize>,
 }
 
@@ -103,7 +107,7 @@ pub(super) fn blocks(
     common: &[CommonError],
     discrepancies: &[Discrepancy],
 ) -> (Vec<usize>, Vec<ErrorBlock>) {
-    // A block is named by its least member; joining two renames the larger.
+    // A block is named by its smallest member; joining two renames the larger.
     let mut least: Vec<usize> = (0..data.len()).collect();
     for error in common {
         let names: Vec<usize> = error.data.iter().map(|&i| least[i]).collect();
@@ -121,10 +125,10 @@ pub(super) fn blocks(
     let blocks = (0..data.len())
         .filter(|&i| least[i] == i && is_tied(i))
         .map(|first| {
-            let own: Vec<usize> = (0..common.len())
+            let members: Vec<usize> = (0..common.len())
                 .filter(|&c| common[c].data.first().is_some_and(|&i| least[i] == first))
                 .collect();
-            let unknown = own.iter().filter_map(|&c| match common[c].size {
+            let unknown = members.iter().filter_map(|&c| match common[c].size {
                 CommonErrorSize::Discrepancy { group } => Some(group),
                 CommonErrorSize::Shift(_) | CommonErrorSize::Sensitivity { .. } => None,
             });
@@ -135,7 +139,7 @@ pub(super) fn blocks(
             unknown.dedup();
             ErrorBlock {
                 data: (0..data.len()).filter(|&i| least[i] == first).collect(),
-                common: own,
+                common: members,
                 unknown,
                 family: None,
             }
@@ -144,7 +148,7 @@ pub(super) fn blocks(
     (alone, blocks)
 }
 
-/// Sets which blocks share an unknown m: those that have a group in common. The groups of each m, ascending.
+/// Assigns an unknown m to each block: blocks with a group in common share one. Returns the groups of each m, ascending.
 pub(super) fn families(blocks: &mut [ErrorBlock]) -> Vec<Vec<usize>> {
     let mut families: Vec<Vec<usize>> = Vec::new();
     for block in blocks.iter().filter(|block| !block.unknown.is_empty()) {
@@ -165,16 +169,16 @@ pub(super) fn families(blocks: &mut [ErrorBlock]) -> Vec<Vec<usize>> {
     families
 }
 
-/// The derivatives that are needed, each once, ascending.
+/// Returns the needed derivatives, each once, ascending.
 pub(super) fn sensitive(common: &[CommonError]) -> Vec<Sensitive> {
-    let of = |error: &CommonError| match error.size {
+    let sensitive = |error: &CommonError| match error.size {
         CommonErrorSize::Sensitivity { derivative, .. } => {
-            let own = error.data.iter();
-            own.map(|&datum| Sensitive { derivative, datum }).collect()
+            let data = error.data.iter();
+            data.map(|&datum| Sensitive { derivative, datum }).collect()
         }
         CommonErrorSize::Shift(_) | CommonErrorSize::Discrepancy { .. } => Vec::new(),
     };
-    let mut sensitive: Vec<Sensitive> = common.iter().flat_map(of).collect();
+    let mut sensitive: Vec<Sensitive> = common.iter().flat_map(sensitive).collect();
     sensitive.sort_unstable();
     sensitive.dedup();
     sensitive

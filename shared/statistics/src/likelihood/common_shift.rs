@@ -1,11 +1,11 @@
-//! A block whose data have one shift in common, for every value of an unknown discrepancy at once.
+//! A block whose data share one shift, for all values of an unknown discrepancy at once.
 
 use super::common_error::{CommonErrorSize, Discrepancy, ErrorBlock};
 use super::datum::LikelihoodError;
 use super::error_model::Likelihood;
 use super::law::ErrorLaw;
 
-/// What the density of a block with the covariance `diag(d^2) + (m u)^2 1 1'` needs, whatever m is.
+/// The sums that give the density of a block with the covariance `diag(d^2) + (m u)^2 1 1'` for any m.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct CommonShift {
     count: usize,
@@ -20,7 +20,7 @@ pub(super) struct CommonShift {
 }
 
 impl CommonShift {
-    /// The share of the information on the shift's direction that a discrepancy of the size m leaves.
+    /// The share of the information along the shift's direction that remains with a discrepancy of the size m.
     pub(super) fn kept(&self, m: f64) -> f64 {
         1.0 / (1.0 + m * m * self.information)
     }
@@ -48,7 +48,7 @@ impl CommonShift {
 }
 
 impl Likelihood {
-    /// The sums of a block with an unknown discrepancy and no other common error; `None` of another block.
+    /// Returns the sums of a block with an unknown discrepancy and no other common error; `None` for any other block.
     pub(super) fn common_shift(
         &self,
         block: &ErrorBlock,

@@ -25,11 +25,11 @@ pub struct Datum {
     pub channel: usize,
     /// The measured value, in the unit of the channel.
     pub value: f64,
-    /// Its noise.
+    /// Its noise sd.
     pub sd: ErrorSd,
 }
 
-/// Why data or predictions have no likelihood.
+/// Why data or predictions cannot be scored.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum LikelihoodError {
     /// A measured value is NaN or infinite.
@@ -39,7 +39,7 @@ pub enum LikelihoodError {
         run: usize,
         /// Index of the channel.
         channel: usize,
-        /// The value.
+        /// The refused value.
         value: f64,
     },
     /// A noise sd is not a finite number above 0.
@@ -81,11 +81,11 @@ pub enum LikelihoodError {
     /// A number of the error model is outside its bounds.
     #[error("{name} = {value} is not {bound}")]
     Setting {
-        /// The number.
+        /// Name of the refused number.
         name: &'static str,
-        /// Its value.
+        /// The refused value.
         value: f64,
-        /// What it must be.
+        /// The requirement, in words.
         bound: &'static str,
     },
     /// A common error names a datum that does not exist, or one twice.
@@ -110,7 +110,7 @@ pub enum LikelihoodError {
 }
 
 impl ErrorSd {
-    /// Its value, known or in theta.
+    /// Returns the value, known or in theta.
     pub(super) fn value(self, theta: &[f64]) -> Result<f64, LikelihoodError> {
         match self {
             ErrorSd::Known(sd) => Ok(sd),
@@ -128,7 +128,7 @@ impl ErrorSd {
 }
 
 impl Datum {
-    /// The noise sd, known or in theta, above 0.
+    /// Returns the noise sd, known or in theta, > 0.
     pub(super) fn noise_sd(&self, theta: &[f64]) -> Result<f64, LikelihoodError> {
         let sd = self.sd.value(theta)?;
         if sd.is_finite() && sd > 0.0 {

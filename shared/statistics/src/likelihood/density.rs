@@ -19,12 +19,12 @@ pub(super) struct ScoredBlock {
 impl Likelihood {
     /// ln p(data | theta), normalised: comparable between noise levels and between models.
     ///
-    /// For independent data, `sum_i [ -ln(sqrt(2 pi) sd_i) - (y_i - m_i)^2 / (2 sd_i^2) ]`; then the density of
-    /// each block; of blocks that share an unknown discrepancy, the logarithm of the mean over its values.
+    /// For independent data, `sum_i [ -ln(sqrt(2 pi) sd_i) - (y_i - m_i)^2 / (2 sd_i^2) ]`, plus the log-density of each
+    /// block; for blocks that share an unknown discrepancy, the logarithm of the mean over its values.
     ///
     /// # Arguments
-    /// - `values`: the model's value of each datum, in its unit and in their order, then the derivatives of the
-    ///   [`Likelihood::sensitive`] ones.
+    /// - `values`: the model's value of each datum, in its unit and in their order, then the derivatives that
+    ///   [`Likelihood::sensitive`] lists.
     /// - `theta`: holds the inferred standard deviations, each > 0 (give them a positive prior).
     ///
     /// # Returns
@@ -36,9 +36,9 @@ impl Likelihood {
     /// [`LikelihoodError::Length`].
     ///
     /// # Source
-    /// The normal density. The paper's Eq. 13-15 lack the factor 1/sigma; without it an inferred sigma grows without
-    /// bound and evidences of different noise models are not comparable, so it is kept.
-    /// Checked by `likelihood::hand_numbers` and `likelihood::blocks_match_a_dense_density`.
+    /// The normal density. The paper's Eq. 13-15 lack the factor 1/sigma; it is kept here, because without it an inferred
+    /// sigma grows without bound and evidences of different noise models are not comparable. Checked by
+    /// `likelihood::hand_numbers` and `likelihood::blocks_match_a_dense_density`.
     pub fn log_likelihood(&self, values: &[f64], theta: &[f64]) -> Result<LogLikelihood, LikelihoodError> {
         self.check_values(values)?;
         let mut sum = 0.0;
@@ -60,10 +60,8 @@ impl Likelihood {
         Ok(LogLikelihood::new(sum)?)
     }
 
-    /// The values of m of each group with their posterior probabilities at these parameters: 0 without discrepancy.
-    ///
-    /// # Errors
-    /// Those of [`Likelihood::log_likelihood`].
+    /// The values of m of each group with their posterior probabilities at these parameters; 0 without discrepancy. Errors
+    /// are those of [`Likelihood::log_likelihood`].
     pub fn discrepancy_weights(
         &self,
         values: &[f64],
@@ -93,7 +91,7 @@ impl Likelihood {
             let densities = self.by_level(family, values, theta)?;
             let highest = densities.iter().copied().fold(f64::NEG_INFINITY, f64::max);
             if !highest.is_finite() {
-                // The data exclude every value: the prior probabilities remain.
+                // The data exclude every value, so the prior probabilities remain.
                 return Ok(equal_weights(levels));
             }
             let weights: Vec<f64> = densities.iter().map(|d| libm::exp(d - highest)).collect();
@@ -165,10 +163,8 @@ impl Likelihood {
         }))
     }
 
-    /// Checks that there is one finite value for each datum and each derivative.
-    ///
-    /// # Errors
-    /// [`LikelihoodError::Length`] and [`LikelihoodError::Prediction`].
+    /// Checks that there is one finite value for each datum and each derivative, else [`LikelihoodError::Length`] or
+    /// [`LikelihoodError::Prediction`].
     pub fn check_values(&self, values: &[f64]) -> Result<(), LikelihoodError> {
         if values.len() != self.values() {
             return Err(LikelihoodError::Length {
@@ -176,20 +172,20 @@ impl Likelihood {
                 given: values.len(),
             });
         }
-        let owners = (0..self.data.len()).chain(self.sensitive.iter().map(|own| own.datum));
+        let owners = (0..self.data.len()).chain(self.sensitive.iter().map(|sensitive| sensitive.datum));
         owners
             .zip(values)
             .try_for_each(|(i, &value)| self.data[i].check_prediction(value))
     }
 }
 
-/// Levels that are equally probable.
+/// Gives all levels the same probability.
 fn equal_weights(levels: Vec<f64>) -> Vec<(f64, f64)> {
     let share = 1.0 / levels.len() as f64;
     levels.into_iter().map(|m| (m, share)).collect()
 }
 
-/// `ln mean exp`; minus infinity where all values are.
+/// Computes `ln mean exp`; minus infinity if all values are.
 fn log_mean_exp(values: &[f64]) -> f64 {
     let highest = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     if let [only] = values {

@@ -13,7 +13,7 @@ pub struct Likelihood {
     pub(super) data: Vec<Datum>,
     pub(super) law: ErrorLaw,
     pub(super) common: Vec<CommonError>,
-    /// By group of data.
+    /// The inadequacy of each group of data.
     pub(super) discrepancies: Vec<Discrepancy>,
     /// The groups that share an unknown m.
     pub(super) families: Vec<Vec<usize>>,
@@ -23,7 +23,7 @@ pub struct Likelihood {
     pub(super) sensitive: Vec<Sensitive>,
 }
 
-/// The serialised form of a likelihood: what it is made from.
+/// The serialised form of a likelihood: its constructor arguments.
 #[derive(Serialize, Deserialize)]
 struct SerialisedLikelihood {
     data: Vec<Datum>,
@@ -52,15 +52,13 @@ impl TryFrom<SerialisedLikelihood> for Likelihood {
 }
 
 impl Likelihood {
-    /// Independent normal errors; the order of the data is the order of summation.
-    ///
-    /// # Errors
-    /// [`LikelihoodError::Value`] and [`LikelihoodError::Noise`].
+    /// Independent normal errors; the sums follow the order of the data. An invalid datum gives [`LikelihoodError::Value`]
+    /// or [`LikelihoodError::Noise`].
     pub fn new(data: Vec<Datum>) -> Result<Self, LikelihoodError> {
         Self::with_common(data, ErrorLaw::Gaussian, Vec::new(), Vec::new())
     }
 
-    /// Errors of a law, some of them common.
+    /// Errors with a law, some of them common to several data.
     ///
     /// # Arguments
     /// - `discrepancies`: m of each group of data, for the common errors that are [`CommonErrorSize::Discrepancy`].
@@ -111,7 +109,7 @@ impl Likelihood {
         &self.discrepancies
     }
 
-    /// Whether the model may be off anywhere.
+    /// Returns whether any group has a discrepancy.
     #[must_use]
     pub fn has_discrepancy(&self) -> bool {
         let some = |error: &CommonError| matches!(error.size, CommonErrorSize::Discrepancy { .. });
@@ -124,7 +122,7 @@ impl Likelihood {
         &self.common
     }
 
-    /// The derivatives that are needed, ascending: they follow the predictions in the predicted values.
+    /// The needed derivatives, ascending: they follow the predictions in the predicted values.
     #[must_use]
     pub fn sensitive(&self) -> &[Sensitive] {
         &self.sensitive
@@ -138,11 +136,11 @@ impl Likelihood {
 
     /// The place of a derivative among the predicted values.
     pub(super) fn place(&self, wanted: Sensitive) -> usize {
-        let own = self.sensitive.binary_search(&wanted);
-        self.data.len() + own.expect("every common error has its derivatives among the sensitive ones")
+        let position = self.sensitive.binary_search(&wanted);
+        self.data.len() + position.expect("every common error has its derivatives among the sensitive ones")
     }
 
-    /// Whether an inferred sd has no closed form: one of correlated or heavy-tailed data, or of a common error.
+    /// Returns whether some inferred sd has no closed form: it belongs to correlated or heavy-tailed data, or to a common error.
     #[must_use]
     pub fn entangles_unknown_sds(&self) -> bool {
         let inferred = |sd: ErrorSd| matches!(sd, ErrorSd::Inferred { .. });

@@ -1,4 +1,4 @@
-//! The Cholesky factor of a small covariance, every sum in a fixed order.
+//! The Cholesky factor of a small covariance, with sums in a fixed order.
 
 /// L of `S = L L'`, row by row.
 #[derive(Debug, Clone)]
@@ -8,11 +8,11 @@ pub(super) struct CholeskyFactor {
 }
 
 impl CholeskyFactor {
-    /// Factors `diag(d^2) + sum v v'`; `None` where that overflows.
+    /// Factors `diag(d^2) + sum v v'`; `None` if that overflows.
     ///
     /// # Arguments
     /// - `sds`: d, each > 0.
-    /// - `common_error`: each v as a list of (position, value).
+    /// - `common`: each v as a list of (position, value).
     pub(super) fn new(sds: &[f64], common: &[Vec<(usize, f64)>]) -> Option<Self> {
         let count = sds.len();
         let mut rows = vec![0.0; count * count];

@@ -13,8 +13,8 @@ pub enum ErrorLaw {
     Gaussian,
     /// Student's t, with heavy tails.
     ///
-    /// The declared sd is the *scale* of the t, not its standard deviation, which is `sqrt(nu / (nu - 2))` times as
-    /// large where `nu > 2`. Correlated errors have a multivariate t: the block as a whole may be far out.
+    /// The declared sd is the *scale* of the t, not its standard deviation, which is `sqrt(nu / (nu - 2))` times as large
+    /// for `nu > 2`. Correlated errors have a multivariate t: the block as a whole may be an outlier.
     StudentT {
         /// Degrees of freedom nu, > 0.
         degrees_of_freedom: f64,
@@ -57,7 +57,7 @@ impl ErrorLaw {
         }
     }
 
-    /// Weights of the slope and of the expected curvature along the errors, relative to the normal law's.
+    /// Weights of the slope and of the expected curvature along the errors, relative to those of the normal law.
     ///
     /// The slope of the t is `(nu + k) / (nu + q)` times the normal's at the squared distance q; its Fisher
     /// information is `(nu + k) / (nu + k + 2)` times the normal's (Lange, Little & Taylor 1989, J. Am. Stat. Assoc.
@@ -87,7 +87,7 @@ impl ErrorLaw {
     }
 }
 
-/// Most terms of the continued fraction: far more than any nu below 1e6 needs.
+/// The maximum number of terms of the continued fraction; any nu below 1e6 needs far fewer.
 const TERMS: u32 = 10_000;
 
 /// The regularised incomplete beta function `I_x(a, b)` by its continued fraction (Lentz's method).
@@ -101,7 +101,7 @@ fn incomplete_beta(a: f64, b: f64, x: f64) -> f64 {
     if x >= 1.0 {
         return 1.0;
     }
-    // The fraction converges fast below the mean; above it the mirror image does.
+    // The fraction converges fast below the mean, its mirror image above.
     if x > (a + 1.0) / (a + b + 2.0) {
         return 1.0 - incomplete_beta(b, a, 1.0 - x);
     }

@@ -1,16 +1,16 @@
 //! The likelihood: predictions scored against measurements.
 //!
-//! The errors of the data are independent, or correlated in blocks by errors that they have in common: what the model
-//! cannot reach in a condition, the soil of a run, the preparation of a plate test. A block is a small multivariate
-//! normal, or t.
+//! The errors of the data are independent, or correlated in blocks by common errors: the inadequacy of the model in a
+//! condition, the soil of a run, the preparation of a plate test. A block is a small multivariate normal, or t.
 //!
 //! # Layout
 //! - `datum`: a measured value with its noise. `law`: normal or Student's t.
-//! - `common_error`: errors in common, and the blocks that they make. `spread`: the covariance of a block.
+//! - `common_error`: common errors, and the blocks that they create. `spread`: the covariance of a block.
 //! - `error_model`: data, law and common errors together. `density`: their log-density.
-//! - `factor`: the Cholesky factor of a block's covariance; `common_shift`: a block that needs none. `subset`: the likelihood of some of the data.
+//! - `factor`: the Cholesky factor of a block's covariance; `common_shift`: a block that needs none. `subset`: the
+//!   likelihood of selected data.
 //! - `numerical_noise`: the likelihood of a model whose predictions scatter.
-//! - `whitening`: residuals and derivatives made independent, for least squares.
+//! - `whitening`: residuals and derivatives transformed to independence, for least squares.
 
 mod common_error;
 mod common_shift;

@@ -4,9 +4,9 @@ use super::datum::{ErrorSd, LikelihoodError};
 use super::error_model::Likelihood;
 
 impl Likelihood {
-    /// The same with the scatter of the model added to every known noise: `sd^2 + s^2`.
+    /// Adds the scatter of the model to every known noise: `sd^2 + s^2`.
     ///
-    /// An inferred noise sd holds the model's scatter already.
+    /// An inferred noise sd includes the model's scatter already.
     ///
     /// # Arguments
     /// - `sds`: s of each channel by its index, in the unit of the channel; 0 for channels beyond.

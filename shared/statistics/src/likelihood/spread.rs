@@ -4,10 +4,10 @@ use super::common_error::{CommonError, CommonErrorSize, Discrepancy, ErrorBlock,
 use super::datum::{Datum, LikelihoodError};
 use super::error_model::Likelihood;
 
-/// The values of m where none is unknown.
+/// The levels of m, with weights, for a block without an unknown m.
 pub(super) const CERTAIN: [(f64, f64); 1] = [(0.0, 1.0)];
 
-/// The errors of a block: the covariance is `diag(sds^2) + sum v v'`.
+/// The errors of a block, with the covariance `diag(sds^2) + sum v v'`.
 pub(super) struct Spread {
     /// Noise sds, in the order of the block's data.
     pub(super) sds: Vec<f64>,
@@ -16,7 +16,7 @@ pub(super) struct Spread {
 }
 
 impl Likelihood {
-    /// Whether a datum has no common error.
+    /// Returns whether a datum has no common error.
     #[must_use]
     pub fn is_alone(&self, datum: usize) -> bool {
         self.alone.binary_search(&datum).is_ok()
@@ -57,13 +57,13 @@ impl Likelihood {
         Ok(variances)
     }
 
-    /// The log-density of each datum by itself, whatever the others are.
+    /// The log-density of each datum on its own, marginalised over the errors of the others.
     ///
     /// # Arguments
     /// As those of [`Likelihood::log_likelihood`].
     ///
     /// # Returns
-    /// One log-density for each datum, in their order; their sum is the log-likelihood where no error is common to several.
+    /// One log-density for each datum, in order; without common errors they sum to the log-likelihood.
     ///
     /// # Errors
     /// Those of [`Likelihood::log_likelihood`]. Checked by `likelihood::densities_of_single_data_are_those_of_their_variances`.
@@ -77,7 +77,7 @@ impl Likelihood {
         Ok(self.data.iter().zip(values).zip(variances).map(density).collect())
     }
 
-    /// The errors of a block, with a value of the m that is unknown.
+    /// The errors of a block for one value of its unknown m.
     pub(super) fn spread(
         &self,
         block: &ErrorBlock,
@@ -101,7 +101,7 @@ impl Likelihood {
                 CommonErrorSize::Discrepancy { group } => {
                     let m = match self.discrepancies[group] {
                         Discrepancy::None => 0.0,
-                        Discrepancy::Known(known) => known,
+                        Discrepancy::Known(m) => m,
                         Discrepancy::Unknown => m,
                     };
                     let squares: f64 = data.iter().map(|i| sds[position(i)] * sds[position(i)]).sum();

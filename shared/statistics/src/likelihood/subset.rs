@@ -5,7 +5,7 @@ use super::datum::LikelihoodError;
 use super::error_model::Likelihood;
 
 impl Likelihood {
-    /// The likelihood of some of the data, the others unknown.
+    /// The marginal likelihood of a subset of the data.
     ///
     /// # Arguments
     /// - `kept`: indices of the data, ascending.
@@ -42,10 +42,10 @@ impl Likelihood {
     }
 
     fn places(&self, kept: &[usize], subset: &Likelihood) -> Vec<usize> {
-        let derivative = |own: &Sensitive| {
+        let derivative = |sensitive: &Sensitive| {
             self.place(Sensitive {
-                datum: kept[own.datum],
-                ..*own
+                datum: kept[sensitive.datum],
+                ..*sensitive
             })
         };
         let derivatives = subset.sensitive.iter().map(derivative);

@@ -8,10 +8,10 @@ use super::factor::CholeskyFactor;
 use super::law::ErrorLaw;
 use super::spread::CERTAIN;
 
-/// A value of the discrepancy with less probability moves no slope and no curvature visibly.
+/// A value of the discrepancy with less probability changes slope and curvature by less than rounding.
 const LEAST_PROBABILITY: f64 = 1e-12;
 
-/// The linear transform to independent errors of sd 1, at one point.
+/// The linear transform of errors to independent ones of sd 1, at one point.
 ///
 /// With W the transform, r the residuals and c, d the derivatives of the predictions along two directions, the
 /// log-likelihood has the slope `sum_i a_i (W c)_i (W r)_i` along c and, in expectation, the curvature
@@ -27,14 +27,13 @@ pub struct Whitening {
     curvature_weights: Vec<f64>,
 }
 
-/// The transform of a block.
 #[derive(Debug, Clone)]
 enum BlockTransform {
     Factor(CholeskyFactor),
     Shift(ShiftTransform),
 }
 
-/// The transform of normal errors that have one shift in common, of every size that an unknown discrepancy may have at once.
+/// The transform of normal errors that share one shift, averaged over the sizes that an unknown discrepancy may have.
 ///
 /// With D the noise sds and q the unit vector along `D^-1 1`, the precision of a size m is `D^-1 (I - (1 - k_m) q q') D^-1` with
 /// `k_m = 1 / (1 + m^2 u^2 w)`, so their mean has the mean k, and its root is `(I - (1 - sqrt(k)) q q') D^-1`.
@@ -162,10 +161,10 @@ impl Whitening {
     pub fn apply(&self, v: &[f64]) -> Vec<f64> {
         let mut whitened: Vec<f64> = self.alone.iter().map(|&(i, sd)| v[i] / sd).collect();
         for (data, transform) in &self.blocks {
-            let own = data.iter().map(|&i| v[i]).collect();
+            let block = data.iter().map(|&i| v[i]).collect();
             whitened.extend(match transform {
-                BlockTransform::Factor(factor) => factor.whiten(own),
-                BlockTransform::Shift(shift) => shift.whiten(own),
+                BlockTransform::Factor(factor) => factor.whiten(block),
+                BlockTransform::Shift(shift) => shift.whiten(block),
             });
         }
         whitened

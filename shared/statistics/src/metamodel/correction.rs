@@ -8,18 +8,18 @@ use super::pool::{ModelPair, Pool};
 
 /// Effective number of states for each coefficient of a regression.
 const STATES_PER_COEFFICIENT: f64 = 4.0;
-/// Ridge on the diagonal of the normal equations, whose features have about unit size: a direction in which the pool
-/// has no width gets no slope.
+/// Ridge on the diagonal of the normal equations, whose features are of order one: it gives a direction in which the pool
+/// has no extent the slope 0.
 const RIDGE: f64 = 1e-9;
 
 /// The mean of fine less coarse, as a polynomial in whitened coordinates, for each predicted value.
 ///
-/// The whitened coordinates are `w = A^-1 (u - m)`, m and A A' mean and covariance of the pool. Beyond
-/// `|w| = sqrt(d) + 2`, outside the data, the correction is that of the border: a polynomial does not extrapolate.
+/// The whitened coordinates are `w = A^-1 (u - m)`, m and A A' mean and covariance of the pool. Beyond `|w| = sqrt(d) + 2`,
+/// outside the data, the correction has the value at that border, because a polynomial must not extrapolate.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(super) struct Correction {
     degree: Degree,
-    /// By predicted value, a coefficient for each feature.
+    /// A coefficient for each feature, by predicted value.
     coefficients: Vec<Vec<f64>>,
     /// Residual standard deviation of the regression, by predicted value.
     residual_sd: Vec<f64>,
@@ -60,7 +60,7 @@ impl Degree {
 type WeightedPair<'a> = (Vec<f64>, &'a ModelPair, f64);
 
 impl Correction {
-    /// Weighted least squares of the highest degree that the pool supports; `None` if it supports none.
+    /// Fits weighted least squares of the highest degree that the pool supports; `None` if it supports none.
     ///
     /// Checked by `metamodel::a_quadratic_difference_is_found` and `metamodel::the_posterior_is_that_of_the_fine_model`.
     pub(super) fn fit(pool: &Pool, weights: &[f64], factor: &CovarianceFactor) -> Option<Self> {
@@ -75,7 +75,7 @@ impl Correction {
             .collect();
         let squares: f64 = pairs.iter().map(|(_, _, w)| w * w).sum();
         let sum: f64 = pairs.iter().map(|(_, _, w)| w).sum();
-        // Many states of a pool are repeats of a state that its chain kept.
+        // Many states of a pool repeat the state that their chain kept.
         let effective = if squares > 0.0 { sum * sum / squares } else { 0.0 };
         [Degree::Quadratic, Degree::Linear, Degree::Constant]
             .into_iter()

@@ -1,4 +1,4 @@
-//! The factor of the weighted covariance of a pool, however thin the pool is.
+//! The factor of the weighted covariance of a pool, also of a degenerate one.
 
 use nalgebra::{Cholesky, DMatrix, SymmetricEigen};
 use serde::{Deserialize, Serialize};
@@ -9,16 +9,16 @@ pub struct CovarianceFactor {
     mean: Vec<f64>,
     #[serde(with = "square")]
     root: DMatrix<f64>,
-    /// Whether the root is lower triangular with a positive diagonal, so that it can be inverted.
+    /// True if the root is lower triangular with a positive diagonal, so that it can be inverted.
     regular: bool,
 }
 
 impl CovarianceFactor {
     /// Factors the covariance of `states` with `weights` that sum to one.
     ///
-    /// The *correlation* matrix is factored and scaled back by the standard deviations, so a ridge 1e-6 as
-    /// thick as long keeps its shape; nothing is added to the diagonal. A correlation that is singular to
-    /// rounding is factored through its eigenvectors: the factor then spans what the states span and no more.
+    /// The *correlation* matrix is factored and scaled back by the standard deviations, so a ridge with an aspect of 1e-6
+    /// keeps its shape; nothing is added to the diagonal. A correlation that is singular to rounding is factored through its
+    /// eigenvectors: the factor then spans exactly the space of the states.
     pub fn new(states: &[&[f64]], weights: &[f64]) -> Self {
         let dimension = states.first().map_or(0, |state| state.len());
         let mut mean = vec![0.0; dimension];
@@ -93,10 +93,10 @@ impl CovarianceFactor {
         }
         let mut whitened = vec![0.0; x.len()];
         for row in 0..x.len() {
-            let known: f64 = (0..row)
+            let explained: f64 = (0..row)
                 .map(|column| self.root[(row, column)] * whitened[column])
                 .sum();
-            whitened[row] = (x[row] - self.mean[row] - known) / self.root[(row, row)];
+            whitened[row] = (x[row] - self.mean[row] - explained) / self.root[(row, row)];
         }
         Some(whitened)
     }
@@ -159,7 +159,7 @@ mod tests {
     }
 
     #[test]
-    fn a_singular_covariance_spans_what_the_states_span() {
+    fn a_singular_covariance_spans_the_space_of_the_states() {
         let states: [&[f64]; 3] = [&[1.0, 2.0, 5.0], &[2.0, 4.0, 5.0], &[3.0, 6.0, 5.0]];
         let factor = CovarianceFactor::new(&states, &[1.0 / 3.0; 3]);
         let step = factor.spread(&[0.3, -1.2, 0.8]);

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::covariance::CovarianceFactor;
 use crate::rng::Stream;
 
-/// Tries to draw two different members of the frozen population before a random-walk step is taken instead.
+/// Number of attempts to draw two different members of the frozen population before a random-walk step is taken instead.
 const PAIR_TRIES: usize = 8;
 
 /// Share of differential-evolution steps whose length is the full difference, which jump between modes.
@@ -14,8 +14,8 @@ const FULL_DIFFERENCES: f64 = 0.2;
 /// sd of ln(length): steps of many lengths suit targets whose width varies.
 const LENGTH_SPREAD: f64 = 0.7;
 
-/// Share of autoregressive jumps. They mix a nearly normal target many times faster than a random walk; a larger share
-/// mixes worse in a funnel, whose neck they miss.
+/// Share of autoregressive jumps. On a nearly normal target they mix many times faster than a random walk; a larger share
+/// mixes worse in a funnel, because jumps miss its neck.
 const JUMPS: f64 = 0.1;
 
 /// Weight of the new deviation in a jump; the old one has sqrt(1 - 0.9^2).
@@ -35,15 +35,14 @@ pub struct ProposalMixture {
 pub struct ProposedMove {
     /// The proposed coordinates.
     pub coordinates: Vec<f64>,
-    /// Whether its length is proportional to the scale.
+    /// True if its length is proportional to the scale.
     pub scaled: bool,
     /// ln q(from | candidate) - ln q(candidate | from).
     pub log_correction: f64,
 }
 
 impl ProposalMixture {
-    /// Draws a candidate, with m and C the weighted mean and covariance of the pool that the stage began
-    /// with.
+    /// Draws a candidate, with m and C the weighted mean and covariance of the pool at the start of the stage.
     ///
     /// - 10 %: autoregressive, `m + sqrt(1 - 0.81) (x - m) + 0.9 N(0, C)` (reversible for N(m, C); Neal
     ///   1999);
@@ -73,7 +72,7 @@ impl ProposalMixture {
         self.walk(from, scale, stream)
     }
 
-    /// `None` if the covariance is singular.
+    /// Returns `None` if the covariance is singular.
     fn jump(&self, from: &[f64], stream: &mut Stream) -> Option<ProposedMove> {
         let old = self.factor.whiten(from)?;
         let kept = (1.0 - JUMP_NOVELTY * JUMP_NOVELTY).sqrt();
@@ -93,7 +92,7 @@ impl ProposalMixture {
         })
     }
 
-    /// `None` if no two different members are found.
+    /// Returns `None` if no two different members are found.
     fn difference(&self, from: &[f64], scale: f64, stream: &mut Stream) -> Option<ProposedMove> {
         let full = stream.uniform() < FULL_DIFFERENCES;
         let gamma = if full {

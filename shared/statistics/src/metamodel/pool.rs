@@ -22,16 +22,14 @@ pub struct ChainState {
     pub log_prior: f64,
     /// ln p(data | theta).
     pub log_likelihood: LogLikelihood,
-    /// The predictions of both models, where a metamodel learns from them.
+    /// The predictions of both models, if a metamodel learns from them.
     pub pair: Option<Arc<ModelPair>>,
 }
 
-/// States that share one target density, each from one of several chains.
-///
-/// Every log-likelihood is finite.
+/// States with one target density, from several chains. Every log-likelihood is finite.
 #[derive(Debug, Clone, Default)]
 pub struct Pool {
-    /// The states, in the order in which they were visited.
+    /// The states, in the order of their visits.
     pub states: Vec<ChainState>,
     /// The chain of each state.
     pub chains: Vec<usize>,

@@ -30,21 +30,21 @@ pub struct MetamodelStage<'a> {
     pub stage: usize,
     /// Its tempering exponent.
     pub exponent: f64,
-    /// Moves of a subchain.
+    /// Number of moves of a subchain.
     pub moves: usize,
-    /// The prior.
+    /// The prior of the calibration.
     pub prior: &'a Prior,
     /// The likelihood of the fine model.
     pub likelihood: &'a Likelihood,
 }
 
 impl Metamodel {
-    /// Fits the correction to a pool with weights that sum to one; `None` where the pool holds too few pairs.
+    /// Fits the correction to a pool with weights that sum to one; `None` if the pool holds too few pairs.
     ///
-    /// The residual variance of the regression is added to that of the data whose noise is known.
+    /// The residual variance of the regression is added to the variance of the data with known noise.
     ///
     /// # Errors
-    /// [`LikelihoodError`] where the data cannot be scored with the wider noise.
+    /// [`LikelihoodError`] if the data cannot be scored with the larger noise.
     pub fn learn(
         purpose: &MetamodelStage,
         pool: &Pool,
@@ -91,7 +91,7 @@ impl Metamodel {
         self.stage
     }
 
-    /// Log-likelihood of the corrected coarse model; minus infinity where the coarse model rejects the parameters.
+    /// Log-likelihood of the corrected coarse model; minus infinity if the coarse model rejects the parameters.
     pub(super) fn log_likelihood(
         &self,
         theta: &[f64],

@@ -6,7 +6,7 @@ use super::stage_metamodel::Metamodel;
 use crate::likelihood::LikelihoodError;
 use crate::rng::Stream;
 
-/// Offset that separates the streams of subchains from those of the steps that accept them.
+/// Offset that separates the random streams of subchains from those of the accepting steps.
 const SUBCHAINS: u64 = 1 << 32;
 
 /// The request for a subchain; its metamodel holds the rest.
@@ -20,31 +20,31 @@ pub struct Subchain {
     pub scale: f64,
 }
 
-/// Where a subchain ended.
+/// The result of a subchain.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SubchainEnd {
-    /// The parameters; those of the start where no move was accepted.
+    /// The parameters; those of the start if no move was accepted.
     pub theta: Vec<f64>,
     /// ln M(end) - ln M(start), M the metamodel's likelihood.
     pub log_gain: f64,
-    /// Moves proposed.
+    /// Number of moves proposed.
     pub moves: u32,
-    /// Moves accepted.
+    /// Number of moves accepted.
     pub accepted: u32,
-    /// Moves proposed whose length is proportional to the scale.
+    /// Number of proposed moves whose length is proportional to the scale.
     pub scaled: u32,
-    /// Accepted ones among them.
+    /// Number of accepted moves whose length is proportional to the scale.
     pub scaled_accepted: u32,
 }
 
 impl Metamodel {
-    /// Takes the moves of a subchain that starts at `theta`.
+    /// Runs the moves of a subchain that starts at `theta`.
     ///
     /// # Arguments
-    /// - `coarse`: the coarse model's predicted values at some parameters; `None` where it rejects them.
+    /// - `coarse`: the coarse model's predicted values at some parameters; `None` if it rejects them.
     ///
     /// # Returns
-    /// The end; the start itself where the metamodel excludes it.
+    /// The end; the start if the metamodel excludes it.
     ///
     /// # Errors
     /// [`LikelihoodError`] for predicted values that cannot be scored.

@@ -1,9 +1,9 @@
-//! Whether a posterior touches a bound of its prior.
+//! Test whether a posterior touches a bound of its prior.
 
 /// Distance that counts as touching, as a share of the range.
 const NEAR: f64 = 0.02;
 
-/// Whether `q05` or `q95` lies within 2 % of the range of a bound. False if the range is not finite.
+/// Returns whether `q05` or `q95` lies within 2 % of the range of a bound. False if the range is not finite.
 #[must_use]
 pub(super) fn at_bound(q05: f64, q95: f64, (lower, upper): (f64, f64)) -> bool {
     let near = NEAR * (upper - lower);

@@ -33,7 +33,7 @@ pub struct CorrelationSlopes {
 }
 
 impl Correlation {
-    /// Correlations of some of the marginals.
+    /// Builds the correlations of some of the marginals.
     ///
     /// # Errors
     /// [`PriorError::NotNormal`], [`PriorError::NotACorrelation`].
@@ -77,7 +77,7 @@ impl Correlation {
         })
     }
 
-    /// The parameters and their correlations, as they were given.
+    /// The parameters and their correlations, as passed to [`Correlation::new`].
     pub(super) fn given(self) -> (Vec<usize>, Vec<Vec<f64>>) {
         (self.parameters, self.correlations)
     }
@@ -91,14 +91,14 @@ impl Correlation {
     /// Replaces the normal scores of the correlated parameters by independent ones, `L^-1 z`.
     pub(super) fn whiten(&self, scores: &mut [f64]) {
         let mut z = DVector::from_iterator(self.parameters.len(), self.parameters.iter().map(|&p| scores[p]));
-        // The factor of a positive definite matrix has no zero on its diagonal.
+        // The factor of a positive definite matrix has a positive diagonal.
         self.factor.solve_lower_triangular_mut(&mut z);
         for (&parameter, z) in self.parameters.iter().zip(z.iter()) {
             scores[parameter] = *z;
         }
     }
 
-    /// Replaces independent normal scores of the correlated parameters by theirs, `L z`.
+    /// Replaces independent normal scores of the correlated parameters by correlated ones, `L z`.
     pub(super) fn colour(&self, scores: &mut [f64]) {
         let z = DVector::from_iterator(self.parameters.len(), self.parameters.iter().map(|&p| scores[p]));
         for (&parameter, z) in self.parameters.iter().zip((&self.factor * z).iter()) {
@@ -106,23 +106,23 @@ impl Correlation {
         }
     }
 
-    /// The correlations among some of all parameters, these being numbered anew; `None` where fewer than two remain.
+    /// The correlations among the kept parameters, with new positions; `None` if fewer than two remain.
     pub(super) fn of_some(self, marginals: &[Marginal], kept: &[usize]) -> Option<Self> {
         let (parameters, correlations) = self.given();
-        let own: Vec<(usize, usize)> = (0..kept.len())
+        let members: Vec<(usize, usize)> = (0..kept.len())
             .filter_map(|new| Some((new, parameters.iter().position(|&p| p == kept[new])?)))
             .collect();
-        if own.len() < 2 {
+        if members.len() < 2 {
             return None;
         }
-        let row = |i: usize| own.iter().map(|&(_, j)| correlations[i][j]).collect();
-        let correlations: Vec<Vec<f64>> = own.iter().map(|&(_, i)| row(i)).collect();
-        let parameters = own.into_iter().map(|(new, _)| new).collect();
-        // A principal part of a correlation matrix is one.
+        let row = |i: usize| members.iter().map(|&(_, j)| correlations[i][j]).collect();
+        let correlations: Vec<Vec<f64>> = members.iter().map(|&(_, i)| row(i)).collect();
+        let parameters = members.into_iter().map(|(new, _)| new).collect();
+        // A principal submatrix of a correlation matrix is a correlation matrix.
         Self::new(marginals, parameters, &correlations).ok()
     }
 
-    /// Replaces independent draws of the correlated parameters by dependent ones.
+    /// Replaces independent draws of the correlated parameters by correlated ones.
     pub(super) fn correlate(&self, marginals: &[Marginal], theta: &mut [f64]) {
         let coordinates: Vec<f64> = marginals
             .iter()
@@ -141,14 +141,14 @@ impl Correlation {
     /// marginals' standard deviations.
     pub(super) fn slopes(&self, marginals: &[Marginal], coordinates: &[f64]) -> CorrelationSlopes {
         let slope = &self.excess * self.standardised(marginals, coordinates);
-        let own = self.parameters.iter().copied();
-        let others = |(i, k): (usize, usize)| {
+        let parameters = self.parameters.iter().copied();
+        let curvatures_of_row = |(i, k): (usize, usize)| {
             let pairs = self.parameters.iter().enumerate();
             pairs.map(move |(j, &l)| (k, l, self.excess[(i, j)]))
         };
         CorrelationSlopes {
-            slopes: own.clone().zip(slope.iter().copied()).collect(),
-            curvatures: own.enumerate().flat_map(others).collect(),
+            slopes: parameters.clone().zip(slope.iter().copied()).collect(),
+            curvatures: parameters.enumerate().flat_map(curvatures_of_row).collect(),
         }
     }
 

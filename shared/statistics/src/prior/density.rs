@@ -30,7 +30,7 @@ pub(super) enum Density {
 }
 
 impl SamplingCoordinate {
-    pub(super) fn of(self, x: f64) -> f64 {
+    pub(super) fn transform(self, x: f64) -> f64 {
         match self {
             Self::Identity => x,
             Self::Log => libm::log(x),
@@ -73,7 +73,7 @@ impl Density {
         }
     }
 
-    /// For 0 < p < 1.
+    /// Quantile for 0 < p < 1.
     pub(super) fn quantile(&self, p: f64) -> f64 {
         self.quantile_of([p, 1.0 - p])
     }
@@ -95,7 +95,7 @@ impl Density {
                 high,
                 mass,
             } => {
-                // Work from the nearer tail, where the probability keeps its digits.
+                // The nearer tail keeps the digits of the probability.
                 let below = normal::cdf(low) + p * mass;
                 let above = normal::cdf(-high) + q * mass;
                 let z = if below < above {
@@ -109,8 +109,7 @@ impl Density {
     }
 }
 
-/// The part of [low, high] where a unit normal around `centre` lies within [`TAIL_NATS`] of its highest value
-/// there.
+/// The part of [low, high] where a unit normal around `centre` is within [`TAIL_NATS`] of its maximum there.
 pub(super) fn window(low: f64, high: f64, centre: f64) -> (f64, f64) {
     let peak = centre.max(low).min(high);
     let offset = (peak - centre).abs();

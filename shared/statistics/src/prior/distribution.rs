@@ -83,7 +83,7 @@ fn finite(name: &'static str, value: f64) -> Result<(), PriorError> {
     }
 }
 
-/// Refuses numbers that are not finite and above a bound.
+/// Refuses a number that is not finite or not above a bound.
 fn above(name: &'static str, value: f64, bound: f64) -> Result<(), PriorError> {
     finite(name, value)?;
     if value > bound {
@@ -101,7 +101,7 @@ fn interval(lower: f64, upper: f64) -> Result<(), PriorError> {
     finite("width", upper - lower)
 }
 
-/// Refuses ends that are not in order; an infinite end truncates nothing on its side.
+/// Refuses ends that are not in order; an infinite end means no truncation on its side.
 pub(super) fn ordered(lower: f64, upper: f64) -> Result<(), PriorError> {
     if lower < upper {
         Ok(())

@@ -1,4 +1,4 @@
-//! Why a prior is refused.
+//! Errors of priors.
 
 /// Why a marginal or a correlation is refused.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
@@ -6,17 +6,17 @@ pub enum PriorError {
     /// A number of the distribution or of the bounds is NaN or infinite.
     #[error("{name} {value} is not a finite number")]
     NotFinite {
-        /// Which number.
+        /// Name of the number.
         name: &'static str,
-        /// Its value.
+        /// The refused value.
         value: f64,
     },
     /// A number must lie above a bound and does not.
     #[error("{name} {value} is not above {bound}")]
     TooSmall {
-        /// Which number.
+        /// Name of the number.
         name: &'static str,
-        /// Its value.
+        /// The refused value.
         value: f64,
         /// The bound it must exceed.
         bound: f64,

@@ -24,11 +24,11 @@ pub struct Marginal {
     sd: f64,
 }
 
-/// The serialised form of a marginal: what it is made from.
+/// The serialised form of a marginal: its constructor arguments.
 #[derive(Serialize, Deserialize)]
 struct SerialisedMarginal {
     distribution: Distribution,
-    /// The bounds where they truncate; JSON has no infinite numbers.
+    /// The truncating bounds; JSON has no infinite numbers.
     lower: Option<f64>,
     upper: Option<f64>,
 }
@@ -58,9 +58,8 @@ impl Marginal {
     /// A distribution, truncated to `bounds` and renormalised.
     ///
     /// # Errors
-    /// [`PriorError`] names the number, its value and its bound: ends out of order, sd or scale <= 0, factor
-    /// <= 1, anything that must be finite and is not, bounds outside the support or without probability.
-    /// Nothing is adjusted.
+    /// [`PriorError`] names the number, its value and its bound: ends out of order, sd or scale <= 0, factor <= 1, a number
+    /// that is not finite, bounds outside the support or without probability. Nothing is adjusted.
     pub fn new(distribution: Distribution, bounds: Option<[f64; 2]>) -> Result<Self, PriorError> {
         distribution.check()?;
         let (mut lower, mut upper) = distribution.support();
@@ -81,7 +80,7 @@ impl Marginal {
             Distribution::Loguniform { .. } | Distribution::Lognormal { .. } => SamplingCoordinate::Log,
             _ => SamplingCoordinate::Identity,
         };
-        let (low, high) = (coordinate.of(lower), coordinate.of(upper));
+        let (low, high) = (coordinate.transform(lower), coordinate.transform(upper));
         let gaussian = |mean: f64, sd: f64| {
             let (low, high) = ((low - mean) / sd, (high - mean) / sd);
             Density::Normal {
@@ -103,7 +102,7 @@ impl Marginal {
         };
         let has_mass = match density {
             Density::Uniform { width, .. } => width > 0.0,
-            // Beyond 37 standard deviations the normal's tail is no longer a normal number.
+            // Beyond 37 standard deviations the tail of the normal density is a subnormal number.
             Density::Normal { mass, .. } => mass >= f64::MIN_POSITIVE,
         };
         if !has_mass {
@@ -157,7 +156,7 @@ impl Marginal {
         if !(self.lower <= x && x <= self.upper) || (self.coordinate == SamplingCoordinate::Log && x <= 0.0) {
             return f64::NEG_INFINITY;
         }
-        let u = self.coordinate.of(x);
+        let u = self.coordinate.transform(x);
         let jacobian = if self.coordinate == SamplingCoordinate::Log {
             -u
         } else {
@@ -172,7 +171,7 @@ impl Marginal {
         if p >= 1.0 {
             self.upper
         } else if p > 0.0 {
-            // Rounding of exp(ln x) may step over an end by one unit in the last place.
+            // Rounding of exp(ln x) may exceed an end by one unit in the last place.
             self.inside(self.density.quantile(p))
         } else {
             self.lower
@@ -187,9 +186,8 @@ impl Marginal {
 
     /// The normal score of x: `Phi^-1(P(X < x))`.
     ///
-    /// Scores of draws from this distribution are standard normal, whatever it is. An x on an end of the support, or
-    /// outside, has the score of the least representable probability, +-37.5. Checked by
-    /// `priors::scores_are_normal_quantiles`.
+    /// Scores of draws from this distribution are standard normal. An x on an end of the support, or outside, has the score of the
+    /// least representable probability, +-37.5. Checked by `priors::scores_are_normal_quantiles`.
     #[must_use]
     pub fn normal_score(&self, x: f64) -> f64 {
         let [below, above] = self.tails(x).map(|p| p.max(f64::MIN_POSITIVE));
@@ -200,7 +198,7 @@ impl Marginal {
         }
     }
 
-    /// The value of a normal score, the inverse of [`Marginal::normal_score`], from the nearer tail.
+    /// Returns the value of a normal score, the inverse of [`Marginal::normal_score`], from the nearer tail.
     ///
     /// Checked by `frame::tests::scores_lead_back_to_where_they_came_from`.
     #[must_use]
@@ -238,11 +236,11 @@ impl Marginal {
         } else if x >= self.upper {
             [1.0, 0.0]
         } else {
-            self.density.tails(self.coordinate.of(x))
+            self.density.tails(self.coordinate.transform(x))
         }
     }
 
-    /// One independent draw, by inversion.
+    /// Draws one value, by inversion.
     pub fn sample(&self, stream: &mut Stream) -> f64 {
         self.quantile(stream.uniform())
     }
@@ -250,21 +248,21 @@ impl Marginal {
     /// The sampling coordinate of x: ln x for lognormal and log-uniform marginals, else x.
     #[must_use]
     pub fn coordinate(&self, x: f64) -> f64 {
-        self.coordinate.of(x)
+        self.coordinate.transform(x)
     }
 
-    /// Whether an interval from `q05` to `q95` touches a bound: nearer than 2 % of the range, in the sampling
-    /// coordinate. False where the range is not finite.
+    /// Returns whether an interval from `q05` to `q95` touches a bound: nearer than 2 % of the range, in the sampling coordinate.
+    /// False if the range is not finite.
     #[must_use]
     pub fn at_bound(&self, q05: f64, q95: f64) -> bool {
-        let u = |x| self.coordinate.of(x);
+        let u = |x| self.coordinate.transform(x);
         at_bound(u(q05), u(q95), (u(self.lower), u(self.upper)))
     }
 
     /// Slope and curvature of -ln p(x(u)) along the sampling coordinate u; p is the density of x, not of u.
     ///
-    /// In its coordinate every distribution here is a parabola or a straight line, so the curvature is constant
-    /// and never negative. A log coordinate adds u, because ln p(x) = ln p(u) - u there.
+    /// In its coordinate every distribution here has a parabolic or linear log-density, so the curvature is constant and
+    /// never negative. A log coordinate adds u, because there ln p(x) = ln p(u) - u.
     pub fn slope(&self, u: f64) -> (f64, f64) {
         let jacobian = if self.coordinate == SamplingCoordinate::Log {
             1.0
@@ -277,7 +275,7 @@ impl Marginal {
         }
     }
 
-    /// Mean and standard deviation of the sampling coordinate, where that is normal and not truncated.
+    /// Mean and standard deviation of the sampling coordinate, if it is normal and not truncated.
     pub(super) fn untruncated_normal(&self) -> Option<(f64, f64)> {
         match self.density {
             Density::Normal {
@@ -287,8 +285,8 @@ impl Marginal {
         }
     }
 
-    /// Spread of the sampling coordinate: its standard deviation, or that of a uniform density between the
-    /// bounds where they cut off more.
+    /// Width of the sampling coordinate: its standard deviation, or that of a uniform density between the bounds if they are
+    /// narrower.
     pub fn width(&self) -> f64 {
         match self.density {
             Density::Uniform { width, .. } => width / 12.0_f64.sqrt(),
@@ -296,7 +294,7 @@ impl Marginal {
         }
     }
 
-    /// Whether the sampling coordinate is ln x.
+    /// Returns whether the sampling coordinate is ln x.
     pub fn is_logarithmic(&self) -> bool {
         self.coordinate == SamplingCoordinate::Log
     }
@@ -309,7 +307,7 @@ impl Marginal {
         }
     }
 
-    /// x of a sampling coordinate inside the support; rounding does not step over an end.
+    /// x of a sampling coordinate inside the support; rounding cannot exceed an end.
     pub fn inside(&self, u: f64) -> f64 {
         self.coordinate.value(u).max(self.lower).min(self.upper)
     }
@@ -319,7 +317,7 @@ impl Marginal {
         self.coordinate.value(u)
     }
 
-    /// Log-density of the sampling coordinate; minus infinity where u or its x leaves the support.
+    /// Log-density of the sampling coordinate; minus infinity if u or its x is outside the support.
     pub(super) fn log_density_of_coordinate(&self, u: f64) -> f64 {
         let x = self.coordinate.value(u);
         if self.lower <= x && x <= self.upper {
@@ -329,7 +327,7 @@ impl Marginal {
         }
     }
 
-    /// Mean and sd of x by quadrature over the part of the support that matters.
+    /// Mean and sd of x by quadrature over the relevant part of the support.
     fn moments(&self) -> (f64, f64) {
         match self.density {
             Density::Uniform { lower, width } => {
@@ -338,7 +336,7 @@ impl Marginal {
             Density::Normal {
                 mean, sd, low, high, ..
             } => {
-                // x^2 = exp(2u) moves the peak of the integrand up by two standard deviations' worth of sd.
+                // x^2 = exp(2u) moves the peak of the integrand up by twice the variance.
                 let shift = if self.coordinate == SamplingCoordinate::Log {
                     2.0 * sd
                 } else {

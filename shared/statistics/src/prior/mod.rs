@@ -1,9 +1,9 @@
 //! The prior of the parameters.
 //!
 //! # Layout
-//! - here: [`Prior`]. `marginal`: one parameter, truncated. `correlation`: jointly normal parameters.
+//! - This file: [`Prior`]. `marginal`: one parameter, truncated. `correlation`: jointly normal parameters.
 //! - `distribution`: the distributions. `density`: densities and quantiles in the sampling coordinate.
-//! - `moments`, `normal`, `bound`: quadrature, the standard normal, nearness to a bound. `error`: refusals.
+//! - `moments`, `normal`, `bound`: quadrature, the standard normal, nearness to a bound. `error`: errors.
 
 mod bound;
 mod correlation;
@@ -25,7 +25,7 @@ use serde::{Deserialize, Serialize};
 use crate::rng::Stream;
 use correlation::Correlation;
 
-/// One marginal per parameter, independent but for parameters that are jointly normal.
+/// One marginal per parameter; independent, except for parameters that are jointly normal.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "SerialisedPrior", into = "SerialisedPrior")]
 pub struct Prior {
@@ -33,7 +33,7 @@ pub struct Prior {
     correlation: Option<Correlation>,
 }
 
-/// The serialised form of a prior: what it is made from.
+/// The serialised form of a prior: its constructor arguments.
 #[derive(Serialize, Deserialize)]
 struct SerialisedPrior {
     marginals: Vec<Marginal>,
@@ -74,15 +74,15 @@ impl Prior {
         }
     }
 
-    /// The same with correlations between some parameters, whose marginals are normal in their sampling coordinates and
-    /// untruncated, so that they are jointly normal there.
+    /// Adds correlations between some parameters, whose marginals must be normal in their sampling coordinates and
+    /// untruncated; they are then jointly normal in these coordinates.
     ///
     /// # Arguments
     /// - `parameters`: ascending positions in theta. `correlations`: one row for each, symmetric, 1 on the diagonal.
     ///
     /// # Errors
-    /// [`PriorError::NotNormal`] for a marginal that is not; [`PriorError::NotACorrelation`] for a matrix that is not
-    /// positive definite, or of another size. Checked by `priors::correlated_parameters_have_the_closed_form`.
+    /// [`PriorError::NotNormal`] for any other marginal; [`PriorError::NotACorrelation`] for a matrix that is not positive
+    /// definite, or of another size. Checked by `priors::correlated_parameters_have_the_closed_form`.
     pub fn correlated(self, parameters: Vec<usize>, correlations: &[Vec<f64>]) -> Result<Self, PriorError> {
         let correlation = Correlation::new(&self.marginals, parameters, correlations)?;
         Ok(Self {
@@ -128,7 +128,7 @@ impl Prior {
         }
     }
 
-    /// Turns the marginals' normal scores into independent ones: each correlated parameter given those before it.
+    /// Replaces the marginals' normal scores by independent ones: each correlated parameter given the preceding ones.
     pub fn make_independent(&self, scores: &mut [f64]) {
         if let Some(correlation) = &self.correlation {
             correlation.whiten(scores);
@@ -142,7 +142,7 @@ impl Prior {
         }
     }
 
-    /// The prior of some of the parameters, whatever the others are: their marginals, and their correlations among themselves.
+    /// The marginal prior of some of the parameters: their marginals, and their correlations among themselves.
     ///
     /// # Arguments
     /// - `kept`: ascending positions in theta.
@@ -157,13 +157,13 @@ impl Prior {
         }
     }
 
-    /// Whether some parameters are correlated.
+    /// Returns whether some parameters are correlated.
     #[must_use]
     pub fn is_correlated(&self) -> bool {
         self.correlation.is_some()
     }
 
-    /// One independent draw of theta.
+    /// Draws theta.
     pub fn sample(&self, stream: &mut Stream) -> Vec<f64> {
         let mut theta: Vec<f64> = self
             .marginals
@@ -205,7 +205,7 @@ impl Prior {
             .collect()
     }
 
-    /// Theta of sampling coordinates.
+    /// Returns theta of sampling coordinates.
     pub fn theta(&self, coordinates: &[f64]) -> Vec<f64> {
         self.marginals
             .iter()

@@ -6,8 +6,8 @@ const INTERVALS: usize = 4096;
 /// Mean and standard deviation of `value(u)` when u has the log-density `log_density` (up to a constant, at
 /// most about 0) on the finite interval from `lower` to `upper`.
 ///
-/// The second moment is taken about the mean, so nothing cancels. Relative error below 1e-8 where the density
-/// is resolved by 4096 intervals.
+/// The second moment is taken about the mean, so nothing cancels. The relative error is below 1e-8 if 4096 intervals resolve
+/// the density.
 pub(super) fn mean_and_sd(
     lower: f64,
     upper: f64,

@@ -3,7 +3,7 @@
 /// ln sqrt(2 pi).
 pub const LN_SQRT_TAU: f64 = 0.918_938_533_204_672_8;
 
-/// Newton steps after which the quantile has settled for every representable probability.
+/// Number of Newton steps after which the quantile has converged for every representable probability.
 const NEWTON_STEPS: usize = 60;
 
 /// P(Z < z).
@@ -31,7 +31,7 @@ pub(super) fn mass(a: f64, b: f64) -> f64 {
     }
 }
 
-/// The z with P(Z < z) = `p`, for 0 < `p` <= 1/2.
+/// Returns the z with P(Z < z) = `p`, for 0 < `p` <= 1/2.
 ///
 /// Newton on ln cdf, which is concave and increasing, from a start below the root (cdf(z) <= exp(-z^2/2)/2
 /// for z <= 0): the iterates rise to the root and never pass it.

@@ -1,7 +1,7 @@
 //! The bevameter: a plate pressed into the soil, and a ring turned on it.
 //!
 //! # Layout
-//! - [`plate`]: pressure and load of a plate, while it sinks and while it is lifted and pressed again.
+//! - [`plate`]: pressure and load of a plate during loading, unloading and reloading.
 //! - [`ring`]: shear stress under a ring, and its conversion from torque and angle.
 //!
 //! Both use the laws of the wheel ([`pressure_sinkage`](crate::pressure_sinkage), [`shear`](crate::shear)), so one

@@ -16,7 +16,7 @@ pub enum Plate {
     Rectangle {
         /// Long side `[m]`, > 0.
         length_m: f64,
-        /// Short side `[m]`, > 0; the sides may stand in either order.
+        /// Short side `[m]`, > 0; the sides may be in either order.
         width_m: f64,
     },
 }
@@ -44,16 +44,16 @@ impl Plate {
 /// `p = (k_c / b + k_phi) z^n`, uniform over the plate, with b the radius or the short side.
 ///
 /// # Arguments
-/// - `soil`: fields carry units and bounds; `k_c`, `k_phi` and n alone count.
+/// - `soil`: fields carry units and bounds; only `k_c`, `k_phi` and n matter.
 /// - `sinkage_m`: z `[m]`, ≥ 0.
 ///
 /// # Returns
 /// Pressure `[Pa]`, ≥ 0.
 ///
 /// # Errors
-/// [`Rejection::InvalidParameter`]: a field of the soil, a side of the plate or z is outside its bounds, or the
-/// modulus k* under this plate is not above 0 (a negative `k_c` under a plate too small for it): no pressure
-/// could have been measured there. [`Rejection::NotFinite`]: the pressure overflows.
+/// [`Rejection::InvalidParameter`]: a field of the soil, a side of the plate or z is outside its bounds, or the modulus k*
+/// under this plate is not above 0 (a negative `k_c` under a plate too small for it): no pressure could have been measured
+/// there. [`Rejection::NotFinite`]: the pressure overflows.
 ///
 /// # Validity
 /// Monotonic, slow loading of deep, homogeneous soil.
@@ -76,15 +76,12 @@ pub fn pressure(soil: &Soil, plate: &Plate, sinkage_m: f64) -> Result<f64, Rejec
     }
 }
 
-/// Load on a plate during first loading `[N]`: its area times [`pressure`].
-///
-/// # Errors
-/// Those of [`pressure`].
+/// Load on a plate during first loading `[N]`: its area times [`pressure`], with the same errors.
 pub fn load(soil: &Soil, plate: &Plate, sinkage_m: f64) -> Result<f64, Rejection> {
     Ok(plate.area_m2() * pressure(soil, plate, sinkage_m)?)
 }
 
-/// How a soil springs back under a plate that is lifted, and stiffens when it is pressed again.
+/// The unloading of a soil under a plate that is lifted, and its stiffening when the plate is pressed again.
 ///
 /// `p = p_u − k_u (z_u − z)` with `k_u = k_0 + A_u z_u`: from the pressure `p_u` at the deepest sinkage `z_u`
 /// along a straight line, up and down alike.
@@ -108,18 +105,16 @@ impl Unloading {
     /// Pressure under a plate that has been `deepest_m` deep and now is at `sinkage_m`.
     ///
     /// # Arguments
-    /// - `deepest_m`: `z_u` `[m]`, ≥ 0; `sinkage_m`: z `[m]`, ≥ 0. A plate deeper than ever before is in
-    ///   first loading.
+    /// - `deepest_m`: `z_u` `[m]`, ≥ 0; `sinkage_m`: z `[m]`, ≥ 0. A plate deeper than `deepest_m` is in first loading.
     ///
     /// # Returns
-    /// Pressure `[Pa]`. The soil does not pull: where the line falls below 0 the plate has left the soil, and 0 is
-    /// returned.
+    /// Pressure `[Pa]`. The soil does not pull: if the line falls below 0 the plate has left the soil, and 0 is returned.
     ///
     /// # Errors
     /// Those of [`pressure`], and [`Rejection::InvalidParameter`] for a stiffness that is negative.
     ///
     /// # Validity
-    /// Unloading and reloading fall on one line; hysteresis is left out.
+    /// Unloading and reloading follow one line; hysteresis is neglected.
     ///
     /// Checked by `bevameter::a_lifted_plate_follows_the_unloading_line_and_leaves_the_soil`.
     pub fn pressure(

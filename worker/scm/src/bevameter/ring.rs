@@ -4,12 +4,12 @@ use crate::rejection::{Rejection, require};
 use crate::shear::{ShearDisplacement, strength};
 use crate::soil::Soil;
 
-/// Shear stress under a surface that has been displaced along the soil under a normal stress.
+/// Shear stress under a surface that is displaced along the soil under a normal stress.
 ///
 /// `tau = (c + sigma tan(phi)) (1 − exp(−j / K))`
 ///
 /// # Arguments
-/// - `soil`: fields carry units and bounds; cohesion and friction angle alone count.
+/// - `soil`: fields carry units and bounds; only cohesion and friction angle matter.
 /// - `law`: carries the shear modulus K `[m]`; K = 0: the whole strength at any displacement.
 /// - `normal_stress_pa`: sigma `[Pa]`, ≥ 0. `displacement_m`: j `[m]`, ≥ 0.
 ///
@@ -20,7 +20,7 @@ use crate::soil::Soil;
 /// [`Rejection::InvalidParameter`]: a field of the soil, sigma or j is outside its bounds.
 ///
 /// # Validity
-/// Monotonic shearing without a peak; the ring's own sinkage is left out.
+/// Monotonic shearing without a peak; the ring's sinkage is neglected.
 ///
 /// # Source
 /// Janosi & Hanamoto 1961; Wong, *Terramechanics*. Checked by `bevameter::strength_is_reached_by_way`.
@@ -48,10 +48,8 @@ pub struct Ring {
 }
 
 impl Ring {
-    /// Checks that the radii are finite and in order, and returns the ring.
-    ///
-    /// # Errors
-    /// [`Rejection::InvalidParameter`] for the first radius that is not.
+    /// Checks that the radii are finite and in order, and returns the ring; [`Rejection::InvalidParameter`] names the first
+    /// radius that is not.
     pub fn checked(self) -> Result<Self, Rejection> {
         let (inner, outer) = (self.inner_radius_m, self.outer_radius_m);
         require(inner >= 0.0, "inner_radius_m", inner, "m", "at least 0")?;

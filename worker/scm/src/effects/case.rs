@@ -6,18 +6,19 @@ use formula::{Hook, Program, Variable};
 use super::{Active, Law, Site};
 use crate::{Condition, Rejection, Soil, Wheel};
 
-/// Soil, wheel and condition that a model integrates, and the variables that formulas see of them.
+/// Soil, wheel and condition that a model integrates, with the variables that formulas see.
 #[derive(Debug, Clone)]
 pub(crate) struct Case {
     pub(crate) soil: Soil,
     pub(crate) wheel: Wheel,
     pub(crate) condition: Condition,
-    /// By [`Variable`]; those of nodes and channels are for the model to fill in.
+    /// Values by [`Variable`]; the model fills in those of nodes and channels.
     pub(crate) variables: [f64; Variable::COUNT],
 }
 
 impl Active<'_> {
-    /// Apply the effects on slip, radius, width and sinkage exponent, and on the load up to the first one that asks for pull or torque.
+    /// Applies the effects on slip, radius, width and sinkage exponent, and on the load up to the first that depends on pull
+    /// or torque.
     pub(crate) fn case(
         &self,
         soil: &Soil,
@@ -51,7 +52,7 @@ impl Active<'_> {
         }
         let slip = variables[Variable::Slip as usize];
         if slip.to_bits() != condition.slip.to_bits() {
-            // the motor keeps its speed: another slip is another speed of the sled
+            // the motor keeps its speed: a changed slip changes the speed of the sled
             let rim = condition.rig_rim_speed_m_s();
             variables[Variable::SledSpeed as usize] = if slip < 0.0 {
                 rim / (1.0 + slip)
@@ -66,44 +67,44 @@ impl Active<'_> {
             }
         }
         if self.enter(Hook::WheelLoad) {
-            let own = self
+            let load_laws = self
                 .at(Hook::WheelLoad)
                 .take_while(|law| !follows_reaction(law.0));
-            replace(Hook::WheelLoad, own, &mut variables)?;
+            replace(Hook::WheelLoad, load_laws, &mut variables)?;
         }
-        let of = |variable: Variable| variables[variable as usize];
+        let value_of = |variable: Variable| variables[variable as usize];
         Ok(Case {
             soil: Soil {
-                n: of(Variable::N),
+                n: value_of(Variable::N),
                 ..*soil
             },
             wheel: Wheel {
-                radius_m: of(Variable::Radius),
-                width_m: of(Variable::Width),
+                radius_m: value_of(Variable::Radius),
+                width_m: value_of(Variable::Width),
                 ..*wheel
             },
             condition: Condition {
-                slip: of(Variable::Slip),
-                sled_speed_m_s: of(Variable::SledSpeed),
-                wheel_load_n: of(Variable::WheelLoad),
+                slip: value_of(Variable::Slip),
+                sled_speed_m_s: value_of(Variable::SledSpeed),
+                wheel_load_n: value_of(Variable::WheelLoad),
                 ..*condition
             },
             variables,
         })
     }
 
-    /// Whether the load that the soil must carry depends on pull or torque.
+    /// Returns whether the load that the soil must carry depends on pull or torque.
     pub(crate) fn load_follows_reaction(&self) -> bool {
         self.at(Hook::WheelLoad).any(|law| follows_reaction(law.0))
     }
 
-    /// Whether the load that follows pull and torque may jump with them.
+    /// Returns whether the load that depends on pull and torque may jump with them.
     pub(crate) fn load_jumps(&self) -> bool {
-        let reaction = Variables::of(&REACTION);
+        let reaction = Variables::new(&REACTION);
         self.at(Hook::WheelLoad).any(|law| law.0.kinks().meets(reaction))
     }
 
-    /// The load that the soil must carry while it exerts a pull and a torque: the case's load after the formulas from the first
+    /// Returns the load that the soil must carry for this pull and torque: the case's load after the formulas from the first
     /// that uses pull or torque.
     pub(crate) fn wheel_load(&self, case: &Case, drawbar_pull: f64, torque: f64) -> Result<f64, Rejection> {
         let mut variables = case.variables;
@@ -121,17 +122,17 @@ impl Active<'_> {
 const REACTION: [Variable; 2] = [Variable::DrawbarPull, Variable::Torque];
 
 fn follows_reaction(program: &Program) -> bool {
-    program.uses().meets(Variables::of(&REACTION))
+    program.uses().meets(Variables::new(&REACTION))
 }
 
-/// Write how the wheel slides at a slip.
+/// Writes the slip variables of the wheel.
 fn slide(slip: f64, condition: &Condition, variables: &mut [f64; Variable::COUNT]) {
     for (variable, value) in formula::slip::variables(slip, condition.slip_angle_rad) {
         variables[variable as usize] = value;
     }
 }
 
-/// Replace a quantity of the run by what formulas at its hook make of it.
+/// Replaces a quantity of the run by the results of the formulas at its hook.
 fn replace<'a, 'b>(
     hook: Hook,
     laws: impl Iterator<Item = (&'a Program, &'a Law, &'b [f64])>,
@@ -139,7 +140,7 @@ fn replace<'a, 'b>(
 ) -> Result<(), Rejection> {
     let mut scalars = Vec::new();
     for (program, law, parameters) in laws {
-        // without nodes nothing differs from point to point
+        // without nodes all variables are shared
         let value = program
             .settle(variables, parameters, &mut scalars)
             .unwrap_or(f64::NAN);

@@ -6,12 +6,12 @@ use super::Active;
 use crate::{Averages, Rejection};
 
 impl Active<'_> {
-    /// Whether any effect changes what is measured.
+    /// Returns whether any effect changes the measured channels.
     pub(crate) fn change_channels(&self) -> bool {
         Hook::CHANNELS.into_iter().any(|hook| self.enter(hook))
     }
 
-    /// Replace the channels of a steady run by what the rig measures of them, at this k* of the contact `[N/m^(n+2)]`.
+    /// Replaces the channels of a steady run by their measured values, at this k* of the contact `[N/m^(n+2)]`.
     pub(crate) fn measure_averages(
         &self,
         variables: &mut [f64; Variable::COUNT],
@@ -37,8 +37,7 @@ impl Active<'_> {
         Ok(())
     }
 
-    /// Replace the channels by their measured values. The formulas of one effect all see the channels as they are after the
-    /// effects before it.
+    /// Replaces the channels by their measured values. All formulas of one effect see the channels after the preceding effects.
     pub(crate) fn measure(&self, variables: &mut [f64; Variable::COUNT]) -> Result<(), Rejection> {
         let mut scalars = Vec::new();
         for (law, parameters) in &self.laws {

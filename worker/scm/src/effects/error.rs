@@ -6,17 +6,17 @@ pub enum FormError {
     /// The effect has neither formulas nor a mechanism that the model knows.
     #[error("effect {effect} has no form in {model}")]
     NoForm {
-        /// The effect.
+        /// Name of the effect.
         effect: String,
-        /// The model.
+        /// Name of the model.
         model: &'static str,
     },
-    /// The mechanism takes other parameters.
+    /// The mechanism takes different parameters.
     #[error("effect {effect}: mechanism {mechanism} takes the parameters {expected}, in this order")]
     Parameters {
-        /// The effect.
+        /// Name of the effect.
         effect: String,
-        /// The mechanism.
+        /// Name of the mechanism.
         mechanism: &'static str,
         /// The parameters that it takes.
         expected: String,

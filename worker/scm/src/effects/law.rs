@@ -1,33 +1,36 @@
-//! An effect as one model knows it.
+//! An effect compiled for one model.
 
 use formula::effect::Mechanism;
 use formula::{Effect, Hook, Program, Variable};
 
 use crate::Rejection;
 
-/// An effect as one model knows it.
+/// An effect compiled for one model.
 #[derive(Debug, Clone)]
 pub(super) struct Law {
     pub(super) effect: Effect,
-    /// By hook.
+    /// The formulas by hook.
     pub(super) programs: [Option<Program>; Hook::COUNT],
-    /// What stands in place of the formulas.
+    /// The mechanism in place of the formulas.
     pub(super) mechanism: Option<Mechanism>,
 }
 
 impl Law {
-    /// Why a formula's value cannot be used, with the values that led to it.
+    /// Returns why a formula's value cannot be used, with the values that led to it.
     pub(super) fn refusal(
         &self,
         hook: Hook,
         parameters: &[f64],
         value: f64,
-        of: impl Fn(Variable) -> f64,
+        value_of: impl Fn(Variable) -> f64,
     ) -> Rejection {
         let program = self.programs[hook as usize].iter();
         let values = program.flat_map(|program| {
-            let variables = program.uses().iter().map(|v| (v.name(), of(v), v.unit_name()));
-            let own = program.parameters().iter().map(|&place| {
+            let variables = program
+                .uses()
+                .iter()
+                .map(|v| (v.name(), value_of(v), v.unit_name()));
+            let shown = program.parameters().iter().map(|&place| {
                 let parameter = &self.effect.parameters[usize::from(place)];
                 (
                     parameter.name.as_str(),
@@ -35,7 +38,7 @@ impl Law {
                     parameter.unit.as_str(),
                 )
             });
-            variables.chain(own).collect::<Vec<_>>()
+            variables.chain(shown).collect::<Vec<_>>()
         });
         let shown: Vec<String> = values
             .map(|(name, value, unit)| format!("{name} = {value}{}", crate::rejection::shown(unit)))

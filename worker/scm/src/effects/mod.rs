@@ -1,15 +1,15 @@
 //! Effects: formulas and mechanisms that replace quantities of the base model.
 //!
 //! # Layout
-//! - here: [`CompiledEffects`], compiled for one model, and [`Active`], those of them whose strength is not neutral.
+//! - This file: [`CompiledEffects`], compiled for one model, and [`Active`], the effects whose strength is not neutral.
 //! - `case`: the run after the effects on slip, dimensions, exponent and load.
 //! - `error`: why a model cannot express an effect.
-//! - `law`: an effect as one model knows it.
+//! - `law`: an effect compiled for one model.
 //! - `node`: pressure, strength and stress at many nodes.
-//! - `channel`: what the rig measures.
+//! - `channel`: the measured channels.
 //!
-//! Effects follow each other at a hook in the order in which they were compiled; hooks follow each other in the order of
-//! [`Hook::ALL`]. Without an active effect a model runs its base code, bit for bit.
+//! At a hook, effects follow the order of their compilation; hooks follow the order of [`Hook::ALL`]. Without an active
+//! effect a model runs its base code, bit for bit.
 
 pub(crate) mod case;
 mod channel;
@@ -26,18 +26,19 @@ use formula::{Effect, Hook, Program, Variable};
 
 use law::{Law, formulas_at};
 
-/// A forward model, as far as effects distinguish models.
+/// The forward models as far as effects distinguish them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ModelForm {
-    /// [`quasi_static`](crate::quasi_static): the footprint is one, so its modulus and width are the same at all nodes.
+    /// [`quasi_static`](crate::quasi_static): there is one footprint, so its modulus and width are the same at all nodes.
     QuasiStatic,
     /// [`quasi_static`](crate::quasi_static) with the stresses of [`WongReece`](crate::WongReece), which have neither flat nor rebound.
     WongReece,
-    /// [`rft`](crate::rft): stresses follow from motion and depth alone, so that no formula enters at a node.
+    /// [`rft`](crate::rft): stresses depend on motion and depth alone, so no formula enters at a node.
     Rft,
-    /// [`spatial`](crate::spatial): modulus and width are those of the footprint or of its patches, see [`Footprint`](crate::spatial::Footprint).
+    /// [`spatial`](crate::spatial): modulus and width belong to the footprint or to its patches, see
+    /// [`Footprint`](crate::spatial::Footprint).
     Spatial,
-    /// A model that is not of this crate: effects act on what it is given and on what it answers, see [`OutsideRun`](crate::outside::OutsideRun).
+    /// A model outside this crate: effects act on its inputs and its outputs, see [`OutsideRun`](crate::outside::OutsideRun).
     Outside,
 }
 
@@ -53,7 +54,7 @@ impl ModelForm {
         }
     }
 
-    /// The mechanisms that the model has in code of its own; it then ignores the effect's formulas.
+    /// The mechanisms that the model implements in code; it then ignores the effect's formulas.
     fn mechanisms(self) -> &'static [Mechanism] {
         match self {
             ModelForm::QuasiStatic => &[Mechanism::Rebound, Mechanism::FlatPatch],
@@ -66,7 +67,7 @@ impl ModelForm {
     /// The variables that differ from node to node.
     fn local(self) -> Variables {
         use Variable::{BEff, J, KStar, P, Position, Tau, TauMax, Vn, Vt, Z};
-        let both = Variables::of(&[P, Z, Vn, Vt, J, Position, TauMax, Tau]);
+        let both = Variables::new(&[P, Z, Vn, Vt, J, Position, TauMax, Tau]);
         match self {
             ModelForm::QuasiStatic | ModelForm::WongReece | ModelForm::Rft | ModelForm::Outside => both,
             ModelForm::Spatial => both.with(KStar).with(BEff),
@@ -77,22 +78,22 @@ impl ModelForm {
 /// Properties of the test site that effects may use, beyond soil, wheel and condition.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Site {
-    /// Density of the soil `[kg/m³]`, where it is known.
+    /// Density of the soil `[kg/m³]`, if known.
     pub density_kg_m3: Option<f64>,
     /// Acceleration of gravity `[m/s²]`.
     pub gravity_m_s2: f64,
     /// Number of grousers on the wheel.
     pub grouser_count: u32,
-    /// Their height `[m]`.
+    /// Height of the grousers `[m]`.
     pub grouser_height_m: f64,
-    /// Length of the soil bin `[m]`, where it is known.
+    /// Length of the soil bin `[m]`, if known.
     pub bin_length_m: Option<f64>,
-    /// Position of the run in the series of the campaign, from −0.5 to 0.5, where it is known.
+    /// Position of the run in the series of the campaign, from −0.5 to 0.5, if known.
     pub order: Option<f64>,
 }
 
 impl Default for Site {
-    /// On Earth, a smooth wheel, nothing else known.
+    /// The default is Earth, a smooth wheel, and unknown for the rest.
     fn default() -> Self {
         Self {
             density_kg_m3: None,
@@ -112,10 +113,7 @@ pub struct CompiledEffects {
 }
 
 impl CompiledEffects {
-    /// Compiles effects; they follow each other in this order.
-    ///
-    /// # Errors
-    /// [`FormError`] names the effect that the model cannot express.
+    /// Compiles effects in this order; [`FormError`] names the effect that the model cannot express.
     pub fn compile<'a>(
         model: ModelForm,
         effects: impl IntoIterator<Item = &'a Effect>,
@@ -155,7 +153,7 @@ impl CompiledEffects {
         self.laws.iter().map(|law| &law.effect)
     }
 
-    /// The effects that are active at these values of their parameters: those of each effect, in the order of its file.
+    /// Selects the effects that are active at these values: one list for each effect, in the order of its file's parameters.
     pub fn activate(&self, values: impl IntoIterator<Item = Vec<f64>>) -> Active<'_> {
         let laws = self.laws.iter().zip(values);
         let mut active = Active {
@@ -175,19 +173,19 @@ impl CompiledEffects {
 #[derive(Debug, Clone, Default)]
 pub struct Active<'a> {
     laws: Vec<(&'a Law, Vec<f64>)>,
-    /// By hook, whether a formula enters there.
+    /// True by hook if a formula enters there.
     entered: [bool; Hook::COUNT],
-    /// The formulas at nodes, ready to be lent to a model; none if there are none.
+    /// The formulas at nodes, ready to be lent to a model, if there are any.
     pub(crate) nodes: Option<NodeLaws<'a>>,
 }
 
 impl<'a> Active<'a> {
-    /// Whether the model is the base.
+    /// Returns whether no effect is active, so that the model is the base.
     pub(crate) fn is_empty(&self) -> bool {
         self.laws.is_empty()
     }
 
-    /// Whether a formula enters at a hook.
+    /// Returns whether a formula enters at a hook.
     pub(crate) fn enter(&self, hook: Hook) -> bool {
         self.entered[hook as usize]
     }
@@ -197,7 +195,7 @@ impl<'a> Active<'a> {
         formulas_at(&self.laws, hook)
     }
 
-    /// The parameters of an effect that the model has in code, in the order of its file.
+    /// The parameters of an effect that the model implements in code, in the order of the effect's file.
     pub(crate) fn mechanism(&self, mechanism: Mechanism) -> Option<&[f64]> {
         let law = self.laws.iter().find(|(law, _)| law.mechanism == Some(mechanism));
         law.map(|(_, values)| values.as_slice())

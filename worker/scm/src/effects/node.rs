@@ -16,9 +16,9 @@ pub(crate) struct NodeLaws<'a> {
     laws: Vec<NodeLaw<'a>>,
     uses: Variables,
     kinks: Variables,
-    /// What a formula last replaced, for messages.
+    /// The values before the last formula, for messages.
     before: Vec<f64>,
-    /// The current nodes: write columns, apply, read columns.
+    /// The current nodes: callers write columns, apply formulas, and read columns.
     pub(crate) block: Block,
 }
 
@@ -32,7 +32,7 @@ struct NodeLaw<'a> {
 }
 
 impl<'a> NodeLaws<'a> {
-    /// The formulas at nodes, or none if there are none.
+    /// Collects the formulas at nodes; `None` if there are none.
     pub(super) fn new(laws: &[(&'a Law, Vec<f64>)]) -> Option<Self> {
         let laws: Vec<NodeLaw> = HOOKS
             .into_iter()
@@ -60,52 +60,52 @@ impl<'a> NodeLaws<'a> {
         })
     }
 
-    /// What formulas at nodes use.
+    /// The variables that formulas at nodes use.
     pub(crate) fn uses(&self) -> Variables {
         self.uses
     }
 
-    /// Whether a formula at nodes uses a variable.
+    /// Returns whether a formula at nodes uses a variable.
     pub(crate) fn use_variable(&self, variable: Variable) -> bool {
         self.uses.contains(variable)
     }
 
-    /// Whether stresses may have kinks or jumps between nodes.
+    /// Returns whether stresses may have kinks or jumps between nodes.
     pub(crate) fn are_kinked(&self) -> bool {
         let local = self.laws.first().map(|law| law.program.local());
         local.is_some_and(|local| self.kinks.meets(local))
     }
 
-    /// Whether stresses may jump as the contact changes.
+    /// Returns whether stresses may jump as the contact changes.
     pub(crate) fn may_jump(&self) -> bool {
         let of_contact = [Variable::ContactLength, Variable::BEff, Variable::KStar];
-        self.are_kinked() || self.kinks.meets(Variables::of(&of_contact))
+        self.are_kinked() || self.kinks.meets(Variables::new(&of_contact))
     }
 
-    /// Whether there is a formula at a hook.
+    /// Returns whether there is a formula at a hook.
     pub(crate) fn enter(&self, hook: Hook) -> bool {
         self.laws.iter().any(|law| law.hook == hook)
     }
 
-    /// Whether formulas do nothing but scale the shear stress, by what they make of these variables.
+    /// Returns whether all formulas only scale the shear stress, by factors of these variables.
     pub(crate) fn only_scale_stress_by(&self, variables: Variables) -> bool {
-        let known = variables.union(Variables::OF_RUN).with(Variable::Tau);
+        let allowed = variables.union(Variables::OF_RUN).with(Variable::Tau);
         let scales = |law: &NodeLaw| law.hook == Hook::Shear && law.law.effect.only_scales(Hook::Shear);
-        self.laws.iter().all(scales) && self.uses.iter().all(|variable| known.contains(variable))
+        self.laws.iter().all(scales) && self.uses.iter().all(|variable| allowed.contains(variable))
     }
 
-    /// Compute what all nodes share; again whenever one of these variables has changed.
+    /// Computes the values that all nodes share; it must be called again after one of these variables has changed.
     pub(crate) fn settle(&mut self, variables: &[f64; Variable::COUNT]) {
         for law in &mut self.laws {
             law.program.settle(variables, &law.parameters, &mut law.scalars);
         }
     }
 
-    /// Replace the hook's quantity at the block's first `points` nodes.
+    /// Replaces the hook's quantity at the block's first `points` nodes.
     ///
     /// # Arguments
-    /// - `counts`: whether a point is a node in contact; others may hold anything.
-    /// - `variables`: those that were settled, for messages.
+    /// - `counts`: whether a point is a node in contact; other points may hold any value.
+    /// - `variables`: the settled ones, for messages.
     pub(crate) fn apply(
         &mut self,
         hook: Hook,
@@ -124,7 +124,7 @@ impl<'a> NodeLaws<'a> {
                 .extend_from_slice(&self.block.column(target)[..points]);
             self.block.replace(target, law.program, &law.scalars, points);
             let values = &self.block.column(target)[..points];
-            // what these hooks admit, without a way out, so that it vectorises
+            // the bounds of these hooks, without an early exit, so that the loop vectorises
             let fine = values
                 .iter()
                 .fold(true, |fine, value| fine & (0.0..=f64::MAX).contains(value));

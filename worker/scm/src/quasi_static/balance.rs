@@ -1,4 +1,4 @@
-//! Solve the vertical balance for the contact length.
+//! Solution of the vertical balance for the contact length.
 
 use super::crossing::{Scan, rises_up_to, scan};
 use super::footing::Footing;
@@ -7,25 +7,25 @@ use super::rim::Rim;
 use super::start::Coordinate;
 use crate::Rejection;
 
-/// Residual load, relative to the wheel load, at which the balance is met.
+/// Residual load, relative to the wheel load, at which the balance is accepted.
 const TOLERANCE: f64 = 1e-9;
-/// What is still accepted where rounding allows no better (k* a difference of nearly equal terms).
+/// Residual that is accepted if rounding prevents a smaller one (k* is a difference of nearly equal terms).
 const ROUNDING_TOLERANCE: f64 = 1e-6;
-/// Evaluations after which every other step halves the bracket.
+/// Number of evaluations after which every other step halves the bracket.
 const PATIENCE: u32 = 8;
-const MOST_EVALUATIONS: u32 = 120;
-/// Evaluations spent on a search from the closed form where the load may have a peak.
+const MAX_EVALUATIONS: u32 = 120;
+/// Number of evaluations of a search from the closed form if the load may have a peak.
 const EVALUATIONS_BEFORE_SCAN: u32 = 20;
-/// Width of a bracket in y at which a load that jumps is shared out between its sides.
+/// Width of a bracket in y at which a jump of the load is interpolated between its sides.
 const NARROWEST: f64 = 1e-12;
 /// The longest step in y while the root is bracketed on one side only.
 const LONGEST_STEP: f64 = 2.0;
 
-/// The soil's reaction at the first balance met by the sinking wheel.
+/// Returns the soil's reaction at the first balance that the sinking wheel meets.
 pub(super) fn first_balance(footing: &mut Footing, load: f64) -> Result<Reaction, Rejection> {
     let radius = footing.rim.radius;
-    let no_support = |most_carried_n: f64| Rejection::NoSupport {
-        most_carried_n,
+    let no_support = |max_carried_n: f64| Rejection::NoSupport {
+        max_carried_n,
         wheel_load_n: load,
         wheel_radius_m: radius,
     };
@@ -33,24 +33,24 @@ pub(super) fn first_balance(footing: &mut Footing, load: f64) -> Result<Reaction
     let start = coordinate.start(&footing.rim, load);
     let rises = rises_up_to(&footing.rim, radius);
     let patience = if rises {
-        MOST_EVALUATIONS
+        MAX_EVALUATIONS
     } else {
         EVALUATIONS_BEFORE_SCAN
     };
-    let found = match search(footing, load, &coordinate, Bracket::default(), start, patience) {
+    let result = match search(footing, load, &coordinate, Bracket::default(), start, patience) {
         Ok(Some(reaction)) if rises || rises_up_to(&footing.rim, reaction.contact_length) => {
             return Ok(reaction);
         }
         Ok(None) if rises => return Err(no_support(footing.react(radius)?.load())),
-        // A deeper balance may have been found, or the secant has wandered about a peak too low for the load.
-        Ok(found) => found,
+        // The search may have found a deeper balance, or the secant may have stayed around a peak below the load.
+        Ok(result) => result,
         Err(Rejection::NoConvergence { .. }) if !rises => None,
         Err(rejection) => return Err(rejection),
     };
     match scan(footing, load)? {
-        Scan::Never(most) => Err(no_support(most)),
+        Scan::Never(max_carried) => Err(no_support(max_carried)),
         Scan::Between(shorter, longer) => {
-            if let Some(reaction) = found
+            if let Some(reaction) = result
                 && (shorter..=longer).contains(&reaction.contact_length)
             {
                 return Ok(reaction);
@@ -64,7 +64,7 @@ pub(super) fn first_balance(footing: &mut Footing, load: f64) -> Result<Reaction
             } else {
                 bracket.high - LONGEST_STEP
             };
-            match search(footing, load, &coordinate, bracket, start, MOST_EVALUATIONS)? {
+            match search(footing, load, &coordinate, bracket, start, MAX_EVALUATIONS)? {
                 Some(reaction) => Ok(reaction),
                 None => Err(no_support(footing.react(radius)?.load())),
             }
@@ -72,7 +72,7 @@ pub(super) fn first_balance(footing: &mut Footing, load: f64) -> Result<Reaction
     }
 }
 
-/// Interval of y with less than the load at its low end and more at its high end, as far as known.
+/// Interval of y that carries less than the load at its low end and more at its high end, as far as known.
 #[derive(Debug, Clone, Copy)]
 struct Bracket {
     low: f64,
@@ -105,19 +105,19 @@ struct Trial {
     log_ratio: f64,
 }
 
-/// Secant in (y, ln load), kept within the bracket; none if the load is not reached going down from `start`.
+/// Secant method in (y, ln load), kept within the bracket; `None` if the load is not reached going down from `start`.
 fn search(
     footing: &mut Footing,
     load: f64,
     coordinate: &Coordinate,
     mut bracket: Bracket,
     start: f64,
-    most_evaluations: u32,
+    max_evaluations: u32,
 ) -> Result<Option<Reaction>, Rejection> {
     let mut y = start;
     let mut last: Option<Trial> = None;
     let jumps = footing.may_jump();
-    // the last reactions that carried less and more than the load
+    // the last reactions below and above the load
     let mut sides = [None, None];
     let mut evaluations = 0;
     loop {
@@ -134,7 +134,7 @@ fn search(
         if residual.abs() <= TOLERANCE * load {
             return Ok(Some(reaction));
         }
-        if evaluations >= most_evaluations {
+        if evaluations >= max_evaluations {
             return if residual.abs() <= ROUNDING_TOLERANCE * load {
                 Ok(Some(reaction))
             } else {
@@ -157,10 +157,10 @@ fn search(
             if coordinate.is_origin(reaction.contact_length) {
                 sides[0].get_or_insert(reaction.unloaded());
             }
-            if let [Some(less), Some(more)] = sides
-                && (bracket.high - bracket.low < NARROWEST || are_neighbours(&less, &more))
+            if let [Some(below), Some(above)] = sides
+                && (bracket.high - bracket.low < NARROWEST || are_neighbours(&below, &above))
             {
-                return Ok(Some(less.shared_with(&more, load)));
+                return Ok(Some(below.shared_with(&above, load)));
             }
         }
         if bracket.low >= coordinate.greatest {
@@ -178,9 +178,10 @@ fn search(
     }
 }
 
-/// Whether no contact lies between two: close to the coordinate's origin, the contact's length runs out of digits before y does.
-fn are_neighbours(less: &Reaction, more: &Reaction) -> bool {
-    more.contact_length - less.contact_length <= f64::EPSILON * more.contact_length
+/// Returns whether no contact lies between two: close to the coordinate's origin, the contact's length runs out of digits
+/// before y does.
+fn are_neighbours(below: &Reaction, above: &Reaction) -> bool {
+    above.contact_length - below.contact_length <= f64::EPSILON * above.contact_length
 }
 
 /// The next y to try.
@@ -198,7 +199,7 @@ fn next(bracket: Bracket, trial: Trial, slope: f64, evaluations: u32) -> f64 {
     }
 }
 
-/// d ln(load) / dy: of the chord through the last two trials if it rises, else from small angles.
+/// d ln(load) / dy from the chord through the last two trials if it rises, else from small angles.
 fn slope(rim: &Rim, coordinate: &Coordinate, reaction: &Reaction, trial: Trial, last: Option<Trial>) -> f64 {
     if let Some(last) = last {
         let chord = (trial.log_ratio - last.log_ratio) / (trial.y - last.y);
@@ -206,7 +207,7 @@ fn slope(rim: &Rim, coordinate: &Coordinate, reaction: &Reaction, trial: Trial, 
             return chord;
         }
     }
-    // Per ln l: z^n gives 2n and length 1, k* −k_c/(l k*), and tan(theta) another 1 to the part carried by shear.
+    // Per ln l: z^n gives 2n and length 1, k* −k_c/(l k*), and tan(theta) adds 1 to the part carried by shear.
     let stiffness = -rim.soil.k_c / (reaction.contact_length * reaction.k_star);
     let shear_part = reaction.load_from_shear / reaction.load();
     let per_log_length = 2.0 * rim.soil.n + 1.0 + stiffness + shear_part;

@@ -1,36 +1,35 @@
 //! The first of several balances that a sinking wheel meets.
 //!
-//! A driving rim presses back harder the deeper it stands, so there is one balance. In skid the shear
-//! stress pulls the rim down where it slopes, and the load that the soil carries may rise, fall and rise
-//! again with depth.
+//! A driving rim presses harder the deeper it is, so there is one balance. In skid the shear stress pulls the rim down where
+//! it slopes, and the carried load may rise, fall and rise again with depth.
 
 use super::footing::Footing;
 use super::rim::Rim;
 use crate::Rejection;
 
-/// Samples of a scan, evenly spaced in the root of the sinkage (nearly so in `theta_1`).
+/// Number of samples of a scan, evenly spaced in the root of the sinkage (nearly so in `theta_1`).
 const SAMPLES: u32 = 64;
-/// Steps of the search for a peak between samples: the bracket shrinks by 0.618 each.
+/// Number of steps of the search for a peak between samples: each shrinks the bracket to 0.618 of its width.
 const PEAK_STEPS: u32 = 40;
 
-/// Whether the carried load certainly rises with depth up to this contact length wherever it is positive, from bounds on
-/// its terms.
+/// Returns whether bounds on the terms prove that the carried load rises with depth up to this contact length wherever it is
+/// positive.
 ///
 /// At a fraction u of the contact the pressure's share of the load has a slope in ln l of at least
 /// `s = 2n − m/2`, and 1 more from `k* l` unless `k_c` > 0: 2n from the sinkage, less `m/2` from the changing shape of
-/// gamma. Friction pulls down by at most `q = tan φ tan θ` of the pressure, whose slope is at most `q sec² θ_1`: where
-/// skid mobilises less of it the deeper the rim stands, or pushes up, the load rises the more. Over the contact q is on
-/// average at most half of what it is at the front, since gamma is symmetric, the pressure otherwise falls towards the
-/// front, and tan θ is convex. So the load rises if `q_1 ≤ 1` and `s > ½ q_1 sec² θ_1 / (1 − ½ q_1)`. Cohesion pulls down
-/// with a slope of at most `1 + sec² θ_1`, and must grow more slowly than the rest. False means "not known". Effects on
-/// pressure and shear are ignored: with a law whose pressure falls with depth, the balance found may not be the first.
+/// gamma. Friction pulls down by at most `q = tan φ tan θ` of the pressure, whose slope is at most `q sec² θ_1`: if skid
+/// mobilises less of it at greater depth, or it pushes up, the load rises faster. Over the contact the average of q is at
+/// most half of its front value, because gamma is symmetric, the pressure otherwise falls towards the front, and tan θ is
+/// convex. So the load rises if `q_1 ≤ 1` and `s > ½ q_1 sec² θ_1 / (1 − ½ q_1)`. Cohesion pulls down with a slope of at
+/// most `1 + sec² θ_1`, and must grow more slowly than the rest. False means "not known". Effects on pressure and shear are
+/// ignored: with a law whose pressure falls with depth, the balance found may not be the first.
 pub(super) fn rises_up_to(rim: &Rim, contact_length: f64) -> bool {
     let soil = &rim.soil;
     let pressure_slope = 2.0 * soil.n - 0.5 * soil.gamma_exponent + if soil.k_c > 0.0 { 0.0 } else { 1.0 };
     if rim.motion.drives_everywhere() {
         return pressure_slope > 0.0;
     }
-    // the bound below is one of a pressure that is on average no farther ahead than half the contact
+    // the bound below assumes a pressure that acts on average no farther ahead than half the contact
     if rim.peaked.is_some() {
         return false;
     }
@@ -49,13 +48,13 @@ pub(super) fn rises_up_to(rim: &Rim, contact_length: f64) -> bool {
 
 /// Result of a scan from the surface down.
 pub(super) enum Scan {
-    /// The carried load first passes the wheel load between these contact lengths.
+    /// The carried load first exceeds the wheel load between these contact lengths.
     Between(f64, f64),
-    /// It never does; the largest load carried `[N]`.
+    /// The load is never carried; the largest load carried `[N]`.
     Never(f64),
 }
 
-/// Look for the first crossing by sampling down to z = R, from the last sample up to which the load certainly rises.
+/// Searches the first crossing by sampling down to z = R, from the last sample up to which the load certainly rises.
 pub(super) fn scan(footing: &mut Footing, load: f64) -> Result<Scan, Rejection> {
     let radius = footing.rim.radius;
     let length = |sample: u32| {
@@ -66,26 +65,26 @@ pub(super) fn scan(footing: &mut Footing, load: f64) -> Result<Scan, Rejection> 
         .take_while(|sample| rises_up_to(&footing.rim, length(*sample)))
         .count() as u32;
     let (mut before, mut last) = ((0.0, 0.0), (0.0, 0.0)); // contact length, load carried
-    let mut most: f64 = 0.0;
+    let mut max_load: f64 = 0.0;
     for length in (rising.max(1)..=SAMPLES).map(length) {
-        let here = (length, footing.react(length)?.load());
-        if here.1 >= load {
+        let current = (length, footing.react(length)?.load());
+        if current.1 >= load {
             return Ok(Scan::Between(last.0, length));
         }
-        if last.1 > before.1 && last.1 > here.1 {
-            let peak = peak_between(footing, before.0, here.0, load)?;
+        if last.1 > before.1 && last.1 > current.1 {
+            let peak = peak_between(footing, before.0, current.0, load)?;
             if peak.1 >= load {
                 return Ok(Scan::Between(before.0, peak.0));
             }
-            most = most.max(peak.1);
+            max_load = max_load.max(peak.1);
         }
-        most = most.max(here.1);
-        (before, last) = (last, here);
+        max_load = max_load.max(current.1);
+        (before, last) = (last, current);
     }
-    Ok(Scan::Never(most))
+    Ok(Scan::Never(max_load))
 }
 
-/// Contact length and height of the peak between two lengths by golden sections; ends early above `enough`.
+/// Contact length and height of the peak between two lengths by golden sections; it ends early above `enough`.
 fn peak_between(
     footing: &mut Footing,
     mut left: f64,
@@ -110,7 +109,7 @@ fn peak_between(
             high = at(left + GOLDEN * (right - left))?;
         }
     }
-    // The nearer point first: beyond a peak that is high enough lies a second crossing.
+    // The nearer point comes first, because a second crossing lies beyond a peak that is high enough.
     Ok(if low.1 >= enough || low.1 > high.1 {
         low
     } else {
@@ -194,7 +193,7 @@ mod tests {
                     bounded += usize::from((place as usize) < rises);
                 }
                 (Err(_), None) => {}
-                (found, first) => panic!("{found:?} for {first:?}: {load} N on {:?}", footing.rim),
+                (actual, first) => panic!("{actual:?} for {first:?}: {load} N on {:?}", footing.rim),
             }
         }
         assert!(met > 700 && bounded > 500, "{met} {bounded}");

@@ -1,18 +1,18 @@
-//! Shear displacement of the rim: how far it has slid since it met the soil.
+//! Shear displacement of the rim: the distance that it has slid since it met the soil.
 
 use super::kinematics::RimMotion;
 
-/// Largest displacement of a rim that hardly turns `[m]`: that of a locked wheel grows without limit.
+/// Largest displacement of a rim that hardly turns `[m]`; the displacement of a locked wheel grows without limit.
 const FARTHEST: f64 = 1e3;
 
 /// The distance that elements of the rim slide along the soil, in steady motion.
 ///
 /// An element enters the contact at its front end and moves backwards; at a place x ahead of the axle it has slid
-/// `j(x) = ∫ |v_t| dt` since. On the arc, with θ = asin(x/R) and `v_t = omega R − v cos θ`, the integral is
-/// `R θ − (v / omega) sin θ` between both places (Wong & Reece 1967, <https://doi.org/10.1016/0022-4898(67)90105-X>), taken piece by piece where `v_t` changes sign; on a rim
-/// that its load has flattened to the radius `R_b` it is `|1 − v / (omega R_b)|` times the distance along it. A wheel that moves
-/// sideways slides across as well, for as long: `sqrt(j² + (v sin β t)²)`, exact where the direction of sliding does
-/// not change.
+/// `j(x) = ∫ |v_t| dt` since. On the arc, with θ = asin(x/R) and `v_t = omega R − v cos θ`, the integral is `R θ − (v / omega) sin θ`
+/// between both places (Wong & Reece 1967, <https://doi.org/10.1016/0022-4898(67)90105-X>), taken piecewise where `v_t`
+/// changes sign; on a rim that its load has flattened to the radius `R_b` it is `|1 − v / (omega R_b)|` times the distance
+/// along it. A wheel that moves sideways also slides across, for the same time: `sqrt(j² + (v sin β t)²)`, exact if the
+/// direction of sliding does not change.
 ///
 /// Checked by this file's tests and by `effects::signatures`.
 #[derive(Debug, Clone, Copy)]
@@ -22,12 +22,12 @@ pub(super) struct Slide {
     /// v cos(β) / (omega R) and v sin(β) / (omega R).
     forward: f64,
     lateral: f64,
-    /// Whether the rim moves forward over the soil at its lowest point.
+    /// True if the rim moves forward over the soil at its lowest point.
     skids: bool,
-    /// x at which the slip velocity changes sign `[m]`, and twice the way from the lowest point to it, backwards.
+    /// x at which the slip velocity changes sign `[m]`, and twice the distance slid backwards from the lowest point to it.
     sign_change: f64,
     twice_to_turn: f64,
-    /// Half length of the flat; way and time on it per length; what they differ by from those on the arc where it ends.
+    /// Half length of the flat; distance slid and time on it per length; their differences from the arc at its end.
     flat: f64,
     way_per_length: f64,
     time_per_length: f64,
@@ -35,18 +35,18 @@ pub(super) struct Slide {
     time_lost: f64,
 }
 
-/// Way and time, times the rim's speed, from the lowest point to the front end of the contact `[m]`.
+/// Distance slid, and time times the rim's speed, from the lowest point to the front end of the contact `[m]`.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Entry {
-    /// Whether the contact lies on the round rim and slides one way.
+    /// True if the contact lies on the round rim and slides in one direction.
     plain: bool,
-    /// Where it is plain, backwards; else in the direction of sliding.
+    /// Signed distance backwards if the contact is plain, else distance along the direction of sliding.
     way: f64,
     time: f64,
 }
 
 impl Slide {
-    /// The way of a rim with a flat of a half length `[m]`, 0 for none, at a distance from the axle.
+    /// The sliding of a rim with a flat of a half length `[m]`, 0 for none, at a distance from the axle.
     pub(super) fn new(radius: f64, motion: &RimMotion, flat: f64, bottom_radius: f64) -> Self {
         let sign_change = motion.sign_change().map_or(f64::INFINITY, |sin| radius * sin);
         let forward = motion.forward / motion.rim_speed;
@@ -87,7 +87,7 @@ impl Slide {
         }
     }
 
-    /// Way slid at places x `[m]` since the front end of the contact; vectorises.
+    /// Distance slid at places x `[m]` since the front end of the contact; vectorises.
     #[inline(always)]
     pub(super) fn slid<const N: usize>(&self, entry: &Entry, x: [f64; N]) -> [f64; N] {
         let angle = arcsine(x.map(|x| x * self.per_radius));
@@ -98,7 +98,7 @@ impl Slide {
             }
         } else {
             for i in 0..N {
-                slid[i] = (entry.way - self.way(x[i], angle[i])).abs(); // below 0 by rounding, where the rim rolls
+                slid[i] = (entry.way - self.way(x[i], angle[i])).abs(); // rounding makes it negative if the rim rolls
             }
         }
         if self.lateral.abs() > 0.0 {
@@ -107,10 +107,10 @@ impl Slide {
                 slid[i] = (slid[i] * slid[i] + across * across).sqrt();
             }
         }
-        slid.map(|way| if way < FARTHEST { way } else { FARTHEST }) // also where the wheel is locked: NaN or ∞
+        slid.map(|way| if way < FARTHEST { way } else { FARTHEST }) // a locked wheel gives NaN or ∞
     }
 
-    /// `∫ v_t dt` along the arc from the lowest point to x, where the rim stands at an angle; odd in x.
+    /// `∫ v_t dt` along the arc from the lowest point to x, at this angle of the rim; odd in x.
     #[inline(always)]
     fn backwards(&self, x: f64, angle: f64) -> f64 {
         self.radius * angle - self.forward * x
@@ -148,7 +148,7 @@ impl Slide {
     }
 }
 
-/// A length, negative where x is.
+/// A length with the sign of x.
 #[inline(always)]
 fn signed(length: f64, x: f64) -> f64 {
     if x < 0.0 { -length } else { length }
@@ -206,7 +206,7 @@ mod tests {
         }
     }
 
-    /// Way slid in a contact that begins 40 mm ahead of the axle.
+    /// Distance slid in a contact that begins 40 mm ahead of the axle.
     fn slid<const N: usize>(slide: &Slide, x: [f64; N]) -> [f64; N] {
         slide.slid(&slide.enter(0.04), x)
     }
@@ -242,10 +242,10 @@ mod tests {
             let motion = motion(rim_speed, 0.0);
             let slide = Slide::new(RADIUS, &motion, 0.0, RADIUS);
             for x in [-0.03, -0.015, 0.0, 0.01, 0.03, 0.04] {
-                let (found, expected) = (slid(&slide, [x])[0], summed(&motion, 0.04, x));
+                let (actual, expected) = (slid(&slide, [x])[0], summed(&motion, 0.04, x));
                 assert!(
-                    (found - expected).abs() < 1e-9,
-                    "{rim_speed} {x}: {found} {expected}"
+                    (actual - expected).abs() < 1e-9,
+                    "{rim_speed} {x}: {actual} {expected}"
                 );
             }
         }
@@ -266,7 +266,7 @@ mod tests {
     }
 
     #[test]
-    fn a_flat_slides_by_its_own_radius() {
+    fn a_flat_slides_by_its_reduced_radius() {
         let flat = 0.03;
         let bottom = (RADIUS * RADIUS - flat * flat).sqrt();
         let slide = Slide::new(RADIUS, &motion(0.0125, 0.0), flat, bottom);

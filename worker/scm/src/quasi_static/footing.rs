@@ -9,15 +9,13 @@ use crate::Rejection;
 #[derive(Debug)]
 pub(super) struct Footing<'r, 'e> {
     pub(super) rim: Rim,
-    /// None: the base.
+    /// `None`: the base.
     pub(super) reshaping: Option<Reshaping<'r, 'e>>,
 }
 
 impl Footing<'_, '_> {
-    /// The soil's force on the rim when the contact reaches a length of 0 < l ≤ R ahead of the axle.
-    ///
-    /// # Errors
-    /// [`Rejection::Formula`]: a formula gives an inadmissible value.
+    /// The soil's force on the rim when the contact reaches a length of 0 < l ≤ R ahead of the axle; [`Rejection::Formula`]
+    /// if a formula gives an inadmissible value.
     pub(super) fn react(&mut self, contact_length: f64) -> Result<Reaction, Rejection> {
         let Some(reshaping) = &mut self.reshaping else {
             return Ok(self.rim.react(contact_length));
@@ -34,8 +32,8 @@ impl Footing<'_, '_> {
         })
     }
 
-    /// Whether the load may jump: as places of a law's jumps pass nodes, or at the footprint at which a negative `k_c` lets k*
-    /// pass through zero, from where rebound or a law that hardly depends on k* may carry all of a load within the last bit of
+    /// Returns whether the load may jump: when a jump of a law passes a node, or at the footprint where a negative `k_c`
+    /// makes k* zero, from which rebound or a law that hardly depends on k* may carry the whole load within the last bit of
     /// the contact's length.
     pub(super) fn may_jump(&self) -> bool {
         let negative = self.rim.soil.k_c < 0.0;

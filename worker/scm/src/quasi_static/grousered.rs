@@ -1,4 +1,4 @@
-//! A rim with grousers: which share of the ground under it rim, flanks and tips press.
+//! A rim with grousers: the shares of the ground that rim, flanks and tips press.
 
 use super::displacement::{Entry, Slide, arcsine};
 use super::panel::{Contact, Panel};
@@ -8,43 +8,43 @@ use crate::elementary::fraction_pow;
 use crate::quadrature::{NODES, PLACE};
 use crate::{Condition, Soil, Wheel};
 
-/// Surfaces that press at one place: tips, flanks, and the rim between the grousers.
+/// Number of surfaces that press at one place: tips, flanks, and the rim between the grousers.
 pub(super) const SURFACES: usize = 3;
-/// Halvings of the angle up to which flanks press behind the axle.
+/// Number of halvings of the angle up to which flanks press behind the axle.
 const HALVINGS: u32 = 40;
 
-/// The grousers of a run: the quantities that do not depend on the sinkage. Angles are from straight down, forward.
+/// The grousers of a run: the quantities that do not depend on the sinkage. Angles are measured forward from straight down.
 ///
-/// Grousers are taken on average over a period, at a hub that keeps its height. With `R_t = R + h` the tips' radius and
-/// `rho = omega R_t / (v cos β)`, `N / 2π |rho sin θ − θ|` between two angles is the share of the ground that a tip sweeps while it
-/// turns from one to the other. The way of the tips over the soil and the marks' spacing on it are behind that.
+/// Grousers are averaged over a period, with the hub at constant height. With `R_t = R + h` the tips' radius and
+/// `rho = omega R_t / (v cos β)`, `N / 2π |rho sin θ − θ|` between two angles is the share of the ground that a tip sweeps
+/// while it turns from one to the other. It follows from the path of the tips over the soil and the spacing of their marks.
 #[derive(Debug)]
 pub(super) struct Grousered {
     /// The rim, and a cylinder halfway up the grousers, with their speeds.
     rim: Rim,
     flank: Rim,
-    /// How far the rim has slid; none where no law asks for it.
+    /// The sliding of the rim; `None` if no law uses it.
     slide: Option<Slide>,
     pub(super) height: f64,
     tip_radius: f64,
-    /// `N / 2π`, and the share of the tips' circumference that is tips.
+    /// `N / 2π`, and the share of the tips' circumference that tips cover.
     per_turn: f64,
     tips: f64,
-    /// rho, and what a tip turns while the ground between two marks, less a tip's thickness, passes: at least 0 `[rad]`.
+    /// rho, and the turn of a tip while the ground between two marks, less a tip's thickness, passes: at least 0 `[rad]`.
     speed_ratio: f64,
     pitch: f64,
-    /// Where tips turn round over the soil: the angle, and `rho sin θ − θ` there.
+    /// The point where tips reverse over the soil: the angle, and `rho sin θ − θ` there.
     turn: Option<[f64; 2]>,
-    /// How far behind the axle flanks press in skid `[m]`.
+    /// Distance behind the axle up to which flanks press in skid `[m]`.
     rear: f64,
-    /// Of the panels laid so far, the share of the ground that their surface presses.
+    /// The shares of the ground that the surfaces of the current panels press.
     pub(super) shares: [[f64; NODES]; SURFACES],
 }
 
 impl Grousered {
     /// # Arguments
     /// - `tips`: the cylinder of the tips.
-    /// - `slides`: whether a law asks how far the rim has slid.
+    /// - `slides`: whether a law uses the sliding of the rim.
     pub(super) fn new(
         (soil, wheel, condition): (&Soil, &Wheel, &Condition),
         grousers: &StraightGrousers,
@@ -63,7 +63,7 @@ impl Grousered {
             let angle = libm::acos(1.0 / speed_ratio);
             [angle, speed_ratio * libm::sin(angle) - angle]
         });
-        let mut own = Self {
+        let mut grousered = Self {
             slide: slides.then(|| Slide::new(rim.radius, &rim.motion, 0.0, rim.radius)),
             flank: Rim::new(soil, &halfway, condition),
             rim,
@@ -77,12 +77,12 @@ impl Grousered {
             rear: 0.0,
             shares: [[0.0; NODES]; SURFACES],
         };
-        own.rear = own.rear();
-        own
+        grousered.rear = grousered.rear();
+        grousered
     }
 
-    /// How far behind the axle flanks press in skid `[m]`: up to where the rim has pressed deeper than the tips, or the grouser
-    /// ahead has, or where the flanks no longer move into the soil.
+    /// Distance behind the axle up to which flanks press in skid `[m]`: up to where the rim or the grouser ahead has pressed
+    /// deeper than the tips, or where the flanks no longer move into the soil.
     fn rear(&self) -> f64 {
         if self.flank.motion.drives_everywhere() {
             return 0.0;
@@ -104,25 +104,25 @@ impl Grousered {
 
     /// x at which flanks begin to move into the soil, or cease to; infinite if they do neither.
     fn flank_turn(&self) -> f64 {
-        // of a locked wheel exactly the tips' radius, where theirs is
+        // for a locked wheel, exactly the tips' radius where the tips' own sign changes
         let sine = self.flank.motion.sign_change();
         sine.map_or(f64::INFINITY, |sine| self.tip_radius * sine)
     }
 
-    /// How far ahead of the axle the rim touches soil `[m]`; 0 where the tips alone do.
+    /// Distance ahead of the axle up to which the rim touches soil `[m]`; 0 if only the tips touch.
     pub(super) fn front_of_rim(&self, hub_height: f64) -> f64 {
         let square = (self.rim.radius - hub_height) * (self.rim.radius + hub_height);
         square.max(0.0).sqrt()
     }
 
-    /// How far the rim slides, with its radius and where it enters, where a law asks for it.
+    /// The sliding of the rim, with its radius and entry, if a law uses it.
     pub(super) fn slide_of_rim(&self, hub_height: f64) -> Option<(f64, &Slide, Entry)> {
         let slide = self.slide.as_ref()?;
         let entry = slide.enter(self.front_of_rim(hub_height));
         Some((self.rim.radius, slide, entry))
     }
 
-    /// Where stresses and shares have kinks, beside those of the cylinder of the tips `[m]`.
+    /// Places where stresses and shares have kinks, in addition to those of the cylinder of the tips `[m]`.
     pub(super) fn kinks(&self, front_of_rim: f64) -> [f64; 3] {
         [
             front_of_rim,
@@ -131,7 +131,7 @@ impl Grousered {
         ]
     }
 
-    /// Lay the surfaces over a piece of the contact ahead of the axle, tips, flanks and rim; gives how many touch there.
+    /// Lays the surfaces over a piece of the contact ahead of the axle: tips, flanks and rim; returns the number that touch there.
     pub(super) fn lay(
         &mut self,
         tips: &Rim,
@@ -142,7 +142,7 @@ impl Grousered {
     ) -> usize {
         let [tip, flank, rim] = panels;
         tip.place(tips, contact, start, end);
-        // up to here the pressure is gamma: one for the footprint, whatever presses
+        // the pressure holds gamma so far, which is the same for all surfaces of the footprint
         (*flank, *rim) = (*tip, *tip);
         let per_radius = 1.0 / self.tip_radius;
         let sine = tip.x.map(|x| x * per_radius);
@@ -178,7 +178,7 @@ impl Grousered {
         if touches { SURFACES } else { SURFACES - 1 }
     }
 
-    /// Lay the flanks that press behind the axle; false where none does.
+    /// Lays the flanks that press behind the axle; returns false if none do.
     pub(super) fn lay_behind(&mut self, contact: &Contact, panel: &mut Panel) -> bool {
         let above = contact.hub_height.max(self.rim.radius);
         let highest = ((self.tip_radius - above) * (self.tip_radius + above))
@@ -198,14 +198,14 @@ impl Grousered {
             let chip = height - above;
             self.shares[0][i] = self.flanks(chip, -panel.tan_theta[i], cosine);
             self.flank.slip(panel, i, cosine);
-            panel.pressure[i] = 1.0; // a patch of its own
+            panel.pressure[i] = 1.0; // a separate patch
             self.press(panel, i, contact, height - contact.hub_height - 0.5 * chip);
         }
         true
     }
 
-    /// Share of the ground at places that tips have swept since they were as deep as the rim is there, or, where the rim does
-    /// not touch, nothing.
+    /// Share of the ground at places that tips have swept since they were as deep as the rim is there; 0 where the rim does
+    /// not touch.
     fn swept(&self, x: [f64; NODES], sine: [f64; NODES], touches: bool) -> [f64; NODES] {
         if !touches {
             return [0.0; NODES];
@@ -214,28 +214,28 @@ impl Grousered {
         let sine_before = x.map(|x| (x * x + step).sqrt() / self.tip_radius);
         let (angle, before) = (arcsine(sine), arcsine(sine_before));
         core::array::from_fn(|i| {
-            let here = self.speed_ratio * sine[i] - angle[i];
-            let there = self.speed_ratio * sine_before[i] - before[i];
+            let present = self.speed_ratio * sine[i] - angle[i];
+            let past = self.speed_ratio * sine_before[i] - before[i];
             let farthest = match self.turn {
-                Some([turn, way]) if angle[i] < turn && turn < before[i] => (way - here).max(way - there),
-                _ => (there - here).abs(),
+                Some([turn, way]) if angle[i] < turn && turn < before[i] => (way - present).max(way - past),
+                _ => (past - present).abs(),
             };
             self.per_turn * farthest
         })
     }
 
-    /// Height of the flank that meets soil `[m]`: all that is in the soil, or what tips go deeper than those ahead of them went.
+    /// Height of the flank that meets soil `[m]`: its whole height in the soil, or the depth that tips reach beyond those ahead.
     fn chip(&self, sine: f64, cosine: f64, depth: f64) -> f64 {
         let deeper = self.tip_radius * self.pitch * sine / (self.speed_ratio * cosine - 1.0).abs();
         deeper.min(self.height * cosine).min(depth)
     }
 
-    /// Share of the ground under flanks of which a height is in the soil `[m]`.
+    /// Share of the ground under flanks with this height in the soil `[m]`.
     fn flanks(&self, chip: f64, tangent: f64, cosine: f64) -> f64 {
         self.per_turn * tangent * chip / (cosine * self.flank.radius)
     }
 
-    /// Turn gamma of a node into its pressure at a depth `[m]`.
+    /// Turns gamma of a node into its pressure at a depth `[m]`.
     fn press(&self, panel: &mut Panel, i: usize, contact: &Contact, depth: f64) {
         let relative = (depth / contact.sinkage).max(f64::MIN_POSITIVE);
         panel.relative_sinkage[i] = relative;
@@ -244,7 +244,7 @@ impl Grousered {
 }
 
 impl Rim {
-    /// Let a node move with the cylinder.
+    /// Sets the motion of a node on the cylinder.
     fn slip(&self, panel: &mut Panel, i: usize, cosine: f64) {
         let (tangential, lateral) = (self.motion.tangential(cosine), self.motion.lateral);
         panel.tangential[i] = tangential;
@@ -293,8 +293,8 @@ mod tests {
         )
     }
 
-    /// Share of the ground at x that a tip, thin as a line, has passed more deeply than the rim stands there: ground
-    /// of a whole spacing of marks goes by, each point with the history of its tips.
+    /// Share of the ground at x that a line-thin tip has passed more deeply than the rim is there: the test follows the
+    /// ground of a whole spacing of marks, each point with the history of its tips.
     fn passed(count: u32, ratio: f64, x: f64) -> f64 {
         const POINTS: u32 = 400;
         const STEPS: u32 = 4_000;
@@ -302,10 +302,10 @@ mod tests {
         let rim = (RADIUS * RADIUS - x * x).sqrt();
         let farthest = (tip * tip - rim * rim).sqrt();
         let first = libm::asin(x / tip);
-        // what tips turn while the ground goes on by a length: ratio / tip
+        // tips turn by ratio / tip while the ground moves by a unit of length
         let way = |turned: f64| turned * tip / ratio;
         let is_passed = |phase: f64| {
-            // the tip that stands at an angle now: where it stood against the point, going back in time
+            // the past positions, relative to the point, of the tip that is at an angle now
             let of_tip = |number: i64| {
                 let now = first + (phase + number as f64) * pitch;
                 let ahead = |turned: f64| {
@@ -315,10 +315,10 @@ mod tests {
                 let span = (libm::asin(farthest / tip) - now).max(0.0);
                 let mut before = ahead(0.0);
                 (1..=STEPS).any(|step| {
-                    let here = ahead(span * f64::from(step) / f64::from(STEPS));
-                    let crosses = (before.0 > 0.0) != (here.0 > 0.0);
-                    before = here;
-                    crosses && here.1 <= libm::asin(farthest / tip) && here.1 >= first - 1.6
+                    let current = ahead(span * f64::from(step) / f64::from(STEPS));
+                    let crosses = (before.0 > 0.0) != (current.0 > 0.0);
+                    before = current;
+                    crosses && current.1 <= libm::asin(farthest / tip) && current.1 >= first - 1.6
                 })
             };
             (-2 - i64::from(count) / 2..=i64::from(count) / 2).any(of_tip)
@@ -330,7 +330,7 @@ mod tests {
     }
 
     #[test]
-    fn the_share_swept_is_what_marks_on_the_ground_say() {
+    fn the_swept_share_agrees_with_marks_on_the_ground() {
         for (count, slip) in [
             (12, 0.2),
             (12, 0.6),
@@ -339,11 +339,11 @@ mod tests {
             (12, -0.3),
             (24, -0.6),
         ] {
-            let (own, _) = grousered(count, slip);
+            let (wheel, _) = grousered(count, slip);
             for x in [0.0, 0.01, 0.03] {
-                let sine = [x / own.tip_radius; NODES];
-                let share = own.swept([x; NODES], sine, true)[0].min(1.0);
-                let counted = passed(count, own.speed_ratio, x);
+                let sine = [x / wheel.tip_radius; NODES];
+                let share = wheel.swept([x; NODES], sine, true)[0].min(1.0);
+                let counted = passed(count, wheel.speed_ratio, x);
                 assert!(
                     (share - counted).abs() < 0.01,
                     "{count} {slip} {x}: {share} {counted}"

@@ -29,7 +29,7 @@ impl RimMotion {
         self.rim_speed - self.forward * cos_theta
     }
 
-    /// Whether every point of the front quarter of the rim pushes backwards or rests.
+    /// Returns whether every point of the front quarter of the rim pushes backwards or rests.
     pub(super) fn drives_everywhere(&self) -> bool {
         self.tangential(1.0) >= 0.0
     }

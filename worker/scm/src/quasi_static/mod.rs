@@ -4,14 +4,14 @@
 //! - `kinematics`: the slip velocity along the rim.
 //! - `rim`: the quantities of a run that do not depend on the sinkage.
 //! - `reaction`: the soil's force and torque on the rim for a given contact length.
-//! - `footing`: the rim with or without effects.
+//! - `footing`: the rim, with or without effects.
 //! - `panel`: nodes of the quadrature on a piece of the rim.
 //! - `grousered`: the shares of the ground that rim, flanks and tips of grousers press.
-//! - `reshaped`: the rim where effects or grousers enter; `displacement`: how far the rim has slid.
-//! - `straight`: the grousers that may stand on the rim.
+//! - `reshaped`: the rim with effects or grousers; `displacement`: the sliding of the rim.
+//! - `straight`: straight grousers on the rim.
 //! - `start`: a closed-form first guess of the contact length.
 //! - `balance`: the contact length at which the soil carries the wheel load.
-//! - `crossing`: which of several balances the wheel meets first as it sinks.
+//! - `crossing`: the first of several balances that the wheel meets as it sinks.
 
 mod balance;
 mod crossing;
@@ -61,20 +61,19 @@ use crate::{Averages, Condition, Rejection, Soil, Wheel, WongReece};
 ///
 /// # Errors
 /// - [`Rejection::InvalidParameter`]: a field is outside its bounds. Nothing is clamped.
-/// - [`Rejection::NoSupport`]: no balance with z < R; also where k* ≤ 0 for every footprint that a load could meet.
+/// - [`Rejection::NoSupport`]: no balance with z < R; also if k* ≤ 0 for every footprint that a load could meet.
 /// - [`Rejection::NoConvergence`]: the soil's force jumps past the load (cohesion at the footprint where a
 ///   negative `k_c` lets k* pass through zero), so that there is no balance with k* > 0.
 /// - [`Rejection::NotFinite`]: the forces overflow.
 ///
 /// # Validity
-/// Steady motion, no grousers, no memory: every pass gets the first one's answer, no soil in front of or
-/// behind the wheel, no elastic rebound (contact ends below the axle). Stresses act on the rim's *surface*:
-/// an element is dA / cos(theta).
+/// Steady motion, no grousers, no memory: every pass has the answer of the first, no soil in front of or behind the wheel,
+/// no elastic rebound (contact ends below the axle). Stresses act on the rim's *surface*: an element is dA / cos(theta).
 ///
 /// # Numerics
-/// Gauss quadrature with panels that end where gamma has kinks and where the slip velocity changes sign:
-/// forces within 1e-5 of the wheel load (mostly 1e-7) at z < R/4 for m in {0, 1/2, 1} and within 1e-4 for
-/// other m, for v0 below 1e-3 of the rim speed and up to z = 0.75 R; 5e-4 beyond. Balance to 1e-9 of the load.
+/// Gauss quadrature with panels that end at kinks of gamma and at sign changes of the slip velocity: forces within 1e-5 of
+/// the wheel load (usually 1e-7) at z < R/4 for m in {0, 1/2, 1} and within 1e-4 for other m, for v0 below 1e-3 of the rim
+/// speed and up to z = 0.75 R; 5e-4 beyond. Balance to 1e-9 of the load.
 ///
 /// # Source
 /// Wong & Reece 1967, <https://doi.org/10.1016/0022-4898(67)90105-X> (integration along the rim); Krenn & Hirzinger 2009
@@ -97,34 +96,34 @@ pub fn simulate(soil: &Soil, wheel: &Wheel, condition: &Condition) -> Result<Ave
     simulate_with(soil, wheel, condition, &mut Active::default(), &Site::default())
 }
 
-/// The same where effects enter.
+/// Simulates the wheel of [`simulate`] with effects.
 ///
-/// In the order of [`Hook::ALL`](formula::Hook::ALL): slip, dimensions and sinkage exponent are replaced before anything else; at
-/// every node of the rim the pressure, the strength and the shear stress; the load where it depends on pull and torque at every
-/// trial of the balance; the channels at the end. Formulas at nodes and the flat see the load before the formulas that depend on pull and
-/// torque; channels see the load that is carried. Two mechanisms are in code:
+/// In the order of [`Hook::ALL`](formula::Hook::ALL): slip, dimensions and sinkage exponent are replaced first; the
+/// pressure, the strength and the shear stress at every node of the rim; a load that depends on pull and torque at every
+/// trial of the balance; the channels at the end. Formulas at nodes and the flat see the load before the formulas that
+/// depend on pull and torque; channels see the carried load. Two mechanisms are in code:
 ///
-/// - *rebound*, with the compliance a: the soil behind the axle springs back by `e = min(a p_0, z_0/2)`, `p_0 = k* z_0^n`, and
-///   carries `gamma p_0 (1 − h/e)` where it has risen by h; gamma spreads over the whole contact.
+/// - *rebound*, with the compliance a: the soil behind the axle springs back by `e = min(a p_0, z_0/2)`, `p_0 = k* z_0^n`,
+///   and carries `gamma p_0 (1 − h/e)` where it has risen by h; gamma covers the whole contact.
 /// - *flat patch*, with the deflection per load a: the rim is flat at the distance R − δ from the axle, `δ = a W`, over a length of
 ///   `2 sqrt(δ (2R − δ))`; shear stress turns the wheel there at that distance, against the slip velocity
-///   `omega (R − δ) − v`. Sinkage is that of the flat, as a rig reads it that is zeroed under load on hard ground.
+///   `omega (R − δ) − v`. Sinkage refers to the flat, like the reading of a rig zeroed under load on hard ground.
 ///
 /// # Arguments
-/// - `effects`: compiled for [`ModelForm::QuasiStatic`](crate::effects::ModelForm::QuasiStatic), with room to compute in. With none active the result is that of
-///   [`simulate`], bit for bit.
+/// - `effects`: compiled for [`ModelForm::QuasiStatic`](crate::effects::ModelForm::QuasiStatic), with working memory.
+///   Without an active effect the result equals that of [`simulate`], bit for bit.
 /// - `site`: properties of the test site that formulas may use.
 ///
 /// # Errors
-/// Those of [`simulate`], and [`Rejection::Formula`] where a formula gives an inadmissible value, at any trial of the balance.
+/// Those of [`simulate`], and [`Rejection::Formula`] if a formula gives an inadmissible value at any trial of the balance.
 ///
 /// # Validity
-/// As [`simulate`]. The displacement `j` is that of an element of the rim in steady motion; `pass` is the only
-/// difference between passes. Where a law jumps between two nodes of the quadrature the jump is shared out, so that
-/// forces are continuous in the parameters.
+/// That of [`simulate`]. The displacement `j` belongs to an element of the rim in steady motion; `pass` is the only
+/// difference between passes. A jump of a law between two nodes of the quadrature is interpolated, so that forces are
+/// continuous in the parameters.
 ///
 /// # Source
-/// Each effect names its own in the catalogue. Checked by `effects::*`.
+/// The catalogue states the source of each effect. Checked by `effects::*`.
 pub fn simulate_with(
     soil: &Soil,
     wheel: &Wheel,
@@ -135,17 +134,17 @@ pub fn simulate_with(
     roll(soil, wheel, condition, &Form::Smooth, effects, site)
 }
 
-/// The same with the stresses of [`WongReece`] in place of the base's.
+/// Simulates the wheel of [`simulate_with`] with the stresses of [`WongReece`] in place of the base's.
 ///
 /// # Arguments
-/// - `law`: where the pressure peaks, and the shear modulus; at the slip that the effects leave.
+/// - `law`: the peak of the pressure, and the shear modulus; evaluated at the slip after the effects.
 /// - `effects`: compiled for [`ModelForm::WongReece`](crate::effects::ModelForm::WongReece).
 ///
 /// # Errors
 /// Those of [`simulate_with`], and [`Rejection::InvalidParameter`] where `c1 + c2 slip` lies outside [0, 1).
 ///
 /// # Validity
-/// As [`WongReece`]: neither rebound nor a flat, which the model does not have.
+/// That of [`WongReece`]: neither rebound nor a flat, which the model lacks.
 ///
 /// # Example
 /// ```
@@ -172,51 +171,53 @@ pub fn simulate_wong_reece(
     roll(soil, wheel, condition, &Form::Peaked(law), effects, site)
 }
 
-/// The same for a rim with straight grousers: what [`spatial`](crate::spatial) does with them on soil that does not flow, averaged
-/// over a period of the grousers at a hub that keeps its height.
+/// Simulates the wheel of [`simulate_with`] with straight grousers, averaged over their period at constant hub height.
 ///
-/// On rigid-plastic soil a place bears while the wheel is there lower than it has been before. With N grousers of height h and
-/// thickness t, `R_t = R + h`, `rho = omega R_t / (v cos(beta))` and `G(a) = rho sin(a) − a`, an element dA of the ground at x ahead of
-/// the axle, under tips at `a = asin(x / R_t)`, is on average pressed by
+/// It approximates [`spatial`](crate::spatial) on soil that does not flow.
+///
+/// On rigid-plastic soil a place bears while the wheel is lower there than before. With N grousers of height h and thickness
+/// t, `R_t = R + h`, `rho = omega R_t / (v cos(beta))` and `G(a) = rho sin(a) − a`, an element dA of the ground at x ahead
+/// of the axle, under tips at `a = asin(x / R_t)`, is pressed on average by
 ///
 /// - tips, a share `N t / 2π R_t` of it, at their depth;
-/// - flanks, `(N / 2π) tan(a) e / ((R + h/2) cos(a))`, at the mean depth of their height e (seen along the vertical) in the soil, where
-///   halfway up they move backwards over it. e is the least of `h cos(a)`, the tips' depth, and what a tip goes deeper than the one
-///   ahead of it went: the marks' spacing on the ground, less t, times the slope of the tips' path over it;
-/// - the rim, which has what tips do not cover and have not swept, less the flanks' share. Tips have swept the share
-///   `(N / 2π) |G(a) − G(a')|`, with a' where they were as deep as the rim is at x, `R_t sin(a') = sqrt(x² + R_t² − R²)`: at high
-///   slip they dig all of the soil from under the rim.
+/// - flanks, `(N / 2π) tan(a) e / ((R + h/2) cos(a))`, at the mean depth of their height e (projected on the vertical) in the soil,
+///   where their middle moves backwards over it. e is the least of `h cos(a)`, the tips' depth, and the depth that a tip reaches
+///   beyond the one ahead: the marks' spacing on the ground, less t, times the slope of the tips' path over it;
+/// - the rim, on the ground that tips neither cover nor have swept, less the flanks' share. Tips have swept the share
+///   `(N / 2π) |G(a) − G(a')|`, with a' where they were as deep as the rim is at x, `R_t sin(a') = sqrt(x² + R_t² − R²)`: at
+///   high slip they dig all soil from under the rim.
 ///
-/// Behind the axle flanks push in skid, down to where rim or grouser ahead have pressed deeper. Each surface has the base's laws:
-/// pressure at its own depth, shear against its own slip velocity, both along the radius and across it; the footprint with
-/// its gamma and `b_eff` is one, the width times the length from the axle to where tips enter.
+/// Behind the axle flanks push in skid, down to where the rim or the grouser ahead has pressed deeper. Each surface follows
+/// the base's laws: pressure at its depth, shear against its slip velocity, both along the radius and across it; there is
+/// one footprint with its gamma and `b_eff`, the width times the length from the axle to the entry of the tips.
 ///
 /// # Arguments
-/// - `grousers`: without count or height the result is that of [`simulate_with`], bit for bit.
-/// - `effects`: as of [`simulate_with`]. `lug_thrust` (passive pressure on the flanks' full height) and `slip_digging` (soil carried
-///   away beyond what is swept here) add what is neither here nor in [`spatial`](crate::spatial).
+/// - `grousers`: without count or height the result equals that of [`simulate_with`], bit for bit.
+/// - `effects`: as for [`simulate_with`]. `lug_thrust` (passive pressure on the flanks' full height) and `slip_digging`
+///   (soil carried away beyond the swept share) add effects that neither this model nor [`spatial`](crate::spatial) has.
 ///
 /// # Returns
-/// [`Averages`]; the sinkage is the rim's, and negative where the tips alone carry the load. The contact is the tips'.
+/// [`Averages`]; the sinkage refers to the rim, and is negative if the tips alone carry the load. The contact is that of the tips.
 ///
 /// # Errors
-/// Those of [`simulate_with`], and [`Rejection::InvalidParameter`] for grousers outside their bounds, and for soil that springs back or a rim
-/// that its load flattens.
+/// Those of [`simulate_with`], and [`Rejection::InvalidParameter`] for grousers outside their bounds, for rebounding soil
+/// and for a rim that its load flattens.
 ///
 /// # Validity
-/// As [`simulate`]; at slip angles tips are taken to leave marks as they do straight ahead. Over 200 runs (wheels of 58 and 125 mm, 12 and
-/// 24 grousers of 5 and 9 mm by 2 mm, slip −0.7 to 0.9, `k_c` = 0) the rms against [`spatial`](crate::spatial) without flow is, relative to
-/// load, to load times radius, and in mm, 0.078, 0.025, 1.5 (the smooth rim: 0.134, 0.072, 12.4). The pull is too low by 0.060 on
-/// average: [`spatial`](crate::spatial)'s soil lifts tips from behind as it unloads, and its grid lets tips bear behind the axle (for 24 of 5 mm on
-/// 58 mm at slip 0.4, its pull falls from 0.31 to 0.25 of the load as the grid gets finer, 4 mm to 0.5 mm; here it is 0.21). Where a
-/// quarter of the soil flows, the rms is 0.107, 0.032, 3.2 (0.125, 0.072, 10.3), and the pull of wheels of 58 mm is no nearer than the
-/// smooth rim's (0.139 and 0.141). Grousers of less than about a tenth of the radius; with taller ones errors grow.
+/// That of [`simulate`]; at slip angles tips are assumed to leave the same marks as straight ahead. Over 200 runs (wheels of
+/// 58 and 125 mm, 12 and 24 grousers of 5 and 9 mm by 2 mm, slip −0.7 to 0.9, `k_c` = 0) the rms difference from
+/// [`spatial`](crate::spatial) without flow is, relative to load, to load times radius, and in mm, 0.078, 0.025, 1.5 (the
+/// smooth rim: 0.134, 0.072, 12.4). The pull is too low by 0.060 on average: in [`spatial`](crate::spatial) unloading soil
+/// lifts tips from behind, and the grid lets tips bear behind the axle (for 24 of 5 mm on 58 mm at slip 0.4, its pull falls
+/// from 0.31 to 0.25 of the load as the grid is refined from 4 mm to 0.5 mm; here it is 0.21). If a quarter of the soil
+/// flows, the rms is 0.107, 0.032, 3.2 (0.125, 0.072, 10.3), and the pull of wheels of 58 mm is no closer than the smooth
+/// rim's (0.139 and 0.141). Grousers must be shorter than about a tenth of the radius; errors grow with their height.
 ///
 /// # Source
-/// Our own, for a height field. The two cylinders are those of Jia, Smith & Peng 2012, <https://doi.org/10.1017/S0263574711000798>, who average
-/// the pressures of grousers and rim and let soil shear at the tips; how marks fill up with slip follows Skonieczny, Moreland & Wettergreen 2012
-/// (grouser spacing, IROS). Checked by `grousers`, `quasi_static::grousered::tests`,
-/// `validation::grousered`.
+/// This model is new, for a height field. The two cylinders are those of Jia, Smith & Peng 2012,
+/// <https://doi.org/10.1017/S0263574711000798>, who average the pressures of grousers and rim and let soil shear at the
+/// tips; the filling of marks with slip follows Skonieczny, Moreland & Wettergreen 2012 (grouser spacing, IROS). Checked by
+/// `grousers`, `quasi_static::grousered::tests`, `validation::grousered`.
 ///
 /// # Example
 /// ```
@@ -249,7 +250,7 @@ pub fn simulate_with_grousers(
     roll(soil, wheel, condition, &form, effects, site)
 }
 
-/// What rolls.
+/// The kind of rim.
 enum Form<'f> {
     /// The smooth rim.
     Smooth,
@@ -284,18 +285,18 @@ fn roll(
     match form {
         Form::Smooth => rim.flat = mechanics.flat(rim.radius),
         Form::Peaked(law) => rim.peaked = Some(law.at(condition.slip)?),
-        Form::Grousered(own) => {
+        Form::Grousered(straight) => {
             mechanics.require_rigid()?;
-            let own = own.checked(wheel.radius_m)?;
+            let straight = straight.checked(wheel.radius_m)?;
             let tips = Wheel {
-                radius_m: wheel.radius_m + own.height_m,
+                radius_m: wheel.radius_m + straight.height_m,
                 ..wheel
             };
             rim = Rim::new(&soil, &tips, &condition);
-            grousers = Some(own);
+            grousers = Some(straight);
         }
     }
-    // lent to the rim, for the next run to use again: nothing may fail between here and their return
+    // these buffers are lent to the rim and reused by the next run: nothing may fail before their return
     let laws = effects.nodes.take();
     let mut panels = Panels::default();
     let reshaping = Reshaping::new(
@@ -318,7 +319,7 @@ fn roll(
         variables[Variable::WheelLoad as usize] = load_n;
         let modulus = k_star(&soil, averages.b_eff_m);
         effects.measure_averages(&mut variables, modulus, &mut averages)?;
-        // a channel that reports the wheel in the soil up to its hub describes no test
+        // a reading with the wheel in the soil up to its hub describes no test
         require(
             averages.sinkage_m < wheel.radius_m,
             "sinkage_m",
@@ -330,7 +331,7 @@ fn roll(
     Ok(averages)
 }
 
-/// Balance the wheel load; gives the load carried, too.
+/// Balances the wheel load; returns the averages and the carried load.
 fn average(footing: &mut Footing, wheel_load: f64) -> Result<(Averages, f64), Rejection> {
     let reaction = balance::first_balance(footing, wheel_load)?;
     let averages = Averages {

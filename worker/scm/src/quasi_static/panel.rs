@@ -1,4 +1,4 @@
-//! Nodes of the quadrature on a piece of the rim: where they stand, how they move, how the soil presses.
+//! Nodes of the quadrature on a piece of the rim: their places, motion and pressure.
 
 use super::rim::Rim;
 use crate::elementary::fraction_pow;
@@ -6,7 +6,7 @@ use crate::pressure_distribution::RectangleDistribution;
 use crate::quadrature::{NODES, PLACE, WEIGHT, place_from_end};
 use crate::wong_reece::Peak;
 
-/// The contact at one trial: what its panels share.
+/// The contact at one trial, shared by its panels.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Contact {
     /// x of the front end, and of the rear end with its sign changed `[m]`.
@@ -14,10 +14,10 @@ pub(super) struct Contact {
     pub(super) rear: f64,
     /// Height of the hub above the undisturbed surface `[m]`.
     pub(super) hub_height: f64,
-    /// Sinkage of the lowest part of the rim `[m]`, and what a round rim's lowest point would sink relative to it.
+    /// Sinkage of the lowest part of the rim `[m]`, and the sinkage of a round rim's lowest point relative to it.
     pub(super) sinkage: f64,
     pub(super) round_to_lowest: f64,
-    /// Pressure that gamma = 1 would give at the lowest part `[Pa]`.
+    /// Pressure at the lowest part for gamma = 1 `[Pa]`.
     pub(super) pressure_at_bottom: f64,
     pub(super) gamma: RectangleDistribution,
 }
@@ -25,28 +25,28 @@ pub(super) struct Contact {
 /// The nodes of one panel.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Panel {
-    /// Ahead of the axle `[m]`.
+    /// Place ahead of the axle `[m]`.
     pub(super) x: [f64; NODES],
     /// Length of the panel along the ground `[m]`.
     pub(super) extent: f64,
     /// Distance from the axle at which shear stress turns the wheel `[m]`.
     pub(super) arm: f64,
-    /// Surface to projected area, and slope of the rim.
+    /// Ratio of surface to projected area, and slope of the rim.
     pub(super) secant: [f64; NODES],
     pub(super) tan_theta: [f64; NODES],
     /// Sinkage relative to that of the lowest part.
     pub(super) relative_sinkage: [f64; NODES],
-    /// Slip velocity along the rim, and its magnitude with what is lateral `[m/s]`.
+    /// Slip velocity along the rim, and its magnitude with the lateral part `[m/s]`.
     pub(super) tangential: [f64; NODES],
     pub(super) speed: [f64; NODES],
     /// Normal pressure `[Pa]`.
     pub(super) pressure: [f64; NODES],
-    /// Room for the shear stress `[Pa]`.
+    /// Working memory for the shear stress `[Pa]`.
     pub(super) shear: [f64; NODES],
 }
 
 impl Panel {
-    /// A piece of the round rim ahead of what is lowest. Stages are loops over the nodes, so that each vectorises.
+    /// A piece of the round rim ahead of the lowest part. Stages are loops over the nodes, so that each vectorises.
     #[inline(always)]
     pub(super) fn on_arc(&mut self, rim: &Rim, contact: &Contact, start: f64, end: f64) {
         self.place(rim, contact, start, end);
@@ -56,7 +56,7 @@ impl Panel {
         }
     }
 
-    /// A piece of the round rim where the pressure peaks ahead of the axle: behind the peak other depths count.
+    /// A piece of the round rim with the pressure peak ahead of the axle: behind the peak the effective depth differs.
     pub(super) fn about(&mut self, rim: &Rim, contact: &Contact, start: f64, end: f64, peak: &Peak) {
         self.place(rim, contact, start, end);
         for i in 0..NODES {
@@ -69,7 +69,7 @@ impl Panel {
         }
     }
 
-    /// A piece of the round rim behind what is lowest, where the soil springs back by a height `[m]`: it unloads linearly.
+    /// A piece of the round rim behind the lowest part, where the soil springs back by a height `[m]` and unloads linearly.
     pub(super) fn behind(&mut self, rim: &Rim, contact: &Contact, start: f64, end: f64, recovered: f64) {
         self.place(rim, contact, start, end);
         for i in 0..NODES {
@@ -94,7 +94,7 @@ impl Panel {
         self.speed = [speed; NODES];
     }
 
-    /// Nodes on the round rim, with gamma in place of the pressure.
+    /// Places nodes on the round rim, with gamma in place of the pressure.
     #[inline(always)]
     pub(super) fn place(&mut self, rim: &Rim, contact: &Contact, start: f64, end: f64) {
         let (radius, extent, ahead) = (rim.radius, end - start, contact.front - end);

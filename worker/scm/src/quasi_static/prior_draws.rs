@@ -1,4 +1,4 @@
-//! Draws of every effect's prior under every kind of base prior: none may be refused while a balance exists.
+//! Draws of every effect's prior under every kind of base prior: a draw with a balance must not be refused.
 
 use core::fmt::Write as _;
 
@@ -10,11 +10,11 @@ use super::{Footing, Mechanics, Panels, Reshaping, Rim, simulate_with};
 use crate::effects::{CompiledEffects, ModelForm, Site};
 use crate::{Condition, Rejection, Soil, Wheel};
 
-/// Draws of one effect under one kappa.
+/// Number of draws of one effect under one kappa.
 const DRAWS: u32 = 100;
-/// Contact lengths at which the load is looked at.
+/// Number of contact lengths at which the load is computed.
 const LENGTHS: u32 = 400;
-/// kappa of the base's priors: without `k_c`, hardly any, as plates have it, and as negative as sand has it.
+/// kappa of the base's priors: without `k_c`, nearly without, as for plates, and as negative as for sand.
 const KAPPAS: [f64; 8] = [0.0, 0.01, 0.5, 2.0, -0.1, -0.4, -0.6, -0.8];
 
 const SITE: Site = Site {
@@ -39,7 +39,7 @@ impl Draws {
         low + (high - low) * (self.0 >> 11) as f64 / (1_u64 << 53) as f64
     }
 
-    /// Nearly normal: the sum of twelve uniform numbers.
+    /// A nearly normal number: the sum of twelve uniform numbers.
     fn normal(&mut self) -> f64 {
         (0..12).map(|_| self.uniform(-0.5, 0.5)).sum()
     }
@@ -68,7 +68,7 @@ impl Draws {
         scale.expect("a prior of the catalogue") * self.normal().abs()
     }
 
-    /// Loose to dense soil under wheels of the catalogue's examples, in drive and in skid, straight and at an angle.
+    /// Draws loose to dense soil under wheels of the catalogue's examples, in drive and in skid, straight and at an angle.
     fn base(&mut self, kappa: f64) -> (Soil, Wheel, Condition) {
         let n = (1.1 + 0.2 * self.normal()).clamp(0.8, 2.0);
         let (k_c, k_phi) = crate::bekker_moduli(self.uniform(3.9, 5.6), kappa, n);
@@ -103,7 +103,7 @@ impl Draws {
     }
 }
 
-/// Whether the load that the soil carries rises with the contact throughout, from below the wheel's load to above it.
+/// Returns whether the carried load rises with the contact throughout, from below the wheel's load to above it.
 fn has_one_balance(
     effect: &CompiledEffects,
     values: &[f64],
@@ -130,7 +130,7 @@ fn has_one_balance(
     for place in 1..=LENGTHS {
         let share = f64::from(place) / f64::from(LENGTHS);
         let carried = footing.react(flat + (radius - flat) * share * share)?.load();
-        // what carries nothing yet, or pulls the wheel down, is no support
+        // a contact that carries nothing, or pulls the wheel down, is no support
         rises &= carried >= before || carried <= 0.0 && before <= 0.0;
         before = carried;
     }
@@ -143,10 +143,10 @@ fn no_effect_refuses_a_draw_that_has_a_balance() {
     let mut refused = String::new();
     let (mut simulated, mut sunk, mut without) = (0, 0, 0);
     // a wall needs a terrain beside it
-    let own = catalogue()
+    let expressible = catalogue()
         .iter()
         .filter(|effect| effect.mechanism != Some(Mechanism::SideWall));
-    for effect in own {
+    for effect in expressible {
         let compiled = CompiledEffects::compile(ModelForm::QuasiStatic, [effect]).expect("a form");
         for kappa in KAPPAS {
             for _ in 0..DRAWS {
@@ -157,7 +157,7 @@ fn no_effect_refuses_a_draw_that_has_a_balance() {
                     simulated += 1;
                     continue;
                 };
-                // a wheel that reads as sunk to its hub is no test run, however it is carried
+                // a reading of a wheel sunk to its hub is no test run, even if the load is carried
                 if matches!(
                     rejection,
                     Rejection::InvalidParameter {

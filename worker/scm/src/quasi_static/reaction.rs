@@ -17,23 +17,23 @@ pub(super) struct Reaction {
     pub(super) torque: f64,
     pub(super) lateral_force: f64,
     pub(super) sinkage: f64,
-    /// How far the contact reaches ahead of the axle, and its length with what lies behind.
+    /// Length of the contact ahead of the axle, and its whole length.
     pub(super) contact_length: f64,
     pub(super) footprint_length: f64,
     pub(super) b_eff: f64,
     pub(super) k_star: f64,
     pub(super) nodes: u32,
-    /// By how much the load that the soil must carry exceeds the nominal one, where it depends on the reaction.
+    /// Excess of the load that the soil must carry over the nominal one, if it depends on the reaction.
     pub(super) extra_load: f64,
 }
 
 impl Reaction {
-    /// Vertical force of the soil on the wheel, less what it must carry beyond the nominal load `[N]`.
+    /// Vertical force of the soil on the wheel, less the extra load `[N]`.
     pub(super) fn load(&self) -> f64 {
         self.load_from_pressure + self.load_from_shear - self.extra_load
     }
 
-    /// Add the forces on one panel, from rear to front.
+    /// Adds the forces on one panel, from rear to front.
     #[inline(always)]
     pub(super) fn add(&mut self, rim: &Rim, panel: &Panel, along: &[f64; NODES], across: &[f64; NODES]) {
         for i in 0..NODES {
@@ -49,7 +49,7 @@ impl Reaction {
         self.nodes += NODES as u32;
     }
 
-    /// The same contact before the soil carries anything.
+    /// The contact without any force of the soil.
     pub(super) fn unloaded(&self) -> Self {
         Self {
             load_from_pressure: 0.0,
@@ -62,18 +62,18 @@ impl Reaction {
         }
     }
 
-    /// The reaction in balance between two that carry less and more than the load at the same contact: a law jumps at a
-    /// place that lies within the weight of one node of the quadrature.
-    pub(super) fn shared_with(&self, more: &Self, load: f64) -> Self {
-        let share = (load - self.load()) / (more.load() - self.load());
+    /// Interpolates the reaction in balance between two that carry less and more than the load at the same contact: a law
+    /// jumps within the weight of one node of the quadrature.
+    pub(super) fn shared_with(&self, above: &Self, load: f64) -> Self {
+        let share = (load - self.load()) / (above.load() - self.load());
         let between = |a: f64, b: f64| a + share * (b - a);
         Self {
-            load_from_pressure: between(self.load_from_pressure, more.load_from_pressure),
-            load_from_shear: between(self.load_from_shear, more.load_from_shear),
-            drawbar_pull: between(self.drawbar_pull, more.drawbar_pull),
-            torque: between(self.torque, more.torque),
-            lateral_force: between(self.lateral_force, more.lateral_force),
-            extra_load: between(self.extra_load, more.extra_load),
+            load_from_pressure: between(self.load_from_pressure, above.load_from_pressure),
+            load_from_shear: between(self.load_from_shear, above.load_from_shear),
+            drawbar_pull: between(self.drawbar_pull, above.drawbar_pull),
+            torque: between(self.torque, above.torque),
+            lateral_force: between(self.lateral_force, above.lateral_force),
+            extra_load: between(self.extra_load, above.extra_load),
             ..*self
         }
     }
@@ -82,7 +82,7 @@ impl Reaction {
 impl Rim {
     /// The soil's force on the base's rim when the contact reaches a length of 0 < l ≤ R ahead of the axle.
     ///
-    /// Where k* ≤ 0 there is no support: all forces are zero, and so can balance no load.
+    /// If k* ≤ 0 there is no support: all forces are zero and cannot balance a load.
     pub(super) fn react(&self, contact_length: f64) -> Reaction {
         let (radius, length) = (self.radius, contact_length);
         let hub_height = ((radius - length) * (radius + length)).sqrt();
@@ -139,7 +139,7 @@ impl Rim {
         (ends, panels)
     }
 
-    /// Add the forces on one panel.
+    /// Adds the forces on one panel.
     #[inline]
     fn add_panel(&self, contact: &Contact, start: f64, end: f64, sum: &mut Reaction) {
         let mut panel = Panel::default();

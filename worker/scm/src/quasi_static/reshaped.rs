@@ -1,4 +1,4 @@
-//! The soil's stresses, integrated over a rim with effects: formulas at its nodes, a flat, soil that springs back.
+//! The soil's stresses, integrated over a rim with effects: formulas at its nodes, a flat, rebounding soil.
 
 use formula::effect::Mechanism;
 use formula::{Hook, Variable};
@@ -20,15 +20,16 @@ use crate::rejection::require;
 use crate::shear::strength;
 use crate::wong_reece::Peak;
 
-/// Parts of a panel where formulas have kinks or jumps between nodes.
+/// Number of parts of a panel if formulas have kinks or jumps between nodes.
 const PARTS: usize = 4;
-/// Most panels at a time: those of most contacts or the surfaces at one place, and little enough to clear for every run.
+/// The maximum number of panels held together: enough for nearly every contact or the surfaces at one place, and few enough
+/// to clear for every run.
 const PANELS: usize = SURFACES;
-/// Room for a contact.
+/// Working memory for a contact.
 pub(super) type Panels = [Panel; PANELS];
-/// Most ends of panels.
+/// The maximum number of ends of panels.
 const ENDS: usize = 12;
-/// Passes in which rebound and footprint find each other, where the modulus depends on the footprint's width.
+/// Number of iterations between rebound and footprint, if the modulus depends on the footprint's width.
 const PASSES: usize = 3;
 
 /// The effects on a run.
@@ -41,13 +42,13 @@ pub(super) struct Reshaping<'r, 'e> {
     load_jumps: bool,
     /// Height by which the load flattens the rim, δ `[m]`.
     deflection: f64,
-    /// Way by which the soil springs back under a unit of pressure `[m/Pa]`.
+    /// Rebound of the soil per unit of pressure `[m/Pa]`.
     compliance: f64,
-    /// None where no law asks for it.
+    /// The sliding of the rim; `None` if no law uses it.
     slide: Option<Slide>,
-    /// The grousers, where they count; the rim is then the cylinder of their tips.
+    /// The grousers, if they roll; the rim is then the cylinder of their tips.
     grousers: Option<Grousered>,
-    /// Panels of the contact, and how many of them are in use.
+    /// Panels of the contact, and the number in use.
     panels: &'r mut Panels,
     used: usize,
 }
@@ -64,20 +65,20 @@ struct Shape {
     hub_height: f64,
     /// Sinkage of the lowest part of the rim `[m]`.
     sinkage: f64,
-    /// Height by which the soil springs back behind `[m]`.
+    /// Rebound of the soil behind the wheel `[m]`.
     recovered: f64,
     k_star: f64,
     b_eff: f64,
-    /// Where the pressure peaks, if that is ahead of the axle.
+    /// The peak of the pressure, if it lies ahead of the axle.
     peak: Option<Peak>,
 }
 
-/// What the load does to the rim, and its pressure to the soil.
+/// The deformation of the rim by the load, and of the soil by the pressure.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Mechanics {
     /// Height by which the load flattens the rim, δ `[m]`.
     deflection: f64,
-    /// Way by which the soil springs back under a unit of pressure `[m/Pa]`.
+    /// Rebound of the soil per unit of pressure `[m/Pa]`.
     compliance: f64,
 }
 
@@ -112,7 +113,8 @@ impl Mechanics {
     }
 
     /// # Errors
-    /// [`Rejection::InvalidParameter`]: soil that springs back, or a rim that its load flattens, which no wheel with grousers has here.
+    /// [`Rejection::InvalidParameter`]: rebounding soil, or a rim that its load flattens, which this model does not combine
+    /// with grousers.
     pub(super) fn require_rigid(&self) -> Result<(), Rejection> {
         let (flat, compliance) = (self.deflection, self.compliance);
         let bound = "0 under a wheel whose grousers count";
@@ -136,9 +138,9 @@ impl Mechanics {
 
 impl<'r, 'e> Reshaping<'r, 'e> {
     /// # Arguments
-    /// - `laws`: the formulas at nodes, with room to compute in.
-    /// - `panels`: room for a contact.
-    /// - `grousers`: those of the wheel, where they count.
+    /// - `laws`: the formulas at nodes, with working memory.
+    /// - `panels`: working memory for a contact.
+    /// - `grousers`: those of the wheel, if they roll.
     pub(super) fn new(
         active: &'r Active<'e>,
         rim: &Rim,
@@ -175,18 +177,19 @@ impl<'r, 'e> Reshaping<'r, 'e> {
         }
     }
 
-    /// Whether stresses along the rim are other than the base's.
+    /// Returns whether stresses along the rim differ from the base's.
     pub(super) fn changes_stresses(&self) -> bool {
         let reshapes = self.deflection.abs() > 0.0 || self.compliance.abs() > 0.0;
         reshapes || self.laws.is_some() || self.grousers.is_some()
     }
 
-    /// Whether the load may jump: as places of a law's jumps pass nodes, with the contact, or with the reaction that it follows.
+    /// Returns whether the load may jump: when a jump of a law passes a node, with the contact, or with the reaction that it
+    /// follows.
     pub(super) fn may_jump(&self) -> bool {
         self.laws.as_ref().is_some_and(NodeLaws::may_jump) || self.load_jumps
     }
 
-    /// By how much the load that the soil must carry exceeds the nominal one `[N]`.
+    /// Excess of the load that the soil must carry over the nominal one `[N]`.
     pub(super) fn extra_load(&self, reaction: &Reaction) -> Result<f64, Rejection> {
         if !self.load_follows {
             return Ok(0.0);
@@ -269,7 +272,7 @@ impl<'r, 'e> Reshaping<'r, 'e> {
         Ok(reaction)
     }
 
-    /// Add the forces on tips, flanks and rim.
+    /// Adds the forces on tips, flanks and rim.
     fn react_with_grousers(
         &mut self,
         tips: &Rim,
@@ -335,7 +338,7 @@ impl<'r, 'e> Reshaping<'r, 'e> {
         shape
     }
 
-    /// Add the forces on the panels gathered so far, from rear to front, and forget them.
+    /// Adds the forces on the current panels, from rear to front, and clears them.
     fn sum(&mut self, rim: &Rim, shape: &Shape, sum: &mut Reaction) -> Result<(), Rejection> {
         let (panels, variables) = (&mut self.panels[..self.used], &self.case.variables);
         if let Some(laws) = &mut self.laws {
@@ -391,7 +394,7 @@ impl<'r, 'e> Reshaping<'r, 'e> {
             let mut across = [0.0; NODES];
             for i in 0..NODES {
                 let speed = panel.speed[i];
-                // at rest the stress has no direction, and the velocities are 0
+                // at rest the stress has no direction and the velocities are 0
                 let per_speed = panel.shear[i]
                     / if speed > f64::MIN_POSITIVE {
                         speed
@@ -408,35 +411,35 @@ impl<'r, 'e> Reshaping<'r, 'e> {
     }
 }
 
-/// Write a quantity of the panels' nodes into a block.
-fn write(laws: &mut NodeLaws, variable: Variable, panels: &[Panel], of: impl Fn(&Panel) -> [f64; NODES]) {
+/// Writes a quantity of the panels' nodes into a block.
+fn write(laws: &mut NodeLaws, variable: Variable, panels: &[Panel], field: impl Fn(&Panel) -> [f64; NODES]) {
     let column = laws.block.column_mut(variable).as_chunks_mut::<NODES>().0;
     for (nodes, panel) in column.iter_mut().zip(panels) {
-        *nodes = of(panel);
+        *nodes = field(panel);
     }
 }
 
-/// Copy a quantity from a block to the panels' nodes.
+/// Copies a quantity from a block to the panels' nodes.
 fn read(
     laws: &mut NodeLaws,
     variable: Variable,
     panels: &mut [Panel],
-    of: impl Fn(&mut Panel) -> &mut [f64; NODES],
+    field: impl Fn(&mut Panel) -> &mut [f64; NODES],
 ) {
     let column = laws.block.column(variable).as_chunks::<NODES>().0;
     for (nodes, panel) in column.iter().zip(panels) {
-        *of(panel) = *nodes;
+        *field(panel) = *nodes;
     }
 }
 
 impl Shape {
-    /// Ends of the panels from rear to front; gives how many there are.
-    fn panel_ends(&self, rim: &Rim, more: &[f64], ends: &mut [f64; ENDS]) -> usize {
+    /// Finds the ends of the panels from rear to front; returns their number.
+    fn panel_ends(&self, rim: &Rim, kinks: &[f64], ends: &mut [f64; ENDS]) -> usize {
         // gamma has a ridge halfway, or a plateau where the sides are nearer than the ends
         let inner = (0.5 * (self.front + self.rear)).min(0.5 * rim.width);
         let candidates = [
             -self.rear,
-            -self.flat, // where the soil begins to spring back
+            -self.flat, // start of the rebounding soil
             self.flat,
             inner - self.rear,
             self.front - inner,
@@ -446,13 +449,13 @@ impl Shape {
             self.front,
         ];
         let mut count = 0;
-        for candidate in candidates.iter().chain(more).copied() {
+        for candidate in candidates.iter().chain(kinks).copied() {
             if !(-self.rear..=self.front).contains(&candidate) {
                 continue;
             }
             let place = ends[..count].partition_point(|end| *end < candidate);
             if place < count && ends[place] <= candidate {
-                continue; // there already
+                continue; // a duplicate
             }
             ends.copy_within(place..count, place + 1);
             ends[place] = candidate;
@@ -474,7 +477,7 @@ impl Shape {
         }
     }
 
-    /// Write the variables that formulas use into their block.
+    /// Writes the variables of the formulas into their block.
     fn write(
         &self,
         rim: &Rim,
@@ -498,7 +501,7 @@ impl Shape {
                 core::array::from_fn(|i| (rim.motion.forward * panel.tan_theta[i] / panel.secant[i]).max(0.0))
             });
         } else if laws.use_variable(Variable::Vn) {
-            // the hub keeps its height: what moves into the soil is the front of the round rim
+            // the hub keeps its height, so only the front of the round rim moves into the soil
             let per_radius = rim.motion.forward / rim.radius;
             write(laws, Variable::Vn, panels, |panel| {
                 let moves = if panel.arm < rim.radius { 0.0 } else { per_radius };
@@ -508,7 +511,7 @@ impl Shape {
         if laws.use_variable(Variable::Position) {
             let per_length = 1.0 / (self.front + self.rear);
             write(laws, Variable::Position, panels, |panel| {
-                // flanks behind the axle press at the rear end of what the contact is without them
+                // flanks behind the axle count as the rear end of the contact without them
                 panel.x.map(|x| (x + self.rear).max(0.0) * per_length)
             });
         }

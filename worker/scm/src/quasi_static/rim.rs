@@ -20,7 +20,7 @@ pub(super) struct Rim {
     pub(super) sign_change: f64,
     /// Half length of the flat of a rim that its load flattens `[m]`; else 0.
     pub(super) flat: f64,
-    /// The stresses of Wong & Reece in place of the base's, where they are asked for.
+    /// The stresses of Wong & Reece in place of the base's, if requested.
     pub(super) peaked: Option<PeakedStresses>,
 }
 

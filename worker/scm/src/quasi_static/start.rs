@@ -4,9 +4,9 @@ use super::rim::Rim;
 
 /// Coordinate of the balance: y = ln(l − `l_0`), in which the load is nearly a power law of slope 2n to 2n + 1.
 ///
-/// `l_0` is how far the contact reaches ahead of the axle where the soil begins to carry: where a negative `k_c` lets k* of the
-/// footprint pass through zero, or at the front of the flat of a rim that its load flattens, if that is farther; 0 otherwise.
-/// The footprint of a flattened rim reaches back by half the flat, too.
+/// `l_0` is the length of the contact ahead of the axle at which the soil begins to carry: where a negative `k_c` makes k*
+/// of the footprint zero, or at the front of the flat of a flattened rim, if that is farther; 0 otherwise. The footprint of
+/// a flattened rim also reaches back by half the flat.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Coordinate {
     unsupported: f64,
@@ -16,7 +16,7 @@ pub(super) struct Coordinate {
 }
 
 impl Coordinate {
-    /// The coordinate for a rim, or none if k* ≤ 0 for every contact with l < R.
+    /// The coordinate for a rim; `None` if k* ≤ 0 for every contact with l < R.
     pub(super) fn new(rim: &Rim) -> Option<Self> {
         let long = long_contact_modulus(rim);
         let unsupported = if rim.soil.k_c < 0.0 {
@@ -46,7 +46,7 @@ impl Coordinate {
         }
     }
 
-    /// Whether a contact length is `l_0` to the last bit.
+    /// Returns whether a contact length equals `l_0` to the last bit.
     pub(super) fn is_origin(&self, contact_length: f64) -> bool {
         contact_length <= self.unsupported
     }
@@ -64,9 +64,8 @@ impl Coordinate {
     /// y at which Bekker's closed form carries the load.
     ///
     /// Small angles (z = l² / 2R), gamma = 1 and no shear give `W = b (K l + k_c) l^(2n) I_n / (2R)^n` with
-    /// `K = k_phi + k_c / b` and `I_n = ∫ (1 − u²)^n du` over (0, 1), for which `(1 + 4n/π)^(−1/2)` is
-    /// within 1 %. A start needs no more. A flattened rim has a closed form for `k_c` = 0 alone; else see
-    /// [`Self::start_on_flat`].
+    /// `K = k_phi + k_c / b` and `I_n = ∫ (1 − u²)^n du` over (0, 1), which `(1 + 4n/π)^(−1/2)` approximates within 1 %,
+    /// enough for a start. A flattened rim has a closed form for `k_c` = 0 only; else see [`Self::start_on_flat`].
     pub(super) fn start(&self, rim: &Rim, load: f64) -> f64 {
         let n = rim.soil.n;
         let long = long_contact_modulus(rim);
@@ -98,7 +97,7 @@ impl Coordinate {
         if y < deepest { y } else { deepest }
     }
 
-    /// y at which a flattened rim on soil with `k_c` carries the load, by halving.
+    /// y at which a flattened rim on soil with `k_c` carries the load, by bisection.
     ///
     /// With a the flat's half length and L = l + a: `W = b k*(L) (2 a + (l − a) I_n) z^n`, `z = (l² − a²) / 2R`,
     /// `k*(L) = K + k_c / L`, which rises with l wherever it is positive.
@@ -127,7 +126,7 @@ impl Coordinate {
     }
 }
 
-/// Range of y below the deepest contact in which a start is looked for, and into how fine a part of it: 0.01.
+/// Range of y below the deepest contact in which a start is searched; the search ends at a width of 0.01.
 const START_RANGE: f64 = 32.0;
 const START_HALVINGS: u32 = 12;
 

@@ -1,11 +1,11 @@
-//! Straight grousers, as the quasi-static model knows them.
+//! Straight grousers of the quasi-static model.
 
 use crate::rejection::{Rejection, require};
 
 /// Straight grousers on a rim: rectangles along its whole width, evenly spaced.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StraightGrousers {
-    /// How many; 0: a smooth rim.
+    /// Number of grousers; 0: a smooth rim.
     pub count: u32,
     /// Height above the rim `[m]`, ≥ 0 and at most the radius; 0: a smooth rim.
     pub height_m: f64,
@@ -14,15 +14,13 @@ pub struct StraightGrousers {
 }
 
 impl StraightGrousers {
-    /// Whether nothing stands on the rim.
+    /// Returns whether the rim has no grousers.
     pub(super) fn are_absent(&self) -> bool {
         self.count == 0 || self.height_m.abs() <= 0.0
     }
 
-    /// Checks that they fit on a rim of a radius `[m]`, and returns them.
-    ///
-    /// # Errors
-    /// [`Rejection::InvalidParameter`] for the first field outside its bounds.
+    /// Checks that the grousers fit on a rim of a radius `[m]`, and returns them; [`Rejection::InvalidParameter`] names the
+    /// first field outside its bounds.
     pub(super) fn checked(self, radius_m: f64) -> Result<Self, Rejection> {
         let (height, thickness) = (self.height_m, self.thickness_m);
         let bound = "above 0 and at most the wheel's radius";

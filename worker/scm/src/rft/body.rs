@@ -7,15 +7,15 @@ use crate::spatial::SurfaceMesh;
 
 /// Angle that an element of a rim spans `[rad]`: half a degree.
 const STEP: f64 = TAU / 720.0;
-/// Rings of a side wall, closer together towards the rim, and angle that an element of it spans `[rad]`.
+/// Number of rings of a side wall, which are closer together towards the rim, and angle that an element of it spans `[rad]`.
 const RINGS: usize = 24;
 const SIDE_STEP: f64 = TAU / 240.0;
-/// Elements along the height of a grouser.
+/// Number of elements along the height of a grouser.
 const ALONG_GROUSER: usize = 6;
-/// Longest side of an element of a mesh, by the mesh's reach.
+/// The maximum side of an element of a mesh, relative to the mesh's reach.
 const LONGEST_SIDE: f64 = 0.04;
-/// Most halvings of a triangle's longest side.
-const MOST_HALVINGS: u32 = 16;
+/// The maximum number of halvings of a triangle's longest side.
+const MAX_HALVINGS: u32 = 16;
 
 /// A small flat part of a surface, by its middle; the axle is the y axis.
 #[derive(Debug, Clone, Copy)]
@@ -40,7 +40,7 @@ impl Element {
     }
 }
 
-/// A cylinder, with straight grousers where there are any.
+/// A cylinder, with straight grousers if there are any.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Cylinder {
     pub(super) radius_m: f64,
@@ -51,7 +51,8 @@ pub(super) struct Cylinder {
 }
 
 impl Cylinder {
-    /// Its elements; side walls only where the wheel moves sideways, because they slide along themselves otherwise.
+    /// The elements of the surface, with side walls only if the wheel moves sideways, because they otherwise slide in their
+    /// own plane.
     pub(super) fn elements(&self, with_sides: bool) -> Vec<Element> {
         let mut elements = Vec::new();
         let (radius, tip) = (self.radius_m, self.radius_m + self.grouser_height_m);
@@ -78,7 +79,7 @@ impl Cylinder {
         elements
     }
 
-    /// Elements around the axle from an angle on, counted forwards from straight down.
+    /// Adds elements around the axle from an angle on, counted forwards from straight down.
     fn arc(&self, elements: &mut Vec<Element>, radius: f64, begin: f64, angle: f64) {
         let count = libm::ceil(angle / STEP).max(1.0) as usize;
         let step = angle / count as f64;
@@ -93,7 +94,7 @@ impl Cylinder {
         }
     }
 
-    /// The flank of a grouser that looks forwards (1) or backwards (−1) around the axle.
+    /// Adds the flank of a grouser that faces forwards (1) or backwards (−1) around the axle.
     fn flank(&self, elements: &mut Vec<Element>, angle: f64, looks: f64) {
         let (sin, cos) = (libm::sin(angle), libm::cos(angle));
         let height = self.grouser_height_m / ALONG_GROUSER as f64;
@@ -108,7 +109,7 @@ impl Cylinder {
     }
 
     fn sides(&self, elements: &mut Vec<Element>) {
-        // radii R (1 − u²): rings are thin where the soil is
+        // radii R (1 − u²): rings are thin near the soil
         let edge = |ring: usize| {
             let u = ring as f64 / RINGS as f64;
             self.radius_m * (1.0 - u * u)
@@ -154,7 +155,7 @@ impl Cylinder {
 
 /// The elements of a checked mesh: its triangles, halved until none is longer than 4 % of the mesh's reach.
 ///
-/// The order of the vertices says which side is out; where the enclosed volume comes out negative, all are turned over.
+/// The order of the vertices determines the outward side; if the enclosed volume is negative, all triangles are reversed.
 pub(super) fn mesh_elements(mesh: &SurfaceMesh) -> Vec<Element> {
     let corner = |index: u32| mesh.vertices_m[index as usize];
     let reach = mesh.triangles.iter().flatten();
@@ -166,7 +167,7 @@ pub(super) fn mesh_elements(mesh: &SurfaceMesh) -> Vec<Element> {
     for triangle in &mesh.triangles {
         let corners = triangle.map(corner);
         volume += dot(corners[0], cross(corners[1], corners[2])) / 6.0;
-        halve(&mut elements, corners, LONGEST_SIDE * reach, MOST_HALVINGS);
+        halve(&mut elements, corners, LONGEST_SIDE * reach, MAX_HALVINGS);
     }
     if volume < 0.0 {
         for element in &mut elements {
@@ -178,7 +179,7 @@ pub(super) fn mesh_elements(mesh: &SurfaceMesh) -> Vec<Element> {
 
 fn halve(elements: &mut Vec<Element>, [a, b, c]: [[f64; 3]; 3], longest: f64, left: u32) {
     let (ab, bc, ca) = (length(less(b, a)), length(less(c, b)), length(less(a, c)));
-    // the longest side first, turned to a b
+    // the triangle is rotated so that a b is its longest side
     let (a, b, c, side) = if ab >= bc && ab >= ca {
         (a, b, c, ab)
     } else if bc >= ca {
@@ -242,7 +243,7 @@ mod tests {
             },
         ] {
             let elements = wheel.elements(true);
-            let total = |of: fn(&Element) -> f64| elements.iter().map(of).sum::<f64>();
+            let total = |quantity: fn(&Element) -> f64| elements.iter().map(quantity).sum::<f64>();
             for axis in [
                 total(|e| e.area * e.normal[0]),
                 total(|e| e.area * e.normal[1]),
@@ -250,7 +251,7 @@ mod tests {
             ] {
                 assert!(axis.abs() < 1e-12, "{axis}");
             }
-            // divergence of the place is 3
+            // the divergence of the position is 3
             let volume = total(|e| e.area * dot(e.at, e.normal)) / 3.0;
             let expected =
                 0.05 * core::f64::consts::PI * 0.01 + f64::from(wheel.grousers) * 0.05 * 0.01 * 0.002;

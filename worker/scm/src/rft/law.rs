@@ -3,12 +3,13 @@
 /// Coefficients of f1, f2 and f3, in the order of [`terms`].
 ///
 /// # Source
-/// Agarwal, Goldman & Kamrin 2023, PNAS 120(4) e2214017120, <https://doi.org/10.1073/pnas.2214017120>, supporting information S3. From
-/// two public transcriptions, that of KKKobefeng/3D-RFT (`Cylinder/Cyl3DRFTt.m`) and one in Python for a legged-robot simulator, which
-/// differ in two of 60 numbers. They give f3 of x2 x3² as −0.02730 and −0.20770: with the second, soil would push a level plate
-/// upwards as it is lifted (+0.10 in place of −0.08), and the fit to the two-dimensional theory of Li et al. 2013,
-/// <https://doi.org/10.1126/science.1229163>, for rising plates is worse (rms 0.147 against 0.104): the first is taken. They give f2 of
-/// x3 x2² as 0.18589 and 0.18519, a difference of at most 0.0007 in a stress of about 1: the first, from the same source, is taken.
+/// Agarwal, Goldman & Kamrin 2023, PNAS 120(4) e2214017120, <https://doi.org/10.1073/pnas.2214017120>, supporting
+/// information S3, from two public transcriptions, that of KKKobefeng/3D-RFT (`Cylinder/Cyl3DRFTt.m`) and one in Python for
+/// a legged-robot simulator, which differ in two of 60 numbers. They give f3 of x2 x3² as −0.02730 and −0.20770: with the
+/// second, soil would push a level plate upwards as it is lifted (+0.10 instead of −0.08), and the fit to the
+/// two-dimensional theory of Li et al. 2013, <https://doi.org/10.1126/science.1229163>, for rising plates is worse (rms
+/// 0.147 against 0.104), so the first is used. They give f2 of x3 x2² as 0.18589 and 0.18519, a difference of at most 0.0007
+/// in a stress of about 1; the first, from the same source, is used.
 const COEFFICIENTS: [[f64; 3]; TERMS] = [
     [0.00212, -0.06796, -0.02634],
     [-0.02320, -0.10941, -0.03436],
@@ -65,22 +66,22 @@ fn terms(x1: f64, x2: f64, x3: f64) -> [f64; TERMS] {
 /// enter only through `x1 = sin(gamma) = −v·e`, `x2 = cos(beta) = −N·e` and
 /// `x3 = cos(psi) cos(gamma) sin(beta) + sin(gamma) cos(beta) = v·N`, and
 ///
-/// - `alpha = f1 N + f2 v − f3 e`, `f_i = sum_k c_ik T_k(x1, x2, x3)`, which is the paper's local components without its frame;
-/// - of that, the part along the outward normal n stays where it presses, `alpha_n = max(−alpha·n, 0)`, and the part along the surface
-///   is at most what friction carries: `−alpha_n n + min(mu alpha_n / |alpha_t|, 1) alpha_t`.
+/// - `alpha = f1 N + f2 v − f3 e`, `f_i = sum_k c_ik T_k(x1, x2, x3)`, which equals the paper's local components without its frame;
+/// - the part along the outward normal n is kept where it presses, `alpha_n = max(−alpha·n, 0)`, and friction limits the
+///   part along the surface: `−alpha_n n + min(mu alpha_n / |alpha_t|, 1) alpha_t`.
 ///
 /// # Arguments
 /// - `normal`: n, out of the body, of length 1. `direction`: v, of length 1.
 /// - `surface_friction`: mu, between surface and soil `[–]`, ≥ 0.
 ///
 /// # Returns
-/// `[–]`; times `xi_n` `[Pa/m]`, depth `[m]` and area `[m²]` it is the soil's force on the body. None where the element does not lead,
-/// `v·n ≤ 0`: there the soil loses contact.
+/// `[–]`; times `xi_n` `[Pa/m]`, depth `[m]` and area `[m²]` it is the soil's force on the body. `None` if the element does
+/// not lead, `v·n ≤ 0`: there the soil loses contact.
 ///
 /// # Validity
-/// Dry cohesionless soil, slow motion (no inertia of grains), a level surface, stresses that follow from the element's own motion
-/// alone. Where `alpha·n > 0` the fit would have the soil pull: such an element carries nothing (a departure; it happens on
-/// elements that rise).
+/// Dry cohesionless soil, slow motion (no inertia of grains), a level surface, stresses that depend on the element's own
+/// motion alone. If `alpha·n > 0` the fit would have the soil pull: such an element carries nothing (a departure; it happens
+/// on rising elements).
 ///
 /// # Source
 /// [`COEFFICIENTS`]. Checked by `rft::*`.
@@ -109,8 +110,12 @@ pub(super) fn stress(normal: [f64; 3], direction: [f64; 3], surface_friction: f6
     }
     let along: [f64; 3] = core::array::from_fn(|i| alpha[i] + pressing * normal[i]);
     let size = dot(along, along).sqrt();
-    let most = surface_friction * pressing;
-    let share = if size > most { most / size } else { 1.0 };
+    let max_friction = surface_friction * pressing;
+    let share = if size > max_friction {
+        max_friction / size
+    } else {
+        1.0
+    };
     Some(core::array::from_fn(|i| share * along[i] - pressing * normal[i]))
 }
 
@@ -137,7 +142,7 @@ mod tests {
     }
 
     #[test]
-    fn what_follows_behind_feels_nothing() {
+    fn an_element_that_does_not_lead_feels_no_stress() {
         assert_eq!(stress([0.0, 0.0, 1.0], [0.0, 0.0, -1.0], 0.4), None);
     }
 
@@ -171,21 +176,21 @@ mod tests {
             ([1.0, 0.0, 0.0], [0.9, 0.5, 0.0]),
         ] {
             let (n, v) = (unit(normal), unit(direction));
-            let here = stress(n, v, 0.4).unwrap();
+            let base = stress(n, v, 0.4).unwrap();
             let there = stress(turned(n), turned(v), 0.4).unwrap();
-            for (a, b) in turned(here).iter().zip(there) {
+            for (a, b) in turned(base).iter().zip(there) {
                 assert!((a - b).abs() < 1e-12);
             }
             let mirrored = |v: [f64; 3]| [v[0], -v[1], v[2]];
             let there = stress(mirrored(n), mirrored(v), 0.4).unwrap();
-            for (a, b) in mirrored(here).iter().zip(there) {
+            for (a, b) in mirrored(base).iter().zip(there) {
                 assert!((a - b).abs() < 1e-15);
             }
         }
     }
 
     #[test]
-    fn friction_limits_what_acts_along_the_surface() {
+    fn friction_limits_the_stress_along_the_surface() {
         let mu = 0.2;
         let (n, v) = (unit([0.2, 0.1, -1.0]), unit([1.0, 0.2, -0.1]));
         let force = stress(n, v, mu).unwrap();

@@ -1,7 +1,7 @@
 //! Three-dimensional resistive force theory: stresses on a wheel that follow from the motion and depth of each of its elements.
 //!
 //! # Layout
-//! - here: the balance of the wheel load in steady motion, averaged over the turn of the wheel.
+//! - This file: the balance of the wheel load in steady motion, averaged over the turn of the wheel.
 //! - `law`: stress on an element.
 //! - `body`: the elements of a wheel with grousers, or of any surface.
 
@@ -20,17 +20,17 @@ use crate::rejection::require;
 use crate::spatial::{Grousers, SurfaceMesh};
 use crate::{Averages, Condition, Rejection, Soil, Wheel};
 
-/// Positions of the wheel, per pitch of its grousers, at which the load is balanced.
+/// Number of positions of the wheel, per pitch of its grousers, at which the load is balanced.
 const POSITIONS: usize = 8;
-/// The same over a whole turn of a mesh.
+/// Number of positions of a mesh over a whole turn.
 const MESH_POSITIONS: usize = 16;
-/// The golden section: multiples of a turn by it lie evenly for any number of grousers.
+/// The golden ratio less 1: multiples of a turn by it are spread evenly for any number of grousers.
 const GOLDEN: f64 = 0.618_033_988_749_894_8;
-/// Trials of a load that follows pull and torque, and when it is met, relative to itself.
+/// The maximum number of trials of a load that depends on pull and torque, and its relative tolerance.
 const TRIALS: u32 = 60;
 const TOLERANCE: f64 = 1e-9;
 
-/// A granular soil, and how rough the wheel is.
+/// A granular soil, and the roughness of the wheel.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RftSoil {
     /// Scale factor of the stresses `xi_n` `[Pa/m]`, > 0: pressure under a level plate per depth, over 0.875.
@@ -40,10 +40,8 @@ pub struct RftSoil {
 }
 
 impl RftSoil {
-    /// Checks the bounds of the fields, and returns the soil.
-    ///
-    /// # Errors
-    /// [`Rejection::InvalidParameter`] for the first field outside its bounds.
+    /// Checks the bounds of the fields, and returns the soil; [`Rejection::InvalidParameter`] names the first field outside
+    /// its bounds.
     pub fn checked(self) -> Result<Self, Rejection> {
         require(
             self.xi_n_pa_m > 0.0,
@@ -63,7 +61,7 @@ impl RftSoil {
     }
 }
 
-/// What touches the soil.
+/// The surface that touches the soil.
 #[derive(Debug, Clone)]
 pub struct RftShape(Surface);
 
@@ -80,11 +78,10 @@ impl RftShape {
         RftShape(Surface::Rim(grousers))
     }
 
-    /// A closed surface. Its triangles name their vertices counter-clockwise as seen from outside, or all clockwise; those with a side
-    /// longer than 4 % of the reach are divided.
+    /// A closed surface, with the errors of [`SurfaceMesh::checked`].
     ///
-    /// # Errors
-    /// Those of [`SurfaceMesh::checked`].
+    /// Its triangles name their vertices counter-clockwise as seen from outside, or all clockwise; those with a side longer
+    /// than 4 % of the reach are divided.
     pub fn mesh(mesh: &SurfaceMesh) -> Result<Self, Rejection> {
         mesh.checked()?;
         let elements = mesh_elements(mesh);
@@ -100,32 +97,33 @@ impl RftShape {
 /// Steady forces, torque and sinkage of a wheel in granular soil by three-dimensional resistive force theory.
 ///
 /// Every element of the surface that moves towards the soil, `v·n > 0`, at a depth h feels the force
-/// `xi_n alpha(n, v / |v|) h dA`, alpha from the published fit (see `law`), `v = V + omega × r` in steady motion; forces add up.
-/// The sinkage is the first, from the surface down, at which they carry the wheel load. As alpha depends on neither depth nor
-/// load, the load is piecewise linear in the sinkage and the balance exact. With grousers the wheel is balanced at 8 positions of a
-/// pitch, a mesh at 16 of a turn, and the channels are the means.
+/// `xi_n alpha(n, v / |v|) h dA`, alpha from the published fit (see `law`), `v = V + omega × r` in steady motion; forces add
+/// up. The sinkage is the first, from the surface down, at which they carry the wheel load. Because alpha depends on neither
+/// depth nor load, the load is piecewise linear in the sinkage and the balance exact. With grousers the wheel is balanced at
+/// 8 positions of a pitch, a mesh at 16 of a turn, and the channels are the means.
 ///
 /// # Arguments
-/// - `soil`, `wheel`, `condition`: fields carry units and bounds. Of a mesh, `wheel` says the radius that sinkage and slip refer to.
+/// - `soil`, `wheel`, `condition`: fields carry units and bounds. For a mesh, `wheel` gives the radius that sinkage and slip
+///   refer to.
 /// - `effects`: compiled for [`ModelForm::Rft`](crate::effects::ModelForm::Rft).
 ///
 /// # Returns
-/// [`Averages`]; `b_eff_m` is that of a rectangle as long as the contact, the simulated travel is 0.
+/// [`Averages`]; `b_eff_m` belongs to a rectangle as long as the contact, the simulated travel is 0.
 ///
 /// # Errors
 /// - [`Rejection::InvalidParameter`]: a field is outside its bounds.
 /// - [`Rejection::NoSupport`]: no balance with the hub above the surface.
-/// - [`Rejection::NoConvergence`]: a load that follows pull and torque, by an effect, does not settle.
+/// - [`Rejection::NoConvergence`]: a load that an effect makes depend on pull and torque does not settle.
 /// - [`Rejection::Formula`]: a formula gives an inadmissible value.
 ///
 /// # Validity
-/// Dry cohesionless soil with a level surface, low speed; no memory: every pass gets the first one's answer, and no element shades
-/// another, as grousers close together do. `xi_n` of a soil of density rho and internal friction mu is about
-/// `rho g (894 mu³ − 386 mu² + 89 mu)` by the paper.
+/// Dry cohesionless soil with a level surface, low speed; no memory: every pass has the answer of the first; no element
+/// shields another, as closely spaced grousers do. `xi_n` of a soil of density rho and internal friction mu is about
+/// `rho g (894 mu³ − 386 mu² + 89 mu)` according to the paper.
 ///
 /// # Numerics
-/// Elements of half a degree along the rim, with the force at the middle of each; a mesh of 360 facets agrees within 0.01 W in the
-/// forces and 2 % in the sinkage. The load is carried to rounding.
+/// Elements of half a degree along the rim, with the force at the middle of each; a mesh of 360 facets agrees within 0.01 W
+/// in the forces and 2 % in the sinkage. The load is carried to rounding error.
 ///
 /// # Source
 /// Agarwal, Goldman & Kamrin 2023, <https://doi.org/10.1073/pnas.2214017120>. Checked by `rft::*`.
@@ -191,8 +189,7 @@ pub fn simulate(
 /// # Arguments
 /// - `area_m2`: A `[m²]`; `depth_m`: d `[m]`, ≥ 0.
 ///
-/// # Errors
-/// [`Rejection::InvalidParameter`]: the soil is outside its bounds.
+/// [`Rejection::InvalidParameter`] if the soil is outside its bounds.
 pub fn plate_force_n(soil: &RftSoil, area_m2: f64, depth_m: f64) -> Result<f64, Rejection> {
     let soil = soil.checked()?;
     let down = [0.0, 0.0, -1.0];
@@ -200,8 +197,7 @@ pub fn plate_force_n(soil: &RftSoil, area_m2: f64, depth_m: f64) -> Result<f64, 
     Ok(soil.xi_n_pa_m * alpha * area_m2 * depth_m)
 }
 
-/// What formulas would see of a soil with the laws of Bekker, Mohr and Coulomb: effects that ask for it are refused when they are
-/// compiled.
+/// Placeholder for a soil with the laws of Bekker and Mohr-Coulomb: effects that use them are refused at compilation.
 const WITHOUT_LAWS: Soil = Soil {
     k_c: f64::NAN,
     k_phi: f64::NAN,
@@ -217,7 +213,7 @@ const WITHOUT_LAWS: Soil = Soil {
 struct Motion {
     along: f64,
     across: f64,
-    /// `[rad/s]`, forwards.
+    /// Angular velocity `[rad/s]`, forwards.
     rotation: f64,
 }
 
@@ -231,7 +227,7 @@ impl Motion {
         }
     }
 
-    /// Direction in which a place moves; none at rest.
+    /// Direction in which a place moves; `None` at rest.
     fn direction(&self, at: [f64; 3]) -> Option<[f64; 3]> {
         let velocity = [
             self.along + self.rotation * at[2],
@@ -243,7 +239,8 @@ impl Motion {
     }
 }
 
-/// The elements below the axle, the lowest first, after the wheel has turned by an angle: what stands above is never in the soil.
+/// The elements below the axle, lowest first, after the wheel has turned by an angle; elements above the axle are never in
+/// the soil.
 fn turned(elements: &[Element], angle: f64) -> Vec<Element> {
     let (sin, cos) = (libm::sin(angle), libm::cos(angle));
     let mut below: Vec<Element> = elements
@@ -251,11 +248,11 @@ fn turned(elements: &[Element], angle: f64) -> Vec<Element> {
         .map(|element| element.turned(sin, cos))
         .filter(|element| element.at[2] < 0.0)
         .collect();
-    below.sort_by(|a, b| a.at[2].total_cmp(&b.at[2])); // stable: equal heights keep the order of the surface
+    below.sort_by(|a, b| a.at[2].total_cmp(&b.at[2])); // the sort is stable, so equal heights keep the order of the surface
     below
 }
 
-/// The elements of a rim at positions evenly spread over the pitch of its grousers; one position where it has none.
+/// The elements of a rim at positions evenly spread over the pitch of its grousers; one position if it has none.
 fn rim_positions(grousers: Grousers, wheel: &Wheel, with_sides: bool) -> Vec<Vec<Element>> {
     let cylinder = Cylinder {
         radius_m: wheel.radius_m,
@@ -274,10 +271,10 @@ fn rim_positions(grousers: Grousers, wheel: &Wheel, with_sides: bool) -> Vec<Vec
         .collect()
 }
 
-/// A wheel that moves, at the positions of its rotation that count.
+/// A moving wheel, at the positions of its rotation over which it is averaged.
 #[derive(Debug)]
 struct Positions<'a> {
-    /// At each position, from the lowest up.
+    /// The elements at each position, lowest first.
     elements: &'a [Vec<Element>],
     motion: Motion,
     soil: RftSoil,
@@ -285,12 +282,12 @@ struct Positions<'a> {
     width_m: f64,
 }
 
-/// An element that leads.
+/// A leading element.
 #[derive(Debug, Clone, Copy)]
 struct Pushed {
     /// Height above the lowest element `[m]`.
     height: f64,
-    /// Ahead of the axle, and above it `[m]`.
+    /// Place ahead of the axle, and above it `[m]`.
     x: f64,
     z: f64,
     /// Force per depth `[N/m]`.
@@ -311,13 +308,13 @@ impl Positions<'_> {
         })
     }
 
-    /// The elements up to the depth of the lowest one `[m]` at which the load is carried first, and that depth; the largest load
-    /// carried where it never is.
+    /// The elements up to the depth of the lowest one `[m]` at which the load is first carried, and that depth; else the
+    /// largest load carried.
     fn sunk(&self, elements: &[Element], load: f64) -> Result<(Vec<Pushed>, f64), f64> {
         let lowest = elements.first().map_or(0.0, |element| element.at[2]);
         let mut pushed = Vec::new();
         // W(d) = S0 d − S1 between the heights of two elements
-        let (mut stiffness, mut offset, mut most) = (0.0, 0.0, 0.0_f64);
+        let (mut stiffness, mut offset, mut max_carried) = (0.0, 0.0, 0.0_f64);
         for (i, element) in elements.iter().enumerate() {
             if let Some(part) = self.pushed(element, lowest) {
                 stiffness += part.force[2];
@@ -326,12 +323,12 @@ impl Positions<'_> {
             }
             let next = elements.get(i + 1).map_or(0.0, |next| next.at[2]) - lowest;
             let carried = stiffness * next - offset;
-            most = most.max(carried);
+            max_carried = max_carried.max(carried);
             if carried >= load && stiffness > 0.0 {
                 return Ok((pushed, (load + offset) / stiffness));
             }
         }
-        Err(most)
+        Err(max_carried)
     }
 
     /// Means over the positions, each in balance.
@@ -341,8 +338,8 @@ impl Positions<'_> {
         for elements in self.elements {
             let (pushed, depth) =
                 self.sunk(elements, load)
-                    .map_err(|most_carried_n| Rejection::NoSupport {
-                        most_carried_n,
+                    .map_err(|max_carried_n| Rejection::NoSupport {
+                        max_carried_n,
                         wheel_load_n: load,
                         wheel_radius_m: self.radius_m,
                     })?;

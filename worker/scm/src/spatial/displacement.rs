@@ -5,29 +5,29 @@ use super::pack::{PACK, Pack, load, splat, store};
 use super::settings::Displacement;
 use super::terrain::Terrain;
 
-/// An element of the rim that has met no soil for longer starts anew `[rad]`.
+/// Angle without soil contact after which an element of the rim loses its displacement `[rad]`.
 const HALF_TURN: f64 = core::f64::consts::PI;
 
 /// Shear displacement j of the contact, which formulas such as Janosi and Hanamoto's, `1 − exp(−j/K)`, use.
 ///
 /// On the rim, j belongs to elements of the wheel's surface, bins of its angle, and grows by `|v_t| dt` in contact:
-/// `j(θ) = R [(θ_1 − θ) − (1 − s)(sin θ_1 − sin θ)]` in steady motion (Wong and Reece). Between a grouser and
-/// the rim behind it an element loses contact without starting anew. On the soil, j belongs to the terrain's nodes.
+/// `j(θ) = R [(θ_1 − θ) − (1 − s)(sin θ_1 − sin θ)]` in steady motion (Wong and Reece). Between a grouser and the rim behind
+/// it an element loses contact without losing its displacement. On the soil, j belongs to the terrain's nodes.
 #[derive(Debug, Clone)]
 pub(super) struct ShearPath {
-    /// Bins around the wheel; 0 where j belongs to the soil.
+    /// Number of bins around the wheel; 0 if j belongs to the soil.
     bins: usize,
-    /// Lanes of a bin's row.
+    /// Number of lanes in a bin's row.
     lanes: usize,
     slid: Vec<f64>,
-    /// Angle that the wheel had turned when a bin was last in contact `[rad]`.
+    /// Angle of the wheel when a bin was last in contact `[rad]`.
     last: Vec<f64>,
-    /// The first bin of each strip, and the one after its last, counted on from turn to turn.
+    /// The first bin of each strip, and the bin after its last, numbered on from turn to turn.
     spans: Vec<[i64; 2]>,
 }
 
 impl ShearPath {
-    /// Nothing has slid yet. `dx` is the spacing along travel `[m]`; a bin is half as long.
+    /// Creates a path without displacement. `dx` is the spacing along travel `[m]`; a bin is half as long.
     pub(super) fn new(keeper: Displacement, radius: f64, dx: f64) -> Self {
         let bins = libm::ceil(core::f64::consts::TAU * radius / (0.5 * dx)) as usize;
         Self {
@@ -39,7 +39,7 @@ impl ShearPath {
         }
     }
 
-    /// Forget what has slid.
+    /// Resets all displacements.
     pub(super) fn clear(&mut self) {
         self.slid.fill(0.0);
         self.last.fill(f64::MIN);
@@ -49,7 +49,7 @@ impl ShearPath {
         self.bins > 0
     }
 
-    /// Make room for the bins' lanes: with a slip angle the wheel covers one lane more or less now and then.
+    /// Makes room for the bins' lanes: at a slip angle the number of lanes under the wheel may change by one.
     fn widen(&mut self, packs: usize) {
         if self.lanes == 0 {
             self.lanes = (packs + 1) * PACK;
@@ -58,7 +58,7 @@ impl ShearPath {
         }
     }
 
-    /// Find the bins of the wheel's surface over every strip; the one at a strip's front end is the next strip's.
+    /// Finds the bins of the wheel's surface over every strip; the bin at a strip's front end belongs to the next strip.
     fn find_spans(&mut self, contact: &Contact, turned: f64) {
         let per_angle = self.bins as f64 / core::f64::consts::TAU;
         self.spans.clear();
@@ -76,7 +76,7 @@ impl ShearPath {
         (first..end).map(move |bin| bin.rem_euclid(bins) as usize)
     }
 
-    /// Shear displacement of every quad so far `[m]`; 0 where there is no wheel.
+    /// Computes the shear displacement of every quad so far `[m]`; 0 beside the wheel.
     pub(super) fn measure(&mut self, contact: &Contact, terrain: &Terrain, turned: f64, out: &mut Vec<Pack>) {
         let packs = contact.across.packs();
         if self.on_rim() {
@@ -109,7 +109,7 @@ impl ShearPath {
         sum * splat(1.0 / bins)
     }
 
-    /// Let wheel and soil slide along each other for a time, where they were measured last.
+    /// Adds the sliding of wheel and soil for a time, at the places last measured.
     pub(super) fn slide(&mut self, contact: &Contact, terrain: &mut Terrain, turned: f64, time: f64) {
         let packs = contact.across.packs();
         for row in (contact.first..contact.end).filter(|&row| contact.masks[row] != 0) {

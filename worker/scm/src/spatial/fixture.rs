@@ -1,4 +1,4 @@
-//! The soil, the wheel and the condition that this module's tests start from.
+//! The soil, the wheel and the condition of this module's tests.
 
 use super::{Ground, Scene, Shape};
 use crate::effects::{Active, Site};

@@ -6,7 +6,7 @@ use crate::rejection::{Rejection, require};
 /// Straight grousers on the rim: rectangles along its whole width, evenly spaced.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Grousers {
-    /// How many; 0: a smooth wheel.
+    /// Number of grousers; 0: a smooth wheel.
     pub count: u32,
     /// Height above the rim `[m]`, > 0 if there are any.
     pub height_m: f64,
@@ -15,10 +15,7 @@ pub struct Grousers {
 }
 
 impl Grousers {
-    /// Checks that they fit the wheel.
-    ///
-    /// # Errors
-    /// [`Rejection::InvalidParameter`] for the first field outside its bounds.
+    /// Checks that the grousers fit the wheel; [`Rejection::InvalidParameter`] names the first field outside its bounds.
     pub(super) fn checked(&self, wheel: &Wheel) -> Result<(), Rejection> {
         if self.count == 0 {
             return Ok(());

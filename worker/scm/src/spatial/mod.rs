@@ -1,12 +1,12 @@
 //! A wheel that rolls over a deformable terrain, in three dimensions.
 //!
 //! # Layout
-//! - [`Scene`], [`RunSettings`], [`Ground`], [`Shape`], [`Tread`], [`SurfaceMesh`]: what a run is made of.
+//! - [`Scene`], [`RunSettings`], [`Ground`], [`Shape`], [`Tread`], [`SurfaceMesh`]: the inputs of a run.
 //! - `run`: the wheel along its track, and the averages of force, torque and sinkage.
 //! - `wheel`: the underside that the soil meets, and its motion.
-//! - `contact`: which nodes the wheel touches at a height, their pressure, force and torque.
+//! - `contact`: the nodes in contact at a height, their pressure, force and torque.
 //! - `side_wall`: soil that the side of the wheel pushes at a slip angle.
-//! - `displacement`: how far wheel and soil have slid along each other, where a formula asks for it.
+//! - `displacement`: the displacement between wheel and soil, if a formula uses it.
 //! - `terrain`: the soil as a height field, its flow and its slopes.
 //! - `pack`: four lanes at a time.
 
@@ -54,39 +54,40 @@ const SPEEDS_M_S: [f64; 2] = [1e-6, 1e3];
 /// - `dF = (p n + tau t) dA / n_z` with the normal n of the wheel's surface (radial on rim *and* grousers, the facet's own on
 ///   a mesh), torque about the hub
 ///
-/// Then the nodes that yielded are left at `z_s = h + p / K_e`; a share `phi_f` of what was displaced flows to the borders of
-/// the footprint in front, behind and beside, in inverse proportion to their distances and by the direction in
-/// which the wheel's surface moves; slopes steeper than the angle of repose slide, never into the wheel.
+/// Then the yielded nodes are left at `z_s = h + p / K_e`; a share `phi_f` of the displaced soil flows to the borders of the
+/// footprint in front, behind and beside, in inverse proportion to their distances and by the direction of motion of the
+/// wheel's surface; slopes steeper than the angle of repose slide, never into the wheel.
 ///
 /// # Effects
-/// Where effects are active, the run has the slip, radius, width, exponent and load that their formulas give. A wheel given
-/// as a mesh keeps its size: a formula that would change it is rejected. At the nodes formulas replace the plastic
-/// pressure before the elastic line bounds it, then the strength, then the magnitude of the shear stress, whose direction stays.
-/// The shear displacement j is followed where a formula uses it. `pass` counts from pass to pass at nodes and channels; for
-/// dimensions it is the one averaged.
+/// With active effects, the run has the slip, radius, width, exponent and load that their formulas give. A wheel given as a
+/// mesh keeps its size: a formula that would change it is rejected. At the nodes formulas replace the plastic pressure
+/// before the elastic line bounds it, then the strength, then the magnitude of the shear stress, whose direction stays. The
+/// shear displacement j is tracked if a formula uses it. `pass` counts from pass to pass at nodes and channels; for
+/// dimensions it is the averaged pass.
 ///
-/// - A load that depends on pull or torque is that of the step before, the nominal one at first.
-/// - Histories and averages hold the measured channels. The balance, the power and the energy check use the soil's own forces. Channels see the contact length of their step, k* weighted by area over the footprint's patches,
-///   and the effective width when the contour was last measured.
-/// - Mechanisms: rebound `1 / K_e' = 1 / K_e + a`; a flat patch cuts the rim off at `R − a W`, from where sinkage is then counted;
-///   digging lowers the reference surface by `(d / l) |v_t| dt` under the sliding wheel; end walls make k*
-///   `1 + w (exp(−x / l) + exp(−(L − x) / l))` times as large, x from the rear wall to the hub, x = R at the start of each pass;
-///   the buried side in front meets passive earth pressure at a slip angle β, `s |sin β| (N (γ h²/2 + γ ζ h) + 2 c h √N)` per length
-///   against the lateral motion and friction `tan(δ)` of that along the side, `N = tan²(45° + φ/2)`, h the depth of a disc of
-///   radius R, ζ the mean height of the raised soil within `h √N` beside it.
+/// - A load that depends on pull or torque takes those of the preceding step, and is nominal at first.
+/// - Histories and averages hold the measured channels. The balance, the power and the energy check use the soil's forces.
+///   Channels see the contact length of their step, k* weighted by area over the footprint's patches, and the effective
+///   width of the last measured contour.
+/// - Mechanisms: rebound `1 / K_e' = 1 / K_e + a`; a flat patch cuts the rim off at `R − a W`, the new reference of sinkage;
+///   digging lowers the reference surface by `(d / l) |v_t| dt` under the sliding wheel; end walls multiply k* by
+///   `1 + w (exp(−x / l) + exp(−(L − x) / l))`, x from the rear wall to the hub, x = R at the start of each pass; the
+///   leading buried side meets passive earth pressure at a slip angle β, `s |sin β| (N (γ h²/2 + γ ζ h) + 2 c h √N)` per
+///   length against the lateral motion and friction `tan(δ)` of that along the side, `N = tan²(45° + φ/2)`, h the depth of a
+///   disc of radius R, ζ the mean height of the raised soil within `h √N` beside it.
 ///
 /// Without effects none of this is evaluated. Checked by `spatial::effects`, `spatial::signatures`.
 ///
 /// # Arguments
 /// - `scene`, `condition`, `settings`: fields carry units and bounds. omega comes from the slip and the *rig's* radius.
-///   `condition.pass` = k: the wheel passes k times over the same track under this condition, the k-th is averaged.
+///   `condition.pass` = k: the wheel passes k times over the same track under this condition, and the k-th pass is averaged.
 ///
 /// # Returns
 /// [`SpatialRun`]: averages by the protocol, and histories step by step.
 ///
 /// # Errors
 /// - [`Rejection::InvalidParameter`]: a field is outside its bounds. Nothing is clamped.
-/// - [`Rejection::NoSupport`]: no balance before the hub reaches the undisturbed surface; also where k* ≤ 0 everywhere.
+/// - [`Rejection::NoSupport`]: no balance before the hub reaches the undisturbed surface; also if k* ≤ 0 everywhere.
 /// - [`Rejection::NoConvergence`]: the mean residual of the balance exceeds 2.5 % of the load, over the averaged steps or the run:
 ///   the load jumps as patches join.
 /// - [`Rejection::EnergyGained`]: motor and sled gained work from the soil, on average: `T omega − F v < 0`.
@@ -94,23 +95,24 @@ const SPEEDS_M_S: [f64; 2] = [1e-6, 1e3];
 /// - [`Rejection::NotFinite`]: forces overflow. [`Rejection::Protocol`]: the protocol does not fit the run.
 ///
 /// # Validity
-/// Rigid wheel, dry granular soil, motion slow enough for the vertical balance (or [`Vertical::Dynamic`]). Stresses act on
-/// the wheel's surface. A height field cannot represent the flanks of grousers: their thrust beyond the sheared tips is
-/// not modelled, nor the sideways one of oblique grousers. With a negative `k_c` a footprint carries only where `b_eff > −k_c / k_phi`: a wheel of 50 mm balances down to
-/// kappa = −0.8, with and without grousers and flow, and not at −0.95, where the hull would have to be longer than the wheel's
-/// radius; one of 112 mm does at −0.95. With [`Footprint::Patches`] a grouser's tip or a lip of a berm carries nothing by itself, and
-/// the load jumps as patches join: no balance from kappa = −0.3 to −0.66 on. Checked by `spatial::cohesion`. Wheels up to 126 lanes
-/// wide straight ahead, 62 at a slip angle.
+/// Rigid wheel, dry granular soil, motion slow enough for the vertical balance (or [`Vertical::Dynamic`]). Stresses act on the
+/// wheel's surface. A height field cannot represent the flanks of grousers: their thrust beyond the sheared tips, and the sideways
+/// thrust of oblique grousers, are not modelled. With a negative `k_c` a footprint carries load only if `b_eff > −k_c / k_phi`: a
+/// wheel of 50 mm balances down to kappa = −0.8, with and without grousers and flow, but not at −0.95, where the hull would have to
+/// be longer than the wheel's radius; one of 112 mm balances at −0.95. With [`Footprint::Patches`] a single grouser's tip or lip of
+/// a berm carries nothing, and the load jumps as patches join: no balance from kappa = −0.3 to −0.66 on. Checked by
+/// `spatial::cohesion`. Wheels may be 126 lanes wide straight ahead, 62 at a slip angle.
 ///
 /// # Numerics
-/// dx is refined until eight nodes lie in the contact of a smooth wheel, on soil or on its elastic layer, and the contact ends between nodes, so that
-/// areas and distances do not jump. A grouser bears by the width of it that covers a column. Balance to 1.5e-2 of the
-/// load, or to 1 µm where patches join; what a step carries too much, the next carries less, so that averages have the load.
-/// Slopes slide four times while the wheel goes on by a column. Where left and right are alike, half the wheel is modelled.
+/// dx is refined until eight nodes lie in the contact of a smooth wheel, on soil or on its elastic layer; the contact ends
+/// between nodes, so that areas and distances do not jump. A grouser counts by its width over a column. Balance to 1.5e-2 of
+/// the load, or to 1 µm where patches join; the next step subtracts the excess of a step, so that averages carry the load.
+/// Slopes slide four times while the wheel moves by a column. If left and right are alike, half the wheel is modelled.
 ///
 /// # Source
 /// Krenn & Hirzinger's soil contact model (2008, 2009; see [Literature](crate#literature)) as the source paper describes it
-/// (section 4, Eq. 5–10); what it leaves open (gamma, flow, memory of compaction, grousers) is our own. Checked by `spatial::*`.
+/// (section 4, Eq. 5–10); gamma, flow, memory of compaction and grousers, which it leaves open, are choices of this crate.
+/// Checked by `spatial::*`.
 ///
 /// # Example
 /// ```
@@ -154,7 +156,7 @@ pub fn simulate(
     }
 }
 
-/// The same run where effects are active: with the soil, wheel, sled speed and load after them.
+/// Simulates the run with active effects: with the soil, wheel, sled speed and load after them.
 fn simulate_with_effects(
     scene: &Scene,
     condition: &Condition,
@@ -167,12 +169,12 @@ fn simulate_with_effects(
     scene.shape.checked(&wheel)?;
     if let Shape::Mesh { .. } = scene.shape {
         let before = scene.wheel;
-        for (name, value, own) in [
+        for (name, value, original) in [
             ("radius_m", wheel.radius_m, before.radius_m),
             ("width_m", wheel.width_m, before.width_m),
         ] {
             let bound = "unchanged by effects: a wheel given as a mesh has its own size";
-            require(value.to_bits() == own.to_bits(), name, value, "m", bound)?;
+            require(value.to_bits() == original.to_bits(), name, value, "m", bound)?;
         }
     }
     let condition = case.condition.checked()?;

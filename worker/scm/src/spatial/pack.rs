@@ -11,7 +11,7 @@ pub(crate) const PACK: usize = 4;
 /// The lanes of one pack in a mask.
 pub(crate) const LANES: u64 = (1 << PACK) - 1;
 
-/// What selects the lanes whose bits are set among the last [`PACK`] of a mask.
+/// A mask that selects the lanes whose bits are set among the last [`PACK`] of `mask`.
 #[inline]
 pub(crate) fn lanes_of(mask: u64) -> Pack {
     Pack::new(SELECTORS[(mask & LANES) as usize])
@@ -31,7 +31,7 @@ const SELECTORS: [[f64; PACK]; 1 << PACK] = {
     selectors
 };
 
-/// The same number in every lane.
+/// A number in every lane.
 #[inline]
 pub(crate) fn splat(value: f64) -> Pack {
     Pack::splat(value)
@@ -66,7 +66,7 @@ pub(crate) fn least_of(pack: Pack) -> f64 {
 
 /// The greatest lane; none may be NaN.
 #[inline]
-pub(crate) fn most_of(pack: Pack) -> f64 {
+pub(crate) fn greatest_of(pack: Pack) -> f64 {
     -least_of(-pack)
 }
 
@@ -77,7 +77,7 @@ pub(crate) fn load(row: &[f64], first: usize) -> Pack {
     Pack::new([lanes[0], lanes[1], lanes[2], lanes[3]])
 }
 
-/// Put four lanes into a row.
+/// Stores four lanes in a row.
 #[inline]
 pub(crate) fn store(row: &mut [f64], first: usize, pack: Pack) {
     row[first..first + PACK].copy_from_slice(&pack.to_array());

@@ -11,7 +11,7 @@ pub struct Scene<'a> {
     pub soil: &'a Soil,
     /// Deformation of the soil.
     pub ground: &'a Ground,
-    /// Radius and width of the rim, or nominal ones of a mesh.
+    /// Radius and width of the rim, or nominal ones for a mesh.
     pub wheel: &'a Wheel,
     /// The rest of the wheel's shape.
     pub shape: &'a Shape,

@@ -6,21 +6,21 @@ use super::tread::Tread;
 use crate::Wheel;
 use crate::rejection::{Rejection, require};
 
-/// How the soil deforms, beside the laws of [`Soil`](crate::Soil).
+/// The deformation of the soil, in addition to the laws of [`Soil`](crate::Soil).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ground {
-    /// Stiffness of unloading and reloading `[Pa/m]`, > 0. The stiffer, the shorter the contact behind the axle.
+    /// Stiffness of unloading and reloading `[Pa/m]`, > 0. A higher stiffness shortens the contact behind the axle.
     pub elastic_stiffness_pa_m: f64,
     /// Share of the displaced soil that flows to the border of the footprint `[–]`, in [0, 1]; the rest compacts.
     pub flow_fraction: f64,
-    /// Share of the loose soil that bears like undisturbed soil `[–]`, in [0, 1].
+    /// Share of the loose soil that carries load like undisturbed soil `[–]`, in [0, 1].
     pub bearing_credit: f64,
     /// Angle of repose `[rad]`, in (0, π/2).
     pub repose_angle_rad: f64,
 }
 
 impl Default for Ground {
-    /// Nearly rigid-plastic sand of 32° of repose, a quarter of which flows.
+    /// The default is nearly rigid-plastic sand of 32° of repose, a quarter of which flows.
     fn default() -> Self {
         Self {
             elastic_stiffness_pa_m: 1e9,
@@ -32,10 +32,8 @@ impl Default for Ground {
 }
 
 impl Ground {
-    /// Checks that the laws are defined for the ground, and returns it.
-    ///
-    /// # Errors
-    /// [`Rejection::InvalidParameter`] for the first field outside its bounds.
+    /// Checks that the laws are defined for the ground, and returns it; [`Rejection::InvalidParameter`] names the first
+    /// field outside its bounds.
     pub fn checked(self) -> Result<Self, Rejection> {
         let fraction = |name, value: f64| {
             require(
@@ -71,19 +69,20 @@ impl Ground {
 pub enum Shape {
     /// A cylindrical rim, smooth or with grousers; radius and width are the [`Wheel`]'s.
     Rim(Grousers),
-    /// A cylindrical rim with grousers in rows, shifted, oblique, V-shaped or bent.
+    /// A cylindrical rim with grousers in rows: staggered, oblique, V-shaped or bent.
     Tread(Tread),
-    /// Any surface, in its own size. The [`Wheel`]'s radius is only what sinkage is counted from and what
-    /// the grid is chosen by; its width counts for the latter only.
+    /// Any surface, in its given size. The [`Wheel`]'s radius is the reference of sinkage and grid; its width matters for
+    /// the grid only.
     Mesh {
         /// The surface.
         surface: SurfaceMesh,
-        /// Number of identical sectors in one turn, ≥ 1, such as the number of grousers. Averages are taken over whole
-        /// periods. `None`: found from the vertices, up to 1e-5 of the wheel's size; a mesh on which no part repeats is
-        /// averaged over whole turns if the travel holds two. A faceted cylinder repeats with its facets.
-        /// Checked by `spatial::mesh::the_period_is_found_from_the_vertices`.
+        /// Number of identical sectors in one turn, ≥ 1, such as the number of grousers; averages cover whole periods.
+        ///
+        /// `None`: found from the vertices, up to 1e-5 of the wheel's size; a mesh without repeating parts is averaged over
+        /// whole turns if the travel holds two. A faceted cylinder repeats with its facets. Checked by
+        /// `spatial::mesh::the_period_is_found_from_the_vertices`.
         repeats_per_turn: Option<u32>,
-        /// Where pressure and shear act along.
+        /// The directions of pressure and shear.
         normals: Normals,
     },
 }
@@ -100,10 +99,7 @@ impl From<SurfaceMesh> for Shape {
 }
 
 impl Shape {
-    /// Checks the fields, and returns the shape.
-    ///
-    /// # Errors
-    /// [`Rejection::InvalidParameter`] for the first field outside its bounds.
+    /// Checks the fields; [`Rejection::InvalidParameter`] names the first outside its bounds.
     pub fn checked(&self, wheel: &Wheel) -> Result<(), Rejection> {
         match self {
             Self::Rim(grousers) => grousers.checked(wheel),
@@ -126,41 +122,41 @@ impl Shape {
     }
 }
 
-/// Where the shear displacement j is kept, which formulas may use.
+/// The frame in which the shear displacement j is stored, which formulas may use.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Displacement {
-    /// On the rim: what an element of the wheel's surface has slid since it entered the soil.
+    /// On the rim: the sliding of an element of the wheel's surface since it entered the soil.
     #[default]
     Rim,
-    /// On the soil: what a node of the terrain has been sheared while in contact.
+    /// On the soil: the shearing of a node of the terrain while in contact.
     Node,
 }
 
-/// Along which direction the pressure acts.
+/// The direction of the pressure.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum PressureDirection {
     /// Along the normal of the wheel's surface.
     #[default]
     WheelNormal,
-    /// Along the normal of the undisturbed soil, vertically; shear acts horizontally. There is then no compaction
-    /// resistance, as in some other implementations.
+    /// Along the normal of the undisturbed soil, vertically; shear acts horizontally. There is no compaction resistance, as
+    /// in some other implementations.
     Vertical,
 }
 
-/// Whose effective width `b_eff = 2 A / L` the nodes of a footprint have; without `k_c` it acts on nothing.
+/// The effective width `b_eff = 2 A / L` that applies to the nodes of a footprint; without `k_c` it has no effect.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Footprint {
-    /// One for the whole footprint, as the source paper has it: that of the rectangle that its patches span.
+    /// One for the whole footprint, as in the source paper: that of the rectangle that its patches span.
     ///
-    /// Its area spans, lane by lane, what lies between the rear and the front end of the contact; its width is that of the lanes
-    /// in contact. Two rims beside each other thus count as one of their joint width. A smooth wheel's footprint is its own hull.
+    /// Its area extends, lane by lane, from the rear to the front end of the contact; its width is that of the lanes in
+    /// contact. Two parallel rims thus count as one of their joint width. A smooth wheel's footprint is its hull.
     #[default]
     Hull,
-    /// Each patch of connected nodes its own, by its contour: a grouser's tip is a plate by itself.
+    /// One for each patch of connected nodes, by its contour: a grouser's tip is a separate plate.
     Patches,
 }
 
-/// How the hub finds its height.
+/// The motion of the hub in height.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub enum Vertical {
     /// The soil carries the wheel load at every step.
@@ -175,20 +171,20 @@ pub enum Vertical {
     },
 }
 
-/// When a run ends, and over what it is averaged.
+/// The end of a run, and its averaged part.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Protocol {
-    /// Until averages over whole grouser periods have settled.
+    /// The run ends when averages over whole grouser periods have settled.
     Steady {
-        /// What averages may still have to go to their limit, relative to the wheel load, to load times radius and to the
-        /// sinkage, when they have settled.
+        /// Tolerated distance of settled averages to their limit, relative to the wheel load, to load times radius and to
+        /// the sinkage.
         tolerance: f64,
         /// Travel at which the run ends in any case `[m]`.
         most_travel_m: f64,
     },
-    /// A fixed time, transients cut.
+    /// The run has a fixed time, and transients are cut.
     Fixed {
-        /// Time simulated `[s]`.
+        /// Simulated time `[s]`.
         duration_s: f64,
         /// Time cut from the start of drawbar pull, torque and lateral force `[s]`.
         transient_force_s: f64,
@@ -208,24 +204,24 @@ impl Default for Protocol {
     }
 }
 
-/// Choices of the discretisation and of the laws' variants.
+/// Settings of the discretisation and variants of the laws.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RunSettings {
     /// Spacing of the terrain's nodes `[m]`; along travel it is refined to an eighth of the contact.
     pub dem_spacing_m: f64,
     /// Travel of one step `[m]`; refined to the spacing along travel.
     pub travel_step_m: f64,
-    /// Where the shear displacement is kept.
+    /// The frame in which the shear displacement is stored.
     pub displacement: Displacement,
-    /// Along which direction the pressure acts.
+    /// The direction of the pressure.
     pub pressure_direction: PressureDirection,
-    /// Whose effective width the nodes of a footprint have.
+    /// The effective width that applies to the nodes of a footprint.
     pub footprint: Footprint,
-    /// How the hub finds its height.
+    /// The motion of the hub in height.
     pub vertical: Vertical,
-    /// When the run ends.
+    /// The end of the run.
     pub protocol: Protocol,
-    /// Model both halves of the wheel even where one mirrors the other; for tests.
+    /// Models both halves of the wheel even if one mirrors the other; for tests.
     pub both_halves: bool,
 }
 
@@ -245,10 +241,7 @@ impl Default for RunSettings {
 }
 
 impl RunSettings {
-    /// Checks the fields, and returns the settings.
-    ///
-    /// # Errors
-    /// [`Rejection::InvalidParameter`] for the first outside its bounds.
+    /// Checks the fields, and returns the settings; [`Rejection::InvalidParameter`] names the first outside its bounds.
     pub fn checked(self) -> Result<Self, Rejection> {
         let positive = |name, value: f64, unit| require(value > 0.0, name, value, unit, "above 0");
         let not_negative = |name, value: f64, unit| require(value >= 0.0, name, value, unit, "at least 0");

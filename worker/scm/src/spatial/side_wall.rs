@@ -8,16 +8,16 @@ use crate::rejection::{Rejection, require};
 use crate::shear::ShearVelocity;
 use crate::{Condition, Soil};
 
-/// Passive earth pressure on the side of the wheel that goes ahead of it.
+/// Passive earth pressure on the leading side of the wheel.
 ///
-/// The side is a disc of the wheel's radius R, which a hub at H buries to `h(x) = √(R² − x²) − H` below the undisturbed soil. Per
-/// length of it a smooth vertical wall that pushes a wedge of soil up a plane at 45° − φ/2 meets
+/// The side is a disc of the wheel's radius R, which a hub at H buries to `h(x) = √(R² − x²) − H` below the undisturbed
+/// soil. Per length of it, a smooth vertical wall that pushes a wedge of soil up a plane at 45° − φ/2 meets
 ///
 /// `P = N (½ γ h² + γ ζ h) + 2 c h √N`, `N = tan²(45° + φ/2)`, γ the soil's unit weight,
 ///
-/// where the wedge reaches `h √N` beside the wheel and ζ is the mean height of the soil that was raised there: the heap that the
-/// wheel has pushed aside is a surcharge. The wheel feels `scale P |sin β|` against its lateral motion, because soil of the
-/// width `dx |sin β|` across the way is pushed, and `tan(δ)` times as much friction on its side, against what slides along it.
+/// where the wedge reaches `h √N` beside the wheel and ζ is the mean height of the raised soil there: the heap that the wheel has
+/// pushed aside is a surcharge. The wheel feels `scale P |sin β|` against its lateral motion, because soil of the width
+/// `dx |sin β|` across the travel is pushed, and `tan(δ)` times as much friction on its side, against the sliding along it.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct SideWall {
     scale: f64,
@@ -31,7 +31,7 @@ pub(super) struct SideWall {
 /// The soil's force and torque on the side of the wheel.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(super) struct SidePush {
-    /// Along the heading, to the left and upwards `[N]`.
+    /// Force along the heading, to the left and upwards `[N]`.
     pub(super) force_x: f64,
     pub(super) force_y: f64,
     pub(super) force_z: f64,
@@ -39,7 +39,7 @@ pub(super) struct SidePush {
     pub(super) torque: f64,
 }
 
-/// Passive force on a length of a wall, and how deep below the undisturbed soil it acts.
+/// Passive force on a length of a wall, and its depth below the undisturbed soil.
 #[derive(Debug, Clone, Copy)]
 struct Passive {
     per_length: f64,
@@ -47,10 +47,8 @@ struct Passive {
 }
 
 impl SideWall {
-    /// A wall of a strength and `tan(δ)`; none where the wheel does not go sideways.
-    ///
-    /// # Errors
-    /// [`Rejection::InvalidParameter`]: a parameter is negative, or the density is not known.
+    /// Creates a wall of a strength and `tan(δ)`; `None` if the wheel does not move sideways.
+    /// [`Rejection::InvalidParameter`] if a parameter is negative, or the density is unknown.
     pub(super) fn new(
         [scale, friction]: [f64; 2],
         soil: &Soil,
@@ -75,7 +73,7 @@ impl SideWall {
         Ok((condition.slip_angle_rad.abs() > 0.0).then_some(wall))
     }
 
-    /// The soil's push with the hub at a height, where the contact was laid.
+    /// The soil's push with the hub at a height, at the place of the contact.
     pub(super) fn push(
         &self,
         contact: &Contact,
@@ -117,7 +115,7 @@ impl SideWall {
         let weight = 0.5 * n * self.unit_weight * depth * depth;
         let even = n * self.unit_weight * heap * depth + 2.0 * self.cohesion * depth * self.root_n;
         let per_length = weight + even;
-        // the weight's pressure grows with depth, the others' is even
+        // the pressure from the weight grows with depth, the rest is uniform
         let arm = (2.0 / 3.0 * weight + 0.5 * even) / per_length.max(f64::MIN_POSITIVE);
         Passive {
             per_length,

@@ -2,18 +2,18 @@
 
 use crate::rejection::{Rejection, require};
 
-/// The surface of a rigid wheel as it stands at an angle of rotation of 0.
+/// The surface of a rigid wheel at an angle of rotation of 0.
 ///
-/// The axle is the y axis through the origin, z points up, x forward; a wheel that rolls forward turns what is at the
-/// top forward. Only the lowest point above each place of the soil counts, h(x, y) = min z, so that neither the order
-/// of a triangle's vertices nor hidden parts matter.
+/// The axle is the y axis through the origin, z points up, x forward; a wheel that rolls forward turns its top forward. Only
+/// the lowest point above each place of the soil counts, h(x, y) = min z, so that neither the order of a triangle's vertices
+/// nor hidden parts matter.
 ///
 /// # Validity
-/// The surface is sampled in the middle of each of the terrain's lanes, and along travel at most 1 mm apart, exactly on
-/// the triangles' planes. Across the wheel a part counts by whole lanes: its width is right to a lane's spacing. Along
-/// travel a part narrower than the distance of samples is hit as often as its width demands. The lanes lie evenly
-/// over twice the largest |y|. A rim of N flat facets sinks deeper than the cylinder by about `(π/N)² R/3`, the mean height
-/// of its chords above the arc.
+/// The surface is sampled in the middle of each of the terrain's lanes, and along travel at most 1 mm apart, exactly on the
+/// triangles' planes. Across the wheel a part counts by whole lanes: its width is accurate to a lane's spacing. Along travel
+/// a part narrower than the distance of samples is hit with a frequency proportional to its width. The lanes are spread
+/// evenly over twice the largest |y|. A rim of N flat facets sinks deeper than the cylinder by about `(π/N)² R/3`, the mean
+/// height of its chords above the arc.
 ///
 /// Checked by `spatial::mesh`: within 0.002 W of the analytic rim's drawbar pull from 45 facets on, within 0.4 % of its
 /// sinkage from 180 on; with grousers and radial normals within 0.003 W and 1.2 %.
@@ -25,24 +25,25 @@ pub struct SurfaceMesh {
     pub triangles: Vec<[u32; 3]>,
 }
 
-/// Along which direction a point of a mesh is pressed, and along which plane it is sheared.
+/// The directions in which a point of a mesh is pressed and sheared.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Normals {
-    /// The normal of the triangle, flanks of grousers included: per area seen from above a triangle of slopes
-    /// (dh/dx, dh/dy) is pressed with p (−dh/dx, −dh/dy, 1). A triangle steeper than 10 : 1 (84°) keeps its place but
-    /// presses as though its slope were 10, because a sample that hits it would represent more flank than there is. One that
-    /// stands vertical has no area from above and does not press, though its edge is where the step is.
+    /// The normal of the triangle, with the flanks of grousers.
+    ///
+    /// Per horizontal area a triangle of slopes (dh/dx, dh/dy) is pressed with p (−dh/dx, −dh/dy, 1). A triangle steeper
+    /// than 10 : 1 (84°) keeps its place but presses with a slope of 10, because a sample on it would represent more flank
+    /// than there is. A vertical triangle has no horizontal area and does not press, although its edge forms the step.
     ///
     /// The flanks of 12 straight grousers add 0.07 W to the drawbar pull and 0.08 W R to the torque of the analytic wheel
     /// on a grid of 4 mm, 0.12 W and 0.12 W R on one of 1 mm: a height field resolves them only slowly.
     #[default]
     Surface,
-    /// From the point to the axle, as on the analytic rim: for comparison with it.
+    /// The direction from the point to the axle, as on the analytic rim: for comparison with it.
     Radial,
 }
 
 impl SurfaceMesh {
-    /// Checks that the surface can be that of a wheel, and returns it.
+    /// Checks that the surface can be that of a wheel.
     ///
     /// # Errors
     /// [`Rejection::InvalidParameter`] with `triangles` for none, or for a position beyond the vertices (the value is

@@ -1,26 +1,26 @@
-//! Grousers that are more than straight bars across the whole rim.
+//! Grousers other than straight bars across the whole rim.
 
 use super::grousers::Grousers;
 use crate::Wheel;
 use crate::rejection::{Rejection, require};
 
-/// Most rows of grousers.
-const MOST_ROWS: u32 = 100;
+/// The maximum number of rows of grousers.
+const MAX_ROWS: u32 = 100;
 
-/// Grousers in rows side by side, shifted against each other, oblique, V-shaped or bent.
+/// Grousers in rows side by side: staggered, oblique, V-shaped or bent.
 ///
-/// `grousers.count` stand in each row, at equal distances. Row k of m, counted from the side at lesser y, has its middle at
-/// `b ((k + 1/2) / m − 1/2)`, b the wheel's width, and covers [`Tread::width_m`] of it. At y from the wheel's middle plane the middle of
-/// a grouser is further forward along the rim, where the rim is lowest, by
+/// Each row has `grousers.count` at equal distances. Row k of m, counted from the side at lesser y, has its middle at
+/// `b ((k + 1/2) / m − 1/2)`, b the wheel's width, and covers [`Tread::width_m`] of it. At y from the wheel's middle plane
+/// the middle of a grouser lies further forward along the rim, at the lowest point of the rim, by
 ///
 /// `o(y) = k stagger 2 pi R / count + y tan(angle) + |y| tan(chevron) + bow (2 y / b)²`
 ///
 /// so that with positive `chevron` and `bow` the middle of a grouser enters the soil first, as on a tractor's tyre.
 ///
 /// # Validity
-/// A lane of the terrain meets a grouser where the middle of what they share is; where it shares less than its width, the grouser is
-/// as much thinner there, so that the area of all tips is right and does not depend on where a row ends between two lanes. Pressure
-/// acts along the wheel's radius, as on straight grousers: the sideways thrust of oblique flanks is a mesh's.
+/// A lane of the terrain meets a grouser at the middle of their overlap; if the overlap is narrower than the lane, the grouser is
+/// proportionally thinner there, so that the area of all tips is right and does not depend on the end of a row between two lanes.
+/// Pressure acts along the wheel's radius, as on straight grousers; the sideways thrust of oblique flanks needs a mesh.
 ///
 /// Checked by `spatial::tread`.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -29,20 +29,20 @@ pub struct Tread {
     pub grousers: Grousers,
     /// Number of rows, 1 to 100.
     pub rows: u32,
-    /// Shift of a row against the one before, relative to the pitch, in [0, 1) `[–]`.
+    /// Shift of a row against the preceding one, relative to the pitch, in [0, 1) `[–]`.
     pub stagger: f64,
-    /// Width of a row's grousers `[m]`, > 0; `None`: all that a row has, b / m.
+    /// Width of a row's grousers `[m]`, > 0; `None`: the whole width of a row, b / m.
     pub width_m: Option<f64>,
     /// Angle of the grousers against the axle, in (−π/2, π/2): positive, the side at greater y is further forward `[rad]`.
     pub angle_rad: f64,
     /// Angle of either half of the grousers against the axle, in (−π/2, π/2): positive, the middle enters the soil first `[rad]`.
     pub chevron_rad: f64,
-    /// How far forward of their middle the grousers' ends at the sides of the wheel lie on a parabola `[m]`.
+    /// Distance by which the grousers' ends at the sides of the wheel lie ahead of their middle, on a parabola `[m]`.
     pub bow_m: f64,
 }
 
 impl Tread {
-    /// Straight grousers across the whole width.
+    /// Creates straight grousers across the whole width.
     pub fn straight(grousers: Grousers) -> Self {
         Self {
             grousers,
@@ -55,13 +55,10 @@ impl Tread {
         }
     }
 
-    /// Checks the fields, without those of [`Tread::grousers`].
-    ///
-    /// # Errors
-    /// [`Rejection::InvalidParameter`] for the first field outside its bounds.
+    /// Checks the fields, except those of [`Tread::grousers`]; [`Rejection::InvalidParameter`] names the first outside its bounds.
     pub(super) fn checked(&self, wheel: &Wheel) -> Result<(), Rejection> {
         let rows = f64::from(self.rows);
-        let within = (1..=MOST_ROWS).contains(&self.rows);
+        let within = (1..=MAX_ROWS).contains(&self.rows);
         require(within, "grouser_rows", rows, "(count)", "between 1 and 100")?;
         let stagger = (0.0..1.0).contains(&self.stagger);
         let unit = "(dimensionless)";
@@ -73,9 +70,15 @@ impl Tread {
             "at least 0 and below 1",
         )?;
         if let Some(width) = self.width_m {
-            let most = wheel.width_m / rows * (1.0 + ROUNDING);
+            let max_width = wheel.width_m / rows * (1.0 + ROUNDING);
             let bound = "above 0, and at most the wheel's width over the number of rows";
-            require(width > 0.0 && width <= most, "grouser_width_m", width, "m", bound)?;
+            require(
+                width > 0.0 && width <= max_width,
+                "grouser_width_m",
+                width,
+                "m",
+                bound,
+            )?;
         }
         for (name, angle) in [
             ("grouser_angle_rad", self.angle_rad),
@@ -93,7 +96,7 @@ impl Tread {
         )
     }
 
-    /// Whether every grouser is a straight bar across the whole wheel.
+    /// Returns whether every grouser is a straight bar across the whole wheel.
     pub(super) fn is_straight(&self, wheel: &Wheel) -> bool {
         let bends = [self.angle_rad, self.chevron_rad, self.bow_m];
         let least = (1.0 - ROUNDING) * wheel.width_m;
@@ -105,7 +108,7 @@ impl Tread {
         one || self.grousers.count == 0
     }
 
-    /// Whether left mirrors right.
+    /// Returns whether left mirrors right.
     pub(super) fn is_symmetric(&self) -> bool {
         let rows = 0..self.rows;
         let alike = |row: u32| {
@@ -121,20 +124,20 @@ impl Tread {
         turns - libm::floor(turns)
     }
 
-    /// What the grousers of a row cover: from y to y on a wheel of a width `[m]`.
+    /// The range that the grousers of a row cover: from y to y on a wheel of a width `[m]`.
     pub(super) fn covers(&self, row: u32, width: f64) -> [f64; 2] {
-        let own = width / f64::from(self.rows);
-        let middle = (f64::from(row) + 0.5) * own - 0.5 * width;
-        let half = 0.5 * self.width_m.unwrap_or(own);
+        let each = width / f64::from(self.rows);
+        let middle = (f64::from(row) + 0.5) * each - 0.5 * width;
+        let half = 0.5 * self.width_m.unwrap_or(each);
         [middle - half, middle + half]
     }
 
-    /// How far forward a bend puts a grouser at y of a wheel of a width, without its row's shift `[m]`.
+    /// Distance by which a bend moves a grouser forward at y on a wheel of a width, without its row's shift `[m]`.
     pub(super) fn bend(&self, y: f64, width: f64) -> f64 {
         let end = 2.0 * y / width;
         y * libm::tan(self.angle_rad) + y.abs() * libm::tan(self.chevron_rad) + self.bow_m * end * end
     }
 }
 
-/// Relative difference that is only rounding.
+/// Relative difference that rounding can cause.
 const ROUNDING: f64 = 1e-9;

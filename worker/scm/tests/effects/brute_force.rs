@@ -1,4 +1,4 @@
-//! Effects whose figures nobody has published, and the way slid in skid, against the slow integrator.
+//! Effects without published figures, and the distance slid in skid, compared with the slow integrator.
 
 use scm::quasi_static;
 
@@ -6,7 +6,7 @@ use crate::brute_force::{Law, NONE, deviation_with};
 use crate::support::base;
 use crate::validation::effects::{SITE, with_effect};
 
-/// Effect, strength, value, and the same law for the integrator.
+/// Effect, strength, value, and the equivalent law of the integrator.
 const LAWS: [(&str, &str, f64, Law); 5] = [
     (
         "saturating_pressure",
@@ -67,7 +67,7 @@ fn laws_agree_with_the_brute_force_integrator_in_drive_and_skid() {
             let case = base(slip, 100.0, 30.0);
             let got = with_effect(&case, name, strength, value, &SITE);
             let deviation = deviation_with(&case, law, &got).expect("support");
-            // kinks of max() in a formula, and of |v_t| where the rim turns from slip to skid
+            // formulas with max() have kinks, and |v_t| has one where the rim changes from slip to skid
             assert!(
                 deviation.iter().all(|d| *d < 1e-4),
                 "{name} at slip {slip}: {deviation:?}"

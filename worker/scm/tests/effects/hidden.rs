@@ -1,4 +1,4 @@
-//! Noise-free runs of another implementation, with laws that the base does not have: `reference/*.csv`.
+//! Noise-free runs of another implementation, with laws that the base lacks: `reference/*.csv`.
 
 use formula::Effect;
 use formula::catalogue::find;

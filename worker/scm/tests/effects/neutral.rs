@@ -11,8 +11,8 @@ use crate::validation::effects::{SITE, values};
 
 /// The effects of the catalogue that the quasi-static model has.
 fn expressible() -> impl Iterator<Item = &'static Effect> + Clone {
-    let own = |effect: &&Effect| effect.mechanism != Some(Mechanism::SideWall);
-    catalogue().iter().filter(own)
+    let has_form = |effect: &&Effect| effect.mechanism != Some(Mechanism::SideWall);
+    catalogue().iter().filter(has_form)
 }
 
 #[test]
@@ -25,7 +25,7 @@ fn each_effect_at_neutral_strength_is_the_base() {
             let with =
                 quasi_static::simulate_with(&case.soil, &case.wheel, &case.condition, &mut active, &SITE);
             let without = quasi_static::simulate(&case.soil, &case.wheel, &case.condition);
-            // Debug output shows every number to the last bit
+            // the debug output shows every number to the last bit
             assert_eq!(format!("{with:?}"), format!("{without:?}"), "{}", effect.name);
         }
     }

@@ -1,4 +1,4 @@
-//! What the model cannot use of a formula.
+//! Values of formulas that the model cannot use.
 
 use formula::Effect;
 use formula::catalogue::find;
@@ -25,7 +25,7 @@ fn with_law(hook: &str, formula: &str, slip: f64) -> Result<Averages, Rejection>
 }
 
 #[test]
-fn what_is_no_number_names_the_effect_and_the_values() {
+fn a_value_that_is_no_number_is_refused_with_effect_and_values() {
     let rejection = with_law("pressure", "p * (z / 0 - z / 0)", 0.2).unwrap_err();
     assert_eq!(rejection.kind(), "formula");
     let message = rejection.to_string();
@@ -34,7 +34,7 @@ fn what_is_no_number_names_the_effect_and_the_values() {
             && message.contains("z = "),
         "{message}"
     );
-    // what is shown is what went in
+    // the message shows the inputs of the formula
     assert!(!message.contains("p = NaN"), "{message}");
 }
 
@@ -124,7 +124,7 @@ fn a_flattened_rim_has_a_balance_at_any_kappa() {
 
 #[test]
 fn jumps_of_a_law_leave_forces_continuous() {
-    // a step in depth, moved in small steps across the nodes of the quadrature
+    // a jump at a depth that moves in small steps across the nodes of the quadrature
     let pull = |depth: f64| {
         let run = with_law("pressure", &format!("if(z > {depth:.6}, 1.5 * p, p)"), 0.2).unwrap();
         assert!(run.residual_load_n.abs() < 1e-6, "{run:?}");
@@ -147,8 +147,8 @@ fn the_load_that_follows_the_pull_is_met() {
 
 #[test]
 fn channels_see_the_load_that_is_carried() {
-    let bearing = |others: &[(&str, &str, f64)]| {
-        let named = others
+    let bearing = |strengths: &[(&str, &str, f64)]| {
+        let named = strengths
             .iter()
             .chain(&[("bearing_friction", "friction_arm_m", 0.01)]);
         let (effects, given): (Vec<&Effect>, Vec<Vec<f64>>) = named
@@ -171,7 +171,7 @@ fn channels_see_the_load_that_is_carried() {
     };
     let (scaled, _) = bearing(&[("load_scale", "load_error", 0.2)]);
     assert!((scaled - 1.2).abs() < 1e-9, "{scaled}");
-    // the same where another effect asks for the pull, however little
+    // the result is unchanged if another effect depends on the pull, however weakly
     let (both, _) = bearing(&[
         ("load_scale", "load_error", 0.2),
         ("load_transfer", "transferred_share", 1e-9),

@@ -1,10 +1,10 @@
-//! What each effect of the catalogue changes.
+//! The change of a run by each effect of the catalogue.
 
 use crate::support::base;
 use crate::validation::{self, effects};
 
 #[test]
-fn effects_change_what_another_implementation_says() {
+fn effects_agree_with_another_implementation() {
     let rows = validation::rows(effects::add);
     let failed: Vec<_> = rows.iter().filter(|row| !row.passes()).collect();
     assert!(
@@ -17,7 +17,7 @@ fn effects_change_what_another_implementation_says() {
 
 #[test]
 fn the_peak_ahead_of_the_axle_sinks_the_wheel_as_wong_and_reece_have_it() {
-    // integrated by 4,000 strips in exact angles, apart from the model and its quadrature
+    // integrated by 4,000 strips in exact angles, without the model and its quadrature
     let (before, after) = ([51.324, 8.9712, 7.2286], [45.936, 8.9134, 8.3553]);
     let case = base(0.2, 150.0, 30.0);
     let plain = case.simulate();

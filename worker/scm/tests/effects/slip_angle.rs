@@ -1,4 +1,4 @@
-//! What formulas see of a slip angle, and the catalogue's effects at one.
+//! The slip variables of formulas at a slip angle, and the catalogue's effects there.
 
 use formula::Effect;
 use scm::effects::{CompiledEffects, ModelForm};
@@ -68,7 +68,7 @@ fn the_side_pushes_by_its_passive_resistance() {
     assert!((pushed.lateral_force_n - plain.lateral_force_n - expected).abs() < 1e-9);
     let mirrored = with(&at(0.2, -30.0), "side_bulldozing", "push_scale", 2.0);
     assert!((mirrored.lateral_force_n + pushed.lateral_force_n).abs() < 1e-9);
-    // longitudinal slip 0.307, below the turning slip of 0.7: it holds back, on either side
+    // longitudinal slip 0.307, below the turning slip of 0.7: the side resists, on either side
     let drag = 2.0 * wall * 0.5 * (0.7 - (1.0 - 0.8 * 0.75_f64.sqrt()));
     for degrees in [30.0, -30.0] {
         let dragged = with(&at(0.2, degrees), "side_drag", "drag_scale", 2.0);
@@ -78,26 +78,29 @@ fn the_side_pushes_by_its_passive_resistance() {
 
 #[test]
 fn exponents_follow_skid_and_slip_angle() {
-    let equivalent = |case: &Case, more: f64| {
+    let equivalent = |case: &Case, added_exponent: f64| {
         let mut case = *case;
-        case.soil.n += more;
+        case.soil.n += added_exponent;
         case.simulate()
     };
-    for (name, strength, case, more) in [
+    for (name, strength, case, added_exponent) in [
         (
             "lateral_slip_sinkage",
             "lateral_exponent",
             at(0.2, 60.0),
             0.4 * 0.5,
         ),
-        // a skid of 0.6 is above the turning skid of 0.5, one of 0.2 below it, and driving is none
+        // a skid of 0.6 is above the turning skid of 0.5, one of 0.2 below it, and driving is no skid
         ("skid_sinkage", "exponent_per_skid", at(-0.6, 0.0), 0.4 * 0.06),
         ("skid_sinkage", "exponent_per_skid", at(-0.2, 0.0), -0.4 * 0.06),
         ("skid_sinkage", "exponent_per_skid", at(0.2, 0.0), 0.0),
-        // the part along the heading
+        // only the part along the heading counts
         ("slip_sinkage", "exponent_per_slip", at(0.2, 60.0), 0.4 * 0.1),
     ] {
-        let (got, expected) = (with(&case, name, strength, 0.4), equivalent(&case, more));
+        let (got, expected) = (
+            with(&case, name, strength, 0.4),
+            equivalent(&case, added_exponent),
+        );
         assert!(
             (got.sinkage_m - expected.sinkage_m).abs() < 1e-9,
             "{name} at slip {}: {} for {}",
@@ -110,7 +113,7 @@ fn exponents_follow_skid_and_slip_angle() {
 
 #[test]
 fn stretched_mobilisation_starts_faster_and_ends_slower() {
-    // shear displacement stays below the modulus at a small slip and passes it at a large one
+    // shear displacement stays below the modulus at a small slip and exceeds it at a large one
     let pull = |name: &str, slip: f64, modulus: f64| {
         with(&at(slip, 0.0), name, "shear_modulus_m", modulus).drawbar_pull_n
     };

@@ -1,4 +1,4 @@
-//! Negative cohesive moduli: down to which kappa a wheel finds a balance.
+//! Negative cohesive moduli: the lowest kappa at which a wheel finds a balance.
 //!
 //! The plates of `examples/cmu-sand` give kappa = `k_c / (k_phi b_ref)` = −0.66 ± 0.03. The modulus k* of a footprint is positive
 //! from `b_eff = −kappa b_ref` on: 19.8 mm at −0.66, 28.5 mm at −0.95.
@@ -8,11 +8,11 @@ use crate::support::base;
 use scm::Wheel;
 use scm::spatial::{Footprint, Grousers, Shape};
 
-/// Hundredths of kappa.
+/// Values of kappa in hundredths.
 const KAPPAS: [i32; 7] = [0, -30, -40, -50, -66, -80, -95];
 
-/// Grousers (count, height), share that flows, and the last of [`KAPPAS`] with a balance at slip 0.05 and 0.4: by the hull, and patch by
-/// patch.
+/// Grousers (count, height), share that flows, and the last of [`KAPPAS`] with a balance at slip 0.05 and 0.4: with the
+/// hull, and with patches.
 type Limits = (u32, f64, f64, i32, i32);
 
 /// A wheel of 125 mm by 112 mm under 100 N, on sand of 36 kPa at 10 mm.
@@ -55,7 +55,7 @@ fn narrow() -> Track {
     Track::with_grousers(case)
 }
 
-/// The last kappa down to which a wheel finds a balance at both slips, of sand of a pressure `[log10 Pa]`.
+/// The last kappa at which a wheel finds a balance at both slips, on sand of a reference pressure `[log10 Pa]`.
 fn limit(wheel: &Track, log10_p_ref: f64, footprint: Footprint) -> Option<i32> {
     let balanced = |kappa: i32| {
         [0.05, 0.4].into_iter().all(|slip| {
@@ -87,9 +87,9 @@ fn compare(wheel: &Track, log10_p_ref: f64, table: &[Limits]) {
             thickness_m: 0.002,
         });
         track.ground.flow_fraction = flow_fraction;
-        let found = [Footprint::Hull, Footprint::Patches].map(|f| limit(&track, log10_p_ref, f));
-        if found != [Some(by_hull), Some(by_patches)] {
-            wrong.push((count, height_m, flow_fraction, found));
+        let limits = [Footprint::Hull, Footprint::Patches].map(|f| limit(&track, log10_p_ref, f));
+        if limits != [Some(by_hull), Some(by_patches)] {
+            wrong.push((count, height_m, flow_fraction, limits));
         }
     }
     assert!(wrong.is_empty(), "{wrong:?}");

@@ -1,14 +1,14 @@
-//! Which choices the figures of another implementation depend on.
+//! The choices that determine the figures of another implementation.
 
 use crate::scene::Track;
 use crate::validation::other_implementation::track;
 use scm::spatial::{Displacement, PressureDirection};
 
-/// Differences of drawbar pull `[N]`, torque \[N m\] and sinkage `[mm]` that a change of the comparison's track makes.
-fn change(of: fn(&mut Track)) -> [f64; 3] {
+/// Differences of drawbar pull `[N]`, torque \[N m\] and sinkage `[mm]` by a change of the comparison's track.
+fn change(modify: fn(&mut Track)) -> [f64; 3] {
     let before = track(0.005).averages();
     let mut changed = track(0.005);
-    of(&mut changed);
+    modify(&mut changed);
     let after = changed.averages();
     [
         after.drawbar_pull_n - before.drawbar_pull_n,
@@ -19,7 +19,7 @@ fn change(of: fn(&mut Track)) -> [f64; 3] {
 
 #[test]
 fn pressure_along_the_wheels_normal_adds_the_compaction_resistance() {
-    // R_c = b k z^(n+1)/(n+1) = 16 N at 15 mm, less what the shear's lift saves: it carries some of the load
+    // R_c = b k z^(n+1)/(n+1) = 16 N at 15 mm, less the part that the lift of the shear saves, because it carries some of the load
     let [pull, _, sinkage] =
         change(|track| track.settings.pressure_direction = PressureDirection::WheelNormal);
     assert!(pull < -5.0 && sinkage < -0.2, "{pull} {sinkage}");

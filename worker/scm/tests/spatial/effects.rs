@@ -1,4 +1,4 @@
-//! Effects enter the wheel in three dimensions: none of them, formulas, mechanisms, what is measured, refusals.
+//! Effects on the wheel in three dimensions: neutral effects, formulas, mechanisms, measured channels, refusals.
 
 use super::surfaces::{Surface, across};
 use crate::scene::{Track, smooth};
@@ -7,7 +7,7 @@ use formula::Effect;
 use scm::Rejection;
 use scm::spatial::{Displacement, Grousers, Protocol, Shape, SpatialRun};
 
-/// An effect of one parameter `a`, without a unit, with these formulas.
+/// An effect with one dimensionless parameter `a` and these formulas.
 fn effect(formulas: &str) -> Effect {
     let text = format!(
         "name = \"trial\"\nsummary = \"for a test\"\nsource = \"none\"\n{formulas}\n\
@@ -35,7 +35,7 @@ fn short_with_grousers() -> Track {
     short(Track::with_grousers(base(0.2, 100.0, 30.0)))
 }
 
-/// A smooth wheel of 45 facets, the lanes of which a model keeps apart.
+/// A smooth wheel of 45 facets, a model of which keeps lanes apart.
 fn short_mesh() -> Track {
     let mut track = short_smooth();
     track.shape = Shape::from(Surface::default().rim(0.125, 45, &across(0.112, 14), |_| 1.0).0);
@@ -53,10 +53,12 @@ fn rejection(track: &Track) -> Rejection {
 fn difference(a: &SpatialRun, b: &SpatialRun) -> f64 {
     assert_eq!(a.history.len(), b.history.len());
     let channels = a.history.channels().into_iter().zip(b.history.channels());
-    channels.fold(0.0_f64, |most, (a, b)| {
-        let scale = a.iter().fold(f64::MIN_POSITIVE, |most, x| most.max(x.abs()));
+    channels.fold(0.0_f64, |largest, (a, b)| {
+        let scale = a
+            .iter()
+            .fold(f64::MIN_POSITIVE, |largest, x| largest.max(x.abs()));
         let differences = a.iter().zip(b).map(|(a, b)| (a - b).abs() / scale);
-        most.max(differences.fold(0.0, f64::max))
+        largest.max(differences.fold(0.0, f64::max))
     })
 }
 
@@ -72,7 +74,7 @@ fn neutral_effects_are_none_bit_for_bit() {
     }
 }
 
-/// Strengths at their neutral values, the rest where it is typical.
+/// Strengths at their neutral values, other parameters at typical values.
 fn neutral(effect: &Effect) -> Vec<f64> {
     let typical = typical(effect);
     let values = effect.parameters.iter().zip(typical);
@@ -92,8 +94,8 @@ pub(super) fn typical(effect: &Effect) -> Vec<f64> {
 }
 
 #[test]
-fn formulas_of_the_bases_own_laws_give_the_base() {
-    // by the last formula alone the stress is only scaled; with the others it is computed at every trial height
+fn formulas_equal_to_the_base_laws_give_the_base() {
+    // the last formula alone only scales the stress; all together it is computed at every trial height
     let all = "pressure = \"p * (1 + a) / 2\"\nshear_limit = \"(cohesion_pa + p * tan(friction_angle_rad)) * a\"\n\
                shear = \"tau_max * (1 - exp(-v_t / 0.001)) * a\"";
     for formulas in ["shear = \"tau * (1 - exp(-v_t / 0.001)) * a\"", all] {
@@ -101,7 +103,7 @@ fn formulas_of_the_bases_own_laws_give_the_base() {
             for slip_angle_deg in [0.0_f64, 10.0] {
                 for track in [short_smooth(), short_with_grousers(), short_mesh()] {
                     let mut track = track;
-                    // so fine that the contact, which v0 lengthens a little, does not refine it
+                    // fine enough that the contact, which v0 lengthens slightly, does not refine it
                     track.settings.dem_spacing_m = 0.004;
                     track.case.soil.k_c = k_c;
                     track.case.soil.cohesion_pa = 200.0;
@@ -137,7 +139,7 @@ fn a_stress_scaled_once_is_the_stress_scaled_at_every_height() {
 
 #[test]
 fn formulas_see_the_nodes_they_stand_for() {
-    // as rules that each variable must keep at every node that bears: what breaks one is no number, and refused
+    // each formula is a rule for a variable at every loaded node: a violation gives NaN and is refused
     for rule in [
         "position >= 0 and position <= 1",
         "z > 0 and z < 0.05",
@@ -166,7 +168,7 @@ fn formulas_see_the_nodes_they_stand_for() {
 }
 
 #[test]
-fn a_value_that_cannot_be_used_is_refused_by_name_and_with_what_led_to_it() {
+fn an_inadmissible_value_is_refused_with_its_name_and_inputs() {
     for (formulas, quantity) in [
         ("pressure = \"p * log(-a)\"", "pressure is NaN Pa"),
         ("shear_limit = \"tau_max - a * 1e6\"", "shear_limit is -"),
@@ -203,21 +205,21 @@ fn a_load_that_follows_the_pull_is_the_one_that_is_carried() {
     assert!(surplus.abs() < 1.5, "the nominal one at first: {}", loads[0]);
     for step in 1..loads.len() {
         let expected = 100.0 - 0.15 * pulls[step - 1];
-        // what steps miss, 1.5 % at most, does not add up
+        // the residuals of steps, 1.5 % at most, do not accumulate
         surplus += loads[step] - expected;
         assert!(surplus.abs() < 1.5, "{step}: {}, {surplus} so far", loads[step]);
     }
 }
 
 #[test]
-fn what_is_measured_is_in_histories_and_averages_and_nowhere_else() {
+fn measured_channels_enter_only_histories_and_averages() {
     let track = smooth(0.2, 100.0, 30.0);
     let base = track.roll();
     let mut measured = track.clone();
     measured.enter(catalogue("sled_tare"), &[3.0]);
     measured.enter(catalogue("torque_gain"), &[0.05]);
     measured.enter(catalogue("sinkage_offset"), &[0.002]);
-    // a sensor so far off that the soil would seem to give power
+    // a sensor error so large that the soil would seem to give power
     measured.enter(catalogue("drawbar_pull_gain"), &[1.0]);
     let run = measured.roll();
     assert!((run.dissipated_power_w / base.dissipated_power_w - 1.0).abs() < 0.02);
@@ -246,7 +248,7 @@ fn a_flattened_rim_is_as_long_as_its_chord_and_a_mesh_has_none() {
     let rigid = track.averages();
     track.enter(catalogue("wheel_flexibility"), &[5e-5]);
     let flat = track.averages();
-    // half a chord of a circle of 125 mm cut off by 5 mm is 35 mm long
+    // half the chord of a circle of 125 mm cut off by 5 mm is 35 mm long
     assert!(flat.contact_length_m > 0.035, "{flat:?}");
     assert!(flat.sinkage_m < 0.5 * rigid.sinkage_m, "{flat:?}");
     track.shape = short_mesh().shape;
@@ -311,7 +313,7 @@ fn soil_is_stiffer_near_the_ends_of_its_bin() {
     );
     track.site.bin_length_m = Some(0.95);
     let walls = track.roll().history;
-    // of the settled wheel: less sinkage at either end than in the middle
+    // the settled wheel sinks less at either end than in the middle
     let lifted = |place: f64| {
         let step = (place * (base.len() - 1) as f64) as usize;
         base.sinkage_m[step] - walls.sinkage_m[step]
@@ -330,7 +332,7 @@ fn soil_is_stiffer_near_the_ends_of_its_bin() {
 }
 
 #[test]
-fn every_pass_is_told_to_the_formulas() {
+fn formulas_see_the_number_of_every_pass() {
     let mut track = smooth(0.2, 100.0, 30.0);
     track.case.condition.pass = 2;
     track.settings.protocol = Protocol::Steady {
@@ -390,8 +392,8 @@ fn formulas_see_the_slip_across_the_heading() {
 }
 
 #[test]
-fn an_offset_of_what_is_measured_moves_no_soil() {
-    // 10 degrees of slip angle, a light load: settles late
+fn a_measurement_offset_moves_no_soil() {
+    // 10 degrees of slip angle and a light load settle late
     let mut track = crate::scene::smooth(0.4, 60.0, 30.0);
     track.case.condition.slip_angle_rad = 10_f64.to_radians();
     let without = track.roll().averages;

@@ -12,7 +12,7 @@ fn hard_ground_is_resolved_by_eight_nodes_along_the_travel() {
     let lanes = 28;
     assert!(paper.contact_length_m < 0.0045, "{paper:?}");
     assert!(got.nodes_in_contact >= 8 * lanes, "{got:?}");
-    // The soil unloads at 1e9 Pa/m: a contact as stiff as itself, longer than the rigid-plastic one, and little resistance.
+    // The soil unloads at 1e9 Pa/m, as stiff as it loads: a contact longer than the rigid-plastic one, and little resistance.
     assert!(got.contact_length_m > paper.contact_length_m, "{got:?}");
     assert!(
         (got.drawbar_pull_n - paper.drawbar_pull_n).abs() < 3.0,
@@ -26,7 +26,7 @@ fn hard_ground_is_resolved_by_eight_nodes_along_the_travel() {
 
 #[test]
 fn hard_soil_needs_no_finer_grid_than_its_elastic_layer() {
-    // n 0.8: without the layer a smooth wheel would touch this soil over 0.7 mm
+    // with n = 0.8 and without the layer, a smooth wheel would touch this soil over 0.7 mm
     for grousers in [false, true] {
         let mut track = smooth(0.2, 100.0, 30.0);
         (track.case.soil.k_phi, track.case.soil.n) = (1e10, 0.8);
@@ -34,7 +34,7 @@ fn hard_soil_needs_no_finer_grid_than_its_elastic_layer() {
             track = Track::with_grousers(track.case);
         }
         let mut finer = track.clone();
-        finer.settings.dem_spacing_m = 0.9e-3; // the finest for this width
+        finer.settings.dem_spacing_m = 0.9e-3; // the finest grid for this width
         let (got, fine) = (track.averages(), finer.averages());
         let off = [
             (got.drawbar_pull_n - fine.drawbar_pull_n).abs() / 0.1,
@@ -51,7 +51,7 @@ fn a_wheel_sunk_to_three_quarters_of_its_radius_agrees_with_the_quasi_static_one
         let mut track = smooth(0.2, 100.0, 30.0);
         track.case.soil.k_phi = k_phi;
         let (got, paper) = (track.averages(), track.case.simulate());
-        // so soft a soil hardly rebounds: closer than at 1e7
+        // such soft soil hardly rebounds: the agreement is closer than at 1e7
         assert!(
             (got.drawbar_pull_n - paper.drawbar_pull_n).abs() < 0.5,
             "{got:?} {paper:?}"
@@ -92,7 +92,7 @@ fn cohesive_modulus_acts_through_the_contour() {
 
 #[test]
 fn forces_depend_on_speed_by_the_slip_velocity_alone() {
-    // a hundred times slower over soil of a reference velocity a hundred times less
+    // a hundred times slower, on soil with a hundredth of the reference velocity
     for track in [
         smooth(0.2, 100.0, 30.0),
         Track::with_grousers(base(0.2, 100.0, 30.0)),
@@ -132,7 +132,7 @@ fn a_locked_wheel_with_grousers_is_dragged() {
     let run = track.roll();
     let got = run.averages;
     assert!(got.drawbar_pull_n < -60.0 && got.torque_n_m < -7.0, "{got:?}");
-    // nothing turns, so nothing swings once the wheel is in its rut
+    // nothing turns, so nothing oscillates once the wheel is in its rut
     let last = &run.history.sinkage_m[run.history.len() / 2..];
     let (low, high) = last
         .iter()
@@ -152,7 +152,7 @@ fn hard_ground_under_a_wheel_that_does_not_slip_takes_no_power_and_is_no_gain() 
         "{} W",
         run.dissipated_power_w
     );
-    // nor does soil that only unloads, under a wheel without friction
+    // soil that only unloads takes no power either, under a wheel without friction
     let mut track = smooth(0.2, 40.0, 0.0);
     (track.case.soil.n, track.case.soil.gamma_exponent) = (0.5, 0.0);
     let run = track.roll();
@@ -165,7 +165,7 @@ fn hard_ground_under_a_wheel_that_does_not_slip_takes_no_power_and_is_no_gain() 
 
 #[test]
 fn a_wheel_pushed_sideways_meets_new_soil() {
-    // Without its drift it would stay on what it pressed when it was lowered, at 3.7 mm.
+    // Without drift the wheel would stay on the soil pressed when it was lowered, at 3.7 mm.
     let mut track = smooth(0.2, 100.0, 30.0);
     track.case.condition.slip_angle_rad = 1.5;
     let (got, paper) = (track.averages(), track.case.simulate());
@@ -177,7 +177,7 @@ fn a_wheel_pushed_sideways_meets_new_soil() {
         (got.lateral_force_n - paper.lateral_force_n).abs() < 1.0,
         "{got:?} {paper:?}"
     );
-    // the other way round the same
+    // the opposite angle gives the same
     track.case.condition.slip_angle_rad = -1.5;
     assert!((got.lateral_force_n + track.averages().lateral_force_n).abs() < 0.5);
 }

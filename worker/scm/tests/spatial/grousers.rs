@@ -1,4 +1,4 @@
-//! What grousers change.
+//! The effect of grousers.
 
 use crate::scene::{Track, smooth};
 use crate::support::base;
@@ -34,7 +34,7 @@ fn means_with_grousers_are_near_those_of_the_smooth_wheel() {
     patches.settings.footprint = Footprint::Patches;
     let patches = patches.averages();
     assert!(patches.b_eff_m < 0.8 * bare.b_eff_m, "{patches:?} {bare:?}");
-    // without k_c the difference is one of words
+    // without k_c both are equal
     assert_eq!(patches.sinkage_m.to_bits(), got.sinkage_m.to_bits());
     assert_eq!(patches.drawbar_pull_n.to_bits(), got.drawbar_pull_n.to_bits());
 }
@@ -46,7 +46,7 @@ fn grousers_sink_the_deeper_the_more_they_slip() {
         sinkages[1] > 1.1 * sinkages[0] && sinkages[2] > 1.3 * sinkages[1],
         "{sinkages:?}"
     );
-    // the smooth wheel does not
+    // the smooth wheel does not sink deeper with slip
     let smooth = [0.2, 0.6].map(|slip| smooth(slip, 100.0, 30.0).averages().sinkage_m);
     assert!((smooth[1] / smooth[0] - 1.0).abs() < 0.01, "{smooth:?}");
 }
@@ -62,7 +62,7 @@ fn vanishing_grousers_leave_the_smooth_wheel() {
     let low = track.averages();
     track.shape = Shape::Rim(Grousers::default());
     let none = track.averages();
-    // 0.01 mm of height press 0.01 mm deeper: 0.3 N of 28 N/mm
+    // 0.01 mm of height press 0.01 mm deeper: 0.3 N at 28 N/mm
     assert!(
         (low.drawbar_pull_n - none.drawbar_pull_n).abs() < 0.5,
         "{low:?} {none:?}"

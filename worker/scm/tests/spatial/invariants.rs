@@ -1,4 +1,4 @@
-//! What must hold whatever the parameters.
+//! Invariants that hold for all parameters.
 
 use crate::scene::Track;
 use crate::support::Draws;
@@ -7,7 +7,7 @@ use scm::spatial::{Displacement, Grousers, Protocol, Shape};
 
 const RUNS: u64 = 120;
 
-/// A random case: half of them with grousers, a third with a displacement law, soil that flows more or less.
+/// A random case: half of them with grousers, a third with a displacement law, with a random flow of soil.
 fn random(seed: u64) -> Track {
     let mut draws = Draws(seed);
     let case = draws.case();
@@ -45,11 +45,11 @@ fn random_cases_put_power_into_the_soil_carry_the_load_and_are_finite() {
         let load = track.case.condition.wheel_load_n;
         let run = match track.try_roll() {
             Ok(run) => run,
-            Err(Rejection::NoSupport { most_carried_n, .. }) => {
-                assert!(most_carried_n < load, "{most_carried_n}: {track:?}");
+            Err(Rejection::NoSupport { max_carried_n, .. }) => {
+                assert!(max_carried_n < load, "{max_carried_n}: {track:?}");
                 continue;
             }
-            // Where patches join, the load jumps; with a negative k_c it does so as k* passes through zero.
+            // The load jumps where patches join, and with a negative k_c where k* is zero.
             Err(Rejection::NoConvergence { .. }) => {
                 jumps += u64::from(track.case.soil.k_c >= 0.0);
                 continue;

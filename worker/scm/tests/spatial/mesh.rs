@@ -1,4 +1,4 @@
-//! A wheel of triangles is the wheel that the triangles describe.
+//! A wheel of triangles agrees with the wheel that the triangles describe.
 
 use super::surfaces::{Surface, across};
 use crate::support::{Case, base};
@@ -27,7 +27,7 @@ fn roll(case: &Case, shape: &Shape, settings: RunSettings) -> SpatialRun {
     simulate(&scene, &case.condition, &settings).unwrap_or_else(|rejection| panic!("{rejection}"))
 }
 
-/// A window of 0.3 m behind a transient of 0.2 m.
+/// A window of 0.3 m after a transient of 0.2 m.
 fn fixed(case: &Case) -> RunSettings {
     let second = 1.0 / case.condition.sled_speed_m_s;
     RunSettings {
@@ -89,11 +89,11 @@ fn a_faceted_cylinder_is_the_analytic_rim_to_second_order_in_its_facets() {
             let got = roll(&case, &mesh(cylinder(facets), normals), settings);
             let [f, t, z] = differences(&case, &got, &expected);
             println!("{normals:?}, {facets} facets: F {f:+.5} W, T {t:+.5} W R, z {z:+.5} z");
-            // chords lie above the arc: by R (π/N)²/3 on average, 0.2 mm of 5 mm for 45 of them
+            // chords lie above the arc by R (π/N)²/3 on average, 0.2 mm of 5 mm for 45 facets
             let bound = 0.05 * (45.0 / f64::from(facets)).powi(2) + 0.002;
             assert!(f.abs() < 0.002 && (facets < 180 || z.abs() < 0.004));
             assert!(t.abs() < 0.04 * bound + 5e-4 && z.abs() < bound);
-            // with more facets what is left, 0.3 %, is the grid's
+            // with more facets the remaining 0.3 % come from the grid
             if let Some(before) = last.filter(|_| facets <= 90) {
                 assert!(before / z > 3.0, "{before} {z}");
             }
@@ -138,12 +138,12 @@ fn boxes_on_a_rim_are_the_analytic_grousers_but_for_the_thrust_of_their_flanks()
             normals,
         };
         let got = roll(&case, &shape(Normals::Radial), settings);
-        let found = differences(&case, &got, &expected);
-        println!("{dem_spacing_m} m, radial: {found:.5?}");
-        for (difference, bound) in found.into_iter().zip(bounds) {
-            assert!(difference.abs() < bound, "{found:?}");
+        let deviations = differences(&case, &got, &expected);
+        println!("{dem_spacing_m} m, radial: {deviations:.5?}");
+        for (difference, bound) in deviations.into_iter().zip(bounds) {
+            assert!(difference.abs() < bound, "{deviations:?}");
         }
-        // the rearward flank of a grouser pushes the wheel on; the analytic wheel has radial normals there
+        // the rear flank of a grouser pushes the wheel forward; the analytic wheel has radial normals there
         let got = roll(&case, &shape(Normals::Surface), settings);
         let [f, t, z] = differences(&case, &got, &expected);
         println!("{dem_spacing_m} m, surface: F {f:+.5} W, T {t:+.5} W R, z {z:+.5} z");
@@ -183,13 +183,13 @@ fn a_symmetric_mesh_feels_no_lateral_force_and_half_of_it_stands_for_both() {
     };
     let shape = Shape::from(barrel());
     let (halved, got) = (roll(&case, &shape, half), roll(&case, &shape, whole));
-    let most = got
+    let largest = got
         .history
         .lateral_force_n
         .iter()
-        .fold(0.0_f64, |most, f| most.max(f.abs()));
-    println!("largest lateral force {most:e} N");
-    assert!(most < 1e-9 * case.condition.wheel_load_n, "{most:e} N");
+        .fold(0.0_f64, |largest, f| largest.max(f.abs()));
+    println!("largest lateral force {largest:e} N");
+    assert!(largest < 1e-9 * case.condition.wheel_load_n, "{largest:e} N");
     let [f, t, z] = differences(&case, &halved, &got);
     println!("half: F {f:+.2e} W, T {t:+.2e} W R, z {z:+.2e} z");
     assert!(f.abs() < 1e-9 && t.abs() < 1e-9 && z.abs() < 1e-9);

@@ -2,16 +2,15 @@
 //!
 //! # Layout
 //! - `oracles`: every row of the validation table.
-//! - `invariants`: what must hold whatever the parameters.
+//! - `invariants`: invariants that hold for all parameters.
 //! - `symmetry`: left and right, the mirrored half, the start on the grid.
-//! - `grousers`, `passes`, `extremes`: what memory and shape of the soil do.
-//! - `protocol`, `vertical`: ways to run and average; `steady`: when a run has settled.
-//! - `mesh`: triangles against the analytic wheel; `surfaces`: the triangles.
-//! - `tread`: grousers in rows, oblique and bent, against straight ones and triangles.
+//! - `grousers`, `passes`, `extremes`: effects of the soil's memory and shape.
+//! - `protocol`, `vertical`: ways to run and average; `steady`: the time when a run has settled.
+//! - `mesh`: triangles compared with the analytic wheel; `surfaces`: the triangles.
+//! - `tread`: grousers in rows, oblique and bent, compared with straight ones and triangles.
 //! - `comparison`: the choices behind the figures of another implementation.
-//! - `cohesion`: down to which kappa a wheel finds a balance; `rejections`: parameters without an answer.
-//! - `effects`: how effects enter; `signatures`: what each of them changes; `side_wall`: one that needs
-//!   a slip angle.
+//! - `cohesion`: the lowest kappa with a balance; `rejections`: parameters without an answer.
+//! - `effects`: effects on a run; `signatures`: the change by each of them; `side_wall`: an effect that needs a slip angle.
 
 mod cohesion;
 mod comparison;

@@ -1,4 +1,4 @@
-//! What a wheel finds in its own rut.
+//! The wheel in its own rut.
 
 use crate::scene::{Track, smooth};
 use crate::support::base;
@@ -29,7 +29,7 @@ fn every_pass_deepens_the_rut_by_less_than_the_one_before() {
             .windows(2)
             .map(|pair| pair[1].sinkage_m - pair[0].sinkage_m)
             .collect();
-        // the second pass meets soil that the first has pressed: nothing like the first sinkage again
+        // the second pass meets soil that the first has pressed: its sinkage is far smaller
         assert!(deeper[0] < 0.5 * passes[0].sinkage_m, "{deeper:?}");
         assert!(deeper.iter().all(|&d| d > 1e-4), "{deeper:?}");
         assert!(deeper[1] < deeper[0] && deeper[2] < deeper[1], "{deeper:?}");
@@ -49,7 +49,7 @@ fn a_wheel_in_its_rut_pulls_more_for_it_compacts_less() {
                 .all(|pair| pair[1].drawbar_pull_n > pair[0].drawbar_pull_n),
             "{passes:?}"
         );
-        // never more than all strength over the load
+        // at most the full strength over the load
         assert!(passes[3].drawbar_pull_n < 100.0 * 30_f64.to_radians().tan());
         assert!(
             passes[3].contact_length_m < 0.7 * passes[0].contact_length_m,
@@ -65,7 +65,7 @@ fn a_displacement_law_starts_anew_in_every_pass() {
         track.enter_displacement_law(0.01);
         track.settings.displacement = keeper;
         let passes = passes(track);
-        // The contact is shorter, so less is mobilised. Without forgetting, a node's strength would be all there.
+        // The contact is shorter, so less is mobilised. Without the reset, a node's strength would be fully mobilised.
         assert!(passes[1].torque_n_m < passes[0].torque_n_m, "{passes:?}");
     }
 }

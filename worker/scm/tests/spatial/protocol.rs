@@ -1,4 +1,4 @@
-//! When a run ends, and what it is averaged over.
+//! The end of a run, and its averaged part.
 
 use crate::scene::{Track, smooth};
 use crate::support::base;
@@ -20,7 +20,7 @@ fn a_settled_run_has_the_means_of_a_long_one() {
         let got = steady.averages;
         assert!(settled_to <= 0.005, "{settled_to}");
         assert!(got.simulated_travel_m < 0.5, "{got:?}");
-        // windows that agree to 0.5 % may stand as far from where they tend to
+        // windows that agree to 0.5 % may be as far from their limit
         assert!(
             (got.drawbar_pull_n - long.drawbar_pull_n).abs() < 0.5,
             "{got:?} {long:?}"
@@ -37,7 +37,7 @@ fn a_settled_run_has_the_means_of_a_long_one() {
 }
 
 #[test]
-fn a_run_that_cannot_settle_says_so() {
+fn a_run_that_cannot_settle_is_reported() {
     let mut track = Track::with_grousers(base(0.2, 100.0, 30.0));
     track.settings.protocol = Protocol::Steady {
         tolerance: 1e-9,
@@ -61,7 +61,7 @@ fn a_run_that_cannot_settle_says_so() {
         run.settled_to
     );
     assert!(run.averages.simulated_travel_m > 0.099, "{:?}", run.averages);
-    // too short for a window of a column
+    // too short for a window of one column
     track.settings.protocol = Protocol::Steady {
         tolerance: 0.005,
         most_travel_m: 0.002,
@@ -74,7 +74,7 @@ fn a_run_that_cannot_settle_says_so() {
 }
 
 #[test]
-fn what_is_left_of_the_travel_does_not_move_the_averages() {
+fn the_remaining_travel_does_not_change_the_averages() {
     let sinkages = [0.30, 0.31, 0.32, 0.33, 0.34, 0.35, 0.36].map(|most_travel_m| {
         let mut track = Track::with_grousers(base(0.2, 100.0, 30.0));
         track.settings.protocol = Protocol::Steady {
@@ -83,10 +83,10 @@ fn what_is_left_of_the_travel_does_not_move_the_averages() {
         };
         track.averages().sinkage_m
     });
-    // 1 %: means of one period after another differ by that
+    // means of successive periods differ by 1 %
     let least = sinkages.iter().copied().fold(f64::MAX, f64::min);
-    let most = sinkages.iter().copied().fold(0.0, f64::max);
-    assert!(most / least < 1.01, "{sinkages:?}");
+    let greatest = sinkages.iter().copied().fold(0.0, f64::max);
+    assert!(greatest / least < 1.01, "{sinkages:?}");
 }
 
 #[test]
@@ -125,7 +125,7 @@ fn transients_are_cut() {
     let track = smooth(0.2, 100.0, 30.0);
     let cut = track.clone().for_a_travel_of(0.2, 0.1).averages();
     let whole = track.for_a_travel_of(0.2, 0.2).averages();
-    // a lowered wheel bears on both halves of its contact and sinks to 3.7 mm only
+    // both halves of the contact carry a lowered wheel, which sinks only 3.7 mm
     assert!(whole.sinkage_m < 0.98 * cut.sinkage_m, "{whole:?} {cut:?}");
 }
 
@@ -145,13 +145,13 @@ fn histories_hold_every_step_and_their_means_are_the_averages() {
         .copied()
         .collect();
     let mean = last.iter().sum::<f64>() / last.len() as f64;
-    // averages are of samples at 10 Hz, whole ones
+    // averages use whole samples at 10 Hz
     assert!(
         (mean - run.averages.drawbar_pull_n).abs() < 0.05,
         "{mean} {:?}",
         run.averages
     );
-    // every step carries the load to the search's 1.5 %, and what it missed is made up for by the next: it never adds up
+    // every step carries the load to the search's 1.5 %, and the next step compensates the residual, so it never accumulates
     let load = &run.history.wheel_load_n;
     assert!(load.iter().all(|w| (w - 100.0).abs() < 3.0));
     let mut surplus = 0.0;

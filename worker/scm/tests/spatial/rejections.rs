@@ -1,4 +1,4 @@
-//! Parameters without an answer, and those that no wheel, soil or grid can have.
+//! Parameters without an answer, and impossible wheels, soils and grids.
 
 use crate::scene::{Track, smooth};
 use scm::spatial::{Grousers, Protocol, Shape, Vertical};
@@ -11,17 +11,17 @@ fn rejection(track: &Track) -> scm::Rejection {
 fn too_soft_a_soil_gives_no_support_and_names_the_most_it_carries() {
     let mut track = smooth(0.2, 100.0, 30.0);
     track.case.soil.k_phi = 1e4;
-    let scm::Rejection::NoSupport { most_carried_n, .. } = rejection(&track) else {
+    let scm::Rejection::NoSupport { max_carried_n, .. } = rejection(&track) else {
         panic!("{}", rejection(&track))
     };
-    // the number is true for the lowered wheel: a little less than that is carried
-    track.case.condition.wheel_load_n = 0.9 * most_carried_n;
+    // the number is correct for the lowered wheel: a slightly smaller load is carried
+    track.case.condition.wheel_load_n = 0.9 * max_carried_n;
     let lowered = track.clone().for_a_travel_of(0.1, 0.05).try_roll();
     assert!(
         lowered.is_ok_and(|run| run.history.sinkage_m[0] > 0.08),
-        "{most_carried_n}"
+        "{max_carried_n}"
     );
-    // a negative cohesive modulus that no footprint on this width outgrows
+    // a negative cohesive modulus for which no footprint of this width has support
     let mut track = smooth(0.2, 100.0, 30.0);
     track.case.soil.k_c = -0.113 * track.case.soil.k_phi;
     assert_eq!(rejection(&track).kind(), "no_support");
@@ -134,7 +134,7 @@ fn a_wheel_of_more_lanes_than_can_be_kept_apart_is_refused_and_the_bound_is_true
 fn a_filter_that_cannot_follow_the_samples_is_refused() {
     let mut track = smooth(0.2, 100.0, 30.0).for_a_travel_of(0.1, 0.05);
     if let Protocol::Fixed { lowpass_hz, .. } = &mut track.settings.protocol {
-        *lowpass_hz = 6.0; // beyond half of 10 Hz
+        *lowpass_hz = 6.0; // above half of 10 Hz
     }
     assert_eq!(rejection(&track).kind(), "protocol");
 }
@@ -143,7 +143,7 @@ fn a_filter_that_cannot_follow_the_samples_is_refused() {
 fn runs_too_large_to_compute_are_named_and_not_begun() {
     type Change = fn(&mut Track);
     let changes: [(&str, Change); 6] = [
-        // a millimetre of rim at a time, a hundred metres of it to a millimetre of travel
+        // steps of a millimetre of rim, a hundred metres of rim per millimetre of travel
         ("steps of the run", |t| t.case.condition.slip = 0.999_99),
         ("steps of the run", |t| t.settings.travel_step_m = 1e-9),
         ("steps of the run", |t| t.case.condition.pass = 1_000_000),
@@ -190,6 +190,6 @@ fn a_run_that_will_be_out_of_balance_is_refused_before_its_end() {
     let Err(scm::Rejection::NoConvergence { evaluations, .. }) = track.try_roll() else {
         panic!("{track:?} finds a balance");
     };
-    // the whole run would need twenty thousand
+    // the whole run would need twenty thousand evaluations
     assert!(evaluations < 2000, "{evaluations}");
 }

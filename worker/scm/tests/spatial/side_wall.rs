@@ -38,7 +38,7 @@ fn without_friction_it_changes_the_lateral_force_alone() {
 }
 
 #[test]
-fn friction_on_the_side_acts_against_what_slides_there_and_carries_load() {
+fn friction_on_the_side_acts_against_the_sliding_and_carries_load() {
     let mut track = track(0.3);
     let change = |track: &Track| {
         let bare = entered(track.clone(), 10.0, 0.0).averages();
@@ -73,28 +73,28 @@ fn opposite_angles_have_opposite_forces() {
 
 #[test]
 fn a_heap_of_soil_that_flows_aside_adds_to_it() {
-    let more = |flow_fraction: f64| {
+    let change = |flow_fraction: f64| {
         let mut track = track(0.3);
         track.ground.flow_fraction = flow_fraction;
         let base = track.averages();
         let with = entered(track.clone(), 1.0, 0.0).averages();
         (with.lateral_force_n - base.lateral_force_n) / closed_form(&track, base.sinkage_m)
     };
-    let (none, heaped) = (more(0.0), more(0.5));
+    let (none, heaped) = (change(0.0), change(0.5));
     println!("{none:.4} and {heaped:.4} of the force without a heap");
     assert!((none - 1.0).abs() < 0.02 && heaped > 1.05, "{none} {heaped}");
 }
 
 #[test]
 fn a_mesh_of_the_wheel_has_the_same_side() {
-    let more = |shape: Shape| {
+    let change = |shape: Shape| {
         let mut track = track(0.3);
         track.shape = shape;
         let base = track.averages().lateral_force_n;
         entered(track, 1.0, 0.3).averages().lateral_force_n - base
     };
     let surface = Surface::default().rim(0.125, 360, &across(0.112, 4), |_| 1.0).0;
-    let (mesh, rim) = (more(Shape::from(surface)), more(track(0.3).shape));
+    let (mesh, rim) = (change(Shape::from(surface)), change(track(0.3).shape));
     println!("{mesh} N, {rim} N");
     assert!((mesh / rim - 1.0).abs() < 0.03, "{mesh} {rim}");
 }

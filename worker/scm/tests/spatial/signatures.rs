@@ -1,6 +1,6 @@
-//! What each effect changes, against the signatures of a quasi-static prototype.
+//! The change of a run by each effect, compared with the signatures of a quasi-static prototype.
 //!
-//! A smooth wheel in steady motion on soil that does not flow is nearly the prototype's. What differs stands at the row.
+//! A smooth wheel in steady motion on soil that does not flow is close to the prototype's. Each row states its differences.
 
 use super::effects::typical;
 use crate::scene::smooth;
@@ -9,7 +9,7 @@ use scm::spatial::{Protocol, SpatialRun};
 /// Slips of the columns; rim speed 10 mm/s, 100 N.
 const SLIPS: [f64; 3] = [0.05, 0.2, 0.6];
 
-/// Changes of drawbar pull `[N]`, torque \[N m\] and sinkage `[mm]` below which a figure has no sign to compare.
+/// Changes of drawbar pull `[N]`, torque \[N m\] and sinkage `[mm]` below which the sign is not compared.
 const SMALL: [f64; 3] = [0.3, 0.03, 0.2];
 
 /// Largest ratio of two figures of the same order of magnitude.
@@ -23,9 +23,9 @@ struct Row {
     effect: &'static str,
     /// Parameters that differ from their typical values.
     values: &'static [(&'static str, f64)],
-    /// The prototype's.
+    /// The prototype's changes.
     changes: Changes,
-    /// Changes to be expected instead, and why.
+    /// Changes expected instead, with the reason.
     instead: Option<(Changes, &'static str)>,
 }
 
@@ -200,7 +200,7 @@ fn channels(run: &SpatialRun) -> [f64; 3] {
     ]
 }
 
-/// Whether a change is of the sign and order of magnitude expected, or small where that is.
+/// Returns whether a change has the expected sign and order of magnitude, or is small as expected.
 fn agrees(expected: f64, got: f64, small: f64) -> bool {
     if expected.abs() <= small {
         got.abs() < ORDER * small
@@ -210,7 +210,7 @@ fn agrees(expected: f64, got: f64, small: f64) -> bool {
 }
 
 #[test]
-fn every_effect_changes_what_it_should() {
+fn every_effect_has_the_expected_changes() {
     let base = SLIPS.map(|slip| channels(&roll(slip, None)));
     let mut failed = 0;
     for row in &ROWS {
@@ -219,7 +219,7 @@ fn every_effect_changes_what_it_should() {
         let (expected, why) = row.instead.unwrap_or((row.changes, ""));
         for (column, slip) in SLIPS.into_iter().enumerate() {
             let got = channels(&roll(slip, Some(row)));
-            // an effect that is small must not be absent; the first pass is not hardened
+            // a small effect must not be absent; the first pass is not hardened
             let idle = (0..3).all(|i| got[i].to_bits() == base[column][i].to_bits());
             if idle && row.effect != "multipass_hardening" {
                 verdict = "FAIL";

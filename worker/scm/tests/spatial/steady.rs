@@ -1,4 +1,4 @@
-//! When steady runs end, and what their averages are worth: a slice of `cargo bench -p scm --bench steady`.
+//! The end of steady runs, and the accuracy of their averages: a slice of `cargo bench -p scm --bench steady`.
 
 use crate::scene::smooth;
 use crate::steady_runs::{draws, mean, neighbours, outcomes, scatter};
@@ -6,11 +6,14 @@ use crate::steady_runs::{draws, mean, neighbours, outcomes, scatter};
 #[test]
 fn neighbours_end_alike_and_have_averages_alike() {
     let near = outcomes(&neighbours(12));
-    let [least, most] = [f64::min, f64::max].map(|of| near.iter().map(|n| n[0]).reduce(of).expect("runs"));
-    assert!(most - least <= 4.0, "{least} to {most} steps");
+    let [least, max] = [f64::min, f64::max].map(|fold| near.iter().map(|n| n[0]).reduce(fold).expect("runs"));
+    assert!(max - least <= 4.0, "{least} to {max} steps");
     let scatter = [1, 2, 3].map(|quantity| scatter(&near, quantity));
-    let most = [0.025, 0.002, 0.006]; // N, N m, mm; of twelve, a fifth more than of forty
-    assert!(scatter.iter().zip(most).all(|(s, most)| *s < most), "{scatter:?}");
+    let bounds = [0.025, 0.002, 0.006]; // N, N m, mm; for twelve runs a fifth more than for forty
+    assert!(
+        scatter.iter().zip(bounds).all(|(s, bound)| *s < bound),
+        "{scatter:?}"
+    );
 }
 
 #[test]
@@ -23,11 +26,11 @@ fn draws_of_the_prior_end_soon_and_have_the_means_of_long_runs() {
         .map(|track| track.for_a_travel_of(1.0, 0.6))
         .collect();
     for (steady, long) in steady.iter().zip(outcomes(&long)) {
-        // found over forty: 0.13 N, 0.004 N m and 0.05 mm rms; the grid's ripple in the long means is most of it
+        // forty runs give 0.13 N, 0.004 N m and 0.05 mm rms, mainly from the grid's ripple in the long means
         let off = [1, 2, 3].map(|quantity| (steady[quantity] - long[quantity]).abs());
-        let most = [0.5, 0.02, 0.25];
+        let bounds = [0.5, 0.02, 0.25];
         assert!(
-            off.iter().zip(most).all(|(off, most)| *off < most),
+            off.iter().zip(bounds).all(|(off, bound)| *off < bound),
             "{off:?} {long:?}"
         );
     }

@@ -1,4 +1,4 @@
-//! Wheels made of triangles, by drawing profiles along the axle.
+//! Wheels made of triangles, from profiles drawn along the axle.
 
 use scm::spatial::SurfaceMesh;
 
@@ -10,8 +10,8 @@ type Point = [f64; 2];
 pub(crate) struct Surface(pub(crate) SurfaceMesh);
 
 impl Surface {
-    /// A line of the profile drawn along places `ys` of the axle, scaled by `scale` at each; a triangle at y has its
-    /// mirror image at −y if the places have.
+    /// Draws a line of the profile along places `ys` of the axle, scaled by `scale` at each; a triangle at y has its mirror
+    /// image at −y if the places have.
     pub(crate) fn draw(&mut self, from: Point, to: Point, ys: &[f64], scale: impl Fn(f64) -> f64) {
         let mesh = &mut self.0;
         for sides in ys.windows(2) {
@@ -64,7 +64,7 @@ impl Surface {
         self
     }
 
-    /// Boxes on the rim that stand further forward by `ahead(y)` along it, straight from place to place.
+    /// Boxes on the rim that lie further forward by `ahead(y)` along it, with straight lines from place to place.
     pub(crate) fn bent_grousers(
         mut self,
         radius: f64,

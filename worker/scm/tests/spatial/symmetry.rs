@@ -1,4 +1,4 @@
-//! Left and right, the mirrored half, and where on the grid the wheel starts.
+//! Left and right, the mirrored half, and the start on the grid.
 
 use crate::scene::{Track, smooth};
 use crate::support::base;
@@ -15,19 +15,19 @@ fn a_straight_wheel_has_no_lateral_force() {
     for mut track in tracks() {
         track.settings.both_halves = true;
         let run = track.roll();
-        let most = run
+        let largest = run
             .history
             .lateral_force_n
             .iter()
-            .fold(0.0_f64, |most, f| most.max(f.abs()));
-        assert!(most < 1e-9, "{most} N");
+            .fold(0.0_f64, |largest, f| largest.max(f.abs()));
+        assert!(largest < 1e-9, "{largest} N");
     }
 }
 
 #[test]
 fn both_halves_agree_with_one_mirrored() {
-    // Sums in another order differ in the last bits, so the search for the balance may end at another trial within
-    // its 0.1 % of the load; the soil remembers that.
+    // Sums in another order differ in the last bits, so the search for the balance may end at another trial within 0.1 % of
+    // the load, which the soil remembers.
     for (mut track, bound) in tracks().into_iter().zip([1e-6, 5e-3]) {
         let half = track.averages();
         track.settings.both_halves = true;
@@ -46,7 +46,7 @@ fn slip_angles_mirror_each_other() {
         let left = track.averages();
         track.case.condition.slip_angle_rad = -0.15;
         let right = track.averages();
-        // the same wheel on lanes in the other order: within the search's tolerance
+        // the wheel on lanes in reverse order agrees within the search's tolerance
         assert!(left.lateral_force_n > 20.0, "{left:?}");
         assert!(
             (left.lateral_force_n + right.lateral_force_n).abs() < 0.3,
@@ -65,7 +65,7 @@ fn slip_angles_mirror_each_other() {
 
 #[test]
 fn a_small_slip_angle_joins_on_to_none() {
-    // The terrain is another one then, with both halves and room to drift; what differs is where a search ends.
+    // The terrain then has both halves and room to drift; only the end of a search differs.
     for (mut track, bound) in tracks().into_iter().zip([1e-3, 5e-3]) {
         for k_c in [0.0, 2e4] {
             track.case.soil.k_c = k_c;
@@ -92,7 +92,7 @@ fn a_small_slip_angle_joins_on_to_none() {
 }
 
 #[test]
-fn where_on_the_grid_the_averages_begin_does_not_matter_to_a_smooth_wheel() {
+fn averages_of_a_smooth_wheel_do_not_depend_on_their_start_on_the_grid() {
     // columns of 4 mm, begun 1, 2 and 3 mm later
     let average = |shift: f64| {
         smooth(0.2, 100.0, 30.0)
@@ -102,7 +102,7 @@ fn where_on_the_grid_the_averages_begin_does_not_matter_to_a_smooth_wheel() {
     let first = average(0.0);
     for shift in [1e-3, 2e-3, 3e-3] {
         let later = average(shift);
-        // a window of whole columns: what differs is the search's tolerance
+        // with a window of whole columns only the search's tolerance differs
         assert!(
             (first.drawbar_pull_n - later.drawbar_pull_n).abs() < 0.05,
             "{shift}: {later:?}"
@@ -120,17 +120,17 @@ fn where_on_the_grid_the_averages_begin_does_not_matter_to_a_smooth_wheel() {
 
 #[test]
 fn another_phase_of_the_grousers_on_the_grid_gives_the_same_means() {
-    // spacings near 4 mm shift every grouser against the columns
+    // spacings near 4 mm shift every grouser relative to the columns
     let pulls = [3.9e-3, 3.95e-3, 4e-3, 4.05e-3, 4.1e-3].map(|spacing| {
         let mut track = Track::with_grousers(base(0.2, 100.0, 30.0));
         track.settings.dem_spacing_m = spacing;
         let got = track.for_a_travel_of(0.5, 0.263).averages();
         (got.drawbar_pull_n, got.torque_n_m, 1e3 * got.sinkage_m)
     });
-    let spread = |of: fn(&(f64, f64, f64)) -> f64| {
+    let spread = |quantity: fn(&(f64, f64, f64)) -> f64| {
         let (low, high) = pulls
             .iter()
-            .map(of)
+            .map(quantity)
             .fold((f64::MAX, f64::MIN), |(low, high), x| (low.min(x), high.max(x)));
         high - low
     };

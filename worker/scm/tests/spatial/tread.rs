@@ -60,13 +60,13 @@ fn differences(got: &Averages, expected: &Averages) -> [f64; 3] {
 }
 
 fn assert_near(got: &Averages, expected: &Averages, bounds: [f64; 3], what: &str) {
-    let found = differences(got, expected);
-    println!("{what}: {found:.5?}");
-    let near = found
+    let deviations = differences(got, expected);
+    println!("{what}: {deviations:.5?}");
+    let near = deviations
         .iter()
         .zip(bounds)
         .all(|(difference, bound)| difference.abs() < bound);
-    assert!(near, "{what}: {found:?}");
+    assert!(near, "{what}: {deviations:?}");
 }
 
 #[test]
@@ -132,19 +132,19 @@ fn little_stagger_and_small_angles_join_on_to_straight_grousers() {
     ];
     for (what, tread) in treads {
         let got = track(Shape::Tread(tread)).averages();
-        // both halves may end a search elsewhere than one does: see `symmetry`
+        // a search with both halves may end at a different trial, see `symmetry`
         assert_near(&got, &expected, [5e-3, 5e-3, 1e-2], what);
     }
 }
 
-/// The same wheel of triangles, whose bars go as a tread's.
+/// The wheel of a tread as triangles, with bars along those of the tread.
 fn mesh(tread: Tread) -> Shape {
     let mut surface = Surface::default().rim(R, 360, &across(B, 4), |_| 1.0);
     let pitch = std::f64::consts::TAU * R / 12.0;
     for row in 0..tread.rows {
-        let own = B / f64::from(tread.rows);
-        let middle = (f64::from(row) + 0.5) * own - 0.5 * B;
-        let width = tread.width_m.unwrap_or(own);
+        let row_width = B / f64::from(tread.rows);
+        let middle = (f64::from(row) + 0.5) * row_width - 0.5 * B;
+        let width = tread.width_m.unwrap_or(row_width);
         let parts = 16 / tread.rows;
         let ys: Vec<f64> = across(width, parts).iter().map(|y| middle + y).collect();
         let ahead = |y: f64| {
@@ -243,7 +243,7 @@ fn half_of_a_symmetric_tread_stands_for_both_and_no_other_is_halved() {
 
 #[test]
 fn it_does_not_matter_where_on_the_grid_a_row_ends() {
-    // lanes of 4 mm: widths of 48 mm to 56 mm end anywhere in them
+    // widths of 48 mm to 56 mm end anywhere in lanes of 4 mm
     let runs: Vec<Averages> = (0..=8)
         .map(|mm| Tread {
             width_m: Some(0.048 + 1e-3 * f64::from(mm)),
@@ -251,12 +251,12 @@ fn it_does_not_matter_where_on_the_grid_a_row_ends() {
         })
         .map(|tread| track(Shape::Tread(tread)).averages())
         .collect();
-    for of in [
+    for quantity in [
         |a: &Averages| a.drawbar_pull_n / 100.0,
         |a: &Averages| a.torque_n_m / (100.0 * R),
         |a: &Averages| 0.3 * a.sinkage_m / 0.005,
     ] {
-        let values: Vec<f64> = runs.iter().map(of).collect();
+        let values: Vec<f64> = runs.iter().map(quantity).collect();
         println!("{values:.4?}");
         let (first, last) = (values[0], values[8]);
         for (i, value) in values.iter().enumerate() {

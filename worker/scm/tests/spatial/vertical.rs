@@ -1,4 +1,4 @@
-//! A hub that moves under its mass against one in balance.
+//! A hub that moves under its mass, compared with one in balance.
 
 use crate::scene::{Track, smooth};
 use crate::support::base;
@@ -64,7 +64,7 @@ fn a_hub_with_mass_comes_to_carry_its_load_and_to_rest() {
             .fold((f64::MAX, f64::MIN), |(low, high), &x| (low.min(x), high.max(x)));
         high - low
     };
-    // in steady motion the soil's force swings about the load by what the grid does
+    // in steady motion the grid makes the soil's force oscillate about the load
     let load = &run.history.wheel_load_n;
     let last = &load[load.len() * 3 / 4..];
     let mean = last.iter().sum::<f64>() / last.len() as f64;

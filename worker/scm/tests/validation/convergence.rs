@@ -1,18 +1,18 @@
-//! Oracle 5: what a finer grid and shorter steps change.
+//! Oracle 5: the effect of a finer grid and shorter steps.
 
 use super::Rows;
 use super::row::Bounds;
 use crate::scene::{Track, smooth};
 use crate::support::base;
 
-/// Against the finest: a smooth wheel moves by its ends of contact, grousers by the columns they shape.
+/// Bounds against the finest grid: a smooth wheel changes by its ends of contact, grousers by the columns that they shape.
 const GRID: Bounds = Bounds {
     pull: 0.015,
     torque: 0.01,
     sinkage: 0.03,
 };
-/// Soil behind the axle must keep its height however often it is looked at: a wheel that dug into it at every step
-/// would sink by 7 % more in 50 times as many.
+/// Soil behind the axle must keep its height for any number of steps: a wheel that dug into it at every step would sink 7 %
+/// deeper in 50 times as many steps.
 const STEP: Bounds = Bounds {
     pull: 0.01,
     torque: 0.005,

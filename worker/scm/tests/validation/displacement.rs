@@ -1,7 +1,7 @@
-//! Janosi and Hanamoto's displacement law, on the rim and on the soil, against a quasi-static prototype.
+//! Janosi and Hanamoto's displacement law, on the rim and on the soil, compared with a quasi-static prototype.
 //!
-//! The prototype's contact ends under the axle. Ours goes on behind it, where the shear has had the longest way to
-//! build up: more pull, as without the law (0.94 N at 100 N).
+//! The prototype's contact ends under the axle. Here it continues behind it, where the shear has its longest displacement:
+//! more pull, as without the law (0.94 N at 100 N).
 
 use super::Rows;
 use super::row::Bounds;

@@ -1,6 +1,6 @@
-//! What effects change: figures of another implementation, and equivalent changes of the base.
+//! The changes by effects: figures of another implementation, and equivalent changes of the base.
 //!
-//! Quasi-static; the three-dimensional model has its own rows.
+//! The rows are quasi-static; the three-dimensional model has separate ones.
 
 use formula::Effect;
 use formula::catalogue::find;
@@ -12,7 +12,7 @@ use crate::support::{Case, base};
 
 const SIGNATURES: &str = include_str!("../reference/signatures.csv");
 
-/// Half of the last digit printed, in N, N m and mm; and what coarse strips of the other implementation may add.
+/// Half of the last printed digit, in N, N m and mm; and the error of the other implementation's coarse strips.
 const ROUNDING: [f64; 3] = [0.05, 0.005, 0.05];
 const RELATIVE: f64 = 0.02;
 
@@ -26,7 +26,7 @@ const COLUMNS: [(&str, f64, f64, f64); 6] = [
     ("50 mm/s", 0.2, 100.0, 0.05),
 ];
 
-/// The site of the table: lug thrust is the only one to know of grousers.
+/// The site of the table; only lug thrust uses the grousers.
 pub(crate) const SITE: Site = Site {
     density_kg_m3: Some(1400.0),
     gravity_m_s2: 9.81,
@@ -36,7 +36,7 @@ pub(crate) const SITE: Site = Site {
     order: Some(0.5),
 };
 
-/// The wheel of the table is larger than the rig takes it for.
+/// The wheel of the table is larger than the rig assumes.
 pub(crate) fn reference(slip: f64, load: f64, rim_speed: f64) -> Case {
     let mut case = base(slip, load, 30.0);
     case.wheel.radius_m = 0.13;
@@ -44,14 +44,14 @@ pub(crate) fn reference(slip: f64, load: f64, rim_speed: f64) -> Case {
     case
 }
 
-/// Values of an effect's parameters: one strength as given, the others neutral, shapes as the file fixes them.
+/// Values of an effect's parameters: one strength as given, the other strengths neutral, shapes as fixed in the file.
 pub(crate) fn values(effect: &Effect, strength: &str, value: f64) -> Vec<f64> {
-    let of = |p: &formula::Parameter| match p.neutral {
+    let value = |p: &formula::Parameter| match p.neutral {
         _ if p.name == strength => value,
         Some(neutral) => neutral,
         None => p.prior.as_float().expect("a shape parameter is a number"),
     };
-    effect.parameters.iter().map(of).collect()
+    effect.parameters.iter().map(value).collect()
 }
 
 /// A run with one effect of the catalogue.
@@ -100,14 +100,14 @@ pub(crate) fn add(rows: &mut Rows) {
     add_equivalents(rows);
 }
 
-/// What the figures of the table may be off beyond rounding [N]. Side wall: there its shear stress carries no load. Flexible wheel:
-/// the ends of the flat lie within strips there.
+/// Tolerated errors of the table's figures beyond rounding [N]. Side wall: there its shear stress carries no load. Flexible
+/// wheel: the ends of the flat lie within strips there.
 const EXCEPTIONS: [(&str, &str, usize, f64); 2] = [
     ("side_wall_friction", "150 N", 0, 0.02),
     ("wheel_flexibility", "s .05", 0, 0.005),
 ];
 
-/// Effects without a figure of their own that the base can imitate by another soil.
+/// Adds effects without published figures that the base can imitate with another soil.
 fn add_equivalents(rows: &mut Rows) {
     let moon = Site {
         gravity_m_s2: 1.62,

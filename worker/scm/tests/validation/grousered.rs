@@ -1,7 +1,7 @@
-//! The quasi-static model with grousers is the three-dimensional one's average, on soil that does not flow.
+//! The quasi-static model with grousers approximates the mean of the three-dimensional one, on soil that does not flow.
 //!
-//! What differs: the hub keeps its height, soil is rigid-plastic, and there is no grid. On the three-dimensional model's own grid a tip
-//! that rises behind the axle bears until it has passed the node of its column.
+//! The differences: the hub keeps its height, soil is rigid-plastic, and there is no grid. On the three-dimensional model's
+//! grid a tip that rises behind the axle carries load until it has passed the node of its column.
 
 use super::Rows;
 use super::row::Bounds;
@@ -11,7 +11,7 @@ use scm::effects::{Active, Site};
 use scm::quasi_static::{StraightGrousers, simulate_with_grousers};
 use scm::spatial::{Grousers, Shape};
 
-/// Found: 0.069 of the load, 0.019 of load times radius, 7.1 % of the sinkage. The smooth rim: 0.20, 0.067, 77 %.
+/// Differences found: 0.069 of the load, 0.019 of load times radius, 7.1 % of the sinkage. The smooth rim: 0.20, 0.067, 77 %.
 const BOUNDS: Bounds = Bounds {
     pull: 0.075,
     torque: 0.022,

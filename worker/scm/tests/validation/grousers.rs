@@ -1,6 +1,6 @@
-//! Twelve grousers of 9 mm, against a three-dimensional prototype on a 4 mm grid.
+//! Twelve grousers of 9 mm, compared with a three-dimensional prototype on a 4 mm grid.
 //!
-//! The prototype widens a grouser to a column of its grid, so ours are as thick here; its soil unloads at 2e8 Pa/m.
+//! The prototype widens a grouser to a column of its grid, so the grousers are as thick here; its soil unloads at 2e8 Pa/m.
 
 use super::Rows;
 use super::row::Bounds;
@@ -8,8 +8,8 @@ use crate::scene::Track;
 use crate::support::base;
 use scm::spatial::{Grousers, Shape, SpatialRun};
 
-/// Found: 1.8 N, 0.01 N m, 0.9 %. Ours ends contacts between nodes, the prototype at whole cells; that this makes the 1.8 N is
-/// not shown.
+/// Differences found: 1.8 N, 0.01 N m, 0.9 %. This model ends contacts between nodes, the prototype at whole cells; it is
+/// not shown that this causes the 1.8 N.
 const BOUNDS: Bounds = Bounds {
     pull: 0.025,
     torque: 0.005,
@@ -38,9 +38,8 @@ fn amplitude(history: &[f64]) -> f64 {
     0.5 * (high - low)
 }
 
-/// Period of what swings `[s]`: that of the greatest Fourier amplitude between 3 and 12 s.
-///
-/// The autocorrelation would not do: its peaks stick to the grid's ripple.
+/// Period of the oscillation `[s]`, from the greatest Fourier amplitude between 3 and 12 s. The peaks of the autocorrelation
+/// would follow the grid's ripple instead.
 fn period_s(run: &SpatialRun, history: &[f64]) -> f64 {
     let steady = &history[history.len() / 4..];
     let mean = steady.iter().sum::<f64>() / steady.len() as f64;
@@ -49,7 +48,7 @@ fn period_s(run: &SpatialRun, history: &[f64]) -> f64 {
         let (mut cosine, mut sine) = (0.0, 0.0);
         for (i, x) in steady.iter().enumerate() {
             let phase = per_step * i as f64;
-            // a Hann window keeps its ends from leaking into the peak
+            // a Hann window prevents leakage from the ends into the peak
             let weight = 1.0 - (core::f64::consts::TAU * i as f64 / steady.len() as f64).cos();
             cosine += weight * (x - mean) * phase.cos();
             sine += weight * (x - mean) * phase.sin();
@@ -65,12 +64,12 @@ fn period_s(run: &SpatialRun, history: &[f64]) -> f64 {
 pub(crate) fn add(rows: &mut Rows) {
     let run = of_the_prototype(0.2, 0.0, 1.0).roll();
     rows.add_run("s 0.2", 100.0, [37.8, 6.39, 5.17e-3], &run.averages, BOUNDS);
-    // slip-sinkage by grousers alone
+    // slip-sinkage caused by grousers alone
     let steep = of_the_prototype(0.6, 0.0, 1.0).averages();
     rows.add("s 0.6", "z [mm]", 9.5, 1e3 * steep.sinkage_m, 0.06 * 9.5);
 
-    // The prototype's swing depends on its grid: 13 / 0.96 / 0.83 at 4 mm, these at 2 mm, where a grouser is a column
-    // of 2 mm.
+    // The prototype's oscillation depends on its grid: 13 / 0.96 / 0.83 at 4 mm, these figures at 2 mm, where a grouser is a
+    // column of 2 mm.
     let thin = Track::with_grousers(base(0.2, 100.0, 30.0))
         .for_a_travel_of(0.6, 0.36)
         .roll();
@@ -82,7 +81,7 @@ pub(crate) fn add(rows: &mut Rows) {
         rows.add("s 0.2, 2 mm thick", quantity, expected, got, 0.5 * expected);
     }
 
-    // twelve a turn at omega = 0.01 / 0.125 rad/s; sixteen periods tell 1 %
+    // twelve per turn at omega = 0.01 / 0.125 rad/s; sixteen periods resolve 1 %
     let period = core::f64::consts::TAU / 12.0 / (0.01 / 0.125);
     let long = Track::with_grousers(base(0.2, 100.0, 30.0))
         .for_a_travel_of(0.8, 0.36)

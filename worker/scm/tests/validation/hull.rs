@@ -1,7 +1,7 @@
 //! One effective width for the whole footprint, by its hull: `b_eff = 2 A / L`.
 //!
-//! Where no grouser parts it, the footprint is a rectangle, `b_eff = l b / (l + b)`. The plates of `examples/cmu-sand` give
-//! kappa = −0.66, at which a grouser's tip carries nothing by itself.
+//! Without gaps between grousers the footprint is a rectangle, `b_eff = l b / (l + b)`. The plates of `examples/cmu-sand`
+//! give kappa = −0.66, at which a single grouser's tip carries nothing.
 
 use super::Rows;
 use super::profile::Profile;
@@ -9,7 +9,7 @@ use crate::scene::{Track, smooth};
 use crate::support::base;
 use scm::spatial::{Footprint, Grousers, Shape};
 
-/// What the plates on CMU's sand say.
+/// kappa from the plates on CMU's sand.
 const KAPPA: f64 = -0.66;
 
 fn with_kappa(mut track: Track) -> Track {
@@ -30,7 +30,7 @@ fn grousers(slip: f64) -> Track {
 }
 
 pub(crate) fn add(rows: &mut Rows) {
-    // Smooth, without friction and with pressure that acts upwards: all of it carries.
+    // Smooth, without friction and with vertical pressure, all of which carries load.
     let mut track = with_kappa(smooth(0.2, 100.0, 0.0));
     track.case.soil.gamma_exponent = 0.0;
     let got = track.averages();
@@ -48,7 +48,7 @@ pub(crate) fn add(rows: &mut Rows) {
         0.03 * 1e3 * sinkage,
     );
 
-    // z on paper: the nodes of a rolled footprint under one b_eff; patch by patch 16 and 40 mm and 123 and 174 N of 100
+    // z computed for the nodes of a rolled footprint under one b_eff; patches would give 16 and 40 mm and 123 and 174 N of 100
     for (slip, expected) in [(0.05, 6.4), (0.4, 7.9)] {
         let run = with_kappa(grousers(slip)).roll();
         let case = format!("24 x 5 mm, s {slip}");
@@ -64,7 +64,7 @@ pub(crate) fn add(rows: &mut Rows) {
         );
     }
 
-    // without k_c the effective width acts on nothing
+    // without k_c the effective width has no effect
     let hull = grousers(0.2).averages();
     let mut track = grousers(0.2);
     track.settings.footprint = Footprint::Patches;

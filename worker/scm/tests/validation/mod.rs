@@ -1,11 +1,11 @@
-//! Every figure that effects and the three-dimensional model are expected to give, with what they give.
+//! The expected figures of effects and of the three-dimensional model, with the model's results.
 //!
 //! Tests assert the rows oracle by oracle; `cargo bench -p scm --bench validation` prints them. Volumes (oracle 4) need the
-//! terrain itself and stand beside it, in `spatial::run::rolling`.
+//! terrain itself and are tested in `spatial::run::rolling`.
 //!
 //! # Layout
 //! - `row`: one expected figure.
-//! - `profile`: pressure along a smooth wheel with uniform pressure across it, on paper.
+//! - `profile`: independently computed pressure along a smooth wheel with uniform pressure across it.
 //! - `plate`, `smooth_wheel`, `quasi_static`, `grousered`, `effects`, `convergence`, `scaling`, `power`, `displacement`, `grousers`,
 //!   `tread`, `side_wall`, `flow`, `hull`, `other_implementation`: the oracles.
 
@@ -29,7 +29,7 @@ pub(crate) mod tread;
 
 pub(crate) use row::{Row, Rows};
 
-/// An oracle: its name, and what adds its rows.
+/// An oracle: its name, and the function that adds its rows.
 pub(crate) type Oracle = (&'static str, fn(&mut Rows));
 
 /// All oracles, in the order of the table.

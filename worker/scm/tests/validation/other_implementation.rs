@@ -1,8 +1,8 @@
-//! Another implementation's figures for one wheel, and the same equations on paper.
+//! Another implementation's figures for one wheel, and an independent solution of the same equations.
 //!
-//! It lets the pressure act vertically and the shear horizontally, so that the pressure alone carries the load and the
-//! sinkage follows from it; there is no compaction resistance, but the pressure in front of the axle turns the wheel
-//! back. It takes the effective width patch by patch, which acts on nothing here, without `k_c`.
+//! In it the pressure acts vertically and the shear horizontally, so that the pressure alone carries the load and determines
+//! the sinkage; there is no compaction resistance, but the pressure in front of the axle turns the wheel back. It takes the
+//! effective width by patch, which has no effect here, without `k_c`.
 
 use super::Rows;
 use super::profile::Profile;
@@ -48,20 +48,22 @@ fn on_paper(track: &Track) -> [f64; 3] {
     [pull, torque, profile.sinkage]
 }
 
-/// Found: 0.1 N, 0.04 N m, 1.2 %: the strip behind the axle is as long as one cell, and j lags by half a step.
+/// Differences found: 0.1 N, 0.04 N m, 1.2 %: the strip behind the axle is as long as one cell, and j lags by half a step.
 const COARSE: Bounds = Bounds {
     pull: 0.002,
     torque: 0.005,
     sinkage: 0.02,
 };
-/// Found: 0.1 N, 0.02 N m, 0.1 %: what is left is the lag.
+/// Differences found: 0.1 N, 0.02 N m, 0.1 %: the lag remains.
 const FINE: Bounds = Bounds {
     pull: 0.002,
     torque: 0.002,
     sinkage: 0.003,
 };
-/// Found: 0.5 N, 0.04 N m, 0.2 %. Theirs is 0.4 N below the equations on paper, which is not explained; longer steps, by which a
-/// node's shear displacement lags, act in that direction.
+/// Differences found: 0.5 N, 0.04 N m, 0.2 %.
+///
+/// The other implementation is 0.4 N below the equations, which is not explained; longer steps, by which a node's shear
+/// displacement lags, act in that direction.
 const THEIRS: Bounds = Bounds {
     pull: 0.008,
     torque: 0.005,

@@ -1,7 +1,7 @@
 //! Oracle 1: a flat plate carries its area times Bekker's pressure.
 //!
-//! A wheel is no plate, so the plate itself is the bevameter's, and the flat contact of the three-dimensional model is
-//! a unit test of `spatial::contact`. A wheel lowered without rolling comes next: both halves of its contact carry.
+//! A wheel is no plate, so the plate is that of the bevameter, and the flat contact of the three-dimensional model is a unit
+//! test of `spatial::contact`. This oracle is a wheel lowered without rolling: both halves of its contact carry load.
 
 use super::Rows;
 use crate::scene::smooth;
@@ -24,7 +24,7 @@ pub(crate) fn add(rows: &mut Rows) {
         let expected = (load / per_load).powf(1.0 / (soil.n + 0.5));
         let run = track.roll();
         let got = run.history.sinkage_m[0];
-        // small angles leave out z/4R of the chord, 1 % here; the trial load 0.1 %; the grid's ends the rest
+        // small angles neglect z/4R of the chord, 1 % here; the trial load adds 0.1 %, the grid's ends the rest
         rows.add(
             &format!("lowered wheel, {load} N"),
             "z [mm]",

@@ -1,4 +1,4 @@
-//! Oracle 9: where the power goes.
+//! Oracle 9: the balance of power.
 
 use super::Rows;
 use super::profile::Profile;
@@ -22,8 +22,8 @@ pub(crate) fn add(rows: &mut Rows) {
         0.02 * expected,
     );
 
-    // What motor and sled put in by the means; the hub's vertical motion has no mean power in the steady state. The
-    // bound is what the means' settling leaves: 0.5 % of load times speed.
+    // The power of motor and sled from the means; the hub's vertical motion has no mean power in the steady state. The bound
+    // is the tolerance of settled means: 0.5 % of load times speed.
     for (name, track) in [
         ("smooth", smooth(0.2, 100.0, 30.0)),
         ("grousers", Track::with_grousers(base(0.2, 100.0, 30.0))),

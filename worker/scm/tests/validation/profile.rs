@@ -1,12 +1,12 @@
-//! Integrate the pressure along a smooth wheel on paper: Bekker in front of the axle, unloading behind it.
+//! Independent integration of the pressure along a smooth wheel: Bekker in front of the axle, unloading behind it.
 
 use crate::scene::Track;
 
-/// Points of the midpoint rule on either side of the axle; the pressure's ends are powers above 1, so that the error
-/// is below 1e-7.
+/// Number of points of the midpoint rule on either side of the axle; the pressure vanishes at its ends with powers above 1,
+/// so that the error is below 1e-7.
 const POINTS: u32 = 4000;
 
-/// Pressure along the contact where it is the same across the wheel (exponent of the distribution 0).
+/// Pressure along the contact if it is uniform across the wheel (exponent of the distribution 0).
 ///
 /// In front `p = k z(x)^n`; behind, the soil rises along its elastic line: `p = p_0 − K_e (h(x) − h(0))`.
 #[derive(Debug, Clone, Copy)]
@@ -54,7 +54,7 @@ impl Profile {
         self.modulus * self.sinkage.powf(self.exponent)
     }
 
-    /// Where the contact ends when the rim is at a height `[m]`.
+    /// End of the contact when the rim is at a height `[m]`.
     fn end(&self, height: f64) -> f64 {
         (self.radius * self.radius - (self.radius - height).powi(2)).sqrt()
     }
@@ -77,14 +77,14 @@ impl Profile {
         total
     }
 
-    /// Compaction resistance: the work of pressing less the work given back, per length of the track `[N]`.
+    /// Compaction resistance: the work of pressing less the recovered work, per length of the track `[N]`.
     pub(super) fn resistance(&self) -> f64 {
         let pressed = self.modulus * self.sinkage.powf(self.exponent + 1.0) / (self.exponent + 1.0);
         let given_back = self.greatest() * self.greatest() / (2.0 * self.elastic);
         self.width * (pressed - given_back)
     }
 
-    /// Length of a piece `[m]` at a place: those in front and behind differ.
+    /// Length of a piece `[m]` at a place: pieces in front and behind differ.
     pub(super) fn piece(&self, x: f64) -> f64 {
         let end = if x > 0.0 {
             self.end(self.sinkage)

@@ -1,20 +1,21 @@
-//! Oracle 3: a smooth wheel on soil that does not flow is the quasi-static model's.
+//! Oracle 3: a smooth wheel on soil that does not flow agrees with the quasi-static model.
 //!
-//! What differs: soil that unloads at 1e9 Pa/m keeps up a strip of contact behind the axle (2.5 mm at 30 kPa), which
-//! carries load without resistance, so the wheel sinks less and pulls more; and the grid. With rigid-plastic soil
-//! (1e12 Pa/m) only the grid is left.
+//! The differences: soil that unloads at 1e9 Pa/m keeps a strip of contact behind the axle (2.5 mm at 30 kPa), which carries
+//! load without resistance, so the wheel sinks less and pulls more; and the grid. With rigid-plastic soil (1e12 Pa/m) only
+//! the grid remains.
 
 use super::Rows;
 use super::row::Bounds;
 use crate::scene::{Track, smooth};
 
-/// Found: 0.17 % of the load, 0.05 % of load times radius, 2.2 % of the sinkage (a column of 4 mm in contacts of 31 mm).
+/// Differences found: 0.17 % of the load, 0.05 % of load times radius, 2.2 % of the sinkage (a column of 4 mm in contacts of
+/// 31 mm).
 const RIGID: Bounds = Bounds {
     pull: 0.0025,
     torque: 0.001,
     sinkage: 0.025,
 };
-/// Found: 1.5 %, 0.45 %, 3.3 %.
+/// Differences found: 1.5 %, 0.45 %, 3.3 %.
 const ELASTIC: Bounds = Bounds {
     pull: 0.018,
     torque: 0.006,
@@ -32,7 +33,7 @@ fn compare(rows: &mut Rows, case: &str, track: &Track) {
         let case = format!("{case}, {name}");
         rows.add_run(&case, load, expected, &got, bounds);
         if track.case.condition.slip_angle_rad.abs() > 0.0 {
-            // the footprint is the straight wheel's: 3 % for ends between nodes
+            // the footprint is that of the straight wheel: 3 % for ends between nodes
             let width = 1e3 * paper.b_eff_m;
             rows.add(&case, "b_eff [mm]", width, 1e3 * got.b_eff_m, 0.03 * width);
             let lateral = paper.lateral_force_n;

@@ -1,4 +1,4 @@
-//! One figure that is expected, and what the model gives.
+//! An expected figure, and the model's result.
 
 use scm::Averages;
 
@@ -14,7 +14,7 @@ pub(crate) struct Row {
 }
 
 impl Row {
-    /// Whether the figure is met; a NaN never is.
+    /// Returns whether the figure is met; a NaN never is.
     pub(crate) fn passes(&self) -> bool {
         (self.got - self.expected).abs() <= self.tolerance
     }
@@ -28,14 +28,14 @@ pub(crate) struct Bounds {
     pub(crate) sinkage: f64,
 }
 
-/// Rows in the making.
+/// Rows under construction.
 #[derive(Debug, Default)]
 pub(crate) struct Rows {
     rows: Vec<Row>,
 }
 
 impl Rows {
-    /// A figure and the largest difference allowed.
+    /// Adds a figure with its tolerance.
     pub(crate) fn add(
         &mut self,
         case: &str,

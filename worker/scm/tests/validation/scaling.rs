@@ -5,14 +5,14 @@ use super::row::Bounds;
 use crate::scene::{Track, smooth};
 use crate::support::base;
 
-/// A power of two changes no digit: the search takes the same trials.
+/// A power of two changes no digit, so the search takes the same trials.
 const EXACT: Bounds = Bounds {
     pull: 1e-9,
     torque: 1e-9,
     sinkage: 1e-9,
 };
 
-/// Rounding may end the search at another trial, all within 0.1 % of the load; soil remembers that.
+/// Rounding may end the search at another trial, within 0.1 % of the load, which the soil remembers.
 const SEARCH: Bounds = Bounds {
     pull: 2e-3,
     torque: 2e-3,

@@ -5,14 +5,14 @@
 use super::Rows;
 use crate::scene::{Track, smooth};
 
-/// The effect at a strength and a friction.
+/// Adds the effect with a strength and a friction.
 pub(crate) fn entered(mut track: Track, scale: f64, friction: f64) -> Track {
     let effect = formula::catalogue::find("buried_side_wall").expect("in the catalogue");
     track.enter(effect, &[scale, friction]);
     track
 }
 
-/// The lateral force at a sinkage `[m]` of cohesionless soil on a frictionless side `[N]`.
+/// The lateral force of cohesionless soil on a frictionless side at a sinkage `[m]` `[N]`.
 pub(crate) fn closed_form(track: &Track, sinkage_m: f64) -> f64 {
     let r = track.case.wheel.radius_m;
     let hub = r - sinkage_m;

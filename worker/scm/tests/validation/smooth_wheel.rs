@@ -1,4 +1,4 @@
-//! Oracle 2: a frictionless smooth wheel with uniform pressure has sinkage, pull and torque on paper.
+//! Oracle 2: a frictionless smooth wheel with uniform pressure has closed forms of sinkage, pull and torque.
 
 use super::Rows;
 use super::profile::Profile;
@@ -21,7 +21,7 @@ fn frictionless(n: f64, load: f64, elastic_stiffness_pa_m: f64) -> Track {
 pub(crate) fn add(rows: &mut Rows) {
     for (n, integral) in [(1.0, 2.0 / 3.0), (1.1, 0.648_84)] {
         for load in [40.0, 100.0, 160.0] {
-            // so stiff that the contact ends under the axle: 3 % for the small angles and the grid
+            // stiff enough that the contact ends under the axle: 3 % for the small angles and the grid
             let track = frictionless(n, load, 1e12);
             let got = track.averages();
             let case = format!("n {n}, {load} N, rigid-plastic");
@@ -34,7 +34,7 @@ pub(crate) fn add(rows: &mut Rows) {
                 0.03 * 1e3 * expected,
             );
 
-            // with the stiffness in use, against the profile on paper
+            // with the usual stiffness, compared with the integrated profile
             let track = frictionless(n, load, 1e9);
             let got = track.averages();
             let case = format!("n {n}, {load} N, K_e 1e9");
@@ -48,10 +48,10 @@ pub(crate) fn add(rows: &mut Rows) {
                 0.03 * 1e3 * paper.sinkage,
             );
             rows.add(&case, "F [N]", -resistance, got.drawbar_pull_n, 0.05 * resistance);
-            // F follows from the sinkage that was found, whatever the grid made of it
-            let mut found = paper;
-            found.sinkage = got.sinkage_m;
-            let of_sinkage = found.resistance();
+            // F follows from the simulated sinkage, with its grid error
+            let mut simulated = paper;
+            simulated.sinkage = got.sinkage_m;
+            let of_sinkage = simulated.resistance();
             rows.add(
                 &case,
                 "F(z) [N]",

@@ -1,6 +1,6 @@
-//! A wheel with grousers in rows on ground that hardly yields: it rolls over the tips of all rows.
+//! A wheel with grousers in rows on nearly rigid ground: it rolls over the tips of all rows.
 //!
-//! n tips a turn, t thick on a radius r, hold the hub at `r cos(a) + t/2 sin|a|`, |a| <= pi / n, and on average at
+//! n tips per turn, t thick on a radius r, hold the hub at `r cos(a) + t/2 sin|a|`, |a| <= pi / n, and on average at
 //! `(n / pi) (r sin(pi / n) + t/2 (1 - cos(pi / n)))`.
 
 use super::Rows;

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use farm::calibration::{Calibration, CalibrationIdentity, Question, SimulationResult, result_of};
+use farm::calibration::{Calibration, CalibrationIdentity, Question, SimulationResult};
 use inference::{Particle, PosteriorSample, StageRecord};
 use job::Spec;
 use record::{EvaluationRow, Fact};
@@ -227,11 +227,10 @@ impl Case {
                     question.subchain,
                 );
                 let (computed, worker) = if poison == Some(evaluation) {
-                    (SimulationResult::from(Err("fault: given up".to_owned())), "")
+                    (SimulationResult::refused("fault: given up"), "")
                 } else {
-                    let outcome = outcome.clone().map(result_of).transpose()?;
-                    let end = end.clone();
-                    (SimulationResult { end, outcome }, "w")
+                    let computed = SimulationResult::new(outcome.clone(), end.clone());
+                    (computed.map_err(|e| e.to_string())?, "w")
                 };
                 let (facts, _) = calibration
                     .complete(evaluation, computed, worker)

@@ -5,7 +5,6 @@
 
 use std::collections::VecDeque;
 
-use farm::calibration::Verification;
 use farm::{Control, Farm};
 use record::{Fact, SealKey};
 use shared::api::CalibrationState;
@@ -107,11 +106,8 @@ impl<'a> Coordinator<'a> {
         let Some(farm) = &mut self.farm else { return Ok(()) };
         self.ledger.push(Entry::Submitted { id, case, key });
         self.ledger.commit(usize::MAX);
-        let mut calibration = case.begin(id).map_err(|e| Broken::new(Promise::Replay, e))?;
-        calibration.verification = Verification {
-            share: self.verified_share,
-            key,
-        };
+        let calibration = case.begin(id).map_err(|e| Broken::new(Promise::Replay, e))?;
+        let calibration = calibration.verified(self.verified_share, key);
         farm.add(calibration, key, Vec::new(), now_ms);
         self.witness.began(id);
         self.take_facts(Source::Restart)
@@ -328,8 +324,8 @@ impl<'a> Coordinator<'a> {
             };
             let key = table.key;
             let share = self.verified_share;
-            let replayed = table.case.begin(id).and_then(|mut calibration| {
-                calibration.verification = Verification { share, key };
+            let replayed = table.case.begin(id).and_then(|calibration| {
+                let mut calibration = calibration.verified(share, key);
                 let facts = calibration.replay(stored).map_err(|e| e.to_string())?;
                 Ok((calibration, facts))
             });

@@ -5,7 +5,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use record::{EvaluationKey, EvaluationRow, Fact, Kept, Quarantine, SealKey, Stored, StoredEvaluation};
+use record::{EvaluationKey, EvaluationRow, Fact, Kept, Quarantine, SealKey, Stored};
 use shared::api::CalibrationState;
 
 use super::case::{Case, CaseResult, posterior_bits};
@@ -184,20 +184,14 @@ impl<'a> Table<'a> {
     /// What a restart reads back.
     pub(crate) fn stored(&self) -> Stored {
         let told_values = self.case.spec.algorithm.is_told_values();
-        let evaluation = |row: &EvaluationRow| StoredEvaluation {
-            theta: row.theta.clone(),
-            log_likelihood: row.log_likelihood,
-            rejected: matches!(row.kept, Kept::Rejected(_)),
-            worker: row.worker.clone(),
-            fingerprint: row.fingerprint,
-            is_confirmed: self.confirmed.contains(&row.evaluation),
-            fitted: match &row.kept {
-                Kept::Fitted(values) if told_values => Some(values.clone()),
-                Kept::Scored if told_values => Some(Vec::new()),
-                _ => None,
+        let evaluation = |row: &EvaluationRow| EvaluationRow {
+            kept: match &row.kept {
+                Kept::Fitted(_) if !told_values => Kept::Scored,
+                Kept::Whole(_) => Kept::Scored,
+                kept => kept.clone(),
             },
             coarse: row.coarse.clone().filter(|_| told_values),
-            end: row.end.clone(),
+            ..row.clone()
         };
         let evaluations = self.rows.iter();
         Stored {
@@ -209,6 +203,7 @@ impl<'a> Table<'a> {
             evaluations: evaluations
                 .map(|(&number, (_, row))| (number, evaluation(row)))
                 .collect(),
+            confirmed: self.confirmed.clone(),
             failed: self.failed.clone(),
         }
     }

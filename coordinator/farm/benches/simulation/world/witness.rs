@@ -341,8 +341,8 @@ impl<'a> Witness<'a> {
             if issued.is_none_or(|issued| issued.answered.outcome == result.outcome) {
                 continue;
             }
-            let differs =
-                SimulationResult::of(result.clone()).is_ok_and(|c| c.fingerprint() != row.fingerprint);
+            let differs = SimulationResult::new(result.outcome.clone(), result.end.clone())
+                .is_ok_and(|c| c.fingerprint() != row.fingerprint);
             demand(
                 // After a rewind nobody knows what a number of an earlier round had asked.
                 !differs

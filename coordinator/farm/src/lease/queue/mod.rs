@@ -103,7 +103,7 @@ impl LeaseQueue {
         self.entries.remove(&evaluation);
     }
 
-    /// Where an evaluation waits.
+    /// The queue that an evaluation waits in.
     fn queue_of(&mut self, suspect: bool) -> &mut VecDeque<u64> {
         if suspect {
             &mut self.suspects
@@ -200,7 +200,7 @@ impl LeaseQueue {
         let may = |evaluation: &u64| !is_one(&self.entries[evaluation].barred);
         let suits = |evaluation: &u64| {
             let failed = &self.entries[evaluation].failed;
-            // Who may not claim it is no other.
+            // A worker that may not claim the evaluation is no other worker for it.
             let others_failed = || has_other(&[&**failed, &*self.entries[evaluation].barred].concat());
             may(evaluation) && (!is_one(failed) || !others_failed())
         };

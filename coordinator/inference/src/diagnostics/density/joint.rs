@@ -19,8 +19,7 @@ use crate::diagnostics::moments::mean_and_sd;
 /// fewer than three draws, of lists of different lengths, and where the draws lie on a line.
 ///
 /// # Validity
-/// It integrates to 1 over the support where the bandwidth is small against the support's width. One image is reflected at
-/// each bound.
+/// It integrates to 1 over the support where the bandwidth is small against the support's width. One image is reflected at each bound.
 ///
 /// # Source
 /// Scott 1992, Multivariate Density Estimation, Eq. 6.42 with d = 2: the bandwidth that is optimal for a normal density;
@@ -31,8 +30,8 @@ pub fn joint_density(values: [&[f64]; 2], support: [(f64, f64); 2], grid: [&[f64
     if n < 3 || values[1].len() != n {
         return None;
     }
-    let kernel = Kernel::of(values)?;
-    // Draws in the kernel's own coordinates, where it is round. A mirrored draw has a mirrored kernel, so the point is
+    let kernel = Kernel::new(values)?;
+    // Draws are transformed to coordinates in which the kernel is round. A mirrored draw has a mirrored kernel, so the point is
     // mirrored instead.
     let round: Vec<[f64; 2]> = values[0]
         .iter()
@@ -62,7 +61,7 @@ pub fn joint_density(values: [&[f64]; 2], support: [(f64, f64); 2], grid: [&[f64
     Some(density)
 }
 
-/// A point and its mirror images in the bounds that the kernel reaches from there; none of a point beyond the support.
+/// A point and its mirror images in the bounds within reach of the kernel; none for a point beyond the support.
 fn folds(x: f64, (lower, upper): (f64, f64), reach: f64) -> Vec<f64> {
     if x < lower || x > upper {
         return Vec::new();
@@ -78,14 +77,13 @@ fn folds(x: f64, (lower, upper): (f64, f64), reach: f64) -> Vec<f64> {
 struct Kernel {
     /// L: first diagonal element, the one below it, second diagonal element.
     factor: [f64; 3],
-    /// Bandwidth along each axis.
     sd: [f64; 2],
     /// |H|^(1/2).
     root: f64,
 }
 
 impl Kernel {
-    fn of(values: [&[f64]; 2]) -> Option<Self> {
+    fn new(values: [&[f64]; 2]) -> Option<Self> {
         let n = values[0].len() as f64;
         let (mean_x, sd_x) = mean_and_sd(values[0])?;
         let (mean_y, sd_y) = mean_and_sd(values[1])?;
@@ -217,7 +215,7 @@ mod tests {
 
     #[test]
     fn levels_enclose_their_shares() {
-        // Of a normal of two parameters, the contour at (1 - p) of the peak encloses p.
+        // For a normal density of two parameters, the contour at (1 - p) of the peak encloses p.
         let [x, y] = normal(0.5);
         let g = grid(5.0, 101);
         let f = joint_density([&x, &y], [FREE, FREE], [&g, &g]).unwrap();

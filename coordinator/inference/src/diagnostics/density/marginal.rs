@@ -86,7 +86,7 @@ mod tests {
 
     const FREE: (f64, f64) = (f64::NEG_INFINITY, f64::INFINITY);
 
-    /// So many evenly spread quantiles of a distribution: a sample without chance.
+    /// Evenly spread quantiles of a distribution: a sample without chance.
     fn sample(distribution: Distribution, n: usize) -> Vec<f64> {
         let marginal = Marginal::new(distribution, None).unwrap();
         (0..n)
@@ -148,8 +148,8 @@ mod tests {
         let open = density(&values, FREE, &x).unwrap();
         assert!((open[0] - 0.399).abs() < 0.02, "{}", open[0]);
         let mirrored: Vec<f64> = values.iter().map(|v| -v).collect();
-        let other = density(&mirrored, (f64::NEG_INFINITY, 0.0), &[0.0, -1.0]).unwrap();
-        assert_eq!([other[0].to_bits()], [f[0].to_bits()]);
+        let reflected = density(&mirrored, (f64::NEG_INFINITY, 0.0), &[0.0, -1.0]).unwrap();
+        assert_eq!([reflected[0].to_bits()], [f[0].to_bits()]);
     }
 
     #[test]

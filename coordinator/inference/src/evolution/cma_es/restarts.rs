@@ -23,7 +23,7 @@ pub(crate) struct Restarts {
     /// Generations asked for so far, over all runs.
     generation: u64,
     /// The best of the earlier runs, and whether one of them converged there.
-    found: (f64, bool),
+    earlier: (f64, bool),
 }
 
 impl Restarts {
@@ -35,7 +35,7 @@ impl Restarts {
             restarts: 0,
             starts: 0,
             generation: 0,
-            found: (f64::NEG_INFINITY, false),
+            earlier: (f64::NEG_INFINITY, false),
         }
     }
 
@@ -44,13 +44,13 @@ impl Restarts {
         let mut population = self.run.population();
         if self.run.end.is_some() {
             // A run that found no possible point does not count: another start replaces it.
-            let found = self.run.best > f64::NEG_INFINITY;
-            population *= if found { 2 } else { 1 };
-            if (found && self.restarts == self.settings.restarts) || population > remaining {
+            let is_possible = self.run.best > f64::NEG_INFINITY;
+            population *= if is_possible { 2 } else { 1 };
+            if (is_possible && self.restarts == self.settings.restarts) || population > remaining {
                 return NextGeneration::End(self.stop());
             }
-            self.restarts += usize::from(found);
-            self.found = self.best();
+            self.restarts += usize::from(is_possible);
+            self.earlier = self.best();
             self.starts += 1;
             let mut stream = Stream::new(self.settings.seed, self.starts, START, 1);
             self.run = CmaEsRun::new(&space.draw(&mut stream), population);
@@ -63,14 +63,13 @@ impl Restarts {
         NextGeneration::Ask(positions)
     }
 
-    /// Takes an evaluated generation.
     pub(crate) fn accept(&mut self, generation: &[Individual]) {
         self.run.accept(generation, self.settings.tolerance);
     }
 
     /// The best so far, and whether a run converged there.
     fn best(&self) -> (f64, bool) {
-        let (best, converged) = self.found;
+        let (best, converged) = self.earlier;
         let now = self.run.end == Some(End::Converged);
         let tolerance = self.settings.tolerance;
         if self.run.best > best + tolerance {

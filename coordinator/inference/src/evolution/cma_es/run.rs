@@ -17,7 +17,7 @@ const SHORTEST: f64 = 1e-7;
 const LONGEST: f64 = 1e4;
 /// A run ends when the condition number of its covariance exceeds this: rounding dominates.
 const THINNEST: f64 = 1e14;
-/// A run ends after so many consecutive generations that the model rejected as a whole.
+/// A run ends after this many consecutive generations that the model rejected as a whole.
 const LOST: usize = 5;
 
 /// A run.
@@ -76,7 +76,7 @@ impl CmaEsRun {
         self.draws.iter().map(|draw| space.inside(draw)).collect()
     }
 
-    /// Updates the distribution by the evaluated generation, and ends the run where it is over.
+    /// Updates the distribution by the evaluated generation, and ends the run if it is over.
     pub(super) fn accept(&mut self, generation: &[Individual], tolerance: f64) {
         let mut values: Vec<f64> = generation
             .iter()
@@ -111,7 +111,7 @@ impl CmaEsRun {
                 (value, individual.is_possible().then_some(draw.as_slice()))
             })
             .collect();
-        // Stable: of equals the one listed first.
+        // The sort is stable: among equals the one listed first stays first.
         ranked.sort_by(|a, b| b.0.total_cmp(&a.0));
         let better: Vec<Option<&[f64]>> = ranked.into_iter().map(|(_, draw)| draw).collect();
         self.distribution.update(&self.rates, &better);

@@ -59,7 +59,7 @@ impl SearchDistribution {
         self.sigma * self.sigma * self.covariance.trace() / self.mean.len() as f64
     }
 
-    /// Moves and reshapes the distribution by its better draws, the best first; `None`: a draw that moves nothing.
+    /// Moves and reshapes the distribution by its better draws, the best first; a draw that is `None` moves nothing.
     ///
     /// Eq. 41 to 47 of Hansen 2016, arXiv:1604.00772.
     pub(super) fn update(&mut self, rates: &Rates, better: &[Option<&[f64]>]) {

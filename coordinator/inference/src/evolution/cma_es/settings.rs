@@ -6,12 +6,11 @@ use crate::evolution::settings_error::{EvolutionSettingsError, check_population}
 /// Settings of CMA-ES.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CmaEsSettings {
-    /// Individuals of a generation of the first run; `None`: 4 + floor(3 ln d) for d parameters. More
-    /// individuals keep more workers busy.
+    /// Individuals of a generation of the first run; `None`: 4 + floor(3 ln d) for d parameters. More individuals keep more workers busy.
     pub population: Option<usize>,
-    /// Most evaluations, all runs together.
+    /// Maximum number of evaluations of all runs together.
     pub max_evaluations: usize,
-    /// Most restarts, each with twice the population of the last.
+    /// Maximum number of restarts, each with twice the population of the last.
     pub restarts: usize,
     /// Seed of all random numbers.
     pub seed: u64,
@@ -32,14 +31,14 @@ impl Default for CmaEsSettings {
     }
 }
 
-/// The better half, at least two, makes the next mean.
-const LEAST_POPULATION: usize = 4;
-/// Most evaluations.
-const MOST_EVALUATIONS: usize = 1_000_000;
-/// Most restarts; the population doubles with each.
-const MOST_RESTARTS: usize = 20;
-
 impl CmaEsSettings {
+    /// Smallest population: the better half, at least two, makes the next mean.
+    pub const MIN_POPULATION: usize = 4;
+    /// Largest number of evaluations.
+    pub const MAX_EVALUATIONS: usize = 1_000_000;
+    /// Largest number of restarts; the population doubles with each.
+    pub const MAX_RESTARTS: usize = 20;
+
     /// Individuals of a generation of the first run.
     #[must_use]
     pub fn first_population(&self, dimension: usize) -> usize {
@@ -48,19 +47,19 @@ impl CmaEsSettings {
 
     pub(crate) fn check(&self, dimension: usize) -> Result<(), EvolutionSettingsError> {
         let population = self.first_population(dimension);
-        check_population(population, LEAST_POPULATION)?;
-        let least = 2 * population;
-        if !(least..=MOST_EVALUATIONS).contains(&self.max_evaluations) {
+        check_population(population, Self::MIN_POPULATION)?;
+        let min = 2 * population;
+        if !(min..=Self::MAX_EVALUATIONS).contains(&self.max_evaluations) {
             return Err(EvolutionSettingsError::Evaluations {
                 max_evaluations: self.max_evaluations,
-                least,
-                most: MOST_EVALUATIONS,
+                min,
+                max: Self::MAX_EVALUATIONS,
             });
         }
-        if self.restarts > MOST_RESTARTS {
+        if self.restarts > Self::MAX_RESTARTS {
             return Err(EvolutionSettingsError::Restarts {
                 restarts: self.restarts,
-                most: MOST_RESTARTS,
+                max: Self::MAX_RESTARTS,
             });
         }
         Ok(())

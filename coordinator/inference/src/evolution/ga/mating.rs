@@ -18,39 +18,38 @@ pub(super) struct MatingPair<'a> {
     pub(super) first: &'a [f64],
     pub(super) second: &'a [f64],
     /// Two members; some children move along their difference.
-    pub(super) others: [&'a [f64]; 2],
+    pub(super) drift_pair: [&'a [f64]; 2],
 }
 
 /// Two children, not yet within the bounds.
 ///
-/// Half of the crossed pairs have one spread factor for all coordinates, so that children lie on the line through
-/// their parents and keep correlations; the others have one for each coordinate. For the same reason some children move
-/// along the difference of two members, N(0, 1) times as far. Every coordinate mutates with probability 1 / dimension,
-/// a child that is not crossed in at least one: N(0, s^2) with ln s uniform over six decades, which serves exploration
-/// and convergence alike.
+/// Half of the crossed pairs have one spread factor for all coordinates, so that children lie on the line through their parents and keep
+/// correlations; the others have one for each coordinate. For the same reason some children move along the difference of two members,
+/// N(0, 1) times as far. Every coordinate mutates with probability 1 / dimension, a child that is not crossed in at least one: N(0, s^2) with ln
+/// s uniform over six decades, which serves exploration and convergence alike.
 pub(super) fn children(pair: &MatingPair, stream: &mut Stream) -> [Vec<f64>; 2] {
     let MatingPair { first, second, .. } = pair;
-    let (mut one, mut other) = (first.to_vec(), second.to_vec());
+    let (mut first_child, mut second_child) = (first.to_vec(), second.to_vec());
     let crossed = stream.uniform() < CROSSED && first != second;
     if crossed {
         let on_a_line = stream.uniform() < 0.5;
         let mut factor = spread_factor(stream);
-        for k in 0..one.len() {
+        for k in 0..first_child.len() {
             if k > 0 && !on_a_line {
                 factor = spread_factor(stream);
             }
             let (a, b) = (first[k], second[k]);
-            one[k] = 0.5 * ((1.0 + factor) * a + (1.0 - factor) * b);
-            other[k] = 0.5 * ((1.0 - factor) * a + (1.0 + factor) * b);
+            first_child[k] = 0.5 * ((1.0 + factor) * a + (1.0 - factor) * b);
+            second_child[k] = 0.5 * ((1.0 - factor) * a + (1.0 + factor) * b);
         }
     }
-    for child in [&mut one, &mut other] {
+    for child in [&mut first_child, &mut second_child] {
         if stream.uniform() < DRIFTING {
-            drift(child, pair.others, stream);
+            drift(child, pair.drift_pair, stream);
         }
         mutate(child, !crossed, stream);
     }
-    [one, other]
+    [first_child, second_child]
 }
 
 fn drift(child: &mut [f64], [from, to]: [&[f64]; 2], stream: &mut Stream) {
@@ -107,7 +106,7 @@ mod tests {
             let pair = |second: usize| MatingPair {
                 first: &parents[0],
                 second: &parents[second],
-                others: [&parents[0], &parents[1]],
+                drift_pair: [&parents[0], &parents[1]],
             };
             for child in children(&pair(1), &mut stream) {
                 assert!(child != parents[0] && child != parents[1], "{seed}: {child:?}");

@@ -20,7 +20,7 @@ pub(crate) struct Population {
     generation: usize,
     /// The best log-posterior at the last improvement by more than the tolerance.
     mark: f64,
-    /// Generations since.
+    /// Number of generations since then.
     idle: usize,
 }
 
@@ -54,19 +54,19 @@ impl Population {
         if self.members.is_empty() {
             return NextGeneration::Ask((0..population).map(|k| space.draw(&mut stream(k))).collect());
         }
-        let wanted = population - elite;
-        let pairs = (0..wanted.div_ceil(2)).flat_map(|pair| {
+        let count = population - elite;
+        let pairs = (0..count.div_ceil(2)).flat_map(|pair| {
             let mut stream = stream(pair);
             let [first, second] = [0, 1].map(|_| self.parent(&mut stream));
-            let others = [0, 1].map(|_| &*self.members[stream.below(self.members.len())].position);
+            let difference = [0, 1].map(|_| &*self.members[stream.below(self.members.len())].position);
             let pair = MatingPair {
                 first: &first.position,
                 second: &second.position,
-                others,
+                drift_pair: difference,
             };
             children(&pair, &mut stream)
         });
-        NextGeneration::Ask(pairs.take(wanted).map(|child| space.inside(&child)).collect())
+        NextGeneration::Ask(pairs.take(count).map(|child| space.inside(&child)).collect())
     }
 
     /// The best of some drawn members.
@@ -79,7 +79,7 @@ impl Population {
     pub(crate) fn accept(&mut self, generation: Vec<Individual>) {
         self.members.truncate(self.settings.elite);
         self.members.extend(generation);
-        // Stable: of equals the elder stays ahead, then the one listed first.
+        // The sort is stable: among equals the elder stays first, then the one listed first.
         self.members.sort_by(Individual::rank);
         self.generation += 1;
         match self.members.first() {

@@ -5,17 +5,17 @@ use crate::evolution::settings_error::{EvolutionSettingsError, check_population}
 /// Settings of a genetic algorithm.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct GaSettings {
-    /// Individuals of a generation.
+    /// Number of individuals of a generation.
     pub population: usize,
-    /// Most generations, the prior draws among them.
+    /// Maximum number of generations, including the prior draws.
     pub generations: usize,
     /// Seed of all random numbers.
     pub seed: u64,
-    /// Best individuals that survive unchanged; they are not evaluated again.
+    /// Number of best individuals that survive unchanged; they are not evaluated again.
     pub elite: usize,
-    /// The evolution has converged after so many generations without an improvement.
+    /// Number of generations without an improvement after which the evolution has converged.
     pub patience: usize,
-    /// Least improvement that counts, in nats.
+    /// Smallest improvement that counts, in nats.
     pub tolerance: f64,
 }
 
@@ -33,24 +33,24 @@ impl Default for GaSettings {
     }
 }
 
-/// Tournaments need several members, and the elite must leave room for children.
-const LEAST_POPULATION: usize = 8;
-/// Most generations.
-const MOST_GENERATIONS: usize = 100_000;
-
 impl GaSettings {
-    /// Most evaluations, all generations together; the elite saves some.
+    /// Smallest population: tournaments need several members, and the elite must leave room for children.
+    pub const MIN_POPULATION: usize = 8;
+    /// Largest number of generations.
+    pub const MAX_GENERATIONS: usize = 100_000;
+
+    /// Maximum number of evaluations of all generations; the elite saves some.
     #[must_use]
     pub fn max_evaluations(&self) -> usize {
         self.population.saturating_mul(self.generations)
     }
 
     pub(crate) fn check(&self) -> Result<(), EvolutionSettingsError> {
-        check_population(self.population, LEAST_POPULATION)?;
-        if !(2..=MOST_GENERATIONS).contains(&self.generations) {
+        check_population(self.population, Self::MIN_POPULATION)?;
+        if !(2..=Self::MAX_GENERATIONS).contains(&self.generations) {
             return Err(EvolutionSettingsError::Generations {
                 generations: self.generations,
-                most: MOST_GENERATIONS,
+                max: Self::MAX_GENERATIONS,
             });
         }
         if self.elite == 0 || 2 * self.elite > self.population {

@@ -9,16 +9,15 @@ use crate::mixture::{Mixture, WeightedPoints, fitted};
 /// The coordinates of a fit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Frame {
-    /// Those of the sampler. A straight ridge of uniform parameters is straight here, however thin.
+    /// The coordinates of the sampler. A straight ridge of uniform parameters is straight here, however thin.
     Sampling,
-    /// The normal score of each parameter under its prior. A posterior that leans on a bound of the prior is a normal's
-    /// flank here.
+    /// The normal score of each parameter under its prior. A posterior at a bound of the prior is the flank of a normal density here.
     NormalScores,
 }
 
 impl Frame {
     /// The coordinates of a state, from those of the sampler.
-    fn of(self, prior: &Prior, sampling: &[f64]) -> Vec<f64> {
+    fn coordinates(self, prior: &Prior, sampling: &[f64]) -> Vec<f64> {
         match self {
             Self::Sampling => sampling.to_vec(),
             Self::NormalScores => {
@@ -30,12 +29,12 @@ impl Frame {
         }
     }
 
-    /// The inverse of [`Frame::of`].
-    fn sampling(self, prior: &Prior, own: Vec<f64>) -> Vec<f64> {
+    /// The inverse of [`Frame::coordinates`].
+    fn sampling(self, prior: &Prior, coordinates: Vec<f64>) -> Vec<f64> {
         match self {
-            Self::Sampling => own,
+            Self::Sampling => coordinates,
             Self::NormalScores => {
-                let pairs = prior.marginals().iter().zip(&own);
+                let pairs = prior.marginals().iter().zip(&coordinates);
                 pairs
                     .map(|(marginal, &z)| marginal.coordinate(marginal.of_normal_score(z)))
                     .collect()
@@ -44,10 +43,10 @@ impl Frame {
     }
 
     /// ln of the prior density in these coordinates.
-    fn log_prior(self, prior: &Prior, own: &[f64]) -> f64 {
+    fn log_prior(self, prior: &Prior, coordinates: &[f64]) -> f64 {
         match self {
-            Self::Sampling => prior.log_density_of_coordinates(own),
-            Self::NormalScores => own.iter().map(|z| -0.5 * z * z - LN_SQRT_TAU).sum(),
+            Self::Sampling => prior.log_density_of_coordinates(coordinates),
+            Self::NormalScores => coordinates.iter().map(|z| -0.5 * z * z - LN_SQRT_TAU).sum(),
         }
     }
 }
@@ -63,7 +62,7 @@ impl Fit {
     /// The fit to weighted draws, in the coordinates in which it predicts better. `None` if the draws do not span the space.
     ///
     /// Scores of correlated priors are not independent: these are fitted in the sampling coordinates.
-    pub(crate) fn of(
+    pub(crate) fn new(
         sample: &WeightedSample,
         weights: &ImportanceWeights,
         prior: &Prior,
@@ -95,7 +94,9 @@ impl Fit {
         stream: &mut Stream,
     ) -> Option<(f64, Self)> {
         let rows = sample.states.iter();
-        let rows: Vec<Vec<f64>> = rows.map(|state| frame.of(prior, &state.coordinates)).collect();
+        let rows: Vec<Vec<f64>> = rows
+            .map(|state| frame.coordinates(prior, &state.coordinates))
+            .collect();
         let references = rows.iter().map(|row| frame.log_prior(prior, row)).collect();
         let points = WeightedPoints::new(
             prior.dimension(),
@@ -107,16 +108,15 @@ impl Fit {
         Some((score, Self { frame, mixture }))
     }
 
-    /// Number of components.
     pub(crate) fn size(&self) -> usize {
         self.mixture.size()
     }
 
-    /// This fit with its components' weights levelled.
-    pub(crate) fn levelled(&self, share: f64) -> Self {
+    /// This fit with a defensive share of weight moved from heavy to light components.
+    pub(crate) fn defensive(&self, share: f64) -> Self {
         Self {
             frame: self.frame,
-            mixture: self.mixture.levelled(share),
+            mixture: self.mixture.defensive(share),
         }
     }
 
@@ -132,8 +132,8 @@ impl Fit {
         sampling: &[f64],
         scratch: &mut Vec<f64>,
     ) -> f64 {
-        let own = self.frame.of(prior, sampling);
-        self.mixture.log_density(&own, scratch) - self.frame.log_prior(prior, &own)
+        let coordinates = self.frame.coordinates(prior, sampling);
+        self.mixture.log_density(&coordinates, scratch) - self.frame.log_prior(prior, &coordinates)
     }
 }
 
@@ -151,7 +151,7 @@ mod tests {
             median: 2.0,
             factor: 1.5,
         };
-        let marginals = [uniform, lognormal].map(|of| Marginal::new(of, None).unwrap());
+        let marginals = [uniform, lognormal].map(|distribution| Marginal::new(distribution, None).unwrap());
         Prior::new(marginals.to_vec())
     }
 
@@ -159,7 +159,7 @@ mod tests {
     fn scores_lead_back_to_where_they_came_from() {
         let prior = prior();
         for x in [[2.001, 0.1], [3.3, 0.7], [4.999, 2.0], [4.0, 5.6], [4.0, -4.2]] {
-            let back = Frame::NormalScores.sampling(&prior, Frame::NormalScores.of(&prior, &x));
+            let back = Frame::NormalScores.sampling(&prior, Frame::NormalScores.coordinates(&prior, &x));
             assert!(back.iter().zip(&x).all(|(a, b)| (a - b).abs() < 1e-9), "{back:?}");
         }
     }

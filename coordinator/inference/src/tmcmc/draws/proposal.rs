@@ -1,29 +1,29 @@
-//! What a stage's draws come from: a fit, cut at the ends of the prior's support.
+//! The proposal density of a stage: a fit, cut at the ends of the prior's support.
 
 use statistics::prior::Prior;
 use statistics::rng::Stream;
 
 use super::frame::Fit;
 
-/// Trial draws, without evaluations, by which the share inside the support is measured; for each particle.
+/// Trial draws per particle, without evaluations, which measure the share inside the support.
 const TRIALS: usize = 16;
-/// The same for the proposal of the posterior's own draws, whose evidence is reported.
+/// Trial draws per particle for the proposal of the posterior's draws, whose evidence is reported.
 const LAST_TRIALS: usize = 64;
-/// Trial draws that are all inside: the support cuts nothing off.
+/// If all these trial draws are inside, the support cuts nothing off.
 const ENOUGH: usize = 4000;
-/// Least share inside the support.
-const LEAST_INSIDE: f64 = 0.01;
+/// Smallest share inside the support.
+const MIN_INSIDE: f64 = 0.01;
 
-/// Share of the draws that come from the fit of the exponent before.
+/// Share of the draws that come from the fit of the exponent before (a defensive mixture).
 const DEFENSIVE: f64 = 0.1;
 
-/// Step number of the first of these streams; moves count theirs from 1.
+/// Step number of the first of these random streams; moves count theirs from 1.
 const FIRST_STEP: u64 = 1 << 32;
 /// Streams of a proposal's trials and of its fit; candidates never reach these numbers.
 const TRIAL_STREAM: u64 = u64::MAX - 1;
 const FIT_STREAM: u64 = u64::MAX - 2;
 
-/// Where the random numbers of a proposal come from: `attempt` counts the proposals of a stage.
+/// The key of a proposal's random numbers: `attempt` counts the proposals of a stage.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct DrawKey {
     seed: u64,
@@ -68,11 +68,10 @@ pub(crate) struct DrawProposal {
     /// The fit of the exponent before, which is wider.
     defence: Option<Fit>,
     key: DrawKey,
-    /// Candidates so far, inside the support or not.
+    /// Number of candidates so far, inside the support or not.
     candidates: u64,
     /// ln of the share inside the support.
     log_inside: f64,
-    /// Variance of `log_inside`.
     pub(crate) inside_variance: f64,
 }
 
@@ -107,7 +106,7 @@ impl DrawProposal {
         let share = inside as f64 / tried as f64;
         proposal.log_inside = libm::log(share);
         proposal.inside_variance = (1.0 - share) / (share * tried as f64);
-        (share >= LEAST_INSIDE).then_some(proposal)
+        (share >= MIN_INSIDE).then_some(proposal)
     }
 
     fn candidate(&self, prior: &Prior, stream: &mut Stream) -> Vec<f64> {
@@ -118,15 +117,16 @@ impl DrawProposal {
         from.draw(prior, stream)
     }
 
-    /// ln (density / prior density), before the cut.
+    /// ln (density / prior density) before the cut.
     fn log_relative_density(&self, prior: &Prior, coordinates: &[f64], scratch: &mut Vec<f64>) -> f64 {
-        let own = self.fit.log_relative_density(prior, coordinates, scratch);
+        let fitted = self.fit.log_relative_density(prior, coordinates, scratch);
         let Some(defence) = &self.defence else {
-            return own;
+            return fitted;
         };
-        let other = defence.log_relative_density(prior, coordinates, scratch);
-        let largest = own.max(other);
-        let sum = (1.0 - DEFENSIVE) * libm::exp(own - largest) + DEFENSIVE * libm::exp(other - largest);
+        let defensive = defence.log_relative_density(prior, coordinates, scratch);
+        let largest = fitted.max(defensive);
+        let sum =
+            (1.0 - DEFENSIVE) * libm::exp(fitted - largest) + DEFENSIVE * libm::exp(defensive - largest);
         largest + libm::log(sum)
     }
 

@@ -15,7 +15,6 @@ pub(crate) struct WeightedSample {
 /// The importance weights of a sample at one exponent.
 #[derive(Debug, Clone)]
 pub(crate) struct ImportanceWeights {
-    /// Weights that sum to one.
     pub(crate) normalised: Vec<f64>,
     /// ln of the mean weight: ln Z.
     pub(crate) log_mean: f64,
@@ -31,13 +30,13 @@ pub(crate) struct Expectation {
 }
 
 impl ImportanceWeights {
-    /// Variance of `log_mean`: of the mean weight, relative to its square.
+    /// Variance of `log_mean`, the relative variance of the mean weight.
     pub(crate) fn log_mean_variance(&self) -> f64 {
         let count = self.normalised.len() as f64;
         (count / self.ess - 1.0).max(0.0) / count
     }
 
-    /// Effective share of the draws.
+    /// Effective sample size over the number of draws, ESS/N.
     pub(crate) fn share(&self) -> f64 {
         self.ess / self.normalised.len() as f64
     }
@@ -129,7 +128,7 @@ impl WeightedSample {
         }
     }
 
-    /// A sample of equal weights, by systematic resampling; copies of one draw are one chain.
+    /// A sample of equal weights, by systematic resampling; copies of one draw belong to one chain.
     pub(crate) fn resampled(&self, weights: &ImportanceWeights, count: usize, tooth: f64) -> Pool {
         let mut pool = Pool::default();
         for index in systematic(&weights.normalised, count, tooth) {

@@ -2,14 +2,13 @@
 
 use super::sample::WeightedSample;
 
-/// Least and greatest effective share of the draws at the next exponent.
+/// Smallest and largest ESS/N of the draws at the next exponent.
 const SHARES: [f64; 2] = [0.2, 0.5];
 
-/// Effective draws by which each number of a mixture is determined: a component has d + 1 for each dimension, or fewer.
+/// Effective draws for each number of the mixture: a component has d + 1 numbers for each dimension, or fewer.
 const DRAWS_A_NUMBER: f64 = 6.0;
 
-/// Where the fit at the present exponent was poor, the next must leave this part of the effective draws, and the share that
-/// is enough.
+/// If the fit at the present exponent was poor, the next must leave this share of the effective draws, and this share suffices.
 const KEPT: f64 = 0.1;
 
 /// Bisections on the logarithm of the step: to 1e-12 of it.
@@ -17,9 +16,8 @@ const BISECTIONS: usize = 48;
 
 /// The exponent above `exponent` that leaves enough effective draws for the next fit; at most 1.
 ///
-/// Enough is six draws for each component and each of d + 1 numbers of it, if the next fit takes as many `components` as the
-/// last, but at least 20 % and at most 50 % of the draws that the model accepts. Where fewer are effective at `exponent`
-/// already, 30 to 60 % of these are enough.
+/// Six draws for each component and each of its d + 1 numbers suffice, if the next fit takes as many `components` as the last, but at least
+/// 20 % and at most 50 % of the draws that the model accepts. If fewer are effective at `exponent` already, 30 to 60 % of these suffice.
 pub(crate) fn next_exponent(sample: &WeightedSample, exponent: f64, components: usize) -> f64 {
     let share = |exponent: f64| sample.weights(exponent).map_or(0.0, |weights| weights.share());
     let dimension = sample.states.first().map_or(0, |state| state.coordinates.len());
@@ -39,8 +37,8 @@ pub(crate) fn next_exponent(sample: &WeightedSample, exponent: f64, components: 
     );
     let remaining = 1.0 - exponent;
     // A step over which no weight changes by more than a few per cent keeps nearly all draws.
-    let least = (0.01 / (max - min).min(f64::MAX)).min(remaining);
-    let (mut low, mut high) = (libm::log(least), libm::log(remaining));
+    let lowest = (0.01 / (max - min).min(f64::MAX)).min(remaining);
+    let (mut low, mut high) = (libm::log(lowest), libm::log(remaining));
     for _ in 0..BISECTIONS {
         let middle = 0.5 * (low + high);
         if share(exponent + libm::exp(middle)) < target {

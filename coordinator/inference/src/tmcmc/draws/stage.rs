@@ -11,31 +11,31 @@ use crate::round::Proposal;
 use crate::tmcmc::evaluation::EvaluationResult;
 use crate::tmcmc::settings::TmcmcSettings;
 
-/// Effective share of the draws below which a proposal has missed its target.
-const LEAST_SHARE: f64 = 0.05;
+/// A proposal has missed its target if ESS/N of its draws is smaller.
+const MIN_SHARE: f64 = 0.05;
 
-/// The same at exponent 1, where every further draw is one of the posterior.
-const LEAST_SHARE_OF_POSTERIOR: f64 = 0.25;
+/// At exponent 1 every further draw is one of the posterior, so a larger ESS/N is worth a refit.
+const MIN_SHARE_OF_POSTERIOR: f64 = 0.25;
 
-/// Proposals in a row that may miss their targets before the stage falls back to moves.
+/// Number of consecutive proposals that may miss their targets before the stage resorts to moves.
 const MISSES: usize = 6;
 
-/// Part of the step of the exponent that remains after a miss.
+/// Share of the step of the exponent that remains after a miss.
 const RETREAT: f64 = 0.3;
 
-/// Refits at exponent 1 for a better share, once a proposal has not missed.
+/// Maximum number of refits at exponent 1 for a larger ESS/N, once a proposal has not missed.
 const REFINEMENTS: usize = 4;
 
-/// Effective draws of the posterior, for each particle of the population.
+/// Effective draws of the posterior per particle of the population.
 const EFFECTIVE_DRAWS: f64 = 2.0;
 
-/// Most draws of the posterior, for each particle of the population.
-const MOST_DRAWS: usize = 20;
+/// Maximum number of draws of the posterior per particle of the population.
+const MAX_DRAWS: usize = 20;
 
-/// Weight moved from heavy to light components of a fit.
-const LEVELLED: f64 = 0.4;
+/// Weight moved from heavy to light components of a fit (a defensive mixture).
+const DEFENSIVE_WEIGHT: f64 = 0.4;
 
-/// Where the stage began: an equally weighted sample of the stage before, and its evidence.
+/// The start of the stage: an equally weighted sample of the stage before, and its evidence.
 #[derive(Debug, Clone)]
 pub(crate) struct Anchor {
     pub(crate) pool: Pool,
@@ -46,7 +46,7 @@ pub(crate) struct Anchor {
     pub(crate) survivors: Option<[usize; 2]>,
 }
 
-/// What the draws of the stage before say about this stage's target.
+/// The prediction of this stage's target from the draws of the stage before.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Forecast {
     pub(crate) log_likelihood: Expectation,
@@ -64,12 +64,12 @@ impl Forecast {
     }
 }
 
-/// What a completed round of draws means.
+/// The consequence of a completed round of draws.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Standing {
     /// The draws represent their target.
     Done,
-    /// The same proposal gives this many draws more.
+    /// The proposal stays, and must give this many further draws.
     More(usize),
     /// A better fit is worth its draws.
     Refit,
@@ -79,14 +79,14 @@ pub(crate) enum Standing {
     Missed,
 }
 
-/// What a stage begins with.
+/// The input of a stage.
 #[derive(Debug, Clone)]
 pub(crate) struct DrawStart {
     pub(crate) index: usize,
     pub(crate) anchor: Anchor,
     /// The draws of the stage before.
     pub(crate) sample: WeightedSample,
-    /// The fit that these were drawn from; `None`: they are prior draws.
+    /// The fit of which these were drawn; `None`: they are prior draws.
     pub(crate) fit: Option<Fit>,
 }
 
@@ -101,11 +101,10 @@ pub(crate) struct DrawStage {
     pub(crate) proposal: DrawProposal,
     /// The fit of this stage's target.
     pub(crate) fit: Fit,
-    /// Draws that wait for their evaluation.
     pending: Vec<Draw>,
-    /// How many to ask for next.
-    wanted: usize,
-    /// Proposals before the one in use, and how many of them missed their target.
+    /// Number of draws of the next round.
+    count: usize,
+    /// Number of proposals before the one in use, and of those that missed their target.
     attempts: usize,
     misses: usize,
     pub(crate) rounds: usize,
@@ -113,8 +112,8 @@ pub(crate) struct DrawStage {
 }
 
 impl DrawStage {
-    /// Fits a proposal to the draws of the stage before, weighted for `exponent` or for shorter steps where there is none. The
-    /// draws are given back if there is none for any of them: they do not span the space, or the fit lies outside the support.
+    /// Fits a proposal to the draws of the stage before, weighted for `exponent` or for shorter steps if there is none. Gives the
+    /// draws back if no step has a fit: they do not span the space, or the fit lies outside the support.
     pub(crate) fn new(
         start: DrawStart,
         exponent: f64,
@@ -138,7 +137,7 @@ impl DrawStage {
                 proposal,
                 fit,
                 pending: Vec::new(),
-                wanted: settings.particles,
+                count: settings.particles,
                 attempts: attempt,
                 misses: attempt,
                 rounds: 0,
@@ -150,7 +149,7 @@ impl DrawStage {
 
     /// Draws the next round.
     pub(crate) fn propose(&mut self, prior: &Prior) -> Vec<Proposal> {
-        self.pending = self.proposal.draws(self.wanted, prior);
+        self.pending = self.proposal.draws(self.count, prior);
         let draws = self.pending.iter().enumerate();
         draws
             .map(|(index, draw)| Proposal::plain(index, prior.theta(&draw.coordinates)))
@@ -164,7 +163,7 @@ impl DrawStage {
             self.evaluations += 1;
             let log_likelihood = match result {
                 EvaluationResult::AtProposal { log_likelihood, .. } => log_likelihood,
-                // `Sampler::tell` refuses a subchain that was not asked for.
+                // `Sampler::tell` refuses a subchain that is not pending.
                 EvaluationResult::AtSubchainEnd { .. } => LogLikelihood::Impossible,
             };
             let state = ChainState {
@@ -177,7 +176,7 @@ impl DrawStage {
         }
     }
 
-    /// What the draws so far mean; `weights` are theirs at this stage's exponent.
+    /// The consequence of the draws so far; `weights` are theirs at this stage's exponent.
     pub(crate) fn standing(&self, weights: Option<&ImportanceWeights>, particles: usize) -> Standing {
         // A proposal is judged by its first round.
         let drawn = self.sample.states.len();
@@ -192,27 +191,27 @@ impl DrawStage {
         if self.exponent < 1.0 {
             return Standing::Done;
         }
-        if weights.share() < LEAST_SHARE_OF_POSTERIOR && self.attempts < REFINEMENTS {
+        if weights.share() < MIN_SHARE_OF_POSTERIOR && self.attempts < REFINEMENTS {
             return Standing::Refit;
         }
-        let (goal, most) = (EFFECTIVE_DRAWS * particles as f64, MOST_DRAWS * particles);
-        if weights.ess >= goal || drawn >= most {
+        let (goal, max_draws) = (EFFECTIVE_DRAWS * particles as f64, MAX_DRAWS * particles);
+        if weights.ess >= goal || drawn >= max_draws {
             return Standing::Done;
         }
-        let total = (goal / weights.share()).ceil().min(most as f64) as usize;
-        // No round has more proposals than there are particles.
+        let total = (goal / weights.share()).ceil().min(max_draws as f64) as usize;
+        // A round has no more proposals than there are particles.
         Standing::More(total.saturating_sub(drawn).clamp(1, particles))
     }
 
-    /// Asks the same proposal for more.
+    /// Asks the same proposal for further draws.
     pub(crate) fn ask_more(&mut self, count: usize) {
-        self.wanted = count;
+        self.count = count;
     }
 
-    /// Replaces the proposal by a fit to its own draws, which are then dropped. Where there is no such fit the proposal and its
-    /// draws stay, and more of them are asked for.
+    /// Replaces the proposal by a fit to its draws, which are then dropped. Without such a fit the proposal and its draws stay, and
+    /// further draws are asked for.
     pub(crate) fn refit(&mut self, prior: &Prior, settings: &TmcmcSettings) {
-        self.wanted = settings.particles;
+        self.count = settings.particles;
         self.attempts += 1;
         let key = DrawKey::new(settings.seed, self.start.index, self.attempts);
         let fitted = self.sample.weights(self.exponent).and_then(|weights| {
@@ -228,9 +227,9 @@ impl DrawStage {
         }
     }
 
-    /// Goes back to the draws of the stage before, for a shorter step of the exponent. False if no fit is left to try.
+    /// Returns to the draws of the stage before, for a shorter step of the exponent; false if no fit is left to try.
     pub(crate) fn retreat(&mut self, prior: &Prior, settings: &TmcmcSettings) -> bool {
-        self.wanted = settings.particles;
+        self.count = settings.particles;
         self.sample = WeightedSample::default();
         while self.misses + 1 < MISSES {
             self.attempts += 1;
@@ -254,7 +253,7 @@ fn shorter(from: f64, exponent: f64) -> f64 {
     from + RETREAT * (exponent - from)
 }
 
-/// What the draws of the stage before say about `exponent`, and a proposal fitted to them.
+/// The prediction for `exponent` from the draws of the stage before, and a proposal fitted to them.
 fn first_proposal(
     start: &DrawStart,
     (exponent, key): (f64, DrawKey),
@@ -270,17 +269,18 @@ fn first_proposal(
 /// Whether draws have missed their target.
 fn is_poor(weights: &ImportanceWeights, sample: &WeightedSample) -> bool {
     let dimension = sample.states.first().map_or(0, |state| state.coordinates.len());
-    weights.share() < LEAST_SHARE || weights.ess < 2.0 * (dimension as f64 + 1.0)
+    weights.share() < MIN_SHARE || weights.ess < 2.0 * (dimension as f64 + 1.0)
 }
 
-/// A fit to weighted draws, and what to draw from: the fit, levelled, with a share of the one before.
+/// A fit to weighted draws, and the proposal: the fit as a defensive mixture, with a share of the one before.
 fn propose(
     (sample, weights, before): (&WeightedSample, &ImportanceWeights, Option<&Fit>),
     (exponent, key): (f64, DrawKey),
     prior: &Prior,
     settings: &TmcmcSettings,
 ) -> Option<(Fit, DrawProposal)> {
-    let fit = Fit::of(sample, weights, prior, settings.components, &mut key.fit())?.levelled(LEVELLED);
+    let fit =
+        Fit::new(sample, weights, prior, settings.components, &mut key.fit())?.defensive(DEFENSIVE_WEIGHT);
     let parts = (fit.clone(), before.cloned());
     let proposal = DrawProposal::new(parts, prior, key, settings.particles, exponent >= 1.0)?;
     Some((fit, proposal))

@@ -2,8 +2,8 @@
 
 use crate::tmcmc::transition::Weights;
 
-/// Most iterations for the ratio; Newton's method takes about five.
-const MOST_STEPS: usize = 60;
+/// Maximum number of iterations for the ratio; Newton's method takes about five.
+const MAX_STEPS: usize = 60;
 /// The iteration ends when a step changes the ratio by less, relative to its size or to 1.
 const TOLERANCE: f64 = 1e-13;
 
@@ -32,7 +32,7 @@ impl Bridge {
         // Newton's steps from the one-sided estimate of the earlier pool, kept in the bracket.
         let mut r = Weights::new(&before, 1.0).log_mean;
         let mut balance = Balance::at(&before, &after, r);
-        for _ in 0..MOST_STEPS {
+        for _ in 0..MAX_STEPS {
             if balance.forward > balance.backward {
                 low = low.max(r);
             } else {
@@ -108,8 +108,7 @@ impl Balance {
 mod tests {
     use super::*;
 
-    /// l is 0 or 1; one in four is 1 before, so the ratio for a step of ln 3 is (3 + 3) / 4 = 1.5 and half
-    /// are 1 after.
+    /// l is 0 or 1; one in four is 1 before, so the ratio for a step of ln 3 is (3 + 3) / 4 = 1.5 and half are 1 after.
     #[test]
     fn the_ratio_of_exact_populations_is_exact() {
         let step = libm::log(3.0);

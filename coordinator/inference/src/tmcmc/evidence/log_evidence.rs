@@ -5,18 +5,16 @@ use statistics::metamodel::Pool;
 
 /// The log-evidence so far.
 ///
-/// `ln Z = ln(survivors / draws) + sum_j ln r_j`, with `r_j` the bridge between the pools of stages j - 1 and
-/// j.
+/// `ln Z = ln(survivors / draws) + sum_j ln r_j`, with `r_j` the bridge between the pools of stages j - 1 and j.
 ///
-/// Its variance, in first order: each chain has a share of the error of the (one or two) ratios that its pool
-/// enters. Chains with a common ancestor are not independent, nor is a chain of its descendants, so the
-/// variance sums the squares of the shares of siblings and twice their products with the shares of all later
-/// descendants of their common parent (after Chan & Lai 2013). The surviving fraction f of n prior draws adds
-/// (1 - f) / (f n).
+/// Its variance, in first order: each chain has a share of the error of the (one or two) ratios that its pool enters. Chains with a common
+/// ancestor are not independent, nor is a chain of its descendants, so the variance sums the squares of the shares of siblings and twice
+/// their products with the shares of all later descendants of their common parent (after Chan & Lai 2013). The surviving fraction f of n
+/// prior draws adds (1 - f) / (f n).
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Evidence {
     pub(crate) log: f64,
-    /// Variance of what the estimate began with: the surviving fraction, or an earlier estimate.
+    /// Variance of the initial estimate: the surviving fraction, or an earlier estimate.
     first_variance: f64,
     levels: Vec<Level>,
 }
@@ -79,7 +77,6 @@ impl Evidence {
         increment
     }
 
-    /// Standard error of the log-evidence.
     pub(crate) fn standard_error(&self) -> f64 {
         let mut variance = self.first_variance;
         for (index, level) in self.levels.iter().enumerate() {
@@ -135,8 +132,7 @@ mod tests {
         pool
     }
 
-    /// Prior N(0, 1), l = -x^2 / 2, exponents 0, 1: ln Z = -ln(2) / 2; the standard error matches the
-    /// scatter.
+    /// Prior N(0, 1), l = -x^2 / 2, exponents 0, 1: ln Z = -ln(2) / 2; the standard error matches the scatter.
     #[test]
     fn standard_error_matches_the_scatter_over_replicates() {
         let (count, replicates) = (400, 300);

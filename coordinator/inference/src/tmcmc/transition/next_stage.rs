@@ -14,7 +14,7 @@ use statistics::rng::Stream;
 /// Stream of a stage's resampling; particles never reach this number.
 const RESAMPLING: u64 = u64::MAX;
 
-/// How the stage in progress was reached.
+/// The transition that led to the stage in progress.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Passage {
     /// Growth of the exponent.
@@ -77,19 +77,10 @@ impl Transition {
         let stage = match settings.algorithm {
             Algorithm::Tmcmc => {
                 let frozen: Vec<Vec<f64>> = indices.iter().map(|&from| views[from].to_vec()).collect();
-                let chains = indices
-                    .iter()
-                    .map(|&from| chain((from, settings.moves[1])))
-                    .collect();
+                let chains = indices.iter().map(|&from| chain((from, settings.moves[1])));
                 let scale = scale.unwrap_or_else(|| initial_scale(factor.dimension()));
-                Stage::new(
-                    index,
-                    next,
-                    chains,
-                    ProposalMixture { factor, frozen },
-                    scale,
-                    true,
-                )
+                let mixture = ProposalMixture { factor, frozen };
+                Stage::new(index, next, chains.collect(), mixture, scale, true)
             }
             original @ (Algorithm::ChingChen2007 | Algorithm::Basis) => {
                 let chains = match original {

@@ -2,17 +2,15 @@
 
 use super::weights::Weights;
 
-/// Relative tolerance of the step.
 const TOLERANCE: f64 = 1e-10;
-/// Far more trials than false position takes.
-const MOST_TRIALS: usize = 200;
+/// Maximum number of trials, far more than false position takes.
+const MAX_TRIALS: usize = 200;
 
 /// The step of the exponent at which the weights of `log_likelihoods` have the coefficient of variation
 /// `target`, or `remaining` = 1 - exponent if that comes first.
 ///
-/// The coefficient rises with the step, nearly in proportion where it is small, so false position on the
-/// logarithms of both finds it in a few trials. The scale is logarithmic because the first step can be 1e-10 or less.
-/// The log-likelihoods are finite and not empty.
+/// The coefficient rises with the step, nearly in proportion where it is small, so false position on the logarithms of both finds it in a
+/// few trials. The scale is logarithmic because the first step can be 1e-10 or less. The log-likelihoods are finite and not empty.
 ///
 /// # Source
 /// Dowell & Jarratt 1971, BIT 11:168, doi:10.1007/BF01934364 (Illinois variant of false position).
@@ -26,12 +24,12 @@ pub(crate) fn exponent_step(log_likelihoods: &[f64], remaining: f64, target: f64
         .fold(f64::NEG_INFINITY, |max, &l| max.max(l));
     let min = log_likelihoods.iter().fold(f64::INFINITY, |min, &l| min.min(l));
     // Weights between exp(-c) and 1 vary by at most sinh(c/2), which is below `target` for c = min(target, 1).
-    let least = target.min(1.0) / (max - min).min(f64::MAX);
+    let lowest = target.min(1.0) / (max - min).min(f64::MAX);
     let excess = |log_step: f64| libm::log(cov(libm::exp(log_step)) / target);
-    let (mut low, mut high) = (libm::log(least.min(remaining)), libm::log(remaining));
+    let (mut low, mut high) = (libm::log(lowest.min(remaining)), libm::log(remaining));
     let (mut below, mut above) = (excess(low), excess(high));
     let mut last_was_above = None;
-    for _ in 0..MOST_TRIALS {
+    for _ in 0..MAX_TRIALS {
         let position = high - above * (high - low) / (above - below);
         // Bisect where false position gives no number or no progress: a coefficient of 0 has no logarithm.
         let trial = if low < position && position < high {
@@ -41,13 +39,13 @@ pub(crate) fn exponent_step(log_likelihoods: &[f64], remaining: f64, target: f64
         };
         let value = excess(trial);
         // The value at an end that stays twice is halved, or the other end would creep.
-        let again = last_was_above.replace(value > 0.0) == Some(value > 0.0);
+        let stayed = last_was_above.replace(value > 0.0) == Some(value > 0.0);
         if value > 0.0 {
             (high, above) = (trial, value);
-            below *= if again { 0.5 } else { 1.0 };
+            below *= if stayed { 0.5 } else { 1.0 };
         } else {
             (low, below) = (trial, value);
-            above *= if again { 0.5 } else { 1.0 };
+            above *= if stayed { 0.5 } else { 1.0 };
         }
         if high - low <= TOLERANCE || value.abs() <= TOLERANCE {
             low = trial;

@@ -31,7 +31,6 @@ impl Weights {
         }
     }
 
-    /// Weights that sum to one.
     pub(crate) fn normalised(&self) -> Vec<f64> {
         let sum: f64 = self.relative.iter().sum();
         self.relative.iter().map(|w| w / sum).collect()

@@ -5,7 +5,7 @@ use super::super::terrain::Terrain;
 use super::Contact;
 
 impl Contact {
-    /// Contour lengths L of the patches; of the half modelled, if the terrain is mirrored.
+    /// Adds the contour lengths L of the patches; of the modelled half if the terrain is mirrored.
     ///
     /// Ends along the travel are straight lines from lane to lane through the sub-cell ends, as marching squares
     /// draws them; sides run along the lanes' edges. A rectangle has its exact contour.
@@ -28,7 +28,7 @@ impl Contact {
         }
     }
 
-    /// Length of the ends of a strip's lanes towards a neighbouring strip in which they are not in contact.
+    /// Length of the ends of a strip's lanes towards a neighbouring strip in which these lanes are not in contact.
     fn ends(&self, terrain: &Terrain, row: usize, mut ending: u64, neighbour: usize) -> f64 {
         let mut length = 0.0;
         while ending != 0 {
@@ -42,7 +42,7 @@ impl Contact {
                     let its_end = if self.masks[neighbour] >> beside & 1 == 0 {
                         self.end_of(row, beside, neighbour)
                     } else {
-                        // one strip further, where it ends there
+                        // the contact of this lane ends one strip further
                         let gap = (self.strips[neighbour].middle - self.strips[row].middle).abs();
                         let beyond = if neighbour > row {
                             neighbour + 1

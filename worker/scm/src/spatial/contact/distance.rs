@@ -1,16 +1,16 @@
-//! The geometry of a footprint: ends of the contact between nodes, areas, distances from the border.
+//! The geometry of a footprint: ends of the contact between nodes, areas, distances to the border.
 
-use super::super::pack::{LANES, PACK, Pack, greater, lanes_of, least_of, lesser, most_of, splat, sum};
+use super::super::pack::{LANES, PACK, Pack, greater, greatest_of, lanes_of, least_of, lesser, splat, sum};
 use super::super::terrain::Terrain;
 use super::Contact;
 use super::laws::Laws;
 use super::patch::{Patches, lanes_in_runs};
 
-/// Distance along the travel of a node that is not in contact, where only the least counts.
+/// Distance along the travel of a node without contact; only the minimum of the distances matters.
 const FAR: f64 = 1e100;
 
 impl Contact {
-    /// Areas, depths and shapes of the nodes in contact, and their sums over each patch.
+    /// Computes areas, depths and shapes of the nodes in contact, and their sums over each patch.
     pub(crate) fn measure(&mut self, terrain: &Terrain, laws: &Laws, hub: f64) {
         for row in (self.first..self.end).rev() {
             if self.masks[row] != 0 {
@@ -24,13 +24,13 @@ impl Contact {
         }
     }
 
-    /// Touch a strip: which nodes are in contact, and where their contact begins.
+    /// Finds the nodes of a strip in contact, and the rear ends of their contact.
     pub(crate) fn find_rear_ends(&mut self, row: usize, hub: f64) {
         let packs = self.across.packs();
         let (strip, previous) = (&self.strips[row], &self.strips[row - 1]);
-        let (behind, here) = self.quads[(row - 1) * packs..(row + 1) * packs].split_at_mut(packs);
+        let (behind, current) = self.quads[(row - 1) * packs..(row + 1) * packs].split_at_mut(packs);
         let mut mask = 0;
-        for (pack, (quad, behind)) in here.iter_mut().zip(&*behind).enumerate() {
+        for (pack, (quad, behind)) in current.iter_mut().zip(&*behind).enumerate() {
             mask |= u64::from(quad.touching(hub).to_bitmask()) << (pack * PACK);
             quad.rear_end = behind.rear_end;
         }
@@ -41,7 +41,7 @@ impl Contact {
         }
         let (middle, gap) = (splat(strip.middle), splat(strip.middle - previous.middle));
         let half = splat(strip.middle - strip.rear);
-        for (quad, behind) in here.iter_mut().zip(&*behind) {
+        for (quad, behind) in current.iter_mut().zip(&*behind) {
             if begins & LANES != 0 {
                 let ends = lanes_of(begins);
                 (quad.left, quad.tilt) = (half, splat(0.0));
@@ -56,8 +56,9 @@ impl Contact {
         }
     }
 
-    /// Where the contact of a strip's nodes ends, once that of the strip ahead is known, and what follows from both ends.
-    /// Gives the difference of the squares of the strip's greatest and least distance along the travel.
+    /// Finds the front ends of a strip's contact from the strip ahead, and the quantities that depend on both ends.
+    ///
+    /// Returns the difference of the squares of the strip's greatest and least distance along the travel.
     fn find_front_ends(&mut self, row: usize, hub: f64) -> f64 {
         let packs = self.across.packs();
         let (zero, far) = (splat(0.0), splat(FAR));
@@ -67,11 +68,11 @@ impl Contact {
         let (middle, half) = (splat(strip.middle), splat(strip.middle - strip.rear));
         let (whole, gap) = (half + half, splat(next.middle - strip.middle));
         let (mut nearest, mut farthest) = (far, zero);
-        let (here, ahead) = self.quads[row * packs..(row + 2) * packs].split_at_mut(packs);
+        let (current, ahead) = self.quads[row * packs..(row + 2) * packs].split_at_mut(packs);
         let across = self.across.width.iter().zip(&self.across.from_side);
         let distances = self.along.iter_mut().zip(&mut self.distance);
         for (((quad, ahead), (along, distance)), (&width, &from_side)) in
-            here.iter_mut().zip(&*ahead).zip(distances).zip(across)
+            current.iter_mut().zip(&*ahead).zip(distances).zip(across)
         {
             let touching = quad.touching(hub);
             quad.front_end = ahead.front_end;
@@ -92,7 +93,7 @@ impl Contact {
                     tilt = ends.select(falls, tilt);
                 }
                 quad.front_end = ends.select(middle + right, quad.front_end);
-                // The pressure is taken in the middle of what the node covers.
+                // The pressure is evaluated in the middle of the covered part.
                 quad.offset = (right - left) * splat(0.5);
                 quad.pressed -= tilt * quad.offset;
                 quad.depth -= quad.slope * quad.offset;
@@ -108,11 +109,11 @@ impl Contact {
             *along = near.to_array();
             *distance = greater(lesser(near, from_side), zero).to_array();
         }
-        let (least, most) = (least_of(nearest), most_of(farthest));
-        most * most - least * least
+        let (least, greatest) = (least_of(nearest), greatest_of(farthest));
+        greatest * greatest - least * least
     }
 
-    /// Make distances from ends and sides those from the border: Euclidean, whatever the contact's shape.
+    /// Turns distances to ends and sides into Euclidean distances to the border, for any shape of the contact.
     fn correct_distances(&mut self, terrain: &Terrain, row: usize, spread: f64) {
         let mask = self.masks[row];
         if mask.count_ones() as usize != self.across.lanes {
@@ -125,7 +126,7 @@ impl Contact {
         }
     }
 
-    /// Distances to the ends of a run, in a strip that is not in contact in every lane.
+    /// Computes the distances to the ends of a run, in a strip with lanes out of contact.
     fn find_sides(&mut self, terrain: &Terrain, start: usize, end: usize) {
         for lane in start..end {
             let side = &mut self.distance[lane / PACK][lane % PACK];
@@ -138,10 +139,10 @@ impl Contact {
         }
     }
 
-    /// Shorten distances to what neighbouring lanes allow, where the ends of the contact lie at an angle.
+    /// Limits distances by those of neighbouring lanes, where the ends of the contact are oblique.
     ///
-    /// `spread` is the difference of the squares of the greatest and the least distance along the travel: a
-    /// neighbour k lanes away can only count if (k dy)² is less.
+    /// `spread` is the difference of the squares of the greatest and the least distance along the travel: a neighbour k
+    /// lanes away matters only if (k dy)² is less.
     fn look_across(&mut self, terrain: &Terrain, spread: f64) {
         let lanes = self.across.packs() * PACK;
         let farthest = ((spread.sqrt() / terrain.dy) as usize).min(lanes);
@@ -172,7 +173,7 @@ impl Contact {
         }
     }
 
-    /// Shapes and z^n of a strip's nodes, and the sums over its patch.
+    /// Computes shapes and z^n of a strip's nodes, and the sums over its patch.
     fn find_shapes(&mut self, laws: &Laws, row: usize) {
         let packs = self.across.packs();
         let (mut areas, mut shapes) = (splat(0.0), splat(0.0));

@@ -1,33 +1,33 @@
-//! The hull of a footprint: what its patches span together.
+//! The hull of a footprint: the rectangle that its patches span together.
 
-use super::super::pack::{PACK, Pack, greater, lanes_of, lesser, most_of, splat, sum};
+use super::super::pack::{PACK, Pack, greater, greatest_of, lanes_of, lesser, splat, sum};
 use super::super::terrain::Terrain;
 use super::Contact;
 use super::laws::Laws;
 use super::span::Span;
 use crate::footprint::rectangle_effective_width;
 
-/// A run of nodes counts in full from this share of the footprint's greatest pressure on `[–]`.
+/// A run of nodes counts in full if its pressure reaches this share of the footprint's greatest pressure `[–]`.
 const SHARE: f64 = 0.05;
 
 impl Contact {
     /// Effective width of the hull `[m]`, 0 without contact.
     ///
-    /// The hull is a rectangle along the heading. Its width b is that of the lanes in contact. Its area A spans, lane by lane,
-    /// from the rear end of the contact to its front end, gaps between patches included; its length is l = A / b, and
-    /// `b_eff = 2 A / L` with `L = 2 (l + b)`. A footprint without gaps has A = its area in contact.
+    /// The hull is a rectangle along the heading. Its width b is that of the lanes in contact. Its area A extends, lane by
+    /// lane, from the rear end of the contact to its front end, with the gaps between patches; its length is l = A / b, and
+    /// `b_eff = 2 A / L` with `L = 2 (l + b)`. Without gaps, A is the area in contact.
     ///
-    /// A run of nodes in a lane counts by `w = min(1, p / (SHARE p_max))`, where p is its greatest pressure under `k* = k_phi`, and a
-    /// gap by the lesser of the greatest w before and behind it: a grouser's tip that begins to touch, or leaves the soil, must
-    /// not change the hull by a pitch at once.
+    /// A run of nodes in a lane counts by `w = min(1, p / (SHARE p_max))`, where p is its greatest pressure under
+    /// `k* = k_phi`, and a gap by the lesser of the greatest w before and behind it: a grouser's tip that begins or ends to
+    /// touch must not change the hull by a pitch at once.
     pub(crate) fn hull_width(&mut self, terrain: &Terrain, laws: &Laws) -> f64 {
         let packs = self.across.packs();
-        let most = self.find_spans(laws);
+        let greatest = self.find_spans(laws);
         let weight = |pressure: Pack| {
-            if most > 0.0 {
-                lesser(pressure / splat(SHARE * most), splat(1.0))
+            if greatest > 0.0 {
+                lesser(pressure / splat(SHARE * greatest), splat(1.0))
             } else {
-                // where nothing bears, all count alike
+                // without pressure all runs have equal weight
                 splat(1.0)
             }
         };
@@ -56,7 +56,7 @@ impl Contact {
         }
     }
 
-    /// Follow the lanes from the rear, and give the greatest pressure `[Pa]`.
+    /// Follows the lanes from the rear, and returns the greatest pressure `[Pa]`.
     fn find_spans(&mut self, laws: &Laws) -> f64 {
         let (zero, packs) = (splat(0.0), self.across.packs());
         let blank = Span {
@@ -65,13 +65,13 @@ impl Contact {
             run: zero,
         };
         self.spans.resize((self.end - self.first) * packs, blank);
-        // pressures count relative to each other alone
+        // only the ratios of the pressures matter
         let modulus = splat(if laws.soil.k_phi > 0.0 {
             laws.soil.k_phi
         } else {
             1.0
         });
-        let mut most = zero;
+        let mut greatest = zero;
         for pack in 0..packs {
             let (mut ended, mut behind, mut run) = (zero, zero, zero);
             let mut met = 0;
@@ -91,8 +91,8 @@ impl Contact {
                 behind = greater(behind, pressure);
                 met |= mask;
             }
-            most = greater(most, behind);
+            greatest = greater(greatest, behind);
         }
-        most_of(most)
+        greatest_of(greatest)
     }
 }

@@ -1,4 +1,4 @@
-//! The constitutive laws, ready for many nodes.
+//! The constitutive laws, prepared for many nodes.
 
 use super::super::pack::{Pack, greater, lesser, splat};
 use super::power::Power;
@@ -14,7 +14,7 @@ pub(crate) struct Laws {
     pub(crate) shear_velocity: ShearVelocity,
     /// Stiffness of unloading and reloading `[Pa/m]`.
     pub(crate) elastic_stiffness: f64,
-    /// How much of the loose soil bears like undisturbed soil `[–]`.
+    /// Share of the loose soil that carries load like undisturbed soil `[–]`.
     pub(crate) bearing_credit: f64,
     sinkage_power: Power,
     distribution: PressureDistribution,
@@ -39,14 +39,14 @@ impl Laws {
         }
     }
 
-    /// Shape g of the pressure distribution at a distance from the border, up to a constant factor.
+    /// Shape g of the pressure distribution at a distance to the border, up to a constant factor.
     #[inline]
     pub(crate) fn shape(&self, distance: Pack) -> Pack {
         match (self.distribution, &self.distance_power) {
             (PressureDistribution::Root, _) => distance.sqrt(),
             (PressureDistribution::Linear, _) => distance,
-            // in millimetres, so that high powers do not vanish
-            (_, Some(power)) => power.of(distance * splat(1e3)),
+            // the distance is in millimetres, so that high powers do not vanish
+            (_, Some(power)) => power.raise(distance * splat(1e3)),
             (_, None) => splat(1.0),
         }
     }
@@ -54,10 +54,10 @@ impl Laws {
     /// z^n of Bekker's plastic pressure `gamma k* z^n`, z below the reference.
     #[inline]
     pub(crate) fn depth_power(&self, depth: Pack) -> Pack {
-        self.sinkage_power.of(depth)
+        self.sinkage_power.raise(depth)
     }
 
-    /// A plastic pressure, but no more than the elastic line from the present surface allows, and no suction.
+    /// Limits a plastic pressure to the elastic line from the present surface, without suction.
     #[inline]
     pub(crate) fn bounded(&self, plastic: Pack, penetration: Pack) -> Pack {
         let elastic = splat(self.elastic_stiffness) * penetration;

@@ -1,13 +1,13 @@
-//! The contact of wheel and terrain: which nodes touch, and with what pressure.
+//! The contact of wheel and terrain: the nodes in contact and their pressure.
 //!
 //! # Layout
-//! - `quad`: what is known of four neighbouring nodes.
-//! - `patch`: which nodes in contact are connected.
-//! - `distance`: ends of the contact between nodes, areas, distances from the border.
-//! - `contour`: contour lengths of the patches; `hull`: what they span together; `span`: what lanes do.
+//! - `quad`: the state of four neighbouring nodes.
+//! - `patch`: connected nodes in contact.
+//! - `distance`: ends of the contact between nodes, areas, distances to the border.
+//! - `contour`: contour lengths of the patches; `hull`: the rectangle that they span; `span`: gaps and runs of lanes.
 //! - `laws`: pressure and its distribution; `power`: z^n for many nodes.
 //! - `reaction`: force and torque on the wheel.
-//! - `formulas`: pressure and shear stress as effects leave them.
+//! - `formulas`: pressure and shear stress after the effects.
 
 mod contour;
 mod distance;
@@ -35,45 +35,45 @@ use super::wheel::envelope::{Envelope, NOWHERE, Strip};
 use super::wheel::motion::{Motion, Traction};
 use crate::footprint::effective_width;
 
-/// Most lanes under a wheel: one bit of a mask for each.
-pub(crate) const MOST_LANES: usize = 64;
+/// The maximum number of lanes under a wheel: one bit of a mask for each.
+pub(crate) const MAX_LANES: usize = 64;
 
-/// The wheel on the terrain at one place, to be tried at several heights.
+/// The wheel on the terrain at one place, for trials at several heights.
 ///
 /// The first and the last strip are guards that never touch, so that every strip in contact has neighbours.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Contact {
     pub(crate) across: Across,
     pub(crate) strips: Vec<Strip>,
-    /// Strips, each with all its packs of lanes.
+    /// Quads of all strips, each with all its packs of lanes.
     pub(crate) quads: Vec<Quad>,
     /// Hub height at which a strip begins to touch `[m]`.
     highest: Vec<f64>,
-    /// Forces per unit of pressure and strength: of each strip, or of each lane of each strip.
+    /// Forces per unit of pressure and strength, by strip, or by strip and lane.
     pub(crate) tractions: Vec<Traction>,
     pub(crate) lanes_differ: bool,
-    /// Strips `first..end` hold all nodes in contact. Bit j of a strip's mask: lane j is in contact.
+    /// Strips `first..end` hold all nodes in contact. Bit j of a strip's mask means that lane j is in contact.
     pub(crate) first: usize,
     pub(crate) end: usize,
     pub(crate) masks: Vec<u64>,
     pub(crate) patches: Patches,
-    /// The height tried last `[m]`.
+    /// The last trial height `[m]`.
     pub(crate) hub: f64,
-    /// Distances of one strip's lanes from the ends along the travel, and from the border `[m]`.
+    /// Distances of one strip's lanes to the ends along the travel, and to the border `[m]`.
     pub(crate) along: Vec<[f64; PACK]>,
     pub(crate) distance: Vec<[f64; PACK]>,
-    /// Squares of distances of one strip, with room on both sides.
+    /// Squares of the distances of one strip, padded on both sides.
     pub(crate) squares: Vec<f64>,
-    /// By strip in contact and pack, for the hull.
+    /// Spans for the hull, by strip in contact and pack.
     spans: Vec<Span>,
-    /// Whose `b_eff` nodes have.
+    /// The effective width that applies to nodes.
     pub(crate) footprint: Footprint,
     pub(crate) trials: u64,
     pub(crate) node_trials: u64,
 }
 
 impl Contact {
-    /// A contact whose nodes have the effective width of the hull, or of their patches.
+    /// Creates a contact whose nodes have the effective width of the hull, or of their patches.
     pub(crate) fn new(footprint: Footprint) -> Self {
         Self {
             footprint,
@@ -81,7 +81,7 @@ impl Contact {
         }
     }
 
-    /// Bring wheel and terrain together: what does not depend on the height of the hub.
+    /// Computes everything that does not depend on the height of the hub, for a wheel on the terrain.
     ///
     /// With `vertical` the pressure acts upwards whatever the slope of the wheel's surface.
     pub(crate) fn prepare(
@@ -166,7 +166,7 @@ impl Contact {
         if terrain.mirrored { 2.0 * half } else { half }
     }
 
-    /// Nodes in contact with the hub at a height, and the patches they form; `contours`: with their lengths.
+    /// Finds the nodes in contact with the hub at a height, and their patches; `contours`: with their lengths.
     #[inline]
     fn find_patches(&mut self, terrain: &Terrain, laws: &Laws, hub: f64, contours: bool) {
         self.touch(hub);
@@ -189,7 +189,7 @@ impl Contact {
         self.trials += 1;
     }
 
-    /// Effective widths of the patches at the height last tried, by their areas.
+    /// Computes the effective widths of the patches at the last trial height, from their areas.
     pub(crate) fn find_effective_widths(&mut self, terrain: &Terrain, laws: &Laws) {
         match self.footprint {
             Footprint::Hull => {
@@ -207,7 +207,7 @@ impl Contact {
         }
     }
 
-    /// Which nodes are in contact, in which patches, and where their contact begins.
+    /// Finds the nodes in contact, their patches, and the rear ends of the contact.
     fn touch(&mut self, hub: f64) {
         let rows = self.strips.len();
         self.hub = hub;
@@ -226,7 +226,7 @@ impl Contact {
         self.patches.label(self.first, &self.masks[self.first..self.end]);
     }
 
-    /// Pressures, and the vertical force they and the shear stress exert.
+    /// Computes pressures, and the vertical force of pressure and shear stress.
     fn sum_pressures(&mut self, laws: &Laws) -> f64 {
         let packs = self.across.packs();
         let (cohesion, tan_phi) = (splat(laws.soil.cohesion_pa), splat(laws.tan_friction_angle));
@@ -245,8 +245,8 @@ impl Contact {
             };
             for (pack, quad) in quads.iter_mut().enumerate() {
                 let stiffness = same.unwrap_or_else(|| {
-                    runs.iter().fold(splat(0.0), |others, run| {
-                        run.lanes_of(pack).select(stiffness(run), others)
+                    runs.iter().fold(splat(0.0), |rest, run| {
+                        run.lanes_of(pack).select(stiffness(run), rest)
                     })
                 });
                 let p = laws.bounded(stiffness * quad.shape * quad.depth_power, quad.pressed);

@@ -6,10 +6,10 @@ use super::super::pack::{PACK, Pack, lanes_of, splat};
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Run {
     pub(crate) strip: usize,
-    /// First lane, and the one after the last.
+    /// First lane, and the lane after the last.
     pub(crate) start: usize,
     pub(crate) end: usize,
-    /// Index of the patch the run belongs to; while labelling, of a run before it in the same patch, or itself.
+    /// Index of the run's patch; while labelling, of an earlier run in the same patch, or itself.
     pub(crate) patch: usize,
 }
 
@@ -22,21 +22,21 @@ impl Run {
     }
 }
 
-/// What the nodes of one patch have in common.
+/// Properties of one patch.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Patch {
-    /// A `[m²]`; of the half modelled, if mirrored.
+    /// A `[m²]`; of the modelled half if mirrored.
     pub(crate) area: f64,
-    /// Contour length L `[m]`, of the same half.
+    /// Contour length L `[m]`; of the modelled half if mirrored.
     pub(crate) contour: f64,
-    /// Effective width `[m]`: its own, or that of the hull.
+    /// Effective width of the patch or of the hull `[m]`.
     pub(crate) b_eff: f64,
     /// Sums of area, and of area times the shape g of the pressure distribution, lane by lane.
     pub(crate) areas: Pack,
     pub(crate) shapes: Pack,
     /// Modulus k* `[N/m^(n+2)]`.
     pub(crate) modulus: f64,
-    /// The same over the mean of g; 0 where there is no support.
+    /// k* over the mean of g; 0 if there is no support.
     pub(crate) stiffness: f64,
 }
 
@@ -45,20 +45,20 @@ pub(crate) struct Patch {
 pub(crate) struct Patches {
     pub(crate) runs: Vec<Run>,
     pub(crate) patches: Vec<Patch>,
-    /// Of each strip, from the first in contact on: which runs are its own.
+    /// The runs of each strip, from the first strip in contact on.
     pub(crate) of_strip: Vec<core::ops::Range<usize>>,
-    /// What was labelled: the first strip in contact, and the masks from there on.
+    /// The labelled strips: the first strip in contact, and the masks from there on.
     first: usize,
     masks: Vec<u64>,
 }
 
-/// First lanes and those after the last of a mask's runs.
+/// First lanes, and lanes after the last, of a mask's runs.
 pub(crate) fn lanes_in_runs(mut mask: u64) -> impl Iterator<Item = (usize, usize)> {
     core::iter::from_fn(move || {
         (mask != 0).then(|| {
             let start = mask.trailing_zeros() as usize;
             let length = (!(mask >> start)).trailing_zeros() as usize;
-            // adding the lowest bit carries through the run
+            // the carry of the lowest bit runs through the run
             mask &= mask.wrapping_add(1 << start);
             (start, start + length)
         })
@@ -66,7 +66,7 @@ pub(crate) fn lanes_in_runs(mut mask: u64) -> impl Iterator<Item = (usize, usize
 }
 
 impl Patches {
-    /// Label the runs of the strips `first..first + masks.len()`; bit j of a mask says that lane j is in contact.
+    /// Labels the runs of the strips `first..first + masks.len()`; bit j of a mask means that lane j is in contact.
     ///
     /// Nodes are connected along strips and lanes, not across corners.
     pub(crate) fn label(&mut self, first: usize, masks: &[u64]) {
@@ -100,7 +100,7 @@ impl Patches {
         }
     }
 
-    /// Runs of lanes, each joined to those of the strip before that it touches.
+    /// Finds the runs of lanes, and joins each to those of the preceding strip that it touches.
     fn find_runs(&mut self) {
         self.runs.clear();
         self.of_strip.clear();
@@ -128,7 +128,7 @@ impl Patches {
     }
 }
 
-/// The foremost run of the patch that holds a run and another, joined; the other stands at the head of its patch.
+/// Joins the patch of a run with another, whose head is given; returns the foremost run of the joined patch.
 fn join(runs: &mut [Run], mut run: usize, head: usize) -> usize {
     while runs[run].patch != run {
         run = runs[run].patch;

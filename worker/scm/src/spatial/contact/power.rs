@@ -2,19 +2,19 @@
 
 use super::super::pack::{Pack, splat};
 
-/// Sub-intervals to an octave.
+/// Number of sub-intervals of an octave.
 const STEPS: usize = 256;
 /// The least power of two that has a table entry; a shallower sinkage counts as 2^−40 m (1e-12 m).
 const LEAST_EXPONENT: i32 = -40;
 const OCTAVES: usize = 64;
-/// Entries of the table: a power of two, so that a mask keeps a place within it.
+/// Number of entries of the table: a power of two, so that a mask keeps an index in range.
 const SIZE: usize = OCTAVES * STEPS;
-/// Terms of the binomial series: |t| ≤ 1/513, so the first one left out is below 1e-12.
+/// Number of terms of the binomial series: |t| ≤ 1/513, so the first omitted one is below 1e-12.
 const TERMS: usize = 4;
-/// Bits of a number below those that tell its sub-interval.
+/// Number of bits of a number below those that select its sub-interval.
 const SHIFT: u32 = f64::MANTISSA_DIGITS - 1 - STEPS.ilog2();
 
-/// `z ↦ z^n` for z < 2^24 m, to 1e-12 relative.
+/// `z ↦ z^n` for z < 2^24 m, with a relative error of 1e-12.
 ///
 /// With c the middle of the sub-interval that holds z and `t = z/c − 1`: `z^n = c^n (1 + n t + n (n − 1)/2 t² + …)`.
 /// Checked by `power_agrees_with_libm`.
@@ -50,7 +50,7 @@ impl Power {
 
     /// z^n lane by lane; a negative z counts as zero.
     #[inline]
-    pub(crate) fn of(&self, z: Pack) -> Pack {
+    pub(crate) fn raise(&self, z: Pack) -> Pack {
         const LEAST: f64 = 1.0 / (1_u64 << -LEAST_EXPONENT) as f64;
         const FIRST: usize = ((1023 + LEAST_EXPONENT) as usize) * STEPS;
         let z = z.fast_max(splat(LEAST));
@@ -60,7 +60,7 @@ impl Power {
         };
         let [z0, z1, z2, z3] = z.to_array();
         let power = [power(z0), power(z1), power(z2), power(z3)];
-        // the bits below those of the sub-interval give way to its half
+        // the bits below those of the sub-interval are replaced by its middle
         let middle = (z & splat(f64::from_bits(u64::MAX << SHIFT))) | splat(f64::from_bits(1 << (SHIFT - 1)));
         let t = (z - middle) / middle;
         let [c0, c1, c2, c3] = self.series;
@@ -79,11 +79,11 @@ mod tests {
             let mut worst = 0.0_f64;
             for i in 0..400_000_u32 {
                 let z = 1e-9 * libm::exp(f64::from(i) * 5e-5);
-                let got = power.of(splat(z)).to_array()[2];
+                let got = power.raise(splat(z)).to_array()[2];
                 worst = worst.max((got / libm::pow(z, exponent) - 1.0).abs());
             }
             assert!(worst < 1e-12, "{exponent}: {worst:e}");
         }
-        assert!(Power::new(1.1).of(splat(-1.0)).to_array()[0] < 1e-13);
+        assert!(Power::new(1.1).raise(splat(-1.0)).to_array()[0] < 1e-13);
     }
 }

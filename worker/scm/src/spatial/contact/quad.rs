@@ -1,9 +1,9 @@
 //! Four neighbouring nodes under the wheel.
 
-use super::super::pack::{PACK, Pack, greater, most_of, splat};
+use super::super::pack::{PACK, Pack, greater, greatest_of, splat};
 use super::super::wheel::envelope::NOWHERE;
 
-/// Four neighbouring nodes under the wheel: what a step knows of them, and what a trial height makes of them.
+/// The state of four neighbouring nodes under the wheel, in a step and at a trial height.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Quad {
     /// Hub height at which the wheel touches the present surface `[m]`.
@@ -17,13 +17,13 @@ pub(crate) struct Quad {
     /// Rear and front end of the contact, ahead of the hub `[m]`.
     pub(crate) rear_end: Pack,
     pub(crate) front_end: Pack,
-    /// Where the contact begins in this strip: what the node covers behind the strip's middle `[m]`, and how its penetration
-    /// rises there `[–]`.
+    /// Start of the contact in this strip: the covered length behind the strip's middle `[m]`, and the increase of the
+    /// penetration per length there `[–]`.
     pub(crate) left: Pack,
     pub(crate) tilt: Pack,
-    /// Where the pressure is taken, ahead of the strip's middle `[m]`.
+    /// Point of the pressure, ahead of the strip's middle `[m]`.
     pub(crate) offset: Pack,
-    /// Penetration and depth z there `[m]`, z^n, and the shape g of the distribution.
+    /// Penetration and depth z at that point `[m]`, z^n, and the shape g of the distribution.
     pub(crate) pressed: Pack,
     pub(crate) depth: Pack,
     pub(crate) depth_power: Pack,
@@ -68,14 +68,14 @@ impl Quad {
 pub(crate) struct Under<'a> {
     pub(crate) surface: &'a [[f64; PACK]],
     pub(crate) loose: &'a [[f64; PACK]],
-    /// Added to the rise of the wheel.
+    /// Offset that is added to the rise of the wheel.
     pub(crate) bias: &'a [Pack],
-    /// Share of the loose soil that bears.
+    /// Share of the loose soil that carries load.
     pub(crate) credit: Pack,
 }
 
 impl Under<'_> {
-    /// Let a strip of the wheel meet the soil; gives the height of the hub at which it begins to touch.
+    /// Brings a strip of the wheel and the soil together; returns the height of the hub at which it begins to touch.
     ///
     /// `wheel` gives rise, slope and vertical shear force of a pack.
     #[inline]
@@ -91,6 +91,6 @@ impl Under<'_> {
             quad.shear_z = shear_z;
             highest = greater(highest, quad.surface);
         }
-        most_of(highest)
+        greatest_of(highest)
     }
 }

@@ -10,7 +10,7 @@ use super::patch::Patch;
 /// Force and torque of the soil on the wheel about its hub, with the contact that caused them.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Reaction {
-    /// Along the heading, to the left and upwards `[N]`.
+    /// Force along the heading, to the left and upwards `[N]`.
     pub(crate) force_x: f64,
     pub(crate) force_y: f64,
     pub(crate) force_z: f64,
@@ -22,9 +22,8 @@ pub(crate) struct Reaction {
 }
 
 impl Contact {
-    /// The soil's force and torque at the height last tried.
-    ///
-    /// `strengths` are those of every quad where formulas have changed them `[Pa]`.
+    /// The soil's force and torque at the last trial height. `strengths` are those of every quad, if formulas have changed
+    /// them `[Pa]`.
     pub(crate) fn react(&mut self, terrain: &Terrain, laws: &Laws, strengths: Option<&[Pack]>) -> Reaction {
         let packs = self.across.packs();
         let (cohesion, tan_phi) = (splat(laws.soil.cohesion_pa), splat(laws.tan_friction_angle));
@@ -78,22 +77,22 @@ impl Contact {
         reaction
     }
 
-    /// Effective width of the hull, or of the patches, weighted by their area `[m]`.
+    /// Effective width of the hull, or mean of the patches weighted by area `[m]`.
     pub(crate) fn effective_width(&mut self, terrain: &Terrain, laws: &Laws) -> f64 {
         self.find_effective_widths(terrain, laws);
         self.mean_of(|patch| patch.b_eff)
     }
 
-    /// Modulus k* of the patches, weighted by their area `[N/m^(n+2)]`.
+    /// Mean modulus k* of the patches, weighted by area `[N/m^(n+2)]`.
     pub(crate) fn modulus(&self) -> f64 {
         self.mean_of(|patch| patch.modulus)
     }
 
-    fn mean_of(&self, of: impl Fn(&Patch) -> f64) -> f64 {
+    fn mean_of(&self, quantity: impl Fn(&Patch) -> f64) -> f64 {
         let (mut area, mut weighted) = (0.0, 0.0);
         for patch in &self.patches.patches {
             area += patch.area;
-            weighted += patch.area * of(patch);
+            weighted += patch.area * quantity(patch);
         }
         if area > 0.0 { weighted / area } else { 0.0 }
     }
@@ -115,7 +114,7 @@ struct Sums {
 }
 
 impl Sums {
-    /// Add normal and shear forces that act in the same directions.
+    /// Adds normal and shear forces that act in the same directions.
     fn add(&mut self, ahead: f64, along: &Along, normal: Pack, shear: Pack) {
         let x = normal * along.pressure_x + shear * along.shear_x;
         let z = normal + shear * along.shear_z;
@@ -149,7 +148,7 @@ impl Along {
     }
 
     fn of_lanes(t: &[Traction]) -> Self {
-        let pack = |of| Traction::of_lanes(t, of);
+        let pack = |quantity| Traction::of_lanes(t, quantity);
         Self {
             rise: pack(|t| t.rise),
             pressure_x: pack(|t| t.pressure_x),

@@ -1,8 +1,8 @@
-//! What lanes of a footprint span along the travel.
+//! Gaps and runs of lanes of a footprint along the travel.
 
 use super::super::pack::Pack;
 
-/// What four lanes hold up to a strip, from the rear.
+/// Gaps and runs of four lanes up to a strip, from the rear.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Span {
     /// The gap behind a run that begins in the strip `[m]`.

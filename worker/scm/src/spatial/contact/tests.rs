@@ -1,11 +1,11 @@
-//! A flat plate pressed onto flat soil: what a contact gives where everything is known.
+//! A flat plate pressed onto flat soil: a contact with known results.
 
 use super::*;
 use crate::Soil;
 use crate::spatial::fixture::{CONDITION, SOIL, WHEEL};
 
 const SPACING: f64 = 0.004;
-/// Strips in contact, between two guards.
+/// Number of strips in contact, between two guards.
 const STRIPS: usize = 10;
 const WIDTH: f64 = WHEEL.width_m;
 const LENGTH: f64 = STRIPS as f64 * SPACING;
@@ -64,7 +64,7 @@ fn soil(gamma_exponent: f64, k_c: f64) -> Soil {
 }
 
 #[test]
-fn a_flat_contact_carries_its_area_times_bekkers_pressure_whatever_the_distribution() {
+fn a_flat_contact_carries_its_area_times_bekkers_pressure_with_any_distribution() {
     for gamma_exponent in [0.0, 0.5, 0.8, 1.0] {
         for k_c in [0.0, 2e5, -1e5] {
             for (footprint, mirrored) in [
@@ -89,11 +89,11 @@ fn a_flat_contact_carries_its_area_times_bekkers_pressure_whatever_the_distribut
     }
 }
 
-/// Flat soil with a ditch under three strips of the wheel; gives the effective width of what is in contact.
+/// Flat soil with a ditch under three strips of the wheel; returns the effective width of the contact.
 fn over_a_ditch(footprint: Footprint, depth_beyond: f64) -> f64 {
     let mut terrain = level(false);
     let lanes = terrain.lanes;
-    // strips 1 to 4 are in contact, 5 to 7 are not, 8 to 10 are as deep as asked
+    // strips 1 to 4 are in contact, 5 to 7 are not, 8 to 10 are at the given depth
     terrain.surface[9 * lanes..12 * lanes].fill(-0.05);
     terrain.surface[12 * lanes..].fill(depth_beyond - DEPTH);
     terrain.loose[12 * lanes..].fill(depth_beyond - DEPTH);
@@ -116,7 +116,7 @@ fn the_hull_spans_the_gap_between_patches_as_far_as_both_bear() {
     let near = |got: f64, expected: f64| assert!((got / expected - 1.0).abs() < 1e-10, "{got} {expected}");
     let depth_at = |share: f64| DEPTH * libm::pow(share, 1.0 / 1.1);
     near(over_a_ditch(Footprint::Hull, DEPTH), rectangle(10.0));
-    // by area: 4 strips and 3
+    // weighted by area: 4 strips and 3
     let by_patch = (4.0 * rectangle(4.0) + 3.0 * rectangle(3.0)) / 7.0;
     near(over_a_ditch(Footprint::Patches, DEPTH), by_patch);
     // with 1/20 of the greatest pressure a patch counts in full
@@ -140,7 +140,7 @@ fn pressure_grows_from_the_border_with_the_power_of_the_distance() {
         let got = at(row, lanes / 2) / at(5, lanes / 2);
         assert!((got / expected - 1.0).abs() < 1e-12, "{cells} cells: {got}");
     }
-    // a corner lies as far from the end as from the side
+    // a corner is as far from the end as from the side
     assert!((at(1, 0) / at(1, lanes / 2) - 1.0).abs() < 1e-12);
     assert!((at(5, 0) / at(1, lanes / 2) - 1.0).abs() < 1e-12);
 }
@@ -157,7 +157,7 @@ fn the_force_is_the_load_upwards_and_turns_nothing_under_the_middle() {
 
 #[test]
 fn distances_from_a_border_at_an_angle_are_euclidean() {
-    // every fourth lane the contact begins a strip further ahead
+    // the contact begins one strip further ahead every fourth lane
     let begins = |lane: usize| 1 + lane / 4;
     let (_, mut contact, mut terrain) = pressed(&soil(0.5, 0.0), false);
     // with the exponent 1 the shape is the distance
@@ -179,7 +179,7 @@ fn distances_from_a_border_at_an_angle_are_euclidean() {
                 let aside = other.abs_diff(lane) as f64;
                 square = square.min(cells * cells + aside * aside);
             }
-            // the side of the wheel, and where the strip's contact ends at greater y
+            // the side of the wheel, and the end of the strip's contact at greater y
             let last = (0..lanes)
                 .rfind(|&other| begins(other) <= row)
                 .expect("this lane");

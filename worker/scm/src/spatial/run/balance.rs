@@ -4,22 +4,22 @@
 const TOLERANCE: f64 = 1.5e-2;
 /// Width of a bracket at which the search ends: the load may jump as patches join `[m]`.
 const NARROWEST: f64 = 1e-6;
-const MOST_TRIALS: u32 = 60;
-/// The least fall of the load with height that a chord must show, in wheel loads to a metre.
+const MAX_TRIALS: u32 = 60;
+/// The flattest slope of the load against height that a chord may show, in wheel loads per metre.
 const LEAST_SLOPE: f64 = -10.0;
 
 /// Search with the last step's slope; `load` falls as the hub rises.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Search {
-    /// Where to start `[m]`.
+    /// Start height `[m]`.
     pub(crate) guess: f64,
-    /// d load / d height there `[N/m]`, < 0.
+    /// d load / d height at the start `[N/m]`, < 0.
     pub(crate) slope: f64,
     /// The longest first step `[m]`; it doubles until the load is bracketed.
     pub(crate) longest: f64,
 }
 
-/// A height in balance, and the slope by which it was found.
+/// A height in balance, and the slope that led to it.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Balance {
     pub(crate) height: f64,
@@ -28,7 +28,7 @@ pub(crate) struct Balance {
     pub(crate) residual: f64,
 }
 
-/// The height at which `excess(height)`, the carried load less the wheel load, is zero; none if it is not met above `lowest`.
+/// The height at which `excess(height)`, the carried load less the wheel load, is zero; `None` if there is none above `lowest`.
 pub(crate) fn balance(
     search: Search,
     wheel_load: f64,
@@ -36,14 +36,14 @@ pub(crate) fn balance(
     mut excess: impl FnMut(f64) -> f64,
 ) -> Option<Balance> {
     let mut slope = search.slope;
-    // a guess from the trend may lie below: what is carried there is no support
+    // a guess from the trend may be below `lowest`, where a carried load is no support
     let mut height = search.guess.max(lowest);
     // heights and their excess: ≥ 0 at the low one, < 0 at the high one
     let mut low: Option<(f64, f64)> = None;
     let mut high: Option<(f64, f64)> = None;
     let mut last: Option<(f64, f64)> = None;
     let mut longest = search.longest;
-    for trial in 0..MOST_TRIALS {
+    for trial in 0..MAX_TRIALS {
         let residual = excess(height);
         let done = residual.abs() <= TOLERANCE * wheel_load;
         let narrow = matches!((low, high), (Some((l, _)), Some((h, _))) if h - l < NARROWEST);
@@ -55,7 +55,7 @@ pub(crate) fn balance(
         }
         last = Some((height, residual));
         // the caller reports a residual that is NaN
-        if done || narrow || trial + 1 == MOST_TRIALS || !residual.is_finite() {
+        if done || narrow || trial + 1 == MAX_TRIALS || !residual.is_finite() {
             return Some(Balance {
                 height,
                 slope,
@@ -100,7 +100,7 @@ pub(crate) fn balance(
 mod tests {
     use super::*;
 
-    /// Soil of 1 kN/m that meets the wheel at 100 mm.
+    /// Soil with a stiffness of 1 kN/m that meets the wheel at 100 mm.
     fn spring(height: f64) -> f64 {
         1e3 * (0.1 - height)
     }
@@ -116,20 +116,21 @@ mod tests {
     #[test]
     fn the_load_is_met_within_its_tolerance_from_above_and_below() {
         for guess in [0.099, 0.05, 0.001, -0.01] {
-            let found = balance(search(guess), 30.0, 0.0, |height| spring(height) - 30.0).expect("support");
-            assert!((found.height - 0.07).abs() < 0.031e-3, "{found:?}");
-            assert!((spring(found.height) - 30.0 - found.residual).abs() < 1e-12);
+            let balanced =
+                balance(search(guess), 30.0, 0.0, |height| spring(height) - 30.0).expect("support");
+            assert!((balanced.height - 0.07).abs() < 0.031e-3, "{balanced:?}");
+            assert!((spring(balanced.height) - 30.0 - balanced.residual).abs() < 1e-12);
         }
     }
 
     #[test]
     fn a_load_met_only_below_the_lowest_height_is_not_met_and_never_tried_there() {
         let mut deepest = f64::MAX;
-        let found = balance(search(-0.03), 110.0, 0.0, |height| {
+        let balanced = balance(search(-0.03), 110.0, 0.0, |height| {
             deepest = deepest.min(height);
             spring(height) - 110.0
         });
-        assert!(found.is_none(), "{found:?}");
+        assert!(balanced.is_none(), "{balanced:?}");
         assert!(deepest.abs() < f64::MIN_POSITIVE, "{deepest}");
     }
 
@@ -137,8 +138,8 @@ mod tests {
     fn a_jump_past_the_load_ends_where_the_bracket_is_narrow() {
         // 20 N above 50 mm, 60 N below
         let jump = |height: f64| if height > 0.05 { 20.0 } else { 60.0 };
-        let found = balance(search(0.06), 30.0, 0.0, |height| jump(height) - 30.0).expect("a bracket");
-        assert!((found.height - 0.05).abs() < 2.0 * NARROWEST, "{found:?}");
-        assert!(found.residual.abs() > 5.0);
+        let balanced = balance(search(0.06), 30.0, 0.0, |height| jump(height) - 30.0).expect("a bracket");
+        assert!((balanced.height - 0.05).abs() < 2.0 * NARROWEST, "{balanced:?}");
+        assert!(balanced.residual.abs() > 5.0);
     }
 }

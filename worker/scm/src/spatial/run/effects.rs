@@ -22,19 +22,19 @@ use crate::spatial::side_wall::SideWall;
 /// - flat patch: the load W cuts the rim off at `R − a W`, see [`Cylinder`](crate::spatial::wheel::cylinder::Cylinder), and
 ///   sinkage is counted from there.
 /// - digging: the reference surface sinks under the sliding wheel, see [`Contact::dig`].
-/// - end wall: k* is `1 + w (exp(−x/l) + exp(−(L − x)/l))` times as large, where x is how far the hub is from the rear wall
-///   of the bin and L the bin's length. A run, and every pass, starts with the rim at the rear wall, x = R.
+/// - end wall: k* is multiplied by `1 + w (exp(−x/l) + exp(−(L − x)/l))`, where x is the distance of the hub from the rear
+///   wall of the bin and L the bin's length. A run, and every pass, starts with the rim at the rear wall, x = R.
 /// - side wall: soil beside the wheel pushes against its buried side, see [`SideWall`].
 #[derive(Debug)]
 pub(super) struct RunEffects<'a> {
     active: &'a Active<'a>,
     case: &'a Case,
-    /// What formulas see and all nodes share, as far as it is known.
+    /// The variables that formulas see and all nodes share, as far as known.
     variables: [f64; Variable::COUNT],
     pub(super) nodes: Option<NodeFormulas<'a>>,
     wall: Option<EndWall>,
     pub(super) side: Option<SideWall>,
-    /// d `[m]`; 0 where nothing digs.
+    /// d `[m]`; 0 without digging.
     digging_m: f64,
     load_follows: bool,
     measures: bool,
@@ -49,10 +49,8 @@ struct EndWall {
 }
 
 impl<'a> RunEffects<'a> {
-    /// The effects on a run over a scene that is the case's already.
-    ///
-    /// # Errors
-    /// [`Rejection::InvalidParameter`]: a mechanism's parameter is outside its bounds, or what it needs is not known.
+    /// Creates the effects on a run over the case's scene; [`Rejection::InvalidParameter`] if a mechanism's parameter is
+    /// outside its bounds, or a quantity that it needs is unknown.
     pub(super) fn new(active: &'a Active<'a>, case: &'a Case, width: f64) -> Result<Self, Rejection> {
         let nodes = active.nodes.clone();
         Ok(Self {
@@ -68,7 +66,7 @@ impl<'a> RunEffects<'a> {
         })
     }
 
-    /// Change what formulas see.
+    /// Changes a variable that formulas see.
     fn set(&mut self, variable: Variable, value: f64) {
         self.variables[variable as usize] = value;
         if let Some(nodes) = &mut self.nodes {
@@ -76,17 +74,15 @@ impl<'a> RunEffects<'a> {
         }
     }
 
-    /// Begin a step of a pass under a load `[N]`.
+    /// Begins a step of a pass under a load `[N]`.
     pub(super) fn begin_step(&mut self, pass: u32, load: f64) {
         self.set(Variable::Pass, f64::from(pass));
-        // nodes go on seeing the load without what follows the reaction
+        // nodes keep seeing the load without the part that depends on the reaction
         self.variables[Variable::WheelLoad as usize] = load;
     }
 
-    /// Make the soil as stiff as it is after a travel `[m]` along the bin.
-    ///
-    /// # Errors
-    /// [`Rejection::InvalidParameter`]: the rim would be beyond the front wall.
+    /// Sets the stiffness of the soil after a travel `[m]` along the bin; [`Rejection::InvalidParameter`] if the rim would
+    /// be beyond the front wall.
     pub(super) fn confine(&self, laws: &mut Laws, travelled: f64) -> Result<(), Rejection> {
         let Some(wall) = self.wall else { return Ok(()) };
         let factor = wall.factor(self.case.wheel.radius_m, travelled)?;
@@ -95,7 +91,7 @@ impl<'a> RunEffects<'a> {
         Ok(())
     }
 
-    /// The load of the next step, where it depends on pull and torque of this one `[N]`.
+    /// The load of the next step `[N]`, if it depends on pull and torque of this one.
     pub(super) fn next_load(&self, reaction: &Reaction) -> Result<Option<f64>, Rejection> {
         if !self.load_follows {
             return Ok(None);
@@ -104,19 +100,18 @@ impl<'a> RunEffects<'a> {
         self.active.wheel_load(self.case, pull, torque).map(Some)
     }
 
-    /// How deep the wheel digs per way that it slides over a whole contact `[m]`, if it does.
+    /// Depth that the wheel digs per distance slid over a whole contact `[m]`, if it digs.
     pub(super) fn digging_m(&self) -> Option<f64> {
         (self.digging_m > 0.0).then_some(self.digging_m)
     }
 
-    /// Whether what is measured differs from what the soil does.
+    /// Returns whether the measured channels differ from the soil's.
     pub(super) fn measure_otherwise(&self) -> bool {
         self.measures
     }
 
-    /// What the rig measures of drawbar pull, torque, sinkage and lateral force.
-    ///
-    /// `b_eff` is that of the last look at the contour `[m]`; formulas see k* as its mean over the footprint.
+    /// Returns the measured drawbar pull, torque, sinkage and lateral force. `b_eff` belongs to the last measured contour
+    /// `[m]`; formulas see k* as its mean over the footprint.
     pub(super) fn measure(
         &self,
         channels: [f64; 4],
@@ -171,7 +166,7 @@ impl EndWall {
         }))
     }
 
-    /// How many times as stiff the soil is, for a wheel of a radius after a travel from the rear wall `[m]`.
+    /// Factor of the soil's stiffness for a wheel of a radius after a travel from the rear wall `[m]`.
     fn factor(&self, radius: f64, travelled: f64) -> Result<f64, Rejection> {
         let behind = radius + travelled;
         let ahead = self.bin_length_m - behind;
@@ -198,17 +193,17 @@ fn side_wall(active: &Active, case: &Case) -> Result<Option<SideWall>, Rejection
     let Some(&[scale, friction]) = active.mechanism(Mechanism::SideWall) else {
         return Ok(None);
     };
-    let of = |variable: Variable| case.variables[variable as usize];
+    let value_of = |variable: Variable| case.variables[variable as usize];
     SideWall::new(
         [scale, friction],
         &case.soil,
         case.wheel.radius_m,
-        [of(Variable::Density), of(Variable::Gravity)],
+        [value_of(Variable::Density), value_of(Variable::Gravity)],
         &case.condition,
     )
 }
 
-/// Stiffness of unloading and reloading where the soil springs back `[Pa/m]`.
+/// Stiffness of unloading and reloading of rebounding soil `[Pa/m]`.
 pub(super) fn elastic_stiffness(active: &Active, ground: &Ground) -> Result<f64, Rejection> {
     let stiffness = ground.elastic_stiffness_pa_m;
     let Some(&[compliance]) = active.mechanism(Mechanism::Rebound) else {
@@ -224,7 +219,7 @@ pub(super) fn elastic_stiffness(active: &Active, ground: &Ground) -> Result<f64,
     Ok(1.0 / (1.0 / stiffness + compliance))
 }
 
-/// How far the load flattens the rim `[m]`.
+/// Deflection of the rim by the load `[m]`.
 pub(super) fn deflection(scene: &Scene, wheel_load_n: f64) -> Result<f64, Rejection> {
     let Some(&[per_load]) = scene.effects.mechanism(Mechanism::FlatPatch) else {
         return Ok(0.0);

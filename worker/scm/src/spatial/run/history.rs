@@ -3,7 +3,7 @@
 /// Time histories of a run, one entry for each step of equal length.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct History {
-    /// Time of a step `[s]`; the first entry is of the wheel lowered onto the soil, before it travels.
+    /// Time of a step `[s]`; the first entry is the wheel lowered onto the soil, before it travels.
     pub step_s: f64,
     /// Drawbar pull `[N]`.
     pub drawbar_pull_n: Vec<f64>,
@@ -23,7 +23,7 @@ impl History {
         self.sinkage_m.len()
     }
 
-    /// Whether there is no step yet.
+    /// Returns whether there is no step yet.
     pub fn is_empty(&self) -> bool {
         self.sinkage_m.is_empty()
     }

@@ -2,13 +2,13 @@
 //!
 //! # Layout
 //! - `balance`: the height of the hub at which the soil carries the load.
-//! - `track`: the terrain a run needs, and the size of its steps.
-//! - `rolling`: one step after the other.
+//! - `track`: the terrain of a run, and the size of its steps.
+//! - `rolling`: one step after another.
 //! - `effects`: effects on the run.
 //! - `history`: the time histories of a run.
 //! - `result`: the result of a run.
 //! - `record`: the results of the steps, their averages and their checks.
-//! - `protocol`: when a run ends, and which steps are averaged.
+//! - `protocol`: the end of a run, and the averaged steps.
 //! - `series`: the limit that averages approach.
 
 mod balance;

@@ -1,4 +1,4 @@
-//! The protocol of a run: when it ends, and what is averaged.
+//! The protocol of a run: its end, and the averaged steps.
 
 use super::record::{Record, Windows};
 use super::result::SpatialRun;
@@ -12,9 +12,9 @@ use crate::spatial::scene::Scene;
 use crate::spatial::settings::{Protocol, RunSettings};
 use signal::{INTERVAL_S, LowPass, average};
 
-/// Roll the wheel by the settings' protocol, pass after pass; the last one counts.
+/// Rolls the wheel by the settings' protocol, pass after pass, and averages the last one.
 ///
-/// `case`: where effects are active, soil, wheel and condition after them, as in scene and condition.
+/// `case`: with active effects, soil, wheel and condition after them, as in scene and condition.
 pub(crate) fn roll(
     scene: &Scene,
     condition: &Condition,
@@ -56,50 +56,50 @@ pub(crate) fn roll(
     record.finish(&rolling, condition, windows, settled_to)
 }
 
-/// Roll until the means of a window hardly depend any more on where it begins.
+/// Rolls until the means of a window hardly depend on its start.
 ///
-/// A window holds an even number of grouser periods, or whole columns where there are none, no shorter than the contact. What
-/// lowering the wheel has left decays to about e^−2 within a contact length: the means of windows that begin one, two, three …
-/// contact lengths after the start form a geometric series. Three of them give its limit, which is what is averaged, and what the
-/// last is short of it, which has to be within the tolerance. Windows begin closer together where the travel does not hold two
-/// contact lengths and a window. Checked by `spatial::steady`.
+/// A window holds an even number of grouser periods, or whole columns without grousers, and is no shorter than the contact.
+/// The disturbance by the lowering of the wheel decays to about e^−2 within a contact length: the means of windows that
+/// begin one, two, three … contact lengths after the start form a geometric series. Three of them give its limit, which is
+/// the average, and the distance of the last from the limit, which must be within the tolerance. Windows begin closer
+/// together if the travel does not hold two contact lengths and a window. Checked by `spatial::steady`.
 fn steady(
     rolling: &mut Rolling,
     record: &mut Record,
     condition: &Condition,
     tolerance: f64,
-    most_steps: usize,
+    max_steps: usize,
 ) -> Result<(Windows, Option<f64>), Rejection> {
     let (load, radius) = (condition.wheel_load_n, rolling.radius());
     let period = rolling.grouser_period_s().map(|p| p / rolling.steps.time); // in steps
     let mut settled = None;
     let mut contacts = 2.0;
-    for taken in 0..=most_steps {
+    for taken in 0..=max_steps {
         if taken > 0 {
             let step = rolling.step()?;
             record.push(rolling, &step)?;
         }
         let contact = record.contact_length() / rolling.steps.travel;
-        let window = window(contact, period, rolling.steps.to_column, most_steps);
-        let shift = contact.min(0.5 * (most_steps as f64 - window));
+        let window = window(contact, period, rolling.steps.to_column, max_steps);
+        let shift = contact.min(0.5 * (max_steps as f64 - window));
         let first = contacts * shift;
-        if settled.is_some() && first + window > most_steps as f64 {
+        if settled.is_some() && first + window > max_steps as f64 {
             break;
         }
         if shift < 1.0 || first + window > taken as f64 {
             continue;
         }
         let three = [2.0, 1.0, 0.0].map(|before| first - before * shift);
-        let own = three.map(|from| record.own_means(from, from + window));
+        let soil = three.map(|from| record.soil_means(from, from + window));
         let measured = three.map(|from| record.means(from, from + window));
-        let [own, measured] = [series(own)?, series(measured)?];
-        let sinkage = own[2].last.abs().max(1e-3 * radius);
+        let [soil, measured] = [series(soil)?, series(measured)?];
+        let sinkage = soil[2].last.abs().max(1e-3 * radius);
         let scales = [load, load * radius, sinkage, load];
-        let left = own
+        let left = soil
             .iter()
             .zip(scales)
             .map(|(series, scale)| series.left() / scale);
-        // by contact length, where the windows begin closer together
+        // converted to a contact length, if the windows begin closer together
         let left = left.fold(0.0, f64::max) * (contact / shift);
         let means = measured.map(|series| series.limit());
         let first_step = first as usize;
@@ -111,21 +111,21 @@ fn steady(
     }
     settled.ok_or(Rejection::InvalidParameter {
         name: "most_travel_m",
-        value: most_steps as f64 * rolling.steps.travel,
+        value: max_steps as f64 * rolling.steps.travel,
         unit: "m",
         bound: "long enough for a window of averages",
     })
 }
 
-/// Length of a window in steps, of a contact and a grouser period in steps: so long that the grid's own ripple drops out.
-fn window(contact: f64, period: Option<f64>, to_column: usize, most_steps: usize) -> f64 {
+/// Length of a window in steps, from a contact and a grouser period in steps: long enough that the grid's ripple cancels.
+fn window(contact: f64, period: Option<f64>, to_column: usize, max_steps: usize) -> f64 {
     let whole = match period {
-        Some(period) if 4.0 * period <= most_steps as f64 => 2.0 * period,
+        Some(period) if 4.0 * period <= max_steps as f64 => 2.0 * period,
         Some(period) => period,
         None => to_column as f64,
     };
-    let most = libm::floor(0.5 * most_steps as f64 / whole).max(1.0);
-    whole * libm::ceil(contact / whole).max(1.0).min(most)
+    let max_count = libm::floor(0.5 * max_steps as f64 / whole).max(1.0);
+    whole * libm::ceil(contact / whole).max(1.0).min(max_count)
 }
 
 /// The means of the four channels over three windows, channel by channel.

@@ -7,69 +7,69 @@ use crate::rejection::Rejection;
 use crate::{Averages, Condition};
 use signal::{Window, period_mean};
 
-/// Steps between measurements of the contour; not a divisor of a column's steps, because the contour depends on the phase
-/// within a column.
+/// Number of steps between measurements of the contour; not a divisor of a column's steps, because the contour depends on
+/// the phase within a column.
 const CONTOUR_EVERY: usize = 13;
-/// Tolerated power from the soil, relative to that through the wheel and to load times speed. It arises from the residual of
-/// the balance and, on hard ground, from springs under grousers, whose force acts along the spoke while their depth is measured
-/// downwards (0.2 % of load times speed).
+/// Tolerated power from the soil, relative to the power through the wheel and to load times speed.
+///
+/// It results from the residual of the balance and, on hard ground, from springs under grousers, whose force acts along the
+/// spoke while their depth is measured downwards (0.2 % of load times speed).
 const ENERGY_TOLERANCE: f64 = 5e-3;
-/// Largest mean residual of the vertical balance, relative to the wheel load, over the averaged steps and over the run. Of it
-/// 0.0065 is what steps in balance miss by.
-const MOST_RESIDUAL: f64 = 0.025;
+/// Largest mean residual of the vertical balance, relative to the wheel load, over the averaged steps and over the run;
+/// balanced steps contribute up to 0.0065.
+const MAX_RESIDUAL: f64 = 0.025;
 
-/// Means of drawbar pull, torque, sinkage and lateral force, and the steps over which the rest is averaged.
+/// Means of drawbar pull, torque, sinkage and lateral force, and the steps over which the diagnostics are averaged.
 pub(super) struct Windows {
     pub(super) means: [f64; 4],
     pub(super) first_step: usize,
 }
 
-/// What a run gives, step by step.
+/// The results of a run, step by step.
 pub(super) struct Record {
     pub(super) history: History,
-    /// Drawbar pull, torque, sinkage and lateral force of the soil, where the measured ones differ.
-    soils_own: [Vec<f64>; 4],
+    /// Drawbar pull, torque, sinkage and lateral force of the soil, if the measured ones differ.
+    soil_channels: [Vec<f64>; 4],
     contact_length_m: Vec<f64>,
     /// Sum of the contact lengths `[m]`.
     contact_lengths: f64,
     b_eff_m: Vec<f64>,
     nodes: Vec<f64>,
     residual_n: Vec<f64>,
-    /// Sum of the residuals since the wheel was lowered, and the most it may be, in loads.
+    /// Sum of the residuals since the wheel was lowered, and its maximum, in loads.
     missed: f64,
-    most_missed: f64,
-    /// Load that was to be carried, less the nominal one.
+    max_missed: f64,
+    /// The load to be carried, less the nominal one.
     load_change_n: Vec<f64>,
     /// Power that motor and rig put into the soil `[W]`.
     power_w: Vec<f64>,
 }
 
 impl Record {
-    /// The record of a run of at most so many steps.
-    pub(super) fn new(step_s: f64, most_steps: usize) -> Self {
+    /// Creates a record for at most `max_steps` steps.
+    pub(super) fn new(step_s: f64, max_steps: usize) -> Self {
         Self {
             history: History {
                 step_s,
                 ..History::default()
             },
-            soils_own: Default::default(),
+            soil_channels: Default::default(),
             contact_length_m: Vec::new(),
             contact_lengths: 0.0,
             b_eff_m: Vec::new(),
             nodes: Vec::new(),
             residual_n: Vec::new(),
             missed: 0.0,
-            most_missed: MOST_RESIDUAL * most_steps as f64,
+            max_missed: MAX_RESIDUAL * max_steps as f64,
             load_change_n: Vec::new(),
             power_w: Vec::new(),
         }
     }
 
-    /// Add the measured channels of a step; power and balance are the soil's own.
+    /// Adds the measured channels of a step; power and balance use the soil's channels.
     ///
-    /// # Errors
-    /// [`Rejection::NoConvergence`] as soon as the residuals so far make the mean over the run too large, because
-    /// further steps without a balance would take long.
+    /// [`Rejection::NoConvergence`] as soon as the residuals so far make the mean over the run too large, because further
+    /// steps without a balance would take long.
     pub(super) fn push(&mut self, rolling: &mut Rolling, step: &Step) -> Result<(), Rejection> {
         let reaction = &step.reaction;
         if self.history.len().is_multiple_of(CONTOUR_EVERY) {
@@ -80,8 +80,8 @@ impl Record {
         let mut channels = [pull, torque, rolling.sinkage(step.hub), lateral];
         let effects = rolling.effects.as_ref();
         if let Some(effects) = effects.filter(|effects| effects.measure_otherwise()) {
-            for (own, value) in self.soils_own.iter_mut().zip(channels) {
-                own.push(value);
+            for (soil, value) in self.soil_channels.iter_mut().zip(channels) {
+                soil.push(value);
             }
             let b_eff = self.b_eff_m.last().copied().unwrap_or(0.0);
             channels = effects.measure(channels, &rolling.contact, contact_length, b_eff)?;
@@ -107,7 +107,7 @@ impl Record {
         if steps > 0 {
             self.missed += step.residual.abs() / step.load;
         }
-        if self.missed > self.most_missed {
+        if self.missed > self.max_missed {
             return Err(Rejection::NoConvergence {
                 residual_load_n: self.missed / steps as f64 * step.load,
                 wheel_load_n: step.load,
@@ -123,16 +123,16 @@ impl Record {
         self.contact_lengths / self.contact_length_m.len() as f64
     }
 
-    /// Whether the measured channels differ from the soil's own.
+    /// Returns whether the measured channels differ from the soil's.
     fn measured_otherwise(&self) -> bool {
-        !self.soils_own[0].is_empty()
+        !self.soil_channels[0].is_empty()
     }
 
-    /// Drawbar pull, torque and lateral force of the soil, from a step on, where they are measured as `means`.
+    /// Drawbar pull, torque and lateral force of the soil from a step on, if they are measured as `means`.
     fn forces(&self, means: [f64; 4], first: usize) -> [f64; 3] {
         [0, 1, 3].map(|i| {
-            let own = &self.soils_own[i];
-            let part = &own[first.min(own.len())..];
+            let channel = &self.soil_channels[i];
+            let part = &channel[first.min(channel.len())..];
             if part.is_empty() {
                 means[i]
             } else {
@@ -141,18 +141,18 @@ impl Record {
         })
     }
 
-    /// Means of the four channels as they are measured, between two places counted in steps of travel.
+    /// Means of the four measured channels, between two places counted in steps of travel.
     pub(super) fn means(&self, from: f64, to: f64) -> Result<[f64; 4], Rejection> {
         let [pull, torque, sinkage, lateral, _] = self.history.channels();
         means([pull, torque, sinkage, lateral], from, to)
     }
 
-    /// The same of the soil's own channels: a measurement offset must not decide when a run has settled.
-    pub(super) fn own_means(&self, from: f64, to: f64) -> Result<[f64; 4], Rejection> {
+    /// Means of the soil's channels: a measurement offset must not decide when a run has settled.
+    pub(super) fn soil_means(&self, from: f64, to: f64) -> Result<[f64; 4], Rejection> {
         if !self.measured_otherwise() {
             return self.means(from, to);
         }
-        means(self.soils_own.each_ref().map(Vec::as_slice), from, to)
+        means(self.soil_channels.each_ref().map(Vec::as_slice), from, to)
     }
 
     pub(super) fn finish(
@@ -180,11 +180,11 @@ impl Record {
         let first = windows.first_step;
         let residuals: Vec<f64> = self.residual_n.iter().map(|r| r.abs()).collect();
         let residual_load_n = mean(&residuals, first);
-        // a hub that moves freely is in balance with its damper at once, but has to come to rest on the soil
+        // a free hub is in balance with its damper at once, but must come to rest on the soil
         let carried_n = mean(&self.history.wheel_load_n, first);
         let wheel_load_n = condition.wheel_load_n + mean(&self.load_change_n, first);
         let off_load = residual_load_n.max((carried_n - wheel_load_n).abs());
-        if off_load > MOST_RESIDUAL * wheel_load_n {
+        if off_load > MAX_RESIDUAL * wheel_load_n {
             return Err(Rejection::NoConvergence {
                 residual_load_n: off_load,
                 wheel_load_n,
@@ -197,7 +197,7 @@ impl Record {
         let throughput = (torque * rolling.motion.rotation).abs()
             + (pull * rolling.motion.forward).abs()
             + (lateral * rolling.motion.lateral).abs();
-        // a wheel that hardly slips on hard ground has almost no throughput
+        // a wheel with little slip on hard ground has almost no throughput
         let scale = throughput + wheel_load_n * condition.sled_speed_m_s;
         if dissipated_power_w < -ENERGY_TOLERANCE * scale {
             return Err(Rejection::EnergyGained {
@@ -252,7 +252,7 @@ mod tests {
     use crate::spatial::fixture::{CONDITION, scene};
     use crate::spatial::{Ground, Grousers, RunSettings, Shape};
 
-    /// What finishing a short run says, after its record was changed.
+    /// The result of finishing a short run after a change of its record.
     fn finished(change: fn(&mut Record)) -> Result<SpatialRun, Rejection> {
         let (ground, shape) = (Ground::default(), Shape::Rim(Grousers::default()));
         let none = Active::default();
@@ -294,7 +294,7 @@ mod tests {
 
     #[test]
     fn a_run_out_of_balance_is_rejected() {
-        // one step in a hundred may miss by the whole load, not one in ten
+        // one step in a hundred may miss the whole load, but not one in ten
         assert_eq!(kind(|record| record.residual_n[40] = 50.0), "none");
         assert_eq!(
             kind(|record| record.residual_n.iter_mut().for_each(|r| *r = -3.0)),

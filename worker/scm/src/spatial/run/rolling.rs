@@ -1,4 +1,4 @@
-//! Roll the wheel over the terrain, one step after the other.
+//! The roll of the wheel over the terrain, one step after another.
 
 use super::balance::{Search, balance};
 use super::effects::{RunEffects, deflection, elastic_stiffness};
@@ -21,16 +21,16 @@ use crate::spatial::wheel::pose::{Pose, Range};
 use crate::{Condition, Wheel};
 use formula::Variable;
 
-/// How far below the highest soil the wheel may come within a step `[m]`; at the start it sinks from above.
+/// Distance below the highest soil that the wheel may sink within a step `[m]`; at the start it sinks from above.
 const SINKS_PER_STEP: f64 = 1e-3;
-/// Columns beyond the last contact over which the wheel is laid.
+/// Number of columns beyond the last contact over which the wheel is laid.
 const MARGIN: usize = 3;
 const WIDEST_MARGIN: usize = 48;
-/// Longest grouser period, relative to the travel asked for.
+/// Longest grouser period, relative to the requested travel.
 const SLOWEST_TURN: f64 = 2.0;
-/// Largest surplus that the next step takes back, relative to the load; a jump of the load may leave more.
-const MOST_SURPLUS: f64 = 0.02;
-/// Slopes of the load between which the search for a balance starts, relative to load / radius.
+/// Largest excess that the next step subtracts, relative to the load; a jump of the load may leave more.
+const MAX_SURPLUS: f64 = 0.02;
+/// Bounds of the load's slope at the start of a search for a balance, relative to load / radius.
 const SLOPES: [f64; 2] = [-5e3, -2.0];
 
 /// The result of a step.
@@ -41,9 +41,9 @@ pub(crate) struct Step {
     pub(crate) hub: f64,
     /// Vertical velocity of the hub `[m/s]`.
     pub(crate) rising: f64,
-    /// The load that was to be carried `[N]`.
+    /// The load to be carried `[N]`.
     pub(crate) load: f64,
-    /// Carried load less wheel load, inertia and damping, with what the step took over from those before it `[N]`.
+    /// Carried load less wheel load, inertia and damping, with the excess taken over from preceding steps `[N]`.
     pub(crate) residual: f64,
 }
 
@@ -57,9 +57,9 @@ pub(crate) struct Rolling<'a> {
     pub(crate) steps: Steps,
     laws: Laws,
     underside: Underside,
-    /// None where no formula asks how far wheel and soil have slid.
+    /// The shear displacement; `None` if no formula uses it.
     shear_path: Option<ShearPath>,
-    /// None where no effect is active.
+    /// The effects; `None` if none is active.
     pub(super) effects: Option<RunEffects<'a>>,
     pass: u32,
     terrain: Terrain,
@@ -69,34 +69,36 @@ pub(crate) struct Rolling<'a> {
     relaxation: Relaxation,
     start: f64,
     pose: Pose,
-    /// How far the wheel has gone sideways `[m]`; the pose is that to the nearest lane.
+    /// Lateral travel of the wheel `[m]`; the pose is rounded to the nearest lane.
     drifted: f64,
-    /// The load to be carried now, and the distance of hub and rim's bottom under it.
+    /// The load to be carried now, and the distance of the hub from the rim's bottom under it.
     load: f64,
-    /// What the steps so far carried more than their loads, which the next carries less: the mean load is exact, so that its
-    /// tolerance is not seen in averages `[N]`.
+    /// Excess of the carried loads of the steps so far over their loads, which the next step subtracts: the mean load is
+    /// exact, so that the tolerance does not show in averages `[N]`.
     surplus: f64,
     loaded_radius: f64,
     hub: f64,
     rising: f64,
     slope: f64,
     touched: Option<Range>,
-    /// Heights of the hub at which, by its slope, each step of this pass would meet the load exactly `[m]`. The next step starts
-    /// from there: from the height itself, whose residual is tolerated, every step would be off the load to the same side.
+    /// Heights of the hub at which, by its slope, each step of this pass would meet the load exactly `[m]`.
+    ///
+    /// The next step starts from there: if it started from the height itself, whose residual is tolerated, every step would
+    /// miss the load on the same side.
     heights: Vec<f64>,
     repeats_after: usize,
-    /// Travel that the terrain has room for `[m]`.
+    /// Travel that fits on the terrain `[m]`.
     pub(crate) track: f64,
-    /// Time from one grouser to the next, if one comes after another within the track `[s]`.
+    /// Time from one grouser to the next, if a second one follows within the track `[s]`.
     period: Option<f64>,
 }
 
 impl<'a> Rolling<'a> {
-    /// The wheel above undisturbed soil, which it is to travel for a distance `[m]`.
+    /// Creates a wheel above undisturbed soil, for a travel `[m]`.
     ///
-    /// A steady run gets room for two grouser periods at least. A wheel that turns so slowly that they would take more than
-    /// [`SLOWEST_TURN`] times the travel counts as locked. `case`: where effects are active, soil, wheel and condition after
-    /// them, as in scene and condition.
+    /// The terrain of a steady run holds at least two grouser periods. A wheel that turns so slowly that they would take
+    /// more than [`SLOWEST_TURN`] times the travel counts as locked. `case`: with active effects, soil, wheel and condition
+    /// after them, as in scene and condition.
     pub(crate) fn new(
         scene: &Scene<'a>,
         condition: &'a Condition,
@@ -187,7 +189,7 @@ impl<'a> Rolling<'a> {
         })
     }
 
-    /// Put the wheel back to the start of its track, above the rut it left.
+    /// Puts the wheel back to the start of its track, above its rut.
     pub(crate) fn start_again(&mut self) {
         self.relaxation.settle_everywhere(&mut self.terrain);
         self.terrain.sheared.fill(0.0);
@@ -207,18 +209,18 @@ impl<'a> Rolling<'a> {
         self.heights.clear();
     }
 
-    /// Lower the wheel onto the soil where it stands.
+    /// Lowers the wheel onto the soil where it stands.
     pub(crate) fn lower(&mut self) -> Result<Step, Rejection> {
         self.slope = -self.condition.wheel_load_n / (0.05 * self.wheel.radius_m);
         self.advance(0.0)
     }
 
-    /// Travel one step further.
+    /// Travels one step.
     pub(crate) fn step(&mut self) -> Result<Step, Rejection> {
         let time = self.steps.time;
         self.pose.x += self.motion.forward * time;
-        // Lanes fit the width, so a wheel that drifts sideways stands on the nearest whole lane: a lane covered by a sliver would
-        // never be pressed down, and its undisturbed soil would join patches and lengthen contours, however thin it is.
+        // Lanes fit the width, so a wheel that drifts sideways is placed on the nearest whole lane: a lane covered by a sliver
+        // would never be pressed down, and its undisturbed soil would join patches and lengthen contours, however thin it is.
         self.drifted += self.motion.lateral * time;
         self.pose.y = libm::round(self.drifted / self.terrain.dy) * self.terrain.dy;
         self.pose.turned += self.motion.rotation * time;
@@ -235,32 +237,35 @@ impl<'a> Rolling<'a> {
             effects.confine(&mut self.laws, travelled)?;
         }
         let mut margin = MARGIN;
-        let found = loop {
+        let balance = loop {
             self.bring_together(margin, time > 0.0);
-            let found = self.find_height(time)?;
+            let balance = self.find_height(time)?;
             let cramped = self.contact.first < 2 || self.contact.end + 2 > self.contact.strips.len();
             if !cramped || margin >= WIDEST_MARGIN {
-                break found;
+                break balance;
             }
             margin *= 2;
         };
         self.rising = if time > 0.0 {
-            (found.height - self.hub) / time
+            (balance.height - self.hub) / time
         } else {
             0.0
         };
-        self.hub = found.height;
-        let most = MOST_SURPLUS * self.load;
-        let missed = found.residual - self.surplus;
-        self.surplus = found.residual.clamp(-most, most);
+        self.hub = balance.height;
+        let max = MAX_SURPLUS * self.load;
+        let missed = balance.residual - self.surplus;
+        self.surplus = balance.residual.clamp(-max, max);
         let stiffness = self.condition.wheel_load_n / self.wheel.radius_m;
-        let slope = found.slope.max(SLOPES[0] * stiffness).min(SLOPES[1] * stiffness);
+        let slope = balance
+            .slope
+            .max(SLOPES[0] * stiffness)
+            .min(SLOPES[1] * stiffness);
         self.slope = if time > 0.0 {
             0.5 * (self.slope + slope)
         } else {
             slope
         };
-        self.heights.push(found.height - missed / self.slope);
+        self.heights.push(balance.height - missed / self.slope);
         let nodes = self.effects.as_mut().and_then(|effects| effects.nodes.as_mut());
         let strengths = nodes.map(|nodes| nodes.strengths(&self.contact, &self.laws));
         let mut reaction = self.contact.react(&self.terrain, &self.laws, strengths);
@@ -303,7 +308,7 @@ impl<'a> Rolling<'a> {
             hub: self.hub,
             rising: self.rising,
             load: self.load,
-            residual: found.residual,
+            residual: balance.residual,
         };
         if let Some(effects) = &self.effects {
             self.load = effects.next_load(&reaction)?.unwrap_or(self.load);
@@ -311,7 +316,7 @@ impl<'a> Rolling<'a> {
         Ok(step)
     }
 
-    /// Lay the wheel over the columns it may touch.
+    /// Lays the wheel over the columns that it may touch.
     fn bring_together(&mut self, margin: usize, rolls: bool) {
         let sinks = if rolls {
             SINKS_PER_STEP
@@ -382,9 +387,9 @@ impl<'a> Rolling<'a> {
         let (pose, motion) = (self.pose, &self.motion);
         let (contact, terrain, laws) = (&mut self.contact, &self.terrain, &self.laws);
         let per_time = if time > 0.0 { 1.0 / time } else { 0.0 };
-        let mut most_carried = 0.0_f64;
+        let mut max_carried = 0.0_f64;
         let mut nodes = self.effects.as_mut().and_then(|effects| effects.nodes.as_mut());
-        let found = balance(search, load, 0.0, |height| {
+        let balance = balance(search, load, 0.0, |height| {
             let carried = match &mut nodes {
                 None => contact.press(terrain, laws, height),
                 Some(nodes) => nodes.press(contact, terrain, laws, height),
@@ -393,29 +398,29 @@ impl<'a> Rolling<'a> {
                 let law = &laws.shear_velocity;
                 carried + side.push(contact, terrain, (pose, height), motion, law).force_z
             });
-            most_carried = most_carried.max(carried);
+            max_carried = max_carried.max(carried);
             let velocity = (height - hub) * per_time;
             carried - load + surplus - damping * velocity - mass * (velocity - rising) * per_time
         });
         if let Some(refused) = nodes.and_then(|nodes| nodes.refused.take()) {
             return Err(refused);
         }
-        let found = found.ok_or(Rejection::NoSupport {
-            most_carried_n: most_carried,
+        let balance = balance.ok_or(Rejection::NoSupport {
+            max_carried_n: max_carried,
             wheel_load_n: load,
             wheel_radius_m: self.wheel.radius_m,
         })?;
-        if found.residual.is_finite() {
-            Ok(found)
+        if balance.residual.is_finite() {
+            Ok(balance)
         } else {
             Err(Rejection::NotFinite {
                 quantity: "load carried by the soil",
-                value: found.residual,
+                value: balance.residual,
             })
         }
     }
 
-    /// Time from one grouser to the next `[s]`; none if nothing repeats.
+    /// Time from one grouser to the next `[s]`; `None` if nothing repeats.
     pub(crate) fn grouser_period_s(&self) -> Option<f64> {
         self.period
     }
@@ -438,7 +443,7 @@ impl<'a> Rolling<'a> {
         self.contact.effective_width(&self.terrain, &self.laws)
     }
 
-    /// Sinkage of a hub height, of the rim as its load leaves it `[m]`.
+    /// Sinkage at a hub height, with reference to the rim under its load `[m]`.
     pub(crate) fn sinkage(&self, hub: f64) -> f64 {
         self.loaded_radius - hub
     }
@@ -458,7 +463,7 @@ mod tests {
         }
     }
 
-    /// Roll a wheel with grousers for 300 steps, and look at it after each.
+    /// Rolls a wheel with grousers for 300 steps, and passes it to `look` after each.
     fn roll(
         flow_fraction: f64,
         slip_angle_rad: f64,
@@ -548,8 +553,8 @@ mod tests {
             let across = terrain.surface.chunks_exact(terrain.lanes);
             across
                 .flat_map(|column| column.windows(2))
-                .fold(0.0_f64, |most, pair| {
-                    most.max((pair[1] - pair[0]).abs() / terrain.dy)
+                .fold(0.0_f64, |steepest, pair| {
+                    steepest.max((pair[1] - pair[0]).abs() / terrain.dy)
                 })
         };
         let deepest = |terrain: &Terrain| terrain.surface.iter().fold(0.0_f64, |low, &z| low.min(z));

@@ -1,7 +1,7 @@
 //! Three terms of a series that approaches a limit.
 
-/// The largest ratio of two changes in a row at which a series counts as geometric; means that only scatter have any ratio.
-const MOST_RATIO: f64 = 0.5;
+/// The largest ratio of two successive changes at which a series counts as geometric; means with mere scatter have any ratio.
+const MAX_RATIO: f64 = 0.5;
 
 /// The last of three terms, and the changes that led to it.
 #[derive(Debug, Clone, Copy)]
@@ -11,11 +11,11 @@ pub(super) struct Series {
 }
 
 impl Series {
-    /// What a geometric series still has to go, `d r / (1 − r)` after a change d that was r times the one before.
+    /// Remaining distance of a geometric series to its limit: `d r / (1 − r)` after a change d that was r times the preceding one.
     fn remainder(&self) -> Option<f64> {
         let [before, last] = self.changes;
         let ratio = last / before;
-        (0.0..MOST_RATIO)
+        (0.0..MAX_RATIO)
             .contains(&ratio)
             .then(|| last * ratio / (1.0 - ratio))
     }
@@ -25,7 +25,7 @@ impl Series {
         self.last + self.remainder().unwrap_or(0.0)
     }
 
-    /// How far the last term is from the limit; where that is not known, its change.
+    /// Distance of the last term from the limit; its last change if the limit is unknown.
     pub(super) fn left(&self) -> f64 {
         self.remainder().unwrap_or(self.changes[1]).abs()
     }
@@ -52,7 +52,7 @@ mod tests {
     }
 
     #[test]
-    fn what_scatters_or_goes_on_keeps_its_last_term_and_has_its_change_left() {
+    fn a_series_that_is_not_geometric_keeps_its_last_term_and_change() {
         for (second, last) in [(1.0, 0.5), (1.0, 2.0), (0.0, 1.0)] {
             let series = series(0.0, second, last);
             assert_eq!(series.limit().to_bits(), last.to_bits());

@@ -1,49 +1,50 @@
-//! The terrain that a run needs, and the size of its steps.
+//! The terrain of a run, and the size of its steps.
 
-use super::super::contact::MOST_LANES;
+use super::super::contact::MAX_LANES;
 use super::super::settings::{RunSettings, Vertical};
 use super::super::terrain::{BERM_LANES, Terrain};
 use super::super::wheel::motion::Motion;
 use crate::rejection::{Rejection, require};
 use crate::{Condition, Soil, Wheel, quasi_static};
 
-/// How often slopes slide while the wheel moves on by a column.
+/// Number of slidings of the slopes while the wheel moves by a column.
 const SLIDES_TO_COLUMN: f64 = 4.0;
-/// Least number of nodes in a contact along travel.
+/// Minimum number of nodes in a contact along travel.
 const NODES_ALONG: f64 = 8.0;
-/// Least number of columns in a grouser's pitch to which their spacing is fitted.
+/// Minimum number of columns in a grouser's pitch for the spacing to be fitted to it.
 const COLUMNS_TO_PITCH: f64 = 4.0;
-/// Columns beyond the wheel's reach, at either end of the track, and length beyond it relative to the reach.
+/// Number of columns beyond the wheel's reach, at either end of the track, and length beyond it relative to the reach.
 const SPARE_COLUMNS: f64 = 12.0;
 const SPARE_REACH: f64 = 0.1;
-/// Most nodes of a terrain (a quarter of a gigabyte) and most steps of all passes of a run.
-const MOST_NODES: f64 = 1e7;
-const MOST_STEPS: f64 = 2e6;
-/// Share of the travel that must go along the heading for steps to meet columns; with less the wheel slides sideways.
+/// The maximum number of nodes of a terrain (a quarter of a gigabyte) and of steps of all passes of a run.
+const MAX_NODES: f64 = 1e7;
+const MAX_STEPS: f64 = 2e6;
+/// Minimum share of the travel along the heading for steps to follow columns; below it the wheel slides sideways.
 const LEAST_ALONG: f64 = 1e-3;
-/// Time of a step in which the hub moves freely `[s]`: a twentieth of the period of the stiffest spring to be expected.
+/// Time of a step with a free hub `[s]`: a twentieth of the period of the stiffest expected spring.
 const DYNAMIC_STEP_S: f64 = 1e-3;
-/// Longest path of the rim in one step, relative to the travel step: a grouser must not jump over nodes.
+/// Longest path of the rim in one step, relative to the travel step, so that a grouser does not jump over nodes.
 const RIM_PATH: f64 = 2.0;
 
 /// Steps of a run.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Steps {
-    /// `[s]`
+    /// Time of a step `[s]`.
     pub(crate) time: f64,
     /// Travel of the sled in one step `[m]`.
     pub(crate) travel: f64,
-    /// Steps from column to column; forces repeat with this period where no grouser disturbs it.
+    /// Number of steps from column to column; forces repeat with this period without grousers.
     pub(crate) to_column: usize,
-    /// Steps from one sliding of the slopes to the next: soil slides from column to column, not from step to step.
+    /// Number of steps from one sliding of the slopes to the next, because soil slides from column to column, not from step
+    /// to step.
     pub(crate) to_slide: usize,
 }
 
-/// Spacing along travel: the given one, or an eighth of a smooth wheel's contact where that is finer `[m]`.
+/// Spacing along travel: the given one, or an eighth of a smooth wheel's contact if that is finer `[m]`.
 ///
-/// The contact is the quasi-static model's or, on soil that hardly yields, that on the elastic layer alone. Where the
-/// quasi-static model knows no contact, because the soil does not carry a smooth wheel, it is the given spacing.
-/// Checked by `spatial::extremes::hard_soil_needs_no_finer_grid_than_its_elastic_layer`.
+/// The contact is that of the quasi-static model or, on soil that hardly yields, that on the elastic layer alone. If the
+/// quasi-static model has no contact, because the soil does not carry a smooth wheel, the given spacing is used. Checked by
+/// `spatial::extremes::hard_soil_needs_no_finer_grid_than_its_elastic_layer`.
 pub(crate) fn spacing_along(
     soil: &Soil,
     elastic_stiffness: f64,
@@ -60,11 +61,11 @@ pub(crate) fn spacing_along(
     })
 }
 
-/// The widest spacing up to a given one of which a grouser's pitch is a whole number and a half `[m]`.
+/// The widest spacing up to a given one at which a grouser's pitch is a half-integer number of columns `[m]`.
 ///
-/// Then two grousers in a row meet the columns half a column apart, the third as the first: the grid's ripple repeats in two
-/// periods and nearly drops out of their mean. Of any other spacing it repeats in many periods, and no mean over few of them
-/// settles. A pitch of few columns is left as it is.
+/// Then two successive grousers meet the columns half a column apart, the third like the first: the grid's ripple repeats in
+/// two periods and nearly cancels in their mean. At any other spacing it repeats in many periods, and no mean over few of
+/// them settles. A pitch of few columns is unchanged.
 pub(crate) fn fit_to_pitch(dx: f64, pitch: f64) -> f64 {
     if pitch < COLUMNS_TO_PITCH * dx {
         return dx;
@@ -72,7 +73,7 @@ pub(crate) fn fit_to_pitch(dx: f64, pitch: f64) -> f64 {
     pitch / (libm::ceil(pitch / dx - 0.5) + 0.5)
 }
 
-/// Length of a smooth wheel's contact on springs of a stiffness `[Pa/m]`, side by side, on rigid ground `[m]`.
+/// Length of a smooth wheel's contact on independent springs of a stiffness `[Pa/m]` on rigid ground `[m]`.
 ///
 /// They carry `W = K b int (d - x^2 / 2R) dx = 4/3 K b d sqrt(2 R d)` over `2 sqrt(2 R d)`, d the depth of the rim.
 fn elastic_contact(stiffness: f64, wheel: &Wheel, condition: &Condition) -> f64 {
@@ -89,7 +90,7 @@ pub(crate) fn steps(
     settings: &RunSettings,
     dx: f64,
 ) -> Steps {
-    // a whole number of steps to a column, so that what the grid does repeats
+    // a whole number of steps per column, so that the effect of the grid repeats
     let along = motion.forward.abs() / condition.sled_speed_m_s;
     let wanted = settings.travel_step_m.min(dx);
     let rim_per_travel = motion.rotation.abs() * wheel.radius_m / condition.sled_speed_m_s;
@@ -112,15 +113,12 @@ pub(crate) fn steps(
     }
 }
 
-/// Whole steps in a travel.
-///
-/// # Errors
-/// More than can be taken in reasonable time, over all passes.
+/// The number of whole steps in a travel; an error if it exceeds the maximum over all passes.
 pub(crate) fn count(travel: f64, steps: &Steps, condition: &Condition) -> Result<usize, Rejection> {
     let whole = libm::floor(travel / steps.travel);
     let all = whole * f64::from(condition.pass);
     require(
-        all <= MOST_STEPS,
+        all <= MAX_STEPS,
         "steps of the run",
         all,
         "(count)",
@@ -129,10 +127,8 @@ pub(crate) fn count(travel: f64, steps: &Steps, condition: &Condition) -> Result
     Ok(whole as usize)
 }
 
-/// Undisturbed terrain for a wheel of a width that travels a distance, and the hub's place at the start.
-///
-/// # Errors
-/// The wheel covers more lanes than can be kept apart, or the terrain has too many nodes.
+/// Undisturbed terrain for a wheel of a width that travels a distance, and the hub's place at the start; an error if the
+/// wheel covers more lanes than a mask holds, or the terrain has too many nodes.
 pub(crate) fn terrain(
     width: f64,
     motion: &Motion,
@@ -142,7 +138,7 @@ pub(crate) fn terrain(
     travel: f64,
     mirrored: bool,
 ) -> Result<(Terrain, f64), Rejection> {
-    // lanes that fit the width, an even number
+    // an even number of lanes that fits the width
     let half_lanes = libm::round(0.5 * width / settings.dem_spacing_m).max(1.0);
     let covered = if mirrored {
         half_lanes
@@ -150,7 +146,7 @@ pub(crate) fn terrain(
         2.0 * half_lanes + 1.0
     };
     require(
-        covered <= MOST_LANES as f64,
+        covered <= MAX_LANES as f64,
         "dem_spacing_m",
         settings.dem_spacing_m,
         "m",
@@ -164,7 +160,7 @@ pub(crate) fn terrain(
     let beside = half_lanes as usize + BERM_LANES + 5; // a pack and a lane to spare
     let nodes = columns * (2.0 * beside as f64 + aside.abs() / dy);
     require(
-        nodes <= MOST_NODES,
+        nodes <= MAX_NODES,
         "nodes of the terrain",
         nodes,
         "(count)",

@@ -5,12 +5,12 @@ use super::super::pack::{PACK, load, splat, store};
 use super::Terrain;
 
 impl Terrain {
-    /// Make room for what is dug.
+    /// Allocates the dug depths.
     pub(crate) fn make_diggable(&mut self) {
         self.dug = vec![0.0; self.surface.len()];
     }
 
-    /// Whether the wheel digs here.
+    /// Returns whether the wheel digs here.
     #[inline]
     pub(crate) fn is_dug(&self) -> bool {
         !self.dug.is_empty()
@@ -18,12 +18,12 @@ impl Terrain {
 }
 
 impl Contact {
-    /// Let the reference surface of the nodes in contact sink while the wheel slides over them for a time.
+    /// Lowers the reference surface of the nodes in contact while the wheel slides over them for a time.
     ///
-    /// `dz_ref = (d / l) |v_t| dt`: over one passage of a contact of length l at the sled's speed v that is `d |v_t| / v`, the
-    /// quasi-static model's added sinkage `d s / (1 − s)`, which thus builds up from the front of the contact to its rear.
-    /// Only the depth that Bekker's law reads is changed here. The surface follows because softer soil yields: it is lowered,
-    /// and a share flows away, as for all soil that yields, so that volume is conserved. Checked by
+    /// `dz_ref = (d / l) |v_t| dt`: over one passage of a contact of length l at the sled's speed v that is `d |v_t| / v`,
+    /// the quasi-static model's added sinkage `d s / (1 − s)`, which thus builds up from the front of the contact to its
+    /// rear. Only the depth in Bekker's law changes here. The surface follows because softer soil yields: it is lowered, and
+    /// a share flows away, as for all yielding soil, so that volume is conserved. Checked by
     /// `rolling::tests::the_soil_that_does_not_compact_is_all_there` and `spatial::effects::digging_deepens_…`.
     ///
     /// # Arguments
@@ -48,7 +48,7 @@ impl Contact {
         }
     }
 
-    /// Lower the reference surfaces under the wheel by what was dug there.
+    /// Lowers the reference surfaces under the wheel by the dug depths.
     pub(crate) fn lower_references(&mut self, terrain: &Terrain) {
         let packs = self.across.packs();
         for (quads, strip) in self.quads.chunks_exact_mut(packs).zip(&self.strips) {

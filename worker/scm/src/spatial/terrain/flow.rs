@@ -1,4 +1,4 @@
-//! Flow: soil that yields is lowered, and a share of it flows to the border of the footprint.
+//! Flow: yielding soil is lowered, and a share of it flows to the border of the footprint.
 
 use super::super::contact::Contact;
 use super::super::contact::laws::Laws;
@@ -6,20 +6,20 @@ use super::super::pack::{LANES, PACK, Pack, greater, lanes_of, load, splat, stor
 use super::super::wheel::motion::Motion;
 use super::Terrain;
 
-/// Share of the flow that goes in every direction alike, beside what follows the wheel's motion.
+/// Share of the flow that is isotropic; the rest follows the wheel's motion.
 const ISOTROPIC: f64 = 0.5;
 
-/// Buffers of the flow, and what a step did to the terrain.
+/// Buffers of the flow, and the changes of the terrain in a step.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Flow {
-    /// Sums over nodes of what was pressed down, and of what flowed to the border `[m]`; times dx dy: volumes.
+    /// Sums over nodes of the pressed height, and of the height that flowed to the border `[m]`; times dx dy: volumes.
     pub(crate) pressed: f64,
     pub(crate) flowed: f64,
     forwards: Vec<Pack>,
     backwards: Vec<Pack>,
 }
 
-/// Weights of the ways out of the footprint.
+/// Weights of the directions out of the footprint.
 struct Ways {
     forward: Pack,
     backward: Pack,
@@ -28,7 +28,7 @@ struct Ways {
 }
 
 impl Flow {
-    /// Deform the terrain after a step at the height last tried.
+    /// Deforms the terrain after a step at the last trial height.
     pub(crate) fn deform(
         &mut self,
         contact: &Contact,
@@ -47,13 +47,13 @@ impl Flow {
         let (mut pressed, mut flowed) = (zero, 0.0);
         self.forwards.clear();
         self.forwards.resize(packs, zero);
-        // only strips that shape the soil write here, and only those are read
+        // only strips that shape the soil write here, and only their entries are read
         self.backwards.resize(contact.strips.len() * packs, zero);
-        // From rear to front: what flows forwards travels along.
+        // The order from rear to front carries the forward flow along.
         for row in contact.first..contact.end {
             let (strip, mask) = (&contact.strips[row], contact.masks[row]);
             let start = strip.column * terrain.lanes + across.first_lane;
-            // where the strip behind is not in contact either, all has left already
+            // if the strip behind is not in contact either, all flow has left already
             if mask != whole && mask | contact.masks[row - 1] != 0 {
                 flowed += leave(terrain, start, mask, &mut self.forwards);
             }
@@ -72,8 +72,8 @@ impl Flow {
                 quads.iter().zip(under).zip(&across.width).zip(passing).zip(sides)
             {
                 let sunk = greater(quad.surface - hub - quad.pressure * compliance, zero);
-                // Soil on its elastic line keeps its height. Without this test a cell that is covered in part, whose
-                // pressure is not taken at its node, would sink at every step, however short.
+                // Soil on its elastic line keeps its height. Without this test a partly covered cell, whose pressure is not
+                // evaluated at its node, would sink at every step, however short.
                 let yields = quad.pressure.simd_lt(stiffness * quad.pressed);
                 let sunk = (width.simd_gt(own_width) & yields).select(sunk, zero);
                 let moves = sunk.simd_gt(zero);
@@ -83,7 +83,7 @@ impl Flow {
                 }
                 *surface = (Pack::new(*surface) - sunk).to_array();
                 pressed += sunk;
-                // Every way out takes a share that falls with its length.
+                // The share of each direction decreases with its length.
                 let to_front = ways.forward / (quad.front_end - middle);
                 let to_rear = ways.backward / (middle - quad.rear_end);
                 let (to_left, to_right) = (ways.left * per_left, ways.right * per_right);
@@ -95,7 +95,7 @@ impl Flow {
             }
             let (leftwards, rightwards) = (sum(leftwards), sum(rightwards));
             let left = across.first_lane + across.lanes;
-            // what the other half sends to its far side arrives here, as much as this half sends away
+            // flow from the other half to its far side arrives here; it equals the flow that leaves this half
             let right = if terrain.mirrored {
                 left
             } else {
@@ -108,7 +108,7 @@ impl Flow {
         let start = |row: usize| contact.strips[row].column * terrain.lanes + across.first_lane;
         let (ahead, behind) = (start(contact.end), start(contact.first - 1));
         flowed += leave(terrain, ahead, 0, &mut self.forwards);
-        // From front to rear: the same backwards. All forward flow has left, so its buffer is free.
+        // The backward flow goes from front to rear. All forward flow has left, so its buffer is free.
         let passing = &mut self.forwards;
         for row in (contact.first..contact.end).rev() {
             let (strip, mask) = (&contact.strips[row], contact.masks[row]);
@@ -119,9 +119,9 @@ impl Flow {
             if mask == 0 || !strip.holds_node {
                 continue;
             }
-            let own = &self.backwards[row * packs..(row + 1) * packs];
-            for (passing, own) in passing.iter_mut().zip(own) {
-                *passing += *own;
+            let backward = &self.backwards[row * packs..(row + 1) * packs];
+            for (passing, backward) in passing.iter_mut().zip(backward) {
+                *passing += *backward;
             }
         }
         flowed += leave(terrain, behind, 0, passing);
@@ -130,7 +130,7 @@ impl Flow {
     }
 }
 
-/// Leave the soil on its way where it reaches lanes of a strip that are not in contact, and say how much.
+/// Deposits the moving soil where it reaches lanes of a strip that are not in contact; returns the amount.
 fn leave(terrain: &mut Terrain, start: usize, mask: u64, passing: &mut [Pack]) -> f64 {
     let mut left = 0.0;
     for (pack, passing) in passing.iter_mut().enumerate() {
@@ -144,7 +144,7 @@ fn leave(terrain: &mut Terrain, start: usize, mask: u64, passing: &mut [Pack]) -
     left
 }
 
-/// Directions of the soil's flow: pushed ahead where the wheel's surface moves into the soil, dragged along where it slides.
+/// Directions of the soil's flow: pushed ahead where the wheel's surface moves into the soil, dragged along by its sliding.
 fn ways(motion: &Motion, ahead: f64, rise: f64) -> Ways {
     let per_radius = 1.0 / (ahead * ahead + rise * rise).sqrt();
     let (sin, cos) = (ahead * per_radius, rise * per_radius);
@@ -164,7 +164,7 @@ fn ways(motion: &Motion, ahead: f64, rise: f64) -> Ways {
     }
 }
 
-/// Add soil to four lanes, and say how much.
+/// Adds soil to four lanes; returns the amount.
 fn add(terrain: &mut Terrain, at: usize, heights: Pack) -> f64 {
     let total = sum(heights);
     if total > 0.0 {
@@ -190,7 +190,7 @@ mod tests {
 
     #[test]
     fn soil_goes_where_the_wheel_pushes_and_drags_it() {
-        // rolling without slip at 10 mm/s: what is ahead is pushed ahead
+        // rolling without slip at 10 mm/s: soil ahead is pushed ahead
         let mut motion = Motion {
             forward: 0.01,
             lateral: 0.0,
@@ -199,7 +199,7 @@ mod tests {
         let [forward, backward, left, right] = weights(&motion, 0.03);
         assert!(forward > 1.5 * backward, "{forward} {backward}");
         assert!((left - right).abs() < f64::EPSILON);
-        // spinning: what is under the axle is dragged back
+        // spinning: soil under the axle is dragged back
         motion.rotation = 0.05 / 0.125;
         let [forward, backward, ..] = weights(&motion, 0.0);
         assert!(backward > 1.5 * forward, "{forward} {backward}");

@@ -1,7 +1,7 @@
 //! The soil as a height field on a regular grid.
 //!
 //! # Layout
-//! - `flow`: soil that yields is pressed down, and a share of it flows to the border of the footprint.
+//! - `flow`: yielding soil is lowered, and a share of it flows to the border of the footprint.
 //! - `digging`: soil that the sliding wheel carries away from under itself.
 //! - `relaxation`: slopes steeper than the angle of repose slide.
 
@@ -11,7 +11,7 @@ pub(super) mod relaxation;
 
 use super::pack::PACK;
 
-/// Room for berms beside the wheel `[lanes]`.
+/// Number of lanes for berms beside the wheel.
 pub(crate) const BERM_LANES: usize = 6;
 
 /// A digital elevation model of columns (across the travel of the wheel's heading) and lanes (along it).
@@ -19,8 +19,8 @@ pub(crate) const BERM_LANES: usize = 6;
 /// Column i has its node at `(i + 1/2) dx`, lane j at `first_y + j dy`. A mirrored terrain holds the half
 /// y > 0 of a scene that is symmetric about the wheel's middle plane. Lanes of a column are neighbours in memory.
 ///
-/// The yield pressure a node has reached is not stored: it follows from how far the surface lies below the
-/// reference, because a node unloads along the elastic line on which it was left.
+/// The yield pressure of a node is not stored: it follows from the depth of the surface below the reference, because a node
+/// unloads along the elastic line on which it was left.
 #[derive(Debug, Clone)]
 pub(crate) struct Terrain {
     /// Spacing along x `[m]`.
@@ -30,23 +30,23 @@ pub(crate) struct Terrain {
     /// y of lane 0 `[m]`.
     pub(crate) first_y: f64,
     pub(crate) columns: usize,
-    /// Lanes of a column, a multiple of [`PACK`].
+    /// Number of lanes of a column, a multiple of [`PACK`].
     pub(crate) lanes: usize,
     pub(crate) mirrored: bool,
     /// Present height of each node above the undisturbed surface `[m]`.
     pub(crate) surface: Vec<f64>,
-    /// Net thickness of loose soil that flowed to the node `[m]`; negative where it flowed away.
+    /// Net thickness of loose soil that flowed to the node `[m]`; negative if it flowed away.
     pub(crate) loose: Vec<f64>,
     /// Accumulated shear displacement of each node `[m]`.
     pub(crate) sheared: Vec<f64>,
-    /// How far the reference surface of each node was dug down `[m]`; empty where nothing digs.
+    /// Depth by which the reference surface of each node was dug down `[m]`; empty without digging.
     pub(crate) dug: Vec<f64>,
     /// The highest surface so far `[m]`.
     pub(crate) top: f64,
 }
 
 impl Terrain {
-    /// Undisturbed soil.
+    /// Creates undisturbed soil.
     pub(crate) fn new(dx: f64, dy: f64, first_y: f64, columns: usize, lanes: usize, mirrored: bool) -> Self {
         let lanes = lanes.next_multiple_of(PACK);
         let nodes = columns * lanes;
@@ -77,7 +77,7 @@ impl Terrain {
         self.first_y + lane as f64 * self.dy
     }
 
-    /// Add soil to a node.
+    /// Adds soil to a node.
     #[inline]
     pub(crate) fn deposit(&mut self, column: usize, lane: usize, height: f64) {
         let node = column * self.lanes + lane;

@@ -4,13 +4,13 @@ use super::super::contact::Contact;
 use super::super::pack::{PACK, Pack, greater, lesser, splat};
 use super::{BERM_LANES, Terrain};
 
-/// Share of an edge's excess height that moves in one sweep; above 1/4 a checkerboard would grow.
+/// Share of an edge's excess height that moves in one sweep; above 1/4 a checkerboard pattern would grow.
 const RATE: f64 = 0.25;
-/// Columns behind and ahead of the contact within which soil slides at every step.
+/// Number of columns behind and ahead of the contact within which soil slides at every step.
 const BEHIND: usize = 1;
 const AHEAD: usize = 5;
 const SWEEPS: usize = 1;
-/// Sweeps over the whole track before the wheel passes again.
+/// Number of sweeps over the whole track before the wheel passes again.
 const SWEEPS_BETWEEN_PASSES: usize = 40;
 
 /// Buffers of the relaxation.
@@ -23,7 +23,7 @@ pub(crate) struct Relaxation {
     along: Vec<Pack>,
 }
 
-/// Columns and lanes within which soil may slide; the lanes fill packs.
+/// Columns and lanes within which soil may slide; the lanes are whole packs.
 #[derive(Debug, Clone, Copy)]
 struct Window {
     columns: [usize; 2],
@@ -35,7 +35,7 @@ impl Window {
         (self.lanes[1] - self.lanes[0]) / PACK
     }
 
-    /// Lanes of a column in a buffer, with some to spare behind the last.
+    /// Number of lanes of a column in a buffer, with padding behind the last.
     fn stride(&self) -> usize {
         self.lanes[1] - self.lanes[0] + PACK
     }
@@ -49,10 +49,10 @@ impl Relaxation {
         }
     }
 
-    /// Let the soil around the contact slide, but never into the wheel.
+    /// Lets the soil around the contact slide, but never into the wheel.
     ///
-    /// Every sweep moves over each edge a share of what exceeds the angle of repose, all judged by the surface
-    /// before the sweep (Jacobi), so that left and right are alike and no soil is lost.
+    /// Every sweep moves over each edge a share of the excess over the angle of repose, all computed from the surface before
+    /// the sweep (Jacobi), so that left and right are alike and no soil is lost.
     pub(crate) fn settle(&mut self, terrain: &mut Terrain, contact: &Contact, hub: f64) {
         let across = &contact.across;
         let first = contact.strips[contact.first].column;
@@ -69,7 +69,7 @@ impl Relaxation {
         }
     }
 
-    /// Let every slope of the terrain slide, away from the wheel.
+    /// Lets every slope of the terrain slide, away from the wheel.
     pub(crate) fn settle_everywhere(&mut self, terrain: &mut Terrain) {
         let window = Window {
             columns: [0, terrain.columns - 1],
@@ -114,12 +114,12 @@ impl Relaxation {
         }
     }
 
-    /// Column after column and lane after lane, in place: what moves over an edge is found before either of its nodes
-    /// has changed.
+    /// Sweeps column by column and lane by lane, in place: the amount that moves over an edge is computed before either of
+    /// its nodes has changed.
     fn sweep(&mut self, terrain: &mut Terrain, window: Window) {
         let [first, end] = window.columns;
         let (packs, stride, zero) = (window.packs(), window.stride(), splat(0.0));
-        // no slope is too steep at the window's sides, so that nothing flows over them
+        // slopes at the window's sides count as stable, so that nothing flows over them
         let (steepest_x, steepest_y) = (terrain.dx * self.tan_repose, terrain.dy * self.tan_repose);
         let last_y = Pack::new([steepest_y, steepest_y, steepest_y, f64::MAX]);
         let steepest_y = splat(steepest_y);
@@ -128,9 +128,9 @@ impl Relaxation {
         for column in first..end {
             let steepest_x = splat(if column + 1 < end { steepest_x } else { f64::MAX });
             let start = column * terrain.lanes + window.lanes[0];
-            let (here, next) = terrain.surface[start..].split_at_mut(terrain.lanes);
-            let (here, next) = (
-                &mut here.as_chunks_mut().0[..=packs],
+            let (current, next) = terrain.surface[start..].split_at_mut(terrain.lanes);
+            let (current, next) = (
+                &mut current.as_chunks_mut().0[..=packs],
                 &next.as_chunks().0[..packs],
             );
             let loose = &mut terrain.loose[start..].as_chunks_mut().0[..packs];
@@ -143,22 +143,22 @@ impl Relaxation {
             let mut aside = 0.0; // from the last lane of the pack before
             for pack in 0..packs {
                 let steepest_y = if pack + 1 < packs { steepest_y } else { last_y };
-                let (height, inward) = (Pack::new(here[pack]), along[pack]);
+                let (height, inward) = (Pack::new(current[pack]), along[pack]);
                 let drop_x = height - Pack::new(next[pack]);
-                let drop_y = height - beside(here[pack], here[pack + 1]);
+                let drop_y = height - beside(current[pack], current[pack + 1]);
                 let steep = drop_x.abs().simd_gt(steepest_x) | drop_y.abs().simd_gt(steepest_y);
                 if (steep | inward.simd_ne(zero)).none() && aside == 0.0 {
                     continue;
                 }
-                let own = Pack::new(room[pack]);
-                let out = edge(drop_x, steepest_x, own, Pack::new(next_room[pack]));
-                let over = edge(drop_y, steepest_y, own, beside(room[pack], room[pack + 1]));
+                let space = Pack::new(room[pack]);
+                let out = edge(drop_x, steepest_x, space, Pack::new(next_room[pack]));
+                let over = edge(drop_y, steepest_y, space, beside(room[pack], room[pack + 1]));
                 let [a, b, c, d] = over.to_array();
                 let change = (Pack::new([aside, a, b, c]) - over) + (inward - out);
                 (along[pack], aside) = (out, d);
-                here[pack] = (height + change).to_array();
+                current[pack] = (height + change).to_array();
                 loose[pack] = (Pack::new(loose[pack]) + change).to_array();
-                room[pack] = (own - change).to_array();
+                room[pack] = (space - change).to_array();
             }
         }
     }
@@ -181,7 +181,7 @@ fn packs_mut(row: &mut [f64], start: usize, lanes: usize) -> &mut [[f64; PACK]] 
     row[start..start + lanes].as_chunks_mut().0
 }
 
-/// Height that moves over an edge, > 0 towards the second node; never more than a quarter of the room there.
+/// Height that moves over an edge, > 0 towards the second node; never more than a quarter of the room at its target.
 #[inline]
 fn edge(drop: Pack, steepest: Pack, room: Pack, next_room: Pack) -> Pack {
     let (rate, quarter, zero) = (splat(RATE), splat(0.25), splat(0.0));
@@ -208,9 +208,9 @@ mod tests {
         let mut steepest = 0.0_f64;
         for column in 0..terrain.columns - 1 {
             for lane in 0..terrain.lanes - 1 {
-                let here = at(column, lane);
-                let drops = [here - at(column + 1, lane), here - at(column, lane + 1)];
-                steepest = drops.iter().fold(steepest, |most, d| most.max(d.abs() / SPACING));
+                let height = at(column, lane);
+                let drops = [height - at(column + 1, lane), height - at(column, lane + 1)];
+                steepest = drops.iter().fold(steepest, |max, d| max.max(d.abs() / SPACING));
             }
         }
         steepest
@@ -228,7 +228,7 @@ mod tests {
             assert!(after <= before, "{after} after {before}");
             before = after;
         }
-        // what exceeds the angle of repose falls off exponentially: a thousandth is left of it
+        // the excess over the angle of repose decays exponentially: a thousandth remains
         assert!(before < repose.tan() * 1.001, "{before}");
         let left: f64 = terrain.surface.iter().sum();
         assert!((left - 0.05).abs() < 1e-15, "{left}");
@@ -271,8 +271,11 @@ mod tests {
         for _ in 0..200 {
             relaxation.sweep(&mut terrain, window);
         }
-        let highest =
-            |column: usize| (0..24).fold(0.0_f64, |most, j| most.max(terrain.surface[column * 24 + j]));
+        let highest = |column: usize| {
+            (0..24).fold(0.0_f64, |highest, j| {
+                highest.max(terrain.surface[column * 24 + j])
+            })
+        };
         assert!(
             highest(13) < 2e-3 + 1e-15 && highest(13) > 1.9e-3,
             "{}",

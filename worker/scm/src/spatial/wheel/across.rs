@@ -1,10 +1,10 @@
 //! The lanes of the terrain that the wheel covers.
 
-use super::super::pack::{PACK, Pack, greater, most_of, splat};
+use super::super::pack::{PACK, Pack, greater, greatest_of, splat};
 use super::super::terrain::Terrain;
 use super::envelope::NOWHERE;
 
-/// The lanes under the wheel, in packs; lanes that only fill the last pack have no width.
+/// The lanes under the wheel, in packs; lanes that only pad the last pack have no width.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Across {
     /// The terrain's lane at which the first pack begins.
@@ -12,17 +12,17 @@ pub(crate) struct Across {
     pub(crate) lanes: usize,
     /// Covered width of each lane `[m]`.
     pub(crate) width: Vec<Pack>,
-    /// 0 under the wheel, [`NOWHERE`] in the lanes that fill up `[m]`.
+    /// 0 under the wheel, [`NOWHERE`] in the padding lanes `[m]`.
     pub(crate) bias: Vec<Pack>,
     /// Distance of the middle of the covered width from the wheel's side at greater y, and at lesser y `[m]`.
     pub(crate) from_left: Vec<Pack>,
     pub(crate) from_right: Vec<Pack>,
-    /// The lesser of the two.
+    /// The lesser of the two distances.
     pub(crate) from_side: Vec<Pack>,
     /// One over the distances from either side `[1/m]`.
     pub(crate) per_left: Vec<Pack>,
     pub(crate) per_right: Vec<Pack>,
-    /// y at which the wheel was laid `[m]`.
+    /// y of the last placement of the wheel `[m]`.
     laid_at: Option<f64>,
 }
 
@@ -37,11 +37,11 @@ impl Across {
         whole(&self.from_left) + whole(&self.from_right)
     }
 
-    /// What the wheel covers of a lane: from y to y from its middle plane `[m]`.
+    /// The part of a lane that the wheel covers: from y to y from its middle plane `[m]`.
     pub(crate) fn covered(&self, lane: usize) -> [f64; 2] {
-        let of = |packs: &[Pack]| packs[lane / PACK].to_array()[lane % PACK];
-        let middle = 0.5 * (of(&self.from_right) - of(&self.from_left));
-        let half = 0.5 * of(&self.width);
+        let value = |packs: &[Pack]| packs[lane / PACK].to_array()[lane % PACK];
+        let middle = 0.5 * (value(&self.from_right) - value(&self.from_left));
+        let half = 0.5 * value(&self.width);
         [middle - half, middle + half]
     }
 
@@ -52,13 +52,13 @@ impl Across {
             .as_chunks()
             .0;
         let lanes = under.iter().zip(&self.bias);
-        most_of(lanes.fold(splat(NOWHERE), |high, (z, &bias)| {
+        greatest_of(lanes.fold(splat(NOWHERE), |high, (z, &bias)| {
             greater(high, Pack::new(*z) + bias)
         }))
     }
 
-    /// Lay a wheel of a width around y over the lanes, whose borders it meets. In a mirrored terrain the right side is the
-    /// left one's image.
+    /// Places a wheel of a width around y over the lanes, along their borders. In a mirrored terrain the right side is the
+    /// image of the left one.
     pub(crate) fn lay(&mut self, terrain: &Terrain, y: f64, width: f64) {
         if self.laid_at == Some(y) {
             return;
@@ -93,7 +93,7 @@ impl Across {
                 (top, bottom)
             };
             let covered = |i: usize| first + i < self.lanes;
-            let pack = |of: &dyn Fn(usize) -> f64| Pack::new([of(0), of(1), of(2), of(3)]);
+            let pack = |value: &dyn Fn(usize) -> f64| Pack::new([value(0), value(1), value(2), value(3)]);
             let half = |i: usize| 0.5 * (lane(i).0 + lane(i).1);
             let from_left = pack(&|i| if covered(i) { left - half(i) } else { 0.0 });
             let from_right = pack(&|i| match (covered(i), terrain.mirrored) {

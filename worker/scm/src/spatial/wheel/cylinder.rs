@@ -6,14 +6,14 @@ use super::across::Across;
 use super::envelope::{Envelope, NOWHERE, Strip};
 use super::pose::{Pose, Range};
 
-/// A rim with straight grousers: rectangles that stand on the rim along its whole width.
+/// A rim with straight grousers: rectangles on the rim along its whole width.
 ///
 /// A load may flatten the rim by a deflection d: below `R − d` it is cut off, `h = R − d` wherever `√(R² − x²)` is more, and
-/// grousers there are pushed in with it. The flat is horizontal, and what it is made of moves with `omega (R − d)`.
+/// grousers there are pushed in with it. The flat is horizontal, and its material moves with `omega (R − d)`.
 #[derive(Debug, Clone)]
 pub(crate) struct Cylinder {
     radius: f64,
-    /// Height of the hub above the flat part of the rim `[m]`; the radius where there is none.
+    /// Height of the hub above the flat part of the rim `[m]`; the radius if there is none.
     loaded_radius: f64,
     grouser_count: u32,
     grouser_height: f64,
@@ -21,7 +21,7 @@ pub(crate) struct Cylinder {
     pieces: Vec<Piece>,
 }
 
-/// A straight piece of a grouser's underside: from one end to the other, heights below the hub.
+/// A straight piece of a grouser's underside: from one end to the other, with heights below the hub.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Piece {
     pub(super) rear: f64,
@@ -38,12 +38,12 @@ impl Piece {
     }
 }
 
-/// Where a row of grousers stands, and how thick its grousers are.
+/// The place of a row of grousers, and the thickness of its grousers.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Row {
     /// Angle by which they stand further forward at the bottom `[rad]`.
     pub(super) angle: f64,
-    /// Their thickness, relative to what it is where nothing else is said.
+    /// Thickness of the grousers, relative to the nominal one.
     pub(super) share: f64,
 }
 
@@ -82,7 +82,7 @@ impl Cylinder {
         }
     }
 
-    /// Fill the envelope over the columns of `range`, widened to hold every grouser whose rise exceeds `least_rise`.
+    /// Fills the envelope over the columns of `range`, widened to hold every grouser whose rise exceeds `least_rise`.
     pub(crate) fn lay(
         &mut self,
         terrain: &Terrain,
@@ -135,8 +135,8 @@ impl Cylinder {
         self.fill(terrain, pose, out);
     }
 
-    /// The columns of `range`, those from the rear end of grousers to their front end, those where the rim may touch soil, and one more
-    /// on either side: where the last contact ended at a grouser, the rim beyond it may touch again.
+    /// Widens `range` by the columns from the rear end of grousers to their front end, by those where the rim may touch
+    /// soil, and by one more on either side: if the last contact ended at a grouser, the rim beyond it may touch again.
     pub(super) fn widen(
         &self,
         terrain: &Terrain,
@@ -168,7 +168,7 @@ impl Cylinder {
         }
     }
 
-    /// Rise and slope of every strip.
+    /// Computes rise and slope of every strip.
     fn fill(&self, terrain: &Terrain, pose: Pose, out: &mut Envelope) {
         let mut place = 0;
         for strip in &mut out.strips {
@@ -179,7 +179,7 @@ impl Cylinder {
                 strip.ahead = strip.middle;
                 (strip.rise, strip.slope) = self.surface(strip.ahead, piece.rise(strip.middle));
             } else {
-                // the rim is taken where the node is, because it shaped the soil there
+                // the rim is evaluated at the node, because it shaped the soil there
                 strip.ahead = terrain.x(strip.column) - pose.x;
                 (strip.rise, strip.slope) = self.rim(strip.ahead);
             }
@@ -198,7 +198,7 @@ impl Cylinder {
         self.surface(ahead, rise)
     }
 
-    /// Rise and slope where the wheel that carries nothing has a rise: less what the load cuts off the rim there.
+    /// Rise and slope at a place, from the rise of the unloaded wheel less the part of the rim that the load cuts off there.
     pub(super) fn surface(&self, ahead: f64, rise: f64) -> (f64, f64) {
         if self.loaded_radius < self.radius {
             let square_rise = self.radius * self.radius - ahead * ahead;
@@ -207,12 +207,12 @@ impl Cylinder {
                 return (rise - cut, 0.0);
             }
         }
-        // the normal points to the hub, on grousers too: a height field cannot show their flanks
+        // the normal points to the hub, on grousers too, because a height field cannot show their flanks
         let slope = if rise > 0.0 { ahead / rise } else { 0.0 };
         (rise, slope)
     }
 
-    /// The undersides of a row's grousers that reach below `least_rise` and may touch soil, from rear to front.
+    /// Collects the undersides of a row's grousers that reach below `least_rise` and may touch soil, from rear to front.
     ///
     /// `highest` gives the highest soil under the row in a column `[m]`.
     pub(super) fn collect_grousers(
@@ -236,9 +236,9 @@ impl Cylinder {
         let widest = libm::acos((least_rise / reach).max(-1.0)).min(0.5 * core::f64::consts::PI);
         let phase = (pose.turned - row.angle) / pitch;
         let phase = phase - libm::floor(phase); // of a pitch
-        let most = libm::floor(widest / pitch + phase) as i64;
+        let greatest = libm::floor(widest / pitch + phase) as i64;
         let least = libm::ceil(-widest / pitch + phase) as i64;
-        for number in least..=most {
+        for number in least..=greatest {
             let angle = (number as f64 - phase) * pitch;
             let deepest = reach * libm::cos(angle);
             let tip = pose.x + reach * libm::sin(angle);
@@ -286,7 +286,7 @@ impl Cylinder {
     }
 }
 
-/// Square of the least rise of the rim, relative to that of its radius, at which it is taken for an underside.
+/// Square of the least rise of the rim, relative to its radius, at which it counts as an underside.
 const STEEPEST: f64 = 1e-4;
 
 fn push(out: &mut Envelope, column: usize, node: f64, rear: f64, front: f64, whole: bool) {

@@ -2,10 +2,10 @@
 
 use super::super::pack::Pack;
 
-/// The rise where there is no wheel: so far up that no soil touches it `[m]`.
+/// The rise beside the wheel: so high that no soil touches it `[m]`.
 pub(crate) const NOWHERE: f64 = -1e3;
 
-/// A piece of one column of the terrain under one piece of the wheel. Places are ahead of the hub `[m]`.
+/// A piece of one column of the terrain under one piece of the wheel, measured ahead of the hub `[m]`.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Strip {
     /// The terrain's column.
@@ -13,19 +13,19 @@ pub(crate) struct Strip {
     pub(crate) rear: f64,
     pub(crate) middle: f64,
     pub(crate) front: f64,
-    /// Where rise and slope are taken: the column's node on a smooth wheel, else the middle.
+    /// Place of rise and slope: the column's node on a smooth wheel, else the middle.
     pub(crate) ahead: f64,
-    /// Height of the hub above the wheel's surface `[m]`; [`NOWHERE`] where there is no wheel.
+    /// Height of the hub above the wheel's surface `[m]`; [`NOWHERE`] beside the wheel.
     pub(crate) rise: f64,
     /// Slope dh/dx of the wheel's surface `[–]`.
     pub(crate) slope: f64,
-    /// The column's node lies in this strip, so the strip shapes it.
+    /// True if the column's node lies in this strip, so that the strip shapes it.
     pub(crate) holds_node: bool,
-    /// The whole column lies under one smooth surface that goes on into neighbours of the same kind.
+    /// True if the whole column lies under one smooth surface that continues into neighbours of the same kind.
     pub(crate) smooth: bool,
 }
 
-/// The wheel's surface over four lanes of a strip, where lanes differ.
+/// The wheel's surface over four lanes of a strip, if lanes differ.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Facet {
     pub(crate) rise: Pack,
@@ -34,7 +34,7 @@ pub(crate) struct Facet {
 }
 
 impl Facet {
-    /// No wheel.
+    /// Creates facets beside the wheel.
     pub(crate) fn none() -> Self {
         Self {
             rise: Pack::splat(NOWHERE),

@@ -1,12 +1,12 @@
-//! The wheel as the soil meets it: its underside, the lanes it covers, its motion.
+//! The wheel in contact with the soil: its underside, its lanes, its motion.
 //!
 //! # Layout
 //! - `envelope`: the underside over the columns of the terrain, strip by strip.
 //! - `cylinder`: lays an analytic rim with straight grousers.
-//! - `treaded`: the same rim with grousers in rows, shifted, oblique or bent.
+//! - `treaded`: lays the rim with grousers in rows, staggered, oblique or bent.
 //! - `mesh`: lays any surface of triangles.
 //! - `across`: the lanes that the wheel covers.
-//! - `pose`: where the wheel stands, and the columns that it may touch.
+//! - `pose`: the place of the wheel, and the columns that it may touch.
 //! - `motion`: velocity of the surface over the soil, directions of pressure and shear.
 
 pub(super) mod across;
@@ -27,7 +27,7 @@ use super::settings::Shape;
 use super::terrain::Terrain;
 use crate::Wheel;
 
-/// The wheel as the soil meets it.
+/// The underside of the wheel.
 #[derive(Debug, Clone)]
 pub(crate) enum Underside {
     Cylinder(Cylinder),
@@ -61,7 +61,7 @@ impl Underside {
         }
     }
 
-    /// Width about the middle plane that holds the whole wheel, nominally as wide as `wheel` `[m]`.
+    /// Width about the middle plane that holds the whole wheel `[m]`; nominally that of `wheel`.
     pub(crate) fn width(&self, wheel: &Wheel) -> f64 {
         match self {
             Self::Cylinder(_) | Self::Treaded(_) => wheel.width_m,
@@ -69,7 +69,7 @@ impl Underside {
         }
     }
 
-    /// Number of identical sectors in one turn; none if turning changes nothing.
+    /// Number of identical sectors in one turn; `None` if turning changes nothing.
     pub(crate) fn repeats_per_turn(&self) -> Option<u32> {
         match self {
             Self::Cylinder(cylinder) => cylinder.grousers(),
@@ -78,7 +78,7 @@ impl Underside {
         }
     }
 
-    /// Whether left and right are alike.
+    /// Returns whether left and right are alike.
     pub(crate) fn is_symmetric(&self) -> bool {
         match self {
             Self::Cylinder(_) => true,
@@ -87,9 +87,8 @@ impl Underside {
         }
     }
 
-    /// Fill the envelope over the columns of `range` and whatever else may touch soil.
-    ///
-    /// `least_rise` is the height of the hub above the highest soil, less what the hub may sink in this step.
+    /// Fills the envelope over the columns of `range` and all others that may touch soil. `least_rise` is the height of the
+    /// hub above the highest soil, less the possible sinking of the hub in this step.
     pub(crate) fn lay(
         &mut self,
         terrain: &Terrain,

@@ -8,15 +8,15 @@ use crate::{Condition, Wheel};
 /// Motion of the hub over the soil and rotation of the wheel.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Motion {
-    /// Along the heading, v cos(beta) `[m/s]`.
+    /// Velocity along the heading, v cos(beta) `[m/s]`.
     pub(crate) forward: f64,
-    /// Across it, v sin(beta) `[m/s]`.
+    /// Velocity across the heading, v sin(beta) `[m/s]`.
     pub(crate) lateral: f64,
-    /// omega `[rad/s]`, from the rig's radius.
+    /// Angular velocity omega `[rad/s]`, from the rig's radius.
     pub(crate) rotation: f64,
 }
 
-/// Force on the wheel per projected area: of unit pressure, and of unit mobilised strength.
+/// Force on the wheel per projected area, for unit pressure and for unit mobilised strength.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Traction {
     /// Height of the hub above the point `[m]`.
@@ -31,10 +31,15 @@ pub(crate) struct Traction {
 }
 
 impl Traction {
-    /// One of the numbers for four lanes.
+    /// Packs one number of four lanes.
     #[inline]
-    pub(crate) fn of_lanes(lanes: &[Traction], of: fn(&Traction) -> f64) -> Pack {
-        Pack::new([of(&lanes[0]), of(&lanes[1]), of(&lanes[2]), of(&lanes[3])])
+    pub(crate) fn of_lanes(lanes: &[Traction], field: fn(&Traction) -> f64) -> Pack {
+        Pack::new([
+            field(&lanes[0]),
+            field(&lanes[1]),
+            field(&lanes[2]),
+            field(&lanes[3]),
+        ])
     }
 }
 
@@ -48,7 +53,7 @@ impl Motion {
         }
     }
 
-    /// Velocity of a point of the wheel's surface over the soil, hub at constant height `[m/s]`.
+    /// Velocity of a point of the wheel's surface over the soil, with the hub at constant height `[m/s]`.
     #[inline]
     pub(crate) fn surface_velocity(&self, ahead: f64, rise: f64) -> [f64; 3] {
         [
@@ -58,8 +63,8 @@ impl Motion {
         ]
     }
 
-    /// Velocity into the soil along the normal of four lanes of the wheel's surface, hub at constant height; negative where
-    /// the surface leaves the soil `[m/s]`.
+    /// Velocity into the soil along the normal of four lanes of the wheel's surface, with the hub at constant height;
+    /// negative if the surface leaves the soil `[m/s]`.
     pub(crate) fn entry_velocity(&self, ahead: f64, facet: &Facet) -> Pack {
         let (rise, one) = (facet.rise, splat(1.0));
         let x = splat(self.forward) - splat(self.rotation) * rise;
@@ -68,8 +73,8 @@ impl Motion {
         -out / stretch
     }
 
-    /// Directions of pressure and shear at a point `ahead` of the hub and `rise` below it, where the
-    /// wheel's surface has slopes (dh/dx, dh/dy).
+    /// Directions of pressure and shear at a point `ahead` of the hub and `rise` below it, where the wheel's surface has
+    /// slopes (dh/dx, dh/dy).
     #[inline]
     pub(crate) fn traction(&self, law: &ShearVelocity, ahead: f64, rise: f64, slope: [f64; 2]) -> Traction {
         let [slope_x, slope_y] = slope;

@@ -1,6 +1,6 @@
-//! Where the wheel stands, and the columns of the terrain that it may touch.
+//! The place of the wheel, and the columns of the terrain that it may touch.
 
-/// Where the wheel stands.
+/// The place of the wheel.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Pose {
     /// x and y of the hub `[m]`.

@@ -8,30 +8,31 @@ use super::cylinder::{Cylinder, Piece, Row};
 use super::envelope::{Envelope, Facet, NOWHERE, Strip};
 use super::pose::{Pose, Range};
 
-/// Distance of borders that is only rounding `[m]`.
+/// Distance of borders that rounding can cause `[m]`.
 const SAME: f64 = 1e-12;
-/// Share of a lane that is only rounding.
+/// Share of a lane that rounding can cause.
 const NOTHING: f64 = 1e-9;
 
 /// A rim with the grousers of a [`Tread`].
 ///
-/// Every lane has grousers of its own: as far forward as its middle says, and thinner where they cover it in part. Strips end where
-/// a grouser of any lane does. Where a lane has no grouser its rim is taken at the column's node, as on a [`Cylinder`].
+/// Every lane has separate grousers: their shift belongs to the lane's middle, and they are thinner where they cover the
+/// lane in part. Strips end at the ends of the grousers of any lane. In a lane without a grouser, the rim is evaluated at
+/// the column's node, as on a [`Cylinder`].
 #[derive(Debug, Clone)]
 pub(crate) struct Treaded {
     cylinder: Cylinder,
     tread: Tread,
     /// The grousers' places in the lanes under the wheel.
     places: Vec<Place>,
-    /// The pieces of all lanes, lane by lane, from rear to front; where each lane's begin.
+    /// The pieces of all lanes, lane by lane, from rear to front; and the first piece of each lane.
     pieces: Vec<Piece>,
     starts: Vec<usize>,
     borders: Vec<f64>,
-    /// Rise of grousers over each strip and lane, [`NOWHERE`] where there is none `[m]`.
+    /// Rise of grousers over each strip and lane, [`NOWHERE`] without one `[m]`.
     rises: Vec<f64>,
 }
 
-/// Grousers in a lane; as thick as the share of the lane that they cover.
+/// Grousers in a lane, with a thickness proportional to the share of the lane that they cover.
 #[derive(Debug, Clone, Copy)]
 struct Place {
     lane: usize,
@@ -56,12 +57,12 @@ impl Treaded {
         &self.cylinder
     }
 
-    /// Whether left and right are alike.
+    /// Returns whether left and right are alike.
     pub(crate) fn is_symmetric(&self) -> bool {
         self.tread.is_symmetric()
     }
 
-    /// Fill the envelope over the columns of `range`, widened to hold every grouser whose rise exceeds `least_rise`.
+    /// Fills the envelope over the columns of `range`, widened to hold every grouser whose rise exceeds `least_rise`.
     pub(crate) fn lay(
         &mut self,
         terrain: &Terrain,
@@ -82,7 +83,7 @@ impl Treaded {
         self.fill(terrain, pose, across, out);
     }
 
-    /// Find the grousers of every lane under the wheel.
+    /// Finds the grousers of every lane under the wheel.
     fn find_places(&mut self, across: &Across) {
         self.places.clear();
         let (radius, width) = (self.cylinder.radius(), across.wheel_width());
@@ -101,7 +102,7 @@ impl Treaded {
                 let bend = self.tread.bend(0.5 * (from + to), width);
                 let angle = bend / radius + shift * pitch;
                 match self.places[first..].last_mut() {
-                    // what goes on from row to row is one grouser, in the middle of both
+                    // bars that continue from row to row are one grouser, in the middle of both
                     Some(last) if (shift - self.tread.shift(row - 1)).abs() < NOTHING => {
                         let whole = last.row.share + share;
                         last.row.angle += share / whole * (angle - last.row.angle);
@@ -116,7 +117,7 @@ impl Treaded {
         }
     }
 
-    /// The undersides of grousers that reach below `least_rise`, and all their ends in order.
+    /// Collects the undersides of grousers that reach below `least_rise`, and all their ends in order.
     fn collect_pieces(&mut self, terrain: &Terrain, pose: Pose, least_rise: f64, across: &Across) {
         self.pieces.clear();
         self.starts.clear();
@@ -137,7 +138,7 @@ impl Treaded {
         self.borders.dedup_by(|next, before| *next - *before < SAME);
     }
 
-    /// Cut the columns of a range into strips at the grousers' ends.
+    /// Cuts the columns of a range into strips at the grousers' ends.
     fn cut(&self, terrain: &Terrain, pose: Pose, range: Range, out: &mut Envelope) {
         out.strips.clear();
         let mut next = 0;
@@ -162,7 +163,7 @@ impl Treaded {
         }
     }
 
-    /// Rises and slopes of every strip and lane.
+    /// Computes rises and slopes of every strip and lane.
     fn fill(&mut self, terrain: &Terrain, pose: Pose, across: &Across, out: &mut Envelope) {
         self.cover(across, &mut out.strips);
         let (packs, rows) = (across.packs(), out.strips.len());
@@ -193,7 +194,7 @@ impl Treaded {
         }
     }
 
-    /// Find the rises of the grousers over every strip; a strip that has one is taken at its middle, and is not smooth.
+    /// Computes the rises of the grousers over every strip; a strip with one is evaluated at its middle, and is not smooth.
     fn cover(&mut self, across: &Across, strips: &mut [Strip]) {
         let stride = across.packs() * PACK;
         self.rises.clear();
@@ -238,7 +239,7 @@ mod tests {
         thickness_m: 0.002,
     };
 
-    /// So many lanes under a wheel in the middle of a terrain.
+    /// A number of lanes under a wheel in the middle of a terrain.
     fn under(lanes: u32) -> (Terrain, Across) {
         let dy = WIDTH / f64::from(lanes);
         let terrain = Terrain::new(0.004, dy, -0.5 * WIDTH - 6.5 * dy, 100, 60, false);
@@ -267,7 +268,7 @@ mod tests {
                         place.row.share * (left - right)
                     };
                     let covered: f64 = wheel.places.iter().map(width).sum();
-                    let expected = width_m.map_or(WIDTH, |own| own * f64::from(rows));
+                    let expected = width_m.map_or(WIDTH, |width| width * f64::from(rows));
                     assert!(
                         (covered - expected).abs() < 1e-12,
                         "{rows} rows: {covered} {expected}"
@@ -291,12 +292,14 @@ mod tests {
         Treaded::new(0.125, Tread::straight(BARS), 0.0).lay(&terrain, pose, range, 0.1, &across, &mut got);
         let near = |a: f64, b: f64| (a - b).abs() < 1e-12;
         assert_eq!(got.strips.len(), expected.strips.len());
-        for (row, (strip, own)) in expected.strips.iter().zip(&got.strips).enumerate() {
-            assert_eq!((own.column, own.smooth), (strip.column, strip.smooth));
+        for (row, (strip, reference)) in expected.strips.iter().zip(&got.strips).enumerate() {
+            assert_eq!((reference.column, reference.smooth), (strip.column, strip.smooth));
             assert!(
-                near(own.rear, strip.rear) && near(own.front, strip.front) && near(own.ahead, strip.ahead)
+                near(reference.rear, strip.rear)
+                    && near(reference.front, strip.front)
+                    && near(reference.ahead, strip.ahead)
             );
-            assert!(near(own.rise, strip.rise) && near(own.slope, strip.slope));
+            assert!(near(reference.rise, strip.rise) && near(reference.slope, strip.slope));
             for facet in got.facets[row..].iter().step_by(got.strips.len()) {
                 assert!(facet.rise.to_array().iter().all(|&rise| near(rise, strip.rise)));
             }

@@ -1,9 +1,9 @@
 //! Pressure and shear stress at the nodes of a contact after the formulas of effects.
 //!
 //! # Layout
-//! - here: the formulas, and what a step gives them to see.
-//! - `scale`: those that only scale the shear stress, once in a step.
-//! - `trial`: all others, at every trial height.
+//! - This file: the formulas, and the variables of a step.
+//! - `scale`: formulas that only scale the shear stress, evaluated once per step.
+//! - `trial`: all other formulas, evaluated at every trial height.
 
 mod scale;
 mod trial;
@@ -21,51 +21,51 @@ use super::quad::Quad;
 use crate::Rejection;
 use crate::effects::NodeLaws;
 
-/// Formulas at nodes, with what a step and a trial height give them to see.
+/// Formulas at nodes, with the variables of a step and a trial height.
 ///
 /// At every loaded node in contact, p > 0:
 ///
-/// - `p = min(p', K_e (z_s − h))`, with p' the plastic pressure `gamma k* z^n` after the formulas: the elastic line bounds it
-///   afterwards, so that the compaction that the terrain remembers agrees with the pressure it carries
+/// - `p = min(p', K_e (z_s − h))`, with p' the plastic pressure `gamma k* z^n` after the formulas: the elastic line bounds
+///   it afterwards, so that the compaction stored in the terrain agrees with the pressure
 /// - `tau_max' ← c + p tan(phi)`, then `tau' ← tau_max' (1 − exp(−|v_t| / v0))`
 ///
-/// A formula gives the size of the stress; its direction stays against the slip velocity. So `tau' / (1 − exp(−|v_t| / v0))`
-/// acts as the node's strength, and where nothing slides there is no stress.
+/// A formula gives the magnitude of the stress; its direction stays against the slip velocity. So
+/// `tau' / (1 − exp(−|v_t| / v0))` acts as the node's strength, and without sliding there is no stress.
 ///
 /// Formulas see `z ≥ 1e-12 m`, the velocity `v_n ≥ 0` into the soil along the wheel's normal with the hub at constant height,
-/// `position` along the whole footprint at the place where the pressure is taken, and k* and `b_eff` of the hull, or of the node's patch.
+/// `position` along the whole footprint at the point of the pressure, and k* and `b_eff` of the hull, or of the node's patch.
 ///
 /// # Numerics
-/// Formulas are evaluated at every trial height. Those that only scale the shear stress, by what no height changes, are
-/// evaluated once in a step: the base then runs with its shear tractions scaled. Checked by `spatial::effects`.
+/// Formulas are evaluated at every trial height. Formulas that only scale the shear stress, by variables that do not depend on the
+/// height, are evaluated once per step: the base then runs with its shear tractions scaled. Checked by `spatial::effects`.
 #[derive(Debug, Clone)]
 pub(crate) struct NodeFormulas<'a> {
     laws: NodeLaws<'a>,
     variables: [f64; Variable::COUNT],
-    /// Whether `laws` know the present `variables`.
+    /// True if `laws` are settled for the present `variables`.
     settled: bool,
-    /// Whether formulas only scale the shear stress, and whether they do so in this step.
+    /// True if formulas only scale the shear stress, and if they do so in this step.
     may_scale: bool,
     scales: bool,
-    /// Strips that touch at this height of the hub have their tractions scaled `[m]`.
+    /// Height of the hub down to which the strips that touch have scaled tractions `[m]`.
     scaled_down_to: f64,
     /// Width of the wheel `[m]`.
     width: f64,
-    /// By quad: what a step knows.
+    /// The variables of a step, by quad.
     nodes: Vec<Node>,
-    /// By quad: shear displacement j `[m]`.
+    /// Shear displacement j by quad `[m]`.
     pub(crate) slid: Vec<Pack>,
-    /// By quad, at the height last tried: the strength that acts `[Pa]`.
+    /// The acting strength at the last trial height, by quad `[Pa]`.
     strengths: Vec<Pack>,
     /// Rear end and length of the footprint, ahead of the hub `[m]`.
     footprint: [f64; 2],
     /// The current quads.
     points: Vec<Point>,
-    /// The first formula value that could not be used, at whichever height it was.
+    /// The first inadmissible value of a formula, at any trial height.
     pub(crate) refused: Option<Rejection>,
 }
 
-/// What a step knows of four nodes.
+/// The variables of four nodes in a step.
 #[derive(Debug, Clone, Copy)]
 struct Node {
     /// `|v_t|` and `v_n` `[m/s]`.
@@ -74,7 +74,7 @@ struct Node {
     /// `1 − exp(−|v_t| / v0)`, and one over it; 0 where nothing slides.
     share: Pack,
     per_share: Pack,
-    /// What formulas that only scale the stress multiply it by.
+    /// The factor of formulas that only scale the stress.
     scale: Pack,
 }
 
@@ -82,13 +82,13 @@ struct Node {
 #[derive(Debug, Clone, Copy)]
 struct Point {
     quad: usize,
-    /// The lanes that bear.
+    /// The lanes that carry load.
     bears: u64,
 }
 
 impl<'a> NodeFormulas<'a> {
     pub(crate) fn new(laws: NodeLaws<'a>, variables: [f64; Variable::COUNT], width: f64) -> Self {
-        let of_step = Variables::of(&[Variable::Vn, Variable::Vt, Variable::J]);
+        let of_step = Variables::new(&[Variable::Vn, Variable::Vt, Variable::J]);
         Self {
             may_scale: laws.only_scale_stress_by(of_step),
             scales: false,
@@ -106,15 +106,15 @@ impl<'a> NodeFormulas<'a> {
         }
     }
 
-    /// Whether a formula uses a variable.
+    /// Returns whether a formula uses a variable.
     pub(crate) fn use_variable(&self, variable: Variable) -> bool {
         self.laws.use_variable(variable)
     }
 
-    /// Change what all nodes share.
+    /// Changes a variable that all nodes share.
     pub(crate) fn set(&mut self, variable: Variable, value: f64) {
-        let known = core::mem::replace(&mut self.variables[variable as usize], value);
-        self.settled &= known.to_bits() == value.to_bits() || !self.laws.use_variable(variable);
+        let previous = core::mem::replace(&mut self.variables[variable as usize], value);
+        self.settled &= previous.to_bits() == value.to_bits() || !self.laws.use_variable(variable);
     }
 
     fn settle(&mut self) {
@@ -124,7 +124,7 @@ impl<'a> NodeFormulas<'a> {
         }
     }
 
-    /// Bring formulas and a prepared contact together: what does not depend on the height of the hub.
+    /// Computes everything that does not depend on the height of the hub, for a prepared contact.
     pub(crate) fn prepare(
         &mut self,
         contact: &mut Contact,
@@ -160,7 +160,7 @@ impl<'a> NodeFormulas<'a> {
         }
     }
 
-    /// What the base mobilises of the strength.
+    /// Computes the base's mobilised share of the strength.
     fn find_shares(&mut self, laws: &Laws, contact: &Contact) {
         if !self.laws.enter(Hook::Shear) {
             return;
@@ -176,14 +176,14 @@ impl<'a> NodeFormulas<'a> {
         }
     }
 
-    /// Vertical force of the soil on the wheel with its hub at a height `[N]`; NaN where a formula gives an inadmissible value.
+    /// Vertical force of the soil on the wheel with its hub at a height `[N]`; NaN if a formula gives an inadmissible value.
     pub(crate) fn press(&mut self, contact: &mut Contact, terrain: &Terrain, laws: &Laws, hub: f64) -> f64 {
         self.settle();
         if self.scales {
             if self.scale_down_to(contact, hub) {
                 return contact.press(terrain, laws, hub);
             }
-            // node by node, with regard to which bear
+            // node by node, restricted to loaded nodes
             self.scales = false;
             contact.find_vertical_shears();
             self.find_shares(laws, contact);
@@ -206,7 +206,7 @@ impl<'a> NodeFormulas<'a> {
         }
     }
 
-    /// By quad: the strengths that act at the height last tried `[Pa]`.
+    /// The acting strengths at the last trial height, by quad `[Pa]`.
     pub(crate) fn strengths(&mut self, contact: &Contact, laws: &Laws) -> &[Pack] {
         if self.scales {
             let packs = contact.across.packs();
@@ -217,7 +217,7 @@ impl<'a> NodeFormulas<'a> {
         &self.strengths
     }
 
-    /// Put what four nodes know of their motion into the block.
+    /// Writes the motion of four nodes into the block.
     fn see_motion(&mut self, quad: usize, at: usize) {
         let node = &self.nodes[quad];
         if self.laws.use_variable(Variable::Vn) {

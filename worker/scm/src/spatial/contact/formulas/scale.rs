@@ -1,4 +1,4 @@
-//! Formulas that only scale the shear stress, once in a step.
+//! Formulas that only scale the shear stress, evaluated once per step.
 
 use formula::block::BLOCK;
 use formula::{Hook, Variable};
@@ -9,13 +9,13 @@ use super::super::Contact;
 use super::{NodeFormulas, Point};
 
 impl NodeFormulas<'_> {
-    /// Scale the tractions of the strips that touch at a height and were not scaled yet; gives whether that can be done
-    /// wherever a node may come to bear.
+    /// Scales the tractions of the strips that touch at a height and are not scaled yet; returns whether that is possible
+    /// wherever a node may carry load.
     pub(super) fn scale_down_to(&mut self, contact: &mut Contact, hub: f64) -> bool {
         let packs = contact.across.packs();
-        // where lanes are alike, one pack stands for the strip
-        let own = contact.lanes_differ || self.laws.use_variable(Variable::J);
-        let (each, alike) = if own { (packs, 1) } else { (1, packs) };
+        // if lanes are alike, one pack represents the strip
+        let distinct = contact.lanes_differ || self.laws.use_variable(Variable::J);
+        let (each, alike) = if distinct { (packs, 1) } else { (1, packs) };
         let above = self.scaled_down_to;
         self.scaled_down_to = hub.min(above);
         let mut fine = true;
@@ -36,10 +36,10 @@ impl NodeFormulas<'_> {
         fine & self.scale(contact, alike)
     }
 
-    /// Scale the tractions of the current quads, each of which represents a number of identical ones.
+    /// Scales the tractions of the current quads, each of which represents a number of identical ones.
     fn scale(&mut self, contact: &mut Contact, alike: usize) -> bool {
         let points = core::mem::take(&mut self.points);
-        let mut fine = self.apply(Hook::Shear, &points).is_ok(); // as no node is known to bear
+        let mut fine = self.apply(Hook::Shear, &points).is_ok(); // the loaded nodes are not known yet
         let column = self.laws.block.column(Variable::Tau);
         for (i, point) in points.iter().enumerate() {
             let scales = &column[i * PACK..][..PACK];
@@ -57,7 +57,7 @@ impl NodeFormulas<'_> {
 }
 
 impl Contact {
-    /// Vertical shear forces as the base's tractions have them.
+    /// Computes the vertical shear forces from the base's tractions.
     pub(super) fn find_vertical_shears(&mut self) {
         let packs = self.across.packs();
         for (place, quad) in self.quads.iter_mut().enumerate() {

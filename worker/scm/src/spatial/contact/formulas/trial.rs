@@ -4,7 +4,7 @@ use formula::block::BLOCK;
 use formula::{Hook, Variable};
 
 use super::super::super::pack::{
-    LANES, PACK, Pack, greater, lanes_of, lesser, load, most_of, splat, store, sum,
+    LANES, PACK, Pack, greater, greatest_of, lanes_of, lesser, load, splat, store, sum,
 };
 use super::super::Contact;
 use super::super::laws::Laws;
@@ -13,11 +13,11 @@ use super::super::quad::Quad;
 use super::{NodeFormulas, Point, strength};
 use crate::Rejection;
 
-/// The least depth that formulas see `[m]`: that of the base's own powers.
+/// The minimum depth that formulas see `[m]`, equal to that of the base's powers.
 const LEAST_DEPTH: f64 = 1e-12;
 
 impl NodeFormulas<'_> {
-    /// Pressures and strengths, and the vertical force they exert.
+    /// Computes pressures and strengths, and the vertical force that they exert.
     pub(super) fn sum_forces(&mut self, contact: &mut Contact, laws: &Laws) -> Result<f64, Rejection> {
         let mut force = splat(0.0);
         let packs = contact.across.packs();
@@ -38,18 +38,18 @@ impl NodeFormulas<'_> {
         Ok(sum(force))
     }
 
-    /// Put four nodes into the block, with the base's pressure.
+    /// Puts four nodes into the block, with the base's pressure.
     fn see(&mut self, contact: &mut Contact, laws: &Laws, row: usize, pack: usize, lanes: u64) {
         let place = row * contact.across.packs() + pack;
         let at = self.points.len() * PACK;
         self.see_motion(place, at);
         let runs = &contact.patches.runs[contact.patches.of_strip[row - contact.first].clone()];
         let patches = &contact.patches.patches;
-        let of_patch = |of: fn(&Patch) -> f64| match runs {
-            [run] => splat(of(&patches[run.patch])),
-            _ => runs.iter().fold(splat(0.0), |others, run| {
-                let own = splat(of(&patches[run.patch]));
-                run.lanes_of(pack).select(own, others)
+        let of_patch = |quantity: fn(&Patch) -> f64| match runs {
+            [run] => splat(quantity(&patches[run.patch])),
+            _ => runs.iter().fold(splat(0.0), |rest, run| {
+                let value = splat(quantity(&patches[run.patch]));
+                run.lanes_of(pack).select(value, rest)
             }),
         };
         let quad = &mut contact.quads[place];
@@ -90,7 +90,7 @@ impl NodeFormulas<'_> {
         }
     }
 
-    /// Apply the formulas to the nodes of the block, and give the vertical force upon them, lane by lane.
+    /// Applies the formulas to the nodes of the block, and returns their vertical force, lane by lane.
     fn evaluate(&mut self, quads: &mut [Quad], laws: &Laws) -> Result<Pack, Rejection> {
         let zero = splat(0.0);
         let mut points = core::mem::take(&mut self.points);
@@ -120,7 +120,7 @@ impl NodeFormulas<'_> {
         Ok(force)
     }
 
-    /// Make of the strengths of the block's nodes what the formulas do, where a node bears.
+    /// Applies the formulas to the strengths of the block's loaded nodes.
     fn change_strengths(&mut self, quads: &[Quad], points: &[Point]) -> Result<(), Rejection> {
         let sees_pressure = self.laws.use_variable(Variable::P);
         let limits = self.laws.enter(Hook::ShearLimit);
@@ -172,8 +172,8 @@ impl Contact {
         let packs = self.across.packs();
         let farthest = |row: usize, end: fn(&Quad) -> Pack| {
             let quads = &self.quads[row * packs..(row + 1) * packs];
-            most_of(quads.iter().fold(splat(f64::MIN), |most, quad| {
-                greater(most, quad.touching(self.hub).select(end(quad), most))
+            greatest_of(quads.iter().fold(splat(f64::MIN), |greatest, quad| {
+                greater(greatest, quad.touching(self.hub).select(end(quad), greatest))
             }))
         };
         let rear = -farthest(self.first, |quad| -quad.rear_end);

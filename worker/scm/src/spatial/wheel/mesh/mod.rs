@@ -1,8 +1,8 @@
 //! A wheel given as triangles, over the columns of the terrain.
 //!
 //! # Layout
-//! - here: which triangles and columns a step looks at.
-//! - `triangle`: one triangle, and where it stands when the wheel has turned.
+//! - This file: the triangles and columns that a step uses.
+//! - `triangle`: one triangle, and its place after a rotation of the wheel.
 //! - `raster`: the lowest point above each of a grid of samples, with its slopes.
 //! - `strips`: samples in a row that lie on one smooth surface become a strip of the envelope.
 //! - `symmetry`: the number of identical sectors in one turn, and whether left mirrors right.
@@ -21,23 +21,23 @@ use super::envelope::Envelope;
 use super::pose::{Pose, Range};
 use core::f64::consts::{FRAC_PI_2, TAU};
 
-/// Half the angle about the axle within which a triangle must lie to be found by angle `[rad]`; others are looked at always.
+/// Half the angle about the axle within which a triangle must lie to be found by angle `[rad]`; wider ones are always examined.
 const WIDEST: f64 = 0.2;
-/// Sectors of a turn for which the distance of the surface from the axle is kept.
+/// Number of sectors of a turn with a stored distance of the surface from the axle.
 const SECTORS: usize = 240;
 /// Longest distance from sample to sample along travel `[m]`: half a thin grouser.
 const COARSEST: f64 = 1e-3;
-/// Columns beyond the deepest that may touch, whose surface is looked for: the contact's ends lie between.
+/// Number of columns searched beyond the deepest that may touch, because the contact's ends lie between.
 const COLUMNS_BEYOND: f64 = 3.0;
 
 /// A surface of triangles about the axle.
 #[derive(Debug, Clone)]
 pub(crate) struct Mesh {
-    /// By angle about the axle.
+    /// The triangles, sorted by angle about the axle.
     triangles: Vec<Triangle>,
-    /// Those that span too great an angle.
+    /// The triangles that span too great an angle.
     wide: Vec<Triangle>,
-    /// Greatest half angle that one of `triangles` spans `[rad]`.
+    /// Greatest half angle of one of `triangles` `[rad]`.
     half_span: f64,
     /// Greatest distance from the axle in each sector `[m]`; see [`sectors`].
     sectors: Vec<f64>,
@@ -53,7 +53,7 @@ pub(crate) struct Mesh {
 }
 
 impl Mesh {
-    /// A checked surface. Triangles that never look down, such as those of a disc, are left out.
+    /// Creates a mesh from a checked surface. Triangles that never face down, such as those of a disc, are left out.
     pub(crate) fn new(surface: &SurfaceMesh, repeats_per_turn: Option<u32>, normals: Normals) -> Self {
         let corner = |index: u32| surface.vertices_m[index as usize];
         let all = surface.triangles.iter();
@@ -63,9 +63,11 @@ impl Mesh {
         let aside = surface.triangles.iter().flatten().map(|&i| corner(i)[1].abs());
         let sectors = sectors(&all);
         let (wide, mut triangles): (Vec<_>, Vec<_>) = all.into_iter().partition(|t| t.half_span > WIDEST);
-        triangles.sort_by(|a, b| a.angle.total_cmp(&b.angle)); // stable: the order is that of the surface
+        triangles.sort_by(|a, b| a.angle.total_cmp(&b.angle)); // the sort is stable, so equal angles keep the order of the surface
         Self {
-            half_span: triangles.iter().fold(0.0_f64, |most, t| most.max(t.half_span)),
+            half_span: triangles
+                .iter()
+                .fold(0.0_f64, |largest, t| largest.max(t.half_span)),
             triangles,
             wide,
             sectors,
@@ -95,18 +97,17 @@ impl Mesh {
         self.repeats
     }
 
-    /// Whether every vertex has its mirror image at −y. The triangulation may differ: left and right are then alike only
-    /// as far as the facets are fine, and the left half stands for both.
+    /// Returns whether every vertex has its mirror image at −y. The triangulation may differ: left and right are then alike
+    /// only to the fineness of the facets, and the left half represents both.
     pub(crate) fn is_symmetric(&self) -> bool {
         self.symmetric
     }
 
-    /// Fill the envelope over the columns of `range`, widened to hold whatever may touch soil.
+    /// Fills the envelope over the columns of `range`, widened to hold every part that may touch soil.
     ///
-    /// Each lane is sampled in the middle of what the wheel covers of it, each column at an odd number of places no
-    /// farther than 1 mm apart, the middle one at the node. At a sample the surface is exact: the plane of the lowest
-    /// triangle. A part of the wheel thinner than the distance of samples covers each with the probability that
-    /// makes its mean area right.
+    /// Each lane is sampled in the middle of its covered part, each column at an odd number of places no farther than 1 mm
+    /// apart, the middle one at the node. At a sample the surface is exact: the plane of the lowest triangle. A part of the
+    /// wheel thinner than the distance of samples is hit with the probability that makes its mean area right.
     pub(crate) fn lay(
         &mut self,
         terrain: &Terrain,
@@ -135,7 +136,7 @@ impl Mesh {
         );
     }
 
-    /// Turn the triangles that may be lowest somewhere over the columns of a range, with a rise of more than `least`.
+    /// Turns the triangles that may be lowest somewhere over the columns of a range, with a rise of more than `least`.
     fn place(&mut self, terrain: &Terrain, pose: Pose, range: Range, least: f64) {
         self.placed.clear();
         if least >= self.reach {
@@ -143,7 +144,7 @@ impl Mesh {
         }
         let rear = terrain.x(range.start) - pose.x - terrain.dx;
         let front = terrain.x(range.end) - pose.x;
-        // of all that is less than `rear` behind the hub, what is highest lies at the greatest angle; the same in front
+        // among points less than `rear` behind the hub, the highest lies at the greatest angle; likewise in front
         let widest = libm::acos(least / self.reach).min(FRAC_PI_2);
         let from = libm::atan2(rear, if rear < 0.0 { least } else { self.reach }).max(-widest);
         let to = libm::atan2(front, if front > 0.0 { least } else { self.reach }).min(widest);
@@ -159,10 +160,10 @@ impl Mesh {
         let placed = near.chain(&self.wide).filter(modelled);
         let placed = placed.filter_map(|t| t.turn(sin, cos));
         self.placed
-            .extend(placed.filter(|p| p.most_rise > least && p.rear() <= front && p.front() >= rear));
+            .extend(placed.filter(|p| p.greatest_rise > least && p.rear() <= front && p.front() >= rear));
     }
 
-    /// The columns of `range`, those where some part of the wheel may touch the soil, and one more on either side.
+    /// Widens `range` by the columns where some part of the wheel may touch the soil, and by one more on either side.
     fn widen(&self, terrain: &Terrain, pose: Pose, range: Range, least_rise: f64, across: &Across) -> Range {
         let mut widened = range;
         let least = least_rise.max(0.0);
@@ -201,7 +202,8 @@ impl Mesh {
         widened
     }
 
-    /// The rearmost place of a point at an angle or in front of it, a rise of `least` and `far` from the axle at most `[m]`.
+    /// The rearmost possible place `[m]` of a point at an angle or in front of it, with a rise of at least `least` and at
+    /// most `far` from the axle.
     fn least_ahead(&self, angle: f64, least: f64, far: f64) -> f64 {
         let (sin, cos) = (libm::sin(angle), libm::cos(angle));
         if sin < 0.0 {

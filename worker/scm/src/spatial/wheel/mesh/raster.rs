@@ -9,7 +9,7 @@ use super::triangle::Placed;
 
 /// Part of a sample or lane by which rounding may misplace one.
 const ROUNDING: f64 = 1e-6;
-/// Difference of rises `[m]` or squared slopes that is only rounding.
+/// Difference of rises `[m]` or squared slopes that rounding can cause.
 const SAME: f64 = 1e-12;
 /// Distance at which a lane lies on an edge, so that both triangles count `[m]`.
 const ON_EDGE: f64 = 1e-14;
@@ -17,27 +17,27 @@ const ON_EDGE: f64 = 1e-14;
 /// A z-buffer: samples along travel, at equal distances and with the same number in every column, times lanes.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Raster {
-    /// Samples of a column.
+    /// Number of samples of a column.
     pub(super) per_column: usize,
     pub(super) samples: usize,
-    /// Lanes under the wheel, and with those that fill up the last pack.
+    /// Number of lanes under the wheel, and with padding of the last pack.
     pub(super) lanes: usize,
     pub(super) stride: usize,
     /// Place of the first sample ahead of the hub, and distance from each to the next `[m]`.
     first: f64,
     pub(super) spacing: f64,
-    /// y of each lane from the wheel's middle plane, in the middle of what it covers of the lane `[m]`.
+    /// y of each lane from the wheel's middle plane, in the middle of its covered part `[m]`.
     middles: Vec<f64>,
-    /// Lanes per length across `[1/m]`.
+    /// Number of lanes per length across `[1/m]`.
     per_dy: f64,
-    /// Of each sample and lane: the greatest rise `[m]`, or [`NOWHERE`], and the slopes dh/dx, dh/dy there.
+    /// For each sample and lane, the greatest rise `[m]`, or [`NOWHERE`], and the slopes dh/dx, dh/dy there.
     pub(super) rise: Vec<f64>,
     pub(super) slope_x: Vec<f64>,
     pub(super) slope_y: Vec<f64>,
 }
 
 impl Raster {
-    /// An empty buffer over a range of columns.
+    /// Clears the buffer for a range of columns.
     pub(super) fn clear(
         &mut self,
         terrain: &Terrain,
@@ -79,9 +79,9 @@ impl Raster {
         self.first + sample as f64 * self.spacing
     }
 
-    /// Keep a triangle where it is lower than what was drawn before.
+    /// Keeps a triangle where it is lower than earlier ones.
     ///
-    /// Edges belong to both triangles that share them, and both find the same points on them: there are no holes.
+    /// Edges belong to both triangles that share them, and both find the same points on them, so there are no holes.
     pub(super) fn draw(&mut self, placed: &Placed) {
         let [a, b, c] = placed.corners;
         let (long, rear, front) = (Edge::new(a, c), Edge::new(a, b), Edge::new(b, c));
@@ -100,7 +100,7 @@ impl Raster {
         }
     }
 
-    /// Keep a triangle over the lanes from y = `low` to `high` of a sample.
+    /// Keeps a triangle over the lanes from y = `low` to `high` of a sample.
     #[inline]
     fn draw_row(&mut self, placed: &Placed, sample: usize, x: f64, low: f64, high: f64) {
         let [a, ..] = placed.corners;
@@ -109,7 +109,7 @@ impl Raster {
         };
         let [per_x, per_y] = placed.descent;
         let row = sample * self.stride;
-        // the outermost lanes may be narrower than the others, so this may be a lane too early
+        // the outermost lanes may be narrower, so this may be a lane too early
         let guess = ((low - bottom) * self.per_dy - ROUNDING).max(0.0) as usize;
         for lane in guess..self.lanes {
             let y = self.middles[lane];
@@ -121,7 +121,7 @@ impl Raster {
             }
             let rise = a[2] + per_x * (x - a[0]) + per_y * (y - a[1]);
             // rounding on a steep plane must not leave the triangle
-            let rise = rise.max(placed.least_rise).min(placed.most_rise);
+            let rise = rise.max(placed.least_rise).min(placed.greatest_rise);
             let place = row + lane;
             let lower = rise - self.rise[place];
             if lower > SAME {
@@ -135,7 +135,7 @@ impl Raster {
 }
 
 impl Raster {
-    /// On an edge, the slopes of the triangle that is less steep; of two alike, the mean. A mirror image does the same.
+    /// On an edge, keeps the slopes of the less steep triangle; for equal slopes, the mean. A mirror image gives the same.
     #[cold]
     fn share(&mut self, place: usize, slopes: [f64; 2]) {
         let (x, y) = (self.slope_x[place], self.slope_y[place]);

@@ -1,4 +1,4 @@
-//! Strips made of the samples of a mesh: as few as its steps and edges allow.
+//! Strips from the samples of a mesh: as few as its steps and edges allow.
 
 use super::super::super::pack::{PACK, Pack};
 use super::super::super::terrain::Terrain;
@@ -9,24 +9,24 @@ use super::raster::Raster;
 /// Greatest change of the slope dh/dx within a smooth surface; half of it is the steepest step that counts as part of one.
 const KINK: f64 = 0.5;
 
-/// Difference of rises `[m]` or slopes that is only rounding.
+/// Difference of rises `[m]` or slopes that rounding can cause.
 const ROUNDING: f64 = 1e-12;
 
-/// Memory that is kept from step to step.
+/// Memory that is reused from step to step.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Buffers {
-    /// The samples at which the surface of each strip is taken.
+    /// The samples that give the surface of each strip.
     sources: Vec<[usize; 2]>,
-    /// Whether the surface breaks off between a sample and the one before.
+    /// True if the surface breaks off between a sample and the preceding one.
     breaks: Vec<bool>,
 }
 
-/// Turn the samples of a range of columns into strips and facets.
+/// Turns the samples of a range of columns into strips and facets.
 ///
-/// Neighbouring samples of a column that lie on one smooth surface in every lane are one strip. A surface that also
-/// holds the column's node is taken at the node, in all its strips, because it shaped the soil there; any other in
-/// its strip's middle. A column under one surface that goes on into both neighbours is a smooth strip, between
-/// which the ends of the contact may be interpolated.
+/// Neighbouring samples of a column that lie on one smooth surface in every lane are one strip. A surface that also holds
+/// the column's node is evaluated at the node, in all its strips, because it shaped the soil there; any other in its strip's
+/// middle. A column under one surface that continues into both neighbours is a smooth strip, between which the ends of the
+/// contact may be interpolated.
 pub(super) fn fill(
     raster: &Raster,
     terrain: &Terrain,
@@ -56,9 +56,9 @@ pub(super) fn fill(
             let border = |sample: usize| rear + (sample - first) as f64 * raster.spacing;
             let whole = begin == first && stop == end;
             let holds_node = begin <= middle && middle < stop;
-            let own = [(begin + stop - 1) / 2, (begin + stop) / 2];
-            let at_node = holds_node || goes_on(raster, own[0].min(middle), own[0].max(middle));
-            let source = if at_node { [middle; 2] } else { own };
+            let central = [(begin + stop - 1) / 2, (begin + stop) / 2];
+            let at_node = holds_node || goes_on(raster, central[0].min(middle), central[0].max(middle));
+            let source = if at_node { [middle; 2] } else { central };
             let (back, front) = (border(begin), border(stop));
             let ahead = if at_node { node } else { 0.5 * (back + front) };
             let (rise, slope) = deepest(raster, source);
@@ -102,7 +102,7 @@ pub(super) fn fill(
     }
 }
 
-/// Whether two samples lie on one smooth surface in every lane, or under none.
+/// Returns whether two samples lie on one smooth surface in every lane, or under none.
 fn goes_on(raster: &Raster, from: usize, to: usize) -> bool {
     let distance = (to - from) as f64 * raster.spacing;
     let step = 0.5 * KINK * distance;
@@ -131,13 +131,13 @@ fn deepest(raster: &Raster, source: [usize; 2]) -> (f64, f64) {
     best
 }
 
-/// Whether all lanes of a sample have the same value, but for rounding.
+/// Returns whether all lanes of a sample have the same value, except for rounding.
 fn alike(raster: &Raster, values: &[f64], sample: usize) -> bool {
     let lanes = &values[sample * raster.stride..][..raster.lanes];
     lanes.iter().all(|value| (value - lanes[0]).abs() <= ROUNDING)
 }
 
-/// Whether a sample has no slope across in any lane, but for rounding.
+/// Returns whether a sample has no lateral slope in any lane, except for rounding.
 fn flat(raster: &Raster, sample: usize) -> bool {
     let lanes = &raster.slope_y[sample * raster.stride..][..raster.lanes];
     lanes.iter().all(|slope| slope.abs() <= ROUNDING)
@@ -160,7 +160,7 @@ fn facet(raster: &Raster, source: [usize; 2], lane: usize) -> Facet {
     }
 }
 
-/// Slope of a surface whose normal points to the axle; 0 at the axle's height and where there is no surface.
+/// Slope of a surface whose normal points to the axle; 0 at the axle's height and beside the wheel.
 fn radial_slope(ahead: f64, rise: f64) -> f64 {
     if rise > 0.0 { ahead / rise } else { 0.0 }
 }

@@ -2,16 +2,16 @@
 
 use core::f64::consts::TAU;
 
-/// Distance at which two points are taken for one, relative to the wheel's reach: coordinates in files are rounded.
+/// Distance at which two points count as one, relative to the wheel's reach, because coordinates in files are rounded.
 const TOLERANCE: f64 = 1e-5;
 
-/// Into how many equal sectors the points fall, ≥ 1: the greatest number k such that a turn by 2π/k brings every
-/// point onto another. Triangles between them are not compared.
+/// Returns the number of equal sectors of the points, ≥ 1: the greatest number k such that a turn by 2π/k maps every point
+/// onto a point. Triangles between them are not compared.
 pub(super) fn repeats_per_turn(points: &[[f64; 3]], reach: f64) -> u32 {
     let tolerance = TOLERANCE * reach;
     let polar = points.iter().map(|&[x, y, z]| {
         let (radius, angle) = (libm::hypot(x, z), libm::atan2(x, -z));
-        // what lies at the angle 0 must not fall apart into 0 and 2π
+        // points at the angle 0 must not be split into 0 and 2π
         let whole = if angle < -TOLERANCE { TAU } else { 0.0 };
         [radius, y, angle + whole]
     });
@@ -25,13 +25,13 @@ pub(super) fn repeats_per_turn(points: &[[f64; 3]], reach: f64) -> u32 {
         return 1;
     };
     let repeats = |sectors: usize| angles.iter().all(|ring| turns_onto_itself(ring, sectors));
-    let most = (1..=fewest)
+    let greatest = (1..=fewest)
         .rev()
         .find(|&k| fewest.is_multiple_of(k) && repeats(k));
-    most.map_or(1, |k| k as u32)
+    greatest.map_or(1, |k| k as u32)
 }
 
-/// Whether every point has its mirror image at −y. Triangles between them are not compared.
+/// Returns whether every point has its mirror image at −y. Triangles between them are not compared.
 pub(super) fn mirrors(points: &[[f64; 3]], reach: f64) -> bool {
     let tolerance = TOLERANCE * reach;
     let mut points: Vec<[f64; 3]> = points.iter().map(|&[x, y, z]| [x, z, y]).collect();
@@ -59,14 +59,14 @@ fn grouped(points: &mut [[f64; 3]], tolerance: f64) -> Vec<&[[f64; 3]]> {
     groups
 }
 
-/// The third coordinates, without those that repeat the one before.
+/// The third coordinates without duplicates.
 fn without_doubles(group: &[[f64; 3]], tolerance: f64) -> Vec<f64> {
     let mut thirds: Vec<f64> = group.iter().map(|p| p[2]).collect();
     thirds.dedup_by(|b, a| *b - *a <= tolerance);
     thirds
 }
 
-/// Whether sorted angles stay what they are when turned by one of so many equal sectors.
+/// Returns whether sorted angles are unchanged by a turn of 2π / `sectors`.
 fn turns_onto_itself(angles: &[f64], sectors: usize) -> bool {
     if !angles.len().is_multiple_of(sectors) {
         return false;

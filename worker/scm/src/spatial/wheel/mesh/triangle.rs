@@ -1,13 +1,13 @@
-//! A triangle of the wheel's surface, and its place when the wheel has turned.
+//! A triangle of the wheel's surface, and its place after a rotation of the wheel.
 
 use core::f64::consts::{PI, TAU};
 
-/// Part of a unit normal below which a triangle stands vertical, or a surface has no normal.
+/// Component of a unit normal below which a triangle counts as vertical, or a surface has no normal.
 const VERTICAL: f64 = 1e-9;
 /// Greatest slope with which a triangle presses; see `Normals::Surface`.
 const STEEPEST: f64 = 10.0;
 
-/// A triangle that looks down at some angle of rotation.
+/// A triangle that faces down at some angle of rotation.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Triangle {
     /// x, y, z with the wheel at rest `[m]`.
@@ -33,11 +33,11 @@ pub(super) struct Placed {
     /// Slopes dh/dx and dh/dy with which it presses.
     pub(super) slopes: [f64; 2],
     pub(super) least_rise: f64,
-    pub(super) most_rise: f64,
+    pub(super) greatest_rise: f64,
 }
 
 impl Triangle {
-    /// None if it has no area, or is vertical whatever the rotation.
+    /// Returns `None` if the triangle has no area, or is vertical at every rotation.
     pub(super) fn new(corners: [[f64; 3]; 3]) -> Option<Self> {
         let [a, b, c] = corners;
         let side = |from: [f64; 3], to: [f64; 3]| [to[0] - from[0], to[1] - from[1], to[2] - from[2]];
@@ -73,7 +73,7 @@ impl Triangle {
         })
     }
 
-    /// Where it stands when the wheel has turned forward by an angle; none where it stands vertical.
+    /// Returns its place after a forward turn of the wheel by an angle; `None` if it is vertical.
     #[inline]
     pub(super) fn turn(&self, sin: f64, cos: f64) -> Option<Placed> {
         let turn = |[x, y, z]: [f64; 3]| [x * cos + z * sin, y, x * sin - z * cos];
@@ -103,7 +103,7 @@ impl Triangle {
             descent: [-x, -y],
             slopes: [share * x, share * y],
             least_rise: a[2].min(b[2]).min(c[2]),
-            most_rise: a[2].max(b[2]).max(c[2]),
+            greatest_rise: a[2].max(b[2]).max(c[2]),
         })
     }
 }

@@ -1,4 +1,4 @@
-//! The screen of a rough model on its companion, which tells the candidates that are worth evaluations of the model.
+//! The screen of a rough model by its low-fidelity model, which selects the candidates that are worth evaluations of the model.
 
 use crate::effect_search::ranking::EvidenceMethod;
 use crate::effect_search::screen::{self, Evaluated, Screened};
@@ -7,31 +7,32 @@ use crate::laplace::batch::Asked;
 use crate::laplace::correction::Correction;
 
 impl EffectSearch {
-    /// Screens what the companion has a form of on the companion, and the rest on the model.
-    pub(super) fn begin_screen(&mut self) {
+    /// Screens the candidates that the low-fidelity model has on that model, and the others on the model.
+    pub(super) fn screen_low_fidelity(&mut self) {
         let Some(base) = &self.base else { return };
         let base = &base.fit.point.position;
-        let of_companion = |candidate: Option<usize>, position: Vec<f64>| Asked {
+        let low_fidelity = |candidate: Option<usize>, position: Vec<f64>| Asked {
             candidate,
             position,
-            is_companion: true,
+            is_low_fidelity: true,
         };
-        let mut asked = vec![of_companion(None, base.clone())];
+        let mut asked = vec![low_fidelity(None, base.clone())];
         for (k, state) in self.candidates.iter().enumerate() {
-            if state.frame.has_companion {
-                let at = screen::positions(&state.frame, base, self.depth, None, 0);
-                asked.extend(at.into_iter().map(|position| of_companion(Some(k), position)));
+            if state.frame.has_low_fidelity {
+                let at = screen::positions(&state.frame, base, &self.depth.screen, None, 0);
+                asked.extend(at.into_iter().map(|position| low_fidelity(Some(k), position)));
             }
         }
         if asked.len() == 1 {
             return self.screen(0, (0..self.candidates.len()).collect());
         }
         self.ask(asked);
-        self.phase = Phase::CompanionScreen;
+        self.phase = Phase::LowFidelityScreen;
     }
 
-    /// The companion is a control variate: what a candidate changes of its predictions is added to those of the model's base.
-    pub(super) fn after_companion_screen(&mut self, answers: Vec<Option<Vec<f64>>>) {
+    /// Uses the low-fidelity model as a control variate: the changes that a candidate makes to its predictions are added to the
+    /// predictions of the model's base.
+    pub(super) fn take_low_fidelity_screen(&mut self, answers: Vec<Option<Vec<f64>>>) {
         let Some(base) = &self.base else { return };
         let mut pairs = std::mem::take(&mut self.asked).into_iter().zip(answers);
         let without = pairs.next().and_then(|(_, values)| values);
@@ -52,82 +53,88 @@ impl EffectSearch {
                 continue;
             }
             let screened = screen::screened(&state.frame, base, &self.likelihood, &evaluated);
-            // What the companion does not show at all it cannot screen.
-            state.by_companion = screened.filter(|own| own.change.iter().any(|change| *change != 0.0));
-            if let Some(screened) = &state.by_companion {
+            // A candidate that does not change the low-fidelity predictions must be screened on the model.
+            state.low_fidelity =
+                screened.filter(|screened| screened.change.iter().any(|change| *change != 0.0));
+            if let Some(screened) = &state.low_fidelity {
                 state.estimate = Some(EvidenceEstimate::of_screen(screened));
                 state.screened = Some(screened.as_of_model());
             }
         }
-        let wanted = self.worth_evaluations();
-        self.screen(0, wanted);
+        let candidates = self.worth_evaluations();
+        self.screen(0, candidates);
     }
 
-    /// What the companion could not screen, and the candidates with one strength that it lets near the best. A fit of several strengths
-    /// begins at the base and needs the derivatives alone.
+    /// Candidates that the low-fidelity model could not screen, and those with one strength that it ranks near the best. A
+    /// candidate with several strengths begins its fit at the base and needs derivatives alone.
     fn worth_evaluations(&self) -> Vec<usize> {
         let promise = |k: &usize| {
             self.candidates[*k]
-                .by_companion
+                .low_fidelity
                 .as_ref()
-                .map(|own| own.log_bayes_factor)
+                .map(|screened| screened.log_bayes_factor)
         };
         let all = || 0..self.candidates.len();
         let best = all().filter_map(|k| promise(&k)).fold(0.0, f64::max);
-        let near = self.best(self.depth.most_extended);
+        let near = self.best(self.depth.extension.max_count);
         let is_worth = |k: &usize| {
-            let Some(own) = promise(k) else { return true };
-            let is_within_reach = self.depth.reach.is_some_and(|share| own > share * best);
+            let Some(factor) = promise(k) else { return true };
+            let is_within_reach = self
+                .depth
+                .extension
+                .reach
+                .is_some_and(|share| factor > share * best);
             self.awaits_model(*k) && (near.contains(k) || is_within_reach)
         };
         all().filter(is_worth).collect()
     }
 
-    /// The coordinate of the shapes that the companion found best; `None` where it was not asked, or there are none, or the model
-    /// refused that shape.
+    /// The coordinate of the shapes that fits best on the low-fidelity model; `None` if it was not evaluated, has no shape, or the
+    /// model refused that shape.
     pub(super) fn best_shape(&self, candidate: usize) -> Option<f64> {
         let state = &self.candidates[candidate];
-        let position = &state.by_companion.as_ref()?.point.position;
-        let own = self.base_frame.dimension()..position.len();
-        let mut shapes = own.filter(|k| !state.frame.is_strength(*k));
+        let position = &state.low_fidelity.as_ref()?.point.position;
+        let added = self.base_frame.dimension()..position.len();
+        let mut shapes = added.filter(|k| !state.frame.is_strength(*k));
         shapes.next().map(|k| position[k])
     }
 
-    /// Whether a candidate has a point of its own that the model has not evaluated.
+    /// Whether a candidate's screen on the low-fidelity model must be repeated on the model.
     pub(super) fn awaits_model(&self, k: usize) -> bool {
         let state = &self.candidates[k];
-        let is_of_companion = state.by_companion.is_some() && !state.is_screened_on_model;
-        is_of_companion && state.frame.strength().is_some()
+        let awaits_screen = state.low_fidelity.is_some() && !state.is_screened_on_model;
+        awaits_screen && state.frame.strength().is_some()
     }
 }
 
 impl CandidateState {
-    /// Takes the result of the model's screen, with what the companion's says of the shapes.
+    /// Takes the result of the screen on the model. Derivatives along shapes, and the mean over them, come from the low-fidelity screen.
     pub(super) fn take_screened(&mut self, screened: Option<Screened>, base_dimension: usize) {
         self.is_screened_on_model = true;
         self.screened = screened;
         if self.screened.is_none() {
-            // Another shape may be possible.
-            self.by_companion = None;
+            // The screen may still find another shape.
+            self.low_fidelity = None;
         }
-        if let (Some(screened), Some(by_companion)) = (&mut self.screened, &self.by_companion) {
+        if let (Some(screened), Some(low_fidelity)) = (&mut self.screened, &self.low_fidelity) {
             for k in base_dimension..self.frame.dimension() {
                 screened.corrections[k] = Some(Correction::none(screened.change.len()));
                 if !self.frame.is_strength(k) {
-                    screened.columns[k].clone_from(&by_companion.columns[k]);
-                } else if screened.longest_step.to_bits() == by_companion.longest_step.to_bits() {
-                    let own = Correction::between(&screened.change, &by_companion.change, true);
-                    screened.corrections[k] = Some(own);
+                    screened.columns[k].clone_from(&low_fidelity.columns[k]);
+                } else if screened.longest_step.to_bits() == low_fidelity.longest_step.to_bits() {
+                    let correction = Correction::between(&screened.change, &low_fidelity.change, true);
+                    screened.corrections[k] = Some(correction);
                 }
             }
-            screened.log_bayes_factor += by_companion.log_bayes_factor - by_companion.of_best_shape;
+            screened.log_bayes_factor +=
+                low_fidelity.log_bayes_factor - low_fidelity.best_shape_log_bayes_factor;
         }
         self.estimate = self.screened.as_ref().map(EvidenceEstimate::of_screen);
     }
 }
 
 impl Screened {
-    /// As if the model changed as its companion does.
+    /// This result with corrections of zero, as if the model changed as the low-fidelity model does.
     fn as_of_model(&self) -> Self {
         let none = |column: &Vec<f64>| Some(Correction::none(column.len()));
         Self {

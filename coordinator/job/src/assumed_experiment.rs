@@ -30,7 +30,7 @@ pub enum SiteProperty {
 pub struct UnsaidProperty {
     /// The property.
     pub property: SiteProperty,
-    /// What is not stated, and the value that stands for it.
+    /// A sentence that says what is not stated, and which value stands for it.
     pub why: String,
     /// The line that states it.
     pub needs: String,
@@ -40,8 +40,8 @@ pub struct UnsaidProperty {
 #[derive(Debug, Clone)]
 pub struct AssumedExperiment {
     /// The experiment with those values.
-    pub files: FileSet,
-    /// What they stand for.
+    pub experiment: Experiment,
+    /// The properties that they stand for.
     pub unsaid: Vec<UnsaidProperty>,
 }
 
@@ -52,20 +52,25 @@ impl AssumedExperiment {
     /// declared: for it, they are never assumed.
     ///
     /// # Arguments
+    /// - `files`, `experiment`: the experiment as texts, which say what it states, and as a value.
     /// - `is_smooth`: whether the model rolls smooth rims, whatever grousers are declared.
     ///
     /// # Errors
     /// [`FileError`] where the files are no experiment.
-    pub fn new(name: &str, experiment: &FileSet, is_smooth: bool) -> Result<Self, FileError> {
-        let parsed = Experiment::parse(name, experiment)?;
-        let mut document: DocumentMut = experiment
+    pub fn new(
+        name: &str,
+        files: &FileSet,
+        experiment: &Experiment,
+        is_smooth: bool,
+    ) -> Result<Self, FileError> {
+        let mut document: DocumentMut = files
             .toml
             .parse()
             .map_err(|e: toml_edit::TomlError| FileError::whole(name, e.to_string()))?;
         let mut unsaid = Vec::new();
-        for (soil, properties) in &parsed.soils {
+        for (soil, properties) in &experiment.soils {
             if properties.density_kg_m3.is_none()
-                && parsed.runs.iter().any(|run| run.soil == *soil)
+                && experiment.runs.iter().any(|run| run.soil == *soil)
                 && let Some(table) = table(document.get_mut("soil"), soil)
             {
                 table.insert("density_kg_m3", value(DENSITY_KG_M3));
@@ -78,7 +83,7 @@ impl AssumedExperiment {
                 });
             }
         }
-        for (wheel, geometry) in &parsed.wheels {
+        for (wheel, geometry) in &experiment.wheels {
             if !is_smooth || geometry.mesh.is_some() {
                 continue;
             }
@@ -105,7 +110,7 @@ impl AssumedExperiment {
                 });
             }
         }
-        if parsed.rig.bin_length_m.is_none()
+        if experiment.rig.bin_length_m.is_none()
             && let Some(rig) = document
                 .entry("rig")
                 .or_insert(Item::Table(Table::new()))
@@ -118,11 +123,12 @@ impl AssumedExperiment {
                 needs: "bin_length_m under [rig]".into(),
             });
         }
+        let files = FileSet {
+            toml: document.to_string(),
+            files: files.files.clone(),
+        };
         Ok(Self {
-            files: FileSet {
-                toml: document.to_string(),
-                files: experiment.files.clone(),
-            },
+            experiment: Experiment::parse(name, &files)?,
             unsaid,
         })
     }
@@ -147,9 +153,9 @@ mod tests {
             toml: EXPERIMENT.into(),
             files: [("runs.csv".to_owned(), RUNS.to_owned())].into(),
         };
-        let assumed = AssumedExperiment::new("experiment.toml", &files, is_smooth).unwrap();
-        let parsed = Experiment::parse("experiment.toml", &assumed.files).unwrap();
-        (parsed, assumed.unsaid)
+        let stated = Experiment::parse("experiment.toml", &files).unwrap();
+        let assumed = AssumedExperiment::new("experiment.toml", &files, &stated, is_smooth).unwrap();
+        (assumed.experiment, assumed.unsaid)
     }
 
     #[test]

@@ -37,7 +37,7 @@ impl Spec {
         variant.effects.iter().map(|effect| shown(&effect.name)).collect()
     }
 
-    /// What tests and runs have in common, a sentence each.
+    /// The errors that tests and runs have in common, a sentence each.
     pub fn scatter_words(&self) -> Vec<String> {
         let sd = |scatter: Scatter| match self.experiment.noise.scatter(scatter) {
             ScatterSd::Known(sd) => format!("{sd}"),

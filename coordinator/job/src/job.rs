@@ -1,47 +1,56 @@
-//! The tables of `job.toml`.
+//! A job as users write it: the tables of `job.toml` as values.
 
 use std::collections::BTreeMap;
 
 use serde::Deserialize;
-use shared::file::{FileError, parse_toml, unknown_word};
-use shared::model::ModelSettings;
+use serde::de::IgnoredAny;
+use shared::file::{FileError, FileSet, TomlFile, unknown_word};
+use shared::model::{ModelError, ModelSettings};
 
+use crate::named_files::NamedFiles;
 use crate::plausibility::question::Question;
 use crate::table::algorithm_settings::AlgorithmSettings;
+use crate::table::candidate_priors;
 use crate::table::discovery_settings::{Apply, DiscoverySettings, RawDiscovery};
 use crate::table::likelihood_settings::{LikelihoodSettings, RawLikelihood};
 use crate::table::model_entry::{ModelEntry, model_entries};
 use crate::table::posterior_prior::PosteriorPrior;
 use crate::table::prior_entry::PriorEntry;
-use crate::table::sampler_table::RawSampler;
+use crate::table::sampler::SamplerTable;
 
-/// A job as written, before it meets its experiment.
-#[derive(Debug)]
-pub struct JobFile {
+/// A job as users write it, before it meets its experiment. What follows from a job is made of this value ([`Job::with`]).
+#[derive(Debug, Clone)]
+pub struct Job {
     /// Name of the experiment's file, relative to the job's; absent where a service holds the experiment.
     pub experiment: Option<String>,
     /// Names of the questions that are answered: what looks odd, and is meant.
     pub accepted: Vec<String>,
     /// Which forward model, with its fixed parameters; of several that are compared, this one.
     pub model: ModelSettings,
+    /// The table that the model was read from.
+    pub(crate) table: toml::Table,
     /// How many models the job compares; 1 where it has a table `[model]`.
     pub models: usize,
     /// Line of its `[[models]]`; `None` of a table `[model]`.
     pub line: Option<usize>,
     /// The priors in the order of the file.
     pub priors: Vec<PriorEntry>,
-    /// The posterior that is the prior of what the entries leave unsaid.
+    /// The posterior of another calibration, which is the prior of parameters that no entry states.
     pub posterior: Option<PosteriorPrior>,
     /// The algorithm with its settings.
     pub algorithm: AlgorithmSettings,
     /// The fits and searches that stand beside the sample in its study.
     pub point_estimates: Vec<AlgorithmSettings>,
-    /// What an independent test says of parameters, for the figures alone: name and value.
+    /// Values that an independent test gives for parameters, by name. The figures alone show them.
     pub reference: BTreeMap<String, f64>,
     /// How measurements scatter around the model.
     pub likelihood: LikelihoodSettings,
     /// Whether its study looks for missing effects.
     pub discovery: DiscoverySettings,
+    /// Priors of candidates of a search, by the full names of their parameters: `[discovery.priors]`.
+    pub candidate_priors: BTreeMap<String, toml::Value>,
+    /// The texts of the files that it names; empty until [`Job::beside`] gives them.
+    pub files: NamedFiles,
     /// Effect files of the other models.
     also_named: Vec<String>,
 }
@@ -50,9 +59,9 @@ pub struct JobFile {
 #[derive(Debug)]
 pub struct JobModels {
     /// The first model, or the only one.
-    pub first: JobFile,
+    pub first: Job,
     /// The others, in the order of the file.
-    pub others: Vec<JobFile>,
+    pub others: Vec<Job>,
 }
 
 #[derive(Deserialize)]
@@ -66,8 +75,9 @@ struct RawJob {
     models: Vec<toml::Table>,
     #[serde(default)]
     priors: BTreeMap<String, toml::Spanned<toml::Value>>,
-    #[serde(default)]
-    sampler: RawSampler,
+    // It is read by the struct of its algorithm.
+    #[serde(default, rename = "sampler")]
+    _sampler: IgnoredAny,
     #[serde(default)]
     discovery: RawDiscovery,
     #[serde(default)]
@@ -96,74 +106,102 @@ impl JobModels {
     }
 }
 
-impl JobFile {
-    /// Parses a job file; `name` is how messages call it.
+impl Job {
+    /// Parses a job; `name` is how messages call it.
     ///
     /// # Errors
     /// [`FileError`] with the line, or with the table and key.
-    pub fn parse(name: &str, toml: &str) -> Result<JobFile, FileError> {
-        Ok(JobFile::parse_models(name, toml)?.first)
+    pub fn parse(name: &str, toml: &str) -> Result<Job, FileError> {
+        Ok(Job::parse_models(name, toml)?.first)
     }
 
-    /// The same with the other models that it compares.
+    /// Parses a job together with the files that it names.
     ///
     /// # Errors
-    /// As those of [`JobFile::parse`]; of a model with its line.
+    /// As those of [`Job::parse`].
+    pub fn read(name: &str, files: &FileSet) -> Result<Job, FileError> {
+        Ok(Job::parse(name, &files.toml)?.beside(NamedFiles::from(&files.files)))
+    }
+
+    /// Parses a job with every model that it compares.
+    ///
+    /// # Errors
+    /// As those of [`Job::parse`]; of a model with its line.
     pub fn parse_models(name: &str, toml: &str) -> Result<JobModels, FileError> {
-        let mut raw: RawJob = parse_toml(name, toml)?;
+        let file = TomlFile::parse(name, toml)?;
+        let sampler = SamplerTable::read(&file)?;
+        let mut raw: RawJob = file.read_all()?;
         let fail = |message: String| FileError::whole(name, message);
         for name in &raw.accept {
             Question::check_name(name).map_err(fail)?;
         }
-        let likelihood = raw
-            .likelihood
-            .settings()
-            .map_err(|e| fail(format!("[likelihood] {e}")))?;
-        let algorithm = raw
-            .sampler
-            .algorithm()
-            .map_err(|e| fail(format!("[sampler] {e}")))?;
-        let point_estimates = raw.sampler.point_estimates(algorithm.seed());
-        let point_estimates = point_estimates.map_err(|e| fail(format!("[sampler] {e}")))?;
-        let discovery = raw
-            .discovery
-            .settings(&algorithm)
-            .map_err(|e| fail(format!("[discovery] {e}")))?;
+        let likelihood = raw.likelihood.settings();
+        let likelihood = likelihood.map_err(|e| fail(format!("[likelihood] {e}")))?;
+        let discovery = raw.discovery.settings(&sampler.algorithm);
+        let discovery = discovery.map_err(|e| fail(format!("[discovery] {e}")))?;
         let posterior = PosteriorPrior::take(|key| raw.priors.remove(key).map(toml::Spanned::into_inner))
             .map_err(|e| fail(format!("[priors] {e}")))?;
         let (first, others) = model_entries(name, toml, raw.model, raw.models, raw.priors)?;
         let models = 1 + others.len();
         if models > 1 {
-            check_comparison(&algorithm, &point_estimates, posterior.is_some()).map_err(&fail)?;
+            check_comparison(&sampler, posterior.is_some()).map_err(&fail)?;
         }
-        let also_named: Vec<String> = others
-            .iter()
-            .flat_map(|other| other.settings.effect_files.iter().cloned())
-            .collect();
-        let job = |entry: ModelEntry| JobFile {
-            experiment: raw.experiment.clone(),
-            accepted: raw.accept.clone(),
-            model: entry.settings,
+        let also_named = others.iter().flat_map(|other| &other.settings.effect_files);
+        let first = Job {
+            experiment: raw.experiment,
+            accepted: raw.accept,
+            model: first.settings,
+            table: first.table,
             models,
-            line: entry.line,
-            priors: entry.priors,
-            posterior: posterior.clone(),
-            algorithm,
-            point_estimates: point_estimates.clone(),
-            reference: raw.figures.reference.clone(),
+            line: first.line,
+            priors: first.priors,
+            posterior,
+            algorithm: sampler.algorithm,
+            point_estimates: sampler.point_estimates,
+            reference: raw.figures.reference,
             likelihood,
             discovery,
-            also_named: also_named.clone(),
+            candidate_priors: candidate_priors::by_name(&raw.discovery.priors),
+            files: NamedFiles::default(),
+            also_named: also_named.cloned().collect(),
         };
-        Ok(JobModels {
-            first: job(first),
-            others: others.into_iter().map(job).collect(),
-        })
+        let other = |entry: ModelEntry| Job {
+            model: entry.settings,
+            table: entry.table,
+            line: entry.line,
+            priors: entry.priors,
+            ..first.clone()
+        };
+        let others = others.into_iter().map(other).collect();
+        Ok(JobModels { first, others })
+    }
+
+    /// The job with the files that it names.
+    pub fn beside(self, files: NamedFiles) -> Job {
+        Job { files, ..self }
+    }
+
+    /// Lists further effects of the catalogue and effect files under `[model]`.
+    ///
+    /// # Errors
+    /// [`ModelError`] names the effect that is unknown or listed already, or the number of effects.
+    pub fn list_effects(&mut self, effects: &[String], files: &[String]) -> Result<(), ModelError> {
+        self.model.add_effects(effects, files)?;
+        self.list("effects", effects.iter());
+        self.list("effect_files", files.iter());
+        Ok(())
+    }
+
+    /// Reads the model's table again after a change.
+    pub(crate) fn read_model(&mut self) -> Result<(), String> {
+        let model = ModelSettings::from_table(&self.table);
+        self.model = model.map_err(|e| format!("[model] {e}"))?;
+        Ok(())
     }
 
     /// The search for missing effects of this job's model: it draws with the job's seed, and asks for nothing besides.
-    pub fn into_search(self) -> JobFile {
-        JobFile {
+    pub fn into_search(self) -> Job {
+        Job {
             algorithm: AlgorithmSettings::Discover {
                 seed: self.algorithm.seed(),
             },
@@ -202,19 +240,15 @@ impl JobFile {
     }
 }
 
-/// What a comparison of models asks of the rest of the job, a sentence where it is not there.
-fn check_comparison(
-    algorithm: &AlgorithmSettings,
-    point_estimates: &[AlgorithmSettings],
-    has_posterior_prior: bool,
-) -> Result<(), String> {
-    if !algorithm.has_posterior() {
+/// What a comparison of models asks of the rest of the job; the sentence says what is missing.
+fn check_comparison(sampler: &SamplerTable, has_posterior_prior: bool) -> Result<(), String> {
+    if !sampler.algorithm.has_posterior() {
         return Err(format!(
             "[sampler] algorithm = \"{}\" has no evidence, by which [[models]] are compared; tmcmc has",
-            algorithm.name()
+            sampler.algorithm.name()
         ));
     }
-    if !point_estimates.is_empty() {
+    if !sampler.point_estimates.is_empty() {
         return Err("[sampler] point_estimates belong to a job with one [model], not to [[models]]".into());
     }
     if has_posterior_prior {

@@ -1,0 +1,39 @@
+//! The likelihood with a reduced model discrepancy, for a preliminary fit.
+
+use crate::laplace::fit::LaplaceFit;
+use statistics::likelihood::{Discrepancy, LEAST_DISCREPANCY, Likelihood};
+
+/// The share of an unknown discrepancy that remains.
+const SHARE: f64 = 0.25;
+
+/// The likelihood with each unknown discrepancy fixed at a quarter of its posterior mean at a fit, or at its lower limit; `None` if
+/// no discrepancy is unknown.
+///
+/// An unknown discrepancy grows to the misfit of the model, so that no small step explains much of it: where little is changed
+/// there may be a local maximum. A smaller discrepancy gives the data more weight, and a fit with it leads to the other maximum.
+/// Checked by `pairs::an_unknown_discrepancy_does_not_hide_what_two_effects_explain`.
+///
+/// # Source
+/// Blake & Zisserman 1987, *Visual Reconstruction*: graduated non-convexity.
+pub(crate) fn reduced_discrepancy(likelihood: &Likelihood, fit: &LaplaceFit) -> Option<Likelihood> {
+    if !likelihood.discrepancies().contains(&Discrepancy::Unknown) {
+        return None;
+    }
+    let levels = likelihood
+        .discrepancy_weights(&fit.point.values, &fit.theta())
+        .ok()?;
+    let held =
+        likelihood
+            .discrepancies()
+            .iter()
+            .zip(&levels)
+            .map(|(discrepancy, levels)| match discrepancy {
+                Discrepancy::Unknown => {
+                    let mean: f64 = levels.iter().map(|(m, probability)| m * probability).sum();
+                    Discrepancy::Known((SHARE * mean).max(LEAST_DISCREPANCY))
+                }
+                certain => *certain,
+            });
+    let (data, common) = (likelihood.data().to_vec(), likelihood.common().to_vec());
+    Likelihood::with_common(data, likelihood.law(), common, held.collect()).ok()
+}

@@ -1,0 +1,100 @@
+//! The variants that a calibration evaluates.
+
+use std::collections::BTreeMap;
+
+use job::Spec;
+use record::EvaluationKey;
+use shared::model::ModelVariant;
+use statistics::Metamodel;
+
+/// The variants of a calibration by hash, and which of them answers what.
+#[derive(Debug)]
+pub(super) struct Variants {
+    by_hash: BTreeMap<String, ModelVariant>,
+    /// The hash of what is evaluated while sampling.
+    sampled: String,
+    /// The hash of the fitted runs.
+    fit: String,
+    /// The hash of the fitted runs with their histories; `None` of a model that knows no time.
+    histories: Option<String>,
+    /// The hash of all holdout runs together.
+    holdout: Option<String>,
+    /// The hashes of the holdout runs one by one; empty before they are asked for.
+    holdout_runs: Vec<String>,
+    /// The present stage's number, and the hash of the sampled variant with the metamodel of the stage.
+    stage: Option<(usize, String)>,
+}
+
+impl Variants {
+    pub(super) fn new(spec: &Spec) -> Self {
+        let mut by_hash = BTreeMap::new();
+        let mut add = |variant| insert(&mut by_hash, variant);
+        Variants {
+            sampled: add(spec.sampled_variant()),
+            fit: add(spec.fit_variant.clone()),
+            histories: spec.fit_variant.with_histories().map(&mut add),
+            holdout: spec.holdout_variant.clone().map(&mut add),
+            holdout_runs: Vec::new(),
+            stage: None,
+            by_hash,
+        }
+    }
+
+    pub(super) fn get(&self, hash: &str) -> Option<&ModelVariant> {
+        self.by_hash.get(hash)
+    }
+
+    /// Whether the model knows time.
+    pub(super) fn has_histories(&self) -> bool {
+        self.histories.is_some()
+    }
+
+    /// Number of holdout runs that are asked for one by one.
+    pub(super) fn holdout_runs(&self) -> usize {
+        self.holdout_runs.len()
+    }
+
+    /// The hash of the variant that an evaluation without a subchain asks for.
+    pub(super) fn of_key(&self, key: EvaluationKey) -> Option<&str> {
+        match key {
+            EvaluationKey::Sampling { .. } => Some(&self.sampled),
+            EvaluationKey::Prediction { holdout: false, .. } => Some(&self.fit),
+            EvaluationKey::Prediction { holdout: true, .. } => self.holdout.as_deref(),
+            EvaluationKey::HoldoutRun { run, .. } => self.holdout_runs.get(run).map(String::as_str),
+            EvaluationKey::Likeliest => Some(self.histories.as_ref().unwrap_or(&self.fit)),
+        }
+    }
+
+    /// The hash of the variant that the subchains of the present stage ask for.
+    pub(super) fn with_metamodel(&self) -> Option<&str> {
+        self.stage.as_ref().map(|(_, hash)| hash.as_str())
+    }
+
+    /// Makes the variant of the stage in progress, whose metamodel is frozen until the next one.
+    pub(super) fn prepare_stage(&mut self, metamodel: Option<&Metamodel>) {
+        let number = metamodel.map(Metamodel::stage);
+        if self.stage.as_ref().map(|(number, _)| *number) == number {
+            return;
+        }
+        if let Some((_, hash)) = self.stage.take() {
+            self.by_hash.remove(&hash);
+        }
+        if let Some(metamodel) = metamodel {
+            let variant = self.by_hash[&self.sampled].with_metamodel(metamodel);
+            self.stage = Some((metamodel.stage(), insert(&mut self.by_hash, variant)));
+        }
+    }
+
+    /// Makes the variants of the holdout runs one by one.
+    pub(super) fn split_holdout(&mut self, holdout: Option<&ModelVariant>) {
+        let runs = holdout.into_iter().flat_map(ModelVariant::by_condition);
+        self.holdout_runs = runs.map(|variant| insert(&mut self.by_hash, variant)).collect();
+    }
+}
+
+/// Adds a variant; its hash.
+fn insert(by_hash: &mut BTreeMap<String, ModelVariant>, variant: ModelVariant) -> String {
+    let hash = variant.hash();
+    by_hash.insert(hash.clone(), variant);
+    hash
+}

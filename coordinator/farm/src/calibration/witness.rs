@@ -1,0 +1,203 @@
+//! What is known of the workers that answered: whose answers agree, and who computes wrongly.
+
+use std::collections::BTreeMap;
+
+use record::Fact;
+
+use super::Calibration;
+use super::faults::NOBODY;
+use super::second_answer::{Answer, SecondAnswers, Verdict};
+use super::verification::Verification;
+
+/// What is known of the workers that answered.
+#[derive(Debug)]
+pub struct Witness {
+    /// Which evaluations a second worker computes as well.
+    pub verification: Verification,
+    /// Evaluations that a second worker is asked for.
+    pub second: SecondAnswers,
+    /// Whether results were dropped, so that numbers of evaluations have asked something else before.
+    pub is_rewound: bool,
+    /// The answers that are stored of the present round.
+    round: BTreeMap<u64, StoredAnswer>,
+    /// Stored answers by worker that no other worker has confirmed.
+    unconfirmed: BTreeMap<String, u64>,
+    /// Workers found to compute wrongly, with the evaluation, since they were last asked for.
+    convicted: Vec<(String, u64)>,
+}
+
+/// An answer that is stored.
+#[derive(Debug, Clone, PartialEq, Eq)]
+struct StoredAnswer {
+    answer: Answer,
+    /// Whether another worker has given the same.
+    is_confirmed: bool,
+}
+
+impl Default for Witness {
+    fn default() -> Self {
+        Witness {
+            verification: Verification::OFF,
+            second: SecondAnswers::default(),
+            is_rewound: false,
+            round: BTreeMap::new(),
+            unconfirmed: BTreeMap::new(),
+            convicted: Vec::new(),
+        }
+    }
+}
+
+impl Witness {
+    /// Forgets the answers of the round before.
+    pub(super) fn begin_round(&mut self) {
+        self.round.clear();
+    }
+
+    /// Number of evaluations of the present round that are answered.
+    pub(super) fn answered(&self) -> usize {
+        self.round.len()
+    }
+
+    /// Number of evaluations of the present round that were given up after faults.
+    pub(super) fn given_up(&self) -> usize {
+        let answers = self.round.values();
+        answers.filter(|stored| stored.answer.worker == NOBODY).count()
+    }
+
+    /// Whether an evaluation of the present round is answered.
+    pub(super) fn is_answered(&self, evaluation: u64) -> bool {
+        self.round.contains_key(&evaluation)
+    }
+
+    /// The answered evaluations of the present round.
+    pub(super) fn answered_evaluations(&self) -> Vec<u64> {
+        self.round.keys().copied().collect()
+    }
+
+    /// No answer came that could be used: nothing is compared so far.
+    pub(super) fn forget_unanswered(&mut self, evaluation: u64) {
+        if self.second.is_unanswered(evaluation) {
+            self.second.drop(evaluation);
+        }
+    }
+
+    /// Takes the answer that is stored.
+    fn store(&mut self, evaluation: u64, answer: Answer, is_confirmed: bool) {
+        let stored = StoredAnswer { answer, is_confirmed };
+        self.round.insert(evaluation, stored);
+    }
+
+    /// The stored answer that an answer which nobody asked for makes worth a comparison: it confirms the stored one as well as one
+    /// that was asked for, or brings a dispute that other workers settle.
+    fn disputed(&self, evaluation: u64, answer: &Answer) -> Option<Answer> {
+        let stored = self.round.get(&evaluation).map(|stored| &stored.answer);
+        let stored = stored.filter(|stored| stored.worker != NOBODY && *stored != answer)?;
+        let is_open = !self.second.contains(evaluation) && !self.round[&evaluation].is_confirmed;
+        (self.verification.is_on() && is_open).then(|| stored.clone())
+    }
+
+    /// Takes an answer to an evaluation that has one already. The facts to store.
+    fn compare(&mut self, calibration: i64, evaluation: u64, answer: Answer) -> Vec<Fact> {
+        let (worker, fingerprint) = (answer.worker.clone(), answer.fingerprint);
+        let duplicate = Fact::Duplicate {
+            calibration,
+            evaluation,
+            fingerprint,
+            worker: worker.clone(),
+        };
+        if !self.verification.is_on() {
+            return vec![duplicate];
+        }
+        let is_repeated = self.second.contains(evaluation);
+        if let Some(stored) = self.round.get(&evaluation).filter(|_| !is_repeated)
+            && stored.answer.worker != NOBODY
+        {
+            let is_same = stored.answer.fingerprint == fingerprint;
+            if is_same && (stored.is_confirmed || stored.answer.worker == worker) {
+                return Vec::new();
+            }
+            if stored.is_confirmed {
+                self.convicted.push((worker, evaluation));
+                return vec![duplicate];
+            }
+        }
+        let is_known = is_repeated || self.is_answered(evaluation);
+        match self.second.answered(evaluation, answer) {
+            // After a rewind the same number may have asked something else before.
+            Verdict::NotAsked if self.is_rewound && !is_known => Vec::new(),
+            Verdict::NotAsked | Verdict::Differ => vec![duplicate],
+            Verdict::Open => Vec::new(),
+            Verdict::Contradiction => {
+                self.convicted.push((worker, evaluation));
+                vec![duplicate]
+            }
+            Verdict::Settled { wrong, first } => {
+                let convicted = wrong.iter().map(|name| (name.clone(), evaluation));
+                self.convicted.extend(convicted);
+                if wrong.contains(&first) {
+                    return vec![duplicate];
+                }
+                self.confirm(evaluation, &first);
+                vec![Fact::Confirmed {
+                    calibration,
+                    evaluation,
+                    worker,
+                }]
+            }
+        }
+    }
+
+    /// Notes that another worker has given the stored answer of a worker.
+    fn confirm(&mut self, evaluation: u64, first: &str) {
+        if let Some(stored) = self.round.get_mut(&evaluation) {
+            stored.is_confirmed = true;
+        }
+        if let Some(count) = self.unconfirmed.get_mut(first) {
+            *count -= 1;
+        }
+    }
+
+    /// The workers found to compute wrongly since the last call, each with the evaluation that shows it.
+    pub fn take_convicted(&mut self) -> Vec<(String, u64)> {
+        std::mem::take(&mut self.convicted)
+    }
+
+    /// Whether answers of a worker are stored that nobody has confirmed.
+    pub fn rests_on(&self, worker: &str) -> bool {
+        self.unconfirmed.get(worker).is_some_and(|&count| count > 0)
+    }
+}
+
+impl Calibration {
+    /// Takes the answer that is stored; its evaluation may be asked for twice.
+    pub(super) fn answered_first(&mut self, answer: Answer, evaluation: u64) {
+        self.witness.store(evaluation, answer.clone(), false);
+        if answer.worker == NOBODY {
+            self.witness.second.drop(evaluation);
+            return;
+        }
+        if self.witness.verification.selects(evaluation) {
+            self.ask_second(evaluation, None);
+        }
+        let unconfirmed = &mut self.witness.unconfirmed;
+        *unconfirmed.entry(answer.worker.clone()).or_default() += 1;
+        self.witness.second.answered(evaluation, answer);
+    }
+
+    /// Takes an answer that was stored before a restart. The round of its evaluation is the present one.
+    pub(super) fn answered_before(&mut self, answer: Answer, evaluation: u64, is_confirmed: bool) {
+        match is_confirmed {
+            true => self.witness.store(evaluation, answer, true),
+            false => self.answered_first(answer, evaluation),
+        }
+    }
+
+    /// Takes an answer to an evaluation that has one already. The facts to store.
+    pub(super) fn compare(&mut self, evaluation: u64, answer: Answer) -> Vec<Fact> {
+        if let Some(first) = self.witness.disputed(evaluation, &answer) {
+            self.ask_second(evaluation, None);
+            self.witness.second.answered(evaluation, first);
+        }
+        self.witness.compare(self.identity.id, evaluation, answer)
+    }
+}

@@ -1,0 +1,48 @@
+//! The measurements that are fitted, with their likelihood.
+
+use shared::experiment::{Experiment, RunUse};
+use shared::predicted::PredictedValue;
+use statistics::Likelihood;
+
+use crate::data::bevameter_readings::BevameterReadings;
+use crate::data::error::DataError;
+use crate::data::likelihood::likelihood;
+use crate::data::predicted_values::predicted_values;
+use crate::data::soil_scatter::SoilScatter;
+use crate::table::likelihood_settings::LikelihoodSettings;
+use crate::table::prior_entry::FreeParameter;
+
+/// The measurements that are fitted.
+pub(super) struct Fitted {
+    /// The fitted runs, as positions in the experiment.
+    pub(super) fit_runs: Vec<usize>,
+    /// The others.
+    pub(super) holdout_runs: Vec<usize>,
+    pub(super) scatters: Vec<SoilScatter>,
+    pub(super) likelihood: Likelihood,
+    /// The observables that the likelihood takes.
+    pub(super) predicted: Vec<PredictedValue>,
+}
+
+impl Fitted {
+    pub(super) fn new(
+        experiment: &Experiment,
+        bevameter: &BevameterReadings,
+        parameters: &[FreeParameter],
+        settings: LikelihoodSettings,
+    ) -> Result<Fitted, DataError> {
+        let (fit_runs, holdout_runs): (Vec<usize>, Vec<usize>) =
+            (0..experiment.runs.len()).partition(|&i| experiment.runs[i].usage == RunUse::Fit);
+        let scatters = SoilScatter::all(experiment, &fit_runs, parameters)?;
+        let likelihood = likelihood(experiment, &fit_runs, bevameter, parameters, &scatters, settings)?;
+        let radius = |&i: &usize| experiment.wheels[&experiment.runs[i].wheel].radius_m;
+        let radii_m: Vec<f64> = fit_runs.iter().map(radius).collect();
+        Ok(Fitted {
+            predicted: predicted_values(&likelihood, &radii_m),
+            fit_runs,
+            holdout_runs,
+            scatters,
+            likelihood,
+        })
+    }
+}

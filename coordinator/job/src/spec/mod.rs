@@ -1,0 +1,284 @@
+//! A calibration as its files determine it.
+//!
+//! # Layout
+//! - `parameters`: which parameters are fixed and which are free, with their priors.
+//! - `fitted`: the measurements that are fitted, with their likelihood.
+//! - `variants`: what workers evaluate.
+//! - `words`: a specification in words.
+
+mod fitted;
+mod parameters;
+mod variants;
+mod words;
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
+
+use shared::experiment::Experiment;
+use shared::file::{FileError, FileSet};
+use shared::model::{ModelSettings, ModelVariant, equations_of};
+use shared::outcome::Observables;
+use shared::predicted::PredictedValue;
+use statistics::{Likelihood, Prior};
+
+use crate::data::bevameter_readings::{BevameterReadings, PLATE};
+use crate::data::error::DataError;
+use crate::data::noise;
+use crate::data::soil_scatter::SoilScatter;
+use crate::job::{Job, JobModels};
+use crate::named_files::NamedFiles;
+use crate::table::algorithm_settings::AlgorithmSettings;
+use crate::table::discovery_settings::DiscoverySettings;
+use crate::table::likelihood_settings::LikelihoodSettings;
+use crate::table::posterior_prior::JointPrior;
+use crate::table::prior_entry::FreeParameter;
+use fitted::Fitted;
+use parameters::{Parameters, joint};
+use variants::Variants;
+
+/// A calibration as its files determine it; equal files give an equal specification.
+#[derive(Debug, Clone)]
+pub struct Spec {
+    /// The measured data set.
+    pub experiment: Arc<Experiment>,
+    /// The forward model with its fixed parameters.
+    pub model: ModelSettings,
+    /// The free parameters with their priors, in the order of every parameter vector.
+    pub parameters: Vec<FreeParameter>,
+    /// The posterior of another calibration that is the prior of the first of them, if there is one.
+    pub joint_prior: Option<JointPrior>,
+    /// The algorithm with its settings.
+    pub algorithm: AlgorithmSettings,
+    /// The fits and searches that stand beside the sample in its study.
+    pub point_estimates: Vec<AlgorithmSettings>,
+    /// The fitted runs, as positions in the experiment.
+    pub fit_runs: Vec<usize>,
+    /// The runs that are not fitted, as positions in the experiment.
+    pub holdout_runs: Vec<usize>,
+    /// The fitted runs, with everything that the model says of them.
+    pub fit_variant: ModelVariant,
+    /// The variant of the holdout runs, which workers evaluate for the final draws alone; `None` without holdout runs.
+    pub holdout_variant: Option<ModelVariant>,
+    /// The likelihood of the measurements that are fitted; runs count within [`Spec::fit_runs`].
+    pub likelihood: Likelihood,
+    /// The scatter of the soil from run to run and from preparation to preparation.
+    pub scatters: Vec<SoilScatter>,
+    /// The observables that the likelihood takes.
+    predicted: Vec<PredictedValue>,
+    /// Values that an independent test gives for parameters. The figures alone show them.
+    pub reference: BTreeMap<String, f64>,
+    /// The settings of the errors, as the job states them.
+    pub likelihood_settings: LikelihoodSettings,
+    /// The measured readings of plates and rings; all are fitted.
+    pub bevameter: BevameterReadings,
+    /// Whether its study looks for missing effects.
+    pub discovery: DiscoverySettings,
+    /// Names of the questions that its job answers: what looks odd, and is meant.
+    pub accepted: Vec<String>,
+    /// How many models the job compares, of which this is one; 1 where it has a table `[model]`.
+    pub models: usize,
+}
+
+/// A calibration was begun with other files of its effects than this program has.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error(
+    "the effect files have changed: the calibration was started with model version {begun}, this program has {now}"
+)]
+pub struct EffectsChanged {
+    /// The version that the calibration is pinned to.
+    pub begun: String,
+    /// The same equations with the effects of this program.
+    pub now: String,
+}
+
+/// Largest number of final draws that are simulated on every run, holdout included.
+pub const PREDICTION_DRAWS: usize = 200;
+
+/// Largest number of predicted values of one population: 400 MB.
+const MAX_NUMBERS: usize = 50_000_000;
+
+impl Spec {
+    /// Builds and validates the specification of a job and its experiment, both as texts.
+    ///
+    /// # Errors
+    /// [`FileError`] names the file, the line or field, the value, the unit and the bound.
+    pub fn new(
+        job_name: &str,
+        job: &FileSet,
+        experiment_name: &str,
+        files: &FileSet,
+    ) -> Result<Spec, FileError> {
+        let job = Job::read(job_name, job)?;
+        let experiment = Experiment::parse(experiment_name, files)?;
+        Spec::from_values(job_name, job, experiment_name, Arc::new(experiment))
+    }
+
+    /// Builds and validates the specification of a job and its experiment, both as values.
+    ///
+    /// # Errors
+    /// As those of [`Spec::new`].
+    pub fn from_values(
+        job_name: &str,
+        job: Job,
+        experiment_name: &str,
+        experiment: Arc<Experiment>,
+    ) -> Result<Spec, FileError> {
+        let in_job = |message: String| FileError::whole(job_name, message);
+        let in_data = |error: DataError| FileError::whole(experiment_name, error.to_string());
+        let bevameter = BevameterReadings::new(&experiment).map_err(in_data)?;
+        let parameters = Parameters::new(job_name, &job, &experiment, &bevameter)?;
+        let fitted = Fitted::new(&experiment, &bevameter, &parameters.free, job.likelihood);
+        let fitted = fitted.map_err(in_data)?;
+        check_algorithms(&job, parameters.free.len(), fitted.predicted.len()).map_err(in_job)?;
+        let variants = Variants::new(&job, &experiment, &bevameter, &parameters, &fitted).map_err(in_job)?;
+        Ok(Spec {
+            experiment,
+            model: parameters.model,
+            parameters: parameters.free,
+            joint_prior: parameters.joint_prior,
+            algorithm: job.algorithm,
+            point_estimates: job.point_estimates,
+            fit_runs: fitted.fit_runs,
+            holdout_runs: fitted.holdout_runs,
+            fit_variant: variants.fit,
+            holdout_variant: variants.holdout,
+            likelihood: fitted.likelihood,
+            scatters: fitted.scatters,
+            predicted: fitted.predicted,
+            reference: job.reference,
+            likelihood_settings: job.likelihood,
+            bevameter,
+            discovery: job.discovery,
+            accepted: job.accepted,
+            models: job.models,
+        })
+    }
+
+    /// The specifications of every model that a job compares, in the order of the job.
+    ///
+    /// # Errors
+    /// As those of [`Spec::new`]; an error of a model as a whole has the line of its `[[models]]`.
+    pub fn of_models(
+        job_name: &str,
+        models: JobModels,
+        texts: &BTreeMap<String, String>,
+        experiment_name: &str,
+        files: &FileSet,
+    ) -> Result<Vec<Spec>, FileError> {
+        let experiment = Arc::new(Experiment::parse(experiment_name, files)?);
+        let texts = NamedFiles::from(texts);
+        let spec = |job: Job| {
+            let (line, kind) = (job.line, job.model.kind.name());
+            let job = job.beside(texts.clone());
+            let spec = Spec::from_values(job_name, job, experiment_name, Arc::clone(&experiment));
+            spec.map_err(
+                |error| match line.filter(|_| error.line.is_none() && error.file == job_name) {
+                    Some(line) => {
+                        FileError::at(job_name, line, format!("[[models]] {kind}: {}", error.message))
+                    }
+                    None => error,
+                },
+            )
+        };
+        std::iter::once(models.first)
+            .chain(models.others)
+            .map(spec)
+            .collect()
+    }
+
+    /// The variant that workers evaluate while sampling: the fitted runs with the channels that the likelihood takes.
+    pub fn sampled_variant(&self) -> ModelVariant {
+        let fitted: BTreeSet<_> = self
+            .predicted
+            .iter()
+            .filter_map(|value| value.channel())
+            .collect();
+        ModelVariant {
+            channels: fitted.into_iter().collect(),
+            ..self.fit_variant.clone()
+        }
+    }
+
+    /// The predicted values that the likelihood takes, of an evaluation of the fitted runs.
+    pub fn predicted_values(&self, observables: &Observables) -> Vec<f64> {
+        self.predicted.iter().map(|value| value.of(observables)).collect()
+    }
+
+    /// Number of preparations of the soil that the fitted runs name; those without an id count each.
+    pub fn preparations(&self) -> usize {
+        noise::preparations(&self.experiment, &self.fit_runs).len()
+    }
+
+    /// The measurements of wheels that are fitted.
+    pub fn wheel_data(&self) -> usize {
+        self.likelihood
+            .data()
+            .iter()
+            .filter(|d| d.channel < PLATE)
+            .count()
+    }
+
+    /// Whether another specification means the same calibration; comments, the order of keys and what is accepted do not count.
+    pub fn same_as(&self, other: &Spec) -> bool {
+        // Debug output shows every number to the last bit.
+        let text = |spec: &Spec| {
+            let accepted = Vec::new();
+            format!(
+                "{:?}",
+                Spec {
+                    accepted,
+                    ..spec.clone()
+                }
+            )
+        };
+        text(self) == text(other)
+    }
+
+    /// Checks that the effects are those of the version that a calibration is pinned to; its equations are the
+    /// workers' concern.
+    ///
+    /// # Errors
+    /// [`EffectsChanged`].
+    pub fn check_effects(&self, pinned: &str) -> Result<(), EffectsChanged> {
+        let now = self.fit_variant.model_version(equations_of(pinned));
+        if now == pinned {
+            return Ok(());
+        }
+        let begun = pinned.to_owned();
+        Err(EffectsChanged { begun, now })
+    }
+
+    /// The joint prior, in parameter order.
+    pub fn prior(&self) -> Prior {
+        joint(&self.joint_prior, &self.parameters).expect("checked when the specification was made")
+    }
+
+    /// The part of a parameter vector that the model takes: everything but the noise sds.
+    ///
+    /// Noise parameters stand behind the model's, so this is a prefix.
+    pub fn model_theta<'a>(&self, theta: &'a [f64]) -> &'a [f64] {
+        &theta[..self.fit_variant.parameters.len()]
+    }
+}
+
+/// Checks that the algorithms can work with so many parameters and fitted values.
+fn check_algorithms(job: &Job, parameters: usize, values: usize) -> Result<(), String> {
+    if parameters == 0 {
+        return Err("[priors] leaves no parameter free: there is nothing to calibrate".into());
+    }
+    for algorithm in std::iter::once(&job.algorithm).chain(&job.point_estimates) {
+        algorithm
+            .check(parameters)
+            .map_err(|e| format!("[sampler] {e}"))?;
+    }
+    match &job.algorithm {
+        AlgorithmSettings::Sample(settings) if settings.particles.saturating_mul(values) > MAX_NUMBERS => {
+            Err(format!(
+                "[sampler] {} particles of {values} fitted values each are {} numbers; they must be at most {MAX_NUMBERS}",
+                settings.particles,
+                settings.particles.saturating_mul(values)
+            ))
+        }
+        _ => Ok(()),
+    }
+}

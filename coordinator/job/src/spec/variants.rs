@@ -1,0 +1,91 @@
+//! What workers evaluate: the fitted runs and the holdout runs, with everything that the model says of them.
+
+use shared::experiment::Experiment;
+use shared::model::{Companion, ModelKind, ModelVariant};
+use shared::parameters::NOISE_PREFIX;
+
+use super::fitted::Fitted;
+use super::parameters::Parameters;
+use crate::data::bevameter_readings::BevameterReadings;
+use crate::data::outside_model;
+use crate::data::soil_scatter::BY_STIFFNESS;
+use crate::job::Job;
+
+/// The variants of a calibration.
+pub(super) struct Variants {
+    /// The variant of the fitted runs and readings.
+    pub(super) fit: ModelVariant,
+    /// The variant of the holdout runs, if there are any.
+    pub(super) holdout: Option<ModelVariant>,
+}
+
+impl Variants {
+    /// # Errors
+    /// A sentence: the model cannot express the experiment.
+    pub(super) fn new(
+        job: &Job,
+        experiment: &Experiment,
+        bevameter: &BevameterReadings,
+        parameters: &Parameters,
+        fitted: &Fitted,
+    ) -> Result<Variants, String> {
+        let model = &parameters.model;
+        if let Some(external) = &model.external {
+            outside_model::check(external, experiment, &fitted.fit_runs, &fitted.likelihood)?;
+        }
+        let mut fit = of_runs(&fitted.fit_runs, experiment, parameters, fitted)?;
+        let readings = experiment.plates.len() + experiment.shear.len();
+        if readings > 0 && !model.kind.has_soil_laws() {
+            return Err(format!(
+                "kind = \"{}\" predicts no plates and rings: leave plates and shear out of the experiment",
+                model.kind.name()
+            ));
+        }
+        bevameter.ask(&mut fit);
+        if job.algorithm.has_metamodel() {
+            fit.companion = Some(companion(&fit, fitted)?);
+        }
+        let holdout = match fitted.holdout_runs.as_slice() {
+            [] => None,
+            runs => Some(of_runs(runs, experiment, parameters, fitted)?),
+        };
+        Ok(Variants { fit, holdout })
+    }
+}
+
+/// The variant of some runs.
+fn of_runs(
+    runs: &[usize],
+    experiment: &Experiment,
+    parameters: &Parameters,
+    fitted: &Fitted,
+) -> Result<ModelVariant, String> {
+    let free = parameters.free.iter();
+    let of_model = || free.clone().filter(|p| !p.name.starts_with(NOISE_PREFIX));
+    let names = of_model().map(|p| p.name.clone()).collect();
+    let runs = runs.iter().map(|&i| &experiment.runs[i]);
+    let variant = ModelVariant::new(experiment, &parameters.model, &parameters.effects, names, runs);
+    let mut variant = variant.map_err(|e| e.to_string())?;
+    if parameters.model.external.is_some() {
+        variant.probe = of_model().map(|p| p.marginal.quantile(0.5)).collect();
+    }
+    let mut sensitive = fitted.likelihood.sensitive().iter();
+    variant.stiffness_sensitivity = sensitive.any(|error| error.derivative == BY_STIFFNESS);
+    Ok(variant)
+}
+
+/// The quasi-static model from which a metamodel is made.
+fn companion(fit: &ModelVariant, fitted: &Fitted) -> Result<Companion, String> {
+    if fit.kind != ModelKind::Scm {
+        return Err(
+            "metamodel_moves under [sampler]: the metamodel is made of quasi_static, and needs kind = \"scm\" to save runs of"
+                .into(),
+        );
+    }
+    fit.coarse()
+        .map_err(|e| format!("metamodel_moves under [sampler]: {e}"))?;
+    Ok(Companion {
+        values: fitted.predicted.clone(),
+        metamodel: None,
+    })
+}
