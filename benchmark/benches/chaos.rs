@@ -1,4 +1,4 @@
-//! The farm under real chaos: kills, stops, halts, cut connections, full disks and backups put back.
+//! The farm under real chaos: kills, halts, cut connections, full disks and backups put back.
 //!
 //! `cargo bench -p benchmark --bench chaos [-- EVENTS [SEED]]`: a thousand events where nothing is said. Three studies are in
 //! progress all the time, each compared bit for bit with what its job gives undisturbed. Exits with 1 where a promise is broken, and

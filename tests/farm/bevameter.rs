@@ -105,7 +105,7 @@ fn plates_and_rings_are_predicted_without_a_wheel() {
 fn one_table_may_be_asked_for_and_its_conditions_read_back() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().join("plates.csv");
-    // What was predicted is an experiment's file of its own: writing over the input and going on gives the same.
+    // The predicted file is an experiment's file: writing over the input and going on gives the same.
     let mut first = command(folder.path(), EXPERIMENT);
     first.arg("--plates").arg(&out);
     run(first).success();

@@ -21,7 +21,7 @@ fn job() -> Job {
     Job::small().sampler(1000, [4, 10], 3)
 }
 
-/// What one worker with one thread gives: the posterior, evaluations by the end of sampling, stages.
+/// The results of one worker with one thread: the posterior, evaluations by the end of sampling, stages.
 fn reference() -> &'static (String, u64, usize) {
     static REFERENCE: OnceLock<(String, u64, usize)> = OnceLock::new();
     REFERENCE.get_or_init(|| {
@@ -60,7 +60,7 @@ fn another_seed_gives_other_bytes() {
     assert!(service.posterior_csv(id) != reference().0);
 }
 
-/// What dies.
+/// The program that dies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Victim {
     Coordinator,

@@ -177,7 +177,7 @@ fn pausing_resuming_and_cancelling_do_what_they_say() {
     let id = service.submit(&job);
     until("progress", || service.evaluations(id).filter(|&n| n > 100));
     assert_eq!(verb(&service, &["pause", "1"]), "calibration 1 is paused\n");
-    // What was leased is completed, then nothing moves, also after a restart.
+    // Leased evaluations are completed, then nothing moves, also after a restart.
     until("no lease", || {
         (service.metric("grouser_leases_out") == 0).then_some(())
     });
@@ -263,7 +263,7 @@ fn events_tell_every_stage_once_and_end_with_the_calibration() {
     assert!(stages.len() > 3, "{stages:?}");
     assert_eq!(told, stages);
     assert_eq!(states.last().map(String::as_str), Some("finished"));
-    // Whoever comes late is told the same at once.
+    // A late listener is told the same at once.
     let mut again = Vec::new();
     service
         .client

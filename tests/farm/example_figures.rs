@@ -115,7 +115,7 @@ fn value(summary: &Value, place: &str) -> Option<f64> {
     }
 }
 
-/// What a README says otherwise than a summary.
+/// The differences between a README and a summary.
 fn contradictions(example: &Example, readme: &str, summary: &Value) -> Vec<String> {
     let readme = readme.split_whitespace().collect::<Vec<_>>().join(" ");
     let mut found = Vec::new();

@@ -1,4 +1,4 @@
-//! What a new user sees: the end of the first command, as the README prints it, and the way to the page.
+//! The first steps of a new user: the end of the first command, as the README prints it, and the way to the page.
 
 use farm_tests::http::Client;
 use farm_tests::job::Job;

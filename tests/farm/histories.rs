@@ -48,7 +48,7 @@ fn recording() -> String {
     text
 }
 
-/// What `run` leaves in `posterior.csv`.
+/// The `posterior.csv` that `run` leaves.
 fn posterior(job: &Job) -> String {
     let folder = tempfile::tempdir().expect("a folder");
     let path = job.write(&folder.path().join("job")).display().to_string();

@@ -99,7 +99,7 @@ fn a_german_spreadsheet_becomes_the_runs_that_it_was_made_from() {
     );
     let made_from = text(&root().join("examples/hidden-effect/runs.csv"));
     assert_eq!(same_numbers(&runs, &made_from, 1e-6), 240);
-    // What is written is what the program reads.
+    // The program reads the files that it has written.
     for file in ["experiment.toml", "job.toml"] {
         std::fs::copy(example(file), folder.path().join(file)).expect("a copy");
     }

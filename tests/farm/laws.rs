@@ -26,7 +26,7 @@ fn a_model_with_a_law_is_searched_again_to_a_verdict() {
     let law = "scan_shear_v_t";
     assert_eq!(rounds[0]["given"], serde_json::json!([]));
     assert_eq!(rounds[1]["given"], serde_json::json!([law]));
-    // What the study has is found no second time.
+    // An effect that the study has is not found a second time.
     for round in &rounds[1..] {
         let found = round["extension"]["file"]["name"].as_str().unwrap_or_default();
         assert_ne!(found, "shear_v_t.toml");

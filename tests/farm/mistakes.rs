@@ -1,147 +1,18 @@
-//! Mistakes of users: each is told by name, with place, value, unit, bound and remedy, and none is passed over in silence.
+//! Questions about implausible values: how they are asked, and how they are accepted.
 
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use farm_tests::job::{GAIN, Job};
+use farm_tests::job::Job;
 use farm_tests::programs::{coordinator, run};
 use farm_tests::service::Service;
 use farm_tests::workspace;
 use job::{Spec, questions};
-use serde::Deserialize;
 use shared::experiment::Experiment;
 use shared::file::FileSet;
 use shared::text_file::{read_beside, read_text, sibling};
 
-use super::bad_input::refusal_in;
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct List {
-    mistake: Vec<Mistake>,
-}
-
-/// A change of a good job, and the whole message.
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Mistake {
-    what: String,
-    file: String,
-    from: Option<String>,
-    to: Option<String>,
-    column: Option<String>,
-    times: Option<f64>,
-    r#as: Option<String>,
-    says: String,
-}
-
-fn mistakes() -> Vec<Mistake> {
-    let list: List =
-        toml::from_str(include_str!("../data/mistakes/mistakes.toml")).expect("a list of mistakes");
-    list.mistake
-}
-
-/// The good job; for a mistake in an effect file, with that effect.
-fn good(file: &str) -> Job {
-    match file {
-        "gain.toml" => Job::small()
-            .in_job(
-                "kind = \"quasi_static\"",
-                "kind = \"quasi_static\"\neffect_files = [\"gain.toml\"]",
-            )
-            .beside("gain.toml", GAIN),
-        _ => Job::small(),
-    }
-}
-
-impl Mistake {
-    /// The content of the file with the mistake.
-    fn content(&self, good: &str) -> Vec<u8> {
-        let text = match (&self.from, &self.to, &self.column, self.times) {
-            (Some(from), Some(to), None, None) => {
-                assert!(good.contains(from.as_str()), "{}", self.what);
-                good.replace(from.as_str(), to)
-            }
-            (None, None, Some(column), Some(times)) => scaled(good, column, times),
-            _ => good.to_owned(),
-        };
-        let rows = || text.lines().filter(|line| !line.starts_with('#'));
-        let first = |count: usize| {
-            rows()
-                .take(count)
-                .map(|line| format!("{line}\n"))
-                .collect::<String>()
-        };
-        match self.r#as.as_deref() {
-            None => text.into_bytes(),
-            Some("german") => {
-                let german = |line: &str| format!("{}\n", line.replace(',', ";").replace('.', ","));
-                rows().map(german).collect::<String>().into_bytes()
-            }
-            Some("xlsx") => b"PK\x03\x04\x14\x00\x06\x00\x08\x00\xff\xfe".to_vec(),
-            Some("mat") => b"MATLAB 5.0 MAT-file, Platform: GLNXA64\x00\x01IM\x0f\x00\x9c\xff".to_vec(),
-            Some("utf-16") => {
-                let units = std::iter::once('\u{feff}').chain(text.chars());
-                let units =
-                    units.map(|c| u16::try_from(u32::from(c)).expect("a character of the first plane"));
-                units.flat_map(u16::to_le_bytes).collect()
-            }
-            Some("latin-1") => {
-                let text = text.replace("# Synthetic", "# Schlämmsand");
-                text.chars()
-                    .map(|c| u8::try_from(c).expect("a character of Latin-1"))
-                    .collect()
-            }
-            Some("header") => first(1).into_bytes(),
-            Some("one run") => first(2).into_bytes(),
-            Some(other) => panic!("{other}"),
-        }
-    }
-
-    /// Writes the job with the mistake into a folder.
-    fn write(&self, folder: &Path) {
-        good(&self.file).write(folder);
-        let path = folder.join(&self.file);
-        let good = std::fs::read_to_string(&path).expect("a file of the job");
-        std::fs::write(path, self.content(&good)).expect("a file of the job");
-    }
-}
-
-/// A CSV file with every number of a column in another unit.
-fn scaled(good: &str, column: &str, times: f64) -> String {
-    let mut place = None;
-    let mut lines = String::new();
-    for line in good.lines() {
-        let mut fields: Vec<String> = line.split(',').map(str::to_owned).collect();
-        match place {
-            _ if line.starts_with('#') => {}
-            None => place = fields.iter().position(|field| field == column),
-            Some(place) => {
-                fields[place] = (fields[place].parse::<f64>().expect("a number") * times).to_string()
-            }
-        }
-        lines += &(fields.join(",") + "\n");
-    }
-    lines
-}
-
-#[test]
-fn no_mistake_is_silent() {
-    let mistakes = mistakes();
-    assert_eq!(mistakes.len(), 70);
-    let told = |mistake: &Mistake| {
-        let folder = tempfile::tempdir().unwrap();
-        mistake.write(folder.path());
-        refusal_in(&folder.path().join("job.toml"), folder.path())
-    };
-    let wrong: Vec<String> = mistakes
-        .iter()
-        .map(|mistake| (mistake, told(mistake)))
-        .filter(|(mistake, told)| *told != mistake.says)
-        .map(|(mistake, told)| format!("{}:\n  {told}\n  {}", mistake.what, mistake.says))
-        .collect();
-    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
-}
+use super::bad_input::gallery::scaled;
 
 #[test]
 fn what_is_accepted_is_calibrated_and_kept() {
@@ -162,7 +33,7 @@ fn what_is_accepted_is_calibrated_and_kept() {
     run(coordinator(["run", &path, "--out", &out, "--accept", "data_few"])).success();
     let report = std::fs::read_to_string(Path::new(&out).join("report.html")).unwrap();
     assert!(report.contains("accepted as meant: data_few"));
-    // What is there already is the same calibration, with the answer in the job or on the command line.
+    // The calibration that is there already is the same, with the answer in the job or on the command line.
     run(coordinator(["run", &path, "--out", &out, "--accept", "data_few"])).success();
     let job = format!("accept = [\"data_few\"]\n{}", few.job);
     std::fs::write(&path, job).unwrap();

@@ -1,4 +1,4 @@
-//! What the experiment leaves no way to try is said, and nothing is named in its place.
+//! Effects that the experiment cannot test are listed, and no other effect is named in their place.
 
 use std::fmt::Write as _;
 use std::path::Path;

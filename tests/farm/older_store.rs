@@ -29,7 +29,7 @@ fn command(words: &[&str], out: &std::path::Path) -> String {
     run(coordinator(words.iter().copied().chain(["--out", out.as_str()]))).success()
 }
 
-/// What the older version stated of posterior, evidence and point estimate.
+/// The numbers are those that the older version stated of posterior, evidence and point estimate.
 #[track_caller]
 fn same_numbers(summary: &str) {
     let given: Value = serde_json::from_str(summary).expect("JSON");
@@ -78,7 +78,7 @@ fn a_stopped_one_goes_on_and_ends_with_the_same_posterior_and_fit() {
     );
 }
 
-/// What the version before migration 20 said of its study.
+/// The statements of the version before migration 20 about its study.
 #[track_caller]
 fn same_study(summary: &str) {
     let given: Value = serde_json::from_str(summary).expect("JSON");

@@ -124,7 +124,7 @@ fn a_study_keeps_the_version_that_it_began_with() {
         refusal.contains("job.toml: [model] effects: unknown effect \"my_gian\""),
         "{refusal}"
     );
-    // The same job with the file beside it: the same bits.
+    // A job with the file beside it gives the same bits.
     let beside = job("[]")
         .in_job("effects = []", "effect_files = [\"gain.toml\"]")
         .beside("gain.toml", GAIN);

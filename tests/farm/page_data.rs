@@ -1,4 +1,4 @@
-//! What a page needs besides results: examples, experiments, studies without some runs, curves of effects.
+//! The data that a page needs besides results: examples, experiments, studies without some runs, curves of effects.
 
 use farm_tests::job::Job;
 use farm_tests::service::Service;

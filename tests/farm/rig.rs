@@ -42,7 +42,7 @@ fn without(job: Job, columns: &[&str]) -> Job {
     }
 }
 
-/// What `check` prints of a job.
+/// The text that `check` prints of a job.
 fn checked(job: &Job) -> String {
     let folder = tempfile::tempdir().expect("a folder");
     let path = job.write(folder.path()).display().to_string();

@@ -1,4 +1,4 @@
-//! What a finished study shows is computed once, and again when the study has changed.
+//! The results of a finished study are computed once, and again when the study has changed.
 
 use farm_tests::job::Job;
 use farm_tests::programs::{coordinator, run};
@@ -90,10 +90,10 @@ fn stored_diagnostics_and_flags_are_handed_on_as_they_stand() {
     let mut database = service.database();
     let stored = format!("SELECT body FROM results WHERE name = 'diagnostics-{id}.json'");
     assert_eq!(database.text(&stored), first.body);
-    // What is stored stays from now on: it was computed for a request, and perhaps for the overview of the study at the same time.
+    // The stored text stays from now on: it was computed for a request, and perhaps for the overview of the study at the same time.
     assert!(service.terminate());
     service.restart();
-    // What this program would not write itself shows whose text it is.
+    // A text that this program would not write shows whose text it is.
     let marked = r#"{"flags": [ {"marked": 1.50} ], "more": 2}"#;
     database.execute(&format!(
         "UPDATE results SET body = '{marked}' WHERE name = 'diagnostics-{id}.json'"

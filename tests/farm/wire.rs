@@ -44,7 +44,7 @@ fn result(lease: &Lease, observables: Observables) -> WorkResult {
     }
 }
 
-/// What a worker answers of the channels that are fitted, and nothing else.
+/// The answer of a worker about the fitted channels, and nothing else.
 fn fitted() -> Observables {
     Observables {
         drawbar_pull_n: vec![0.1 + 0.2; FIT_RUNS],

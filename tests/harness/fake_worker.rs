@@ -29,7 +29,7 @@ impl FakeWorker {
         }
     }
 
-    /// The same worker, saying that it computes another version of the equations than `fake-1`.
+    /// Lets the worker say that it computes another version of the equations than `fake-1`.
     pub fn computing(self, model_version: &str) -> Self {
         FakeWorker {
             model_version: model_version.into(),

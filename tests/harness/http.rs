@@ -15,7 +15,7 @@ pub struct Response {
     pub head: Vec<(String, String)>,
     /// Body, as text.
     pub body: String,
-    /// The same as it came.
+    /// The body as it came.
     pub bytes: Vec<u8>,
 }
 
@@ -38,7 +38,7 @@ impl Response {
     }
 }
 
-/// Where a request goes: an address, as in `127.0.0.1:7070`.
+/// The destination of requests: an address, as in `127.0.0.1:7070`.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Client(pub String);
 

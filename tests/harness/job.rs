@@ -74,7 +74,7 @@ impl Job {
             .in_job("[sampler]", "[discovery]\napply = \"auto\"\n[sampler]")
     }
 
-    /// The same job with other settings of the sampler.
+    /// Changes the settings of the sampler.
     pub fn sampler(self, particles: usize, moves: [usize; 2], seed: u64) -> Job {
         let sampler = format!("particles = {particles}\nmoves = {moves:?}\nseed = {seed}");
         self.in_job("particles = 60\nmoves = [2, 4]\nseed = 1", &sampler)

@@ -1,4 +1,4 @@
-//! What the tests of the whole farm stand on: real programs, real files, real HTTP.
+//! The tools of the tests of the whole farm: real programs, real files, real HTTP.
 //!
 //! # Layout
 //! - [`programs`]: builds the two programs once and runs them.
@@ -15,7 +15,7 @@
 //! - [`text`]: comparing long texts.
 //! - [`wait`]: waiting with a deadline.
 //! - [`random`]: seeded numbers.
-//! - [`chaos`]: a farm to which everything happens that may.
+//! - [`chaos`]: a farm that suffers faults at random.
 
 pub mod chaos;
 pub mod cylinder;

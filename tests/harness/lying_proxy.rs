@@ -5,7 +5,7 @@ use std::net::{TcpListener, TcpStream};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// What precedes the value that is changed.
+/// The bytes before the value that is changed.
 const BEFORE: &[u8] = b"\"drawbar_pull_n\":[";
 
 /// A proxy between workers that speak JSON and a coordinator; it lives as long as the test's process.

@@ -13,13 +13,13 @@ pub enum Signal {
     Kill,
     /// Asks to end.
     Terminate,
-    /// What ^C sends.
+    /// The signal of ^C.
     Interrupt,
     /// Halts.
     Stop,
     /// Goes on.
     Continue,
-    /// What a queue may send before it ends a job, SIGUSR1.
+    /// The signal that a queue may send before it ends a job, SIGUSR1.
     User,
 }
 
@@ -86,7 +86,7 @@ impl Process {
         self.memory_kb("VmRSS:")
     }
 
-    /// Most memory that it ever held `[kB]`; `None` where it has ended.
+    /// The largest memory that it ever held `[kB]`; `None` where it has ended.
     pub fn peak_kb(&self) -> Option<u64> {
         self.memory_kb("VmHWM:")
     }
@@ -127,7 +127,7 @@ impl Process {
         })
     }
 
-    /// What it and its predecessors with the same log have said on standard error.
+    /// The log of it and of its predecessors with the same file: standard error.
     ///
     /// # Panics
     /// The log is gone.

@@ -8,7 +8,7 @@ use serde_json::Value;
 
 use crate::job::Job;
 
-/// What a program left behind when it ended.
+/// The exit code and the output of a program that has ended.
 #[derive(Debug)]
 pub struct Ended {
     /// Exit code; `None` where a signal ended it.
@@ -104,7 +104,7 @@ fn command<S: AsRef<std::ffi::OsStr>>(name: &str, arguments: impl IntoIterator<I
     command
 }
 
-/// The same command, for a process that may have so many files and connections open.
+/// Limits the number of files and connections that the process of a command may have open.
 pub fn with_descriptors(count: u32, command: &Command) -> Command {
     let mut limited = Command::new("sh");
     limited
@@ -146,7 +146,7 @@ fn built() -> &'static Path {
         if folder.ends_with("release") {
             build.arg("--release");
         }
-        // What cargo tells a test of its own package would have the build script of ring run again, and all that use it built.
+        // The variables that cargo sets for a test would make the build script of ring run again, and rebuild all that use it.
         for (name, _) in std::env::vars_os() {
             let is_of_package = |prefix| name.to_string_lossy().starts_with(prefix);
             if is_of_package("CARGO_PKG_") || is_of_package("CARGO_MANIFEST_") {
@@ -162,7 +162,7 @@ fn built() -> &'static Path {
     built.as_deref().expect("the programs build")
 }
 
-/// What `coordinator run` prints of a job in a fresh folder, and its summary.
+/// Runs a job in a fresh folder: the text that `coordinator run` prints, and the summary.
 ///
 /// # Panics
 /// It fails, or writes no report.

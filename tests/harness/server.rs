@@ -32,7 +32,7 @@ impl ServerDatabase {
         Some(database)
     }
 
-    /// What `--store` takes.
+    /// The URL for `--store`.
     pub fn url(&self) -> String {
         format!("{}/{}", self.server, self.name)
     }

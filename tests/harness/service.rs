@@ -196,7 +196,7 @@ impl Service {
         (bytes, open)
     }
 
-    /// Most memory that it ever held `[kB]`.
+    /// The largest memory that it ever held `[kB]`.
     ///
     /// # Panics
     /// It is not running.
@@ -283,7 +283,7 @@ impl Service {
         self.json_worker_at(&self.url(), name)
     }
 
-    /// The same, talking to whatever stands between it and the service.
+    /// Starts a worker that talks to a proxy in front of the service.
     pub fn json_worker_at(&self, url: &str, name: &str) -> Process {
         let mut command = crate::programs::worker(["--coordinator", url, "--threads", "1"]);
         command.env("GROUSER_WIRE", "json");
@@ -380,7 +380,7 @@ impl Service {
         record["model_version"].as_str().unwrap_or_default().to_owned()
     }
 
-    /// What the service has said on standard error, over all its starts.
+    /// The service's standard error, over all its starts.
     ///
     /// # Panics
     /// The log is gone.

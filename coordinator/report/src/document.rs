@@ -26,7 +26,7 @@ pub fn document(study: &Study) -> String {
     })
 }
 
-/// What a service answers of a study, by path.
+/// The answers of a service about a study, by path.
 pub fn answers(study: &Study) -> Map<String, Value> {
     let overview = overview(study);
     let mut answers = Map::new();

@@ -1,4 +1,4 @@
-//! What a study says, from the numbers of `result`: flags, story, `summary.json`, report, text for a terminal.
+//! The sentences and files of a study, from the numbers of `result`: flags, story, `summary.json`, report, text for a terminal.
 //!
 //! Everything here is a pure function of a [`result::FinishedCalibration`], or of the [`result::Study`] that it belongs to.
 //!

@@ -228,9 +228,10 @@ pub fn overview(study: &Study) -> StudyOverview {
 fn verdict(study: &Study) -> Option<StudyVerdict> {
     let current = study.current();
     let mut rounds = study.rounds.iter().rev();
-    let of_current = rounds.find(|round| current.is_some_and(|own| own.row.id == round.calibration));
+    let of_current =
+        rounds.find(|round| current.is_some_and(|calibration| calibration.row.id == round.calibration));
     let round = of_current.or(study.rounds.last())?;
-    let added = current.map_or_else(Vec::new, |own| added(study, own));
+    let added = current.map_or_else(Vec::new, |calibration| added(study, calibration));
     let questions: Vec<String> = added.iter().filter_map(AddedEffect::open_question).collect();
     let open = (!questions.is_empty()).then(|| questions.join("; "));
     Some(StudyVerdict {
@@ -249,10 +250,10 @@ fn verdict(study: &Study) -> Option<StudyVerdict> {
 /// The members, each finished calibration with its story.
 fn members_with_stories(study: &Study) -> Vec<MemberOverview> {
     let with_story = |member: &StudyMember| {
-        let calibration = study.calibrations().find(|own| own.row.id == member.id);
+        let calibration = study.calibrations().find(|finished| finished.row.id == member.id);
         MemberOverview {
             member: member.clone(),
-            story: calibration.map(|own| Story::of(study, own)),
+            story: calibration.map(|finished| Story::of(study, finished)),
         }
     };
     study.members.iter().map(with_story).collect()

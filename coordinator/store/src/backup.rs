@@ -57,7 +57,7 @@ impl Reader {
         };
         let copied = copied.await;
         if copied.is_err() {
-            // Of what cannot be removed either, the error that is told is the cause.
+            // The error that is told is the cause, even if the copy cannot be removed either.
             let _ = std::fs::remove_file(&partial);
             let _ = std::fs::remove_file(to);
         }

@@ -1,4 +1,4 @@
-//! What is told of writes once they are stored.
+//! Changes of state, which are told once they are stored.
 
 use record::fact::Fact;
 use shared::api::CalibrationState;
@@ -35,7 +35,7 @@ impl StateChange {
     }
 }
 
-/// Those who want to know what has been stored.
+/// The listeners, which want to know what has been stored.
 #[derive(Debug, Clone)]
 pub(super) struct Listeners {
     states: broadcast::Sender<StateChange>,
@@ -43,7 +43,7 @@ pub(super) struct Listeners {
 }
 
 impl Listeners {
-    /// So many changes of state are kept for whoever is slow to hear of them.
+    /// The number of changes of state that are kept for a slow listener.
     pub(super) fn new(count: usize) -> Self {
         Listeners {
             states: broadcast::Sender::new(count),

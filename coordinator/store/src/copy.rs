@@ -16,7 +16,7 @@ const ROWS: usize = 1_000;
 /// The tables that others refer to, in the order in which they do.
 const FIRST: [&str; 3] = ["experiments", "studies", "calibrations"];
 
-/// What a column holds. SQLite has no type of its own for yes and no, so the server's tables say it.
+/// The kind of value that a column holds. SQLite has no type of its own for yes and no, so the server's tables say it.
 #[derive(Debug, Clone, Copy)]
 enum Kind {
     Integer,
@@ -64,25 +64,25 @@ pub async fn copy_store(from: &str, to: &str) -> Result<Vec<(String, u64)>, Stor
             "its tables are of an earlier version, or absent; coordinator serve brings them up to date",
         ));
     }
-    let of = |path: &str| {
+    let wrap = |path: &str| {
         let path = path.to_owned();
         move |source| StoreError::of(&path, source)
     };
-    let mut source = reader.pool.view().await.map_err(of(from))?;
+    let mut source = reader.pool.view().await.map_err(wrap(from))?;
     let (mut target, _lock) = opening::to_write(to).await?;
     let server = if is_server(from) { &mut source } else { &mut target };
     let tables = tables(server).await?;
-    target.begin().await.map_err(of(to))?;
+    target.begin().await.map_err(wrap(to))?;
     let mut copied = Vec::with_capacity(tables.len());
     for table in &tables {
-        if count(&mut target, table).await.map_err(of(to))? > 0 {
+        if count(&mut target, table).await.map_err(wrap(to))? > 0 {
             return Err(unfit(
                 to,
                 &format!("table {} has rows; a store is copied to an empty one", table.name),
             ));
         }
         let read = copy_rows(&mut source, &mut target, table).await?;
-        let written = count(&mut target, table).await.map_err(of(to))?;
+        let written = count(&mut target, table).await.map_err(wrap(to))?;
         if written != read {
             return Err(unfit(
                 to,
@@ -92,10 +92,10 @@ pub async fn copy_store(from: &str, to: &str) -> Result<Vec<(String, u64)>, Stor
         copied.push((table.name.clone(), read));
     }
     if is_server(to) {
-        number_on(&mut target).await.map_err(of(to))?;
+        number_on(&mut target).await.map_err(wrap(to))?;
     }
-    target.commit().await.map_err(of(to))?;
-    target.close().await.map_err(of(to))?;
+    target.commit().await.map_err(wrap(to))?;
+    target.close().await.map_err(wrap(to))?;
     Ok(copied)
 }
 

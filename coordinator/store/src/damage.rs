@@ -47,9 +47,9 @@ pub(super) async fn check(connection: &mut SqliteConnection, path: &str) -> Resu
 
 async fn check_table(connection: &mut SqliteConnection, path: &str, table: String) -> Result<(), StoreError> {
     let query = AssertSqlSafe(format!("PRAGMA quick_check(\"{table}\")"));
-    let said = sqlx::query_scalar::<_, String>(query).fetch_all(connection).await;
-    let what = match said {
-        Ok(said) => match said.into_iter().find(|line| line != "ok") {
+    let lines = sqlx::query_scalar::<_, String>(query).fetch_all(connection).await;
+    let what = match lines {
+        Ok(lines) => match lines.into_iter().find(|line| line != "ok") {
             None => return Ok(()),
             Some(first) => first,
         },

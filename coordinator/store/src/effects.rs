@@ -46,7 +46,7 @@ pub struct StoredEffect {
     pub version: EffectVersion,
 }
 
-/// What became of an effect to store.
+/// The fate of an effect that was to be stored.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct AddedEffect {
     /// Name of the effect.

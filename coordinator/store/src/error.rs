@@ -91,7 +91,7 @@ pub(super) fn primary_code(error: &sqlx::Error) -> Option<u32> {
 }
 
 impl StoreError {
-    /// What SQLite says of a file.
+    /// Turns an error of SQLite about a file into ours.
     pub(super) fn of(path: &str, source: sqlx::Error) -> StoreError {
         let path = name_of(path);
         match is_locked(&source) {
@@ -100,7 +100,7 @@ impl StoreError {
         }
     }
 
-    /// What bringing the tables of a file up to date ends with.
+    /// Turns an error of a migration into ours.
     pub(super) fn of_migration(path: &str, source: MigrateError) -> StoreError {
         match source {
             MigrateError::Execute(source) | MigrateError::ExecuteMigration(source, _)
@@ -115,7 +115,7 @@ impl StoreError {
         }
     }
 
-    /// The same of a row: `place` says which.
+    /// Turns a damaged value into an error about a row; `place` names it.
     pub(super) fn within(self, place: &str) -> StoreError {
         match self {
             StoreError::Corrupt(what) => StoreError::Corrupt(format!("{place}: {what}")),

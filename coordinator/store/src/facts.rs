@@ -13,7 +13,7 @@ use super::sql::{Conflict, Connection, Value, insert, query, query_as, query_sca
 use super::verification;
 use record::fact::{Fact, Fingerprint};
 
-/// Most samples in one statement.
+/// The largest number of samples in one statement.
 const ROWS: usize = 4000;
 const SAMPLE: [&str; 6] = [
     "calibration",
@@ -23,7 +23,7 @@ const SAMPLE: [&str; 6] = [
     "log_likelihood",
     "log_prior",
 ];
-/// Of tables with one row for each calibration.
+/// The tables with one row for each calibration.
 const ITS_OWN: Conflict<'static> = Conflict::Replace(&["calibration"]);
 
 /// Writes a fact within the present transaction. Stages and states may be told twice, after a restart.
@@ -287,7 +287,7 @@ async fn compare(
             .bind(second)
             .execute(&mut *connection)
             .await?;
-            // What the study ended with says nothing of it yet.
+            // The stored results of the study do not know it yet.
             query("DELETE FROM results WHERE study = (SELECT study FROM calibrations WHERE id = ?)")
                 .bind(calibration)
                 .execute(&mut *connection)

@@ -141,8 +141,8 @@ pub(super) fn lock(path: &str) -> Result<Option<std::fs::File>, StoreError> {
             ),
         });
     }
-    let own = std::fs::canonicalize(file).map_err(io)?;
-    let lock = make(&format!("{}.lock", own.display())).map_err(io)?;
+    let target = std::fs::canonicalize(file).map_err(io)?;
+    let lock = make(&format!("{}.lock", target.display())).map_err(io)?;
     match lock.try_lock() {
         Ok(()) => Ok(Some(lock)),
         Err(std::fs::TryLockError::WouldBlock) => Err(StoreError::InUse(file.into())),

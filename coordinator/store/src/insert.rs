@@ -4,11 +4,12 @@ use shared::file::FileSet;
 
 use super::blob;
 use super::json::json;
+use super::observables;
 use super::sql::{Conflict, Connection, insert, query_scalar};
 use record::Membership;
 use record::fact::{EvaluationRow, Kept};
 
-/// Most rows in one statement; SQLite takes 32,766 parameters, PostgreSQL 65,535.
+/// The largest number of rows in one statement; SQLite takes 32,766 parameters, PostgreSQL 65,535.
 const ROWS: usize = 1000;
 const EVALUATION: [&str; 11] = [
     "calibration",
@@ -31,7 +32,7 @@ pub struct NewStudy {
     pub experiment: i64,
     /// Its calibrations.
     pub calibrations: Vec<NewCalibrationRow>,
-    /// Where pauses and ends are posted to.
+    /// The address that pauses and ends are posted to.
     pub webhook: Option<String>,
     /// Now.
     pub now_ms: i64,
@@ -141,7 +142,7 @@ pub(super) async fn insert_evaluations(
                 Kept::Rejected(rejection) => (Some(rejection), None, None),
                 Kept::Scored => (None, Some(Vec::new()), None),
                 Kept::Fitted(values) => (None, Some(blob::encode(&values)), None),
-                Kept::Whole(observables) => (None, None, Some(blob::encode_whole(&observables))),
+                Kept::Whole(observables) => (None, None, Some(observables::encode(&observables))),
             };
             vec![
                 calibration.into(),

@@ -19,6 +19,8 @@ mod insert;
 mod json;
 mod members;
 mod migrations;
+mod observables;
+mod older_blob;
 mod opening;
 mod place;
 mod prior;
@@ -145,7 +147,7 @@ impl Store {
         self.epoch
     }
 
-    /// What can be read.
+    /// The readers' view of the store.
     pub fn reader(&self) -> Reader {
         self.reader.clone()
     }

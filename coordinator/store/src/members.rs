@@ -28,7 +28,7 @@ struct EarlierRow {
     job: FileSet,
 }
 
-/// What an earlier version did not store of a calibration.
+/// The facts about a calibration that an earlier version did not store.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Filled {
     pub(super) membership: Membership,
@@ -73,7 +73,7 @@ pub(super) async fn fill(connection: &mut Connection, path: &str) -> Result<(), 
     connection.commit().await.map_err(wrap)
 }
 
-/// What the rows of an earlier version lack, by their ids.
+/// The facts that the rows of an earlier version lack, by their ids.
 ///
 /// # Errors
 /// The database's reason.
@@ -137,7 +137,7 @@ fn of_study(rows: &[EarlierRow]) -> Vec<(i64, Filled)> {
     filled
 }
 
-/// What a calibration of a job computes; of a job that this version does not understand, a sample.
+/// Names what a calibration of a job computes; a sample if this version does not understand the job.
 fn role(row: &EarlierRow) -> Role {
     match Job::parse(JOB, &row.job.toml).map(|job| job.algorithm) {
         Ok(AlgorithmSettings::Fit(_) | AlgorithmSettings::Evolve(_)) => Role::Fit,

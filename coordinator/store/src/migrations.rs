@@ -3,120 +3,49 @@
 use sqlx::SqlSafeStr;
 use sqlx::migrate::{Migration, MigrationType, Migrator};
 
+/// A file of `migrations/`.
+macro_rules! file {
+    ($number:literal, $name:literal, $path:literal) => {
+        (
+            $number,
+            $name,
+            include_str!(concat!("../../../migrations/", $path)),
+        )
+    };
+}
+
 /// Number, name and text of each file of `migrations/`.
 ///
 /// They are listed here because the macro that lists them builds SQLite a second time, for the compiler.
-const FILES: [(i64, &str, &str); 20] = [
-    (
-        1,
-        "experiments",
-        include_str!("../../../migrations/0001_experiments.sql"),
-    ),
-    (
-        2,
-        "calibrations",
-        include_str!("../../../migrations/0002_calibrations.sql"),
-    ),
-    (
-        3,
-        "evaluations",
-        include_str!("../../../migrations/0003_evaluations.sql"),
-    ),
-    (
-        4,
-        "estimates",
-        include_str!("../../../migrations/0004_estimates.sql"),
-    ),
-    (
-        5,
-        "search estimates",
-        include_str!("../../../migrations/0005_search_estimates.sql"),
-    ),
-    (
-        6,
-        "metamodel",
-        include_str!("../../../migrations/0006_metamodel.sql"),
-    ),
-    (
-        7,
-        "discoveries",
-        include_str!("../../../migrations/0007_discoveries.sql"),
-    ),
-    (
-        8,
-        "members experiment",
-        include_str!("../../../migrations/0008_members_experiment.sql"),
-    ),
-    (
-        9,
-        "short evaluations",
-        include_str!("../../../migrations/0009_short_evaluations.sql"),
-    ),
-    (
-        10,
-        "results",
-        include_str!("../../../migrations/0010_results.sql"),
-    ),
-    (
-        11,
-        "seal keys",
-        include_str!("../../../migrations/0011_seal_keys.sql"),
-    ),
-    (
-        12,
-        "disputes",
-        include_str!("../../../migrations/0012_disputes.sql"),
-    ),
-    (
-        13,
-        "given up",
-        include_str!("../../../migrations/0013_given_up.sql"),
-    ),
-    (14, "tokens", include_str!("../../../migrations/0014_tokens.sql")),
-    (
-        15,
-        "removal",
-        include_str!("../../../migrations/0015_removal.sql"),
-    ),
-    (
-        16,
-        "webhooks",
-        include_str!("../../../migrations/0016_webhooks.sql"),
-    ),
-    (
-        17,
-        "effects",
-        include_str!("../../../migrations/0017_effects.sql"),
-    ),
-    (
-        18,
-        "verification",
-        include_str!("../../../migrations/0018_verification.sql"),
-    ),
-    (
-        19,
-        "repeats",
-        include_str!("../../../migrations/0019_repeats.sql"),
-    ),
-    (
-        20,
-        "members",
-        include_str!("../../../migrations/0020_members.sql"),
-    ),
+const FILES: &[(i64, &str, &str)] = &[
+    file!(1, "experiments", "0001_experiments.sql"),
+    file!(2, "calibrations", "0002_calibrations.sql"),
+    file!(3, "evaluations", "0003_evaluations.sql"),
+    file!(4, "estimates", "0004_estimates.sql"),
+    file!(5, "search estimates", "0005_search_estimates.sql"),
+    file!(6, "metamodel", "0006_metamodel.sql"),
+    file!(7, "discoveries", "0007_discoveries.sql"),
+    file!(8, "members experiment", "0008_members_experiment.sql"),
+    file!(9, "short evaluations", "0009_short_evaluations.sql"),
+    file!(10, "results", "0010_results.sql"),
+    file!(11, "seal keys", "0011_seal_keys.sql"),
+    file!(12, "disputes", "0012_disputes.sql"),
+    file!(13, "given up", "0013_given_up.sql"),
+    file!(14, "tokens", "0014_tokens.sql"),
+    file!(15, "removal", "0015_removal.sql"),
+    file!(16, "webhooks", "0016_webhooks.sql"),
+    file!(17, "effects", "0017_effects.sql"),
+    file!(18, "verification", "0018_verification.sql"),
+    file!(19, "repeats", "0019_repeats.sql"),
+    file!(20, "members", "0020_members.sql"),
+    file!(21, "observables", "0021_observables.sql"),
 ];
 
-/// The same of `migrations/postgres/`: a server begins with the tables of version 19, and changes with the files of both.
-const SERVER_FILES: [(i64, &str, &str); 2] = [
-    (
-        19,
-        "store",
-        include_str!("../../../migrations/postgres/0019_store.sql"),
-    ),
-    (
-        20,
-        "members",
-        include_str!("../../../migrations/postgres/0020_members.sql"),
-    ),
+/// The files of `migrations/postgres/`: a server begins with the tables of version 19, and changes with the files of both folders.
+const SERVER_FILES: &[(i64, &str, &str)] = &[
+    file!(19, "store", "postgres/0019_store.sql"),
+    file!(20, "members", "postgres/0020_members.sql"),
+    file!(21, "observables", "postgres/0021_observables.sql"),
 ];
 
 /// The version of the tables that this program writes.
@@ -124,12 +53,12 @@ pub(super) const VERSION: i64 = FILES[FILES.len() - 1].0;
 
 /// Brings the tables of a file up to date.
 pub(super) fn migrator() -> Migrator {
-    of(&FILES)
+    of(FILES)
 }
 
-/// Brings those in a server up to date.
+/// Brings the tables of a server up to date.
 pub(super) fn server_migrator() -> Migrator {
-    of(&SERVER_FILES)
+    of(SERVER_FILES)
 }
 
 fn of(files: &[(i64, &'static str, &'static str)]) -> Migrator {
@@ -165,8 +94,8 @@ mod tests {
 
     #[test]
     fn every_file_is_listed_under_its_number_and_name() {
-        is_listed("../../migrations", &FILES);
-        is_listed("../../migrations/postgres", &SERVER_FILES);
+        is_listed("../../migrations", FILES);
+        is_listed("../../migrations/postgres", SERVER_FILES);
         let last = SERVER_FILES[SERVER_FILES.len() - 1].0;
         assert_eq!(last, VERSION, "both databases have the same tables");
     }

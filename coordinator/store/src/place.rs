@@ -1,4 +1,4 @@
-//! Where a store stands: the name of its file, or the URL of a server.
+//! The place of a store: the name of its file, or the URL of a server.
 
 /// Whether a store stands in a PostgreSQL server.
 pub fn is_server(path: &str) -> bool {
@@ -7,7 +7,7 @@ pub fn is_server(path: &str) -> bool {
         .any(|scheme| path.starts_with(scheme))
 }
 
-/// What a store is called in messages: its file, or its URL without the password.
+/// Names a store in messages: by its file, or by its URL without the password.
 pub fn name_of(path: &str) -> String {
     let Some((scheme, rest)) = path.split_once("://").filter(|_| is_server(path)) else {
         return path.to_owned();

@@ -13,6 +13,7 @@ use super::blob;
 use super::error::StoreError;
 use super::json::{file_map, json, numbers};
 use super::members::Filled;
+use super::observables;
 use super::reader::Reader;
 use super::sql::{Pool, Row, query, query_as, query_scalar};
 use super::theta::theta;
@@ -35,7 +36,7 @@ pub struct StoredStudy {
     pub calibrations: Vec<i64>,
 }
 
-/// Where a calibration's pauses and ends are posted to.
+/// The address that a calibration's pauses and ends are posted to.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct StoredWebhook {
     /// The study.
@@ -262,7 +263,7 @@ impl Reader {
 
     /// At most so many equally spaced draws of the population at the end of a stage, or of the last one, and its size.
     ///
-    /// Of n draws m are taken: those k with floor((k + 1) m / n) > floor(k m / n).
+    /// Takes m of n draws: those k with floor((k + 1) m / n) > floor(k m / n).
     ///
     /// # Errors
     /// [`StoreError`].
@@ -362,7 +363,7 @@ impl Reader {
         .transpose()
     }
 
-    /// What a search for a missing effect found.
+    /// Reads the result of a search for a missing effect.
     ///
     /// # Errors
     /// [`StoreError`].
@@ -396,7 +397,7 @@ impl Reader {
         for row in &rows {
             let result = match row.get::<Option<String>>("rejection") {
                 Some(rejection) => Err(RejectionReason(rejection)),
-                None => Ok(blob::decode(row.get("observables"))?),
+                None => Ok(observables::decode(row.get("observables"))?),
             };
             let number = row.get::<i64>("evaluation").unsigned_abs();
             match EvaluationKey::of(number, 1) {
@@ -425,7 +426,7 @@ impl Reader {
         Ok(predictions)
     }
 
-    /// What a metamodel did between evaluations; `None` where there was none.
+    /// Reads what a metamodel did between evaluations; `None` if there was none.
     ///
     /// # Errors
     /// [`StoreError`].
@@ -460,7 +461,8 @@ impl Reader {
         .bind(LIKELIEST as i64)
         .fetch_optional(&self.pool)
         .await?;
-        row.map(|row| blob::decode(row.get("observables"))).transpose()
+        row.map(|row| observables::decode(row.get("observables")))
+            .transpose()
     }
 
     /// How many parameter vectors of the sampler or the fit the model refused, by the kind of refusal.

@@ -20,7 +20,7 @@ const DENIED: [u32; 4] = [8, 10, 13, 14];
 #[derive(Debug, Clone)]
 pub struct Reader {
     pub(super) pool: Pool,
-    /// What the rows of an earlier version lack: reading alone leaves the store as it is.
+    /// The facts that the rows of an earlier version lack: reading alone leaves the store as it is.
     pub(super) earlier_members: Option<Arc<BTreeMap<i64, Filled>>>,
 }
 

@@ -1,4 +1,4 @@
-//! What a restart needs of an unfinished calibration.
+//! The rows that a restart needs of an unfinished calibration.
 
 use std::collections::{BTreeMap, BTreeSet};
 

@@ -11,7 +11,7 @@ use super::sql::{Connection, query, query_as, query_scalar};
 pub struct StudyResults {
     /// The study.
     pub study: i64,
-    /// What they were computed by and from.
+    /// The stamp of the build and the members that they were computed by and from.
     pub stamp: String,
     /// Text of each file by its name.
     pub files: BTreeMap<String, String>,

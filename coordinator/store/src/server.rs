@@ -18,7 +18,7 @@ pub(super) const ANSWER_TIME: Duration = Duration::from_secs(5);
 /// A group of facts takes milliseconds; a server that has not stored one in so long is taken for lost.
 pub(super) const GROUP_TIME: Duration = Duration::from_secs(30);
 
-/// What a statement gives, or an error where it takes longer.
+/// Awaits the result of a statement; an error if it takes longer.
 pub(super) async fn in_time<T>(
     most: Duration,
     statement: impl Future<Output = Result<T, sqlx::Error>>,
@@ -48,7 +48,7 @@ fn options(path: &str) -> Result<PgConnectOptions, StoreError> {
 pub(super) async fn connect(path: &str) -> Result<Connection, StoreError> {
     let connected = PgConnection::connect_with(&options(path)?).await;
     let mut connection = Connection::Postgres(connected.map_err(|source| StoreError::of(path, source))?);
-    // What is acknowledged is on disk, whatever the server's own default is.
+    // An acknowledged commit is on disk, whatever the server's default is.
     let durable = query("SET synchronous_commit = on")
         .execute(&mut connection)
         .await;
@@ -82,7 +82,7 @@ pub(super) async fn lock(connection: &mut Connection, path: &str) -> Result<bool
 /// Refuses a database that somebody else has made, or a later version of this program.
 pub(super) async fn recognise(connection: &mut Connection, path: &str) -> Result<(), StoreError> {
     let wrap = |source| StoreError::of(path, source);
-    // Whoever is cut off at the first start may leave the empty list of migrations. Views are others' business.
+    // An interrupted first start may leave an empty table of migrations. Views are ignored; they are not ours.
     let tables = "SELECT count(*) FROM information_schema.tables
                   WHERE table_schema = current_schema() AND table_type = 'BASE TABLE' AND table_name <> '_sqlx_migrations'";
     let all: i64 = query_scalar(tables)

@@ -12,7 +12,7 @@ use sqlx::sqlite::SqliteRow;
 use sqlx::{AssertSqlSafe, Connection as _, PgConnection, PgPool, Postgres, SqlSafeStr, SqlStr, Sqlite};
 use sqlx::{Decode, Row as _, SqliteConnection, SqlitePool, Type};
 
-/// What takes the place of NUL in a text: PostgreSQL has no text with one.
+/// The character that takes the place of NUL in a text: PostgreSQL has no text with NUL.
 const NUL: &str = "\u{2400}";
 
 /// A connection that may write.
@@ -29,7 +29,7 @@ pub(super) enum Pool {
     Postgres(PgPool),
 }
 
-/// Where a statement is executed.
+/// The connection or pool that executes a statement.
 pub(super) enum On<'a> {
     Connection(&'a mut Connection),
     Pool(&'a Pool),
@@ -144,7 +144,7 @@ pub(super) enum Row {
     Postgres(PgRow),
 }
 
-/// What a column is read as: either database decodes it.
+/// A type that a column is read as: either database decodes it.
 pub(super) trait Column<'r>:
     Decode<'r, Sqlite> + Type<Sqlite> + Decode<'r, Postgres> + Type<Postgres>
 {
@@ -161,7 +161,7 @@ impl Row {
         }
     }
 
-    /// The same of a column that is read without fail, because its table says what it has.
+    /// Reads a column that cannot fail, because its table says what it holds.
     pub(super) fn get<'r, T: Column<'r>>(&'r self, column: &str) -> T {
         match self {
             Row::Sqlite(row) => row.get(column),
@@ -380,7 +380,7 @@ where
     }
 }
 
-/// What becomes of a row whose key is there.
+/// The fate of a row whose key is there already.
 pub(super) enum Conflict<'a> {
     /// It stays, and the new one is dropped.
     Keep,

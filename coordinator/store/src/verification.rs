@@ -1,4 +1,4 @@
-//! What follows where a worker's answers are compared with those of another.
+//! The consequences of comparing a worker's answers with those of another.
 
 use super::error::StoreError;
 use super::reader::Reader;
@@ -97,7 +97,7 @@ pub(super) async fn rewind(
     .bind(worker)
     .execute(&mut *connection)
     .await?;
-    // What failed then was asked something else.
+    // The evaluations that failed then were asked something else.
     query(
         "INSERT INTO faults (calibration, evaluation, attempt, worker, message, at_ms)
          SELECT DISTINCT calibration, evaluation, 0, '', 'asked anew: earlier results were dropped', unixepoch('subsec') * 1000
@@ -107,7 +107,7 @@ pub(super) async fn rewind(
     .bind(round_end)
     .execute(&mut *connection)
     .await?;
-    // What still holds of these is told again by the replay.
+    // The replay tells again those of them that still hold.
     for table in ["stages", "samples", "estimates", "discoveries"] {
         let sql = format!("DELETE FROM {table} WHERE calibration = ?");
         query(sqlx::AssertSqlSafe(sql))

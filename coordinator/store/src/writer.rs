@@ -23,7 +23,7 @@ use super::server;
 use super::sql::{Connection, query};
 use record::fact::{EvaluationRow, Fact};
 
-/// Most facts in one commit.
+/// The largest number of facts in one commit.
 const GROUP: usize = 4096;
 /// Evaluations that nobody waits for gather for so long before they are committed: a commit writes whole pages.
 const LINGER: Duration = Duration::from_millis(250);
@@ -483,7 +483,7 @@ async fn write_group(
                 replies.done.push(reply);
             }
             Write::Delete { study, now_ms, reply } => {
-                // What was told of its calibrations before goes with them.
+                // The facts about its calibrations that were told before go with them.
                 insert_evaluations(connection, &mut rows).await?;
                 let is_gone = super::removal::delete_part(connection, study, now_ms).await?;
                 replies.deleted.push((reply, is_gone));

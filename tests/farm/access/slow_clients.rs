@@ -71,7 +71,7 @@ fn half_sent(service: &Service) -> (TcpStream, String) {
         "POST /v1/experiments HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Type: application/json\r\nContent-Length: {size}\r\n\r\n"
     );
     stream.write_all(head.as_bytes()).expect("a head");
-    // Where it is refused, the service hangs up.
+    // The service hangs up after it has refused.
     let _ = stream.write_all(&vec![b' '; size / 2]);
     stream
         .set_read_timeout(Some(Duration::from_secs(20)))

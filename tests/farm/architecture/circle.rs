@@ -44,7 +44,7 @@ fn circles(imports: &BTreeMap<&str, BTreeSet<&str>>) -> Vec<String> {
     found
 }
 
-/// The same among scripts.
+/// A circle of imports among scripts.
 fn script_circles(imports: &Imports) -> Vec<String> {
     let borrowed = imports
         .iter()

@@ -9,17 +9,17 @@ use syn::{Item, UseTree};
 
 use farm_tests::workspace::{files, root, text};
 
-/// Most names and re-exports that are followed from one path.
+/// The largest number of names and re-exports that are followed from one path.
 const DEPTH: usize = 16;
 
 /// A file of a crate as a module.
 #[derive(Default)]
 struct Module {
-    /// Where it lies in the workspace.
+    /// Its path in the workspace.
     file: String,
-    /// What it defines.
+    /// The names that it defines.
     defined: BTreeSet<String>,
-    /// What it brings into scope under a name, as a path from the crate's root.
+    /// The names that it brings into scope, each with its path from the crate's root.
     imported: BTreeMap<String, Vec<String>>,
     /// Modules that it brings into scope as a whole.
     globs: Vec<Vec<String>>,

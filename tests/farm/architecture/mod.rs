@@ -87,7 +87,7 @@ fn code(path: &Path) -> Vec<(usize, String)> {
         .take_while(|(_, line)| !line.trim_start().starts_with("#[cfg(test)]"));
     lines
         .filter(|(_, line)| !line.trim_start().starts_with("//"))
-        // What stands in quotes is text, not code.
+        // Quoted text is no code.
         .map(|(i, line)| (i + 1, line.split('"').step_by(2).collect()))
         .collect()
 }

@@ -1,9 +1,8 @@
 //! A gallery of wrong inputs: each gives one clear message, another exit code than 0, and leaves nothing behind.
 
 mod bevameter;
-mod effects;
 mod experiments;
-mod jobs;
+pub(super) mod gallery;
 mod meshes;
 mod places;
 mod requests;
@@ -25,7 +24,7 @@ pub(super) fn refusal(job: &Job) -> String {
     refusal_in(&job.write(folder.path()), folder.path())
 }
 
-/// The same of files that are in a folder.
+/// The message of a job that lies in a folder and must be refused.
 #[track_caller]
 pub(super) fn refusal_in(path: &Path, folder: &Path) -> String {
     let out = folder.join("out");

@@ -18,7 +18,7 @@ fn copy(from: &Path, to: &Path) {
     }
 }
 
-/// The same experiment with another seed, so that every parameter vector differs.
+/// Repeats the experiment with another seed, so that every parameter vector differs.
 fn other_job() -> Job {
     Job::small().sampler(60, [2, 4], 2)
 }

@@ -20,7 +20,7 @@ fn metamodel_job() -> Job {
         .in_job("moves = [2, 4]", moves)
 }
 
-/// What honest workers give.
+/// The results of honest workers.
 fn honest(job: &Job) -> String {
     let service = Service::start(&["--local-workers", "2"]);
     let id = service.submit(job);
@@ -134,7 +134,7 @@ fn with_one_worker_nothing_is_verified_and_that_is_said() {
     assert!(service.metric("grouser_evaluations_unconfirmed_total") > 5);
     drop(worker);
 
-    // What one worker has computed waits for a second, over a restart too.
+    // A result of one worker waits for a second worker, over a restart too.
     let id = service.submit(&job());
     let worker = service.worker("first", 1);
     until("some results", || (service.evaluations(id)? > 300).then_some(()));

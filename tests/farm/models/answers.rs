@@ -1,4 +1,4 @@
-//! What a model answers that has no answer: a rejection where the parameters are at fault, else a fault.
+//! Models without an answer: a rejection if the parameters are at fault, else a fault.
 
 use std::time::Duration;
 
@@ -97,7 +97,7 @@ fn a_program_is_held_to_its_limits() {
     let id = service.submit(&limited);
     let _worker = service.worker_of("worker", 4, &path);
     let (rejected, _) = finished(&service, id);
-    // Of the first draws alone four in ten or so lie there, and none at the medians.
+    // About four in ten of the first draws lie there, and the medians do not.
     assert!(rejected >= 5, "{rejected}");
     let mut store = service.database();
     for count in [

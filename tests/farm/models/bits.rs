@@ -1,4 +1,4 @@
-//! The same bits by whatever kind, however many workers, whatever is killed.
+//! A model gives the same bits by either kind, with any number of workers, and after any kill.
 
 use farm_tests::service::Service;
 use farm_tests::text::same;

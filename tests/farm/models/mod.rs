@@ -25,7 +25,7 @@ fn job(url: &str) -> Job {
     }
 }
 
-/// The same model as a program, `wheel.py`.
+/// A job with the model as a program, `wheel.py`.
 fn program_job() -> Job {
     let job = job("http://x");
     job.in_job(
@@ -34,7 +34,7 @@ fn program_job() -> Job {
     )
 }
 
-/// The same with fewer draws: a program takes some tens of milliseconds to start.
+/// A job with fewer draws: a program takes some tens of milliseconds to start.
 fn short(job: Job) -> Job {
     job.in_job("particles = 60", "particles = 20")
         .in_job("moves = [2, 4]", "moves = [1, 2]")
@@ -64,7 +64,7 @@ fn wheel(run: &[f64], parameters: &[f64]) -> [f64; 3] {
     [thrust - 2.0, thrust * 0.125, softness * load]
 }
 
-/// The same as a program, with what it does before it answers.
+/// The model as a program, with code that runs before it answers.
 fn program(before: &str) -> String {
     format!(
         "#!/usr/bin/env python3\nimport json, os, sys, time\n\
@@ -85,7 +85,7 @@ fn answer(question: &Question) -> Reply {
     Reply::channels(wheel(&question.run, &question.parameters))
 }
 
-/// What was measured: the model at grip 0.6 and softness 1e-4, a little off.
+/// The measurements: the model at grip 0.6 and softness 1e-4, a little off.
 fn measured() -> String {
     let mut rows = "run,wheel,soil,slip,wheel_load_n,sled_speed_m_s,slip_angle_deg,pass,drawbar_pull_n,torque_n_m,sinkage_m,use\n".to_owned();
     for (i, (slip, load)) in [

@@ -50,7 +50,7 @@ fn another_version_gets_no_lease_and_a_run_refuses_to_go_on_with_it() {
     until("a word of the worker", || {
         (worker.log().matches(refusal).count() > 1).then_some(())
     });
-    // What the worker still held may have been computed; nothing of it counts.
+    // The worker may have computed the evaluations that it still held; none of them counts.
     assert_eq!(service.evaluations(id), done);
 }
 

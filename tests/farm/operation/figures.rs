@@ -51,7 +51,7 @@ fn queue_states_store_and_requests_are_counted() {
     let service = Service::start(&[]);
     service.submit(&Job::small());
     let worker = FakeWorker::new(&service.client, "worker");
-    // Of two calibrations each would have one lease.
+    // With two calibrations, each would have one lease.
     assert_eq!(worker.take(2).len(), 2);
     let second = service.submit(&Job::small());
     service

@@ -13,7 +13,7 @@ use std::path::Path;
 use farm_tests::programs::{Ended, coordinator, run};
 use farm_tests::service::free_address;
 
-/// What a service says that is refused a store.
+/// The message of a service that is refused a store.
 fn serve(store: &Path) -> Ended {
     let store = format!("sqlite://{}", store.display());
     run(coordinator([

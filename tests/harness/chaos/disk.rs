@@ -1,22 +1,19 @@
-//! The disk that a store lies on: one that can be filled and emptied.
+//! The disk of the store: one that can be filled and emptied.
 
 use std::fs::File;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-/// Size of a disk of our own.
+/// Size of the tmpfs.
 const SIZE_MIB: usize = 96;
-/// What a file is filled with.
-const BLOCK: usize = 4096;
 
 /// A disk.
 #[derive(Debug)]
 pub(super) struct Disk {
     folder: PathBuf,
-    /// Whether a file system of our own is mounted there, which only a superuser may do. Elsewhere the size of the
-    /// coordinator's files is limited (`RLIMIT_FSIZE`, without its signal): SQLite finds that it cannot write, too.
-    pub(super) is_mounted: bool,
+    /// Whether a tmpfs is mounted there, which only a superuser may do. Another disk is never filled.
+    is_mounted: bool,
     pub(super) is_full: bool,
 }
 
@@ -40,27 +37,22 @@ impl Disk {
         self.folder.join("grouser.db")
     }
 
-    /// Fills the disk but for so many bytes; `writer` is the process that writes to it.
-    pub(super) fn fill(&mut self, free: usize, writer: Option<u32>) {
-        self.is_full = self.is_mounted || writer.is_some();
-        if !self.is_mounted {
-            let Some(writer) = writer else { return };
-            return limit(writer, &free.to_string());
+    /// Fills the disk but for a number of bytes.
+    pub(super) fn fill(&mut self, free: usize) {
+        self.is_full = self.is_mounted;
+        if self.is_mounted {
+            let mut ballast = File::create(self.folder.join("ballast")).expect("a file of the disk");
+            while ballast.write_all(&[0; 4096]).is_ok() {}
+            let length = ballast.metadata().expect("a file").len();
+            let shorter = ballast.set_len(length.saturating_sub(free as u64));
+            shorter.expect("a file becomes shorter");
         }
-        let mut ballast = File::create(self.folder.join("ballast")).expect("a file of the disk");
-        while ballast.write_all(&[0; BLOCK]).is_ok() {}
-        let length = ballast.metadata().expect("a file").len();
-        let less = length.saturating_sub(free as u64);
-        ballast.set_len(less).expect("a file becomes shorter");
     }
 
     /// Empties the disk again.
-    pub(super) fn empty(&mut self, writer: Option<u32>) {
-        self.is_full = false;
-        match (self.is_mounted, writer) {
-            (true, _) => drop(std::fs::remove_file(self.folder.join("ballast"))),
-            (false, Some(writer)) => limit(writer, "unlimited"),
-            (false, None) => {}
+    pub(super) fn empty(&mut self) {
+        if std::mem::take(&mut self.is_full) {
+            std::fs::remove_file(self.folder.join("ballast")).expect("the disk was filled");
         }
     }
 
@@ -68,45 +60,18 @@ impl Disk {
     pub(super) fn put_back(&self, copy: &Path) {
         let store = self.store();
         for end in ["-wal", "-shm"] {
-            // Where the coordinator has closed the store, they are gone.
+            // They are gone where the coordinator has closed the store.
             let _ = std::fs::remove_file(format!("{}{end}", store.display()));
         }
         std::fs::copy(copy, store).expect("the backup is put back");
     }
 }
 
-/// Limits the size of the files of a process `[bytes]`; of one that has ended nothing is limited.
-fn limit(process: u32, bytes: &str) {
-    let mut command = Command::new("prlimit");
-    command.args([format!("--pid={process}"), format!("--fsize={bytes}:")]);
-    let _ = command
-        .stderr(Stdio::null())
-        .status()
-        .expect("util-linux is installed");
-}
-
 impl Drop for Disk {
     fn drop(&mut self) {
         if self.is_mounted {
-            // A process that still ends keeps it for so long.
+            // Lazily, because a process that is about to end may still use it.
             let _ = Command::new("umount").arg("--lazy").arg(&self.folder).status();
         }
     }
-}
-
-/// The same command, told of a full disk by an error of its writes and not by a signal.
-pub(super) fn without_signal(command: &Command) -> Command {
-    let mut other = Command::new("sh");
-    other.args(["-c", "trap '' XFSZ; exec \"$0\" \"$@\""]);
-    other
-        .arg(command.get_program())
-        .args(command.get_args())
-        .stdin(Stdio::null());
-    for (name, value) in command.get_envs() {
-        match value {
-            Some(value) => other.env(name, value),
-            None => other.env_remove(name),
-        };
-    }
-    other
 }

@@ -1,19 +1,72 @@
-//! The outcome of a study as text: equal texts are equal bits, since a number is written with as many digits as it has.
+//! Questions to the service, and the outcome of a study as text.
 
 use serde_json::Value;
 
-use super::trouble::{Trouble, get};
-use crate::http::Client;
+use crate::http::{Client, Response};
 
-/// Everything that a finished study gives but its wall times: summary, stages, populations, draws, what was found; `None` while it
-/// is not finished.
+/// Why the user got no further.
+#[derive(Debug)]
+pub(super) enum Trouble {
+    /// Nobody answers at present.
+    Away,
+    /// The service says that it cannot, as on a full disk.
+    Failing(String),
+    /// A promise is broken.
+    Broken(String),
+}
+
+/// Sends a request; the answer, unless it is the service's own failure.
+pub(super) fn ask(
+    client: &Client,
+    method: &str,
+    path: &str,
+    body: Option<&Value>,
+) -> Result<Response, Trouble> {
+    let body = body.map(Value::to_string);
+    let answer = client
+        .send(method, path, body.as_deref())
+        .map_err(|_| Trouble::Away)?;
+    match answer.status {
+        500.. => Err(Trouble::Failing(format!(
+            "{path}: {} {}",
+            answer.status, answer.body
+        ))),
+        _ => Ok(answer),
+    }
+}
+
+/// `GET path`.
+pub(super) fn get(client: &Client, path: &str) -> Result<Response, Trouble> {
+    ask(client, "GET", path, None)
+}
+
+/// A request that must not be refused; its answer.
+pub(super) fn done(
+    client: &Client,
+    method: &str,
+    path: &str,
+    body: Option<&Value>,
+) -> Result<Value, Trouble> {
+    let answer = ask(client, method, path, body)?;
+    match answer.status {
+        200 | 201 => Ok(answer.json()),
+        status => Err(Trouble::Broken(format!(
+            "{method} {path}: {status} {}",
+            answer.body
+        ))),
+    }
+}
+
+/// The numbers of the calibrations of a study.
+pub(super) fn members(study: &Value) -> Vec<i64> {
+    let members = study["calibrations"].as_array().into_iter().flatten();
+    members.filter_map(Value::as_i64).collect()
+}
+
+/// Everything that a finished study gives but its wall times: summary, stages, populations, draws, the result of a search. Equal texts
+/// are equal bits, since a number is written with as many digits as it has. `None` while the study is not finished.
 pub(super) fn outcome(client: &Client, study: &Value) -> Result<Option<String>, Trouble> {
-    let ids: Vec<i64> = study["calibrations"]
-        .as_array()
-        .into_iter()
-        .flatten()
-        .filter_map(Value::as_i64)
-        .collect();
+    let ids = members(study);
     let answer = get(client, &format!("/v1/calibrations/{}/summary", ids[0]))?;
     if answer.status != 200 {
         return Ok(None);
@@ -33,13 +86,10 @@ pub(super) fn outcome(client: &Client, study: &Value) -> Result<Option<String>, 
         let stages = get(client, &format!("/v1/calibrations/{id}/stages"))?;
         let count = stages.json().as_array().map_or(0, Vec::len);
         let samples = (0..count).map(|stage| format!("samples?stage={stage}"));
-        for part in ["stages", "posterior", "discovery"]
-            .map(str::to_owned)
-            .into_iter()
-            .chain(samples)
-        {
+        let parts = ["stages", "posterior", "discovery"].map(str::to_owned);
+        for part in parts.into_iter().chain(samples) {
             let answer = get(client, &format!("/v1/calibrations/{id}/{part}"))?;
-            // Why there is none names the number of the calibration.
+            // The reason why there is none names the number of the calibration.
             let body = match answer.status {
                 200 => format!("{:#}", answer.json()),
                 status => format!("none ({status})"),
@@ -48,19 +98,4 @@ pub(super) fn outcome(client: &Client, study: &Value) -> Result<Option<String>, 
         }
     }
     Ok(Some(text))
-}
-
-/// Where a text first differs from another.
-pub(super) fn difference(got: &str, expected: &str) -> Option<String> {
-    let mut pairs = got.lines().zip(expected.lines()).enumerate();
-    let unequal = pairs.find(|(_, (got, expected))| got != expected);
-    match unequal {
-        Some((number, (got, expected))) => {
-            Some(format!("line {}: {got:?}, expected {expected:?}", number + 1))
-        }
-        None if got.len() != expected.len() => {
-            Some(format!("{} bytes, expected {}", got.len(), expected.len()))
-        }
-        None => None,
-    }
 }

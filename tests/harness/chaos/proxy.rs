@@ -1,99 +1,109 @@
-//! A proxy between workers and coordinator: the network is what it makes of it.
+//! The network: a proxy between workers and coordinator.
 
 use std::io::{Read, Write};
 use std::net::{Shutdown, TcpListener, TcpStream};
 use std::sync::{Arc, Mutex, MutexGuard};
-use std::time::Duration;
 
-use super::network::{Network, Toward, Weather};
+/// The direction of bytes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Toward {
+    Coordinator,
+    Workers,
+}
 
-/// A proxy on a port of its own.
-#[derive(Debug)]
+/// All connections, and what is about to happen to them.
+#[derive(Debug, Default)]
+pub(super) struct Network {
+    /// Every connection is cut after this number of bytes in this direction.
+    pub(super) cut_after: Option<(Toward, usize)>,
+    open: Vec<TcpStream>,
+}
+
+impl Network {
+    /// Closes every connection.
+    pub(super) fn cut(&mut self) {
+        self.cut_after = None;
+        for stream in self.open.drain(..) {
+            // A stream that its program has left is cut already.
+            let _ = stream.shutdown(Shutdown::Both);
+        }
+    }
+
+    /// Counts bytes that are about to pass; the number that passes before the cut, if it comes now.
+    fn last_before_cut(&mut self, toward: Toward, length: usize) -> Option<usize> {
+        let (_, left) = self.cut_after.as_mut().filter(|(which, _)| *which == toward)?;
+        if *left < length {
+            return Some(*left);
+        }
+        *left -= length;
+        None
+    }
+}
+
+/// A proxy on a free port.
+#[derive(Debug, Clone)]
 pub(super) struct Proxy {
-    address: String,
+    to: String,
     network: Arc<Mutex<Network>>,
 }
 
-fn locked(network: &Mutex<Network>) -> MutexGuard<'_, Network> {
-    network.lock().expect("no thread of the proxy panics")
-}
-
 impl Proxy {
-    /// Starts a proxy to an address.
-    pub(super) fn start(to: &str) -> Proxy {
+    /// Starts a proxy to an address; the URL for workers.
+    pub(super) fn start(to: &str) -> (Proxy, String) {
         let listener = TcpListener::bind("127.0.0.1:0").expect("a free port");
-        let address = listener.local_addr().expect("an address").to_string();
-        let network = Arc::new(Mutex::new(Network::new()));
-        let (shared, to) = (network.clone(), to.to_owned());
+        let url = format!("http://{}", listener.local_addr().expect("an address"));
+        let proxy = Proxy {
+            to: to.to_owned(),
+            network: Arc::default(),
+        };
+        let listening = proxy.clone();
         std::thread::spawn(move || {
             for worker in listener.incoming().flatten() {
-                if locked(&shared).weather() != Weather::Refusing
-                    && let Ok(coordinator) = TcpStream::connect(&to)
-                {
-                    // A connection that cannot be taken is closed.
-                    let _ = join(&shared, worker, coordinator);
-                }
+                // A connection that cannot be made is closed.
+                let _ = listening.join(worker);
             }
         });
-        Proxy { address, network }
-    }
-
-    /// Where workers find the coordinator.
-    pub(super) fn url(&self) -> String {
-        format!("http://{}", self.address)
+        (proxy, url)
     }
 
     /// The network, to be changed.
     pub(super) fn network(&self) -> MutexGuard<'_, Network> {
-        locked(&self.network)
+        self.network.lock().expect("no thread of the proxy panics")
     }
-}
 
-/// Lets bytes pass both ways until one side closes.
-fn join(network: &Arc<Mutex<Network>>, worker: TcpStream, coordinator: TcpStream) -> std::io::Result<()> {
-    let ways = [
-        (Toward::Coordinator, worker.try_clone()?, coordinator.try_clone()?),
-        (Toward::Workers, coordinator.try_clone()?, worker.try_clone()?),
-    ];
-    locked(network).add([worker, coordinator]);
-    for (toward, from, to) in ways {
-        let network = network.clone();
-        std::thread::spawn(move || {
-            // Either side may be cut at any time.
-            let _ = pass(&network, toward, &from, &to);
-            let _ = from.shutdown(Shutdown::Both);
-            let _ = to.shutdown(Shutdown::Both);
-        });
+    /// Connects a worker with the coordinator, and lets bytes pass both ways until one side closes.
+    fn join(&self, worker: TcpStream) -> std::io::Result<()> {
+        let coordinator = TcpStream::connect(&self.to)?;
+        let ways = [
+            (Toward::Coordinator, worker.try_clone()?, coordinator.try_clone()?),
+            (Toward::Workers, coordinator.try_clone()?, worker.try_clone()?),
+        ];
+        self.network().open.extend([worker, coordinator]);
+        for (toward, from, to) in ways {
+            let proxy = self.clone();
+            std::thread::spawn(move || {
+                // Either side may be cut at any time.
+                let _ = proxy.pass(toward, &from, &to);
+                let _ = from.shutdown(Shutdown::Both);
+                let _ = to.shutdown(Shutdown::Both);
+            });
+        }
+        Ok(())
     }
-    Ok(())
-}
 
-fn pass(
-    network: &Mutex<Network>,
-    toward: Toward,
-    mut from: &TcpStream,
-    mut to: &TcpStream,
-) -> std::io::Result<()> {
-    let mut buffer = [0; 2048];
-    loop {
-        let length = from.read(&mut buffer)?;
-        let weather = locked(network).weather();
-        match weather {
-            _ if length == 0 => return Ok(()),
-            Weather::Passing | Weather::Refusing => {}
-            Weather::Late(time) => std::thread::sleep(time),
-            Weather::Silent => {
-                while locked(network).weather() == Weather::Silent {
-                    std::thread::sleep(Duration::from_millis(10));
-                }
+    fn pass(&self, toward: Toward, mut from: &TcpStream, mut to: &TcpStream) -> std::io::Result<()> {
+        let mut buffer = [0; 2048];
+        loop {
+            let length = from.read(&mut buffer)?;
+            if length == 0 {
                 return Ok(());
             }
-        }
-        let last = locked(network).last_of(toward, length);
-        to.write_all(&buffer[..last.unwrap_or(length)])?;
-        if last.is_some() {
-            locked(network).cut();
-            return Ok(());
+            let last = self.network().last_before_cut(toward, length);
+            to.write_all(&buffer[..last.unwrap_or(length)])?;
+            if last.is_some() {
+                self.network().cut();
+                return Ok(());
+            }
         }
     }
 }

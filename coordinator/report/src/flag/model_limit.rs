@@ -5,7 +5,7 @@ use job::Spec;
 use shared::experiment::TestRun;
 use shared::model::{EffectSet, ExternalModel, ModelKind, RunInput};
 
-/// What the model leaves out of this job, a sentence each.
+/// Sentences that name the parts of this job that the model leaves out.
 pub fn model_limits(spec: &Spec) -> Vec<String> {
     let mut limits = Vec::new();
     let lugged: Vec<&str> = spec
@@ -52,7 +52,7 @@ pub fn model_limits(spec: &Spec) -> Vec<String> {
     limits
 }
 
-/// What varies in the runs and does not reach a model that is not ours.
+/// The inputs that vary in the runs and do not reach a model that is not ours.
 fn of_external(spec: &Spec, model: &ExternalModel) -> Vec<String> {
     let runs = &spec.experiment.runs;
     let mut unseen = Vec::new();

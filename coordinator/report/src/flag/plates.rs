@@ -16,7 +16,7 @@ use result::words::probability::{LEVEL, p_words};
 const OF_PLATES: [&str; 5] = ["log10_p_ref", "kappa", "n", "k_c", "k_phi"];
 /// Sds of what plates ask for within which a prior may allow it.
 const ALLOWED: f64 = 2.0;
-/// Where the plates' own parameters leave more than this of the error, their readings are not worth a flag.
+/// The plates' readings are not worth a flag if their own parameters leave more than this of the error.
 const MUCH: f64 = 0.8;
 
 /// At most one flag for each source: plates that another calibration was fitted to, and plates of this experiment.
@@ -256,7 +256,7 @@ mod tests {
     const EXPERIMENT: &str = "runs = \"runs.csv\"\n[wheel.a]\nradius_m = 0.1\nwidth_m = 0.05\n[soil.sand]\n[noise]\ndrawbar_pull_n = 1.0\n";
     const RUNS: &str =
         "run,wheel,soil,slip,wheel_load_n,sled_speed_m_s,drawbar_pull_n,use\nr,a,sand,0.2,25,0.01,0.5,fit\n";
-    /// What the plates were pressed into: `log10_p_ref`, `kappa`, `n`.
+    /// The soil that the plates were pressed into: `log10_p_ref`, `kappa`, `n`.
     const TRUTH: [f64; 3] = [3.9, -0.6, 1.2];
 
     /// Pressure under a plate, ln Pa.
@@ -323,7 +323,7 @@ mod tests {
         together_under(FREE, centre)
     }
 
-    /// The same under another prior.
+    /// Returns the parameters under another prior.
     fn together_under(priors: &str, centre: [f64; 3]) -> Vec<Flag> {
         let mut stream = Stream::new(7, 0, 0, 0);
         let mut plates = "test,plate_radius_m,sinkage_m,pressure_pa\n".to_owned();

@@ -20,7 +20,7 @@ pub fn flags(study: &Study) -> Vec<Flag> {
         .collect()
 }
 
-/// The same, each with the calibration that it is about; `None` where that is several.
+/// The flags of a study, each with the calibration that it is about; `None` if it is about several.
 pub(crate) fn flags_by_calibration(study: &Study) -> Vec<(Option<i64>, Flag)> {
     let of = |calibration: &FinishedCalibration| diagnostics(calibration, calibration.comparison()).flags;
     let mut flags: Vec<_> = missed_modes(study).into_iter().map(|flag| (None, flag)).collect();

@@ -75,7 +75,12 @@ fn data(calibration: &FinishedCalibration) -> String {
         number::count(spec.wheel_data(), "measurement"),
         number::count(held, "holdout run")
     );
-    if spec.experiment.campaign.as_ref().is_some_and(|own| own.digitised) {
+    if spec
+        .experiment
+        .campaign
+        .as_ref()
+        .is_some_and(|campaign| campaign.digitised)
+    {
         words += "; digitised";
     }
     let (plates, rings) = (spec.bevameter.plates.len(), spec.bevameter.rings.len());

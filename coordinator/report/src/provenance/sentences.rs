@@ -1,4 +1,4 @@
-//! What a calibration reached, and what to keep in mind about it, in sentences.
+//! Sentences about the results of a calibration and about its limits.
 
 use inference::diagnostics::mean_and_sd;
 use job::repeat_scatter;
@@ -157,7 +157,7 @@ fn holdout(calibration: &FinishedCalibration, comparison: &Comparison) -> Vec<St
     text
 }
 
-/// What the rows are interpolated over.
+/// Names the conditions that the rows are interpolated over.
 fn over<'a>(mut rows: impl Iterator<Item = &'a ComparisonRow>) -> &'static str {
     match rows.all(|row| row.interpolated_over == Some(InterpolatedOver::Slip)) {
         true => "in slip",

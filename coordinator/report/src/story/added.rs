@@ -1,4 +1,4 @@
-//! What the study added to a model, what the searches said of it, and what it bought.
+//! The effects that the study added to a model, what the searches said of them, and how much they improve it.
 
 use record::{Discovery, NOT_IN_LIBRARY, NextRun, addition_name, effect_of};
 
@@ -65,7 +65,7 @@ impl AddedEffect {
     }
 }
 
-/// What the study added to the model of a calibration, in the order of the model.
+/// Lists the effects that the study added to the model of a calibration, in the order of the model.
 pub(crate) fn added(study: &Study, calibration: &FinishedCalibration) -> Vec<AddedEffect> {
     let had = study.lead.effects();
     let has = study.parts(calibration);

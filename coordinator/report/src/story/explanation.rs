@@ -55,7 +55,7 @@ pub(super) fn split(name: &str) -> (&str, Option<&str>) {
     }
 }
 
-/// What a model has by an explanation, as the parts of a model are named.
+/// Lists the parts that an explanation gives a model, by their names.
 pub(super) fn parts(explanation: &str) -> Vec<String> {
     parts_of_effect(split(explanation).0)
 }
@@ -68,7 +68,7 @@ pub(super) fn class(record: &Discovery) -> impl Iterator<Item = &JudgedEffect> {
     members.filter(move |e| is_class && Some(e.class) == class && e.probability > LEAST)
 }
 
-/// What a search leaves open: with a class its members, where it is undecided the 95 % set; nothing where it names one.
+/// Lists the explanations that a search leaves open: the members of a class, or the 95 % set of an undecided search; none if it names one.
 pub(super) fn open(record: &Discovery) -> Vec<&JudgedEffect> {
     match record.verdict {
         Verdict::Class => class(record).collect(),

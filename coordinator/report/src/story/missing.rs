@@ -1,4 +1,4 @@
-//! What a model misses, and how sure that is.
+//! The effect that a model misses, and how sure the search is.
 
 use job::effect_name;
 use record::{Discovery, Extension, NONE, NOT_IN_LIBRARY, Verdict, effect_of};
@@ -9,9 +9,9 @@ use result::finished_calibration::FinishedCalibration;
 use result::study::Study;
 use result::words::number;
 
-/// Most alternatives.
+/// The largest number of alternatives.
 const ALTERNATIVES: usize = 3;
-/// Most names of effects that were not judged.
+/// The largest number of names of effects that were not judged.
 const NOT_JUDGED: usize = 3;
 
 /// The answer of the search of a model.
@@ -144,7 +144,7 @@ fn finding(record: &Discovery, probability: Option<f64>, is_extended: bool) -> S
     }
 }
 
-/// What the search could not judge: the names of a few, the number of more.
+/// Names a few effects that the search could not judge, and counts the rest.
 fn not_judged(record: &Discovery, not_tried: &[String]) -> Vec<String> {
     let mut text = Vec::new();
     if !not_tried.is_empty() {
@@ -288,7 +288,7 @@ mod tests {
             "{}",
             missing.text
         );
-        // What is in the set was judged.
+        // The effects of the set were judged.
         assert_eq!(missing.not_tried, ["end_wall"]);
         let class = fixture::of_a_class();
         let class = Missing::of(&class, &class.lead);

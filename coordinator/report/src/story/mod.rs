@@ -1,4 +1,4 @@
-//! What a calibration says in three sentences: what its model gets wrong, what is missing, what to do next.
+//! The story of a calibration in three sentences: what its model gets wrong, what is missing, what to do next.
 //!
 //! # Layout
 //! - `wrong`: the errors, worst first. `pattern`: where they are.

@@ -1,4 +1,4 @@
-//! What to do next, with the command of each step.
+//! The next steps of a study, with the command of each.
 
 use std::collections::BTreeSet;
 
@@ -91,12 +91,12 @@ impl NextStep {
     }
 }
 
-/// What the steps follow from, beside the search.
+/// The facts that the steps follow from, beside the search.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Known<'a> {
     /// Whether noise alone explains the errors of every channel.
     pub(super) is_within_noise: bool,
-    /// What the study added to the model.
+    /// The effects that the study added to the model.
     pub(super) added: &'a [AddedEffect],
 }
 
@@ -200,7 +200,7 @@ fn steps(study: &Study, calibration: &FinishedCalibration, known: Known<'_>) -> 
     steps
 }
 
-/// What makes a claim possible where the noise is inferred from too little; `None` where it is not.
+/// Says what makes a claim possible if the noise is inferred from too little; `None` if it is not.
 fn noise(record: &Discovery) -> Option<NextStep> {
     let channels = record.unsupported_noise.iter();
     let channels: Vec<String> = channels

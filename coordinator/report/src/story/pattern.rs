@@ -1,4 +1,4 @@
-//! Where the errors of a channel are, in words.
+//! The conditions at which a channel has its errors, in words.
 
 use shared::channel::Channel;
 

@@ -1,4 +1,4 @@
-//! What a model gets wrong, channel by channel.
+//! The errors of a model, channel by channel.
 
 use inference::diagnostics::chi_square_tail;
 use shared::channel::Channel;
@@ -66,7 +66,7 @@ pub struct BesideInterpolation {
     pub interpolation_rmse: f64,
 }
 
-/// What the channels of a calibration are judged by.
+/// The data that the channels of a calibration are judged by.
 struct Judge<'a> {
     rows: &'a [ComparisonRow],
     trends: Vec<TrendDiagnostics>,

@@ -88,7 +88,7 @@ pub(crate) fn point_estimate_summaries(study: &Study, sigmas: &FixedSigmas) -> V
         .collect()
 }
 
-/// What the models of the ledger predict together; `None` where nothing is corrected.
+/// Summarises what the models of the ledger predict together; `None` if nothing is corrected.
 pub(crate) fn combined_summary(study: &Study, sigmas: &FixedSigmas) -> Option<CombinedSummary> {
     CombinedSummary::of(study.combined(), sigmas)
 }

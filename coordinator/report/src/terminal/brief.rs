@@ -12,14 +12,16 @@ use result::study::Study;
 /// Cautions, the models that the job compares, the error ledger, and a line for each calibration that has none in it.
 pub fn brief(study: &Study) -> String {
     let is_in_ledger = |id: i64| study.ledger().any(|line| line.row.id == id);
-    let beside = study.line().filter(|own| !is_in_ledger(own.row.id));
-    let mut text: String = beside.map(|own| headline(own) + "\n").collect();
+    let beside = study
+        .line()
+        .filter(|calibration| !is_in_ledger(calibration.row.id));
+    let mut text: String = beside.map(|calibration| headline(calibration) + "\n").collect();
     text += &cautions(study);
     text += &models(study);
     text + &brief_ledger(study)
 }
 
-/// Where the measurements were read off figures, and why the numbers themselves may be wrong: of the study and of its current model.
+/// Says that the measurements were read off figures, and why the numbers of the study and of its current model may be wrong.
 pub(super) fn cautions(study: &Study) -> String {
     let campaign = study.lead.spec.experiment.campaign.as_ref();
     let digitised = campaign.map_or_else(String::new, digitised);

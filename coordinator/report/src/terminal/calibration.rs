@@ -5,13 +5,15 @@ use std::fmt::Write;
 use job::FreeParameter;
 use record::EstimateRow;
 
-use super::column::{cell, width};
+use super::column::{at_bound_words, cell, width};
 use super::comparison::comparison;
 use super::diagnostics::{findings, flags};
+use super::table::Table;
 use crate::diagnosis::diagnostics;
 use crate::flag::unsettled_run::unsettled;
 use result::finished_calibration::{FinishedCalibration, prior_mean};
-use result::point_estimate::fitted;
+use result::parameter_summary::ParameterSummary;
+use result::point_estimate::{FittedParameter, fitted};
 use result::table::error_model::error_model;
 use result::table::readings::reading_errors;
 use result::words::number;
@@ -102,64 +104,49 @@ pub(super) fn summary(calibration: &FinishedCalibration) -> String {
 
 /// The most probable parameters, with their standard deviations after Laplace where they are known.
 fn point(calibration: &FinishedCalibration, estimate: &EstimateRow) -> String {
-    let width = width(calibration.spec.parameters.iter().map(|p| &p.name));
-    let mut text = format!(
-        "\n{:<width$} {:>10} {:>10}  {:<12} prior\n",
-        "parameter", "best", "sd", "unit"
-    );
-    for p in fitted(estimate, &calibration.spec.parameters) {
-        let _ = writeln!(
-            text,
-            "{:<width$} {:>10} {:>10}  {:<12} {}{}",
-            p.free.name,
-            match p.sd {
-                Some(sd) => number::to_spread(p.value, sd),
-                None => number::four_digits(p.value),
-            },
-            cell(p.sd, |sd| number::to_spread(sd, sd)),
-            p.free.unit,
-            prior(p.free),
-            if p.at_bound { "  AT BOUND" } else { "" }
-        );
-    }
-    text
+    let parameters = &calibration.spec.parameters;
+    let value = |p: &FittedParameter| match p.sd {
+        Some(sd) => number::to_spread(p.value, sd),
+        None => number::four_digits(p.value),
+    };
+    let fitted: Vec<FittedParameter> = fitted(estimate, parameters).collect();
+    let table = Table::<&FittedParameter>::new()
+        .left(width(parameters.iter().map(|p| &p.name)), "parameter", |p| {
+            &p.free.name
+        })
+        .right(10, "best", value)
+        .right(10, "sd", |p| cell(p.sd, |sd| number::to_spread(sd, sd)))
+        .apart(12, "unit", |p| &p.free.unit)
+        .left(0, "prior", |p| prior(p.free, p.at_bound));
+    format!("\n{}", table.text(&fitted))
 }
 
-fn prior(free: &FreeParameter) -> String {
+/// The prior of a parameter, and whether the parameter lies at its bound.
+fn prior(free: &FreeParameter, at_bound: bool) -> String {
     let sd = free.marginal.sd();
     format!(
-        "{} +- {}",
+        "{} +- {}{}",
         number::to_spread(prior_mean(&free.marginal), sd),
-        number::to_spread(sd, sd)
+        number::to_spread(sd, sd),
+        at_bound_words(at_bound)
     )
 }
 
 /// The parameters after and before the data.
 fn parameters(calibration: &FinishedCalibration) -> String {
-    let mut text = String::new();
     let width = width(calibration.spec.parameters.iter().map(|p| &p.name));
-    let _ = writeln!(
-        text,
-        "\n{:<width$} {:>10} {:>10} {:>10} {:>10} {:>10}  {:<12} prior",
-        "parameter", "mean", "sd", "5 %", "95 %", "best", "unit"
-    );
-    for ((name, p), free) in calibration
-        .parameter_summaries()
-        .iter()
-        .zip(&calibration.spec.parameters)
-    {
-        let prior = prior(free);
-        let bound = if p.at_bound { "  AT BOUND" } else { "" };
-        let _ = writeln!(
-            text,
-            "{name:<width$} {:>10} {:>10} {:>10} {:>10} {:>10}  {:<12} {prior}{bound}",
-            number::to_spread(p.mean, p.sd),
-            number::to_spread(p.sd, p.sd),
-            number::to_spread(p.q05, p.sd),
-            number::to_spread(p.q95, p.sd),
-            number::to_spread(p.map, p.sd),
-            free.unit
-        );
-    }
-    text
+    let summaries = calibration.parameter_summaries();
+    let table = Table::<(&(String, ParameterSummary), &FreeParameter)>::new()
+        .left(width, "parameter", |((name, _), _)| name)
+        .right(10, "mean", |((_, p), _)| number::to_spread(p.mean, p.sd))
+        .right(10, "sd", |((_, p), _)| number::to_spread(p.sd, p.sd))
+        .right(10, "5 %", |((_, p), _)| number::to_spread(p.q05, p.sd))
+        .right(10, "95 %", |((_, p), _)| number::to_spread(p.q95, p.sd))
+        .right(10, "best", |((_, p), _)| number::to_spread(p.map, p.sd))
+        .apart(12, "unit", |(_, free)| &free.unit)
+        .left(0, "prior", |((_, p), free)| prior(free, p.at_bound));
+    format!(
+        "\n{}",
+        table.text(summaries.iter().zip(&calibration.spec.parameters))
+    )
 }

@@ -1,4 +1,4 @@
-//! Where measurements come from, as text.
+//! The source of the measurements, as text.
 
 use shared::experiment::Campaign;
 
@@ -20,7 +20,7 @@ pub(super) fn campaign(campaign: &Campaign) -> String {
     text
 }
 
-/// That the rows were digitised, where they were.
+/// Says that the rows were digitised; empty if they were not.
 pub(super) fn digitised(campaign: &Campaign) -> String {
     let digitised = CampaignWords::from(campaign).digitised;
     digitised.map_or_else(String::new, |words| labelled("data:", &words))

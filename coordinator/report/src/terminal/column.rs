@@ -17,6 +17,11 @@ pub(super) fn cell<T>(value: Option<T>, words: impl FnOnce(T) -> String) -> Stri
     value.map_or_else(|| "-".into(), words)
 }
 
+/// The remark on a parameter at its bound.
+pub(super) fn at_bound_words(at_bound: bool) -> &'static str {
+    if at_bound { "  AT BOUND" } else { "" }
+}
+
 /// A sentence behind its label, broken between words and indented; a compound unit stays whole.
 pub(super) fn labelled(label: &str, sentence: &str) -> String {
     let mut text = format!("{label:<LABEL$}");

@@ -6,59 +6,43 @@ use shared::channel::Channel;
 use shared::experiment::RunUse;
 
 use super::column::cell;
+use super::table::{Table, channel_title};
 use result::table::comparison::Comparison;
 use result::table::coverage::Coverage;
 use result::table::errors::ErrorTable;
-use result::table::row::rows_of;
+use result::table::group::ErrorGroup;
+use result::table::row::{ComparisonRow, rows_of};
 use result::words::data_channel::{ShownUnit, short_name};
 use result::words::number;
 
 /// Model against measurement, run by run, with errors by channel.
 pub fn comparison(comparison: &Comparison) -> String {
-    let mut text = String::new();
-    let measured = if comparison.digitised {
-        "digitised"
-    } else {
-        "measured"
+    let measured = match comparison.digitised {
+        true => "digitised",
+        false => "measured",
     };
-    let _ = writeln!(
-        text,
-        "{:<22} {:<8} {:>7} {:>8} {:<13} {:>10} {:>10} {:>23} {:>7} {:>10} {:>23}",
-        "run",
-        "use",
-        "slip",
-        "load N",
-        "channel",
-        measured,
-        "model",
-        "90 % interval",
-        "sigma",
-        "corrected",
-        "90 % interval"
-    );
-    for row in &comparison.rows {
-        let unit = ShownUnit::of(row.channel);
-        let value = |v: Option<f64>| cell(v, |v| format!("{:.2}", v * unit.factor));
-        let interval = |q05: Option<f64>, q95: Option<f64>| match q05 {
-            Some(_) => format!("{} to {}", value(q05), value(q95)),
-            None => "-".into(),
-        };
-        let _ = writeln!(
-            text,
-            "{:<22} {:<8} {:>7.3} {:>8.1} {:<13} {:>10} {:>10} {:>23} {:>7} {:>10} {:>23}",
-            row.run,
-            row.usage.name(),
-            row.slip,
-            row.wheel_load_n,
-            format!("{} {}", short_name(row.channel), unit.name),
-            value(Some(row.measured)),
-            value(row.predicted),
-            interval(row.q05, row.q95),
-            cell(row.residual_sigma, |r| format!("{r:+.1}")),
-            value(row.corrected),
-            interval(row.corrected_q05, row.corrected_q95)
-        );
-    }
+    let value = |row: &ComparisonRow, v: Option<f64>| {
+        cell(v, |v| format!("{:.2}", v * ShownUnit::of(row.channel).factor))
+    };
+    let interval = |row: &ComparisonRow, q05: Option<f64>, q95: Option<f64>| match q05 {
+        Some(_) => format!("{} to {}", value(row, q05), value(row, q95)),
+        None => "-".into(),
+    };
+    let table = Table::<&ComparisonRow>::new()
+        .left(22, "run", |row| &row.run)
+        .left(8, "use", |row| row.usage.name())
+        .right(7, "slip", |row| format!("{:.3}", row.slip))
+        .right(8, "load N", |row| format!("{:.1}", row.wheel_load_n))
+        .left(13, "channel", |row| channel_title(row.channel))
+        .right(10, measured, |row| value(row, Some(row.measured)))
+        .right(10, "model", |row| value(row, row.predicted))
+        .right(23, "90 % interval", |row| interval(row, row.q05, row.q95))
+        .right(7, "sigma", |row| cell(row.residual_sigma, |r| format!("{r:+.1}")))
+        .right(10, "corrected", |row| value(row, row.corrected))
+        .right(23, "90 % interval", |row| {
+            interval(row, row.corrected_q05, row.corrected_q95)
+        });
+    let mut text = table.text(&comparison.rows);
     text.push_str(&refused(comparison));
     text.push('\n');
     text.push_str(&errors(comparison));
@@ -89,23 +73,30 @@ fn refused(comparison: &Comparison) -> String {
 
 /// Errors by channel, and how many measurements lie within their intervals.
 fn errors(comparison: &Comparison) -> String {
-    let mut text = String::new();
-    let _ = writeln!(
-        text,
-        "{:<28} {:>16} {:>16} {:>16} {:>14} {:>8}",
-        "root mean square error", "pull N", "torque N m", "sinkage mm", "lateral N", "sigma"
-    );
-    for (name, table) in [
+    let mut table = Table::<(&str, &ErrorTable)>::new().left(28, "root mean square error", |(name, _)| name);
+    for channel in Channel::ALL {
+        let width = if channel == Channel::LateralForce { 14 } else { 16 };
+        table = table.right(width, &channel_title(channel), move |(_, errors)| {
+            let scale = ShownUnit::of(channel).factor;
+            cell(errors.channel(channel), |e| {
+                format!("{:.2} ({})", e.rmse * scale, e.runs)
+            })
+        });
+    }
+    let table = table.right(8, "sigma", |(_, errors)| {
+        cell(errors.all.rmse_sigma, |s| format!("{s:.2}"))
+    });
+    let rows = [
         ("fit", &comparison.fit),
         ("fit, corrected", &comparison.corrected_fit),
         ("holdout", &comparison.holdout),
         ("holdout, corrected", &comparison.corrected_holdout),
         ("holdout, interpolation", &comparison.baseline_holdout),
-    ] {
-        if let Some(table) = table {
-            text.push_str(&error_line(name, table));
-        }
-    }
+    ];
+    let rows = rows
+        .into_iter()
+        .filter_map(|(name, errors)| Some((name, errors.as_ref()?)));
+    let mut text = table.text(rows);
     let unpredicted = [&comparison.fit, &comparison.holdout].map(|table| {
         let of_table = table.as_ref().map(|table| table.all.unpredicted);
         of_table.unwrap_or_default()
@@ -144,41 +135,20 @@ fn errors(comparison: &Comparison) -> String {
     text
 }
 
-fn error_line(name: &str, table: &ErrorTable) -> String {
-    let rmse = |c: Channel| {
-        let scale = ShownUnit::of(c).factor;
-        table
-            .channel(c)
-            .map_or("-".into(), |e| format!("{:.2} ({})", e.rmse * scale, e.runs))
-    };
-    let sigma = cell(table.all.rmse_sigma, |s| format!("{s:.2}"));
-    format!(
-        "{name:<28} {:>16} {:>16} {:>16} {:>14} {sigma:>8}\n",
-        rmse(Channel::DrawbarPull),
-        rmse(Channel::Torque),
-        rmse(Channel::Sinkage),
-        rmse(Channel::LateralForce)
-    )
-}
-
 /// Errors by level of each condition, in noise sds.
 pub fn groups(comparison: &Comparison) -> String {
     if comparison.groups.is_empty() {
         return String::new();
     }
-    let mut text = format!(
-        "\n{:<8} {:<28} {:>18} {:>18} {:>18} {:>18}\n",
-        "use", "sigma: rmse (mean) runs", "pull", "torque", "sinkage", "lateral"
-    );
-    for group in &comparison.groups {
-        let _ = write!(text, "{:<8} {:<28}", group.usage.name(), group.words());
-        for channel in Channel::ALL {
-            let error = group.channels.get(channel.name());
-            let _ = write!(text, " {:>18}", cell(error, |e| e.words()));
-        }
-        text.push('\n');
+    let mut table = Table::<&ErrorGroup>::new()
+        .left(8, "use", |group| group.usage.name())
+        .left(28, "sigma: rmse (mean) runs", ErrorGroup::words);
+    for channel in Channel::ALL {
+        table = table.right(18, short_name(channel), move |group| {
+            cell(group.channels.get(channel.name()), |e| e.words())
+        });
     }
-    text
+    format!("\n{}", table.text(&comparison.groups))
 }
 
 #[cfg(test)]

@@ -2,10 +2,14 @@
 
 use std::fmt::Write;
 
-use super::column::{cell, width};
+use record::StageRow;
+
+use super::column::{at_bound_words, cell, width};
+use super::table::Table;
 use result::diagnostics::calibration::Diagnostics;
 use result::diagnostics::channels::{ChannelDiagnostics, CoverageCount};
 use result::diagnostics::directions::{DirectionDiagnostics, WORST_KNOWN};
+use result::diagnostics::parameters::ParameterDiagnostics;
 use result::diagnostics::rejections::RejectionDiagnostics;
 use result::diagnostics::residuals::{ResidualDiagnostics, largest};
 use result::diagnostics::sampler::SamplerDiagnostics;
@@ -65,48 +69,26 @@ fn sampler(sampler: &SamplerDiagnostics) -> String {
         sampler.distinct_draws,
         cell(sampler.effective_sample_size, |ess| format!("{ess:.0}"))
     );
-    let _ = writeln!(
-        text,
-        "{:>5} {:>10} {:>6} {:>10} {:>8} {:>11} {:>8} {:>11}",
-        "stage", "exponent", "steps", "acceptance", "drift z", "correlation", "ess", "evaluations"
-    );
-    for s in &sampler.stages {
-        let _ = writeln!(
-            text,
-            "{:>5} {:>10.3e} {:>6} {:>10.2} {:>8.2} {:>11.2} {:>8.0} {:>11}{}",
-            s.stage,
-            s.tempering_exponent,
-            s.steps,
-            s.acceptance,
-            s.drift_z,
-            s.correlation,
-            s.ess,
-            s.evaluations,
+    let table = Table::<&StageRow>::new()
+        .right(5, "stage", |s| s.stage)
+        .right(10, "exponent", |s| format!("{:.3e}", s.tempering_exponent))
+        .right(6, "steps", |s| s.steps)
+        .right(10, "acceptance", |s| format!("{:.2}", s.acceptance))
+        .right(8, "drift z", |s| format!("{:.2}", s.drift_z))
+        .right(11, "correlation", |s| format!("{:.2}", s.correlation))
+        .right(8, "ess", |s| format!("{:.0}", s.ess))
+        .right(11, "evaluations", |s| s.evaluations)
+        .remark(|s| {
             if s.equilibrated {
                 ""
             } else {
                 "  not in equilibrium"
             }
-        );
-    }
-    text
+        });
+    text + &table.text(&sampler.stages)
 }
 
 fn channels(channels: &[ChannelDiagnostics]) -> String {
-    let mut text = format!(
-        "{:<14} {:<4} {:>5} {:>10} {:>12} {:>11} {:>10} {:>10} {:>8} {:>9}  {:<26} holdout\n",
-        "channel",
-        "unit",
-        "data",
-        "error sd",
-        "prior spread",
-        "information",
-        "parameters",
-        "chi-square",
-        "expected",
-        "p",
-        "inside 90 %: fit"
-    );
     let count = |c: &Option<CoverageCount>| {
         cell(*c, |c| {
             format!(
@@ -115,93 +97,73 @@ fn channels(channels: &[ChannelDiagnostics]) -> String {
             )
         })
     };
-    for c in channels {
-        let square = c.chi_square.as_ref();
-        let unit = c.channel.shown();
-        let _ = writeln!(
-            text,
-            "{:<14} {:<4} {:>5} {:>10} {:>12} {:>11} {:>10} {:>10} {:>8} {:>9}  {:<26} {}",
-            c.channel.name(),
-            unit.name,
-            c.data,
-            cell(c.error_sd.map(|sd| unit.factor * sd), number::four_digits),
-            cell(
-                c.prior_predictive_sd.map(|sd| unit.factor * sd),
-                number::four_digits
-            ),
-            cell(c.information, |x| number::significant(x, 2)),
-            cell(c.effective_parameters, |x| number::significant(x, 2)),
-            cell(square.map(|s| s.chi_square), number::four_digits),
-            cell(square.map(|s| s.degrees_of_freedom), number::four_digits),
-            cell(square.and_then(|s| s.p), probability),
-            count(&c.coverage90_fit),
-            count(&c.coverage90_holdout)
-        );
-    }
-    text
+    let two_digits = |x: f64| number::significant(x, 2);
+    let shown = |c: &ChannelDiagnostics, sd: Option<f64>| {
+        cell(sd, |sd| number::four_digits(c.channel.shown().factor * sd))
+    };
+    Table::<&ChannelDiagnostics>::new()
+        .left(14, "channel", |c| c.channel.name())
+        .left(4, "unit", |c| c.channel.shown().name)
+        .right(5, "data", |c| c.data)
+        .right(10, "error sd", |c| shown(c, c.error_sd))
+        .right(12, "prior spread", |c| shown(c, c.prior_predictive_sd))
+        .right(11, "information", |c| cell(c.information, two_digits))
+        .right(10, "parameters", |c| cell(c.effective_parameters, two_digits))
+        .right(10, "chi-square", |c| {
+            cell(c.chi_square.as_ref(), |s| number::four_digits(s.chi_square))
+        })
+        .right(8, "expected", |c| {
+            cell(c.chi_square.as_ref(), |s| {
+                number::four_digits(s.degrees_of_freedom)
+            })
+        })
+        .right(9, "p", |c| {
+            cell(c.chi_square.as_ref().and_then(|s| s.p), probability)
+        })
+        .apart(26, "inside 90 %: fit", |c| count(&c.coverage90_fit))
+        .left(0, "holdout", |c| count(&c.coverage90_holdout))
+        .text(channels)
 }
 
 fn residuals(all: &[ResidualDiagnostics]) -> String {
-    let mut text = format!(
-        "{:<28} {:<14} {:<4} {:>10} {:>10} {:>9} {:>12} {:>9}\n",
-        "largest residuals: run", "channel", "unit", "residual", "error sd", "leverage", "studentised", "p"
-    );
-    for r in largest(all) {
-        let unit = r.channel.shown();
-        let _ = writeln!(
-            text,
-            "{:<28} {:<14} {:<4} {:>10} {:>10} {:>9.2} {:>12} {:>9}",
-            r.run,
-            r.channel.name(),
-            unit.name,
-            number::four_digits(unit.factor * r.residual),
-            number::four_digits(unit.factor * r.error_sd),
-            r.leverage,
-            cell(r.studentised, |x| number::significant(x, 2)),
-            cell(r.p, probability)
-        );
-    }
-    text
+    let shown = |r: &ResidualDiagnostics, x: f64| number::four_digits(r.channel.shown().factor * x);
+    Table::<&ResidualDiagnostics>::new()
+        .left(28, "largest residuals: run", |r| &r.run)
+        .left(14, "channel", |r| r.channel.name())
+        .left(4, "unit", |r| r.channel.shown().name)
+        .right(10, "residual", |r| shown(r, r.residual))
+        .right(10, "error sd", |r| shown(r, r.error_sd))
+        .right(9, "leverage", |r| format!("{:.2}", r.leverage))
+        .right(12, "studentised", |r| {
+            cell(r.studentised, |x| number::significant(x, 2))
+        })
+        .right(9, "p", |r| cell(r.p, probability))
+        .text(largest(all))
 }
 
 fn trends(all: &[TrendDiagnostics]) -> String {
-    let mut text = format!(
-        "{:<14} {:<18} {:<4} {:>10} {:>10} {:>10} {:>9}\n",
-        "trend of", "against", "unit", "change", "sd", "share left", "p"
-    );
-    for t in all {
-        let unit = ShownUnit::of(t.channel);
-        let _ = writeln!(
-            text,
-            "{:<14} {:<18} {:<4} {:>10} {:>10} {:>10.2} {:>9}",
-            t.channel.name(),
-            t.against.name(),
-            unit.name,
-            number::four_digits(unit.factor * t.change),
-            number::four_digits(unit.factor * t.change_sd),
-            t.share_left,
-            probability(t.p)
-        );
-    }
-    text
+    let shown = |t: &TrendDiagnostics, x: f64| number::four_digits(ShownUnit::of(t.channel).factor * x);
+    Table::<&TrendDiagnostics>::new()
+        .left(14, "trend of", |t| t.channel.name())
+        .left(18, "against", |t| t.against.name())
+        .left(4, "unit", |t| ShownUnit::of(t.channel).name)
+        .right(10, "change", |t| shown(t, t.change))
+        .right(10, "sd", |t| shown(t, t.change_sd))
+        .right(10, "share left", |t| format!("{:.2}", t.share_left))
+        .right(9, "p", |t| probability(t.p))
+        .text(all)
 }
 
 fn parameters(diagnostics: &Diagnostics) -> String {
     let width = width(diagnostics.parameters.iter().map(|p| &p.name));
-    let mut text = format!(
-        "{:<width$} {:>11} {:>23}\n",
-        "parameter", "contraction", "p of prior conflict"
-    );
-    for p in &diagnostics.parameters {
-        let _ = writeln!(
-            text,
-            "{:<width$} {:>11} {:>23}{}",
-            p.name,
-            cell(p.contraction, |c| number::fixed(c, 2)),
-            cell(p.conflict_p, probability),
-            if p.at_bound { "  AT BOUND" } else { "" }
-        );
-    }
+    let mut text = Table::<&ParameterDiagnostics>::new()
+        .left(width, "parameter", |p| &p.name)
+        .right(11, "contraction", |p| {
+            cell(p.contraction, |c| number::fixed(c, 2))
+        })
+        .right(23, "p of prior conflict", |p| cell(p.conflict_p, probability))
+        .remark(|p| at_bound_words(p.at_bound))
+        .text(&diagnostics.parameters);
     if let Some(all) = &diagnostics.conflict {
         let distance = format!(
             "all together: squared distance {} for {}",
@@ -214,13 +176,13 @@ fn parameters(diagnostics: &Diagnostics) -> String {
 }
 
 fn directions(all: &[DirectionDiagnostics]) -> String {
-    let mut text = format!("{:<24} direction, in prior sds\n", "share of prior sd");
-    let line =
-        |d: &DirectionDiagnostics| format!("{:<24} {}\n", number::significant(d.sd_ratio, 2), d.words());
-    text.extend(all.iter().take(WORST_KNOWN).map(line));
+    let table = Table::<&DirectionDiagnostics>::new()
+        .left(24, "share of prior sd", |d| number::significant(d.sd_ratio, 2))
+        .left(0, "direction, in prior sds", DirectionDiagnostics::words);
+    let mut text = table.text(all.iter().take(WORST_KNOWN));
     if all.len() > WORST_KNOWN {
         text.push_str("...\n");
-        text.extend(all.last().map(line));
+        text.extend(all.last().map(|last| table.line(last)));
     }
     text
 }

@@ -4,15 +4,16 @@ use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::path::Path;
 
-use record::{ChiSquare, Discovery, JudgedSet};
+use record::{ChiSquare, Discovery, JudgedEffect, JudgedSet};
 
 use super::column::{cell, width};
+use super::table::Table;
 use result::discovery::{arguments, effect_file, numerical_noise, word};
 use result::words::probability::p_words;
 
-/// Most explanations that are shown.
+/// The largest number of explanations that are shown.
 const SHOWN: usize = 8;
-/// Most names in a list of effects.
+/// The largest number of names in a list of effects.
 const LISTED: usize = 20;
 
 /// The result of a search, and the command that adds it to the model.
@@ -22,24 +23,23 @@ const LISTED: usize = 20;
 pub fn text(record: &Discovery, calibration: i64, place: &str, folder: &Path) -> String {
     let mut text = format!("discovery: {}\n{}\n\n", word(record.verdict), record.text);
     let width = width(record.effects.iter().map(|e| &e.name));
-    let _ = writeln!(
-        text,
-        "{:<width$} {:>9} {:>11} {:>6} {:>9} {:>9}  strength prior",
-        "explanation", "ln BF", "probability", "class", "95 % set", "prior sds"
-    );
-    for effect in record.effects.iter().take(SHOWN) {
-        let _ = writeln!(
-            text,
-            "{:<width$} {:>9.2} {:>11.4} {:>6} {:>9} {:>9}  {}",
-            effect.name,
-            effect.log_bayes_factor,
-            effect.probability,
-            effect.class,
-            if effect.in_credible_set { "in" } else { "-" },
-            cell(effect.prior_sds, |sds| format!("{sds:.1}")),
+    text += &Table::<&JudgedEffect>::new()
+        .left(width, "explanation", |effect| &effect.name)
+        .right(9, "ln BF", |effect| format!("{:.2}", effect.log_bayes_factor))
+        .right(11, "probability", |effect| format!("{:.4}", effect.probability))
+        .right(6, "class", |effect| effect.class)
+        .right(
+            9,
+            "95 % set",
+            |effect| if effect.in_credible_set { "in" } else { "-" },
+        )
+        .right(9, "prior sds", |effect| {
+            cell(effect.prior_sds, |sds| format!("{sds:.1}"))
+        })
+        .apart(0, "strength prior", |effect| {
             effect.strength_prior.as_deref().unwrap_or("-")
-        );
-    }
+        })
+        .text(record.effects.iter().take(SHOWN));
     if let Some(more) = record.effects.len().checked_sub(SHOWN).filter(|&more| more > 0) {
         let _ = writeln!(text, "and {more} less probable ones");
     }
@@ -50,8 +50,8 @@ pub fn text(record: &Discovery, calibration: i64, place: &str, folder: &Path) ->
         chi_square(record.chi2),
         chi_square(record.chi2_best)
     );
-    if let Some(said) = numerical_noise(record) {
-        let _ = writeln!(text, "{said}");
+    if let Some(sentence) = numerical_noise(record) {
+        let _ = writeln!(text, "{sentence}");
     }
     if let Some(outside) = &record.outside {
         let _ = writeln!(
@@ -131,21 +131,15 @@ fn sets(record: &Discovery) -> String {
     let shown = || record.sets.iter().take(SHOWN);
     let names: Vec<String> = shown().map(|set| set.members.join(" + ")).collect();
     let width = width(names.iter());
-    let mut text = format!(
-        "\n{:<width$} {:>9} {:>9} {:>11} {:>20}\n",
-        "set", "ln BF", "prior", "probability", "prediction, nats"
-    );
-    for (name, set) in names.iter().zip(shown()) {
-        let _ = writeln!(
-            text,
-            "{name:<width$} {:>9.2} {:>9.4} {:>11.4} {:>20}",
-            set.log_bayes_factor,
-            set.prior,
-            set.probability,
+    let table = Table::<(&String, &JudgedSet)>::new()
+        .left(width, "set", |(name, _)| name)
+        .right(9, "ln BF", |(_, set)| format!("{:.2}", set.log_bayes_factor))
+        .right(9, "prior", |(_, set)| format!("{:.4}", set.prior))
+        .right(11, "probability", |(_, set)| format!("{:.4}", set.probability))
+        .right(20, "prediction, nats", |(_, set)| {
             cell(set.predictive, |nats| format!("{nats:+.1}"))
-        );
-    }
-    text
+        });
+    format!("\n{}", table.text(names.iter().zip(shown())))
 }
 
 /// Names without `EFFECT.WHEEL` where `EFFECT` is in the list.

@@ -6,12 +6,14 @@ use shared::channel::Channel;
 use shared::experiment::RunUse;
 
 use super::column::{cell, labelled};
+use super::table::{Table, channel_title};
 use crate::summary::study::combined_summary;
 use result::finished_calibration::FinishedCalibration;
 use result::study::Study;
+use result::table::coverage::Coverage;
 use result::table::errors::ErrorTable;
 use result::table::ledger::LedgerRow;
-use result::words::data_channel::{ShownUnit, short_name};
+use result::words::data_channel::ShownUnit;
 use result::words::number;
 
 /// Least width of the column of models.
@@ -27,9 +29,11 @@ const INTERPOLATION: &str = "interpolation";
 /// calibration in it.
 pub(super) fn ledger(study: &Study) -> String {
     let combined = combined_summary(study, &study.fixed_sigmas());
-    let combined = combined.filter(|own| own.models > 1).and_then(|own| own.holdout);
+    let combined = combined
+        .filter(|summary| summary.models > 1)
+        .and_then(|summary| summary.holdout);
     let current = study.current().map(FinishedCalibration::comparison);
-    let corrected = current.and_then(|own| own.corrected_holdout.as_ref());
+    let corrected = current.and_then(|comparison| comparison.corrected_holdout.as_ref());
     let text = table(study, &[(CORRECTED, corrected), (COMBINED, combined.as_ref())]);
     match text.is_empty() {
         true => text,
@@ -57,61 +61,88 @@ fn table(study: &Study, predictions: &[(&str, Option<&ErrorTable>)]) -> String {
         .iter()
         .map(|line| line.model.chars().count())
         .fold(MODEL, usize::max);
-    let mut text = format!("{:<width$} {:<8}", "root mean sq. error", "runs");
+    let mut table = Table::<Row>::new()
+        .left(width, "root mean sq. error", |row| row.model)
+        .left(8, "runs", |row| usage_words(row.usage));
     for &channel in &channels {
-        let unit = ShownUnit::of(channel);
-        let _ = write!(text, " {:>10}", format!("{} {}", short_name(channel), unit.name));
+        table = table.right(10, &channel_title(channel), move |row| {
+            cell(row.errors.channel(channel), |error| {
+                let mark = if row.worse.contains(&channel) { "*" } else { "" };
+                format!("{mark}{:.2}", error.rmse * ShownUnit::of(channel).factor)
+            })
+        });
     }
-    let _ = writeln!(text, " {:>7} {:>9}", "x noise", "inside");
+    let table = table
+        .right(7, "x noise", |row| {
+            cell(row.errors.all.rmse_fixed_sigma, |s| format!("{s:.2}"))
+        })
+        .right(9, "inside", |row| {
+            cell(row.coverage, |c| format!("{} of {}", c.inside, c.of))
+        });
+    let mut text = table.header();
     for line in &lines {
-        for (i, row) in line.rows.iter().enumerate() {
-            let model = if i == 0 { line.model.as_str() } else { "" };
-            let _ = writeln!(text, "{model:<width$} {}", ledger_row(row, &channels));
-        }
+        let models = std::iter::once(line.model.as_str()).chain(std::iter::repeat(""));
+        text.extend(
+            models
+                .zip(&line.rows)
+                .map(|(model, row)| table.line(Row::fitted(model, row))),
+        );
     }
     let current = study.current().map(FinishedCalibration::comparison);
-    let interpolated = current.and_then(|own| own.baseline_holdout.as_ref());
+    let interpolated = current.and_then(|comparison| comparison.baseline_holdout.as_ref());
     for (name, errors) in predictions.iter().copied().chain([(INTERPOLATION, interpolated)]) {
         if let Some(errors) = errors {
-            let cells = cells(errors, &channels, &[]);
-            let _ = write!(text, "{name:<width$} {:<8}{cells}", usage(RunUse::Holdout));
+            text += &table.start(2 + channels.len(), Row::held_out(name, errors));
             let _ = match errors.all.unpredicted {
                 0 => writeln!(text),
-                others => writeln!(text, "  without {}", number::count(others, "measurement")),
+                unpredicted => writeln!(text, "  without {}", number::count(unpredicted, "measurement")),
             };
         }
     }
-    if lines
-        .iter()
-        .flat_map(|line| &line.rows)
-        .any(|row| !row.worse.is_empty())
-    {
+    let mut rows = lines.iter().flat_map(|line| &line.rows);
+    if rows.any(|row| !row.worse.is_empty()) {
         let _ = writeln!(text, "*: worse than in the model above");
     }
     text
 }
 
-fn usage(usage: RunUse) -> &'static str {
+/// A row of the printed ledger.
+#[derive(Clone, Copy)]
+struct Row<'a> {
+    model: &'a str,
+    usage: RunUse,
+    errors: &'a ErrorTable,
+    worse: &'a [Channel],
+    coverage: Option<&'a Coverage>,
+}
+
+impl<'a> Row<'a> {
+    /// The row of a calibration.
+    fn fitted(model: &'a str, row: &'a LedgerRow) -> Self {
+        Row {
+            model,
+            usage: row.usage,
+            errors: &row.errors,
+            worse: &row.worse,
+            coverage: row.coverage.as_ref(),
+        }
+    }
+
+    /// The row of another prediction of the held-out runs.
+    fn held_out(model: &'a str, errors: &'a ErrorTable) -> Self {
+        Row {
+            model,
+            usage: RunUse::Holdout,
+            errors,
+            worse: &[],
+            coverage: None,
+        }
+    }
+}
+
+fn usage_words(usage: RunUse) -> &'static str {
     match usage {
         RunUse::Fit => "fit",
         RunUse::Holdout => "held out",
     }
-}
-
-fn ledger_row(row: &LedgerRow, channels: &[Channel]) -> String {
-    let sigmas = cell(row.errors.all.rmse_fixed_sigma, |s| format!("{s:.2}"));
-    let inside = cell(row.coverage.as_ref(), |c| format!("{} of {}", c.inside, c.of));
-    let cells = cells(&row.errors, channels, &row.worse);
-    format!("{:<8}{cells} {sigmas:>7} {inside:>9}", usage(row.usage))
-}
-
-fn cells(errors: &ErrorTable, channels: &[Channel], worse: &[Channel]) -> String {
-    let cells = channels.iter().map(|channel| {
-        let error = cell(errors.channel(*channel), |error| {
-            let mark = if worse.contains(channel) { "*" } else { "" };
-            format!("{mark}{:.2}", error.rmse * ShownUnit::of(*channel).factor)
-        });
-        format!(" {error:>10}")
-    });
-    cells.collect()
 }

@@ -6,7 +6,7 @@
 //! - `study`: everything of a study; `calibration`: of one calibration; `comparison`: its errors.
 //! - `diagnostics`: how far a result can be trusted. [`discovery`]: a search for a missing effect.
 //! - `validation`: the levels of a factor, each left out in turn.
-//! - `column`: widths and cells of columns.
+//! - `table`: tables of columns; `column`: the width of names, cells that may be empty, sentences behind a label.
 
 mod brief;
 mod calibration;
@@ -22,6 +22,7 @@ mod specification;
 mod status;
 mod story;
 mod study;
+mod table;
 mod validation;
 
 pub use brief::brief;

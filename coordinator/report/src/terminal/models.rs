@@ -5,9 +5,10 @@ use std::fmt::Write;
 use shared::channel::Channel;
 
 use super::column::cell;
-use result::model_comparison::LeftOutBy;
+use super::table::{Table, channel_title};
+use result::model_comparison::{ComparedModel, LeftOutBy};
 use result::study::Study;
-use result::words::data_channel::{ShownUnit, short_name};
+use result::words::data_channel::ShownUnit;
 use result::words::probability::probability;
 
 /// The models with their evidence, probability and errors on data left out; nothing of a job with one.
@@ -28,42 +29,34 @@ pub(super) fn models(study: &Study) -> String {
         .iter()
         .map(|m| m.name.chars().count())
         .fold(16, usize::max);
-    let mut text = format!(
-        "{:<width$} {:>12} {:>8} {:>8}",
-        "model", "ln evidence", "P", "chi2 p"
-    );
-    for &channel in &channels {
-        let unit = ShownUnit::of(channel);
-        let _ = write!(text, " {:>10}", format!("{} {}", short_name(channel), unit.name));
-    }
-    let _ = writeln!(text, " {:>7}", "x noise");
-    for model in &comparison.models {
-        let _ = write!(
-            text,
-            "{:<width$} {:>12} {:>8} {:>8}",
-            model.name,
-            cell(model.log_evidence, |log| format!("{log:.2}")),
-            probability(model.probability),
-            cell(model.chi_square_p, probability)
-        );
-        let error = |channel: Channel| model.left_out.as_ref()?.channel(channel);
-        for &channel in &channels {
-            let rmse = cell(error(channel), |e| {
+    let mut table = Table::<&ComparedModel>::new()
+        .left(width, "model", |model| &model.name)
+        .right(12, "ln evidence", |model| {
+            cell(model.log_evidence, |log| format!("{log:.2}"))
+        })
+        .right(8, "P", |model| probability(model.probability))
+        .right(8, "chi2 p", |model| cell(model.chi_square_p, probability));
+    for channel in channels {
+        table = table.right(10, &channel_title(channel), move |model| {
+            let error = model.left_out.as_ref().and_then(|errors| errors.channel(channel));
+            cell(error, |e| {
                 format!("{:.2}", e.rmse * ShownUnit::of(channel).factor)
-            });
-            let _ = write!(text, " {rmse:>10}");
-        }
+            })
+        });
+    }
+    let table = table.right(7, "x noise", |model| {
         let sds = model
             .left_out
             .as_ref()
             .and_then(|errors| errors.all.rmse_fixed_sigma);
-        let _ = writeln!(text, " {:>7}", cell(sds, |sds| format!("{sds:.2}")));
-    }
-    let of = comparison.models.first().map(|model| model.left_out_by);
+        cell(sds, |sds| format!("{sds:.2}"))
+    });
+    let mut text = table.text(&comparison.models);
+    let left_out_by = comparison.models.first().map(|model| model.left_out_by);
     let _ = writeln!(
         text,
         "P from equal prior odds; errors of {}",
-        match of {
+        match left_out_by {
             Some(LeftOutBy::Holdout) => "held-out runs",
             _ => "each condition when the others are fitted",
         }

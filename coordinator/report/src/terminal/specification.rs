@@ -2,11 +2,12 @@
 
 use std::fmt::Write;
 
-use job::{JointPrior, Spec};
+use job::{FreeParameter, JointPrior, Spec};
 use shared::experiment::{AveragingProtocol, MeasuredHistory};
 
 use super::campaign::campaign;
 use super::column::width;
+use super::table::Table;
 use result::finished_calibration::prior_mean;
 use result::words::number;
 
@@ -61,31 +62,17 @@ pub fn specification(spec: &Spec) -> String {
     text.push('\n');
     let fixed = &spec.fit_variant.fixed;
     let width = width(spec.parameters.iter().map(|p| &p.name).chain(fixed.keys()));
-    let _ = writeln!(
-        text,
-        "{:<width$} {:>12} {:>12} {:>12} {:>12}  unit",
-        "parameter", "prior mean", "prior sd", "lower", "upper"
-    );
-    for p in &spec.parameters {
-        let (lower, upper) = p.marginal.support();
-        let _ = writeln!(
-            text,
-            "{:<width$} {:>12} {:>12} {:>12} {:>12}  {}",
-            p.name,
-            number::four_digits(prior_mean(&p.marginal)),
-            number::four_digits(p.marginal.sd()),
-            number::four_digits(lower),
-            number::four_digits(upper),
-            p.unit
-        );
-    }
+    let free = Table::<&FreeParameter>::new()
+        .left(width, "parameter", |p| &p.name)
+        .right(12, "prior mean", |p| number::four_digits(prior_mean(&p.marginal)))
+        .right(12, "prior sd", |p| number::four_digits(p.marginal.sd()))
+        .right(12, "lower", |p| number::four_digits(p.marginal.support().0))
+        .right(12, "upper", |p| number::four_digits(p.marginal.support().1))
+        .apart(0, "unit", |p| &p.unit);
+    text += &free.text(&spec.parameters);
     for (name, value) in fixed {
-        let _ = writeln!(
-            text,
-            "{name:<width$} {:>12} {:>12}",
-            number::four_digits(*value),
-            "fixed"
-        );
+        let value = number::four_digits(*value);
+        let _ = writeln!(text, "{name:<width$} {value:>12} {:>12}", "fixed");
     }
     text
 }

@@ -1,35 +1,35 @@
 //! States of calibrations as text.
 
-use std::fmt::Write;
-
-use shared::api::{CalibrationStatus, Position};
+use shared::api::{CalibrationStatus, Position, Progress};
 use shared::sentence::one_line;
 
 use super::column::cell;
+use super::table::Table;
 
 /// The states of calibrations, a line each.
 pub fn status_table(statuses: &[CalibrationStatus]) -> String {
-    let mut text = format!(
-        "{:>4} {:>5} {:<24} {:<10} {:>5} {:>10} {:>11} {:>8} {:>8}\n",
-        "id", "study", "name", "state", "stage", "exponent", "evaluations", "per s", "to go s"
-    );
-    for s in statuses {
-        let p = s.progress.as_ref();
-        let _ = writeln!(
-            text,
-            "{:>4} {:>5} {:<24} {:<10} {:>5} {:>10} {:>11} {:>8} {:>8}",
-            s.id,
-            s.study,
-            one_line(&s.name),
-            s.state.name(),
-            cell(p, |p| count(p.position).to_string()),
-            cell(p.and_then(|p| exponent(p.position)), |x| format!("{x:.3e}")),
-            cell(p, |p| p.evaluations.to_string()),
-            cell(p, |p| format!("{:.0}", p.evaluations_per_s)),
-            cell(p.and_then(|p| p.remaining_s), |s| format!("{s:.0}"))
-        );
-        if let Some(message) = &s.message {
-            let _ = writeln!(text, "     {}", one_line(message));
+    let progress = |s: &CalibrationStatus, words: fn(&Progress) -> String| cell(s.progress.as_ref(), words);
+    let table = Table::<&CalibrationStatus>::new()
+        .right(4, "id", |s| s.id)
+        .right(5, "study", |s| s.study)
+        .left(24, "name", |s| one_line(&s.name))
+        .left(10, "state", |s| s.state.name())
+        .right(5, "stage", |s| progress(s, |p| count(p.position).to_string()))
+        .right(10, "exponent", |s| {
+            progress(s, |p| cell(exponent(p.position), |x| format!("{x:.3e}")))
+        })
+        .right(11, "evaluations", |s| progress(s, |p| p.evaluations.to_string()))
+        .right(8, "per s", |s| {
+            progress(s, |p| format!("{:.0}", p.evaluations_per_s))
+        })
+        .right(8, "to go s", |s| {
+            progress(s, |p| cell(p.remaining_s, |s| format!("{s:.0}")))
+        });
+    let mut text = table.header();
+    for status in statuses {
+        text += &table.line(status);
+        if let Some(message) = &status.message {
+            text += &format!("     {}\n", one_line(message));
         }
     }
     text

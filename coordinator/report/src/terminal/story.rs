@@ -7,8 +7,8 @@ use super::column::{LABEL, labelled};
 use super::ending::quoted;
 use crate::story::{NextStep, Story};
 
-/// Most steps of a brief story.
-const STEPS: usize = 2;
+/// The largest number of steps of a brief story.
+const MAX_STEPS: usize = 2;
 
 /// The story, with the commands of its steps.
 ///
@@ -21,8 +21,8 @@ pub fn story(story: &Story, folder: &Path, is_brief: bool) -> String {
     text += &(labelled("wrong:", &story.wrong.text) + &labelled("missing:", &story.missing.text));
     let steps = story.next.steps.iter().enumerate();
     let shown = steps.filter(|(number, step)| !is_brief || *number == 0 || step.command.is_some());
-    let most = if is_brief { STEPS } else { usize::MAX };
-    for (number, step) in shown.take(most) {
+    let max_steps = if is_brief { MAX_STEPS } else { usize::MAX };
+    for (number, step) in shown.take(max_steps) {
         let label = if number == 0 { "next:" } else { "  then:" };
         text += &labelled(label, &step.text);
         if let Some(command) = command(step, folder) {

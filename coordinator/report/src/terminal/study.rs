@@ -15,12 +15,12 @@ use result::discovery::word;
 use result::study::Study;
 use result::words::number;
 
-/// Where the measurements of a study come from, its tables and flags, one calibration after the other, then its calibrations and
-/// searches, a line each, and the error ledger.
+/// Prints the source of the measurements, the tables and flags of each calibration, then the calibrations and searches, a line each, and
+/// the error ledger.
 pub fn study(study: &Study) -> String {
     let results: Vec<String> = study.calibrations().map(summary).collect();
-    let of_lead = study.lead.spec.experiment.campaign.as_ref();
-    let mut text = of_lead.map_or_else(String::new, |own| campaign(own) + "\n") + &results.join("\n");
+    let source = study.lead.spec.experiment.campaign.as_ref();
+    let mut text = source.map_or_else(String::new, |source| campaign(source) + "\n") + &results.join("\n");
     for flag in missed_modes(study).into_iter().chain(interpolation_beats(study)) {
         let _ = writeln!(text, "\nflag {}: {}", flag.kind.name(), flag.text);
     }
@@ -33,8 +33,8 @@ fn calibrations(study: &Study) -> String {
     let mut text = String::new();
     for calibration in study.calibrations() {
         let _ = writeln!(text, "{}", headline(calibration));
-        let own = |id| id == calibration.row.id;
-        for round in study.rounds.iter().filter(|round| own(round.calibration)) {
+        let rounds = study.rounds.iter();
+        for round in rounds.filter(|round| round.calibration == calibration.row.id) {
             let found = match (round.record.verdict, &round.record.extension) {
                 (Verdict::Named, Some(extension)) => format!("{} named", effect_of(extension)),
                 (verdict, _) => word(verdict).replace('_', " "),

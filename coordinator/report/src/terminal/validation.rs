@@ -6,9 +6,10 @@ use std::fmt::Write;
 use shared::channel::Channel;
 
 use super::column::cell;
+use super::table::{Table, channel_title};
 use result::table::errors::ErrorTable;
 use result::validation::{Judgement, Validation};
-use result::words::data_channel::{ShownUnit, short_name};
+use result::words::data_channel::ShownUnit;
 use result::words::number;
 
 /// Least width of the column of levels.
@@ -26,69 +27,80 @@ pub fn validation(validation: &Validation) -> String {
         .iter()
         .map(|level| level.level.name.chars().count());
     let width = names.fold(LEVEL, usize::max);
+    let mut table = Table::<Row>::new()
+        .left(width, "left out", |row| row.name)
+        .right(4, "runs", |row| row.runs);
+    for &channel in &channels {
+        let scale = ShownUnit::of(channel).factor;
+        table = table.right(17, &channel_title(channel), move |row| {
+            row.pair(|errors| Some(format!("{:.2}", errors.channel(channel)?.rmse * scale)))
+        });
+    }
+    let table = table
+        .right(15, "x noise", |row| {
+            row.pair(|errors| errors.all.rmse_fixed_sigma.map(|sigmas| format!("{sigmas:.2}")))
+        })
+        .right(11, "inside", |row| match row.judgement.with_interval {
+            0 => "-".into(),
+            count => format!("{} of {count}", row.judgement.inside),
+        });
     let mut text = format!(
-        "{} with each {} left out in turn, calibrated by {} on the rest; model | interpolation\n\n{:<width$} {:>4}",
+        "{} with each {} left out in turn, calibrated by {} on the rest; model | interpolation\n\n{}",
         validation.name,
         validation.leave_out.name(),
         validation.algorithm.name(),
-        "left out",
-        "runs"
+        table.header()
     );
-    for &channel in &channels {
-        let unit = ShownUnit::of(channel);
-        let _ = write!(text, " {:>17}", format!("{} {}", short_name(channel), unit.name));
-    }
-    let _ = writeln!(text, " {:>15} {:>11}", "x noise", "inside");
     for level in &validation.levels {
-        let _ = write!(text, "{:<width$} {:>4}", level.level.name, level.level.runs.len());
+        // A level without a judgement shows its name and its runs alone.
+        let row = Row {
+            name: &level.level.name,
+            runs: level.level.runs.len(),
+            judgement: level.judgement.as_ref().unwrap_or(&validation.total),
+        };
         text += &match (&level.judgement, &level.refused) {
-            (Some(judgement), _) => line(judgement, &channels),
-            (None, Some(reason)) => format!(" {reason}\n"),
-            (None, None) => "\n".into(),
+            (Some(_), _) => table.line(row),
+            (None, Some(reason)) => format!("{} {reason}\n", table.start(2, row)),
+            (None, None) => table.start(2, row) + "\n",
         };
     }
     let judged = validation.levels.iter().filter(|level| level.judgement.is_some());
-    let runs: usize = judged.map(|level| level.level.runs.len()).sum();
-    let _ = write!(text, "{:<width$} {runs:>4}", "all");
-    text += &line(&validation.total, &channels);
+    text += &table.line(Row {
+        name: "all",
+        runs: judged.map(|level| level.level.runs.len()).sum(),
+        judgement: &validation.total,
+    });
     for note in notes(validation) {
         let _ = writeln!(text, "{note}");
     }
     text
 }
 
-fn line(judgement: &Judgement, channels: &[Channel]) -> String {
-    let interpolation = judgement.interpolation.as_ref();
-    let mark = if judgement.extrapolated > 0 { "*" } else { "" };
-    let pair = |of: &dyn Fn(&ErrorTable) -> Option<String>| {
-        let (interpolation, beside) = (
-            interpolation.and_then(of),
-            judgement.model_beside.as_ref().and_then(of),
-        );
-        // Where nothing is interpolated, the model stands alone.
-        let model = match interpolation {
-            Some(_) => beside,
-            None => judgement.model.as_ref().and_then(of),
-        };
-        let [model, interpolation] = [model, interpolation].map(|words| cell(words, |words| words));
-        format!("{model} | {interpolation}{mark}")
-    };
-    let mut text = String::new();
-    for &channel in channels {
-        let scale = ShownUnit::of(channel).factor;
-        let rmse = |table: &ErrorTable| Some(format!("{:.2}", table.channel(channel)?.rmse * scale));
-        let _ = write!(text, " {:>17}", pair(&rmse));
-    }
-    let sigmas = |table: &ErrorTable| table.all.rmse_fixed_sigma.map(|sigmas| format!("{sigmas:.2}"));
-    let inside = match judgement.with_interval {
-        0 => "-".into(),
-        of => format!("{} of {of}", judgement.inside),
-    };
-    let _ = writeln!(text, " {:>15} {inside:>11}", pair(&sigmas));
-    text
+/// A row of the printed table.
+#[derive(Clone, Copy)]
+struct Row<'a> {
+    name: &'a str,
+    runs: usize,
+    judgement: &'a Judgement,
 }
 
-/// What the marks mean, and what does not count.
+impl Row<'_> {
+    /// A number of the model's errors and of those of interpolation; where nothing is interpolated, the model stands alone.
+    fn pair(self, number: impl Fn(&ErrorTable) -> Option<String>) -> String {
+        let judgement = self.judgement;
+        let interpolation = judgement.interpolation.as_ref().and_then(&number);
+        let model = match interpolation {
+            Some(_) => &judgement.model_beside,
+            None => &judgement.model,
+        };
+        let model = model.as_ref().and_then(&number);
+        let [model, interpolation] = [model, interpolation].map(|words| cell(words, |words| words));
+        let mark = if judgement.extrapolated > 0 { "*" } else { "" };
+        format!("{model} | {interpolation}{mark}")
+    }
+}
+
+/// The meaning of the marks, and the measurements that do not count.
 fn notes(validation: &Validation) -> Vec<String> {
     let total = &validation.total;
     let mut notes = Vec::new();
@@ -181,7 +193,14 @@ mod tests {
     fn model_and_interpolation_are_compared_on_the_rows_of_both_and_the_rest_is_counted_with_its_reason() {
         let (of, mut others) = (fixture::without_holdout(), fixture::with_refused_runs());
         // h0 is of a wheel that was never fitted.
-        let place = |run: &str| others.spec.experiment.runs.iter().position(|own| own.name == run);
+        let place = |run: &str| {
+            others
+                .spec
+                .experiment
+                .runs
+                .iter()
+                .position(|candidate| candidate.name == run)
+        };
         let (h0, runs) = (place("h0").unwrap(), ["h0", "h1", "h2", "h3"]);
         let mut wheels = others.spec.experiment.wheels.clone();
         wheels.insert("b".into(), wheels["a"].clone());
@@ -195,7 +214,7 @@ mod tests {
         };
         let judged = ValidatedLevel::predicted(level, &of, &others);
         let judgement = judged.judgement.clone().unwrap();
-        let rows = |table: &Option<ErrorTable>| table.as_ref().map(|own| own.drawbar_pull.unwrap().runs);
+        let rows = |table: &Option<ErrorTable>| table.as_ref().map(|table| table.drawbar_pull.unwrap().runs);
         // Predicted are h0 and h3, interpolated h1, h2 and h3.
         assert_eq!(
             (

@@ -1,0 +1,2 @@
+-- As in SQLite.
+SELECT 1;
