@@ -25,4 +25,4 @@ pub use cma_es::CmaEsSettings;
 pub use ga::GaSettings;
 pub use generations::Evolution;
 pub use settings::EvolutionSettings;
-pub use settings_error::EvolutionSettingsError;
+pub use settings_error::{EvolutionSettingsError, MAX_POPULATION};

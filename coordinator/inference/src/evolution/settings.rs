@@ -14,9 +14,6 @@ pub enum EvolutionSettings {
 }
 
 impl EvolutionSettings {
-    /// Largest population: more than any farm has workers.
-    pub const MAX_POPULATION: usize = 100_000;
-
     /// Seed of all random numbers.
     #[must_use]
     pub fn seed(&self) -> u64 {

@@ -1,6 +1,7 @@
 //! Errors in the settings of an evolution.
 
-use super::settings::EvolutionSettings;
+/// Largest population, which exceeds the number of workers of any farm.
+pub const MAX_POPULATION: usize = 100_000;
 
 /// A setting outside its bounds.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
@@ -9,10 +10,7 @@ pub enum EvolutionSettingsError {
     #[error("the prior has no parameters")]
     NoParameters,
     /// The population is too small or too large.
-    #[error(
-        "population = {population} is not from {min} to {}",
-        EvolutionSettings::MAX_POPULATION
-    )]
+    #[error("population = {population} is not from {min} to {MAX_POPULATION}")]
     Population {
         /// The population as given.
         population: usize,
@@ -63,7 +61,7 @@ pub enum EvolutionSettingsError {
 
 /// Refuses a population out of bounds.
 pub(crate) fn check_population(population: usize, min: usize) -> Result<(), EvolutionSettingsError> {
-    if (min..=EvolutionSettings::MAX_POPULATION).contains(&population) {
+    if (min..=MAX_POPULATION).contains(&population) {
         Ok(())
     } else {
         Err(EvolutionSettingsError::Population { population, min })

@@ -3,7 +3,7 @@
 //! Each algorithm has a struct here. Its fields are the keys that the algorithm takes: reader, schema and the test of docs/job.md have
 //! their names, types, bounds, defaults and words from it. A new key is a field, and its use in `settings`.
 
-use inference::evolution::{CmaEsSettings, EvolutionSettings, GaSettings};
+use inference::evolution::{CmaEsSettings, EvolutionSettings, GaSettings, MAX_POPULATION};
 use inference::lm::LmSettings;
 use inference::{Algorithm, MAX_PARTICLES, StageMethod, TmcmcSettings};
 use schemars::JsonSchema;
@@ -175,7 +175,7 @@ impl Default for Lm {
 #[serde(deny_unknown_fields, default)]
 struct Ga {
     /// Individuals of a generation.
-    #[schemars(range(min = GaSettings::MIN_POPULATION, max = EvolutionSettings::MAX_POPULATION))]
+    #[schemars(range(min = GaSettings::MIN_POPULATION, max = MAX_POPULATION))]
     population: usize,
     /// Largest number of generations.
     #[schemars(range(min = 2, max = GaSettings::MAX_GENERATIONS))]
@@ -199,7 +199,7 @@ impl Default for Ga {
 #[serde(deny_unknown_fields, default)]
 struct CmaEs {
     /// Individuals of a generation; 4 + floor(3 ln d) for d parameters where the job does not say it.
-    #[schemars(range(min = CmaEsSettings::MIN_POPULATION, max = EvolutionSettings::MAX_POPULATION))]
+    #[schemars(range(min = CmaEsSettings::MIN_POPULATION, max = MAX_POPULATION))]
     population: Option<usize>,
     /// Largest number of evaluations.
     #[schemars(range(min = 1, max = CmaEsSettings::MAX_EVALUATIONS))]
