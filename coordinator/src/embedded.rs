@@ -28,9 +28,6 @@ pub fn check_processor() -> Result<(), String> {
 }
 
 /// Does what the program `worker` does.
-///
-/// # Errors
-/// [`WorkerError`].
 pub async fn work(config: WorkerConfig) -> Result<(), WorkerError> {
     worker::program::execute(config).await
 }

@@ -13,6 +13,11 @@
 //! - [`command`]: the verbs of the command line.
 //! - [`config`]: command line and environment.
 
+#![expect(
+    missing_docs,
+    reason = "only this package's program and benchmarks use the library; messages of errors explain their fields"
+)]
+
 pub mod command;
 pub mod config;
 pub mod effect;

@@ -17,7 +17,7 @@ use crate::effect::{EffectCard, Group};
 use job::check_own;
 use result::number;
 
-/// Columns of a terminal that every line fits into.
+/// Longest line `[columns]`.
 const COLUMNS: usize = 100;
 /// Steps of a curve's height.
 const BARS: [char; 8] = ['▁', '▂', '▃', '▄', '▅', '▆', '▇', '█'];
@@ -29,7 +29,7 @@ pub(super) async fn effects(config: &EffectsArguments) -> anyhow::Result<()> {
     };
     let effect = match (&config.file, &config.name) {
         (Some(path), _) => {
-            // what a job would refuse is refused here
+            // The checks are those of a job.
             let file = path.display().to_string();
             let effect = own(&file, &read_text(path)?)?;
             check_own(&file, &effect)?;
@@ -44,7 +44,7 @@ pub(super) async fn effects(config: &EffectsArguments) -> anyhow::Result<()> {
     Ok(say(&format!("{text}\n\n{}", deeds(&shown)))?)
 }
 
-/// Every effect of the catalogue, by what of the model it concerns.
+/// Every effect of the catalogue, by the part of the model that it concerns.
 fn list() -> String {
     let cards: Vec<EffectCard> = catalogue().iter().map(EffectCard::of).collect();
     let mut text = wrapped(
@@ -109,7 +109,7 @@ fn prior(prior: &serde_json::Value) -> String {
     }
 }
 
-/// Words in lines that fit, the first indented by `indent`, the others of an indented one by four more.
+/// Breaks words into lines. The first line is indented by `indent`, the others by four more where `indent` is not 0.
 fn wrapped(words: &str, indent: usize) -> String {
     let mut text = String::new();
     let mut line = " ".repeat(indent);
@@ -129,7 +129,7 @@ fn wrapped(words: &str, indent: usize) -> String {
     text + &line + "\n"
 }
 
-/// What each strength does, in a table and in curves.
+/// The changes by each strength, in a table and in curves.
 fn deeds(signature: &Signature) -> String {
     let pass = if signature.pass > 1 { "; second pass" } else { "" };
     let angle = match signature.slip_angle_deg {
@@ -200,7 +200,7 @@ fn cell(value: Option<f64>, signed: bool) -> String {
     }
 }
 
-/// The curve of a channel as bars between its least and its greatest value, which stand behind it.
+/// The curve of a channel as bars between its least and its greatest value, followed by these values.
 fn curve(channel: &ChannelSignature) -> String {
     let values = || channel.curve.iter().flatten().copied();
     let (least, most) = values().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| {

@@ -1,4 +1,4 @@
-//! Whether a service may listen where it is told to, and whom it asks for a token.
+//! Decides whether a service may listen at an address, and whether it asks for tokens.
 
 use std::net::SocketAddr;
 
@@ -8,7 +8,7 @@ use crate::config::ExposureArguments;
 use crate::http::{Exposure, TokenRule, tls_acceptor};
 use store::{Reader, name_of};
 
-/// How a service shows itself at an address; refused where others reach it and no token stands between.
+/// Returns how a service is reached at an address. Refuses an address that other machines reach where no token is needed.
 pub(super) async fn exposure(
     listening: SocketAddr,
     config: &ExposureArguments,

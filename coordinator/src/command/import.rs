@@ -17,12 +17,12 @@ pub(super) fn import(config: &ImportArguments) -> anyhow::Result<()> {
         is_own: true,
     };
     let (Some(map), Some(output)) = (&config.map, &config.output) else {
-        let found =
+        let guessed =
             guess(&source, config.sheet.as_deref()).map_err(|complaint| anyhow::anyhow!("{complaint}"))?;
-        for remark in &found.remarks {
+        for remark in &guessed.remarks {
             note(&format!("note: {remark}"));
         }
-        return Ok(say(&found.map)?);
+        return Ok(say(&guessed.map)?);
     };
     let map_name = map.display().to_string();
     let map_text = read_text(map)?;
@@ -44,23 +44,23 @@ fn write(converted: &Converted, output: &Path, stem: &str) -> anyhow::Result<()>
     let put = |path: &Path, text: &str| {
         std::fs::write(path, text).map_err(|e| anyhow::anyhow!("{}: {e}", path.display()))
     };
-    let mut said = String::new();
+    let mut text = String::new();
     for remark in &converted.remarks {
-        said += &format!("note: {remark}\n");
+        text += &format!("note: {remark}\n");
     }
-    // runs.csv comes last: where it stands, the files that it names do too.
+    // runs.csv is written last, so that the files that it names exist.
     for (name, text) in &converted.histories {
         put(&output.with_file_name(name), text)?;
     }
     if !converted.histories.is_empty() {
-        said += &format!("{} histories beside it\n", converted.histories.len());
+        text += &format!("{} histories beside it\n", converted.histories.len());
     }
     if let Some(notes) = &converted.notes {
         let path = output.with_file_name(format!("{stem}-notes.csv"));
         put(&path, notes)?;
-        said += &format!("{}: what runs.csv does not have, by run\n", path.display());
+        text += &format!("{}: what runs.csv does not have, by run\n", path.display());
     }
     put(output, converted.runs.as_deref().unwrap_or_default())?;
-    said += &format!("{}: {} runs\n", output.display(), converted.run_count);
-    Ok(say(&said)?)
+    text += &format!("{}: {} runs\n", output.display(), converted.run_count);
+    Ok(say(&text)?)
 }

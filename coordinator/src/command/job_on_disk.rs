@@ -17,13 +17,13 @@ use job::{
 pub(super) struct JobOnDisk {
     /// Name for lists and folders.
     pub(super) name: String,
-    /// The job as it counts, the command line's effects included, and its effect files.
+    /// The job with the effects of the command line, and its effect files.
     pub(super) job: FileSet,
     /// Its experiment.
     pub(super) experiment: FileSet,
-    /// What they mean; of several models that the job compares, the first.
+    /// Their specification; with the first model where the job compares several.
     pub(super) spec: Spec,
-    /// The same with each of the other models.
+    /// Their specifications with each of the other models.
     pub(super) others: Vec<Spec>,
 }
 
@@ -73,7 +73,7 @@ pub(super) fn read(file: &JobArguments, own: &[ServiceEffect]) -> Result<JobOnDi
     }
     let others = specs.split_off(1);
     let spec = specs.remove(0);
-    // An extension has a folder of its own beside its base's.
+    // An extension has another folder than its base.
     let mut name = name(path);
     for more in file
         .effect

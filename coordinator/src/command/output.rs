@@ -11,7 +11,7 @@ pub(super) fn say(text: &str) -> std::io::Result<()> {
     }
 }
 
-/// Writes a line for whoever watches to standard error; nobody need.
+/// Writes a line to standard error.
 pub(super) fn note(line: &str) {
     let _ = writeln!(std::io::stderr().lock(), "{line}");
 }

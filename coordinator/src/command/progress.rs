@@ -10,7 +10,7 @@ use super::output::note;
 
 /// Natural logarithm of the first tempering exponent of a usual calibration, about 1e-5: the stages climb from there to 0.
 const FIRST_LN_EXPONENT: f64 = -11.5;
-/// Share of a calibration's work before the exponent is 1.
+/// Share of a calibration's work until the exponent is 1.
 const CLIMB: f64 = 0.9;
 /// Evaluations of a usual search.
 const SEARCH: f64 = 2000.0;
@@ -18,13 +18,13 @@ const SEARCH: f64 = 2000.0;
 const FIT_STEPS: f64 = 8.0;
 /// Generations of a usual search by generations.
 const GENERATIONS: f64 = 100.0;
-/// The smallest share done from which the remaining time is estimated.
+/// Smallest finished share from which the remaining time is estimated.
 const MIN_SHARE: f64 = 0.03;
-/// The display never says that all is done.
+/// Largest share that the display shows: the end is not certain.
 const MAX_SHARE: f64 = 0.99;
 
-/// The share of a study that is done, from 0 to 1: of equal parts, those that are over and what is done of the present one. It is
-/// monotone by construction, as the parts to come are a guess.
+/// The finished share of a study, from 0 to 1. Its members are equal parts, and the present one counts by its finished share. The share never
+/// falls, although the number of members is a guess.
 #[derive(Debug, Default, PartialEq)]
 struct StudyShare(f64);
 
@@ -70,7 +70,7 @@ fn time_to_go(elapsed_s: f64, first: f64, share: f64) -> Option<String> {
     })
 }
 
-/// Where a calibration stands: `stage 7 of about 12`.
+/// The progress of a calibration in words: `stage 7 of about 12`.
 ///
 /// # Arguments
 /// - `first`: stage and exponent at which it was seen first; its stages to come climb as fast as those since then.
@@ -134,10 +134,10 @@ impl Display {
         }
     }
 
-    /// Shows where the study stands: its present calibration, and how many members are over.
+    /// Shows the progress of a study by its present calibration and the number of members that are over.
     pub(super) fn show(&mut self, status: &CalibrationStatus, over: usize) {
         let Some(p) = &status.progress else { return };
-        let here = match p.position {
+        let position = match p.position {
             Position::Sampler {
                 stage,
                 tempering_exponent,
@@ -147,7 +147,7 @@ impl Display {
         };
         let first = match self.first {
             Some((id, first)) if id == status.id && first.1 > 0.0 => first,
-            _ => here,
+            _ => position,
         };
         self.first = Some((status.id, first));
         let share = self.share.advance(over, self.expected, p);

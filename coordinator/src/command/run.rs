@@ -52,7 +52,7 @@ pub(super) async fn run(config: RunArguments) -> anyhow::Result<()> {
     result
 }
 
-/// The study of this folder: the stored one, if it is of the same job, or a new one.
+/// The study of this folder: the stored one, where it has the same job, or a new one.
 async fn take_up(job: &JobOnDisk, folder: &Folder) -> anyhow::Result<i64> {
     let service = &folder.service;
     let rows = service.store().reader().calibrations().await?;
@@ -75,7 +75,7 @@ async fn take_up(job: &JobOnDisk, folder: &Folder) -> anyhow::Result<i64> {
         };
         return Ok(service.add_calibration(new).await?.study);
     };
-    // The others of the study follow from the first, or are added to it by the user.
+    // The other members of the study follow from the first, or a user added them.
     let first = first?;
     let mut is_same = service.spec_of(&first).await?.same_as(&job.spec);
     for (row, spec) in rows.zip(&job.others) {

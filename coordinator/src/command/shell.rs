@@ -1,4 +1,4 @@
-//! What a shell and a manual know of the program: completions, man pages.
+//! Completions for a shell, and man pages.
 
 use std::path::Path;
 

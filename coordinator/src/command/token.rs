@@ -1,4 +1,4 @@
-//! `coordinator token`: who may use a service.
+//! `coordinator token`: adds, lists and revokes tokens.
 
 use std::fmt::Write;
 use std::path::Path;
@@ -14,7 +14,7 @@ use store::{TokenTable, name_of};
 
 /// Longest name of a token.
 const LONGEST_NAME: usize = 64;
-/// Fewest characters of a token that was made elsewhere: 128 random bits in hexadecimal digits.
+/// Smallest length of a token that was made elsewhere: 128 random bits in hexadecimal digits.
 const LEAST_SECRET: usize = 32;
 
 pub(super) async fn token(command: &TokenCommand) -> anyhow::Result<()> {
@@ -54,19 +54,19 @@ async fn add(name: &str, role: TokenRole, from: Option<&Path>, store: &StoreArgu
     let mut table = TokenTable::open(&store.store).await?;
     if let Some(file) = from {
         let tokens = table.all().await?;
-        let same = |own: &&Token| own.hash.is(&token.hash);
+        let same = |stored: &&Token| stored.hash.is(&token.hash);
         match tokens.iter().rfind(same) {
-            // A coordinator that starts with a secret must start with one that was revoked since, too, and let nobody in by it.
-            Some(own) if own.is_revoked => note(&format!(
+            // A coordinator also starts with a secret that was revoked since, and refuses it.
+            Some(stored) if stored.is_revoked => note(&format!(
                 "the token of {} was revoked, and stays so",
                 file.display()
             )),
-            Some(own) if (own.name.as_str(), own.role) != (name, role) => bail!(
+            Some(stored) if (stored.name.as_str(), stored.role) != (name, role) => bail!(
                 "{}: {} has this token already, as {} with the role {}",
                 file.display(),
                 name_of(&store.store),
-                own.name,
-                own.role.name()
+                stored.name,
+                stored.role.name()
             ),
             Some(_) => {}
             None => table.replace(&token).await?,

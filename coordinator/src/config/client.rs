@@ -1,11 +1,11 @@
-//! What a service asks for.
+//! Arguments of a client of a service.
 
 use std::path::PathBuf;
 
 use clap::Args;
 use shared::bearer::{BearerToken, BearerTokenError};
 
-/// What a service asks for: a token, and trust in its certificate. In the environment, `GROUSER_TOKEN` has the token itself.
+/// Arguments of a client: a token, and trust in a certificate. In the environment, `GROUSER_TOKEN` has the token itself.
 #[derive(Debug, Args)]
 pub struct ClientArguments {
     /// File with the token that the service asks for; by default, `GROUSER_TOKEN` from the environment.

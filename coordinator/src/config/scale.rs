@@ -27,7 +27,6 @@ pub struct ScaleArguments {
     /// URL of the service.
     #[arg(long, env = "GROUSER_URL", default_value = "http://127.0.0.1:7070")]
     pub url: String,
-    /// What it asks for; a token of the role work, whose file the workers read too.
     #[command(flatten)]
     pub client: ClientArguments,
     /// URL of the service as workers reach it; by default, that of `--url`.

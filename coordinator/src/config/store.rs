@@ -1,4 +1,4 @@
-//! Where a store is kept, and what is done with it as a whole.
+//! Arguments of the verbs on a whole store.
 
 use std::path::PathBuf;
 
@@ -25,7 +25,6 @@ pub struct StoreArguments {
 pub struct BackupArguments {
     /// The new file.
     pub file: PathBuf,
-    /// What is copied.
     #[command(flatten)]
     pub store: StoreArguments,
 }
@@ -54,7 +53,6 @@ pub enum TokenCommand {
         /// Takes the token of this file, as of a secret of Kubernetes, and prints nothing; where it is there already, nothing changes.
         #[arg(long, value_name = "FILE")]
         from: Option<PathBuf>,
-        /// Where it is kept.
         #[command(flatten)]
         store: StoreArguments,
     },
@@ -64,7 +62,6 @@ pub enum TokenCommand {
     Revoke {
         /// Name of its holder.
         name: String,
-        /// Where it is kept.
         #[command(flatten)]
         store: StoreArguments,
     },

@@ -1,4 +1,4 @@
-//! Which calibration is meant, and where it is stored.
+//! Arguments that name a calibration and its place.
 
 use std::path::PathBuf;
 
@@ -6,7 +6,7 @@ use clap::Args;
 
 use super::client::ClientArguments;
 
-/// Where calibrations are looked up: a service or a folder.
+/// The place of calibrations: a service or a folder.
 #[derive(Debug, Args)]
 pub struct SourceArguments {
     /// URL of a service; by default `GROUSER_URL` from the environment, or port 7070 of this machine.
@@ -15,7 +15,6 @@ pub struct SourceArguments {
     /// The output folder of a run.
     #[arg(long, conflicts_with_all = ["url", "token_file"])]
     pub out: Option<PathBuf>,
-    /// What the service asks for.
     #[command(flatten)]
     pub client: ClientArguments,
 }
@@ -36,7 +35,6 @@ impl SourceArguments {
 pub struct TargetArguments {
     /// Id of the calibration; may be omitted if there is only one study.
     pub id: Option<i64>,
-    /// Where it is stored.
     #[command(flatten)]
     pub source: SourceArguments,
 }

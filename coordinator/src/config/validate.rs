@@ -9,7 +9,6 @@ use result::validation::Factor;
 /// Leave each level of a factor out in turn, and predict it by a calibration on the rest.
 #[derive(Debug, Args)]
 pub struct ValidateArguments {
-    /// The calibration whose model predicts.
     #[command(flatten)]
     pub target: TargetArguments,
     /// What is left out, level by level of the fitted runs.
@@ -25,7 +24,6 @@ pub struct ValidateArguments {
     /// Number of simulation threads in this process; by default, one per core.
     #[arg(long, env = "GROUSER_LOCAL_WORKERS")]
     pub local_workers: Option<usize>,
-    /// The models that are not ours that they run.
     #[command(flatten)]
     pub models: ModelArguments,
 }

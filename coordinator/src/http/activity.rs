@@ -11,7 +11,7 @@ use axum::http::Response;
 use hyper::body::{Frame, SizeHint};
 use tokio::sync::Notify;
 
-/// What one connection is doing.
+/// The state of one connection.
 #[derive(Debug)]
 pub(super) struct Activity {
     began: Instant,

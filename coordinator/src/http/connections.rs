@@ -72,7 +72,7 @@ fn bound_untaken(listener: &TcpListener) {
 struct Places {
     free: Arc<Semaphore>,
     count: usize,
-    /// Who has one; some have ended meanwhile.
+    /// The connections that have a place; some of them have ended.
     taken: Vec<Weak<Activity>>,
 }
 
@@ -162,7 +162,7 @@ pub(super) async fn serve(
     connections.shutdown().await;
 }
 
-/// What answers one connection.
+/// Answers one connection.
 struct Connection {
     http: http1::Builder,
     router: Router,

@@ -56,13 +56,13 @@ struct EffectAdded {
 #[utoipa::path(get, path = "/effects", operation_id = "list_effects", tag = "effects",
     responses((status = 200, description = "cards of the effects", body = Vec<EffectCard>)))]
 async fn list(State(service): State<Service>) -> Result<Json<Vec<EffectCard>>, HttpError> {
-    let own = service.store().reader().own_effects().await?;
+    let added = service.store().reader().own_effects().await?;
     let cards = tokio::task::spawn_blocking(move || {
         let library = catalogue().iter().map(|effect| Ok(EffectCard::of(effect)));
-        let own = own
+        let added = added
             .iter()
             .map(|stored| Ok(EffectCard::own(&read(stored)?, stored.version.version)));
-        library.chain(own).collect::<Result<_, HttpError>>()
+        library.chain(added).collect::<Result<_, HttpError>>()
     });
     Ok(Json(cards.await.map_err(|_| Stopped)??))
 }

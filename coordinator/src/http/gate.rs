@@ -1,4 +1,4 @@
-//! What every request passes before its handler: host and origin, form, token, body.
+//! The checks of every request before its handler: host and origin, form, token, body.
 
 use std::sync::Arc;
 

@@ -20,7 +20,7 @@ pub(super) struct Hosts {
 }
 
 impl Hosts {
-    /// Those of a listening address, with names by which the service is reached besides.
+    /// The hosts of a listening address, and further names of the service.
     pub(super) fn new(listening: SocketAddr, names: Vec<String>) -> Hosts {
         Hosts {
             listening: listening.ip(),
@@ -34,7 +34,7 @@ impl Hosts {
         let forbidden = |message: String| Err(HttpError::new(ErrorKind::Forbidden, message));
         let count = headers.get_all(HOST).iter().count();
         if count > 1 {
-            // What stands before the service may go by the one that the service passes over.
+            // A proxy before the service may use the field that the service ignores.
             let message = format!("Host: {count} header fields must be 1");
             return Err(HttpError::new(ErrorKind::InvalidBody, message));
         }

@@ -57,11 +57,11 @@ async fn file(path: &str, uri: Uri, headers: HeaderMap) -> Response {
         .and_then(|value| value.to_str().ok())
         .is_some_and(|tags| {
             tags.split(',')
-                .any(|known| known.trim().trim_start_matches("W/") == tag)
+                .any(|stated| stated.trim().trim_start_matches("W/") == tag)
         });
-    let own = [(ETAG, tag)];
+    let tag = [(ETAG, tag)];
     match is_known {
-        true => (StatusCode::NOT_MODIFIED, common, own).into_response(),
-        false => (common, own, asset.content).into_response(),
+        true => (StatusCode::NOT_MODIFIED, common, tag).into_response(),
+        false => (common, tag, asset.content).into_response(),
     }
 }

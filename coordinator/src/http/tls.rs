@@ -15,21 +15,15 @@ pub enum TlsError {
     /// The file cannot be read, or is no PEM of its kind.
     #[error("{file}: no {what} in PEM form: {source}")]
     File {
-        /// The file.
         file: String,
-        /// What it should have.
         what: &'static str,
-        /// What is wrong with it.
         source: rustls::pki_types::pem::Error,
     },
     /// They do not belong together, or cannot be used.
     #[error("certificate {certificate} with key {key}: {source}")]
     Pair {
-        /// The file of the certificate.
         certificate: String,
-        /// The file of the key.
         key: String,
-        /// What is wrong with them.
         source: rustls::Error,
     },
 }

@@ -22,7 +22,7 @@ use farm::WorkerRecord;
 
 /// A poll may last so long `[ms]`.
 const LONGEST_WAIT_MS: u64 = 30_000;
-/// Most leases in one answer.
+/// Largest number of leases in one answer.
 const MOST_WANTED: u32 = 10_000;
 /// Longest name of a worker, or of the version of its equations `[bytes]`.
 const LONGEST_NAME: usize = 200;

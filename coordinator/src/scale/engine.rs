@@ -33,9 +33,6 @@ pub struct Change {
 
 impl Engine {
     /// The pilots that there are.
-    ///
-    /// # Errors
-    /// [`ProgramError`].
     pub async fn pilots(&self, settings: &PilotSettings) -> Result<Pilots, ProgramError> {
         match self {
             Engine::Slurm { .. } => slurm::pilots(&slurm::list(settings).run().await?),
@@ -98,9 +95,6 @@ impl Engine {
 
 impl Change {
     /// Tells the engine.
-    ///
-    /// # Errors
-    /// [`ProgramError`].
     pub async fn make(self) -> Result<(), ProgramError> {
         for invocation in self.invocations {
             invocation.run().await?;

@@ -16,7 +16,6 @@ pub enum ProgramError {
     /// It cannot be run.
     #[error("{program}: cannot be run; is it installed, and in PATH?")]
     Run {
-        /// Its name.
         program: &'static str,
         /// The reason.
         #[source]
@@ -24,28 +23,17 @@ pub enum ProgramError {
     },
     /// It has not ended.
     #[error("{program}: no answer within {} s", PATIENCE.as_secs())]
-    Silent {
-        /// Its name.
-        program: &'static str,
-    },
+    Silent { program: &'static str },
     /// It failed.
     #[error("{program}: {status}: {said}")]
     Failed {
-        /// Its name.
         program: &'static str,
-        /// How it ended.
         status: ExitStatus,
-        /// What it said.
         said: String,
     },
     /// It said something else than it does in the versions that are known.
     #[error("{program}: unexpected answer {said:?}")]
-    Answer {
-        /// Its name.
-        program: &'static str,
-        /// What it said.
-        said: String,
-    },
+    Answer { program: &'static str, said: String },
 }
 
 /// A program with its arguments, environment and input.

@@ -1,4 +1,4 @@
-//! Tells web hooks what became of their calibrations.
+//! Posts the pauses and ends of calibrations to web hooks.
 
 use shared::api::CalibrationState;
 use tokio::sync::broadcast::error::RecvError;
@@ -31,8 +31,8 @@ impl Service {
 
     async fn announce_change(&self, change: StateChange) {
         let calibration = change.calibration;
-        let told: Result<_, StoreError> = self.store().reader().webhook(calibration).await;
-        let hook = match told {
+        let hook: Result<_, StoreError> = self.store().reader().webhook(calibration).await;
+        let hook = match hook {
             Ok(Some(hook)) => hook,
             Ok(None) => return,
             Err(error) => {

@@ -1,4 +1,4 @@
-//! What users add to the catalogue of effects, and the jobs that name it.
+//! Adds effects of users to the catalogue, and finds the ones that a job names.
 
 use formula::Effect;
 use formula::catalogue::find;
@@ -14,7 +14,7 @@ use job::{EffectOnNodes, ModelSwitch, PlainParameter, ServiceEffect, check_own, 
 use record::Extension;
 use store::{AddedEffect, NewEffect, StoredEffect};
 
-/// How an effect file and a job are called in messages.
+/// Names of an effect file and a job in messages.
 const EFFECT: &str = "effect.toml";
 const JOB: &str = "job.toml";
 
@@ -46,7 +46,7 @@ impl Service {
         Ok(self.store().writer().add_effect(new).await?)
     }
 
-    /// The effect of `NAME`, its last version, or of `NAME@VERSION`, behind all versions of it; none where no user has added it.
+    /// All versions of the effect `NAME`, and the last one, or for `NAME@VERSION` that version; `None` where no user has added the effect.
     ///
     /// # Errors
     /// [`ServiceError`]: the effect has no such version.
@@ -91,10 +91,7 @@ impl Service {
         Ok(own)
     }
 
-    /// The extension with the file of the effect that it names, where a user has added that.
-    ///
-    /// # Errors
-    /// [`ServiceError`].
+    /// Replaces the name of an effect that a user has added by the file of the effect.
     pub(super) async fn of_own_effect(&self, extension: Extension) -> Result<Extension, ServiceError> {
         let Extension::Effect(named) = &extension else {
             return Ok(extension);

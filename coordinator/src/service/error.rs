@@ -20,28 +20,20 @@ pub enum ServiceError {
     /// A calibration cannot begin.
     #[error(transparent)]
     Begin(#[from] BeginError),
-    /// What is stored of a calibration is not what this version computes.
+    /// This version computes other facts of a calibration than the stored ones.
     #[error(transparent)]
     Replay(#[from] ReplayError),
     /// A calibration could not be taken up at the start.
     #[error("calibration {id} cannot be resumed: {reason}")]
-    LeftAlone {
-        /// The calibration.
-        id: i64,
-        /// Why.
-        reason: String,
-    },
-    /// The name of an effect to add is taken.
+    LeftAlone { id: i64, reason: String },
+    /// The library has the name of an effect to add.
     #[error("the effect {0} belongs to the library: give yours another name")]
     OfLibrary(String),
     /// An effect has fewer versions.
     #[error("effect {name} has no version {version:?}; the last one is {last}")]
     NoVersion {
-        /// The effect.
         name: String,
-        /// What was asked for.
         version: String,
-        /// Its last version.
         last: i64,
     },
     /// Nothing can be posted to a URL.
@@ -50,13 +42,10 @@ pub enum ServiceError {
     /// A study is still computed.
     #[error("calibration {calibration} of study {study} is {}; the study cannot be {verb}: wait, or cancel it first", state.name())]
     InProgress {
-        /// The study.
         study: i64,
         /// Its first calibration that is not over.
         calibration: i64,
-        /// Where that stands.
         state: CalibrationState,
-        /// What was asked for.
         verb: &'static str,
     },
     /// An archived study does not grow.
@@ -68,15 +57,10 @@ pub enum ServiceError {
     /// A search has nothing to extend, and no search of its own.
     #[error("calibration {0} is a search for a missing effect: name the calibration whose model it searches")]
     Search(i64),
-    /// No such thing.
+    /// The store has no such item.
     #[error("there is no {what} {id}")]
-    NotFound {
-        /// What was asked for.
-        what: &'static str,
-        /// Its id.
-        id: String,
-    },
-    /// The command does not fit.
+    NotFound { what: &'static str, id: String },
+    /// The state of the calibration does not allow the command.
     #[error(transparent)]
     Control(#[from] ControlError),
     /// The store fails.
@@ -88,7 +72,7 @@ pub enum ServiceError {
     /// The coordinator is going down.
     #[error(transparent)]
     Stopped(#[from] Stopped),
-    /// More facts wait than the store takes.
+    /// Too many facts wait for the store.
     #[error("{0} facts are waiting to be stored; try again in a second")]
     Busy(u64),
 }

@@ -9,8 +9,8 @@ use farm::calibration::{Calibration, CalibrationIdentity};
 use farm::dispatch::{Dispatcher, Rewinds, Stopped};
 use store::{Reader, Store};
 
-/// Takes up what is not over; returns what cannot be taken up, with the reason. Nothing is written of those: another
-/// version may be able to, or a backup has the row that is bad here.
+/// Resumes the calibrations that are not over; returns those that cannot be resumed, with the reasons. Nothing is written about these: another
+/// version may resume them, or a backup has the row that is bad here.
 pub(super) async fn recover(
     store: &Store,
     dispatcher: &Dispatcher,
@@ -22,7 +22,7 @@ pub(super) async fn recover(
         match take_up(&reader, dispatcher, id, verified_share).await {
             Ok(()) => {}
             Err(ServiceError::Stopped(stopped)) => return Err(stopped.into()),
-            // One calibration that cannot be taken up must not keep the others waiting.
+            // A calibration that cannot be resumed must not stop the others.
             Err(error) => {
                 tracing::error!(id, reason = %error, "not resumed");
                 left_alone.insert(id, error.to_string());
@@ -32,7 +32,7 @@ pub(super) async fn recover(
     Ok(left_alone)
 }
 
-/// Replays calibrations whose results were dropped in part, for as long as there is a farm.
+/// Replays the calibrations that are rewound, until the farm ends.
 pub(super) async fn rewind(store: Store, dispatcher: Dispatcher, mut rewinds: Rewinds, verified_share: f64) {
     while let Some((id, fact)) = rewinds.recv().await {
         if store.writer().durable(fact).await.is_err() {
@@ -41,7 +41,7 @@ pub(super) async fn rewind(store: Store, dispatcher: Dispatcher, mut rewinds: Re
         let replayed = take_up(&store.reader(), &dispatcher, id, verified_share).await;
         if let Err(error) = replayed {
             tracing::error!(id, reason = %error, "not replayed");
-            // A farm that has ended needs no news.
+            // The farm may have ended.
             let _ = dispatcher.rewind_failed(id, error.to_string());
         }
     }

@@ -6,13 +6,13 @@ use super::clock::now_ms;
 use super::error::ServiceError;
 use super::handle::Service;
 
-/// Interval between checks for archived studies whose time is up.
+/// Interval between searches for archived studies that are due for deletion.
 const LOOK: Duration = Duration::from_secs(600);
 /// Milliseconds of a day.
 const DAY_MS: i64 = 86_400_000;
 
 impl Service {
-    /// Deletes a study with its calibrations, and with its experiments where no other study has them; the calibrations.
+    /// Deletes a study with its calibrations, and with its experiments where no other study has them; returns the calibrations.
     ///
     /// # Errors
     /// [`ServiceError::InProgress`] where one of its calibrations is not over.
@@ -31,7 +31,7 @@ impl Service {
         Ok(calibrations)
     }
 
-    /// Deletes a study if it is still archived, and was so at a time; `None` where it is not.
+    /// Deletes a study that was archived until a time and still is; `None` where it is not.
     async fn delete_archived(&self, study: i64, until_ms: i64) -> Result<Option<Vec<i64>>, ServiceError> {
         let _growing = self.growing.lock().await;
         let archived = self.store().reader().archived().await?;
@@ -47,7 +47,7 @@ impl Service {
     /// Takes a study out of the lists; it no longer grows. Its results stay.
     ///
     /// # Errors
-    /// As those of [`Service::delete_study`].
+    /// The same as of [`Service::delete_study`].
     pub async fn archive_study(&self, study: i64) -> Result<(), ServiceError> {
         let _growing = self.growing.lock().await;
         self.at_rest(study, "archived").await?;
@@ -57,7 +57,7 @@ impl Service {
     /// Takes an archived study back into the lists.
     ///
     /// # Errors
-    /// As those of [`Service::delete_study`].
+    /// The same as of [`Service::delete_study`].
     pub async fn restore_study(&self, study: i64) -> Result<(), ServiceError> {
         let _growing = self.growing.lock().await;
         self.at_rest(study, "restored").await?;
@@ -67,11 +67,11 @@ impl Service {
         Ok(self.store().writer().archive_study(study, None).await?)
     }
 
-    /// The calibrations of a study that the farm holds none of.
+    /// The calibrations of a study; refuses a study of which the farm holds a calibration.
     async fn at_rest(&self, study: i64, verb: &'static str) -> Result<Vec<i64>, ServiceError> {
         let studies = self.store().reader().studies().await?;
-        let found = studies.into_iter().find(|found| found.id == study);
-        let calibrations = found
+        let stored = studies.into_iter().find(|stored| stored.id == study);
+        let calibrations = stored
             .ok_or_else(|| ServiceError::not_found("study", study))?
             .calibrations;
         let in_hand = self.dispatcher().statuses().await?;
@@ -95,8 +95,8 @@ impl Service {
         }
     }
 
-    /// Finishes deletions that an end of the service has cut short; then deletes studies that were archived so many days ago,
-    /// where a number is given, until the service ends.
+    /// Finishes deletions that an end of the service has interrupted. Then, until the service ends, deletes studies that were archived a
+    /// number of days ago, where a number is given.
     pub async fn keep_tidy(&self, days: Option<u32>) {
         match self.store().reader().half_deleted().await {
             Ok(studies) => {

@@ -1,4 +1,4 @@
-//! When there is something to do about studies: told by the store's writer, or by time where another program writes.
+//! Tells when there is something to do about studies: when the store's writer says so, or every half second where another program writes.
 
 use std::time::Duration;
 
@@ -9,20 +9,20 @@ use super::handle::Service;
 /// The shortest time between two looks at the studies.
 const LOOK: Duration = Duration::from_millis(500);
 
-/// The changes of studies since somebody began to listen.
+/// The changes of studies since the first call.
 #[derive(Debug)]
 pub(super) struct StudyChanges {
-    /// Absent where another program writes the store, which tells nobody.
-    told: Option<watch::Receiver<()>>,
+    /// Absent where another program writes the store: SQLite and PostgreSQL tell a reader of no commit.
+    notices: Option<watch::Receiver<()>>,
     has_looked: bool,
 }
 
 impl Service {
     /// Begins to listen.
     pub(super) fn study_changes(&self) -> StudyChanges {
-        let told = (!self.store().is_read_only()).then(|| self.store().writer().study_changes());
+        let notices = (!self.store().is_read_only()).then(|| self.store().writer().study_changes());
         StudyChanges {
-            told,
+            notices,
             has_looked: false,
         }
     }
@@ -33,17 +33,17 @@ impl StudyChanges {
     pub(super) async fn next(&mut self) {
         if std::mem::replace(&mut self.has_looked, true) {
             tokio::time::sleep(LOOK).await;
-            if let Some(told) = &mut self.told {
+            if let Some(notices) = &mut self.notices {
                 // The other end lives as long as the service.
-                let _ = told.changed().await;
+                let _ = notices.changed().await;
             }
         }
     }
 
-    /// Has the studies looked at again soon: there is more to do, or they could not be read.
+    /// Makes the next look due soon: there is more to do, or the studies could not be read.
     pub(super) fn look_again(&mut self) {
-        if let Some(told) = &mut self.told {
-            told.mark_changed();
+        if let Some(notices) = &mut self.notices {
+            notices.mark_changed();
         }
     }
 }
@@ -63,10 +63,10 @@ mod tests {
     async fn studies_are_looked_at_first_after_each_change_and_else_not() {
         let writer = watch::Sender::new(());
         let mut changes = StudyChanges {
-            told: Some(writer.subscribe()),
+            notices: Some(writer.subscribe()),
             has_looked: false,
         };
-        // What changes before the first look is read by it, or by another one; it is never missed.
+        // A change before the first look is seen by this look or by the next one.
         writer.send_replace(());
         assert!(changes.next().now_or_never().is_some());
         assert!(is_due(&mut changes).await);
@@ -82,7 +82,7 @@ mod tests {
     #[tokio::test]
     async fn a_store_that_another_program_writes_is_looked_at_again_and_again() {
         let mut changes = StudyChanges {
-            told: None,
+            notices: None,
             has_looked: false,
         };
         for _ in 0..3 {

@@ -1,4 +1,4 @@
-//! The members of a study as its overview shows them.
+//! The members of a study in its overview.
 
 use shared::api::CalibrationState;
 
@@ -35,7 +35,7 @@ pub(super) async fn study_members(
     Ok(members)
 }
 
-/// What the model rejected of a calibration that failed.
+/// Counts the rejections of a failed calibration.
 async fn rejections(reader: &Reader, row: &CalibrationRow) -> Result<Option<Rejections>, ServiceError> {
     if row.state != CalibrationState::Failed || row.membership.is_search() {
         return Ok(None);

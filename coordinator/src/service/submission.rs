@@ -22,10 +22,7 @@ use store::{NewCalibrationRow, NewStudy, StudyIds};
 const LONGEST_NAME: usize = 200;
 
 impl Service {
-    /// Stores an experiment after validating it; its id.
-    ///
-    /// # Errors
-    /// [`ServiceError`].
+    /// Validates and stores an experiment, and returns its id.
     pub async fn add_experiment(&self, new: NewExperiment) -> Result<i64, ServiceError> {
         let files = FileSet {
             toml: new.toml,
@@ -35,10 +32,7 @@ impl Service {
         Ok(self.store().writer().add_experiment(files, now_ms()).await?)
     }
 
-    /// Stores a calibration after validating it, with the point estimates that its job asks for, and takes them in hand.
-    ///
-    /// # Errors
-    /// [`ServiceError`].
+    /// Validates and stores a calibration and the point estimates that its job asks for, and gives them to the farm.
     pub async fn add_calibration(&self, new: NewCalibration) -> Result<CalibrationCreated, ServiceError> {
         if let Some(url) = &new.webhook {
             self.webhook_hosts.check(url)?;
@@ -54,7 +48,7 @@ impl Service {
             files: new.files,
         };
         let own = self.listed_own_effects(&job).await?;
-        // The samplers are built once before anything is stored: what they refuse leaves nothing half-written.
+        // The samplers are built before anything is stored, so that a job which they refuse leaves nothing half-written.
         let trial = CalibrationIdentity {
             id: 0,
             name,
@@ -163,7 +157,7 @@ fn member(
     ))
 }
 
-/// What a calibration by an algorithm computes.
+/// The role of a calibration by an algorithm.
 pub(super) fn role_of(algorithm: &AlgorithmSettings) -> Role {
     match algorithm {
         AlgorithmSettings::Sample(_) => Role::Sample,

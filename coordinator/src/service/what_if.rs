@@ -1,4 +1,4 @@
-//! What a study would say without some of its fitted runs.
+//! Repeats a study without some of its fitted runs.
 
 use shared::api::{CalibrationCreated, NewCalibration, NewExperiment};
 use shared::experiment::Experiment;
@@ -8,8 +8,8 @@ use super::handle::Service;
 use farm::dispatch::Stopped;
 use job::{Spec, searched_job};
 
-/// Most runs that a name lists.
-const NAMED: usize = 3;
+/// Largest number of runs that a name lists.
+const MAX_NAMED: usize = 3;
 
 impl Service {
     /// Begins a study with the job of a calibration, in which these fitted runs are held out and a missing effect is searched for.
@@ -25,7 +25,7 @@ impl Service {
         let name = name(&row.name, &without);
         let job = searched_job("job.toml", &row.job)?;
         let trial = job.clone();
-        // Refused before anything is stored.
+        // A mistake is refused before anything is stored.
         let edited = tokio::task::spawn_blocking(move || {
             let edited = Experiment::with_held_out("experiment.toml", &files, &without)?;
             Spec::new("job.toml", &trial, "experiment.toml", &edited)?;
@@ -47,9 +47,9 @@ impl Service {
     }
 }
 
-fn name(of: &str, without: &[String]) -> String {
-    match without.len() > NAMED {
-        true => format!("{of} without {} runs", without.len()),
-        false => format!("{of} without {}", without.join(", ")),
+fn name(name: &str, without: &[String]) -> String {
+    match without.len() > MAX_NAMED {
+        true => format!("{name} without {} runs", without.len()),
+        false => format!("{name} without {}", without.join(", ")),
     }
 }

@@ -22,8 +22,8 @@ impl<'a> Lineage<'a> {
     /// The calibrations of the models that the submitted job compares: the first members of the study, one where it has one model.
     pub fn compared(self) -> &'a [CalibrationRow] {
         let is_compared = |row: &&CalibrationRow| matches!(row.membership.change, Some(Change::Model(_)));
-        let others = self.rows.iter().skip(1).take_while(is_compared);
-        &self.rows[..self.rows.len().min(1 + others.count())]
+        let further = self.rows.iter().skip(1).take_while(is_compared);
+        &self.rows[..self.rows.len().min(1 + further.count())]
     }
 
     /// The calibration with which a model on its measurements began: another algorithm has the model of its parent.

@@ -31,8 +31,8 @@ pub enum StudyStep {
 
 /// Which of several models has the most evidence, the first of equals; `None` without any.
 pub fn most_probable(log_evidences: impl Iterator<Item = Option<f64>>) -> Option<usize> {
-    let known = log_evidences.enumerate().filter_map(|(i, log)| Some((i, log?)));
-    let best = known.reduce(|best, own| if own.1 > best.1 { own } else { best })?;
+    let finite = log_evidences.enumerate().filter_map(|(i, log)| Some((i, log?)));
+    let best = finite.reduce(|best, next| if next.1 > best.1 { next } else { best })?;
     Some(best.0)
 }
 
@@ -67,8 +67,8 @@ pub fn next_step(
     if settings.apply == Apply::Ask {
         return None;
     }
-    let found = findings.searches.get(&search.id)?;
-    if let Some(extension) = &found.extension {
+    let record = findings.searches.get(&search.id)?;
+    if let Some(extension) = &record.extension {
         let parts = parts_of(extension);
         let is_dropped = parts.iter().any(|part| lineage.has_dropped(part));
         let is_there = parts.iter().all(|part| lineage.has_added(last.id, part));
@@ -78,7 +78,7 @@ pub fn next_step(
     }
     // Effects of the submitted job are the user's choice.
     let can_go = |effect: &&String| lineage.has_added(last.id, effect) && !lineage.has_dropped(effect);
-    let drop: Vec<String> = found.drop.iter().filter(can_go).cloned().collect();
+    let drop: Vec<String> = record.drop.iter().filter(can_go).cloned().collect();
     (!drop.is_empty()).then_some(StudyStep::Drop(last.id, drop))
 }
 

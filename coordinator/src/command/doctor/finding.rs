@@ -1,4 +1,4 @@
-//! A line of the answer: what was looked at, what was seen, what to do.
+//! A line of the answer: the object of a check, its result, and a remedy.
 
 use std::fmt;
 
@@ -10,7 +10,7 @@ enum Level {
     Fail,
 }
 
-/// What a check has seen.
+/// The result of a check.
 #[derive(Debug)]
 pub(super) struct Finding {
     level: Level,

@@ -8,7 +8,7 @@ use super::finding::Finding;
 use crate::config::ARCHITECTURE;
 use crate::embedded::model_version;
 
-/// No clock that is right is before this: the beginning of 2026.
+/// The beginning of 2026: an earlier clock is wrong.
 const EARLIEST: Duration = Duration::from_secs(1_767_225_600);
 /// File descriptors that a service needs for its connections and its store.
 const DESCRIPTORS: u64 = 4_096 + 64;
@@ -29,7 +29,7 @@ pub(super) fn findings() -> Vec<Finding> {
     ]
 }
 
-/// A processor that lacks a feature is refused before any command; this says what is asked of it.
+/// Reports the needed features of the processor; a processor that lacks one is refused before any command.
 fn processor() -> Finding {
     let needed = if cfg!(target_feature = "avx2") {
         " with avx2"
@@ -43,7 +43,7 @@ fn processor() -> Finding {
     )
 }
 
-/// Times stand in the store and in the log.
+/// Checks the clock: store and log contain its times.
 fn clock(since_1970: Duration) -> Finding {
     if since_1970 >= EARLIEST {
         return Finding::ok("clock", "after the beginning of 2026");
@@ -56,7 +56,7 @@ fn clock(since_1970: Duration) -> Finding {
     )
 }
 
-/// A service raises its own limit as far as it may; `None`: there is none.
+/// Checks the largest number of open files that a service may allow itself; `None` where there is no limit.
 fn descriptors(most: Option<u64>) -> Finding {
     match most {
         Some(most) if most < DESCRIPTORS => Finding::warn(

@@ -1,4 +1,4 @@
-//! Where a service would stand: its store, the disk below, the address.
+//! Checks the store of a service, the disk below it and the address.
 
 use std::io::{ErrorKind, Write};
 use std::net::SocketAddr;
@@ -12,9 +12,9 @@ use super::finding::Finding;
 use super::service;
 use store::{Reader, StoreError, file_of, is_server, name_of};
 
-/// A disk takes longer than this for one record where it is slow: every acknowledged result waits for it.
+/// Time of one record above which a disk is slow: every acknowledged result waits for it.
 const SLOW: Duration = Duration::from_millis(100);
-/// Free space that is little, and that is too little `[bytes]`.
+/// Free space below which there is a warning, and below which there is a failure `[bytes]`.
 const LITTLE_BYTES: u64 = 1_000_000_000;
 const TOO_LITTLE_BYTES: u64 = 100_000_000;
 
@@ -37,7 +37,7 @@ pub(super) async fn findings(store: &str, listen: SocketAddr) -> Vec<Finding> {
     ]
 }
 
-/// What the store holds, and whether it has had a token.
+/// Reports the content of the store, and whether it has had a token.
 async fn stored(store: &str, file: &Path) -> (Finding, bool) {
     if !file.exists() {
         let name = file.display();
@@ -100,11 +100,11 @@ async fn read(store: &str) -> (Finding, bool) {
     }
 }
 
-/// Writes as a store does, and measures how long that lasts.
+/// Writes as a store does, and measures the time.
 fn writable(folder: &Path) -> Finding {
     let probe = folder.join(format!(".grouser-doctor-{}", std::process::id()));
     let begin = Instant::now();
-    // A file that is there, or a link of that name, is another's.
+    // An existing file or link of this name belongs to somebody else.
     let made = std::fs::File::create_new(&probe);
     let written = made.and_then(|mut file| {
         let written = file.write_all(&[0; 4096]).and_then(|()| file.sync_all());
@@ -152,7 +152,7 @@ fn of_space(name: &str, free_bytes: u64) -> Finding {
     }
 }
 
-/// Whether a service can listen there, or does.
+/// Checks whether a service can listen at an address, or does.
 async fn address(listen: SocketAddr, has_token: bool) -> Finding {
     let refused = match TcpListener::bind(listen).await {
         Ok(_) if !listen.ip().is_loopback() && !has_token => {
