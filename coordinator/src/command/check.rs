@@ -13,9 +13,9 @@ use job::{AlgorithmSettings, Spec, confounded_orders};
 use report::{model_limits, terminal};
 use search::untried::additions;
 
-/// Particles of the pilot: enough to fit what stages are drawn from, and to find their number, which hardly depends on them.
+/// Number of particles of the pilot: enough to fit the proposals of the stages; the number of stages hardly depends on it.
 const PILOT_PARTICLES: usize = 300;
-/// The pilot ends after so long; what it has seen by then is extrapolated `[s]`.
+/// Longest duration of the pilot; its evaluations so far are extrapolated `[s]`.
 const PILOT_S: f64 = 30.0;
 
 pub(super) async fn check(config: &CheckArguments) -> anyhow::Result<()> {
@@ -72,46 +72,16 @@ pub(super) async fn check(config: &CheckArguments) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// What a calibration is expected to cost: in words, and in seconds of a core.
+/// The expected cost of a calibration: in words, and in seconds of a core.
 async fn cost(spec: Spec, models: Arc<LocalModels>) -> anyhow::Result<(String, f64)> {
     let algorithm = spec.algorithm;
-    let beside = spec.point_estimates.clone();
+    let point_estimates = spec.point_estimates.clone();
     let pilot = tokio::task::spawn_blocking(move || pilot(spec, &models)).await??;
     let evaluations = pilot.expected(algorithm);
     let simulations = evaluations * pilot.runs as f64;
     let core_s = evaluations * pilot.seconds_per_evaluation;
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
-    let mut text = String::new();
-    text += &match pilot.algorithm {
-        AlgorithmSettings::Sample(s) => {
-            format!(
-                "\nA pilot of {} particles took {} evaluations.\n",
-                s.particles, pilot.evaluations
-            )
-        }
-        AlgorithmSettings::Fit(_) | AlgorithmSettings::Evolve(_) | AlgorithmSettings::Discover { .. } => {
-            format!(
-                "\nThe {} itself took {} evaluations.\n",
-                if matches!(pilot.algorithm, AlgorithmSettings::Fit(_)) {
-                    "fit"
-                } else {
-                    "search"
-                },
-                pilot.evaluations
-            )
-        }
-    };
-    if !pilot.complete {
-        text += &match pilot.algorithm.max_evaluations() {
-            None => format!(
-                "It was stopped at tempering exponent {:.2e}: what follows is a lower bound.\n",
-                pilot.exponent
-            ),
-            Some(most) => {
-                format!("It was stopped before its end: what follows is its budget of {most} evaluations.\n")
-            }
-        };
-    }
+    let mut text = pilot.words();
     text += &format!(
         "expected evaluations   {evaluations:>12.0}   (one evaluation: {} run{})\n",
         pilot.runs,
@@ -124,13 +94,13 @@ async fn cost(spec: Spec, models: Arc<LocalModels>) -> anyhow::Result<(String, f
         core_s / 3600.0 / cores as f64,
         core_s / cores as f64
     );
-    for algorithm in beside {
-        // Their budgets: where they settle is not known before.
-        let most = algorithm.max_evaluations().unwrap_or_default() as f64;
+    for algorithm in point_estimates {
+        // The budget, because where they settle is not known before.
+        let budget = algorithm.max_evaluations().unwrap_or_default() as f64;
         text += &format!(
             "point estimate {}: at most {:.3} core hours\n",
             algorithm.words(),
-            most * pilot.seconds_per_evaluation / 3600.0
+            budget * pilot.seconds_per_evaluation / 3600.0
         );
     }
     if pilot.rejected_share > 0.0 {
@@ -143,7 +113,7 @@ async fn cost(spec: Spec, models: Arc<LocalModels>) -> anyhow::Result<(String, f
 }
 
 struct Pilot {
-    /// What ran: a smaller sampler, or the fit or the search itself.
+    /// The algorithm that ran: a smaller sampler, or the fit or the search itself.
     algorithm: AlgorithmSettings,
     evaluations: u64,
     runs: usize,
@@ -154,8 +124,7 @@ struct Pilot {
 }
 
 impl Pilot {
-    /// Evaluations that the whole job will take: stages hardly depend on the particles; a fit or a search is
-    /// what it is.
+    /// Expected evaluations of the whole job: the number of stages hardly depends on the particles; a fit or a search has run as a whole.
     fn expected(&self, algorithm: AlgorithmSettings) -> f64 {
         match (algorithm, self.algorithm) {
             (AlgorithmSettings::Sample(whole), AlgorithmSettings::Sample(small)) => {
@@ -163,27 +132,56 @@ impl Pilot {
             }
             (whole, _) if !self.complete => whole
                 .max_evaluations()
-                .map_or(self.evaluations as f64, |most| most as f64),
+                .map_or(self.evaluations as f64, |budget| budget as f64),
             _ => self.evaluations as f64,
         }
     }
+
+    /// States the algorithm that ran, and how far it came.
+    fn words(&self) -> String {
+        let evaluations = self.evaluations;
+        let ran = match self.algorithm {
+            AlgorithmSettings::Sample(s) => {
+                format!(
+                    "\nA pilot of {} particles took {evaluations} evaluations.\n",
+                    s.particles
+                )
+            }
+            AlgorithmSettings::Fit(_) => format!("\nThe fit itself took {evaluations} evaluations.\n"),
+            AlgorithmSettings::Evolve(_) | AlgorithmSettings::Discover { .. } => {
+                format!("\nThe search itself took {evaluations} evaluations.\n")
+            }
+        };
+        let end = match (self.complete, self.algorithm.max_evaluations()) {
+            (true, _) => String::new(),
+            (false, None) => format!(
+                "It was stopped at tempering exponent {:.2e}: what follows is a lower bound.\n",
+                self.exponent
+            ),
+            (false, Some(budget)) => {
+                format!(
+                    "It was stopped before its end: what follows is its budget of {budget} evaluations.\n"
+                )
+            }
+        };
+        ran + &end
+    }
 }
 
-/// The same calibration in memory, a sampler in small.
+/// Runs the calibration in memory, with fewer particles where it samples.
 fn pilot(mut spec: Spec, models: &LocalModels) -> anyhow::Result<Pilot> {
     let least = PILOT_PARTICLES.max(2 * spec.parameters.len() + 2);
     if let AlgorithmSettings::Sample(settings) = &mut spec.algorithm {
         settings.particles = settings.particles.min(least);
     }
     let algorithm = spec.algorithm;
-    // With derivatives by the stiffness, each condition is simulated twice.
+    // Derivatives with respect to the stiffness need a second simulation of each condition.
     let runs = spec.fit_runs.len()
         * if spec.fit_variant.stiffness_sensitivity {
             2
         } else {
             1
         };
-    let mut compiled: BTreeMap<String, Evaluate> = BTreeMap::new();
     let identity = CalibrationIdentity {
         id: 0,
         name: "pilot".into(),
@@ -191,6 +189,30 @@ fn pilot(mut spec: Spec, models: &LocalModels) -> anyhow::Result<Pilot> {
         experiment: 0,
     };
     let mut calibration = Calibration::new(identity, Arc::new(spec))?;
+    let simulated_s = simulate(&mut calibration, models)?;
+    if let Some(message) = calibration.message {
+        anyhow::bail!("the pilot failed: {message}");
+    }
+    let evaluations = calibration.cost.evaluations.max(1);
+    Ok(Pilot {
+        algorithm,
+        evaluations,
+        runs,
+        seconds_per_evaluation: simulated_s / evaluations as f64,
+        rejected_share: calibration.cost.rejected as f64 / evaluations as f64,
+        exponent: match calibration.engine() {
+            CalibrationEngine::Sampler(sampler) => sampler.progress().tempering_exponent,
+            CalibrationEngine::Fit(_) | CalibrationEngine::Evolution(_) | CalibrationEngine::Discovery(_) => {
+                1.0
+            }
+        },
+        complete: calibration.engine().finding().is_some(),
+    })
+}
+
+/// Simulates what a calibration asks for until it ends, or for as long as a pilot may last; the seconds that simulations took.
+fn simulate(calibration: &mut Calibration, models: &LocalModels) -> anyhow::Result<f64> {
+    let mut compiled: BTreeMap<String, Evaluate> = BTreeMap::new();
     let began = Instant::now();
     let mut simulated_s = 0.0;
     while calibration.engine().finding().is_none() && !calibration.state.is_final() {
@@ -216,22 +238,5 @@ fn pilot(mut spec: Spec, models: &LocalModels) -> anyhow::Result<Pilot> {
             calibration.complete(evaluation, SimulationResult::new(outcome, end)?, "pilot")?;
         }
     }
-    if let Some(message) = calibration.message {
-        anyhow::bail!("the pilot failed: {message}");
-    }
-    let evaluations = calibration.cost.evaluations.max(1);
-    Ok(Pilot {
-        algorithm,
-        evaluations,
-        runs,
-        seconds_per_evaluation: simulated_s / evaluations as f64,
-        rejected_share: calibration.cost.rejected as f64 / evaluations as f64,
-        exponent: match calibration.engine() {
-            CalibrationEngine::Sampler(sampler) => sampler.progress().tempering_exponent,
-            CalibrationEngine::Fit(_) | CalibrationEngine::Evolution(_) | CalibrationEngine::Discovery(_) => {
-                1.0
-            }
-        },
-        complete: calibration.engine().finding().is_some(),
-    })
+    Ok(simulated_s)
 }

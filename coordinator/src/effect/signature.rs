@@ -128,22 +128,11 @@ pub fn signature(effect: &Effect, kind: ModelKind) -> Result<Signature, String> 
     } else {
         0.0
     };
-    let run = |column| TestRun {
-        slip_angle_deg,
-        ..run(column, pass)
-    };
     let slips: Vec<f64> = (0..POINTS).map(|i| (i as f64 - 8.0) / 20.0).collect();
-    let curve = slips.iter().map(|&slip| ("", slip, 100.0, RIM_M_S));
-    let mut runs: Vec<TestRun> = COLUMNS.into_iter().chain(curve).map(run).collect();
-    runs.push(TestRun {
-        order: Some(FIRST),
-        ..run(COLUMNS[0])
-    });
-    let reference = Reference::new(effect, kind, runs)?;
+    let reference = Reference::new(effect, kind, runs(&slips, slip_angle_deg, pass))?;
     let base = reference.simulate(None)?;
-    let strengths = || effect.parameters.iter().filter(|p| p.neutral.is_some());
     let mut shown: Vec<StrengthSignature> = Vec::new();
-    for parameter in strengths() {
+    for parameter in effect.parameters.iter().filter(|p| p.neutral.is_some()) {
         let Some(value) = shown_at(parameter) else {
             continue;
         };
@@ -178,6 +167,21 @@ pub fn signature(effect: &Effect, kind: ModelKind) -> Result<Signature, String> 
         slips,
         strengths: shown,
     })
+}
+
+/// The runs of the table and of the curves over slip, and the first run of the series.
+fn runs(slips: &[f64], slip_angle_deg: f64, pass: u32) -> Vec<TestRun> {
+    let run = |column| TestRun {
+        slip_angle_deg,
+        ..run(column, pass)
+    };
+    let curve = slips.iter().map(|&slip| ("", slip, 100.0, RIM_M_S));
+    let mut runs: Vec<TestRun> = COLUMNS.into_iter().chain(curve).map(run).collect();
+    runs.push(TestRun {
+        order: Some(FIRST),
+        ..run(COLUMNS[0])
+    });
+    runs
 }
 
 type Averages = Vec<Result<[f64; 3], String>>;

@@ -1,6 +1,6 @@
 //! `/metrics` for Prometheus and `/health` for whoever restarts us.
 
-use std::sync::atomic::Ordering;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 use axum::extract::State;
 use axum::{Extension, Json};
@@ -18,34 +18,126 @@ use super::error::HttpError;
 use super::request_metrics::RequestMetrics;
 use crate::service::Service;
 use farm::dispatch::Stopped;
-use store::StoreError;
+use farm::{FarmCounters, FarmMetrics};
+use store::{Store, StoreError};
 
-fn counter(registry: &mut Registry, name: &str, help: &str, value: u64) {
-    let counter: Counter = Counter::default();
-    counter.inc_by(value);
-    registry.register(name, help, counter);
-}
+/// The figures of one answer.
+struct Figures(Registry);
 
-fn gauge(registry: &mut Registry, name: &str, help: &str, value: usize) {
-    let gauge: Gauge = Gauge::default();
-    gauge.set(i64::try_from(value).unwrap_or(i64::MAX));
-    registry.register(name, help, gauge);
+impl Figures {
+    fn counter(&mut self, name: &str, help: &str, value: u64) {
+        let counter: Counter = Counter::default();
+        counter.inc_by(value);
+        self.0.register(name, help, counter);
+    }
+
+    fn gauge(&mut self, name: &str, help: &str, value: impl TryInto<i64>) {
+        let gauge: Gauge = Gauge::default();
+        gauge.set(value.try_into().unwrap_or(i64::MAX));
+        self.0.register(name, help, gauge);
+    }
+
+    /// Counts leases and results since the start.
+    fn results(&mut self, counters: &FarmCounters) {
+        let refused = "Results whose seal does not prove that they answer a lease of their worker, or of a quarantined worker";
+        let lost = "Leases that never reached their worker and were given to others";
+        let confirmed = "Results that a second worker has computed with the same bits";
+        let unconfirmed = "Results that were to be verified when no second worker was there";
+        for (name, help, value) in [
+            (
+                "evaluations_completed",
+                "Results that counted",
+                counters.completed,
+            ),
+            (
+                "evaluations_duplicate",
+                "Results that changed nothing",
+                counters.duplicates,
+            ),
+            ("evaluations_refused", refused, counters.refused),
+            ("leases_given", "Leases given out", counters.leased),
+            ("leases_lost", lost, counters.lost),
+            (
+                "leases_failed",
+                "Leases that expired or ended in a fault",
+                counters.failed_leases,
+            ),
+            ("evaluations_confirmed", confirmed, counters.confirmed),
+            ("evaluations_unconfirmed", unconfirmed, counters.unanswered),
+        ] {
+            self.counter(name, help, value);
+        }
+    }
+
+    /// Counts the evaluations, calibrations and workers of the farm.
+    fn farm(&mut self, farm: &FarmMetrics) {
+        self.gauge(
+            "verifications_waiting",
+            "Results that wait for the answer of a second worker",
+            farm.unconfirmed,
+        );
+        self.gauge(
+            "workers_quarantined",
+            "Workers that compute wrongly and get no leases",
+            farm.quarantined,
+        );
+        self.gauge(
+            "evaluations_queued",
+            "Evaluations that wait for a worker",
+            farm.queued,
+        );
+        self.gauge("leases_out", "Leases that are out", farm.leased);
+        self.gauge(
+            "calibrations_in_hand",
+            "Calibrations that are not over",
+            farm.calibrations,
+        );
+        self.gauge(
+            "workers_connected",
+            "Workers heard of in the last minute",
+            farm.workers,
+        );
+    }
+
+    /// Counts the writes of the store, and the facts that wait for it.
+    fn store(&mut self, store: &Store) {
+        let health = store.writer().health();
+        let stored = |value: &AtomicU64| value.load(Ordering::Relaxed);
+        let busy = "Time spent writing and committing";
+        let faults = "Late duplicates that differed from what is stored";
+        self.counter("store_commits", "Commits of the store", stored(&health.commits));
+        self.counter("store_facts", "Facts committed", stored(&health.facts));
+        self.counter("store_busy_microseconds", busy, stored(&health.busy_us));
+        self.counter("determinism_faults", faults, stored(&health.differing_duplicates));
+        if let Some([file, log]) = store.sizes_bytes() {
+            self.gauge("store_bytes", "Size of the store", file);
+            self.gauge("store_log_bytes", "Size of its write-ahead log", log);
+        }
+        let backlog = store.writer().backlog();
+        self.gauge("store_backlog_facts", "Facts that wait to be stored", backlog);
+        self.gauge(
+            "store_locked",
+            "1 while a lock of another program keeps the store from being written",
+            i64::from(health.is_locked.load(Ordering::Relaxed)),
+        );
+    }
+
+    /// Calibrations of the store by state; 0 for a state without any.
+    fn states(&mut self, counts: &[(String, i64)]) {
+        let family = Family::<InState, Gauge>::default();
+        for state in CalibrationState::ALL.map(CalibrationState::name) {
+            let count = counts.iter().find(|(name, _)| name == state);
+            let count = count.map_or(0, |&(_, count)| count);
+            family.get_or_create(&InState { state }).set(count);
+        }
+        let help = "Calibrations of the store by state";
+        self.0.register("calibrations", help, family);
+    }
 }
 
 #[derive(Debug, Clone, PartialEq, Eq, Hash, EncodeLabelSet)]
 struct InState {
     state: &'static str,
-}
-
-/// Calibrations of the store by state; of a state without any, 0.
-fn states(registry: &mut Registry, counts: &[(String, i64)]) {
-    let family = Family::<InState, Gauge>::default();
-    for state in CalibrationState::ALL.map(CalibrationState::name) {
-        let count = counts.iter().find(|(name, _)| name == state);
-        let count = count.map_or(0, |&(_, count)| count);
-        family.get_or_create(&InState { state }).set(count);
-    }
-    registry.register("calibrations", "Calibrations of the store by state", family);
 }
 
 pub(super) fn routes() -> OpenApiRouter<Service> {
@@ -63,127 +155,20 @@ async fn metrics(
     State(service): State<Service>,
     Extension(requests): Extension<RequestMetrics>,
 ) -> Result<String, HttpError> {
-    let metrics = service.dispatcher().metrics().await?;
-    let health = service.store().writer().health();
-    let stored = |value: &std::sync::atomic::AtomicU64| value.load(Ordering::Relaxed);
-    let mut registry = Registry::with_prefix("grouser");
-    let r = &mut registry;
-    counter(
-        r,
-        "evaluations_completed",
-        "Results that counted",
-        metrics.counters.completed,
-    );
-    counter(
-        r,
-        "evaluations_duplicate",
-        "Results that changed nothing",
-        metrics.counters.duplicates,
-    );
-    counter(
-        r,
-        "evaluations_refused",
-        "Results whose seal does not prove that they answer a lease of their worker, or of a quarantined worker",
-        metrics.counters.refused,
-    );
-    counter(r, "leases_given", "Leases given out", metrics.counters.leased);
-    counter(
-        r,
-        "leases_lost",
-        "Leases that never reached their worker and were given to others",
-        metrics.counters.lost,
-    );
-    counter(
-        r,
-        "leases_failed",
-        "Leases that expired or ended in a fault",
-        metrics.counters.failed_leases,
-    );
-    counter(
-        r,
-        "evaluations_confirmed",
-        "Results that a second worker has computed with the same bits",
-        metrics.counters.confirmed,
-    );
-    counter(
-        r,
-        "evaluations_unconfirmed",
-        "Results that were to be verified when no second worker was there",
-        metrics.counters.unanswered,
-    );
-    gauge(
-        r,
-        "verifications_waiting",
-        "Results that wait for the answer of a second worker",
-        metrics.unconfirmed,
-    );
-    gauge(
-        r,
-        "workers_quarantined",
-        "Workers that compute wrongly and get no leases",
-        metrics.quarantined,
-    );
-    gauge(
-        r,
-        "evaluations_queued",
-        "Evaluations that wait for a worker",
-        usize::try_from(metrics.queued).unwrap_or(usize::MAX),
-    );
-    gauge(r, "leases_out", "Leases that are out", metrics.leased);
-    gauge(
-        r,
-        "calibrations_in_hand",
-        "Calibrations that are not over",
-        metrics.calibrations,
-    );
-    gauge(
-        r,
+    let farm = service.dispatcher().metrics().await?;
+    let mut figures = Figures(Registry::with_prefix("grouser"));
+    figures.results(&farm.counters);
+    figures.farm(&farm);
+    figures.gauge(
         "calibrations_left_alone",
         "Calibrations that could not be resumed at the start",
         service.count_left_alone(),
     );
-    states(r, &service.store().reader().states().await?);
-    gauge(
-        r,
-        "workers_connected",
-        "Workers heard of in the last minute",
-        metrics.workers,
-    );
-    counter(
-        r,
-        "store_commits",
-        "Commits of the store",
-        stored(&health.commits),
-    );
-    counter(r, "store_facts", "Facts committed", stored(&health.facts));
-    counter(
-        r,
-        "store_busy_microseconds",
-        "Time spent writing and committing",
-        stored(&health.busy_us),
-    );
-    counter(
-        r,
-        "determinism_faults",
-        "Late duplicates that differed from what is stored",
-        stored(&health.differing_duplicates),
-    );
-    if let Some(sizes) = service.store().sizes_bytes() {
-        let [file, log] = sizes.map(|bytes| usize::try_from(bytes).unwrap_or(usize::MAX));
-        gauge(r, "store_bytes", "Size of the store", file);
-        gauge(r, "store_log_bytes", "Size of its write-ahead log", log);
-    }
-    let backlog = usize::try_from(service.store().writer().backlog()).unwrap_or(usize::MAX);
-    gauge(r, "store_backlog_facts", "Facts that wait to be stored", backlog);
-    gauge(
-        r,
-        "store_locked",
-        "1 while a lock of another program keeps the store from being written",
-        usize::from(health.is_locked.load(Ordering::Relaxed)),
-    );
-    requests.register(r);
+    figures.states(&service.store().reader().states().await?);
+    figures.store(service.store());
+    requests.register(&mut figures.0);
     let mut text = String::new();
-    encode(&mut text, &registry).map_err(|_| HttpError::new(shared::api::ErrorKind::Internal, "metrics"))?;
+    encode(&mut text, &figures.0).map_err(|_| HttpError::new(shared::api::ErrorKind::Internal, "metrics"))?;
     Ok(text)
 }
 

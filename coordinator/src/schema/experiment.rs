@@ -90,99 +90,115 @@ fn campaign() -> Value {
 }
 
 fn wheel() -> Value {
+    let rim = [
+        (
+            "radius_m",
+            above(
+                "radius of the rim [m]; beside a mesh, the radius that slip and sinkage refer to",
+                0.0,
+            ),
+        ),
+        (
+            "width_m",
+            above("width of the rim [m]; beside a mesh, the width of the lane", 0.0),
+        ),
+    ];
+    let surface = [
+        (
+            "rig_radius_m",
+            above(
+                "radius with which the rig converts slip to rim speed [m]; radius_m where nothing is said",
+                0.0,
+            ),
+        ),
+        (
+            "mesh",
+            text("surface in place of rim and grousers, STL or OBJ, for scm"),
+        ),
+    ];
+    let keys = rim
+        .into_iter()
+        .chain(grousers())
+        .chain(grouser_form())
+        .chain(surface);
+    needing(table("a rigid wheel", keys), &["radius_m", "width_m"])
+}
+
+/// Keys of the grousers of a wheel.
+fn grousers() -> [(&'static str, Value); 4] {
     let not_negative = |words| usual(number(words, 0.0, ANY), 0.0);
-    let wheel = table(
-        "a rigid wheel",
-        [
-            (
-                "radius_m",
-                above(
-                    "radius of the rim [m]; beside a mesh, the radius that slip and sinkage refer to",
-                    0.0,
-                ),
+    [
+        (
+            "grouser_count",
+            usual(
+                whole("number of grousers, in each row", 0, Some(u64::from(u32::MAX))),
+                0,
             ),
-            (
-                "width_m",
-                above("width of the rim [m]; beside a mesh, the width of the lane", 0.0),
-            ),
-            (
-                "grouser_count",
-                usual(
-                    whole("number of grousers, in each row", 0, Some(u64::from(u32::MAX))),
-                    0,
-                ),
-            ),
-            (
-                "grouser_height_m",
-                not_negative("height of a grouser above the rim [m]"),
-            ),
-            (
-                "grouser_thickness_m",
-                not_negative("thickness of a grouser along the rim [m]"),
-            ),
-            (
-                "grouser_rows",
-                usual(
-                    whole(
-                        "number of rows of grousers side by side, each with grouser_count; for scm",
-                        1,
-                        Some(100),
-                    ),
+        ),
+        (
+            "grouser_height_m",
+            not_negative("height of a grouser above the rim [m]"),
+        ),
+        (
+            "grouser_thickness_m",
+            not_negative("thickness of a grouser along the rim [m]"),
+        ),
+        (
+            "grouser_rows",
+            usual(
+                whole(
+                    "number of rows of grousers side by side, each with grouser_count; for scm",
                     1,
+                    Some(100),
                 ),
+                1,
             ),
-            (
-                "grouser_stagger",
-                usual(
-                    json!({
-                        "type": "number", "minimum": 0, "exclusiveMaximum": 1,
-                        "description": "shift of a row against the one to its right, relative to the distance of its grousers",
-                    }),
-                    0.0,
-                ),
+        ),
+    ]
+}
+
+/// Keys of the arrangement and the form of the grousers of a wheel.
+fn grouser_form() -> [(&'static str, Value); 5] {
+    [
+        (
+            "grouser_stagger",
+            usual(
+                json!({
+                    "type": "number", "minimum": 0, "exclusiveMaximum": 1,
+                    "description": "shift of a row against the one to its right, relative to the distance of its grousers",
+                }),
+                0.0,
             ),
-            (
-                "grouser_width_m",
-                above(
-                    "width of the grousers of a row [m]; width_m / grouser_rows where nothing is said",
-                    0.0,
-                ),
+        ),
+        (
+            "grouser_width_m",
+            above(
+                "width of the grousers of a row [m]; width_m / grouser_rows where nothing is said",
+                0.0,
             ),
-            (
-                "grouser_angle_deg",
-                bent(
-                    "angle of the grousers against the axle, positive: the left end is further forward [deg]",
-                    89.0,
-                ),
+        ),
+        (
+            "grouser_angle_deg",
+            bent(
+                "angle of the grousers against the axle, positive: the left end is further forward [deg]",
+                89.0,
             ),
-            (
-                "grouser_chevron_deg",
-                bent(
-                    "angle of either half of a V, positive: its middle enters the soil first [deg]",
-                    89.0,
-                ),
+        ),
+        (
+            "grouser_chevron_deg",
+            bent(
+                "angle of either half of a V, positive: its middle enters the soil first [deg]",
+                89.0,
             ),
-            (
-                "grouser_bow_m",
-                bent(
-                    "how far forward of their middle the grousers' ends lie, on a parabola [m]",
-                    1.0,
-                ),
+        ),
+        (
+            "grouser_bow_m",
+            bent(
+                "how far forward of their middle the grousers' ends lie, on a parabola [m]",
+                1.0,
             ),
-            (
-                "rig_radius_m",
-                above(
-                    "radius with which the rig converts slip to rim speed [m]; radius_m where nothing is said",
-                    0.0,
-                ),
-            ),
-            (
-                "mesh",
-                text("surface in place of rim and grousers, STL or OBJ, for scm"),
-            ),
-        ],
-    );
-    needing(wheel, &["radius_m", "width_m"])
+        ),
+    ]
 }
 
 /// A number between -`most` and `most`, 0 where nothing is said.

@@ -29,7 +29,10 @@ pub(super) fn model() -> Value {
         ),
         &["kind"],
     );
-    let keys = std::iter::once(grousers()).chain(spatial()).chain(external());
+    let keys = std::iter::once(grousers())
+        .chain(terrain())
+        .chain(motion())
+        .chain(external());
     let keys = keys.map(|(key, shape)| (key.to_owned(), shape));
     for (key, shape) in keys.chain(prior::values()) {
         model["properties"][key] = shape;
@@ -59,8 +62,8 @@ fn grousers() -> (&'static str, Value) {
     (grouser_key::KEY, usual(shape, ignored))
 }
 
-/// Settings of `kind = "scm"`.
-fn spatial() -> [(&'static str, Value); 9] {
+/// Keys of the terrain in `scm`.
+fn terrain() -> [(&'static str, Value); 5] {
     let settings = SpatialSettings::default();
     [
         (
@@ -101,6 +104,13 @@ fn spatial() -> [(&'static str, Value); 9] {
                 settings.footprint,
             ),
         ),
+    ]
+}
+
+/// Keys of the motion of the wheel in `scm`.
+fn motion() -> [(&'static str, Value); 4] {
+    let settings = SpatialSettings::default();
+    [
         (
             "vertical",
             usual(
