@@ -36,9 +36,7 @@ pub enum WebhookError {
 /// What is posted, as JSON.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Announcement {
-    /// The study.
     pub study: i64,
-    /// Its calibration.
     pub calibration: i64,
     /// Name of the calibration.
     pub name: String,

@@ -4,6 +4,7 @@ use farm_tests::job::Job;
 use farm_tests::programs::{coordinator, run};
 use farm_tests::service::Service;
 use farm_tests::text::same;
+use farm_tests::wait::until;
 use farm_tests::workspace::text;
 use serde_json::Value;
 
@@ -101,6 +102,28 @@ fn stored_diagnostics_and_flags_are_handed_on_as_they_stand() {
     let answer = service.client.get(&flags);
     assert_eq!(answer.body, r#"[ {"marked": 1.50} ]"#);
     assert_eq!(answer.header("content-type"), Some("application/json"));
+}
+
+#[test]
+fn the_list_of_studies_reads_the_lines_that_are_stored() {
+    let mut service = Service::start(&["--local-workers", "2"]);
+    let id = service.submit(&Job::small());
+    service.wait_for(id, "finished");
+    until("the line of the study", || {
+        let error = service.client.json("/v1/studies")[0]["error"].clone();
+        (!error.is_null()).then_some(())
+    });
+    assert!(service.terminate());
+    // The program would not write this line itself, so that it shows whose text is listed.
+    let marked = r#"replace(body, '"effects":[]', '"effects":["marked"]')"#;
+    service.database().execute(&format!(
+        "UPDATE results SET body = {marked} WHERE name = 'list_item.json'"
+    ));
+    service.restart();
+    assert_eq!(
+        service.client.json("/v1/studies")[0]["effects"],
+        serde_json::json!(["marked"])
+    );
 }
 
 #[test]

@@ -27,6 +27,6 @@ pub use flag::model_limit::model_limits;
 pub use overview::{MemberOverview, StudyFlag, StudyListItem, StudyOverview, StudyVerdict};
 pub use provenance::Provenance;
 pub use story::Story;
-pub use study_file::StudyFile;
+pub use study_file::{CalibrationFile, StudyFile};
 pub use summary::calibration::CalibrationSummary;
 pub use summary::study::StudySummary;

@@ -1,8 +1,10 @@
 //! The files that a study ends with: written into its folder, shown by a service, stored.
 
+use std::collections::BTreeMap;
+
 use crate::diagnosis::diagnostics;
 use crate::document::document;
-use crate::overview::overview;
+use crate::overview::{StudyOverview, overview};
 use crate::story::Story;
 use crate::summary::study::summary;
 use crate::terminal;
@@ -31,29 +33,13 @@ pub enum StudyFile {
     Story,
     /// Members, error ledger and flags for the page, as JSON.
     Overview,
-    /// Diagnostics of a finished calibration, as JSON.
-    Diagnostics(i64),
+    /// Its line in a list of studies, as JSON.
+    ListItem,
     /// The numbers of a finished calibration's figures, as JSON.
     Figures(i64),
-    /// Model against measurement of a finished calibration, as JSON.
-    Comparison(i64),
-    /// Histories of a finished calibration, as JSON; `null` of a model that knows no time.
-    Histories(i64),
 }
 
 impl StudyFile {
-    /// The files that every study has.
-    const OF_ALL: [StudyFile; 8] = [
-        StudyFile::Summary,
-        StudyFile::Posterior,
-        StudyFile::Predictions,
-        StudyFile::Report,
-        StudyFile::Details,
-        StudyFile::Brief,
-        StudyFile::Story,
-        StudyFile::Overview,
-    ];
-
     /// Its name.
     pub fn name(self) -> String {
         match self {
@@ -66,25 +52,77 @@ impl StudyFile {
             StudyFile::Brief => "brief.txt".into(),
             StudyFile::Story => "story.json".into(),
             StudyFile::Overview => "overview.json".into(),
-            StudyFile::Diagnostics(calibration) => format!("diagnostics-{calibration}.json"),
+            StudyFile::ListItem => "list_item.json".into(),
             StudyFile::Figures(calibration) => format!("figures-{calibration}.json"),
-            StudyFile::Comparison(calibration) => format!("comparison-{calibration}.json"),
-            StudyFile::Histories(calibration) => format!("histories-{calibration}.json"),
+        }
+    }
+
+    /// Whether a study always ends with the file. The others are computed when somebody asks for them.
+    pub fn is_of_every_study(self) -> bool {
+        !matches!(self, StudyFile::PredictionRows | StudyFile::Figures(_))
+    }
+}
+
+/// A file of a finished calibration that the calibration alone determines, as JSON.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum CalibrationFile {
+    /// Diagnostics.
+    Diagnostics,
+    /// Model against measurement.
+    Comparison,
+    /// Histories; `null` for a model that knows no time.
+    Histories,
+}
+
+impl CalibrationFile {
+    /// Its name.
+    pub fn name(self, calibration: i64) -> String {
+        let kind = match self {
+            CalibrationFile::Diagnostics => "diagnostics",
+            CalibrationFile::Comparison => "comparison",
+            CalibrationFile::Histories => "histories",
+        };
+        format!("{kind}-{calibration}.json")
+    }
+
+    /// Its text.
+    pub fn text(self, calibration: &FinishedCalibration) -> String {
+        match self {
+            CalibrationFile::Diagnostics => compact(&diagnostics(calibration, calibration.comparison())),
+            CalibrationFile::Comparison => compact(&calibration.comparison()),
+            CalibrationFile::Histories => compact(&calibration.histories()),
         }
     }
 }
 
-/// The files that a study ends with. The others are for who looks at one calibration, and computed when somebody does.
-pub fn files(study: &Study) -> impl Iterator<Item = StudyFile> {
-    let diagnosed = study.calibrations().map(|c| StudyFile::Diagnostics(c.row.id));
-    StudyFile::OF_ALL.into_iter().chain(diagnosed)
+/// The files that a study ends with, by name: those of every study, and the diagnostics of its calibrations.
+pub fn files(study: &Study) -> BTreeMap<String, String> {
+    use StudyFile::{Brief, Details, Posterior, Predictions, Report, Story, Summary};
+    let mut files = overview_files(&overview(study));
+    let of_study = [Summary, Posterior, Predictions, Report, Details, Brief, Story];
+    files.extend(
+        of_study
+            .into_iter()
+            .filter_map(|kind| Some((kind.name(), file(study, kind)?))),
+    );
+    let diagnostics = CalibrationFile::Diagnostics;
+    files.extend(study.calibrations().map(|calibration| {
+        let name = diagnostics.name(calibration.row.id);
+        (name, diagnostics.text(calibration))
+    }));
+    files
 }
 
-fn calibration(study: &Study, id: i64) -> Option<&FinishedCalibration> {
-    study.calibrations().find(|calibration| calibration.row.id == id)
+/// An overview and the line that it is in a list of studies, by name.
+pub fn overview_files(overview: &StudyOverview) -> BTreeMap<String, String> {
+    [
+        (StudyFile::Overview.name(), json(overview)),
+        (StudyFile::ListItem.name(), compact(&overview.list_item(None))),
+    ]
+    .into()
 }
 
-/// The text of a file; `None` where it is that of a calibration that the study has not, or not finished.
+/// The text of a file; `None` for figures of a calibration that is no finished one of the study.
 pub fn file(study: &Study, file: StudyFile) -> Option<String> {
     Some(match file {
         StudyFile::Summary => json(&summary(study)) + "\n",
@@ -96,13 +134,13 @@ pub fn file(study: &Study, file: StudyFile) -> Option<String> {
         StudyFile::Brief => terminal::brief(study),
         StudyFile::Story => json(&Story::current(study)) + "\n",
         StudyFile::Overview => json(&overview(study)),
-        StudyFile::Diagnostics(id) => {
-            let calibration = calibration(study, id)?;
-            compact(&diagnostics(calibration, calibration.comparison()))
+        StudyFile::ListItem => compact(&overview(study).list_item(None)),
+        StudyFile::Figures(id) => {
+            let calibration = study
+                .calibrations()
+                .find(|calibration| calibration.row.id == id)?;
+            compact(&study.figures_of(calibration))
         }
-        StudyFile::Figures(id) => compact(&study.figures_of(calibration(study, id)?)),
-        StudyFile::Comparison(id) => compact(&calibration(study, id)?.comparison()),
-        StudyFile::Histories(id) => compact(&calibration(study, id)?.histories()),
     })
 }
 

@@ -7,21 +7,26 @@ use anyhow::{Context, bail};
 use export::{DrawTable, InferenceData, format};
 use serde_json::json;
 
-use super::source::CalibrationSource;
+use super::place::Place;
 use super::verbs::write;
 use crate::config::{ExportArguments, ExportFormat};
+use report::StudySummary;
+use result::{Comparison, PosteriorTable};
 
 pub(super) async fn export(config: &ExportArguments) -> anyhow::Result<()> {
     let output = config.output.as_deref();
-    let place = CalibrationSource::open(&config.target.source).await?;
+    let place = Place::open(&config.target.source).await?;
     let id = place.id(&config.target).await?;
     match config.format {
-        ExportFormat::Csv => write(output, &place.posterior(id).await?.to_csv(), "posterior.csv"),
+        ExportFormat::Csv => {
+            let posterior: PosteriorTable = place.get(&path(id, "posterior")).await?;
+            write(output, &posterior.to_csv(), "posterior.csv")
+        }
         ExportFormat::Json => {
             let all = json!({
-                "summary": place.summary(id).await?,
-                "posterior": place.posterior(id).await?,
-                "comparison": place.comparison(id).await?,
+                "summary": place.get::<StudySummary>(&path(id, "summary")).await?,
+                "posterior": place.get::<PosteriorTable>(&path(id, "posterior")).await?,
+                "comparison": place.get::<Comparison>(&path(id, "comparison")).await?,
             });
             write(
                 output,
@@ -42,9 +47,13 @@ pub(super) async fn export(config: &ExportArguments) -> anyhow::Result<()> {
     }
 }
 
-/// The inference data of a calibration; those that a service has sent are checked.
-async fn data(place: &CalibrationSource, id: i64) -> anyhow::Result<InferenceData> {
-    let data = place.inference_data(id).await?;
+fn path(id: i64, part: &str) -> String {
+    format!("/v1/calibrations/{id}/{part}")
+}
+
+/// The inference data of a calibration, checked: a service of another version may have sent them.
+async fn data(place: &Place, id: i64) -> anyhow::Result<InferenceData> {
+    let data: InferenceData = place.get(&path(id, "inference-data")).await?;
     data.check()?;
     Ok(data)
 }

@@ -1,4 +1,4 @@
-//! The folder of a run: its store, opened and worked on here until its study is over; its results, written and printed.
+//! The folder of a run: opens its store, computes its study to the end, writes and prints the results.
 
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -15,7 +15,7 @@ use super::shutdown::{Shutdown, Stopped, stop_signal};
 use crate::config::{ExposureArguments, ModelArguments};
 use crate::embedded::{LocalModels, LocalWorkers};
 use crate::http::Exposure;
-use crate::service::{FarmSettings, LEASE_MS, Service, VERIFIED_PERCENT, next_step_of, search_rounds};
+use crate::service::{FarmSettings, LEASE_MS, Service, VERIFIED_PERCENT};
 use farm::Control;
 use job::{Apply, Spec};
 use record::CalibrationRow;
@@ -23,15 +23,15 @@ use report::{StudyFile, terminal};
 use result::DiscoveryRound;
 use result::discovery::effect_file;
 
-/// How often the display looks.
+/// Interval between two updates of the display.
 const LOOK: Duration = Duration::from_millis(100);
 
 /// Whether the tables and flags of a study are printed.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Details {
-    /// They are left to the report.
+    /// Only the report has them.
     Hidden,
-    /// They are, with a search: that of a calibration where it is named, else the last.
+    /// They are printed, with the search of the named calibration, else with the last search.
     Shown {
         /// The searched calibration.
         searched: Option<i64>,
@@ -49,7 +49,7 @@ impl Details {
 
 /// A folder with its store open.
 pub(super) struct Folder {
-    /// Where it is stored.
+    /// Path of the folder.
     pub(super) out: PathBuf,
     /// Its store, and a farm for it.
     pub(super) service: Service,
@@ -59,7 +59,7 @@ pub(super) struct Folder {
 }
 
 impl Folder {
-    /// Opens the store of a folder that is there; workers elsewhere may join at the listener.
+    /// Opens the store of an existing folder; workers elsewhere may join at the listener.
     pub(super) async fn open(
         out: &Path,
         local_workers: Option<usize>,
@@ -92,7 +92,7 @@ impl Folder {
         })
     }
 
-    /// Lets the calibrations of a study go on, where this program can.
+    /// Continues the calibrations of a study.
     pub(super) async fn go_on(&self, study: i64) -> anyhow::Result<()> {
         for row in self.service.store().reader().study(study).await? {
             self.go_on_with(&row).await?;
@@ -119,11 +119,11 @@ impl Folder {
         Ok(())
     }
 
-    /// Version of the equations that local workers compute of a job's model; none where they do not run it, but others may join who
-    /// do.
+    /// Version of the equations that local workers compute for a job's model; `None` where they do not run the model, but workers elsewhere
+    /// may join.
     ///
     /// # Errors
-    /// Nobody would run it.
+    /// No worker would run the model.
     pub(super) async fn equations_of(&self, spec: &Spec) -> anyhow::Result<Option<String>> {
         let external = spec.model.external.clone();
         let models = self.models.clone();
@@ -134,7 +134,7 @@ impl Folder {
         }
     }
 
-    /// Checks that local workers can go on with a calibration: that they run its model, and in the version that it is pinned to.
+    /// Checks that local workers can continue a calibration: that they run its model in the version that it is pinned to.
     async fn check_equations(&self, row: &CalibrationRow) -> anyhow::Result<()> {
         let spec = self.service.spec_of(row).await?;
         let Some(equations) = self.equations_of(&spec).await? else {
@@ -154,7 +154,7 @@ impl Folder {
         let reader = self.service.store().reader();
         let rows = reader.study(study).await?;
         let is_over = rows.iter().all(|row| row.state.is_final());
-        if !is_over || next_step_of(&reader, study).await?.is_some() {
+        if !is_over || self.service.next_step(study).await?.is_some() {
             self.calibrate(study).await?;
         }
         Ok(())
@@ -166,7 +166,7 @@ impl Folder {
         let reader = self.service.store().reader();
         let rows = reader.study(study).await?;
         if let Some(row) = rows.iter().find(|row| row.state == CalibrationState::Finished) {
-            let rounds = search_rounds(&reader, &rows).await?;
+            let rounds = self.service.search_rounds(study).await?;
             self.write_results(row.id, &rounds).await?;
             say(&self.results(row.id, &rounds, details).await?)?;
         }
@@ -184,7 +184,7 @@ impl Folder {
         }
     }
 
-    /// What is printed of a study.
+    /// The text that is printed about a study.
     async fn results(
         &self,
         calibration: i64,
@@ -198,8 +198,8 @@ impl Folder {
         };
         text.push('\n');
         if let Details::Shown { searched } = details {
-            let meant = rounds.iter().find(|r| Some(r.calibration) == searched);
-            if let Some(round) = meant.or(rounds.last()) {
+            let named = rounds.iter().find(|r| Some(r.calibration) == searched);
+            if let Some(round) = named.or(rounds.last()) {
                 let place = format!("--out {}", self.out.display());
                 text += &terminal::discovery::text(&round.record, round.calibration, &place, &self.out);
                 text.push('\n');
@@ -246,13 +246,13 @@ impl Folder {
             workers.join().await;
         }
         if let Some(server) = server {
-            // Workers elsewhere may be waiting in a poll; they are not waited for.
+            // Workers elsewhere may be in a long poll, which must not delay the end.
             server.abort();
         }
         end
     }
 
-    /// Writes every result beside its final name first, so that a half-written file never takes that name.
+    /// Writes every result to a temporary name first, so that its final name never has a half-written file.
     async fn write_results(&self, calibration: i64, rounds: &[DiscoveryRound]) -> anyhow::Result<()> {
         let mut files = Vec::new();
         for file in [
@@ -322,7 +322,7 @@ async fn watch_until_over(
     }
 }
 
-/// The least number of calibrations and searches that a study will have: where effects are added, it is expected to find one.
+/// The expected number of calibrations and searches of a study: a study that adds effects is expected to find one.
 async fn expected_members(study: i64, service: &Service) -> anyhow::Result<usize> {
     let rows = service.store().reader().study(study).await?;
     let Some(first) = rows.first() else { return Ok(0) };

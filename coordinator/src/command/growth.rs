@@ -3,7 +3,9 @@
 use std::path::Path;
 use std::time::Duration;
 
-use anyhow::{Context, bail};
+use anyhow::Context;
+use serde::Serialize;
+use serde::de::DeserializeOwned;
 use serde_json::json;
 use shared::api::{
     CalibrationCreated, CalibrationState, CalibrationStatus, NamedText, NewExtension, NewRuns, RunsAdded,
@@ -12,101 +14,75 @@ use shared::text_file::read_text;
 
 use super::folder::{Details, Folder};
 use super::output::{note, say};
-use super::source::{CalibrationSource, ServiceClient};
-use crate::config::{AddRunsArguments, DiscoverArguments, ExtendArguments, ModelArguments};
-use crate::service::{Service, ServiceError};
-use record::{Discovery, Extension};
+use super::place::Place;
+use crate::config::{AddRunsArguments, DiscoverArguments, ExtendArguments, GrowthArguments, SourceArguments};
+use record::Discovery;
 use report::terminal::discovery;
 use result::discovery::effect_file;
 
-/// How often a service is asked whether a search is over.
+/// Interval between two requests for the state of a search at a service.
 const LOOK: Duration = Duration::from_millis(500);
 
 pub(super) async fn discover(config: &DiscoverArguments) -> anyhow::Result<()> {
-    let place = CalibrationSource::open(&config.target.source).await?;
+    let source = &config.target.source;
+    let place = Place::open(source).await?;
     let id = place.id(&config.target).await?;
-    let client = match (&config.target.source.out, place) {
-        (Some(out), _) => {
-            let details = Details::new(config.verbose, Some(id));
-            return grow(
-                out,
-                id,
-                (config.local_workers, &config.models),
-                details,
-                async |service| service.discover(id).await.map(drop),
-            )
-            .await;
-        }
-        (None, CalibrationSource::Service(client)) => client,
-        (None, CalibrationSource::Folder(_)) => bail!("--url or --out"),
-    };
     let path = format!("/v1/calibrations/{id}/discovery");
-    let search: CalibrationCreated = client.post(&path, &json!({})).await?;
+    let addition = Addition {
+        source,
+        growth: &config.growth,
+        calibration: id,
+    };
+    let search = addition.make(&place, &path, &json!({}), |_| {}).await?;
+    let Some(search): Option<CalibrationCreated> = search else {
+        return Ok(());
+    };
     loop {
-        let status: CalibrationStatus = client.get(&format!("/v1/calibrations/{}", search.id)).await?;
+        let status: CalibrationStatus = place.get(&format!("/v1/calibrations/{}", search.id)).await?;
         if status.state == CalibrationState::Paused || status.state.is_final() {
             break;
         }
         tokio::time::sleep(LOOK).await;
     }
-    let record: Discovery = client.get(&path).await?;
-    let url = format!("--url {}", config.target.source.url());
-    write_file(&record)?;
-    Ok(say(&discovery::text(&record, id, &url, Path::new("")))?)
-}
-
-/// Writes the effect file that a search found into the present folder.
-fn write_file(record: &Discovery) -> anyhow::Result<()> {
-    match effect_file(record) {
-        Some((name, text)) => std::fs::write(&name, text).context(name),
-        None => Ok(()),
+    let record: Discovery = place.get(&path).await?;
+    if let Some((name, text)) = effect_file(&record) {
+        std::fs::write(&name, text).context(name)?;
     }
+    let url = format!("--url {}", source.url());
+    Ok(say(&discovery::text(&record, id, &url, Path::new("")))?)
 }
 
 pub(super) async fn extend(config: &ExtendArguments) -> anyhow::Result<()> {
     let source = &config.target.source;
-    let place = CalibrationSource::open(source).await?;
+    let place = Place::open(source).await?;
     let id = place.id(&config.target).await?;
-    let file = config.effect_file.as_deref().map(named_text).transpose()?;
-    if let Some(out) = &source.out {
-        let extension = match (&config.effect, &config.wheel, file) {
-            (Some(effect), Some(wheel), _) => Extension::OnWheel {
-                effect: effect.clone(),
-                wheel: wheel.clone(),
-            },
-            (Some(effect), None, _) => Extension::Effect(effect.clone()),
-            (None, _, Some(NamedText { name, text })) => Extension::File { name, text },
-            (None, _, None) => bail!("--effect or --effect-file is missing"),
-        };
-        let details = Details::new(config.verbose, Some(id));
-        return grow(
-            out,
-            id,
-            (config.local_workers, &config.models),
-            details,
-            async |service| {
-                let before = service.store().reader().calibrations().await?.len();
-                let created = service.extend(id, extension.clone()).await?;
-                if service.store().reader().calibrations().await?.len() == before {
-                    note(&format!("calibration {} has it already", created.id));
-                }
-                Ok(())
-            },
-        )
-        .await;
-    }
     let new = NewExtension {
         effect: config.effect.clone(),
         wheel: config.wheel.clone(),
-        effect_file: file,
+        effect_file: config.effect_file.as_deref().map(named_text).transpose()?,
     };
-    let created: CalibrationCreated = ServiceClient::new(&source.url(), &source.client)?
-        .post(&format!("/v1/calibrations/{id}/extend"), &new)
-        .await?;
-    Ok(say(&format!(
-        "calibration {} of study {}\n",
-        created.id, created.study
-    ))?)
+    let known: Vec<CalibrationStatus> = match place {
+        Place::Folder { .. } => place.get("/v1/calibrations?archived=true").await?,
+        Place::Service(_) => Vec::new(),
+    };
+    let tell_of_known = |created: &CalibrationCreated| {
+        if known.iter().any(|status| status.id == created.id) {
+            note(&format!("calibration {} has it already", created.id));
+        }
+    };
+    let addition = Addition {
+        source,
+        growth: &config.growth,
+        calibration: id,
+    };
+    let path = format!("/v1/calibrations/{id}/extend");
+    if let Some(created) = addition.make(&place, &path, &new, tell_of_known).await? {
+        say(&format!(
+            "calibration {} of study {}\n",
+            created.id, created.study
+        ))?;
+    }
+    Ok(())
 }
 
 fn named_text(path: &Path) -> anyhow::Result<NamedText> {
@@ -119,54 +95,68 @@ fn named_text(path: &Path) -> anyhow::Result<NamedText> {
 
 pub(super) async fn add_runs(config: &AddRunsArguments) -> anyhow::Result<()> {
     let AddRunsArguments { id, source, .. } = config;
-    let runs = read_text(&config.runs)?;
-    let study = CalibrationSource::open(source).await?.status(*id).await?.study;
-    if let Some(out) = &source.out {
-        let details = Details::new(config.verbose, Some(*id));
-        return grow(
-            out,
-            *id,
-            (config.local_workers, &config.models),
-            details,
-            async |service| {
-                let last = Some(*id);
-                service.add_runs(study, runs.clone(), last).await.map(drop)
-            },
-        )
-        .await;
-    }
-    let added: RunsAdded = ServiceClient::new(&source.url(), &source.client)?
-        .post(
-            &format!("/v1/studies/{study}/runs"),
-            &NewRuns {
-                runs,
-                calibration: Some(*id),
-            },
-        )
-        .await?;
+    let new = NewRuns {
+        runs: read_text(&config.runs)?,
+        calibration: Some(*id),
+    };
+    let place = Place::open(source).await?;
+    let status: CalibrationStatus = place.get(&format!("/v1/calibrations/{id}")).await?;
+    let addition = Addition {
+        source,
+        growth: &config.growth,
+        calibration: *id,
+    };
+    let path = format!("/v1/studies/{}/runs", status.study);
+    let added = addition.make(&place, &path, &new, |_| {}).await?;
+    let Some(added): Option<RunsAdded> = added else {
+        return Ok(());
+    };
     Ok(say(&format!(
         "calibration {} of study {} on experiment {}\n",
         added.id, added.study, added.experiment
     ))?)
 }
 
-/// Adds to the study of a calibration in a folder, and brings the study to its end there.
-async fn grow(
-    out: &Path,
-    id: i64,
-    (local_workers, models): (Option<usize>, &ModelArguments),
-    details: Details,
-    add: impl AsyncFn(&Service) -> Result<(), ServiceError>,
-) -> anyhow::Result<()> {
-    let folder = Folder::open(out, local_workers, models, None).await?;
-    let service = folder.service.clone();
-    let result = async {
-        let study = folder.service.calibration_row(id).await?.study;
-        folder.go_on(study).await?;
-        add(&folder.service).await?;
-        folder.finish(study, details).await
-    };
-    let result = result.await;
-    service.close().await;
-    result
+/// An addition to a study, and how it is computed where the study is in a folder.
+struct Addition<'a> {
+    source: &'a SourceArguments,
+    growth: &'a GrowthArguments,
+    /// The calibration to whose study something is added.
+    calibration: i64,
+}
+
+impl Addition<'_> {
+    /// Makes the addition by a request. A service answers with the addition. In a folder, the study is brought to its
+    /// end here and its results are printed; then there is no answer.
+    ///
+    /// # Arguments
+    /// - `added`: called with the addition before a folder computes it.
+    async fn make<T: DeserializeOwned>(
+        &self,
+        place: &Place,
+        path: &str,
+        body: &impl Serialize,
+        added: impl FnOnce(&T),
+    ) -> anyhow::Result<Option<T>> {
+        let Some(out) = &self.source.out else {
+            return Ok(Some(place.post(path, body).await?));
+        };
+        let GrowthArguments {
+            local_workers,
+            models,
+            verbose,
+        } = self.growth;
+        let folder = Folder::open(out, *local_workers, models, None).await?;
+        let service = folder.service.clone();
+        let result = async {
+            let study = service.calibration_row(self.calibration).await?.study;
+            folder.go_on(study).await?;
+            added(&Place::in_folder(service.clone()).post(path, body).await?);
+            let details = Details::new(*verbose, Some(self.calibration));
+            folder.finish(study, details).await
+        };
+        let result = result.await;
+        service.close().await;
+        result.map(|()| None)
+    }
 }

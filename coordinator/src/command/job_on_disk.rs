@@ -73,18 +73,11 @@ pub(super) fn read(file: &JobArguments, own: &[ServiceEffect]) -> Result<JobOnDi
     }
     let others = specs.split_off(1);
     let spec = specs.remove(0);
-    // An extension has another folder than its base.
-    let mut name = name(path);
-    for more in file
-        .effect
-        .iter()
-        .map(String::as_str)
-        .chain(names.iter().map(|n| stem(n)))
-    {
-        name = format!("{name}+{more}");
-    }
+    let effects = file.effect.iter().map(String::as_str);
+    let additions = effects.chain(names.iter().map(|name| stem(name)));
     Ok(JobOnDisk {
-        name,
+        // An extension has another folder than its base.
+        name: additions.fold(name(path), |name, addition| format!("{name}+{addition}")),
         job: kept,
         experiment,
         spec,

@@ -5,8 +5,8 @@ use std::time::{Duration, Instant};
 use anyhow::{Context, bail};
 use shared::api::WorkDemand;
 
+use super::place::Place;
 use super::shutdown::stop_signal;
-use super::source::ServiceClient;
 use crate::config::{EngineKind, ScaleArguments};
 use crate::scale::budget::{Cost, Vain};
 use crate::scale::engine::{Engine, SLURM_PILOT};
@@ -17,9 +17,9 @@ pub(super) async fn scale(arguments: &ScaleArguments) -> anyhow::Result<()> {
     if arguments.min > arguments.max {
         bail!("--min {} must be at most --max {}", arguments.min, arguments.max);
     }
-    let client = ServiceClient::new(&arguments.url, &arguments.client)?;
+    let service = Place::at(&arguments.url, &arguments.client)?;
     let mut scaler = Scaler {
-        client,
+        service,
         engine: engine(arguments)?,
         settings: settings(arguments)?,
         policy: Policy {
@@ -39,7 +39,7 @@ pub(super) async fn scale(arguments: &ScaleArguments) -> anyhow::Result<()> {
     let stop = stop_signal()?;
     tokio::pin!(stop);
     loop {
-        // What fails once, as while the service or the queue is restarted, may work the next time.
+        // A round that fails, as while the service or the queue is restarted, may succeed the next time.
         match scaler.round(arguments.cost_cap_thread_h).await {
             Ok(Round::Spent) => return Ok(()),
             Ok(Round::Done) => {}
@@ -70,7 +70,7 @@ fn engine(arguments: &ScaleArguments) -> anyhow::Result<Engine> {
 }
 
 fn settings(arguments: &ScaleArguments) -> anyhow::Result<PilotSettings> {
-    // Pilots start in folders of their own.
+    // Each pilot starts in another folder.
     let whole = |file: &Option<std::path::PathBuf>| {
         let whole = file.as_ref().map(std::path::absolute).transpose();
         whole.context("the current folder")
@@ -87,23 +87,23 @@ fn settings(arguments: &ScaleArguments) -> anyhow::Result<PilotSettings> {
     })
 }
 
-/// What a round led to.
+/// The result of a round.
 enum Round {
     Done,
     /// The cap of cost is reached, and all pilots are ended.
     Spent,
 }
 
-/// Looks at work and pilots, and brings the one in line with the other.
+/// Reads the waiting work and the pilots, and starts or ends pilots by it.
 struct Scaler {
-    client: ServiceClient,
+    service: Place,
     engine: Engine,
     settings: PilotSettings,
     policy: Policy,
     cost: Cost,
     vain: Vain,
     patience: Patience,
-    /// When it looked last.
+    /// Time of the last round.
     seen: Instant,
 }
 
@@ -124,7 +124,7 @@ impl Scaler {
             );
             return Ok(Round::Spent);
         }
-        let demand: WorkDemand = self.client.get("/v1/work/demand").await?;
+        let demand: WorkDemand = self.service.get("/v1/work/demand").await?;
         let computed = demand.completed_in_queues;
         if let Some(pause) = self.vain.seen(&pilots, computed, demand.queued > 0, elapsed) {
             tracing::warn!(

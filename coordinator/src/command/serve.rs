@@ -16,53 +16,22 @@ use crate::embedded::{LocalModels, LocalWorkers};
 use crate::service::{FarmSettings, Service, ServiceError};
 use store::{StoreError, name_of};
 
-/// Durations that a lease may have `[ms]`: what a network may take, to a day.
+/// Durations that a lease may have `[ms]`: from the delays of a network to a day.
 const LEASE_MS: RangeInclusive<u64> = 100..=86_400_000;
-/// A standby asks so often whether the store is free.
+/// Interval between two attempts of a standby to open the store.
 const STANDBY: Duration = Duration::from_secs(1);
 
 pub(super) async fn serve(config: ServeArguments) -> anyhow::Result<()> {
-    if !LEASE_MS.contains(&config.lease_ms) {
-        let (least, most) = (LEASE_MS.start(), LEASE_MS.end());
-        bail!(
-            "--lease-ms {} ms must lie in [{least}, {most}] ms",
-            config.lease_ms
-        );
-    }
-    if !(0.0..=100.0).contains(&config.verify_percent) {
-        bail!(
-            "--verify-percent {} must lie in [0, 100] %",
-            config.verify_percent
-        );
-    }
+    let settings = farm_settings(&config)?;
     let models = LocalModels::new(&config.models.allow_model).map_err(anyhow::Error::msg)?;
-    let bind = async || {
-        let bound = TcpListener::bind(config.listen).await;
-        bound.with_context(|| format!("--listen {}", config.listen))
-    };
-    let store = &config.store.store;
-    let settings = FarmSettings {
-        lease_ms: config.lease_ms,
-        verified_share: config.verify_percent / 100.0,
-    };
-    let opened = async {
-        anyhow::Ok(match (config.read_only, config.standby) {
-            (true, _) => (bind().await?, Service::open_read_only(store).await?),
-            (false, false) => (bind().await?, Service::open(store, settings).await?),
-            // Whoever asks a standby gets no answer: what stands before several coordinators sends them to the one that serves.
-            (false, true) => {
-                let service = standby(store, settings).await?;
-                (bind().await?, service)
-            }
-        })
-    };
-    // One signal for all: what comes while a standby takes over stops it, too.
+    // One signal for the whole program: it also stops a standby that takes over.
     let mut signal = pin!(stop_signal()?);
     let (listener, service) = tokio::select! {
-        opened = opened => opened?,
+        opened = open(&config, settings) => opened?,
         _ = &mut signal => return Ok(()),
     };
-    let service = service.with_webhook_hosts(config.webhook_host);
+    let store = &config.store.store;
+    let service = service.with_webhook_hosts(config.webhook_host.clone());
     let address = listener.local_addr()?;
     let exposure = exposure(address, &config.exposure, &service.store().reader(), store).await?;
     let tls = exposure.tls.is_some();
@@ -111,7 +80,50 @@ pub(super) async fn serve(config: ServeArguments) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Where a browser shows the page: on this machine where the service listens to all addresses, at the name of its certificate with TLS.
+/// How the farm leases and verifies, by arguments within their bounds.
+fn farm_settings(config: &ServeArguments) -> anyhow::Result<FarmSettings> {
+    if !LEASE_MS.contains(&config.lease_ms) {
+        let (least, most) = (LEASE_MS.start(), LEASE_MS.end());
+        bail!(
+            "--lease-ms {} ms must lie in [{least}, {most}] ms",
+            config.lease_ms
+        );
+    }
+    if !(0.0..=100.0).contains(&config.verify_percent) {
+        bail!(
+            "--verify-percent {} must lie in [0, 100] %",
+            config.verify_percent
+        );
+    }
+    Ok(FarmSettings {
+        lease_ms: config.lease_ms,
+        verified_share: config.verify_percent / 100.0,
+    })
+}
+
+/// Takes the address and opens the store; the address first, so that a port in use leaves nothing behind. A standby listens when it has
+/// the store: a load balancer must send requests to the coordinator that serves.
+async fn open(config: &ServeArguments, settings: FarmSettings) -> anyhow::Result<(TcpListener, Service)> {
+    let store = &config.store.store;
+    let bind = async || {
+        let bound = TcpListener::bind(config.listen).await;
+        bound.with_context(|| format!("--listen {}", config.listen))
+    };
+    if config.read_only {
+        let listener = bind().await?;
+        let service = Service::open_read_only(store).await?;
+        service.store().warn_of_damage().await?;
+        return Ok((listener, service));
+    }
+    if config.standby {
+        let service = standby(store, settings).await?;
+        return Ok((bind().await?, service));
+    }
+    Ok((bind().await?, Service::open(store, settings).await?))
+}
+
+/// The address at which a browser shows the page: of this machine where the service listens to all addresses, with TLS by the name of its
+/// certificate.
 fn opening(listening: SocketAddr, tls: bool, name: Option<&str>) -> String {
     let scheme = if tls { "https" } else { "http" };
     let port = listening.port();

@@ -1,7 +1,7 @@
 //! `coordinator validate`: each level of a factor, predicted by a calibration on the others.
 //!
-//! The calibrations stand in a folder of their own beside the store of the run: they are no part of its study, whose ledger compares
-//! models on the same measurements. There they are taken up again, and shown by `--out` like any other.
+//! The calibrations are stored in another folder below the run: they are no part of its study, whose ledger compares models on the same
+//! measurements. A later call resumes them, and `--out` shows them like any other.
 
 use std::path::Path;
 
@@ -13,41 +13,41 @@ use shared::model::equations_of;
 
 use super::folder::Folder;
 use super::output::{note, say};
-use super::source::{CalibrationSource, outcome};
+use super::place::Place;
 use crate::config::{ValidateArguments, ValidationFormat};
-use crate::service::{ServiceError, experiment_files, finished_calibration};
+use crate::service::ServiceError;
 use job::{Spec, validation_job};
 use record::CalibrationRow;
 use report::terminal;
 use result::FinishedCalibration;
 use result::validation::{LeftOutLevel, ValidatedLevel, Validation};
 
-/// How job and experiment are called in messages.
+/// Names of job and experiment in messages.
 const FILES: [&str; 2] = ["job.toml", "experiment.toml"];
 
 pub(super) async fn validate(config: &ValidateArguments) -> anyhow::Result<()> {
-    let source = CalibrationSource::open(&config.target.source).await?;
-    let (CalibrationSource::Folder(reader), Some(out)) = (&source, &config.target.source.out) else {
+    let place = Place::open(&config.target.source).await?;
+    let (Place::Folder { service, .. }, Some(out)) = (&place, &config.target.source.out) else {
         bail!(
             "validate needs --out: it calibrates in a folder of a run; a service answers POST /v1/calibrations/ID/what-if for a level \
              at a time"
         );
     };
-    let id = source.id(&config.target).await?;
-    let calibration = outcome(reader, id).await?;
+    let id = place.id(&config.target).await?;
+    let calibration = service.finished_calibration(id).await?;
     let factor = config.leave_out.into();
     let levels = LeftOutLevel::all(&calibration.spec, factor).map_err(anyhow::Error::msg)?;
     let rest = Rest {
-        experiment: experiment_files(reader, calibration.row.experiment).await?,
+        experiment: service.experiment(calibration.row.experiment).await?,
         job: validation_job(FILES[0], &calibration.row.job, config.own_algorithm)?,
         calibration,
     };
     let algorithm = Spec::new(FILES[0], &rest.job, FILES[1], &rest.experiment)?
         .algorithm
         .algorithm_name();
-    let place = out.join(format!("validation-{id}"));
-    std::fs::create_dir_all(&place).with_context(|| place.display().to_string())?;
-    let mut folder = Folder::open(&place, config.local_workers, &config.models, None).await?;
+    let beside = out.join(format!("validation-{id}"));
+    std::fs::create_dir_all(&beside).with_context(|| beside.display().to_string())?;
+    let mut folder = Folder::open(&beside, config.local_workers, &config.models, None).await?;
     let service = folder.service.clone();
     let validated = async {
         let mut validated = Vec::new();
@@ -61,38 +61,37 @@ pub(super) async fn validate(config: &ValidateArguments) -> anyhow::Result<()> {
     service.close().await;
     let validation = Validation::new(&rest.calibration, factor, algorithm, validated?);
     let json = serde_json::to_string_pretty(&validation)? + "\n";
-    write(&place.join(format!("{}.json", factor.name())), &json)?;
+    write(&beside.join(format!("{}.json", factor.name())), &json)?;
     Ok(say(&match config.format {
         ValidationFormat::Text => terminal::validation(&validation),
         ValidationFormat::Json => json,
     })?)
 }
 
-/// Written beside its final name first, so that a half-written file never takes that name.
+/// Writes a text to a temporary name first, so that the final name never has a half-written file.
 fn write(path: &Path, text: &str) -> anyhow::Result<()> {
     let partial = path.with_extension("json.part");
     std::fs::write(&partial, text).with_context(|| partial.display().to_string())?;
     std::fs::rename(&partial, path).with_context(|| path.display().to_string())
 }
 
-/// What calibrates on the rest of the levels.
+/// Predicts a level by a calibration on the other levels.
 struct Rest {
     /// The calibration whose model predicts.
     calibration: FinishedCalibration,
-    /// Its experiment.
     experiment: FileSet,
     /// The job of every level.
     job: FileSet,
 }
 
 impl Rest {
-    /// Predicts a level from the others; what cannot be calibrated says why.
+    /// Predicts a level from the others; a level that cannot be predicted has a reason.
     async fn predict(&self, level: LeftOutLevel, folder: &mut Folder) -> anyhow::Result<ValidatedLevel> {
         let edited = match Experiment::with_held_out(FILES[1], &self.experiment, &level.runs) {
             Ok(edited) => edited,
             Err(error) => return Ok(ValidatedLevel::refused(level, error.to_string())),
         };
-        let study = match self.known(&edited, folder).await? {
+        let study = match self.earlier(&edited, folder).await? {
             Some(row) => {
                 folder.go_on(row.study).await?;
                 row.study
@@ -111,8 +110,8 @@ impl Rest {
         let row = rows.first().context("a study has a calibration")?;
         match row.state {
             CalibrationState::Finished => {
-                let others = finished_calibration(&reader, row).await?;
-                Ok(ValidatedLevel::predicted(level, &self.calibration, &others))
+                let predicting = folder.service.finished_calibration(row.id).await?;
+                Ok(ValidatedLevel::predicted(level, &self.calibration, &predicting))
             }
             _ => {
                 let message = row.message.clone().unwrap_or_default();
@@ -125,16 +124,14 @@ impl Rest {
     }
 
     /// The calibration of an earlier call on these runs by the same equations.
-    async fn known(&self, edited: &FileSet, folder: &Folder) -> anyhow::Result<Option<CalibrationRow>> {
-        let reader = folder.service.store().reader();
+    async fn earlier(&self, edited: &FileSet, folder: &Folder) -> anyhow::Result<Option<CalibrationRow>> {
+        let service = &folder.service;
         let equations = folder.equations_of(&self.calibration.spec).await?;
-        for (_, row) in reader.calibrations().await? {
+        for (_, row) in service.store().reader().calibrations().await? {
             let row = row?;
             let pinned = row.model_version.as_deref().map(equations_of);
             let is_same_version = pinned.is_none() || pinned == equations.as_deref();
-            if is_same_version
-                && row.job == self.job
-                && experiment_files(&reader, row.experiment).await? == *edited
+            if is_same_version && row.job == self.job && service.experiment(row.experiment).await? == *edited
             {
                 return Ok(Some(row));
             }
@@ -143,7 +140,7 @@ impl Rest {
     }
 
     async fn add(&self, level: &LeftOutLevel, edited: FileSet, folder: &Folder) -> Result<i64, ServiceError> {
-        // Refused before anything is stored.
+        // A mistake is refused before anything is stored.
         Spec::new(FILES[0], &self.job, FILES[1], &edited)?;
         let experiment = NewExperiment {
             toml: edited.toml,

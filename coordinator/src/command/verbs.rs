@@ -7,30 +7,31 @@ use anyhow::{Context, bail};
 use serde::Deserialize;
 use serde_json::json;
 use shared::api::{
-    CalibrationCreated, ExperimentCreated, NewCalibration, NewExperiment, StudyArchived, StudyDeleted,
+    CalibrationCreated, CalibrationStatus, ExperimentCreated, NewCalibration, NewExperiment, StudyArchived,
+    StudyDeleted,
 };
 use shared::text_file::read_text;
 
 use super::job_on_disk;
 use super::output::say;
-use super::source::{CalibrationSource, ServiceClient};
+use super::place::Place;
 use crate::config::{
     ListArguments, ReportArguments, ResumeArguments, StudyArguments, SubmitArguments, TargetArguments,
 };
 use crate::effect::EffectCard;
 use job::{ServiceEffect, foreign_effects};
-use page::report::showing;
-use report::terminal;
+use report::{StudyOverview, terminal};
+use result::{Comparison, Diagnostics};
 
 pub(super) async fn submit(config: &SubmitArguments) -> anyhow::Result<()> {
-    let client = ServiceClient::new(&config.url, &config.client)?;
-    let own = own_effects(config, &client).await?;
-    let job = job_on_disk::read(&config.file, &own)?;
+    let service = Place::at(&config.url, &config.client)?;
+    let added = added_effects(config, &service).await?;
+    let job = job_on_disk::read(&config.file, &added)?;
     let experiment = NewExperiment {
         toml: job.experiment.toml,
         files: job.experiment.files,
     };
-    let experiment: ExperimentCreated = client.post("/v1/experiments", &experiment).await?;
+    let experiment: ExperimentCreated = service.post("/v1/experiments", &experiment).await?;
     let new = NewCalibration {
         experiment: experiment.id,
         toml: job.job.toml,
@@ -38,7 +39,7 @@ pub(super) async fn submit(config: &SubmitArguments) -> anyhow::Result<()> {
         name: Some(job.name),
         webhook: config.webhook.clone(),
     };
-    let created: CalibrationCreated = client.post("/v1/calibrations", &new).await?;
+    let created: CalibrationCreated = service.post("/v1/calibrations", &new).await?;
     let mut text = format!("calibration {} of study {}\n", created.id, created.study);
     for id in created.point_estimates {
         text += &format!("calibration {id} beside it\n");
@@ -46,57 +47,58 @@ pub(super) async fn submit(config: &SubmitArguments) -> anyhow::Result<()> {
     Ok(say(&text)?)
 }
 
-/// The effects that a job lists and that the service has in its catalogue, where the library lacks them.
-async fn own_effects(config: &SubmitArguments, client: &ServiceClient) -> anyhow::Result<Vec<ServiceEffect>> {
-    /// What is needed of `GET /v1/effects/NAME`.
+/// The effects of a job that the library lacks and the catalogue of the service has.
+async fn added_effects(config: &SubmitArguments, service: &Place) -> anyhow::Result<Vec<ServiceEffect>> {
+    /// The part of `GET /v1/effects/NAME` that is needed here.
     #[derive(Deserialize)]
     struct Page {
         effect: EffectCard,
         text: String,
     }
     let toml = read_text(&config.file.job)?;
-    let mut own = Vec::new();
+    let mut added = Vec::new();
     for named in foreign_effects(&toml) {
         let is_name = |c: char| c.is_ascii_alphanumeric() || "_@".contains(c);
         if !named.chars().all(is_name) {
-            // Refused where the job is read.
+            // The reader of the job refuses the name.
             continue;
         }
-        let page: Page = client
+        let page: Page = service
             .get(&format!("/v1/effects/{named}"))
             .await
             .with_context(|| format!("{}: [model] effects", config.file.job.display()))?;
-        own.push(ServiceEffect::new(
-            named,
-            &page.effect.name,
-            page.effect.version.unwrap_or_default(),
-            page.text,
-        ));
+        let version = page.effect.version.unwrap_or_default();
+        added.push(ServiceEffect::new(named, &page.effect.name, version, page.text));
     }
-    Ok(own)
+    Ok(added)
 }
 
 pub(super) async fn list(config: &ListArguments) -> anyhow::Result<()> {
-    let place = CalibrationSource::open(&config.source).await?;
-    let statuses = place.list(config.archived).await?;
+    let place = Place::open(&config.source).await?;
+    let path = match config.archived {
+        true => "/v1/calibrations?archived=true",
+        false => "/v1/calibrations",
+    };
+    let statuses: Vec<CalibrationStatus> = place.get(path).await?;
     Ok(say(&terminal::status_table(&statuses))?)
 }
 
 pub(super) async fn status(target: &TargetArguments) -> anyhow::Result<()> {
-    let place = CalibrationSource::open(&target.source).await?;
-    let status = place.status(place.id(target).await?).await?;
+    let place = Place::open(&target.source).await?;
+    let id = place.id(target).await?;
+    let status: CalibrationStatus = place.get(&format!("/v1/calibrations/{id}")).await?;
     Ok(say(&terminal::status_table(&[status]))?)
 }
 
 pub(super) async fn control(target: &TargetArguments, verb: &str) -> anyhow::Result<()> {
-    let place = CalibrationSource::open(&target.source).await?;
-    let CalibrationSource::Service(client) = &place else {
+    let place = Place::open(&target.source).await?;
+    if let Place::Folder { .. } = place {
         bail!(
             "{verb} needs a service (--url): a run in a folder is stopped by ^C and resumed by running it again"
         );
-    };
+    }
     let id = place.id(target).await?;
-    let answer: serde_json::Value = client
+    let answer: serde_json::Value = place
         .post(&format!("/v1/calibrations/{id}/{verb}"), &json!({}))
         .await?;
     let state = answer["state"].as_str().unwrap_or("in an unknown state");
@@ -114,9 +116,9 @@ pub(super) async fn resume(config: &ResumeArguments) -> anyhow::Result<()> {
 
 /// Archives or restores a study.
 pub(super) async fn archive(config: &StudyArguments, verb: &str) -> anyhow::Result<()> {
-    let client = ServiceClient::new(&config.url, &config.client)?;
+    let service = Place::at(&config.url, &config.client)?;
     let path = format!("/v1/studies/{}/{verb}", config.study);
-    let study: StudyArchived = client.post(&path, &json!({})).await?;
+    let study: StudyArchived = service.post(&path, &json!({})).await?;
     let now = if study.archived {
         "archived"
     } else {
@@ -126,8 +128,8 @@ pub(super) async fn archive(config: &StudyArguments, verb: &str) -> anyhow::Resu
 }
 
 pub(super) async fn delete(config: &StudyArguments) -> anyhow::Result<()> {
-    let client = ServiceClient::new(&config.url, &config.client)?;
-    let study: StudyDeleted = client.delete(&format!("/v1/studies/{}", config.study)).await?;
+    let service = Place::at(&config.url, &config.client)?;
+    let study: StudyDeleted = service.delete(&format!("/v1/studies/{}", config.study)).await?;
     let calibrations: Vec<String> = study.calibrations.iter().map(i64::to_string).collect();
     let text = format!(
         "study {} is deleted, with its calibrations: {}\n",
@@ -138,34 +140,40 @@ pub(super) async fn delete(config: &StudyArguments) -> anyhow::Result<()> {
 }
 
 pub(super) async fn compare(target: &TargetArguments) -> anyhow::Result<()> {
-    let place = CalibrationSource::open(&target.source).await?;
-    let comparison = place.comparison(place.id(target).await?).await?;
+    let place = Place::open(&target.source).await?;
+    let comparison: Comparison = place.part(target, "comparison").await?;
     Ok(say(
         &(terminal::comparison(&comparison) + &terminal::groups(&comparison))
     )?)
 }
 
 pub(super) async fn diagnose(target: &TargetArguments) -> anyhow::Result<()> {
-    let place = CalibrationSource::open(&target.source).await?;
-    let diagnostics = place.diagnostics(place.id(target).await?).await?;
+    let place = Place::open(&target.source).await?;
+    let diagnostics: Diagnostics = place.part(target, "diagnostics").await?;
     Ok(say(&terminal::diagnostics(&diagnostics))?)
 }
 
 pub(super) async fn report(config: &ReportArguments) -> anyhow::Result<()> {
-    let place = CalibrationSource::open(&config.target.source).await?;
-    let report = place.report(place.id(&config.target).await?).await?;
-    // Of a study without an id the current model is shown first.
-    let report = match config.target.id {
-        Some(id) => showing(&report, id),
-        None => report,
+    let place = Place::open(&config.target.source).await?;
+    let id = match config.target.id {
+        Some(id) => id,
+        None => current(&place, place.id(&config.target).await?).await?,
     };
+    let report = place.text(&format!("/v1/calibrations/{id}/report")).await?;
     write(config.output.as_deref(), &report, "report.html")
 }
 
-/// Writes a text to a file, or to whatever reads this program. A terminal, where nobody could read it, gets its size and what to give.
+/// The calibration of the current model of a study, or the given calibration where the study has no current model.
+async fn current(place: &Place, calibration: i64) -> anyhow::Result<i64> {
+    let status: CalibrationStatus = place.get(&format!("/v1/calibrations/{calibration}")).await?;
+    let study: StudyOverview = place.get(&format!("/v1/studies/{}", status.study)).await?;
+    Ok(study.current.unwrap_or(calibration))
+}
+
+/// Writes a text to a file, or to standard output. Where that is a terminal, it gets the size of the text and how to write it.
 ///
 /// # Arguments
-/// - `name`: of the file that is proposed.
+/// - `name`: name of the file that is proposed.
 pub(super) fn write(path: Option<&Path>, text: &str, name: &str) -> anyhow::Result<()> {
     match path {
         Some(path) => std::fs::write(path, text).with_context(|| path.display().to_string()),
@@ -174,15 +182,16 @@ pub(super) fn write(path: Option<&Path>, text: &str, name: &str) -> anyhow::Resu
     }
 }
 
-/// What a terminal is told in place of a long text.
+/// The message that a terminal gets in place of a long text.
 fn in_place_of(text: &str, name: &str) -> String {
-    let mut said = format!("{} lines, {} kB", text.lines().count(), text.len().div_ceil(1000));
+    let mut message = format!("{} lines, {} kB", text.lines().count(), text.len().div_ceil(1000));
     if name.ends_with(".csv")
         && let Some(head) = text.lines().next()
     {
-        said += &format!("; columns {}", head.replace(',', ", "));
+        message += &format!("; columns {}", head.replace(',', ", "));
     }
-    said + &format!("\nwrite them to a file with --output {name}, or hand them to another program with |\n")
+    message
+        + &format!("\nwrite them to a file with --output {name}, or hand them to another program with |\n")
 }
 
 #[cfg(test)]

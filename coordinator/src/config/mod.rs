@@ -193,10 +193,8 @@ pub enum ModelChoice {
 /// Validate a job and estimate its cost.
 #[derive(Debug, Args)]
 pub struct CheckArguments {
-    /// The job.
     #[command(flatten)]
     pub file: JobArguments,
-    /// The models that are not ours that its pilot runs.
     #[command(flatten)]
     pub models: ModelArguments,
 }
@@ -204,7 +202,6 @@ pub struct CheckArguments {
 /// Calibrate in one process.
 #[derive(Debug, Args)]
 pub struct RunArguments {
-    /// The job.
     #[command(flatten)]
     pub file: JobArguments,
     /// Folder of the results and the store; by default out/NAME, named after the job file or its folder.
@@ -213,7 +210,6 @@ pub struct RunArguments {
     /// Number of simulation threads in this process; by default, one per core.
     #[arg(long, env = "GROUSER_LOCAL_WORKERS")]
     pub local_workers: Option<usize>,
-    /// The models that are not ours that they run.
     #[command(flatten)]
     pub models: ModelArguments,
     /// Prints tables, flags and explanations too.
@@ -222,7 +218,6 @@ pub struct RunArguments {
     /// Address at which remote workers may join.
     #[arg(long, value_name = "ADDR")]
     pub listen: Option<std::net::SocketAddr>,
-    /// Who may use that address.
     #[command(flatten)]
     pub exposure: ExposureArguments,
 }
@@ -260,13 +255,11 @@ pub struct ServeArguments {
     /// Address to listen on.
     #[arg(long, env = "GROUSER_LISTEN", default_value = "127.0.0.1:7070")]
     pub listen: std::net::SocketAddr,
-    /// Where everything is kept.
     #[command(flatten)]
     pub store: StoreArguments,
     /// Number of simulation threads in this process.
     #[arg(long, env = "GROUSER_LOCAL_WORKERS", default_value_t = 0)]
     pub local_workers: usize,
-    /// The models that are not ours that they run.
     #[command(flatten)]
     pub models: ModelArguments,
     /// Duration of a lease without renewal `[ms]`.
@@ -295,7 +288,6 @@ pub struct ServeArguments {
     /// Deletes studies so many days after they were archived; by default, archived studies are kept.
     #[arg(long, env = "GROUSER_KEEP_DAYS", value_name = "DAYS", value_parser = clap::value_parser!(u32).range(1..=36_500))]
     pub keep_days: Option<u32>,
-    /// Who may use the address.
     #[command(flatten)]
     pub exposure: ExposureArguments,
 }
@@ -303,7 +295,6 @@ pub struct ServeArguments {
 /// What is checked.
 #[derive(Debug, Args)]
 pub struct DoctorArguments {
-    /// The store that `serve` would use.
     #[command(flatten)]
     pub store: StoreArguments,
     /// The address that `serve` would listen on.
@@ -312,7 +303,6 @@ pub struct DoctorArguments {
     /// A service whose answers, token and workers are checked too; by default none.
     #[arg(long, env = "GROUSER_URL")]
     pub url: Option<String>,
-    /// What it asks for.
     #[command(flatten)]
     pub client: ClientArguments,
 }
@@ -320,7 +310,6 @@ pub struct DoctorArguments {
 /// Submit a job to a service.
 #[derive(Debug, Args)]
 pub struct SubmitArguments {
-    /// The job.
     #[command(flatten)]
     pub file: JobArguments,
     /// The service posts every pause and end of the study's calibrations to this URL; its host must be one of the service's
@@ -330,7 +319,6 @@ pub struct SubmitArguments {
     /// URL of the service.
     #[arg(long, env = "GROUSER_URL", default_value = "http://127.0.0.1:7070")]
     pub url: String,
-    /// What it asks for.
     #[command(flatten)]
     pub client: ClientArguments,
 }
@@ -341,7 +329,6 @@ pub struct ListArguments {
     /// Lists those of archived studies too.
     #[arg(long)]
     pub archived: bool,
-    /// Where they are stored.
     #[command(flatten)]
     pub source: SourceArguments,
 }
@@ -354,7 +341,6 @@ pub struct StudyArguments {
     /// URL of the service.
     #[arg(long, env = "GROUSER_URL", default_value = "http://127.0.0.1:7070")]
     pub url: String,
-    /// What it asks for.
     #[command(flatten)]
     pub client: ClientArguments,
 }
@@ -362,7 +348,6 @@ pub struct StudyArguments {
 /// Resume a paused calibration.
 #[derive(Debug, Args)]
 pub struct ResumeArguments {
-    /// The calibration.
     #[command(flatten)]
     pub target: TargetArguments,
     /// Count evaluations that used up their attempts as rejected; else they are tried again.
@@ -373,7 +358,6 @@ pub struct ResumeArguments {
 /// Write the report of a calibration.
 #[derive(Debug, Args)]
 pub struct ReportArguments {
-    /// The calibration.
     #[command(flatten)]
     pub target: TargetArguments,
     /// Output file; by default, standard output.
@@ -384,7 +368,6 @@ pub struct ReportArguments {
 /// Write a calibration for other programs.
 #[derive(Debug, Args)]
 pub struct ExportArguments {
-    /// The calibration.
     #[command(flatten)]
     pub target: TargetArguments,
     /// What is written.
@@ -415,13 +398,18 @@ pub enum ExportFormat {
 /// Search for an effect that the model of a calibration is missing.
 #[derive(Debug, Args)]
 pub struct DiscoverArguments {
-    /// The calibration.
     #[command(flatten)]
     pub target: TargetArguments,
+    #[command(flatten)]
+    pub growth: GrowthArguments,
+}
+
+/// How a folder computes an addition to its study.
+#[derive(Debug, Args)]
+pub struct GrowthArguments {
     /// Number of simulation threads in this process, with --out; by default, one per core.
     #[arg(long, env = "GROUSER_LOCAL_WORKERS")]
     pub local_workers: Option<usize>,
-    /// The models that are not ours that they run.
     #[command(flatten)]
     pub models: ModelArguments,
     /// Prints tables, flags and explanations too.
@@ -432,7 +420,6 @@ pub struct DiscoverArguments {
 /// Extend a study by a calibration with one additional effect.
 #[derive(Debug, Args)]
 pub struct ExtendArguments {
-    /// The calibration to extend.
     #[command(flatten)]
     pub target: TargetArguments,
     /// An effect of the catalogue.
@@ -449,15 +436,8 @@ pub struct ExtendArguments {
     /// Apply the effect to this wheel only, of several.
     #[arg(long, value_name = "NAME", requires = "effect")]
     pub wheel: Option<String>,
-    /// Number of simulation threads in this process, with --out; by default, one per core.
-    #[arg(long, env = "GROUSER_LOCAL_WORKERS")]
-    pub local_workers: Option<usize>,
-    /// The models that are not ours that they run.
     #[command(flatten)]
-    pub models: ModelArguments,
-    /// Prints tables, flags and explanations too.
-    #[arg(long)]
-    pub verbose: bool,
+    pub growth: GrowthArguments,
 }
 
 /// Add measurements to a study.
@@ -467,23 +447,16 @@ pub struct AddRunsArguments {
     pub id: i64,
     /// CSV file with the columns of runs.csv.
     pub runs: PathBuf,
-    /// Where it is stored.
     #[command(flatten)]
     pub source: SourceArguments,
-    /// Number of simulation threads in this process, with --out; by default, one per core.
-    #[arg(long, env = "GROUSER_LOCAL_WORKERS")]
-    pub local_workers: Option<usize>,
-    /// The models that are not ours that they run.
     #[command(flatten)]
-    pub models: ModelArguments,
-    /// Prints tables, flags and explanations too.
-    #[arg(long)]
-    pub verbose: bool,
+    pub growth: GrowthArguments,
 }
 
 impl CoordinatorCommand {
-    /// What is logged: `RUST_LOG`, as a level or as `target=level` between commas, else `info,sqlx::query=error`: slow statements of a busy disk are no news to a user. The journal, a
-    /// line for each start, pause and end of a calibration, is a service's: a run in a folder shows these itself.
+    /// The filter of the log: `RUST_LOG` as a level or as `target=level` between commas, else `info` with these exceptions. Warnings
+    /// of slow statements are hidden, because a busy disk causes them. Only a service logs the starts, pauses and ends of calibrations, and
+    /// additions to studies: the other verbs print these themselves.
     pub fn log_filter(&self) -> Targets {
         let stated = std::env::var("RUST_LOG").ok().and_then(|text| text.parse().ok());
         let (journal, of_workers) = match self {
@@ -492,12 +465,17 @@ impl CoordinatorCommand {
             }
             _ => (LevelFilter::OFF, LevelFilter::WARN),
         };
+        let additions = match self {
+            CoordinatorCommand::Serve(_) | CoordinatorCommand::Run(_) => LevelFilter::INFO,
+            _ => LevelFilter::WARN,
+        };
         stated.unwrap_or_else(|| {
             Targets::new()
                 .with_default(LevelFilter::INFO)
                 .with_target("sqlx::query", LevelFilter::ERROR)
                 .with_target("journal", journal)
                 .with_target("worker", of_workers)
+                .with_target("coordinator::http", additions)
         })
     }
 }

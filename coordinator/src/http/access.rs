@@ -1,4 +1,4 @@
-//! Who may do what: the bearer token of a request, and the role that its route needs.
+//! Checks the bearer token of a request against the role that its route needs.
 
 use std::fmt;
 use std::time::Duration;
@@ -14,7 +14,7 @@ use super::page;
 use record::{Token, TokenHash, TokenRole};
 use store::Reader;
 
-/// A change of the tokens takes effect after this time at most.
+/// Interval between two reads of the tokens: a change takes effect after this time.
 const LOOK: Duration = Duration::from_secs(1);
 /// Answer where a token is needed and none is sent.
 const NEEDED: &str =
@@ -27,7 +27,7 @@ const UNKNOWN: &str = "the token is unknown or revoked";
 pub enum TokenRule {
     /// Always.
     Always,
-    /// As soon as the store has had one: for a service that this machine alone reaches.
+    /// Once the store has had a token; for a service that only this machine reaches.
     OnceThereIsOne,
     /// Never.
     Never,
@@ -50,7 +50,7 @@ fn valid<'a>(tokens: &'a [Token], hash: &TokenHash) -> Option<&'a Token> {
     found.filter(|token| !token.is_revoked)
 }
 
-/// Who sends a request, for log and store.
+/// The sender of a request, for log and store.
 #[derive(Debug, Clone, FromRequestParts)]
 #[from_request(via(axum::Extension))]
 pub(super) struct Caller {
@@ -61,6 +61,19 @@ pub(super) struct Caller {
 }
 
 impl Caller {
+    /// This program itself, which is asked for no token.
+    pub(super) fn this_program() -> Caller {
+        let access = Access {
+            rule: TokenRule::Never,
+            tokens: watch::channel(Vec::new()).1,
+        };
+        Caller {
+            name: None,
+            hash: None,
+            access,
+        }
+    }
+
     /// The name of the token, where one is asked for.
     pub(super) fn into_name(self) -> Option<String> {
         self.name

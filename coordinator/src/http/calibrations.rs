@@ -12,16 +12,15 @@ use utoipa_axum::routes;
 use super::access::Caller;
 use super::error::{Body, HttpError, Id, Query};
 use super::studies::WithArchived;
-use crate::service::{Service, finished_calibration};
+use crate::service::Service;
 use export::InferenceData;
 use farm::Control;
 use inference::Particle;
 use page::report::showing;
 use record::StageRow;
-use report::{Provenance, StudyFile, StudySummary};
+use report::{CalibrationFile, Provenance, StudyFile, StudySummary};
 use result::{
-    CalibrationFigures, ChannelHistory, Comparison, Diagnostics, FinishedCalibration, Flag, PosteriorTable,
-    PredictionRow,
+    CalibrationFigures, ChannelHistory, Comparison, Diagnostics, Flag, PosteriorTable, PredictionRow,
 };
 
 pub(super) fn routes() -> OpenApiRouter<Service> {
@@ -182,8 +181,9 @@ async fn stages(State(service): State<Service>, Id(id): Id) -> Result<Json<Vec<S
 struct WhichSamples {
     /// Stage, counted from 0; the last one where nothing is said.
     stage: Option<u32>,
-    /// Most draws: of a larger population, as many equally spaced ones.
-    most: Option<u32>,
+    /// Largest number of draws: of a larger population, as many equally spaced ones.
+    #[serde(rename = "most")]
+    max_draws: Option<u32>,
 }
 
 /// A draw of a population.
@@ -216,7 +216,8 @@ struct Population {
     /// Their units, in the same order; `1` of a number without one.
     units: Vec<String>,
     /// Size of the population.
-    of: u64,
+    #[serde(rename = "of")]
+    size: u64,
     /// Its draws in their order, or equally spaced ones of them.
     samples: Vec<Sample>,
 }
@@ -238,25 +239,20 @@ async fn samples(
     let parameters = spec.parameters.into_iter().map(|p| (p.name, p.unit));
     let (parameters, units) = parameters.unzip();
     let reader = service.store().reader();
-    let (samples, of) = match which.most {
+    let (samples, size) = match which.max_draws {
         None => {
             let samples = reader.samples(id, which.stage).await?;
-            let of = samples.len() as u64;
-            (samples, of)
+            let size = samples.len() as u64;
+            (samples, size)
         }
-        Some(most) => reader.thinned_samples(id, which.stage, most).await?,
+        Some(count) => reader.thinned_samples(id, which.stage, count).await?,
     };
     Ok(Json(Population {
         parameters,
         units,
-        of,
+        size,
         samples: samples.into_iter().map(Sample::from).collect(),
     }))
-}
-
-async fn outcome(service: &Service, id: i64) -> Result<FinishedCalibration, HttpError> {
-    let row = service.calibration_row(id).await?;
-    Ok(finished_calibration(&service.store().reader(), &row).await?)
 }
 
 /// The draws of the posterior.
@@ -269,7 +265,7 @@ async fn outcome(service: &Service, id: i64) -> Result<FinishedCalibration, Http
     (status = 404, body = ErrorBody),
     (status = 409, body = ErrorBody)))]
 async fn posterior(State(service): State<Service>, Id(id): Id) -> Result<Json<PosteriorTable>, HttpError> {
-    Ok(Json(outcome(&service, id).await?.posterior_table()))
+    Ok(Json(service.finished_calibration(id).await?.posterior_table()))
 }
 
 /// The calibration as inference data.
@@ -286,7 +282,8 @@ async fn inference_data(
     State(service): State<Service>,
     Id(id): Id,
 ) -> Result<Json<InferenceData>, HttpError> {
-    Ok(Json(export::inference_data(&outcome(&service, id).await?)?))
+    let calibration = service.finished_calibration(id).await?;
+    Ok(Json(export::inference_data(&calibration)?))
 }
 
 /// Model against measurement.
@@ -298,7 +295,9 @@ async fn inference_data(
     (status = 404, body = ErrorBody),
     (status = 409, body = ErrorBody)))]
 async fn comparison(State(service): State<Service>, Id(id): Id) -> Result<impl IntoResponse, HttpError> {
-    Ok(json(service.calibration_file(id, StudyFile::Comparison).await?))
+    Ok(json(
+        service.calibration_file(id, CalibrationFile::Comparison).await?,
+    ))
 }
 
 /// Every run as the models of the study predict it.
@@ -329,7 +328,9 @@ fn json(text: String) -> impl IntoResponse {
     (status = 404, body = ErrorBody),
     (status = 409, body = ErrorBody)))]
 async fn diagnostics(State(service): State<Service>, Id(id): Id) -> Result<impl IntoResponse, HttpError> {
-    Ok(json(service.diagnostics(id).await?))
+    Ok(json(
+        service.calibration_file(id, CalibrationFile::Diagnostics).await?,
+    ))
 }
 
 /// Time histories of the fitted runs.
@@ -341,7 +342,9 @@ async fn diagnostics(State(service): State<Service>, Id(id): Id) -> Result<impl 
     (status = 404, body = ErrorBody),
     (status = 409, body = ErrorBody)))]
 async fn histories(State(service): State<Service>, Id(id): Id) -> Result<impl IntoResponse, HttpError> {
-    Ok(json(service.calibration_file(id, StudyFile::Histories).await?))
+    Ok(json(
+        service.calibration_file(id, CalibrationFile::Histories).await?,
+    ))
 }
 
 /// How the result came about.
@@ -353,9 +356,8 @@ async fn histories(State(service): State<Service>, Id(id): Id) -> Result<impl In
     (status = 404, body = ErrorBody),
     (status = 409, body = ErrorBody)))]
 async fn provenance(State(service): State<Service>, Id(id): Id) -> Result<Json<Provenance>, HttpError> {
-    Ok(Json(report::provenance::provenance(
-        &outcome(&service, id).await?,
-    )))
+    let calibration = service.finished_calibration(id).await?;
+    Ok(Json(report::provenance::provenance(&calibration)))
 }
 
 /// What deserves attention.
@@ -391,7 +393,7 @@ async fn summary(State(service): State<Service>, Id(id): Id) -> Result<impl Into
     (status = 404, body = ErrorBody),
     (status = 409, body = ErrorBody)))]
 async fn figures(State(service): State<Service>, Id(id): Id) -> Result<impl IntoResponse, HttpError> {
-    Ok(json(service.calibration_file(id, StudyFile::Figures).await?))
+    Ok(json(service.study_file(id, StudyFile::Figures(id)).await?))
 }
 
 /// The report of the study.

@@ -12,11 +12,14 @@ use shared::sentence::one_line;
 use crate::service::ServiceError;
 use store::StoreError;
 
-/// An error that goes to a client.
-#[derive(Debug)]
+/// An error that goes to a client. It stays with its response, so that the log, and a caller in this process, read its cause.
+#[derive(Debug, Clone, thiserror::Error)]
+#[error("{}", .cause.as_ref().unwrap_or(.message))]
 pub struct HttpError {
     kind: ErrorKind,
     message: String,
+    /// The cause of an internal error; a client over a network cannot mend it, and is not told.
+    cause: Option<String>,
 }
 
 impl HttpError {
@@ -26,6 +29,16 @@ impl HttpError {
             kind,
             // It may repeat what a client has sent.
             message: one_line(&message.into()).into_owned(),
+            cause: None,
+        }
+    }
+
+    /// An error whose cause only the log states.
+    fn internal(cause: &dyn std::error::Error) -> Self {
+        HttpError {
+            kind: ErrorKind::Internal,
+            message: "internal error of the coordinator; see its log".into(),
+            cause: Some(cause.to_string()),
         }
     }
 
@@ -58,14 +71,25 @@ impl IntoResponse for HttpError {
         let body = ErrorBody {
             error: ErrorDetail {
                 kind: self.kind,
-                message: self.message,
+                message: self.message.clone(),
             },
         };
-        match demand {
+        let mut response = match demand {
             Some(demand) => (status, [demand], Json(body)).into_response(),
             None => (status, Json(body)).into_response(),
-        }
+        };
+        response.extensions_mut().insert(self);
+        response
     }
+}
+
+/// Logs an internal error on its way to a client.
+pub(super) async fn logged(response: Response) -> Response {
+    let error = response.extensions().get::<HttpError>();
+    if let Some(error) = error.filter(|error| error.kind == ErrorKind::Internal) {
+        tracing::error!(%error, "internal error");
+    }
+    response
 }
 
 impl From<ServiceError> for HttpError {
@@ -88,17 +112,12 @@ impl From<ServiceError> for HttpError {
             | ServiceError::Thread(_)
             | ServiceError::Stopped(_) => ErrorKind::Internal,
         };
-        if let ServiceError::Store(StoreError::Corrupt(_)) = &error {
-            // Which row is bad is what its owner needs to know.
-            tracing::error!(%error, "a row cannot be read");
-            return HttpError::new(kind, error.to_string());
+        match &error {
+            // The owner of the store needs to know which row is bad.
+            ServiceError::Store(StoreError::Corrupt(_)) => HttpError::new(kind, error.to_string()),
+            _ if kind == ErrorKind::Internal => HttpError::internal(&error),
+            _ => HttpError::new(kind, error.to_string()),
         }
-        if kind == ErrorKind::Internal {
-            // The cause stays in the log; a client cannot mend it.
-            tracing::error!(%error, "internal error");
-            return HttpError::new(kind, "internal error of the coordinator; see its log");
-        }
-        HttpError::new(kind, error.to_string())
     }
 }
 
@@ -112,13 +131,7 @@ impl From<ExportError> for HttpError {
     fn from(error: ExportError) -> Self {
         match error {
             ExportError::NoDraws(_) => HttpError::new(ErrorKind::Conflict, error.to_string()),
-            other => {
-                tracing::error!(error = %other, "internal error");
-                HttpError::new(
-                    ErrorKind::Internal,
-                    "internal error of the coordinator; see its log",
-                )
-            }
+            error => HttpError::internal(&error),
         }
     }
 }

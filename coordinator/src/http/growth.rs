@@ -9,7 +9,7 @@ use utoipa_axum::routes;
 
 use super::access::Caller;
 use super::error::{Body, HttpError, Id};
-use crate::service::{Service, finished_search};
+use crate::service::Service;
 use record::{Discovery, Extension};
 
 pub(super) fn routes() -> OpenApiRouter<Service> {
@@ -84,8 +84,7 @@ async fn discover(
     (status = 409, body = ErrorBody, description = "the search is not finished"),
 ))]
 async fn discovery(State(service): State<Service>, Id(id): Id) -> Result<Json<Discovery>, HttpError> {
-    let row = service.calibration_row(id).await?;
-    Ok(Json(finished_search(&service.store().reader(), &row).await?))
+    Ok(Json(service.finished_search(id).await?))
 }
 
 /// Adds measurements to a study.

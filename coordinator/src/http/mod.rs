@@ -1,11 +1,12 @@
 //! The REST interface under `/v1`; the only place that knows axum.
 //!
-//! One file per resource; each exports `routes()`. The OpenAPI `document` is made from the handlers, with `request_example`s. Before these stand
+//! One file per resource; each exports `routes()`, which `api` gathers. The OpenAPI `document` is made from the handlers, with `request_example`s. Before these stand
 //! `connections` (how many, how long; `client_stream` and `activity` tell which ones wait for their clients) and `gate` (`host`, `body` with
-//! `body_memory`, `access`: what is let through); `request_metrics` counts around them.
+//! `body_memory`, `access`: what is let through); `request_metrics` counts around them. `in_process` asks the routes without all of these.
 
 mod access;
 mod activity;
+mod api;
 mod body;
 mod body_memory;
 mod calibrations;
@@ -21,6 +22,7 @@ mod gate;
 mod growth;
 mod host;
 mod import;
+mod in_process;
 mod metrics;
 mod page;
 mod request_example;
@@ -39,24 +41,24 @@ use axum::routing::get;
 use tokio::net::TcpListener;
 use tokio_rustls::TlsAcceptor;
 use tower_http::compression::CompressionLayer;
-use utoipa_axum::router::OpenApiRouter;
 
 use crate::service::Service;
 use record::Token;
 
 use access::Access;
 pub use access::TokenRule;
+use api::api;
 use body_memory::BodyMemory;
 pub use error::HttpError;
 use gate::Gate;
 use host::Hosts;
+pub use in_process::InProcess;
 use request_metrics::RequestMetrics;
 pub use tls::{TlsError, tls_acceptor};
 
 /// How a service shows itself: by which names it is reached, and when it asks for tokens.
 #[derive(Clone)]
 pub struct Exposure {
-    /// The listening address.
     pub listening: std::net::SocketAddr,
     /// Names besides the listening address.
     pub names: Vec<String>,
@@ -70,23 +72,8 @@ pub struct Exposure {
 
 /// Every route, behind the gate.
 fn router(service: Service, gate: Gate) -> Router {
-    let (router, document) = OpenApiRouter::with_openapi(document::base())
-        .nest(
-            "/v1",
-            OpenApiRouter::new()
-                .merge(experiments::routes())
-                .merge(examples::routes())
-                .merge(effects::routes())
-                .merge(import::routes())
-                .merge(calibrations::routes())
-                .merge(events::routes())
-                .merge(studies::routes())
-                .merge(work::routes())
-                .merge(growth::routes()),
-        )
-        .merge(metrics::routes())
-        .split_for_parts();
-    // As bytes, which connections share: as a value it is 1.7 MB for each clone of its route.
+    let (router, document) = api().merge(metrics::routes()).split_for_parts();
+    // Connections share the bytes; the document as a value would take 1.7 MB for each clone of its route.
     let document = Bytes::from(
         document::complete(document)
             .to_json()
@@ -98,7 +85,8 @@ fn router(service: Service, gate: Gate) -> Router {
         .route("/openapi.json", document)
         .fallback(error::no_route)
         .method_not_allowed_fallback(error::no_method)
-        // Whoever asks for it is answered compressed: browsers do, workers do not.
+        .layer(axum::middleware::map_response(error::logged))
+        // Answers are compressed for clients that accept it: browsers do, workers do not.
         .layer(CompressionLayer::new())
         // The gate bounds bodies, by route.
         .layer(DefaultBodyLimit::disable())

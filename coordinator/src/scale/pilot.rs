@@ -10,7 +10,6 @@ pub struct PilotSettings {
     pub name: String,
     /// URL of the service as workers reach it.
     pub coordinator: String,
-    /// The program.
     pub worker: String,
     /// Threads that simulate.
     pub threads: u32,

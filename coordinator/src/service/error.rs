@@ -11,13 +11,10 @@ use job::EffectsChanged;
 use record::CalibrationRow;
 use store::StoreError;
 
-/// An error of the service.
 #[derive(Debug, thiserror::Error)]
 pub enum ServiceError {
-    /// A file is malformed.
     #[error(transparent)]
     File(#[from] FileError),
-    /// A calibration cannot begin.
     #[error(transparent)]
     Begin(#[from] BeginError),
     /// This version computes other facts of a calibration than the stored ones.
@@ -29,7 +26,6 @@ pub enum ServiceError {
     /// The library has the name of an effect to add.
     #[error("the effect {0} belongs to the library: give yours another name")]
     OfLibrary(String),
-    /// An effect has fewer versions.
     #[error("effect {name} has no version {version:?}; the last one is {last}")]
     NoVersion {
         name: String,
@@ -48,7 +44,6 @@ pub enum ServiceError {
         state: CalibrationState,
         verb: &'static str,
     },
-    /// An archived study does not grow.
     #[error("study {0} is archived: restore it first")]
     Archived(i64),
     /// The effects are not those that the calibration was computed with.
@@ -57,19 +52,16 @@ pub enum ServiceError {
     /// A search has nothing to extend, and no search of its own.
     #[error("calibration {0} is a search for a missing effect: name the calibration whose model it searches")]
     Search(i64),
-    /// The store has no such item.
     #[error("there is no {what} {id}")]
     NotFound { what: &'static str, id: String },
     /// The state of the calibration does not allow the command.
     #[error(transparent)]
     Control(#[from] ControlError),
-    /// The store fails.
     #[error(transparent)]
     Store(#[from] StoreError),
     /// The operating system refuses a thread.
     #[error("failed to start the thread of the farm: {0}")]
     Thread(std::io::Error),
-    /// The coordinator is going down.
     #[error(transparent)]
     Stopped(#[from] Stopped),
     /// Too many facts wait for the store.

@@ -3,25 +3,37 @@
 use std::sync::OnceLock;
 
 use shared::api::CalibrationState;
+use shared::outcome::Observables;
 
 use super::error::ServiceError;
+use super::handle::Service;
 use super::stored_calibration::ParsedExperiments;
 use super::study_members::study_members;
 use super::study_step::next_step_from;
 use crate::study::{Lineage, most_probable};
-use job::AlgorithmSettings;
+use inference::Particle;
+use job::{AlgorithmSettings, Spec};
 use record::CalibrationRow;
 use result::{
     DiscoveryRound, FinishedCalibration, Outcome, SampledPosterior, Study, first_population, likeliest,
 };
 use store::Reader;
 
+/// Refuses a calibration that has no result: one that is not finished, or a search.
+pub(super) fn check_finished(row: &CalibrationRow) -> Result<(), ServiceError> {
+    match (row.state, row.membership.is_search()) {
+        (CalibrationState::Finished, false) => Ok(()),
+        (CalibrationState::Finished, true) => Err(ServiceError::Search(row.id)),
+        _ => Err(ServiceError::not_finished(row)),
+    }
+}
+
 /// Loads a finished calibration.
 ///
 /// # Errors
 /// [`ServiceError::Control`] where it is not finished; [`ServiceError::Effects`] where this program has other
 /// effects; others where the store cannot be read.
-pub async fn finished_calibration(
+pub(super) async fn finished_calibration(
     reader: &Reader,
     row: &CalibrationRow,
 ) -> Result<FinishedCalibration, ServiceError> {
@@ -34,26 +46,16 @@ async fn finished_with(
     row: &CalibrationRow,
     experiments: &mut ParsedExperiments,
 ) -> Result<FinishedCalibration, ServiceError> {
-    if row.state != CalibrationState::Finished {
-        return Err(ServiceError::not_finished(row));
-    }
-    if row.membership.is_search() {
-        return Err(ServiceError::Search(row.id));
-    }
+    check_finished(row)?;
     let spec = experiments.spec_of(reader, row).await?;
     // Parameters and texts would be shown that the result was not computed with.
     if let Some(pinned) = &row.model_version {
         spec.check_effects(pinned)?;
     }
-    let estimate = match spec.algorithm {
-        AlgorithmSettings::Sample(_) | AlgorithmSettings::Discover { .. } => None,
-        AlgorithmSettings::Fit(_) | AlgorithmSettings::Evolve(_) => reader.estimate(row.id).await?,
-    };
-    let prior_draws = match spec.algorithm {
-        AlgorithmSettings::Sample(_) => reader.prior_draws(row.id, spec.algorithm.width()).await?,
-        AlgorithmSettings::Fit(_) | AlgorithmSettings::Evolve(_) | AlgorithmSettings::Discover { .. } => {
-            Vec::new()
-        }
+    let is_sample = matches!(spec.algorithm, AlgorithmSettings::Sample(_));
+    let (estimate, prior_draws) = match is_sample {
+        true => (None, reader.prior_draws(row.id, spec.algorithm.width()).await?),
+        false => (reader.estimate(row.id).await?, Vec::new()),
     };
     let mut populations = reader.populations(row.id).await?;
     // The draws of a normal approximation belong to no stage.
@@ -61,23 +63,12 @@ async fn finished_with(
         Some(last) => last,
         None => reader.samples(row.id, None).await?,
     };
-    if let AlgorithmSettings::Sample(_) = spec.algorithm {
+    if is_sample {
         populations.insert(0, first_population(&spec, &prior_draws));
     }
     let at_likeliest = reader.likeliest(row.id).await?;
-    // Programs of scm-5 and before left out readings and derivatives where they simulated histories.
-    let whole = at_likeliest.as_ref().filter(|observables| {
-        let histories = spec.fit_variant.with_histories();
-        observables.covers(histories.as_ref().unwrap_or(&spec.fit_variant))
-    });
-    let likeliest_values = match (whole, likeliest(&posterior)) {
-        (_, None) => None,
-        (Some(observables), Some(_)) => Some(spec.predicted_values(observables)),
-        (None, Some(sample)) => reader.fitted_values(row.id, &sample.theta).await?,
-    };
-    let simulated_histories = at_likeliest
-        .map(|observables| observables.histories)
-        .filter(|histories| !histories.is_empty());
+    let likeliest_values = likeliest_values(reader, row, &spec, &posterior, at_likeliest.as_ref()).await?;
+    let histories = at_likeliest.map(|observables| observables.histories);
     let subchains = match spec.algorithm.has_metamodel() {
         true => reader.subchains(row.id).await?,
         false => None,
@@ -96,7 +87,7 @@ async fn finished_with(
         experiment: row.name.clone(),
         likeliest_values,
         predictions: reader.predictions(row.id).await?,
-        simulated_histories,
+        simulated_histories: histories.filter(|histories| !histories.is_empty()),
         rejections: reader.rejections(row.id).await?,
         faults: reader.faults(row.id).await?,
         given_up: reader.given_up(row.id).await?,
@@ -109,16 +100,33 @@ async fn finished_with(
     })
 }
 
-/// Loads what is finished of the study of a finished calibration.
-///
-/// # Errors
-/// As those of [`finished_calibration`].
-pub async fn finished_study(reader: &Reader, row: &CalibrationRow) -> Result<Study, ServiceError> {
-    finished_study_of(reader, row, &reader.study(row.study).await?).await
+/// The values that the model predicts at the likeliest draw, from its observables, else as they were stored for the sampler.
+async fn likeliest_values(
+    reader: &Reader,
+    row: &CalibrationRow,
+    spec: &Spec,
+    posterior: &[Particle],
+    at_likeliest: Option<&Observables>,
+) -> Result<Option<Vec<f64>>, ServiceError> {
+    let Some(sample) = likeliest(posterior) else {
+        return Ok(None);
+    };
+    // Programs of scm-5 and before left out readings and derivatives where they simulated histories.
+    let whole = at_likeliest.filter(|observables| {
+        let histories = spec.fit_variant.with_histories();
+        observables.covers(histories.as_ref().unwrap_or(&spec.fit_variant))
+    });
+    match whole {
+        Some(observables) => Ok(Some(spec.predicted_values(observables))),
+        None => Ok(reader.fitted_values(row.id, &sample.theta).await?),
+    }
 }
 
-/// The same from members that were read: a member that joins meanwhile is no part of it.
-pub(super) async fn finished_study_of(
+/// Loads what is finished of the study of a calibration, from these members: one that joins meanwhile is no part of it.
+///
+/// # Errors
+/// [`finished_calibration`] states them for the given calibration, where nothing is finished.
+pub(super) async fn finished_study(
     reader: &Reader,
     row: &CalibrationRow,
     rows: &[CalibrationRow],
@@ -142,15 +150,15 @@ pub(super) async fn finished_study_of(
             others.push(finished_with(reader, row, &mut experiments).await?);
             continue;
         }
-        let beside = match lineage.model_of(row.id) == lineage.model_of(lead.row.id) {
+        let group = match lineage.model_of(row.id) == lineage.model_of(lead.row.id) {
             true => &mut point_estimates,
             false => &mut extensions,
         };
-        beside.push(finished_with(reader, row, &mut experiments).await?);
+        group.push(finished_with(reader, row, &mut experiments).await?);
     }
     let state = match unfinished {
         Some(row) => row.state,
-        // What is decided but not yet begun is work to come.
+        // A step that is decided but not begun is work to come.
         None if next_step_from(reader, rows).await?.is_some() => CalibrationState::Running,
         None => CalibrationState::Finished,
     };
@@ -167,11 +175,16 @@ pub(super) async fn finished_study_of(
     })
 }
 
-/// The finished searches of a study.
-///
-/// # Errors
-/// As those of [`finished_calibration`].
-pub async fn search_rounds(
+impl Service {
+    /// The finished searches of a study.
+    pub async fn search_rounds(&self, study: i64) -> Result<Vec<DiscoveryRound>, ServiceError> {
+        let reader = self.store().reader();
+        search_rounds(&reader, &reader.study(study).await?).await
+    }
+}
+
+/// The finished searches among the members of a study.
+async fn search_rounds(
     reader: &Reader,
     rows: &[CalibrationRow],
 ) -> Result<Vec<DiscoveryRound>, ServiceError> {

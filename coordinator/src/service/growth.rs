@@ -8,13 +8,11 @@ use shared::experiment::Experiment;
 use shared::file::FileSet;
 
 use super::clock::now_ms;
-use super::compared_models::passed_over;
 use super::error::ServiceError;
 use super::handle::Service;
 use super::stored_calibration::{FILES, has_posterior};
-use super::study_step::next_step_of;
 use super::submission::role_of;
-use crate::study::{Lineage, StudyStep};
+use crate::study::{Lineage, StudyStep, most_probable};
 use farm::calibration::{Calibration, CalibrationIdentity};
 use farm::dispatch::Stopped;
 use job::{Job, Spec, continued_job, without_effects};
@@ -23,7 +21,7 @@ use search::candidate::extended;
 use store::NewCalibrationRow;
 
 impl Service {
-    /// Adds a calibration to the study of another: its job with an effect more; one that is there already is meant.
+    /// Adds a calibration to the study of another, with one more effect in its job. The answer is the existing one where the study has it.
     ///
     /// # Errors
     /// [`ServiceError`]: the effect is unknown, or stands there already.
@@ -46,8 +44,8 @@ impl Service {
         self.add_member(&row, change, row.experiment, name, job).await
     }
 
-    /// Adds measurements to a study: an experiment with the rows of a CSV more, and the job of a calibration on it, of the last of
-    /// its ledger where none is named.
+    /// Adds measurements to a study: an experiment with further rows of CSV, and a calibration on it with the job of the named calibration, or
+    /// of the last one of the ledger.
     ///
     /// # Errors
     /// [`ServiceError`]: a row is malformed, or its run stands there already.
@@ -61,11 +59,11 @@ impl Service {
         let rows = self.store().reader().study(study).await?;
         let (mut ledger, mut beside) = (None, None);
         let passed_over = passed_over(&rows);
-        let meant = |row: &&CalibrationRow| match calibration {
+        let is_candidate = |row: &&CalibrationRow| match calibration {
             Some(id) => id == row.id,
             None => !passed_over.contains(&row.id),
         };
-        for row in Lineage::new(&rows).calibrations().filter(meant) {
+        for row in Lineage::new(&rows).calibrations().filter(is_candidate) {
             match has_posterior(&self.store().reader(), row).await? {
                 true => ledger = Some(row),
                 false => beside = Some(row),
@@ -79,7 +77,7 @@ impl Service {
             tokio::task::spawn_blocking(move || Experiment::with_runs(FILES[1], &experiment, &csv));
         let (enlarged, runs) = enlarged.await.map_err(|_| Stopped)??;
         let job = continued_job(FILES[0], &last.job)?;
-        // Refused before anything is stored.
+        // A mistake is refused before anything is stored.
         let name = format!("{} ({runs} runs)", last.name);
         let change = Some(Change::Runs(runs));
         let member = self
@@ -94,11 +92,7 @@ impl Service {
         })
     }
 
-    /// Adds the search of a calibration's model for a missing effect; one that is there already, unless it ended without a
-    /// record, is meant.
-    ///
-    /// # Errors
-    /// [`ServiceError`].
+    /// Adds the search of a calibration's model for a missing effect. The answer is the existing search, unless it ended without a record.
     pub async fn discover(&self, id: i64) -> Result<CalibrationCreated, ServiceError> {
         let _growing = self.growing.lock().await;
         self.searched(id).await
@@ -122,13 +116,10 @@ impl Service {
         }
     }
 
-    /// Takes the next step of a study; whether there was one.
-    ///
-    /// # Errors
-    /// [`ServiceError`].
+    /// Takes the next step of a study, and returns whether there was one.
     pub async fn advance(&self, study: i64) -> Result<bool, ServiceError> {
         let _growing = self.growing.lock().await;
-        let Some(step) = next_step_of(&self.store().reader(), study).await? else {
+        let Some(step) = self.next_step(study).await? else {
             return Ok(false);
         };
         match step {
@@ -147,7 +138,7 @@ impl Service {
 
     /// Extends studies by their next steps until the service ends.
     pub async fn keep_growing(&self) {
-        // Members of each study when it was last seen to have no next step.
+        // Number of members of each study when it last had no next step.
         let mut at_rest: BTreeMap<i64, i64> = BTreeMap::new();
         let mut changes = self.study_changes();
         loop {
@@ -176,7 +167,7 @@ impl Service {
         }
     }
 
-    /// A calibration that can be extended and searched.
+    /// Returns a calibration that can be extended and searched.
     pub(super) async fn searchable(&self, id: i64) -> Result<CalibrationRow, ServiceError> {
         let row = self.calibration_row(id).await?;
         match row.membership.is_search() {
@@ -185,7 +176,7 @@ impl Service {
         }
     }
 
-    /// Stores a calibration that a change makes of another, and takes it in hand.
+    /// Stores a calibration that differs from its parent by a change, and gives it to the farm.
     async fn add_member(
         &self,
         parent: &CalibrationRow,
@@ -201,7 +192,7 @@ impl Service {
         self.take_in(member, experiment).await
     }
 
-    /// A calibration that a change makes of another, or the search of its model where nothing changes; validated but not stored.
+    /// Validates, without storing, a calibration that differs from its parent by a change, or the search of its parent's model.
     async fn prepared(
         &self,
         parent: &CalibrationRow,
@@ -264,11 +255,20 @@ impl Service {
     }
 }
 
-/// What is there already, as if it were made now.
+/// The answer for a calibration that exists already, as if it were made now.
 fn created(row: &CalibrationRow) -> CalibrationCreated {
     CalibrationCreated {
         id: row.id,
         study: row.study,
         point_estimates: Vec::new(),
     }
+}
+
+/// The compared models that a study does not go on with: all but the one with the most evidence.
+fn passed_over(rows: &[CalibrationRow]) -> Vec<i64> {
+    let compared = Lineage::new(rows).compared();
+    let best = most_probable(compared.iter().map(|row| row.log_evidence));
+    let ids = compared.iter().map(|row| row.id).enumerate();
+    let losing = ids.filter(|(number, _)| compared.len() > 1 && Some(*number) != best);
+    losing.map(|(_, id)| id).collect()
 }

@@ -10,20 +10,18 @@ use shared::file::FileSet;
 use super::clock::now_ms;
 use super::error::ServiceError;
 use super::farm_settings::{FarmSettings, LEASE_MS};
-use super::overview_cache::Overviews;
 use super::recovery::{recover, rewind};
+use super::result_cache::ResultCache;
 use super::stored_calibration;
-use super::study_results;
 use crate::webhook::WebhookHosts;
 use farm::calibration::Calibration;
 use farm::dispatch::Dispatcher;
 use farm::{Control, ControlError, Farm};
 use job::Spec;
 use record::CalibrationRow;
-use report::StudyFile;
-use store::{Store, StoreError, Writer};
+use store::{Store, StoreError};
 
-/// So many facts may wait for the store before the service asks for patience.
+/// Number of facts that may wait for the store before the service asks workers for patience.
 const BACKLOG: u64 = 200_000;
 
 /// Store and farm together; clones are cheap.
@@ -34,16 +32,13 @@ pub struct Service {
     verified_share: f64,
     left_alone: Arc<BTreeMap<i64, String>>,
     pub(super) webhook_hosts: WebhookHosts,
-    pub(super) overviews: Overviews,
-    /// Held by whoever adds to a study: each sees what the one before has added.
+    pub(super) results: ResultCache,
+    /// A task that adds to a study holds it, so that each task sees the additions before its own.
     pub(super) growing: Arc<tokio::sync::Mutex<()>>,
 }
 
 impl Service {
-    /// Opens the store and takes up every calibration that is not over.
-    ///
-    /// # Errors
-    /// [`ServiceError`].
+    /// Opens the store and resumes every calibration that is not over.
     pub async fn open(path: &str, settings: FarmSettings) -> Result<Service, ServiceError> {
         let store = Store::open(path, now_ms()).await?;
         let farm = Farm::new(store.epoch(), settings.lease_ms);
@@ -58,18 +53,19 @@ impl Service {
             settings.verified_share,
         );
         tokio::spawn(rewind);
+        let results = ResultCache::new(&store);
         Ok(Service {
             store,
             dispatcher,
             verified_share: settings.verified_share,
             left_alone,
             webhook_hosts: WebhookHosts::default(),
-            overviews: Overviews::default(),
+            results,
             growing: Arc::default(),
         })
     }
 
-    /// The same, with hosts that web hooks may be posted to.
+    /// Sets the hosts that web hooks may be posted to.
     #[must_use]
     pub fn with_webhook_hosts(self, hosts: Vec<String>) -> Service {
         Service {
@@ -78,47 +74,43 @@ impl Service {
         }
     }
 
-    /// Opens the store for reading alone: there is nothing in progress, and whatever is told is refused.
-    ///
-    /// # Errors
-    /// [`ServiceError`].
+    /// Opens the store for reading alone: nothing is in progress, and every write is refused.
     pub async fn open_read_only(path: &str) -> Result<Service, ServiceError> {
         let store = Store::open_read_only(path).await?;
         let farm = Farm::new(store.epoch(), LEASE_MS);
         let (dispatcher, _) = Dispatcher::start(farm, store.writer().sink()).map_err(ServiceError::Thread)?;
+        let results = ResultCache::new(&store);
         Ok(Service {
             store,
             dispatcher,
             verified_share: 0.0,
             left_alone: Arc::default(),
             webhook_hosts: WebhookHosts::default(),
-            overviews: Overviews::default(),
+            results,
             growing: Arc::default(),
         })
     }
 
-    /// Ends farm and writer; everything told so far is stored.
+    /// Ends farm and writer after all facts so far are stored.
     pub async fn close(&self) {
         self.dispatcher.stop();
         self.store.close().await;
     }
 
-    /// Why a stored calibration could not be taken up, if it could not.
+    /// The reason why a stored calibration could not be resumed.
     pub fn left_alone(&self, id: i64) -> Option<&str> {
         self.left_alone.get(&id).map(String::as_str)
     }
 
-    /// Number of calibrations that could not be taken up.
+    /// Number of calibrations that could not be resumed.
     pub fn count_left_alone(&self) -> usize {
         self.left_alone.len()
     }
 
-    /// The store, an SQLite file.
     pub fn store(&self) -> &Store {
         &self.store
     }
 
-    /// The farm's thread.
     pub fn dispatcher(&self) -> &Dispatcher {
         &self.dispatcher
     }
@@ -130,78 +122,19 @@ impl Service {
         Ok(self.dispatcher.add(calibration, key, Vec::new()).await?)
     }
 
-    /// A stored calibration.
-    ///
-    /// # Errors
-    /// [`ServiceError::NotFound`] and others.
     pub async fn calibration_row(&self, id: i64) -> Result<CalibrationRow, ServiceError> {
         stored_calibration::calibration_row(&self.store.reader(), id).await
     }
 
     /// The specification of a stored calibration.
-    ///
-    /// # Errors
-    /// [`ServiceError`].
     pub async fn spec_of(&self, row: &CalibrationRow) -> Result<Spec, ServiceError> {
         stored_calibration::spec_of(&self.store.reader(), row).await
     }
 
-    /// The files of a stored experiment.
-    ///
-    /// # Errors
-    /// [`ServiceError::NotFound`] and others.
     pub async fn experiment(&self, id: i64) -> Result<FileSet, ServiceError> {
         stored_calibration::experiment_files(&self.store.reader(), id).await
     }
 
-    /// The writer for what has to be computed; `None` where the store is only read.
-    pub(super) fn results_writer(&self) -> Option<&Writer> {
-        (!self.store.is_read_only()).then(|| self.store.writer())
-    }
-
-    /// A file of the study of a calibration; what has to be computed for it is stored.
-    ///
-    /// # Errors
-    /// As those of [`super::study_file`].
-    pub async fn study_file(&self, id: i64, file: StudyFile) -> Result<String, ServiceError> {
-        let row = self.calibration_row(id).await?;
-        study_results::study_file(&self.store.reader(), self.results_writer(), &row, file).await
-    }
-
-    /// A file of a finished calibration; what has to be computed for it is stored once its study is over.
-    ///
-    /// # Errors
-    /// As those of [`super::finished_calibration`].
-    pub async fn calibration_file(
-        &self,
-        id: i64,
-        file: impl Fn(i64) -> StudyFile,
-    ) -> Result<String, ServiceError> {
-        let row = self.calibration_row(id).await?;
-        study_results::calibration_file(&self.store.reader(), self.results_writer(), &row, file(id)).await
-    }
-
-    /// The diagnostics of a finished calibration, as JSON.
-    ///
-    /// # Errors
-    /// As those of [`super::diagnostics`].
-    pub async fn diagnostics(&self, id: i64) -> Result<String, ServiceError> {
-        let row = self.calibration_row(id).await?;
-        study_results::diagnostics_text(&self.store.reader(), self.results_writer(), &row).await
-    }
-
-    /// The flags of a finished calibration, as JSON.
-    ///
-    /// # Errors
-    /// As those of [`super::diagnostics`].
-    pub async fn flags(&self, id: i64) -> Result<String, ServiceError> {
-        study_results::flags_text(id, &self.diagnostics(id).await?)
-    }
-
-    /// The status of a calibration.
-    ///
-    /// # Errors
-    /// [`ServiceError`].
     pub async fn status(&self, id: i64) -> Result<CalibrationStatus, ServiceError> {
         if let Some(status) = self.dispatcher.status(id).await? {
             return Ok(status);
@@ -220,10 +153,7 @@ impl Service {
         status
     }
 
-    /// The status of every calibration, oldest first; of archived studies only where that is asked for.
-    ///
-    /// # Errors
-    /// [`ServiceError`].
+    /// The status of every calibration, oldest first; those of archived studies on request.
     pub async fn list(&self, with_archived: bool) -> Result<Vec<CalibrationStatus>, ServiceError> {
         let mut in_hand = self.dispatcher.statuses().await?;
         let rows = self.store.reader().calibrations().await?;
@@ -238,10 +168,7 @@ impl Service {
         Ok(statuses)
     }
 
-    /// Executes a user's command; the answer is durable.
-    ///
-    /// # Errors
-    /// [`ServiceError`].
+    /// Executes a user's command, and answers when its effect is stored.
     pub async fn control(&self, id: i64, control: Control) -> Result<CalibrationState, ServiceError> {
         match self.dispatcher.control(id, control).await? {
             Ok((state, fact)) => {
@@ -265,10 +192,7 @@ impl Service {
         }
     }
 
-    /// A worker's exchange; the answer is given when its results are durable.
-    ///
-    /// # Errors
-    /// [`ServiceError`].
+    /// Takes the results of a worker and gives it leases, and answers when the results are stored.
     pub async fn exchange(&self, request: ExchangeRequest) -> Result<ExchangeResponse, ServiceError> {
         let backlog = self.store.writer().backlog();
         if backlog > BACKLOG {

@@ -1,4 +1,4 @@
-//! A stored calibration: its row, its specification, where it stands.
+//! A stored calibration: its row, its specification, its status.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -12,30 +12,21 @@ use job::{Job, Spec, model_kind};
 use record::{CalibrationRow, Role};
 use store::{Reader, StoreError};
 
-/// How messages call a job and its experiment.
+/// Names of a job and its experiment in messages.
 pub(super) const FILES: [&str; 2] = ["job.toml", "experiment.toml"];
 
-/// A stored calibration.
-///
-/// # Errors
-/// [`ServiceError::NotFound`] and others.
-pub async fn calibration_row(reader: &Reader, id: i64) -> Result<CalibrationRow, ServiceError> {
+pub(super) async fn calibration_row(reader: &Reader, id: i64) -> Result<CalibrationRow, ServiceError> {
     let row = reader.calibration(id).await?;
     row.ok_or_else(|| ServiceError::not_found("calibration", id))
 }
 
-/// The files of a stored experiment.
-pub async fn experiment_files(reader: &Reader, id: i64) -> Result<FileSet, ServiceError> {
+pub(super) async fn experiment_files(reader: &Reader, id: i64) -> Result<FileSet, ServiceError> {
     let row = reader.experiment(id).await?;
     Ok(row
         .ok_or_else(|| ServiceError::not_found("experiment", id))?
         .files)
 }
 
-/// The specification of a stored calibration.
-///
-/// # Errors
-/// [`ServiceError`].
 pub(super) async fn spec_of(reader: &Reader, row: &CalibrationRow) -> Result<Spec, ServiceError> {
     ParsedExperiments::default().spec_of(reader, row).await
 }
@@ -45,10 +36,6 @@ pub(super) async fn spec_of(reader: &Reader, row: &CalibrationRow) -> Result<Spe
 pub(super) struct ParsedExperiments(BTreeMap<i64, Arc<Experiment>>);
 
 impl ParsedExperiments {
-    /// The specification of a stored calibration.
-    ///
-    /// # Errors
-    /// [`ServiceError`].
     pub(super) async fn spec_of(
         &mut self,
         reader: &Reader,
@@ -73,8 +60,8 @@ impl ParsedExperiments {
     }
 }
 
-/// Whether a calibration has draws of the posterior, or will have: of a sample, or of a fit's normal approximation. A finished fit has them
-/// where they are stored: fits of earlier versions have none.
+/// Whether a calibration has draws of the posterior, or will have them: draws of a sample, or of a fit's normal approximation. Fits of
+/// earlier versions have none, so that for a finished fit the store decides.
 pub(super) async fn has_posterior(reader: &Reader, row: &CalibrationRow) -> Result<bool, ServiceError> {
     Ok(match row.membership.role {
         Role::Sample => true,
@@ -86,8 +73,8 @@ pub(super) async fn has_posterior(reader: &Reader, row: &CalibrationRow) -> Resu
     })
 }
 
-/// The status of a stored calibration that the farm does not hold. One whose row cannot be read still has a line in every list.
-pub fn stored_status(id: i64, row: &Result<CalibrationRow, StoreError>) -> CalibrationStatus {
+/// The status of a stored calibration that the farm does not hold. A calibration whose row cannot be read still has a line in every list.
+pub(super) fn stored_status(id: i64, row: &Result<CalibrationRow, StoreError>) -> CalibrationStatus {
     let row = match row {
         Ok(row) => row,
         Err(error) => {
@@ -117,11 +104,8 @@ pub fn stored_status(id: i64, row: &Result<CalibrationRow, StoreError>) -> Calib
     }
 }
 
-/// Leaves out calibrations of archived studies.
-///
-/// # Errors
-/// [`ServiceError`].
-pub async fn leave_out_archived(
+/// Removes the calibrations of archived studies.
+pub(super) async fn leave_out_archived(
     reader: &Reader,
     statuses: &mut Vec<CalibrationStatus>,
 ) -> Result<(), ServiceError> {

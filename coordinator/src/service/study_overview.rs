@@ -1,15 +1,13 @@
-//! Studies as the page shows them: finished ones from their stored files, others from what is kept in memory.
+//! Studies as the page shows them, and the list of all.
 
 use std::collections::BTreeMap;
-use std::sync::Arc;
 
 use shared::api::{CalibrationState, CalibrationStatus};
 
 use super::error::ServiceError;
 use super::handle::Service;
-use super::overview_cache::{KeptOverview, MemberKey, member_key};
+use super::results::{Stamp, is_of_members, members_stamp};
 use super::study_members::study_members;
-use super::study_results::study_file;
 use job::model_kind;
 use record::CalibrationRow;
 use report::{StudyFile, StudyListItem, StudyOverview};
@@ -17,17 +15,14 @@ use store::StoreError;
 
 impl Service {
     /// A study as the page shows it.
-    ///
-    /// # Errors
-    /// [`ServiceError::NotFound`] and others.
     pub async fn study_overview(&self, id: i64) -> Result<StudyOverview, ServiceError> {
         let reader = self.store().reader();
-        let rows = reader.study(id).await?;
+        let (stamp, rows) = self.stamped_members(id).await?;
         if rows.is_empty() {
             return Err(ServiceError::not_found("study", id));
         }
-        let mut overview = self.computed_overview(id, &rows).await?;
-        // What changes without a member beginning or ending.
+        let mut overview = self.overview_of_ended(id, &rows, stamp).await?;
+        // States and messages also change while the same members are over.
         for (member, row) in overview.members.iter_mut().zip(&rows) {
             let status = self.status_of(row).await?;
             (member.member.state, member.member.message) = (status.state, status.message);
@@ -43,53 +38,44 @@ impl Service {
 
     async fn status_of(&self, row: &CalibrationRow) -> Result<CalibrationStatus, ServiceError> {
         match row.state.is_final() {
-            true => Ok(super::stored_status(row.id, &Ok(row.clone()))),
+            true => Ok(super::stored_calibration::stored_status(row.id, &Ok(row.clone()))),
             false => self.status(row.id).await,
         }
     }
 
-    /// The part of a study's overview that changes as members begin and end.
-    async fn computed_overview(
+    /// The part of a study's overview that only changes when a member begins or ends.
+    async fn overview_of_ended(
         &self,
         id: i64,
         rows: &[CalibrationRow],
+        stamp: Stamp,
     ) -> Result<StudyOverview, ServiceError> {
-        let reader = self.store().reader();
-        let members = member_key(rows.iter().map(|row| (row.id, row.state)));
-        // Before the rows: what is found out while they are read makes it out of date.
-        let doubts = reader.doubts().await?;
-        let kept = self.overviews.get(id, &members);
-        if let Some(kept) = kept.filter(|kept| kept.doubts == doubts) {
-            return Ok((*kept.overview).clone());
-        }
         let is_finished =
             |row: &&CalibrationRow| row.state == CalibrationState::Finished && !row.membership.is_search();
-        let overview = match rows.iter().find(is_finished) {
-            Some(row) => {
-                let text = study_file(&reader, self.results_writer(), row, StudyFile::Overview).await?;
-                let corrupt = |e| StoreError::Corrupt(format!("overview of study {id}: {e}"));
-                serde_json::from_str(&text).map_err(corrupt)?
-            }
+        let text = match rows.iter().find(is_finished) {
+            Some(row) => Some(
+                self.text_of_study(row, rows, stamp.clone(), StudyFile::Overview)
+                    .await?,
+            ),
             None => {
-                let lead = rows.first().expect("a study has a member");
-                let kind = model_kind(&lead.job.toml).map(|kind| kind.name().to_owned());
-                StudyOverview::begun(id, lead.experiment, kind, study_members(&reader, rows).await?)
+                let name = StudyFile::Overview.name();
+                self.results.text(id, &name, &stamp.to_string()).await?
             }
         };
-        let kept = KeptOverview {
-            members,
-            doubts,
-            overview: Arc::new(overview.clone()),
-        };
-        self.overviews.keep(id, kept);
+        if let Some(text) = text {
+            let corrupt = |e| StoreError::Corrupt(format!("overview of study {id}: {e}"));
+            return Ok(serde_json::from_str(&text).map_err(corrupt)?);
+        }
+        let lead = rows.first().expect("a study has a member");
+        let kind = model_kind(&lead.job.toml).map(|kind| kind.name().to_owned());
+        let members = study_members(&self.store().reader(), rows).await?;
+        let overview = StudyOverview::begun(id, lead.experiment, kind, members);
+        self.keep_overview(&overview, stamp).await?;
         Ok(overview)
     }
 
     /// Every study, oldest first; archived ones only where that is asked for. The errors and the verdict of a study that has just
     /// changed are left out until they are computed.
-    ///
-    /// # Errors
-    /// [`ServiceError`].
     pub async fn studies(&self, with_archived: bool) -> Result<Vec<StudyListItem>, ServiceError> {
         let reader = self.store().reader();
         let archived = reader.archived().await?;
@@ -98,17 +84,18 @@ impl Service {
         for status in self.list(true).await?.into_iter().filter(|s| s.study != 0) {
             studies.entry(status.study).or_default().push(status);
         }
+        let mut listed = self.results.of_every_study(&StudyFile::ListItem.name()).await?;
         let item = |(id, members): (i64, Vec<CalibrationStatus>)| {
-            let key = member_key(members.iter().map(|member| (member.id, member.state)));
+            let stamp = members_stamp(members.iter().map(|member| (member.id, member.state)));
             let lead = members.first()?;
             let unfinished = members.iter().find(|m| m.state != CalibrationState::Finished);
-            let progress = members.iter().find_map(|member| member.progress.clone());
-            let kept = self.overviews.get(id, &key);
-            let mut item = match &kept {
-                Some(kept) => kept.overview.list_item(progress),
-                None => StudyOverview::begun(id, lead.experiment, lead.model_kind.clone(), Vec::new())
-                    .list_item(progress),
-            };
+            let kept = listed.remove(&id).filter(|(of, _)| is_of_members(of, &stamp));
+            let kept = kept.and_then(|(_, text)| serde_json::from_str::<StudyListItem>(&text).ok());
+            let mut item = kept.unwrap_or_else(|| {
+                let kind = lead.model_kind.clone();
+                StudyOverview::begun(id, lead.experiment, kind, Vec::new()).list_item(None)
+            });
+            item.progress = members.iter().find_map(|member| member.progress.clone());
             item.name.clone_from(&lead.name);
             item.calibrations = members.iter().map(|member| member.id).collect();
             item.state = unfinished.map_or(item.state, |member| member.state);
@@ -121,30 +108,22 @@ impl Service {
 
     /// Computes the overviews of studies as their members begin and end, until the service ends.
     pub async fn keep_overviews(&self) {
-        let mut seen: BTreeMap<i64, MemberKey> = BTreeMap::new();
+        // The members of the studies whose overview could not be computed.
+        let mut failed: BTreeMap<i64, String> = BTreeMap::new();
         let mut changes = self.study_changes();
         loop {
             changes.next().await;
-            match self.store().reader().member_states().await {
-                Ok(states) => {
-                    let mut studies: BTreeMap<i64, Vec<(i64, CalibrationState)>> = BTreeMap::new();
-                    for (study, id, state) in states {
-                        studies.entry(study).or_default().push((id, state));
-                    }
-                    let keys = studies
-                        .into_iter()
-                        .map(|(study, members)| (study, member_key(members.into_iter())));
-                    let keys: BTreeMap<i64, MemberKey> = keys.collect();
-                    self.overviews.forget_all_but(&keys);
-                    for (study, key) in &keys {
-                        if seen.get(study) == Some(key) {
+            match self.studies_without_overview().await {
+                Ok(studies) => {
+                    for (study, stamp) in studies {
+                        if failed.get(&study) == Some(&stamp) {
                             continue;
                         }
-                        if let Err(error) = self.study_overview(*study).await {
+                        if let Err(error) = self.study_overview(study).await {
                             tracing::warn!(study, %error, "no overview of the study");
+                            failed.insert(study, stamp);
                         }
                     }
-                    seen = keys;
                 }
                 Err(error) => {
                     tracing::error!(%error, "failed to read the studies");
@@ -152,5 +131,23 @@ impl Service {
                 }
             }
         }
+    }
+
+    /// The studies whose present members have no overview yet, with the stamp of these members.
+    async fn studies_without_overview(&self) -> Result<BTreeMap<i64, String>, ServiceError> {
+        let listed = self.results.of_every_study(&StudyFile::ListItem.name()).await?;
+        let mut studies: BTreeMap<i64, Vec<(i64, CalibrationState)>> = BTreeMap::new();
+        for (study, id, state) in self.store().reader().member_states().await? {
+            studies.entry(study).or_default().push((id, state));
+        }
+        self.results.forget_deleted(|study| studies.contains_key(&study));
+        let mut stamps: BTreeMap<i64, String> = BTreeMap::new();
+        stamps.extend(
+            studies
+                .into_iter()
+                .map(|(study, members)| (study, members_stamp(members.into_iter()))),
+        );
+        stamps.retain(|study, stamp| !listed.get(study).is_some_and(|(of, _)| is_of_members(of, stamp)));
+        Ok(stamps)
     }
 }

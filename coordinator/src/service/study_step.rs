@@ -1,26 +1,43 @@
-//! The next step of a study and the searches of its calibrations, from what is stored.
+//! The next step of a study and the searches of its calibrations, from the store.
 
 use shared::api::CalibrationState;
 
 use super::error::ServiceError;
+use super::handle::Service;
 use super::stored_calibration::has_posterior;
 use crate::study::{Lineage, StudyFindings, StudyStep, next_step};
 use job::{Apply, Job};
 use record::{CalibrationRow, Discovery};
 use store::Reader;
 
-/// The next step of a study.
-///
-/// # Errors
-/// [`ServiceError`] where a member cannot be read.
-pub async fn next_step_of(reader: &Reader, study: i64) -> Result<Option<StudyStep>, ServiceError> {
-    next_step_from(reader, &reader.study(study).await?).await
+impl Service {
+    /// The next step of a study.
+    ///
+    /// # Errors
+    /// [`ServiceError`] where a member cannot be read.
+    pub async fn next_step(&self, study: i64) -> Result<Option<StudyStep>, ServiceError> {
+        let reader = self.store().reader();
+        next_step_from(&reader, &reader.study(study).await?).await
+    }
+
+    /// The record of the search for an effect that the model of a calibration lacks.
+    ///
+    /// # Errors
+    /// [`ServiceError::NotFound`] where no search was asked for, [`ServiceError::Control`] where it is not finished.
+    pub async fn finished_search(&self, id: i64) -> Result<Discovery, ServiceError> {
+        let reader = self.store().reader();
+        let row = self.calibration_row(id).await?;
+        let none = || ServiceError::not_found("search for a missing effect of calibration", id);
+        let study = reader.study(row.study).await?;
+        let search = Lineage::new(&study).search_of(id).ok_or_else(none)?;
+        if search.state != CalibrationState::Finished {
+            return Err(ServiceError::not_finished(search));
+        }
+        reader.discovery(search.id).await?.ok_or_else(none)
+    }
 }
 
-/// The same from members that were read: a member that joins meanwhile is no part of the answer.
-///
-/// # Errors
-/// As those of [`next_step_of`].
+/// The next step of a study with these members.
 pub(super) async fn next_step_from(
     reader: &Reader,
     rows: &[CalibrationRow],
@@ -40,18 +57,4 @@ pub(super) async fn next_step_from(
         }
     }
     Ok(next_step(settings, rows, &findings))
-}
-
-/// What the search of a calibration's model found.
-///
-/// # Errors
-/// [`ServiceError::NotFound`] where none was asked for, [`ServiceError::Control`] where it is not finished.
-pub async fn finished_search(reader: &Reader, row: &CalibrationRow) -> Result<Discovery, ServiceError> {
-    let none = || ServiceError::not_found("search for a missing effect of calibration", row.id);
-    let study = reader.study(row.study).await?;
-    let search = Lineage::new(&study).search_of(row.id).ok_or_else(none)?;
-    if search.state != CalibrationState::Finished {
-        return Err(ServiceError::not_finished(search));
-    }
-    reader.discovery(search.id).await?.ok_or_else(none)
 }

@@ -91,22 +91,29 @@ impl Store {
     /// Opens it for reading alone, also beside a coordinator that writes to it; whatever is told is refused.
     ///
     /// # Errors
-    /// [`StoreError`]; damage is no error, but a warning of the log.
+    /// [`StoreError`].
     pub async fn open_read_only(path: &str) -> Result<Store, StoreError> {
-        let reader = Reader::open(path).await?;
-        if let Pool::Sqlite(pool) = &reader.pool {
-            let mut connection = pool.acquire().await?;
-            if let Err(error) = damage::check(&mut connection, path).await {
-                tracing::warn!(%error, "what can be read is shown");
-            }
-        }
         Ok(Store {
-            reader,
+            reader: Reader::open(path).await?,
             writer: Writer::none(),
             file: (!is_server(path)).then(|| file_of(path).into()),
             epoch: 0,
             is_read_only: true,
         })
+    }
+
+    /// Warns in the log of damage to the file that can be found in a short time.
+    ///
+    /// # Errors
+    /// [`StoreError`] where there is no connection; damage is no error.
+    pub async fn warn_of_damage(&self) -> Result<(), StoreError> {
+        if let (Pool::Sqlite(pool), Some(file)) = (&self.reader.pool, &self.file) {
+            let mut connection = pool.acquire().await?;
+            if let Err(error) = damage::check(&mut connection, &file.display().to_string()).await {
+                tracing::warn!(%error, "what can be read is shown");
+            }
+        }
+        Ok(())
     }
 
     /// Whether the file is opened for reading alone.

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::error::StoreError;
 use super::reader::Reader;
-use super::sql::{Connection, query, query_scalar};
+use super::sql::{Connection, query, query_as, query_scalar};
 
 /// Files of a study, computed by one build of the program from one state of the study.
 #[derive(Debug, Clone)]
@@ -57,6 +57,22 @@ impl Reader {
             .await?;
         Ok(body)
     }
+
+    /// The file of one name of every study that has it, with its stamp.
+    ///
+    /// # Errors
+    /// [`StoreError`].
+    pub async fn results(&self, name: &str) -> Result<BTreeMap<i64, (String, String)>, StoreError> {
+        if !self.has_table("results").await? {
+            return Ok(BTreeMap::new());
+        }
+        let rows = query_as("SELECT study, stamp, body FROM results WHERE name = ?").bind(name);
+        let rows: Vec<(i64, String, String)> = rows.fetch_all(&self.pool).await?;
+        let by_study = rows
+            .into_iter()
+            .map(|(study, stamp, body)| (study, (stamp, body)));
+        Ok(by_study.collect())
+    }
 }
 
 #[cfg(test)]
@@ -95,6 +111,11 @@ mod tests {
         assert_eq!(read("report.html", "two").await.unwrap(), "report.html by two");
         keep("two", &["figures-1.json"]).await;
         assert!(read("report.html", "two").await.is_some(), "of the same stamp");
+        let reports = store.reader().results("report.html").await.unwrap();
+        assert_eq!(
+            reports[&study],
+            ("two".to_owned(), "report.html by two".to_owned())
+        );
         store.close().await;
     }
 }

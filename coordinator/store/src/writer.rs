@@ -422,7 +422,7 @@ struct Replies {
     done: Vec<oneshot::Sender<()>>,
     deleted: Vec<(oneshot::Sender<bool>, bool)>,
     states: Vec<StateChange>,
-    /// Whether a study has begun, grown, been archived, taken back or deleted.
+    /// Whether a study has begun, grown, been archived, taken back or deleted, or may have lost results.
     have_studies_changed: bool,
 }
 
@@ -511,11 +511,12 @@ async fn write_group(
     Ok(facts)
 }
 
-/// Whether a write changes which studies there are, or which members they have.
+/// Whether a write changes which studies there are, which members they have, or which results of theirs are kept: a late result that
+/// differs from the stored one makes them out of date.
 fn changes_studies(write: &Write) -> bool {
     use Write::{Archive, Delete, Member, Study};
     matches!(
         write,
-        Study { .. } | Member { .. } | Archive { .. } | Delete { .. }
+        Study { .. } | Member { .. } | Archive { .. } | Delete { .. } | Write::Fact(Fact::Duplicate { .. })
     )
 }

@@ -349,7 +349,7 @@ fn axum_sql_and_http_clients_stay_in_their_rooms() {
         &[
             "worker/src/client.rs",
             "worker/src/external/umbridge.rs",
-            "coordinator/src/command/source.rs",
+            "coordinator/src/command/place.rs",
             "coordinator/src/webhook.rs",
         ],
     );

@@ -156,7 +156,7 @@ mod tests {
             others: vec![other],
             ..fixture::calibration().into()
         };
-        assert!(crate::study_file::file(&study, crate::StudyFile::Comparison(2)).is_some());
+        assert!(crate::study_file::file(&study, crate::StudyFile::Figures(2)).is_some());
         assert_eq!(summary(&study).models, study.model_comparison());
     }
 }

@@ -9,23 +9,23 @@ use serde::Deserialize;
 use serde::de::DeserializeOwned;
 
 use super::finding::Finding;
-use crate::command::source::ServiceClient;
+use crate::command::place::Place;
 use crate::config::ClientArguments;
 use crate::embedded::model_version;
 
-/// A worker that has been silent so long is gone `[ms]`.
+/// Silence after which a worker counts as gone `[ms]`.
 const SILENT_MS: u64 = 60_000;
 
-/// A service that is well answers within this time.
+/// Longest time to wait for an answer.
 const PATIENCE: Duration = Duration::from_secs(5);
 
-/// What `/health` says.
+/// Answer of `/health`.
 #[derive(Deserialize)]
 struct Health {
     version: String,
 }
 
-/// What `/v1/workers` says of a worker.
+/// A worker in the answer of `/v1/workers`.
 #[derive(Deserialize)]
 struct Worker {
     model_version: String,
@@ -34,7 +34,7 @@ struct Worker {
 }
 
 pub(super) async fn findings(url: &str, arguments: &ClientArguments) -> Vec<Finding> {
-    let client = match ServiceClient::new(url, arguments) {
+    let client = match Place::at(url, arguments) {
         Ok(client) => client,
         Err(error) => {
             let remedy = "--url http://HOST:PORT or https://HOST, with files that can be read";
@@ -48,12 +48,12 @@ pub(super) async fn findings(url: &str, arguments: &ClientArguments) -> Vec<Find
             return vec![Finding::fail("service", format!("{error:#}"), remedy)];
         }
     };
-    let own = env!("CARGO_PKG_VERSION");
-    let mut findings = vec![match health.version == own {
-        true => Finding::ok("service", format!("{url}: version {own}")),
+    let version = env!("CARGO_PKG_VERSION");
+    let mut findings = vec![match health.version == version {
+        true => Finding::ok("service", format!("{url}: version {version}")),
         false => Finding::warn(
             "service",
-            format!("{url}: version {}, this program has {own}", health.version),
+            format!("{url}: version {}, this program has {version}", health.version),
             "use programs of one version: verbs of another one may not understand its answers",
         ),
     }];
@@ -119,14 +119,14 @@ pub(super) async fn version_at(address: SocketAddr) -> Option<String> {
         (true, false) => format!("[::1]:{}", address.port()),
         (false, _) => address.to_string(),
     };
-    let client = ServiceClient::new(&format!("http://{here}"), &arguments).ok()?;
+    let client = Place::at(&format!("http://{here}"), &arguments).ok()?;
     let health: Health = ask(&client, "/health").await.ok()?;
     Some(health.version)
 }
 
-/// What a service answers; another program may take the connection and say nothing.
-async fn ask<T: DeserializeOwned>(client: &ServiceClient, path: &str) -> anyhow::Result<T> {
-    let answer = tokio::time::timeout(PATIENCE, client.get(path)).await;
+/// Requests an answer from a service; another program may accept the connection and stay silent.
+async fn ask<T: DeserializeOwned>(service: &Place, path: &str) -> anyhow::Result<T> {
+    let answer = tokio::time::timeout(PATIENCE, service.get(path)).await;
     answer.map_err(|_| anyhow!("no answer within {} s", PATIENCE.as_secs()))?
 }
 
@@ -134,7 +134,7 @@ async fn ask<T: DeserializeOwned>(client: &ServiceClient, path: &str) -> anyhow:
 mod tests {
     use super::*;
 
-    fn of(workers: &[(&str, &str, Option<&str>, u64)]) -> String {
+    fn findings(workers: &[(&str, &str, Option<&str>, u64)]) -> String {
         let worker = |&(name, version, reason, silent_ms): &(&str, &str, Option<&str>, u64)| {
             let worker = Worker {
                 model_version: version.to_owned(),
@@ -152,18 +152,18 @@ mod tests {
 
     #[test]
     fn workers_that_are_gone_of_another_version_or_quarantined_are_named() {
-        let own = model_version();
+        let version = model_version();
         assert_eq!(
-            of(&[("a", own, None, 500)]),
+            findings(&[("a", version, None, 500)]),
             "ok    workers     1 in the last minute\n"
         );
-        let none = of(&[("a", own, None, 90_000)]);
+        let none = findings(&[("a", version, None, 90_000)]);
         assert!(none.contains("1 before"), "{none}");
         assert!(
             none.starts_with("warn  workers") && none.contains("worker --coordinator http://keeper:7070"),
             "{none}"
         );
-        let amiss = of(&[("b", "scm-1", None, 1), ("c", own, Some("differs"), 1)]);
+        let amiss = findings(&[("b", "scm-1", None, 1), ("c", version, Some("differs"), 1)]);
         assert!(
             amiss.contains("b computes equations scm-1") && amiss.contains("c is quarantined: differs"),
             "{amiss}"

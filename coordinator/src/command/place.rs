@@ -1,0 +1,168 @@
+//! The place of the calibrations that a verb is about: a service or a folder. Both answer the same requests.
+
+use anyhow::{Context, bail};
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+use shared::api::{CalibrationStatus, ErrorBody};
+use shared::bearer::BearerToken;
+
+use crate::config::{ClientArguments, SourceArguments, TargetArguments};
+use crate::http::InProcess;
+use crate::service::Service;
+
+/// A service or a folder, which answers requests.
+pub(super) enum Place {
+    /// A service elsewhere.
+    Service(ServiceClient),
+    /// The store in the folder of a run, which this program opens itself.
+    Folder {
+        routes: InProcess,
+        service: Box<Service>,
+    },
+}
+
+impl Place {
+    /// Opens the place that the arguments name; a folder for reading, also beside a program that writes to it.
+    pub(super) async fn open(source: &SourceArguments) -> anyhow::Result<Place> {
+        match &source.out {
+            None => Place::at(&source.url(), &source.client),
+            Some(out) => {
+                let store = out.join("grouser.db").display().to_string();
+                Ok(Place::in_folder(Service::open_read_only(&store).await?))
+            }
+        }
+    }
+
+    pub(super) fn at(url: &str, config: &ClientArguments) -> anyhow::Result<Place> {
+        Ok(Place::Service(ServiceClient::new(url, config)?))
+    }
+
+    pub(super) fn in_folder(service: Service) -> Place {
+        Place::Folder {
+            routes: InProcess::new(service.clone()),
+            service: Box::new(service),
+        }
+    }
+
+    async fn answer(&self, method: &str, path: &str, body: Option<String>) -> anyhow::Result<String> {
+        match self {
+            Place::Service(client) => client.answer(method, path, body).await,
+            Place::Folder { routes, .. } => Ok(routes.answer(method, path, body).await?),
+        }
+    }
+
+    /// The answer to a request, from JSON.
+    async fn value<T: DeserializeOwned>(
+        &self,
+        method: &str,
+        path: &str,
+        body: Option<String>,
+    ) -> anyhow::Result<T> {
+        let text = self.answer(method, path, body).await?;
+        serde_json::from_str(&text).with_context(|| match self {
+            Place::Service(client) => format!("{} is not a Grouser coordinator of this version", client.url),
+            Place::Folder { .. } => path.to_owned(),
+        })
+    }
+
+    pub(super) async fn text(&self, path: &str) -> anyhow::Result<String> {
+        self.answer("GET", path, None).await
+    }
+
+    pub(super) async fn get<T: DeserializeOwned>(&self, path: &str) -> anyhow::Result<T> {
+        self.value("GET", path, None).await
+    }
+
+    pub(super) async fn delete<T: DeserializeOwned>(&self, path: &str) -> anyhow::Result<T> {
+        self.value("DELETE", path, None).await
+    }
+
+    pub(super) async fn post<T: DeserializeOwned>(
+        &self,
+        path: &str,
+        body: &impl Serialize,
+    ) -> anyhow::Result<T> {
+        self.value("POST", path, Some(serde_json::to_string(body)?)).await
+    }
+
+    /// The id of the calibration that a verb is about: the stated one, or the first of the only study.
+    pub(super) async fn id(&self, target: &TargetArguments) -> anyhow::Result<i64> {
+        if let Some(id) = target.id {
+            return Ok(id);
+        }
+        let statuses: Vec<CalibrationStatus> = self.get("/v1/calibrations").await?;
+        match statuses.as_slice() {
+            [first, rest @ ..] if rest.iter().all(|status| status.study == first.study) => Ok(first.id),
+            [] => bail!("there is no calibration"),
+            several => bail!("there are {} calibrations: name one by its id", several.len()),
+        }
+    }
+
+    /// A result of the calibration that a verb is about, by the last word of its path.
+    pub(super) async fn part<T: DeserializeOwned>(
+        &self,
+        target: &TargetArguments,
+        part: &str,
+    ) -> anyhow::Result<T> {
+        let id = self.id(target).await?;
+        self.get(&format!("/v1/calibrations/{id}/{part}")).await
+    }
+}
+
+/// A service over a network.
+pub(super) struct ServiceClient {
+    client: reqwest::Client,
+    url: String,
+    token: Option<BearerToken>,
+}
+
+impl ServiceClient {
+    fn new(url: &str, config: &ClientArguments) -> anyhow::Result<ServiceClient> {
+        let parsed = reqwest::Url::parse(url).with_context(|| format!("--url {url}"))?;
+        let builder = reqwest::Client::builder();
+        let builder = match (parsed.scheme(), &config.ca_certificate) {
+            // Without TLS no certificate is read: a machine may have none.
+            ("http", _) => builder.tls_certs_only([]),
+            ("https", None) => builder,
+            ("https", Some(file)) => {
+                let name = || file.display().to_string();
+                let pem = std::fs::read(file).with_context(name)?;
+                let authorities = reqwest::Certificate::from_pem_bundle(&pem).with_context(name)?;
+                if authorities.is_empty() {
+                    bail!("{}: no certificate in PEM form", name());
+                }
+                builder.tls_certs_only(authorities)
+            }
+            (scheme, _) => bail!("--url {url}: scheme {scheme} is not http or https"),
+        };
+        Ok(ServiceClient {
+            client: builder.build()?,
+            url: url.trim_end_matches('/').to_owned(),
+            token: config.token()?,
+        })
+    }
+
+    async fn answer(&self, method: &str, path: &str, body: Option<String>) -> anyhow::Result<String> {
+        let method = reqwest::Method::from_bytes(method.as_bytes())?;
+        let mut request = self.client.request(method, format!("{}{path}", self.url));
+        if let Some(token) = &self.token {
+            request = request.bearer_auth(token.expose());
+        }
+        if let Some(body) = body {
+            request = request.header("Content-Type", "application/json").body(body);
+        }
+        let response = request
+            .send()
+            .await
+            .with_context(|| format!("no answer from {}", self.url))?;
+        let status = response.status();
+        let text = response.text().await?;
+        if status.is_success() {
+            return Ok(text);
+        }
+        match serde_json::from_str::<ErrorBody>(&text) {
+            Ok(body) => bail!("{}", body.error.message),
+            Err(_) => bail!("{} answered {status}", self.url),
+        }
+    }
+}

@@ -1,0 +1,21 @@
+//! The routes of `/v1`, of every resource.
+
+use utoipa_axum::router::OpenApiRouter;
+
+use super::{calibrations, document, effects, events, examples, experiments, growth, import, studies, work};
+use crate::service::Service;
+
+/// The routes of `/v1`.
+pub(super) fn api() -> OpenApiRouter<Service> {
+    let routes = OpenApiRouter::new()
+        .merge(experiments::routes())
+        .merge(examples::routes())
+        .merge(effects::routes())
+        .merge(import::routes())
+        .merge(calibrations::routes())
+        .merge(events::routes())
+        .merge(studies::routes())
+        .merge(work::routes())
+        .merge(growth::routes());
+    OpenApiRouter::with_openapi(document::base()).nest("/v1", routes)
+}

@@ -1,0 +1,109 @@
+//! The texts that have been computed about studies.
+
+use std::collections::BTreeMap;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+use report::StudyFile;
+use store::{Store, StoreError, StudyResults};
+
+/// The texts that have been computed about studies, each under the stamp of what it was computed from. They are in the store's table of
+/// results. A store that is only read takes none: there, overviews and lines of the list are kept in memory.
+#[derive(Debug, Clone)]
+pub(super) struct ResultCache {
+    store: Store,
+    in_memory: Arc<Mutex<BTreeMap<i64, StudyResults>>>,
+}
+
+impl ResultCache {
+    pub(super) fn new(store: &Store) -> ResultCache {
+        ResultCache {
+            store: store.clone(),
+            in_memory: Arc::default(),
+        }
+    }
+
+    fn in_memory(&self) -> MutexGuard<'_, BTreeMap<i64, StudyResults>> {
+        self.in_memory.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// A text about a study, if it is kept under this stamp.
+    pub(super) async fn text(
+        &self,
+        study: i64,
+        name: &str,
+        stamp: &str,
+    ) -> Result<Option<String>, StoreError> {
+        if let Some(text) = self.store.reader().result(study, name, stamp).await? {
+            return Ok(Some(text));
+        }
+        let in_memory = self.in_memory();
+        let kept = in_memory.get(&study).filter(|kept| kept.stamp == stamp);
+        Ok(kept.and_then(|kept| kept.files.get(name)).cloned())
+    }
+
+    /// The text of one name of every study that has it, with its stamp.
+    pub(super) async fn of_every_study(
+        &self,
+        name: &str,
+    ) -> Result<BTreeMap<i64, (String, String)>, StoreError> {
+        let mut found = self.store.reader().results(name).await?;
+        let in_memory = self.in_memory();
+        let kept = in_memory.iter().filter_map(|(study, kept)| {
+            let text = kept.files.get(name)?.clone();
+            Some((*study, (kept.stamp.clone(), text)))
+        });
+        found.extend(kept);
+        Ok(found)
+    }
+
+    /// Keeps texts; those of the study under another stamp are out of date, and go.
+    pub(super) async fn keep(&self, mut results: StudyResults) -> Result<(), StoreError> {
+        if !self.store.is_read_only() {
+            return self.store.writer().keep_results(results).await;
+        }
+        let in_lists = [StudyFile::Overview, StudyFile::ListItem].map(StudyFile::name);
+        results.files.retain(|name, _| in_lists.contains(name));
+        if !results.files.is_empty() {
+            self.in_memory().insert(results.study, results);
+        }
+        Ok(())
+    }
+
+    /// Frees the memory of studies that are no longer there.
+    pub(super) fn forget_deleted(&self, is_there: impl Fn(i64) -> bool) {
+        self.in_memory().retain(|study, _| is_there(*study));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[tokio::test]
+    async fn a_store_that_is_only_read_keeps_overviews_alone_under_their_stamp() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("grouser.db").display().to_string();
+        Store::open(&path, 0).await.unwrap().close().await;
+        let cache = ResultCache::new(&Store::open_read_only(&path).await.unwrap());
+        let keep = async |study: i64, files: &[StudyFile]| {
+            let files = files.iter().map(|file| (file.name(), format!("text of {study}")));
+            let results = StudyResults {
+                study,
+                stamp: "now".into(),
+                files: files.collect(),
+            };
+            cache.keep(results).await.unwrap();
+        };
+        keep(1, &[StudyFile::Overview, StudyFile::ListItem, StudyFile::Report]).await;
+        keep(1, &[StudyFile::Report]).await;
+        keep(2, &[StudyFile::ListItem]).await;
+        let text = async |file: StudyFile, stamp| cache.text(1, &file.name(), stamp).await.unwrap();
+        assert_eq!(text(StudyFile::Overview, "now").await.unwrap(), "text of 1");
+        assert_eq!(text(StudyFile::Overview, "then").await, None);
+        assert_eq!(text(StudyFile::Report, "now").await, None);
+        let listed = async || cache.of_every_study(&StudyFile::ListItem.name()).await.unwrap();
+        assert_eq!(listed().await[&2], ("now".to_owned(), "text of 2".to_owned()));
+        cache.forget_deleted(|study| study == 1);
+        assert_eq!(listed().await.into_keys().collect::<Vec<_>>(), [1]);
+    }
+}
