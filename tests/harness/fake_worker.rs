@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 use crate::http::{Client, Response};
 
 /// Version of the protocol.
-pub const PROTOCOL: u32 = 11;
+pub const PROTOCOL: u32 = 12;
 
 /// A worker by name; it does what a test says and nothing else.
 #[derive(Debug)]

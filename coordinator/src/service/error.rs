@@ -5,7 +5,8 @@ use shared::file::FileError;
 
 use crate::webhook::WebhookError;
 use farm::ControlError;
-use farm::calibration::{BeginError, ReplayError};
+use farm::calibration::BeginError;
+use farm::calibration::replay::ReplayError;
 use farm::dispatch::Stopped;
 use job::EffectsChanged;
 use record::CalibrationRow;

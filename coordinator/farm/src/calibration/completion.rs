@@ -7,11 +7,11 @@ use statistics::{LikelihoodError, LogLikelihood};
 
 use super::Calibration;
 use super::engine::CalibrationResult;
-use super::faults::NOBODY;
 use super::final_draws::FinalDraws;
 use super::phase::Phase;
 use super::second_answer::{Answer, SecondAnswers};
 use super::simulation_result::{ResultError, SimulationResult};
+use super::witness::NOBODY;
 use crate::lease::{Completion, LeaseQueue};
 use job::AlgorithmSettings;
 use record::{EvaluationKey, EvaluationRow, Fact, Kept, RejectionReason};

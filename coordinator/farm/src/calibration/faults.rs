@@ -9,13 +9,12 @@ use statistics::SubchainEnd;
 
 use super::Calibration;
 use super::simulation_result::SimulationResult;
+use super::witness::NOBODY;
 use crate::lease::{LeaseFailure, MAX_ATTEMPTS, MAX_UNSTARTED};
 use record::Fact;
 
 /// The share of a round's evaluations that may be given up, rounded to the next whole number: none of fewer than 50 `[%]`.
 const GIVEN_UP_PERCENT: usize = 1;
-/// The worker of an evaluation that was given up.
-pub(super) const NOBODY: &str = "";
 
 impl Calibration {
     /// Records that a lease failed: kept over restarts. When the attempts are used up, the evaluation is given up or the

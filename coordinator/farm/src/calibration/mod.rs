@@ -5,20 +5,21 @@
 //!
 //! # Layout
 //! - `mod`: [`Calibration`], and what it asks for.
-//! - `completion`: what follows from a result. `replay`: the same from the store.
+//! - `completion`: what follows from a result. [`replay`]: the same from the store.
 //! - `phase`, `final_draws`: where a calibration is. `variants`: what it evaluates there.
 //! - `engine`: sampler, fit, evolution or search.
 //! - `faults`: evaluations that machines failed at.
-//! - `witness`, `second_answer`, `verification`: whether answers of two workers agree.
+//! - `witness`, `comparison`, `second_answer`, `verification`: whether answers of two workers agree.
 //! - `question`, `simulation_result`: what an evaluation is leased with, and its result.
 
+mod comparison;
 mod completion;
 mod engine;
 mod faults;
 mod final_draws;
 mod phase;
 mod question;
-mod replay;
+pub mod replay;
 mod second_answer;
 mod simulation_result;
 mod variants;
@@ -43,7 +44,6 @@ use search::{DiscoveryError, SearchModels};
 
 pub use engine::{BeginError, CalibrationEngine, CalibrationResult};
 pub use question::Question;
-pub use replay::ReplayError;
 pub use second_answer::{Answer, SecondAnswers, Verdict};
 pub use simulation_result::{ResultError, SimulationResult};
 pub use verification::Verification;

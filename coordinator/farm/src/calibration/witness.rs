@@ -4,10 +4,11 @@ use std::collections::BTreeMap;
 
 use record::Fact;
 
-use super::Calibration;
-use super::faults::NOBODY;
 use super::second_answer::{Answer, SecondAnswers, Verdict};
 use super::verification::Verification;
+
+/// The worker of an evaluation that was given up.
+pub(super) const NOBODY: &str = "";
 
 /// What is known of the workers that answered.
 #[derive(Debug)]
@@ -82,14 +83,14 @@ impl Witness {
     }
 
     /// Takes the answer that is stored.
-    fn store(&mut self, evaluation: u64, answer: Answer, is_confirmed: bool) {
+    pub(super) fn store(&mut self, evaluation: u64, answer: Answer, is_confirmed: bool) {
         let stored = StoredAnswer { answer, is_confirmed };
         self.round.insert(evaluation, stored);
     }
 
     /// The stored answer that an answer which nobody asked for makes worth a comparison: it confirms the stored one as well as one
     /// that was asked for, or brings a dispute that other workers settle.
-    fn disputed(&self, evaluation: u64, answer: &Answer) -> Option<Answer> {
+    pub(super) fn disputed(&self, evaluation: u64, answer: &Answer) -> Option<Answer> {
         let stored = self.round.get(&evaluation).map(|stored| &stored.answer);
         let stored = stored.filter(|stored| stored.worker != NOBODY && *stored != answer)?;
         let is_open = !self.second.contains(evaluation) && !self.round[&evaluation].is_confirmed;
@@ -97,7 +98,7 @@ impl Witness {
     }
 
     /// Takes an answer to an evaluation that has one already. The facts to store.
-    fn compare(&mut self, calibration: i64, evaluation: u64, answer: Answer) -> Vec<Fact> {
+    pub(super) fn compare(&mut self, calibration: i64, evaluation: u64, answer: Answer) -> Vec<Fact> {
         let (worker, fingerprint) = (answer.worker.clone(), answer.fingerprint);
         let duplicate = Fact::Duplicate {
             calibration,
@@ -147,6 +148,11 @@ impl Witness {
         }
     }
 
+    /// Counts an answer of a worker that nobody has confirmed.
+    pub(super) fn count_unconfirmed(&mut self, worker: &str) {
+        *self.unconfirmed.entry(worker.to_owned()).or_default() += 1;
+    }
+
     /// Notes that another worker has given the stored answer of a worker.
     fn confirm(&mut self, evaluation: u64, first: &str) {
         if let Some(stored) = self.round.get_mut(&evaluation) {
@@ -165,39 +171,5 @@ impl Witness {
     /// Whether answers of a worker are stored that nobody has confirmed.
     pub fn rests_on(&self, worker: &str) -> bool {
         self.unconfirmed.get(worker).is_some_and(|&count| count > 0)
-    }
-}
-
-impl Calibration {
-    /// Takes the answer that is stored; its evaluation may be asked for twice.
-    pub(super) fn answered_first(&mut self, answer: Answer, evaluation: u64) {
-        self.witness.store(evaluation, answer.clone(), false);
-        if answer.worker == NOBODY {
-            self.witness.second.drop(evaluation);
-            return;
-        }
-        if self.witness.verification.selects(evaluation) {
-            self.ask_second(evaluation, None);
-        }
-        let unconfirmed = &mut self.witness.unconfirmed;
-        *unconfirmed.entry(answer.worker.clone()).or_default() += 1;
-        self.witness.second.answered(evaluation, answer);
-    }
-
-    /// Takes an answer that was stored before a restart. The round of its evaluation is the present one.
-    pub(super) fn answered_before(&mut self, answer: Answer, evaluation: u64, is_confirmed: bool) {
-        match is_confirmed {
-            true => self.witness.store(evaluation, answer, true),
-            false => self.answered_first(answer, evaluation),
-        }
-    }
-
-    /// Takes an answer to an evaluation that has one already. The facts to store.
-    pub(super) fn compare(&mut self, evaluation: u64, answer: Answer) -> Vec<Fact> {
-        if let Some(first) = self.witness.disputed(evaluation, &answer) {
-            self.ask_second(evaluation, None);
-            self.witness.second.answered(evaluation, first);
-        }
-        self.witness.compare(self.identity.id, evaluation, answer)
     }
 }
