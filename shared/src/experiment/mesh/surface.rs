@@ -23,7 +23,7 @@ const LARGEST_WIDTH: f64 = 1.05;
 pub struct WheelMesh {
     /// Vertices: x, y, z `[m]`, finite.
     pub vertices_m: Vec<[f64; 3]>,
-    /// Triangles: positions in `vertices_m`. At least one, at most [`MOST_TRIANGLES`].
+    /// Triangles: positions in `vertices_m`. At least one, at most [`MAX_TRIANGLES`].
     pub triangles: Vec<[u32; 3]>,
 }
 
