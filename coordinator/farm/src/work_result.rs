@@ -29,10 +29,10 @@ impl Farm {
     /// Takes the results of a worker. The number of those that changed nothing.
     pub(super) fn take_results(&mut self, worker: &str, results: Vec<WorkResult>, now_ms: u64) -> u32 {
         let (mut duplicates, mut refused_leases) = (0, Vec::new());
-        let is_quarantined = self.quarantine.contains_key(worker);
         for result in results {
             let lease = result.lease;
-            if is_quarantined {
+            // An earlier result of the same message may have convicted the worker.
+            if self.quarantine.contains_key(worker) {
                 refused_leases.push(lease);
                 continue;
             }
@@ -48,7 +48,7 @@ impl Farm {
                 worker,
                 lease,
                 results,
-                quarantined = is_quarantined,
+                quarantined = self.quarantine.contains_key(worker),
                 "results refused: their seals do not prove that they answer leases of this worker, or it computes wrongly; the first lease is named"
             );
             self.counters.refused += results as u64;

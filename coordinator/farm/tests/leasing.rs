@@ -206,6 +206,49 @@ fn late_results_of_a_calibration_that_ends_in_its_replay_are_compared() {
 }
 
 #[test]
+fn nothing_counts_behind_the_result_that_convicts_its_worker() {
+    let cases = Case::all().expect("the jobs are valid");
+    let case = &cases[SMALL][0];
+    let outcome = |evaluation: u64| case.answers[&evaluation].outcome.clone();
+    let mut farm = Farm::new(1, LEASE_MS);
+    let key = SealKey([1; 16]);
+    let calibration = case.begin(1).expect("the job is valid").verified(1.0, key);
+    farm.add(calibration, key, Vec::new(), 0);
+    let mut send = |worker: &str, want: u32, results: Vec<WorkResult>| {
+        let response = farm.exchange(
+            ExchangeRequest {
+                results,
+                ..request(worker, want)
+            },
+            0,
+        );
+        (response.leases, farm.take_facts())
+    };
+    let (leases, _) = send("a", 2, Vec::new());
+    let [first, second] = &leases[..] else {
+        panic!("{leases:?}");
+    };
+    send("a", 0, vec![answer(first, outcome(first.evaluation))]);
+    let (leases, _) = send("b", 5, Vec::new());
+    let again = leases.iter().find(|lease| lease.evaluation == first.evaluation);
+    let again = again.expect("another worker is asked for the same evaluation");
+    let (_, facts) = send("b", 0, vec![answer(again, outcome(first.evaluation))]);
+    assert!(
+        facts.iter().any(|fact| matches!(fact, Fact::Confirmed { .. })),
+        "{facts:?}"
+    );
+    let wrong = answer(first, outcome(second.evaluation));
+    let (_, facts) = send("a", 0, vec![wrong, answer(second, outcome(second.evaluation))]);
+    let counted = facts.iter().filter(|fact| matches!(fact, Fact::Evaluated { .. }));
+    assert_eq!(counted.count(), 0, "{facts:?}");
+    let (leases, _) = send("b", 5, Vec::new());
+    assert!(
+        leases.iter().any(|lease| lease.evaluation == second.evaluation),
+        "{leases:?}"
+    );
+}
+
+#[test]
 fn an_evaluation_that_nobody_begins_pauses_its_calibration() {
     let (mut farm, _) = farm(&[SMALL]);
     let mut now_ms = 0;
