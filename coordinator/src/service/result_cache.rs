@@ -34,6 +34,9 @@ impl ResultCache {
         stamp: &str,
     ) -> Result<Option<String>, StoreError> {
         if let Some(text) = self.store.reader().result(study, name, stamp).await? {
+            // Another process has stored newer texts than those in memory.
+            self.in_memory()
+                .retain(|id, kept| *id != study || kept.stamp == stamp);
             return Ok(Some(text));
         }
         let in_memory = self.in_memory();

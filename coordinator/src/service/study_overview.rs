@@ -136,6 +136,8 @@ impl Service {
     /// The studies whose present members have no overview yet, with the stamp of these members.
     async fn studies_without_overview(&self) -> Result<BTreeMap<i64, String>, ServiceError> {
         let listed = self.results.of_every_study(&StudyFile::ListItem.name()).await?;
+        // No results of a study are stored while it is deleted in parts.
+        let deleted = self.store().reader().half_deleted().await?;
         let mut studies: BTreeMap<i64, Vec<(i64, CalibrationState)>> = BTreeMap::new();
         for (study, id, state) in self.store().reader().member_states().await? {
             studies.entry(study).or_default().push((id, state));
@@ -147,7 +149,10 @@ impl Service {
                 .into_iter()
                 .map(|(study, members)| (study, members_stamp(members.into_iter()))),
         );
-        stamps.retain(|study, stamp| !listed.get(study).is_some_and(|(of, _)| is_of_members(of, stamp)));
+        stamps.retain(|study, stamp| {
+            let is_listed = listed.get(study).is_some_and(|(of, _)| is_of_members(of, stamp));
+            !is_listed && !deleted.contains(study)
+        });
         Ok(stamps)
     }
 }
