@@ -4,10 +4,11 @@ use farm::calibration::SimulationResult;
 use farm::{Control, Farm};
 use record::{Fact, SealKey};
 use shared::api::CalibrationState;
-use shared::exchange::{ExchangeRequest, ExchangeResponse, Lease, PROTOCOL_VERSION, WorkResult};
+use shared::exchange::{ExchangeRequest, ExchangeResponse, Lease, WorkResult};
 use shared::outcome::{Fault, Outcome};
 
 use super::simulation::world::case::{Case, EQUATIONS};
+use super::simulation::world::request::bare;
 
 const LEASE_MS: u64 = 1_000;
 
@@ -25,20 +26,8 @@ fn farm(kinds: &[usize]) -> (Farm, Vec<Vec<Case>>) {
 
 fn request(worker: &str, want: u32) -> ExchangeRequest {
     ExchangeRequest {
-        worker: worker.into(),
-        protocol: PROTOCOL_VERSION,
-        model_version: EQUATIONS.into(),
-        models: Default::default(),
-        queue_job: None,
-        threads: 1,
-        evaluation_s: None,
-        results: Vec::new(),
-        holding: Vec::new(),
-        returned: Vec::new(),
-        started: Vec::new(),
-        received: u64::MAX,
         want,
-        wait_ms: 0,
+        ..bare(worker.into(), EQUATIONS)
     }
 }
 

@@ -58,7 +58,7 @@ struct MixturePart {
 /// Nats; `None` where a Hessian is not positive definite.
 ///
 /// # Validity
-/// That of [`log_evidence`]. Checked by `effect_search::evidence_of_a_linear_extension_is_exact`.
+/// The validity is that of [`log_evidence`]. Checked by `effect_search::evidence_of_a_linear_extension_is_exact`.
 pub(crate) fn mixed_evidence(
     frame: &NormalFrame,
     position: &[f64],

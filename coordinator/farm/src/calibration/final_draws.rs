@@ -6,7 +6,7 @@ use inference::point_estimate::ModeEstimate;
 use inference::{Particle, PosteriorSample};
 use record::EvaluationKey;
 
-/// What is simulated once the posterior, or the estimate, is known.
+/// The simulations that follow once the posterior, or the estimate, is known.
 #[derive(Debug)]
 pub(super) struct FinalDraws {
     /// To simulate on fitted and holdout runs.

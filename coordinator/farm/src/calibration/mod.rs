@@ -1,7 +1,7 @@
 //! A calibration in progress: the one place where sampler or fit, likelihood and leases meet.
 //!
-//! Pure: it is told outcomes and answers with facts to store. The same [`Calibration::complete`] serves a
-//! living worker and a replay from the store, so a restart cannot take another path.
+//! Pure: it is told outcomes and answers with facts to store. A result of a living worker and one that is
+//! replayed from the store advance it by the same code, so a restart cannot take another path.
 //!
 //! # Layout
 //! - `mod`: [`Calibration`], and what it asks for.
@@ -95,7 +95,7 @@ pub struct Calibration {
     pub queue: LeaseQueue,
     /// What it has cost.
     pub cost: Cost,
-    /// What is known of the workers that answered.
+    /// The record of the workers that answered.
     pub witness: Witness,
     engine: CalibrationEngine,
     phase: Phase,

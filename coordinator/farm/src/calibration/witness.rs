@@ -1,4 +1,4 @@
-//! What is known of the workers that answered: whose answers agree, and who computes wrongly.
+//! The record of the workers that answered: whose answers agree, and who computes wrongly.
 
 use std::collections::BTreeMap;
 
@@ -10,7 +10,7 @@ use super::verification::Verification;
 /// The worker of an evaluation that was given up.
 pub(super) const NOBODY: &str = "";
 
-/// What is known of the workers that answered.
+/// The record of the workers that answered.
 #[derive(Debug)]
 pub struct Witness {
     /// Which evaluations a second worker computes as well.

@@ -14,6 +14,7 @@ use super::case::{Case, EQUATIONS};
 use super::ledger::{Entry, Ledger};
 use super::plant::Plant;
 use super::promise::{Broken, Promise, demand};
+use super::request::bare;
 use super::witness::{Source, Witness};
 
 /// A lease lasts so long without renewal `[ms]`.
@@ -371,7 +372,7 @@ impl Coordinator<'_> {
     fn in_the_name_of_others(&mut self, request: &ExchangeRequest, now_ms: u64) -> Result<(), Broken> {
         let owner = |lease: u64| Some(self.witness.issued.get(&lease)?.worker.clone());
         let mut acts: Vec<ExchangeRequest> = Vec::new();
-        let bare = |worker: String| ExchangeRequest {
+        let emptied = |worker: String| ExchangeRequest {
             worker,
             results: Vec::new(),
             holding: Vec::new(),
@@ -385,14 +386,14 @@ impl Coordinator<'_> {
             for &lease in &request.returned {
                 acts.extend(owner(lease).map(|worker| ExchangeRequest {
                     returned: vec![lease],
-                    ..bare(worker)
+                    ..emptied(worker)
                 }));
             }
         } else {
             for result in &request.results {
                 acts.extend(owner(result.lease).map(|worker| ExchangeRequest {
                     results: vec![result.clone()],
-                    ..bare(worker)
+                    ..emptied(worker)
                 }));
             }
         }
@@ -410,20 +411,8 @@ impl Coordinator<'_> {
         let Some(farm) = &mut self.farm else { return };
         for (lease, worker) in self.witness.live() {
             let renewal = ExchangeRequest {
-                worker: worker.to_owned(),
-                protocol: shared::exchange::PROTOCOL_VERSION,
-                model_version: EQUATIONS.into(),
-                models: Default::default(),
-                queue_job: None,
-                threads: 1,
-                evaluation_s: None,
-                results: Vec::new(),
                 holding: vec![lease],
-                returned: Vec::new(),
-                started: Vec::new(),
-                received: u64::MAX,
-                want: 0,
-                wait_ms: 0,
+                ..bare(worker.to_owned(), EQUATIONS)
             };
             farm.exchange(renewal, now_ms);
         }

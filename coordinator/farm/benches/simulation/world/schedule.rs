@@ -7,7 +7,7 @@
 use farm::Control;
 use record::SealKey;
 use shared::api::CalibrationState;
-use shared::exchange::{ExchangeRequest, ExchangeResponse, PROTOCOL_VERSION, WorkResult};
+use shared::exchange::{ExchangeRequest, ExchangeResponse, WorkResult};
 use statistics::rng::Stream;
 
 use super::case::{Case, EQUATIONS, Kind};
@@ -15,6 +15,7 @@ use super::coordinator::{Coordinator, LEASE_MS, Return};
 use super::issued::Issued;
 use super::plant::Plant;
 use super::promise::{Broken, Promise};
+use super::request::bare;
 use super::tally::Tally;
 use super::weather::{Weather, chance};
 use super::worker::{Act, Worker, lie};
@@ -507,26 +508,6 @@ impl Schedule<'_> {
             exchange: 0,
         };
         self.send(Message::Request(request, to));
-    }
-}
-
-/// A request for nothing, from a worker that has received everything.
-fn bare(worker: String, version: &str) -> ExchangeRequest {
-    ExchangeRequest {
-        worker,
-        protocol: PROTOCOL_VERSION,
-        model_version: version.into(),
-        models: Default::default(),
-        queue_job: None,
-        threads: 1,
-        evaluation_s: None,
-        results: Vec::new(),
-        holding: Vec::new(),
-        returned: Vec::new(),
-        started: Vec::new(),
-        received: u64::MAX,
-        want: 0,
-        wait_ms: 0,
     }
 }
 

@@ -2,11 +2,12 @@
 
 use std::collections::BTreeMap;
 
-use shared::exchange::{ExchangeRequest, ExchangeResponse, Lease, PROTOCOL_VERSION, WorkResult};
+use shared::exchange::{ExchangeRequest, ExchangeResponse, Lease, WorkResult};
 use shared::outcome::{Fault, Outcome};
 use statistics::rng::Stream;
 
 use super::issued::Issued;
+use super::request::bare;
 use super::weather::{Weather, chance};
 
 /// A worker waits so long for an answer before it sends again `[ms]`.
@@ -169,13 +170,6 @@ impl Worker {
         self.exchanges += 1;
         let results = std::mem::take(&mut self.outbox);
         let request = ExchangeRequest {
-            worker: self.name.clone(),
-            protocol: PROTOCOL_VERSION,
-            model_version: self.version.to_owned(),
-            models: Default::default(),
-            queue_job: None,
-            threads: 1,
-            evaluation_s: None,
             results: results.clone(),
             holding,
             returned: std::mem::take(&mut self.returned),
@@ -187,6 +181,7 @@ impl Worker {
             } else {
                 0
             },
+            ..bare(self.name.clone(), self.version)
         };
         self.asked = Some(Asked {
             exchange: self.exchanges,
