@@ -13,9 +13,9 @@ use benchmark::damaged_input::tally::Tally;
 /// Inputs where nothing is said.
 const INPUTS: u64 = 1_000_000;
 /// Longest time for an input.
-const MOST: Duration = Duration::from_secs(1);
+const MAX_TIME: Duration = Duration::from_secs(1);
 /// Most memory that the program may have held `[MiB]`.
-const MOST_MIB: u64 = 256;
+const MAX_MIB: u64 = 256;
 
 fn main() -> ExitCode {
     let numbers = std::env::args()
@@ -55,7 +55,7 @@ fn main() -> ExitCode {
     if !tally.broken.is_empty() {
         return failed(&format!("{} inputs broke a promise", tally.broken.len()));
     }
-    if tally.slowest() > MOST || peak_mib > MOST_MIB {
+    if tally.slowest() > MAX_TIME || peak_mib > MAX_MIB {
         return failed("an input took more than 1 s, or the program more than 256 MiB");
     }
     ExitCode::SUCCESS

@@ -10,9 +10,9 @@ use benchmark::sbc::{Study, judge};
 /// Bins of the ranks, a rank each.
 const BINS: usize = 20;
 /// No parameter's chi-square, and no coverage, may be less probable than this.
-const LEAST_P: f64 = 1e-3;
+const MIN_P: f64 = 1e-3;
 /// The least of all chi-square probabilities, times their number (Bonferroni).
-const LEAST_P_OF_ALL: f64 = 1e-2;
+const MIN_P_TOGETHER: f64 = 1e-2;
 
 fn main() -> ExitCode {
     let numbers: Result<Vec<u64>, _> = std::env::args()
@@ -71,8 +71,8 @@ fn report(study: &Study) -> Result<bool, String> {
     let least = verdicts.iter().map(|v| v.p).fold(1.0, f64::min);
     let of_all = (least * verdicts.len() as f64).min(1.0);
     println!("least p times the number of parameters: {of_all:.4}");
-    let each = verdicts.iter().all(|v| v.p > LEAST_P && v.coverage_p > LEAST_P);
-    let good = each && of_all > LEAST_P_OF_ALL;
+    let each = verdicts.iter().all(|v| v.p > MIN_P && v.coverage_p > MIN_P);
+    let good = each && of_all > MIN_P_TOGETHER;
     println!("{}", if good { "calibrated" } else { "NOT CALIBRATED" });
     Ok(good)
 }

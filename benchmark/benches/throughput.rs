@@ -69,7 +69,7 @@ impl Server {
     }
 
     /// Most memory that the process has held so far `[MB]`.
-    fn most_resident_mb(&self) -> Anyhow<f64> {
+    fn max_resident_mb(&self) -> Anyhow<f64> {
         let status = std::fs::read_to_string(format!("/proc/{}/status", self.0.id()))?;
         let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));
         let kb = line
@@ -221,7 +221,7 @@ async fn measure(place: &Place, connected: usize, batch: u32, verify_percent: &s
         p50_ms: quantile(0.5),
         p99_ms: quantile(0.99),
         cpu_us: 1e6 * (server.cpu_s()? - cpu_before) / evaluations,
-        resident_mb: server.most_resident_mb()?,
+        resident_mb: server.max_resident_mb()?,
     })
 }
 

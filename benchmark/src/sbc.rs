@@ -27,7 +27,7 @@ use statistics::rng::Stream;
 /// Draws of a posterior that the truth is ranked among: evenly spaced, because particles beside one another may be copies.
 pub const RANKED: usize = 19;
 /// Vectors of the prior that the model may refuse in a row.
-const MOST_REFUSED: u64 = 1000;
+const MAX_REFUSED: u64 = 1000;
 /// Streams of this study, far from those of any sampler.
 const STAGE: u64 = 1 << 40;
 
@@ -192,7 +192,7 @@ impl Study {
 
     /// A truth that the model takes, its noisy measurements, and how many vectors the model refused before.
     fn measure(&self, spec: &Spec, model: &Evaluate, set: u64) -> Result<Case, String> {
-        for refused in 0..MOST_REFUSED {
+        for refused in 0..MAX_REFUSED {
             let truth = spec
                 .prior()
                 .sample(&mut Stream::new(self.seed, STAGE, set, refused));
@@ -222,7 +222,7 @@ impl Study {
             });
         }
         Err(format!(
-            "the model refused {MOST_REFUSED} draws of the prior in a row"
+            "the model refused {MAX_REFUSED} draws of the prior in a row"
         ))
     }
 }

@@ -7,7 +7,7 @@ use benchmark::hidden_effect::rig::untryable::{self, Said};
 use benchmark::hidden_effect::rig::{self, Flaw};
 use benchmark::hidden_effect::study::error::StudyError;
 use benchmark::hidden_effect::study::kind::HiddenKind;
-use benchmark::hidden_effect::study::noise_free::LEAST_SEPARATION;
+use benchmark::hidden_effect::study::noise_free::MIN_SEPARATION;
 use benchmark::hidden_effect::study::parallel::each;
 use benchmark::hidden_effect::study::score::TrialScore;
 use benchmark::hidden_effect::study::tally::Tally;
@@ -40,7 +40,7 @@ fn count(scores: &[TrialScore], holds: impl Fn(&TrialScore) -> bool) -> usize {
 fn an_effect_is_named_and_the_error_falls() {
     let scores = scores(HiddenKind::One, &ONE);
     let shown = Tally(&scores).to_string();
-    assert!(scores.iter().all(|f| f.separation >= LEAST_SEPARATION), "{shown}");
+    assert!(scores.iter().all(|f| f.separation >= MIN_SEPARATION), "{shown}");
     assert!(count(&scores, |f| f.is_right && f.is_covered) >= 5, "{shown}");
     assert!(scores.iter().all(|f| f.is_in_two), "{shown}");
     assert_eq!(

@@ -4,7 +4,7 @@ use benchmark::sbc::{Study, Verdict, binomial_p, judge};
 
 /// Twenty ranks fill no more bins.
 const BINS: usize = 4;
-const LEAST_P: f64 = 1e-3;
+const MIN_P: f64 = 1e-3;
 
 fn verdicts(noise_factor: f64) -> Vec<Verdict> {
     let study = Study {
@@ -27,7 +27,7 @@ fn the_truth_is_one_more_draw_of_its_posterior() {
     let judged: Vec<&str> = verdicts.iter().map(|v| v.parameter.as_str()).collect();
     assert_eq!(judged.len(), 5, "{judged:?}");
     for v in &verdicts {
-        assert!(v.p > LEAST_P && v.coverage_p > LEAST_P, "{v:?}");
+        assert!(v.p > MIN_P && v.coverage_p > MIN_P, "{v:?}");
         assert!(v.coverage >= 0.6, "{v:?}");
         assert_eq!(v.counts.iter().sum::<usize>(), 20);
     }
@@ -36,7 +36,7 @@ fn the_truth_is_one_more_draw_of_its_posterior() {
 #[test]
 fn noise_that_the_likelihood_does_not_know_of_shows() {
     let verdicts = verdicts(4.0);
-    let found = verdicts.iter().any(|v| v.p < LEAST_P || v.coverage_p < LEAST_P);
+    let found = verdicts.iter().any(|v| v.p < MIN_P || v.coverage_p < MIN_P);
     assert!(found, "{verdicts:?}");
 }
 

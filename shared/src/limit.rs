@@ -106,13 +106,13 @@ pub const LIMITS: [Limit; 27] = [
 ];
 
 /// The limits of a quantity by its name.
-pub fn of(name: &str) -> Option<&'static Limit> {
+pub fn find(name: &str) -> Option<&'static Limit> {
     LIMITS.iter().find(|limit| limit.name == name)
 }
 
 /// Returns the message about a value that no rig has: `125 m must be at most 10 m: was it typed in mm (0.125 m)?`.
 pub fn impossible(name: &str, value: f64) -> Option<String> {
-    let limit = of(name)?;
+    let limit = find(name)?;
     let outside = limit.outside(limit.possible, value)?;
     Some(format!("{outside}{}", limit.question(value)))
 }
@@ -187,7 +187,7 @@ mod tests {
 
     #[test]
     fn a_value_in_another_unit_is_asked_about_in_it() {
-        let unusual = |name: &str, value: f64| of(name).unwrap().unusual(value);
+        let unusual = |name: &str, value: f64| find(name).unwrap().unusual(value);
         for (name, value, question) in [
             (
                 "wheel_load_n",

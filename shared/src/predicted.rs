@@ -69,7 +69,7 @@ impl PredictedValue {
     }
 
     /// The value in `observables`, which must cover the variant of this prediction.
-    pub fn of(self, observables: &Observables) -> f64 {
+    pub fn select(self, observables: &Observables) -> f64 {
         match self {
             PredictedValue::Average { channel, run } => observables.channel(channel)[run],
             PredictedValue::Sensitivity { channel, run } => observables.sensitivity(channel)[run],

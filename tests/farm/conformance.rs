@@ -241,7 +241,7 @@ fn a_variant_has_one_form_and_its_hash_names_it() {
         histories: false,
         plates: Vec::new(),
         probe: Vec::new(),
-        companion: None,
+        low_fidelity: None,
         rings: Vec::new(),
     };
     golden(

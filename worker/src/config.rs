@@ -63,10 +63,10 @@ pub struct PullArguments {
 
 /// Parses a time in seconds, 0 to 10 years.
 fn seconds(text: &str) -> Result<Duration, String> {
-    const MAX_S: f64 = 315_360_000.0;
+    const MAX_SECONDS: f64 = 315_360_000.0;
     match text.parse::<f64>() {
-        Ok(seconds) if (0.0..=MAX_S).contains(&seconds) => Ok(Duration::from_secs_f64(seconds)),
-        _ => Err(format!("must be a number of seconds in [0, {MAX_S}]")),
+        Ok(seconds) if (0.0..=MAX_SECONDS).contains(&seconds) => Ok(Duration::from_secs_f64(seconds)),
+        _ => Err(format!("must be a number of seconds in [0, {MAX_SECONDS}]")),
     }
 }
 

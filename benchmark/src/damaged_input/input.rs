@@ -9,7 +9,7 @@ use shared::bearer::BearerToken;
 use shared::exchange::ExchangeRequest;
 use shared::experiment::{Experiment, WheelMesh};
 use shared::file::FileSet;
-use shared::model::effects::own;
+use shared::model::effects::read_user_effect;
 use shared::wire::WireForm;
 use statistics::rng::Stream;
 
@@ -141,7 +141,7 @@ impl Input {
                 .map_err(|e| said(&e))
                 .map(drop),
             Input::Effect(text) => {
-                let effect = own(EFFECT, text).map_err(|e| said(&e))?;
+                let effect = read_user_effect(EFFECT, text).map_err(|e| said(&e))?;
                 check_own(EFFECT, &effect).map_err(|e| said(&e))
             }
             Input::Mesh(name, text) => WheelMesh::parse(name, text).map_err(|e| said(&e)).map(drop),

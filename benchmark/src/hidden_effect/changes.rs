@@ -9,7 +9,7 @@ use crate::hidden_effect::study::case::{blank, run as measured, spec};
 use crate::hidden_effect::study::cpu::cpu_s;
 use crate::hidden_effect::study::design::{CHANNELS, Plan, experiment};
 use crate::hidden_effect::study::error::StudyError;
-use crate::hidden_effect::study::noise_free::{LEAST_SEPARATION, shortfall_of};
+use crate::hidden_effect::study::noise_free::{MIN_SEPARATION, shortfall_of};
 use crate::hidden_effect::study::parallel::threads;
 use crate::hidden_effect::study::posterior::{PosteriorSample, sample};
 use crate::hidden_effect::study::rate::Rate;
@@ -21,7 +21,7 @@ const STAGE: u64 = 1 << 49;
 /// and at three hundredths few soils show a cohesion of 500 Pa.
 const NOISE: f64 = 0.01;
 /// Draws of the prior until the model takes all campaigns and each change is detectable.
-const MOST_DRAWN: u64 = 100;
+const MAX_DRAWN: u64 = 100;
 /// Most effects in a combination of the search.
 const MAX_EFFECTS: usize = 2;
 /// On a coarse grid a run may jump between two ruts as the soil changes by a thousandth: a fit ends on either side, a sample on the right one.
@@ -199,7 +199,7 @@ impl Rig {
         rows.retain(|row| !row.is_holdout);
         let base = job(plan, REFERENCE);
         let prior = spec(&base, &blank(&rows))?.prior();
-        'draws: for drawn in 0..MOST_DRAWN {
+        'draws: for drawn in 0..MAX_DRAWN {
             let truth = prior.sample(&mut Stream::new(seed, STAGE, number, drawn));
             let (mut sds, mut experiments) = (None, Vec::new());
             let (mut shortfalls, mut chi_squares) = (Vec::new(), Vec::new());
@@ -211,7 +211,7 @@ impl Rig {
                 if soil != REFERENCE {
                     let noise_free = experiment(&rows, &values, sds);
                     let nats = shortfall_of(&base, &noise_free, truth.clone())?;
-                    if nats < LEAST_SEPARATION {
+                    if nats < MIN_SEPARATION {
                         continue 'draws;
                     }
                     shortfalls.push(nats);
@@ -232,7 +232,7 @@ impl Rig {
             });
         }
         Err(format!(
-            "with {MOST_DRAWN} draws of the prior the model rejects a soil, or a change is not detectable"
+            "with {MAX_DRAWN} draws of the prior the model rejects a soil, or a change is not detectable"
         )
         .into())
     }

@@ -20,7 +20,7 @@ const STAGE: u64 = 1 << 48;
 /// Every so many campaigns nothing has changed.
 const UNCHANGED: u64 = 4;
 /// Draws of the prior until the model takes it with the effect and without.
-const MOST_DRAWN: u64 = 20;
+const MAX_DRAWN: u64 = 20;
 /// Most effects in a combination of the search.
 const MAX_EFFECTS: usize = 3;
 const SAMPLER: &str = "[sampler]\nparticles = 500\n";
@@ -88,14 +88,14 @@ fn campaigns(seed: u64, number: u64) -> Result<(SyntheticCase, FileSet), StudyEr
     } else {
         HiddenKind::One
     };
-    for attempt in 0..MOST_DRAWN {
+    for attempt in 0..MAX_DRAWN {
         // An attempt keeps the effect whose turn it is.
         let case = draw(kind, seed + attempt, FIRST + number)?;
         if let Some(reference) = case.reference(Stream::new(seed, STAGE, number, attempt))? {
             return Ok((case, reference));
         }
     }
-    Err(format!("the model rejected {MOST_DRAWN} reference campaigns in a row").into())
+    Err(format!("the model rejected {MAX_DRAWN} reference campaigns in a row").into())
 }
 
 impl Compared {

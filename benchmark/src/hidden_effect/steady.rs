@@ -15,7 +15,7 @@ use crate::hidden_effect::study::trial::{draw_detectable, draw_of};
 /// The truths are others than those of the other kinds.
 const FIRST: u64 = 3_000_000;
 /// Most seconds of a search.
-const MOST_S: f64 = 60.0;
+const MAX_S: f64 = 60.0;
 
 /// Searches so many experiments one after the other, each on all threads.
 ///
@@ -57,9 +57,9 @@ pub fn run(plan: Plan, hidden: Option<&str>, count: u64, seed: u64) -> Result<()
     let longest = times.iter().copied().fold(0.0, f64::max);
     println!("named or classed right: {}", Rate::new(right.into_iter()));
     println!("wrong: {} (goal 0)", Rate::new(wrong.into_iter()));
-    let short = Rate::new(times.iter().map(|time| *time <= MOST_S));
+    let short = Rate::new(times.iter().map(|time| *time <= MAX_S));
     println!(
-        "within {MOST_S} s on {} threads: {short} (goal 1); longest {longest:.1} s",
+        "within {MAX_S} s on {} threads: {short} (goal 1); longest {longest:.1} s",
         threads()
     );
     Ok(())

@@ -19,9 +19,9 @@ use crate::hidden_effect::study::trial::draw;
 const SAMPLER: &str = "[sampler]\nparticles = 1000\nmoves = [5, 10]\n";
 /// Largest difference that counts as none \[nats\], and the least share of such.
 const CLOSE: f64 = 1.0;
-const LEAST_SHARE: f64 = 0.97;
+const MIN_SHARE: f64 = 0.97;
 /// No truth may fall short by more \[nats\].
-const MOST_SHORT: f64 = 3.0;
+const MAX_SHORT: f64 = 3.0;
 /// The truths are others than those of the other kinds.
 const FIRST: u64 = 2_000_000;
 
@@ -45,8 +45,8 @@ pub fn run(count: u64, seed: u64) -> Result<(), StudyError> {
          {CLOSE}",
         median(&differences)
     );
-    if (close as f64) < LEAST_SHARE * count as f64 || lowest < -MOST_SHORT {
-        return Err(format!("less than {LEAST_SHARE} within {CLOSE}, or one below -{MOST_SHORT}").into());
+    if (close as f64) < MIN_SHARE * count as f64 || lowest < -MAX_SHORT {
+        return Err(format!("less than {MIN_SHARE} within {CLOSE}, or one below -{MAX_SHORT}").into());
     }
     Ok(())
 }
@@ -60,7 +60,7 @@ fn one(seed: u64, number: u64) -> Result<Compared, StudyError> {
     let truth = task.library.iter().position(|c| c.name == *name);
     let truth = conclusion
         .ranking
-        .of(Some(truth.ok_or("the truth is no candidate")?));
+        .effect(Some(truth.ok_or("the truth is no candidate")?));
     let truth = truth.ok_or("the model rejected the truth")?;
     let base = sampled(&case, &case.plan.job(), seed)?;
     let added = Extension::Effect(name.clone());

@@ -20,7 +20,7 @@ pub struct Candidate {
     /// explains alone.
     pub family: Option<String>,
     /// Whether the low-fidelity model has this candidate.
-    pub has_companion: bool,
+    pub has_low_fidelity: bool,
 }
 
 impl Candidate {

@@ -35,5 +35,5 @@ pub use search::next_run::InformativeRun;
 pub use search::query::{QueriedModel, Query};
 pub use search::verdict::SearchVerdict;
 pub use search::weighing::WeighedSet;
-pub use settings::{Roughness, SearchSettings, Starts};
+pub use settings::{SearchSettings, Smoothness, Starts};
 pub use task::{LawCandidate, ProposedRuns, Reduction, SearchTask};

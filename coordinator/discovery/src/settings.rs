@@ -11,7 +11,7 @@ pub enum Starts {
 
 /// Whether a model's predictions are a smooth function of its parameters, or carry numerical noise.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Roughness {
+pub enum Smoothness {
     /// The predictions are smooth.
     Smooth,
     /// The predictions jump, as on a grid whose nodes enter and leave the contact.
@@ -20,7 +20,7 @@ pub enum Roughness {
     Unknown,
 }
 
-impl Roughness {
+impl Smoothness {
     /// Shortest finite difference, in standard deviations of the prior; shorter ones resolve the jumps.
     pub(crate) fn min_difference(self) -> f64 {
         match self {
@@ -62,11 +62,11 @@ pub struct SearchSettings {
     /// Seed of all random draws.
     pub seed: u64,
     /// Whether the model is rough; a rough model is searched with longer differences and fewer fits.
-    pub roughness: Roughness,
+    pub smoothness: Smoothness,
     /// Whether the numerical noise is measured and added to the noise of the data.
     pub has_numerical_noise: bool,
     /// Whether a rough model has a low-fidelity model: a cheap, smooth one with the same parameters, used as a control variate.
-    pub has_companion: bool,
+    pub has_low_fidelity: bool,
 }
 
 impl Default for SearchSettings {
@@ -75,9 +75,9 @@ impl Default for SearchSettings {
         Self {
             starts: Starts::Even(32),
             seed: 1,
-            roughness: Roughness::Smooth,
+            smoothness: Smoothness::Smooth,
             has_numerical_noise: false,
-            has_companion: false,
+            has_low_fidelity: false,
         }
     }
 }

@@ -81,7 +81,8 @@ impl SearchTask {
     }
 
     pub(crate) fn frame(&self) -> NormalFrame {
-        NormalFrame::base(&self.prior, self.settings.roughness).with_low_fidelity(self.settings.has_companion)
+        NormalFrame::base(&self.prior, self.settings.smoothness)
+            .with_low_fidelity(self.settings.has_low_fidelity)
     }
 
     pub(crate) fn curve(&self, law: usize) -> usize {

@@ -23,7 +23,7 @@ fn effect(name: &str, prior: Marginal) -> Candidate {
         neutral: 0.0,
         excludes: Vec::new(),
         family: None,
-        has_companion: false,
+        has_low_fidelity: false,
     }
 }
 
@@ -148,7 +148,7 @@ fn evidence_of_a_linear_extension_is_exact() {
     let ranking = search(&values, &[effect("square", normal(0.0, 2.0))], &[2], false);
     let with = |scale: f64| log_evidence(&values, &[BASE[0], BASE[1], (2, 2.0 * scale)]);
     let expected = mixed(with) - log_evidence(&values, &BASE);
-    let ranked = ranking.of(Some(0)).unwrap();
+    let ranked = ranking.effect(Some(0)).unwrap();
     // The screen is exact too: the model is linear in the strength.
     fitted(ranked.log_bayes_factor, expected);
     near(ranked.screen_log_bayes_factor, expected);
@@ -180,7 +180,7 @@ fn correlations_of_the_prior_count() {
         normal_log_density(&values, covariance)
     };
     let expected = mixed(|scale| evidence(&[(2, 2.0 * scale)])) - evidence(&[]);
-    fitted(ranking.of(Some(0)).unwrap().log_bayes_factor, expected);
+    fitted(ranking.effect(Some(0)).unwrap().log_bayes_factor, expected);
 }
 
 #[test]
@@ -195,7 +195,7 @@ fn a_switch_has_the_evidence_of_its_model() {
         let without: Vec<f64> = values.iter().enumerate().map(|(i, y)| y - column(2, i)).collect();
         let expected = log_evidence(&without, &BASE) - log_evidence(&values, &BASE);
         let ranking = search(&values, std::slice::from_ref(&switch), &[2], false);
-        let ranked = ranking.of(Some(0)).unwrap();
+        let ranked = ranking.effect(Some(0)).unwrap();
         fitted(ranked.log_bayes_factor, expected);
         near(ranked.screen_log_bayes_factor, expected);
         assert_eq!((ranked.probability > 0.5, ranked.theta.len()), (is_better, 2));
@@ -213,7 +213,7 @@ fn importance_sampling_agrees_with_the_closed_form_where_two_effects_are_close()
     for (k, column) in [(0, 2), (1, 6)] {
         let expected =
             mixed(|scale| half_normal_evidence(&values, column, 2.0 * scale)) - log_evidence(&values, &BASE);
-        let ranked = ranking.of(Some(k)).unwrap();
+        let ranked = ranking.effect(Some(k)).unwrap();
         assert_eq!(ranked.method, EvidenceMethod::Sampled);
         // At least 60 effective draws of either model: 0.13 nats each.
         let missed = (ranked.log_bayes_factor - expected).abs();
@@ -251,7 +251,7 @@ fn a_strength_of_one_sign_is_truncated_exactly_on_either_side_of_zero() {
         let ranking = search(&values, &[effect("square", half_normal(2.0))], &[2], false);
         let expected =
             mixed(|scale| half_normal_evidence(&values, 2, 2.0 * scale)) - log_evidence(&values, &BASE);
-        let ranked = ranking.of(Some(0)).unwrap();
+        let ranked = ranking.effect(Some(0)).unwrap();
         fitted(ranked.log_bayes_factor, expected);
         near(ranked.screen_log_bayes_factor, expected);
         assert_eq!(ranked.at_bound[2], at_bound);
@@ -286,9 +286,9 @@ fn probabilities_sum_to_one_and_follow_the_prior_over_classes() {
     let sum: f64 = ranking.effects.iter().map(|j| j.probability).sum();
     near(sum, 1.0);
     // Four candidates in three classes: a half for none, a sixth for each class.
-    let none = ranking.of(None).unwrap().probability;
-    let square = ranking.of(Some(0)).unwrap();
-    let cube = ranking.of(Some(1)).unwrap();
+    let none = ranking.effect(None).unwrap().probability;
+    let square = ranking.effect(Some(0)).unwrap();
+    let cube = ranking.effect(Some(1)).unwrap();
     near(cube.probability / none, libm::exp(cube.log_bayes_factor) / 3.0);
     near(
         square.probability / none,
@@ -305,7 +305,7 @@ fn effects_that_the_data_cannot_distinguish_form_one_class_and_the_truth_is_foun
     let values = measured(&[(0, 0.3), (2, 2.0)]);
     let (candidates, columns) = four();
     let ranking = search(&values, &candidates, &columns, false);
-    let class = |k: usize| ranking.of(Some(k)).unwrap().class;
+    let class = |k: usize| ranking.effect(Some(k)).unwrap().class;
     assert_eq!(class(0), class(2));
     assert!(class(0) != class(1) && class(1) != class(3) && class(0) != 0);
     assert!(ranking.class_probability(class(0)) > 0.9);
@@ -357,7 +357,7 @@ fn a_candidate_that_the_model_always_rejects_is_listed_and_not_ranked() {
     }
     let ranking = search.ranking().unwrap();
     assert_eq!(ranking.refused, [1]);
-    assert!(ranking.of(Some(1)).is_none() && ranking.of(Some(0)).is_some());
+    assert!(ranking.effect(Some(1)).is_none() && ranking.effect(Some(0)).is_some());
 }
 
 #[test]

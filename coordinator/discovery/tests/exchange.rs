@@ -1,6 +1,6 @@
 //! Exchanges of effects of one class, on a model that scatters.
 
-use discovery::{Conclusion, QueriedModel, Query, Roughness, SearchSettings};
+use discovery::{Conclusion, QueriedModel, Query, SearchSettings, Smoothness};
 use statistics::rng::Stream;
 
 use crate::search::{CONSTANT, SQUARE, WIDTH, answer, measured, run, task};
@@ -21,7 +21,7 @@ fn conclude(scatter: f64) -> Conclusion {
     task.laws = Vec::new();
     task.library[TWIN].name = "twin".into();
     task.settings = SearchSettings {
-        roughness: Roughness::Rough,
+        smoothness: Smoothness::Rough,
         has_numerical_noise: true,
         ..SearchSettings::default()
     };

@@ -44,7 +44,7 @@ fn library(steps: usize) -> Vec<Candidate> {
         neutral: 0.0,
         excludes: Vec::new(),
         family: None,
-        has_companion: false,
+        has_low_fidelity: false,
     };
     (0..2 + steps).map(candidate).collect()
 }
@@ -123,7 +123,7 @@ fn effects(conclusion: &Conclusion) -> Vec<usize> {
 fn two_effects_that_do_little_alone_are_found_together() {
     let conclusion = conclude(0.15, 0.1, false);
     for k in [WAVY, PLAIN] {
-        let alone = conclusion.ranking.of(Some(k)).unwrap().log_bayes_factor;
+        let alone = conclusion.ranking.effect(Some(k)).unwrap().log_bayes_factor;
         assert!(alone < DETECTED, "{k}: {alone}");
     }
     assert_eq!(effects(&conclusion), [WAVY, PLAIN]);

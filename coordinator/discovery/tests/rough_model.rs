@@ -1,8 +1,8 @@
 //! The search of a rough model, whose evaluations are expensive, compared with the same model without its jumps.
 
 use discovery::{
-    Candidate, EffectRanking, EffectRequest, EffectSearch, EvidenceMethod, RankedEffect, Roughness,
-    SearchSettings,
+    Candidate, EffectRanking, EffectRequest, EffectSearch, EvidenceMethod, RankedEffect, SearchSettings,
+    Smoothness,
 };
 use statistics::rng::Stream;
 use statistics::{
@@ -26,12 +26,12 @@ fn candidate(k: usize) -> Candidate {
         neutral: 0.0,
         excludes: Vec::new(),
         family: None,
-        has_companion: true,
+        has_low_fidelity: true,
     }
 }
 
 /// A straight line, and an effect that saturates slowly.
-fn predicted(theta: &[f64], effect: Option<usize>, roughness: Roughness) -> Vec<f64> {
+fn predicted(theta: &[f64], effect: Option<usize>, smoothness: Smoothness) -> Vec<f64> {
     let key = theta
         .iter()
         .fold(0, |key: u64, t| key.rotate_left(7) ^ t.to_bits());
@@ -42,9 +42,9 @@ fn predicted(theta: &[f64], effect: Option<usize>, roughness: Roughness) -> Vec<
             let shape = libm::cos((1.0 + 0.3 * k as f64) * (x + 1.0) + k as f64);
             theta[2] / (1.0 + 0.1 * theta[2]) * shape
         });
-        let jump = match roughness {
-            Roughness::Smooth => 0.0,
-            Roughness::Rough | Roughness::Unknown => SCATTER * jumps[i],
+        let jump = match smoothness {
+            Smoothness::Smooth => 0.0,
+            Smoothness::Rough | Smoothness::Unknown => SCATTER * jumps[i],
         };
         theta[0] + theta[1] * x + change + jump
     };
@@ -53,7 +53,7 @@ fn predicted(theta: &[f64], effect: Option<usize>, roughness: Roughness) -> Vec<
 
 fn data(truth: usize) -> Vec<Datum> {
     let noise = Stream::new(2, 0, truth as u64, 0).normals(DATA);
-    let clean = predicted(&[0.4, -0.7, STRENGTH], Some(truth), Roughness::Smooth);
+    let clean = predicted(&[0.4, -0.7, STRENGTH], Some(truth), Smoothness::Smooth);
     let datum = |(run, (value, noise)): (usize, (&f64, &f64))| Datum {
         run,
         channel: 0,
@@ -63,45 +63,45 @@ fn data(truth: usize) -> Vec<Datum> {
     clean.iter().zip(&noise).enumerate().map(datum).collect()
 }
 
-fn search(truth: usize, roughness: Roughness) -> EffectRanking {
-    searched(Likelihood::new(data(truth)).unwrap(), roughness)
+fn search(truth: usize, smoothness: Smoothness) -> EffectRanking {
+    searched(Likelihood::new(data(truth)).unwrap(), smoothness)
 }
 
-fn searched(likelihood: Likelihood, roughness: Roughness) -> EffectRanking {
-    searched_as(likelihood, roughness, roughness)
+fn searched(likelihood: Likelihood, smoothness: Smoothness) -> EffectRanking {
+    searched_as(likelihood, smoothness, smoothness)
 }
 
-/// The search of a model of one roughness with the settings of another.
-fn searched_as(likelihood: Likelihood, roughness: Roughness, declared: Roughness) -> EffectRanking {
+/// The search of a model of one smoothness with the settings of another.
+fn searched_as(likelihood: Likelihood, smoothness: Smoothness, declared: Smoothness) -> EffectRanking {
     let settings = SearchSettings {
-        roughness: declared,
-        has_numerical_noise: declared != Roughness::Smooth,
+        smoothness: declared,
+        has_numerical_noise: declared != Smoothness::Smooth,
         ..SearchSettings::default()
     };
     run(likelihood, &settings, |request| {
-        assert!(!request.is_companion);
-        Some(predicted(&request.theta, request.candidate, roughness))
+        assert!(!request.is_low_fidelity);
+        Some(predicted(&request.theta, request.candidate, smoothness))
     })
 }
 
 /// The search of a rough model with a low-fidelity model.
-fn beside(truth: usize, companion: impl Fn(&EffectRequest) -> Option<Vec<f64>>) -> EffectRanking {
+fn beside(truth: usize, low_fidelity: impl Fn(&EffectRequest) -> Option<Vec<f64>>) -> EffectRanking {
     let settings = SearchSettings {
-        roughness: Roughness::Rough,
+        smoothness: Smoothness::Rough,
         has_numerical_noise: true,
-        has_companion: true,
+        has_low_fidelity: true,
         ..SearchSettings::default()
     };
     let likelihood = Likelihood::new(data(truth)).unwrap();
-    run(likelihood, &settings, |request| match request.is_companion {
-        true => companion(request),
-        false => Some(predicted(&request.theta, request.candidate, Roughness::Rough)),
+    run(likelihood, &settings, |request| match request.is_low_fidelity {
+        true => low_fidelity(request),
+        false => Some(predicted(&request.theta, request.candidate, Smoothness::Rough)),
     })
 }
 
 /// A low-fidelity model whose predictions are a share of the model's, without its jumps and with an error of their own.
 fn biased(theta: &[f64], effect: Option<usize>) -> Vec<f64> {
-    let smooth = predicted(theta, effect, Roughness::Smooth);
+    let smooth = predicted(theta, effect, Smoothness::Smooth);
     smooth.iter().map(|value| 0.3 + 0.8 * value).collect()
 }
 
@@ -131,15 +131,16 @@ fn leader(ranking: &EffectRanking) -> &RankedEffect {
 fn a_rough_model_is_searched_with_fewer_evaluations_and_names_the_same() {
     let (mut sparing, mut thorough) = (0, 0);
     for truth in [5, 7, 13, 22, 29] {
-        let [smooth, rough] = [Roughness::Smooth, Roughness::Rough].map(|roughness| search(truth, roughness));
+        let [smooth, rough] =
+            [Smoothness::Smooth, Smoothness::Rough].map(|smoothness| search(truth, smoothness));
         assert_eq!(
             leader(&smooth).class,
-            smooth.of(Some(truth)).unwrap().class,
+            smooth.effect(Some(truth)).unwrap().class,
             "{truth}"
         );
         assert_eq!(
             leader(&rough).class,
-            rough.of(Some(truth)).unwrap().class,
+            rough.effect(Some(truth)).unwrap().class,
             "{truth}"
         );
         // The measurement of the scatter is counted separately.
@@ -173,7 +174,7 @@ fn a_rough_model_that_contradicts_the_data_is_confirmed_thoroughly_with_a_discre
         } else {
             Likelihood::new(data)
         };
-        let ranking = searched(likelihood.unwrap(), Roughness::Rough);
+        let ranking = searched(likelihood.unwrap(), Smoothness::Rough);
         ranking.evaluations.confirmation
     };
     let fits = confirmation(0.0, false);
@@ -186,7 +187,7 @@ fn a_rough_model_that_contradicts_the_data_is_confirmed_thoroughly_with_a_discre
 #[test]
 fn what_is_out_of_reach_is_screened_alone_and_its_probability_is_small_by_either_search() {
     let truth = 13;
-    let [smooth, rough] = [Roughness::Smooth, Roughness::Rough].map(|roughness| search(truth, roughness));
+    let [smooth, rough] = [Smoothness::Smooth, Smoothness::Rough].map(|smoothness| search(truth, smoothness));
     let screened = || {
         rough
             .effects
@@ -196,7 +197,7 @@ fn what_is_out_of_reach_is_screened_alone_and_its_probability_is_small_by_either
     assert!(screened().count() > EFFECTS / 2, "{}", screened().count());
     assert!(smooth.effects.iter().all(|e| e.method > EvidenceMethod::Screen));
     for effect in screened() {
-        let thorough = smooth.of(effect.candidate).unwrap();
+        let thorough = smooth.effect(effect.candidate).unwrap();
         assert!(
             effect.probability < 1e-4 && thorough.probability < 1e-4,
             "{:?}: {} and {}",
@@ -208,15 +209,16 @@ fn what_is_out_of_reach_is_screened_alone_and_its_probability_is_small_by_either
 }
 
 #[test]
-fn a_model_of_unknown_roughness_is_searched_as_its_scatter_says() {
-    let ranking = |roughness, declared| searched_as(Likelihood::new(data(13)).unwrap(), roughness, declared);
-    let rough = ranking(Roughness::Rough, Roughness::Unknown);
-    assert_eq!(rough, ranking(Roughness::Rough, Roughness::Rough));
+fn a_model_of_unknown_smoothness_is_searched_as_its_scatter_says() {
+    let ranking =
+        |smoothness, declared| searched_as(Likelihood::new(data(13)).unwrap(), smoothness, declared);
+    let rough = ranking(Smoothness::Rough, Smoothness::Unknown);
+    assert_eq!(rough, ranking(Smoothness::Rough, Smoothness::Rough));
     let [smooth, thorough] =
-        [Roughness::Unknown, Roughness::Smooth].map(|declared| ranking(Roughness::Smooth, declared));
+        [Smoothness::Unknown, Smoothness::Smooth].map(|declared| ranking(Smoothness::Smooth, declared));
     assert!(smooth.evaluations.to_confirm() > rough.evaluations.to_confirm());
     for effect in &smooth.effects {
-        let reference = thorough.of(effect.candidate).unwrap();
+        let reference = thorough.effect(effect.candidate).unwrap();
         assert_eq!(effect.method, reference.method, "{:?}", effect.candidate);
         let difference = effect.log_bayes_factor - reference.log_bayes_factor;
         assert!(difference.abs() < 0.1, "{:?}: {difference}", effect.candidate);
@@ -224,32 +226,32 @@ fn a_model_of_unknown_roughness_is_searched_as_its_scatter_says() {
 }
 
 #[test]
-fn a_companion_saves_evaluations_of_the_model_and_the_same_is_named() {
+fn a_low_fidelity_model_saves_evaluations_of_the_model_and_the_same_is_named() {
     let (mut with, mut without) = (0, 0);
     for truth in [5, 7, 13, 22, 29] {
-        let alone = search(truth, Roughness::Rough);
+        let alone = search(truth, Smoothness::Rough);
         let beside = beside(truth, |request| Some(biased(&request.theta, request.candidate)));
-        let class_of_truth = beside.of(Some(truth)).unwrap().class;
+        let class_of_truth = beside.effect(Some(truth)).unwrap().class;
         assert_eq!(leader(&beside).class, class_of_truth, "{truth}");
         let [with_it, without_it] = [&beside, &alone].map(|ranking| leader(ranking).log_bayes_factor);
         assert!(with_it > 0.85 * without_it, "{truth}: {with_it} and {without_it}");
-        with += beside.evaluations.screen + beside.evaluations.polish;
-        without += alone.evaluations.screen + alone.evaluations.polish;
+        with += beside.evaluations.screen + beside.evaluations.refinement;
+        without += alone.evaluations.screen + alone.evaluations.refinement;
     }
     assert!(2 * with < without, "{with} of {without}");
 }
 
 #[test]
-fn a_companion_that_answers_nothing_changes_nothing() {
-    assert_eq!(beside(13, |_| None), search(13, Roughness::Rough));
+fn a_low_fidelity_model_that_answers_nothing_changes_nothing() {
+    assert_eq!(beside(13, |_| None), search(13, Smoothness::Rough));
 }
 
 #[test]
-fn what_the_companion_does_not_show_is_screened_on_the_model() {
+fn what_the_low_fidelity_model_does_not_show_is_screened_on_the_model() {
     let truth = 13;
     let blind = beside(truth, |request| {
         let seen = request.candidate.filter(|k| *k != truth);
         Some(biased(&request.theta, seen))
     });
-    assert_eq!(leader(&blind).class, blind.of(Some(truth)).unwrap().class);
+    assert_eq!(leader(&blind).class, blind.effect(Some(truth)).unwrap().class);
 }

@@ -37,7 +37,7 @@ fn candidate(name: &str, parameters: Vec<Marginal>, strengths: Vec<usize>) -> Ca
         neutral: 0.0,
         excludes: Vec::new(),
         family: None,
-        has_companion: false,
+        has_low_fidelity: false,
     }
 }
 
@@ -282,7 +282,7 @@ fn every_explanation_has_its_predicted_values() {
         let query = Query {
             model: QueriedModel::With(effect.candidate.into_iter().collect()),
             is_proposed: false,
-            is_companion: false,
+            is_low_fidelity: false,
             theta: effect.theta.clone(),
         };
         let fitted = effect.method > EvidenceMethod::Screen;

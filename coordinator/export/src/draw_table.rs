@@ -29,7 +29,7 @@ impl DrawTable {
     ///
     /// # Errors
     /// [`ExportError::Group`] where there is no posterior.
-    pub fn of(data: &InferenceData) -> Result<DrawTable, ExportError> {
+    pub fn from_data(data: &InferenceData) -> Result<DrawTable, ExportError> {
         let stats = data.group("sample_stats")?.data_vars.iter();
         let stats =
             stats.filter(|variable| ["log_likelihood", "log_prior"].contains(&variable.name.as_str()));

@@ -1,4 +1,4 @@
-//! An experiment in which typical values stand for what it leaves unsaid.
+//! An experiment in which typical values stand for what it leaves unstated.
 
 use shared::experiment::Experiment;
 use shared::file::{FileError, FileSet};
@@ -14,7 +14,7 @@ const GROUSER_HEIGHT: f64 = 0.08;
 /// Their thickness; no effect of `quasi_static` depends on it.
 const GROUSER_THICKNESS: f64 = 0.016;
 
-/// A property of the test site that an experiment may leave unsaid and effects may need.
+/// A property of the test site that an experiment may leave unstated and effects may need.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum SiteProperty {
     /// Density of a soil.
@@ -25,9 +25,9 @@ pub enum SiteProperty {
     BinLength,
 }
 
-/// A property that the experiment leaves unsaid.
+/// A property that the experiment leaves unstated.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct UnsaidProperty {
+pub struct UnstatedProperty {
     /// The property.
     pub property: SiteProperty,
     /// A sentence that says what is not stated, and which value stands for it.
@@ -36,13 +36,13 @@ pub struct UnsaidProperty {
     pub needs: String,
 }
 
-/// An experiment in which typical values stand for what it leaves unsaid.
+/// An experiment in which typical values stand for what it leaves unstated.
 #[derive(Debug, Clone)]
 pub struct AssumedExperiment {
     /// The experiment with those values.
     pub experiment: Experiment,
     /// The properties that they stand for.
-    pub unsaid: Vec<UnsaidProperty>,
+    pub unstated: Vec<UnstatedProperty>,
 }
 
 impl AssumedExperiment {
@@ -67,14 +67,14 @@ impl AssumedExperiment {
             .toml
             .parse()
             .map_err(|e: toml_edit::TomlError| FileError::whole(name, e.to_string()))?;
-        let mut unsaid = Vec::new();
+        let mut unstated = Vec::new();
         for (soil, properties) in &experiment.soils {
             if properties.density_kg_m3.is_none()
                 && experiment.runs.iter().any(|run| run.soil == *soil)
                 && let Some(table) = table(document.get_mut("soil"), soil)
             {
                 table.insert("density_kg_m3", value(DENSITY_KG_M3));
-                unsaid.push(UnsaidProperty {
+                unstated.push(UnstatedProperty {
                     property: SiteProperty::Density,
                     why: format!(
                         "the density of soil {soil} is not stated; {DENSITY_KG_M3} kg/m^3 is assumed"
@@ -98,7 +98,7 @@ impl AssumedExperiment {
                     "grouser_thickness_m",
                     value(GROUSER_THICKNESS * geometry.radius_m),
                 );
-                unsaid.push(UnsaidProperty {
+                unstated.push(UnstatedProperty {
                     property: SiteProperty::Grousers,
                     why: format!(
                         "the grousers of wheel {wheel} are not stated; {GROUSERS} of {:.1} mm are assumed",
@@ -117,7 +117,7 @@ impl AssumedExperiment {
                 .as_table_like_mut()
         {
             rig.insert("bin_length_m", value(BIN_LENGTH_M));
-            unsaid.push(UnsaidProperty {
+            unstated.push(UnstatedProperty {
                 property: SiteProperty::BinLength,
                 why: format!("the length of the bin is not stated; {BIN_LENGTH_M} m is assumed"),
                 needs: "bin_length_m under [rig]".into(),
@@ -129,7 +129,7 @@ impl AssumedExperiment {
         };
         Ok(Self {
             experiment: Experiment::parse(name, &files)?,
-            unsaid,
+            unstated,
         })
     }
 }
@@ -148,19 +148,19 @@ mod tests {
     const RUNS: &str = "run,wheel,soil,slip,wheel_load_n,sled_speed_m_s,drawbar_pull_n,use\n\
         1,a,s,0.2,100,0.01,20,fit\n2,b,s,0.2,100,0.01,20,fit\n";
 
-    fn assumed(is_smooth: bool) -> (Experiment, Vec<UnsaidProperty>) {
+    fn assumed(is_smooth: bool) -> (Experiment, Vec<UnstatedProperty>) {
         let files = FileSet {
             toml: EXPERIMENT.into(),
             files: [("runs.csv".to_owned(), RUNS.to_owned())].into(),
         };
         let stated = Experiment::parse("experiment.toml", &files).unwrap();
         let assumed = AssumedExperiment::new("experiment.toml", &files, &stated, is_smooth).unwrap();
-        (assumed.experiment, assumed.unsaid)
+        (assumed.experiment, assumed.unstated)
     }
 
     #[test]
     fn what_is_stated_stays_and_the_rest_is_assumed() {
-        let (with, unsaid) = assumed(true);
+        let (with, unstated) = assumed(true);
         assert_eq!(with.soils["s"].density_kg_m3, Some(DENSITY_KG_M3));
         // no run is in it
         assert_eq!(with.soils["t"].density_kg_m3, None);
@@ -168,7 +168,7 @@ mod tests {
             (with.wheels["a"].grouser_count, with.wheels["b"].grouser_count),
             (16, 0)
         );
-        let needs: Vec<&str> = unsaid.iter().map(|u| u.needs.as_str()).collect();
+        let needs: Vec<&str> = unstated.iter().map(|u| u.needs.as_str()).collect();
         assert_eq!(needs[0], "density_kg_m3 under [soil.s]");
         assert!(
             needs[1].contains("[wheel.a] (grouser_count = 0: a smooth rim)"),
@@ -179,8 +179,8 @@ mod tests {
 
     #[test]
     fn a_wheel_whose_grousers_roll_is_as_it_is_declared() {
-        let (with, unsaid) = assumed(false);
+        let (with, unstated) = assumed(false);
         assert_eq!(with.wheels["a"].grouser_count, 0);
-        assert!(unsaid.iter().all(|u| u.property != SiteProperty::Grousers));
+        assert!(unstated.iter().all(|u| u.property != SiteProperty::Grousers));
     }
 }

@@ -28,7 +28,7 @@ mod table;
 mod text;
 
 pub use addition::{Addition, ModelChange};
-pub use assumed_experiment::{AssumedExperiment, SiteProperty, UnsaidProperty};
+pub use assumed_experiment::{AssumedExperiment, SiteProperty, UnstatedProperty};
 pub use data::bevameter_readings::{BevameterReadings, PLATE, RING, Reading};
 pub use data::confounded_order::{ConfoundedOrder, SetCondition, confounded_orders};
 pub use data::level::levels_of;

@@ -5,7 +5,7 @@ use std::sync::{Arc, OnceLock};
 
 use formula::Effect;
 use shared::file::FileError;
-use shared::model::effects::own;
+use shared::model::effects::read_user_effect;
 
 /// The files that a job names, by name. Copies share the texts, and an effect file is read once, whoever asks first.
 #[derive(Debug, Clone, Default)]
@@ -41,7 +41,11 @@ impl NamedFiles {
     /// The effect in a file; `None` where there is no such file.
     pub fn effect(&self, name: &str) -> Option<Result<Effect, FileError>> {
         let file = self.get(name)?;
-        Some(file.effect.get_or_init(|| own(name, &file.text)).clone())
+        Some(
+            file.effect
+                .get_or_init(|| read_user_effect(name, &file.text))
+                .clone(),
+        )
     }
 
     /// Adds a file; whether its name was free.

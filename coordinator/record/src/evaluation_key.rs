@@ -60,7 +60,7 @@ impl EvaluationKey {
     }
 
     /// The evaluation that has a number.
-    pub fn of(number: u64, width: usize) -> Self {
+    pub fn from_number(number: u64, width: usize) -> Self {
         match number.checked_sub(PREDICTIONS_FROM) {
             Some(_) if number >= HOLDOUT_RUNS_FROM => EvaluationKey::HoldoutRun {
                 draw: ((number - HOLDOUT_RUNS_FROM) % MAX_DRAWS) as usize,
@@ -88,7 +88,7 @@ impl EvaluationKey {
 
     /// The first number that a result of this evaluation may influence: the one after its round.
     pub fn round_end(number: u64, width: usize) -> u64 {
-        match EvaluationKey::of(number, width) {
+        match EvaluationKey::from_number(number, width) {
             EvaluationKey::Sampling { round, .. } => (round + 1) * width as u64,
             EvaluationKey::Prediction { .. } | EvaluationKey::Likeliest => HOLDOUT_RUNS_FROM,
             EvaluationKey::HoldoutRun { .. } => i64::MAX as u64,
@@ -113,7 +113,7 @@ mod tests {
             HOLDOUT_RUNS_FROM,
             HOLDOUT_RUNS_FROM + 17 * MAX_DRAWS + 199,
         ] {
-            assert_eq!(EvaluationKey::of(number, 1000).number(1000), number);
+            assert_eq!(EvaluationKey::from_number(number, 1000).number(1000), number);
         }
     }
 

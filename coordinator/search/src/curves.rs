@@ -25,7 +25,7 @@ pub(super) fn curves(models: &SearchModels, conclusion: &Conclusion) -> Option<E
     let of_wheel =
         |values: &[f64]| -> Vec<f64> { data.iter().map(|(i, _)| six_digits(values[*i])).collect() };
     let ranking = &conclusion.ranking;
-    let base = of_wheel(&ranking.of(None)?.predicted);
+    let base = of_wheel(&ranking.effect(None)?.predicted);
     let known = ranking
         .effects
         .iter()

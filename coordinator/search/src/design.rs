@@ -8,7 +8,7 @@ use statistics::Likelihood;
 use job::{PLATE, Spec, levels_of};
 
 /// Least levels of a variable for the cross-validation: fewer do not determine an extrapolation.
-const LEAST_LEVELS: usize = 3;
+const MIN_LEVELS: usize = 3;
 /// Slips of proposed runs.
 const SLIPS: [f64; 7] = [0.05, 0.1, 0.2, 0.3, 0.45, 0.6, 0.8];
 /// Slip of a braked run, proposed where the rig has made one.
@@ -31,7 +31,7 @@ pub(super) fn levels(spec: &Spec) -> Vec<Vec<usize>> {
         let values: Vec<f64> = runs.iter().map(|run| variable(run)).collect();
         let own = levels_of(&values);
         let count = own.iter().max().map_or(0, |most| most + 1);
-        if count >= LEAST_LEVELS {
+        if count >= MIN_LEVELS {
             levels.extend((0..count).map(|level| of_runs(&spec.likelihood, |run| own[run] == level)));
         }
     }

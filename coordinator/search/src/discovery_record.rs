@@ -23,7 +23,7 @@ use super::narrative::sentence;
 use super::remaining_misfit::remaining_misfit;
 
 /// A law outside the library with more probability is in the credible set.
-const LEAST_CREDIBLE: f64 = 0.05;
+const MIN_CREDIBLE: f64 = 0.05;
 
 /// The record of a conclusion.
 pub(super) fn discovery_record(models: &SearchModels, conclusion: &Conclusion) -> Discovery {
@@ -190,11 +190,11 @@ fn effects(models: &SearchModels, conclusion: &Conclusion) -> Vec<JudgedEffect> 
             prior_sds: None,
             probability,
             class: classes + 1,
-            in_credible_set: probability > LEAST_CREDIBLE,
+            in_credible_set: probability > MIN_CREDIBLE,
             strength_prior: None,
             parameters: BTreeMap::new(),
             units: BTreeMap::new(),
-            method: method(EvidenceMethod::Polished).to_owned(),
+            method: method(EvidenceMethod::Refined).to_owned(),
         });
     }
     let by_factor = |a: &JudgedEffect, b: &JudgedEffect| b.log_bayes_factor.total_cmp(&a.log_bayes_factor);
@@ -222,7 +222,7 @@ fn method(method: EvidenceMethod) -> &'static str {
     match method {
         EvidenceMethod::Screen => "screen",
         EvidenceMethod::RankOne => "rank_one",
-        EvidenceMethod::Polished => "polished",
+        EvidenceMethod::Refined => "polished",
         EvidenceMethod::Confirmed => "confirmed",
         EvidenceMethod::Sampled => "sampled",
     }

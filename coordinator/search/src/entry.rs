@@ -67,7 +67,7 @@ impl CandidateEntry {
                 neutral,
                 excludes: Vec::new(),
                 family: None,
-                has_companion: !SPATIAL.iter().any(|own| own.name == plain.name),
+                has_low_fidelity: !SPATIAL.iter().any(|own| own.name == plain.name),
             },
             names: vec![name.clone()],
             units: vec![unit.to_owned()],
@@ -115,7 +115,7 @@ impl CandidateEntry {
                 excludes: Vec::new(),
                 family: None,
                 // Of another kind of model, or of a setting, the corrections of the base are not those.
-                has_companion: false,
+                has_low_fidelity: false,
             },
             names: Vec::new(),
             units: Vec::new(),
@@ -152,7 +152,7 @@ impl CandidateEntry {
                 neutral,
                 excludes: Vec::new(),
                 family: None,
-                has_companion: ModelKind::QuasiStatic.has_form(effect)
+                has_low_fidelity: ModelKind::QuasiStatic.has_form(effect)
                     && EffectOnNodes::find(&candidate.name).is_none(),
             },
             units: free.iter().map(|p| p.unit.clone()).collect(),

@@ -8,7 +8,7 @@ use job::{Job, Spec, check_own};
 use record::Extension;
 use shared::experiment::Experiment;
 use shared::file::{FileError, FileSet};
-use shared::model::effects::own;
+use shared::model::effects::read_user_effect;
 
 use super::candidate::{CandidateEffect, EXPERIMENT, ExclusionReason, JOB, library, spec};
 
@@ -52,7 +52,7 @@ pub(super) fn text(candidate: &CandidateEffect) -> (&str, Effect) {
     let Extension::File { name, text } = &candidate.extension else {
         panic!("{candidate:?}")
     };
-    let effect = own(name, text).unwrap_or_else(|e| panic!("{e}\n{text}"));
+    let effect = read_user_effect(name, text).unwrap_or_else(|e| panic!("{e}\n{text}"));
     check_own(name, &effect).unwrap_or_else(|e| panic!("{e}\n{text}"));
     assert_eq!(format!("{}.toml", effect.name), *name);
     (text, effect)

@@ -4,7 +4,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use discovery::{
-    LawCandidate, ProposedRuns, QueriedModel, Query, Reduction, Roughness, SearchSettings, SearchTask, Starts,
+    LawCandidate, ProposedRuns, QueriedModel, Query, Reduction, SearchSettings, SearchTask, Smoothness,
+    Starts,
 };
 use formula::catalogue::{catalogue, find};
 use formula::slip::variables;
@@ -41,7 +42,7 @@ const STARTS: usize = 32;
 struct VariantKey {
     model: QueriedModel,
     is_proposed: bool,
-    is_companion: bool,
+    is_low_fidelity: bool,
 }
 
 impl VariantKey {
@@ -49,7 +50,7 @@ impl VariantKey {
         Self {
             model: sorted(&query.model),
             is_proposed: query.is_proposed,
-            is_companion: query.is_companion,
+            is_low_fidelity: query.is_low_fidelity,
         }
     }
 }
@@ -58,7 +59,7 @@ impl VariantKey {
 #[derive(Debug)]
 pub struct SearchModels {
     pub(super) job: Job,
-    /// The experiment with typical values for what it leaves unsaid.
+    /// The experiment with typical values for what it leaves unstated.
     assumed: Arc<Experiment>,
     pub(super) base: Spec,
     pub(super) library: Vec<CandidateEntry>,
@@ -100,7 +101,7 @@ impl SearchModels {
         exclude_on_nodes(&mut library);
         set_families(&mut library);
         // A job has at most so many effects; one place is for a law beyond the best combination.
-        let room = EffectSet::MOST.saturating_sub(base.fit_variant.effects.len());
+        let room = EffectSet::MAX_EFFECTS.saturating_sub(base.fit_variant.effects.len());
         let laws = match room {
             0 | 1 => Vec::new(),
             _ => laws(&job, &base)?,
@@ -160,15 +161,15 @@ impl SearchModels {
             settings: SearchSettings {
                 starts: Starts::Even(STARTS),
                 seed: base.algorithm.seed(),
-                roughness: match base.model.kind {
-                    ModelKind::QuasiStatic | ModelKind::WongReece | ModelKind::Rft => Roughness::Smooth,
+                smoothness: match base.model.kind {
+                    ModelKind::QuasiStatic | ModelKind::WongReece | ModelKind::Rft => Smoothness::Smooth,
                     // Fine as its grid may be, its evaluations are dear.
-                    ModelKind::Scm => Roughness::Rough,
+                    ModelKind::Scm => Smoothness::Rough,
                     // Whether another model has a grid, nobody has said.
-                    ModelKind::Command | ModelKind::Umbridge => Roughness::Unknown,
+                    ModelKind::Command | ModelKind::Umbridge => Smoothness::Unknown,
                 },
                 has_numerical_noise: base.model.kind != ModelKind::QuasiStatic,
-                has_companion: base.model.kind == ModelKind::Scm && base.fit_variant.coarse().is_ok(),
+                has_low_fidelity: base.model.kind == ModelKind::Scm && base.fit_variant.coarse().is_ok(),
             },
         }
     }
@@ -198,7 +199,7 @@ impl SearchModels {
             if key.is_proposed {
                 variant = self.of_proposed_runs(variant);
             }
-            if key.is_companion {
+            if key.is_low_fidelity {
                 let coarse = variant.coarse();
                 variant = coarse.map_err(|e| FileError::whole(JOB, e.to_string()))?;
             }
@@ -481,14 +482,14 @@ mod tests {
     use crate::fixture::read;
 
     #[test]
-    fn the_companion_of_every_candidate_is_a_quasi_static_variant() {
+    fn the_low_fidelity_model_of_every_candidate_is_a_quasi_static_variant() {
         let (mut job, files, _) = read("examples/cmu-sand");
         let smooth = SearchModels::new(&job, &files, 2).unwrap().task();
-        assert!(!smooth.settings.has_companion);
+        assert!(!smooth.settings.has_low_fidelity);
         job.toml = job.toml.replacen("kind = \"quasi_static\"", "kind = \"scm\"", 1);
         let mut models = SearchModels::new(&job, &files, 2).unwrap();
         let task = models.task();
-        assert!(task.settings.has_companion);
+        assert!(task.settings.has_low_fidelity);
         let candidates = task.candidates();
         for name in [
             "displacement_node",
@@ -497,14 +498,18 @@ mod tests {
             "janosi_hanamoto_node",
         ] {
             let own = candidates.iter().filter(|own| own.name == name);
-            assert!(own.clone().all(|own| !own.has_companion), "{name}");
+            assert!(own.clone().all(|own| !own.has_low_fidelity), "{name}");
         }
-        for (k, candidate) in candidates.iter().enumerate().filter(|(_, own)| own.has_companion) {
+        for (k, candidate) in candidates
+            .iter()
+            .enumerate()
+            .filter(|(_, own)| own.has_low_fidelity)
+        {
             for is_proposed in [false, true] {
                 let query = Query {
                     model: QueriedModel::With(vec![k]),
                     is_proposed,
-                    is_companion: true,
+                    is_low_fidelity: true,
                     theta: Vec::new(),
                 };
                 let variant = models.variant(&query).map(|(_, variant)| variant.kind);

@@ -10,9 +10,9 @@ use super::models::SearchModels;
 use super::remaining_misfit::remaining_misfit;
 
 /// Members of a class with less probability are not listed.
-const LEAST_LISTED: f64 = 0.005;
+const MIN_LISTED: f64 = 0.005;
 /// An effect with a smaller log Bayes factor is not worth mentioning \[nats\].
-const LEAST_MENTIONED: f64 = 0.05;
+const MIN_MENTIONED: f64 = 0.05;
 /// Most names in a sentence.
 const NAMES: usize = 6;
 
@@ -107,7 +107,7 @@ fn verdict(
                     a
                 }
             });
-            let near = best.filter(|best| best.log_bayes_factor > LEAST_MENTIONED);
+            let near = best.filter(|best| best.log_bayes_factor > MIN_MENTIONED);
             let nearest = near.map_or(String::new(), |best| {
                 format!("; {} comes closest with {:.1}", best.name, best.log_bayes_factor)
             });
@@ -154,7 +154,7 @@ fn verdict(
             )
         }
         (SearchVerdict::Class(class), _) => {
-            let own = || library().filter(|e| e.class as usize == class && e.probability > LEAST_LISTED);
+            let own = || library().filter(|e| e.class as usize == class && e.probability > MIN_LISTED);
             let untried = models.not_tried();
             let untried = untried.filter(|untried| own().any(|e| e.name == untried.name));
             let needs = untried.map(|untried| format!("; {} needs {}", untried.name, untried.needs));

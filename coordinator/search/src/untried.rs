@@ -8,7 +8,7 @@ use shared::experiment::Experiment;
 use shared::file::{FileError, FileSet};
 
 use super::candidate::{CandidateEffect, EXPERIMENT, ExclusionReason, JOB, candidate_of, check, library};
-use job::{AssumedExperiment, FreeParameter, Job, SiteProperty, UnsaidProperty};
+use job::{AssumedExperiment, FreeParameter, Job, SiteProperty, UnstatedProperty};
 use record::NotTried;
 
 /// An effect that needs what the experiment does not state.
@@ -19,14 +19,14 @@ pub struct UntriedEffect {
     /// The free parameters of the model that has it, with typical values for what is not stated.
     pub(super) parameters: Vec<FreeParameter>,
     /// What is not stated.
-    unsaid: Vec<UnsaidProperty>,
+    unstated: Vec<UnstatedProperty>,
 }
 
 impl UntriedEffect {
     /// Its record: what is not stated, and the lines that would state it.
     pub fn record(&self) -> NotTried {
-        let join = |of: fn(&UnsaidProperty) -> &str, with: &str| {
-            let parts: Vec<&str> = self.unsaid.iter().map(of).collect();
+        let join = |of: fn(&UnstatedProperty) -> &str, with: &str| {
+            let parts: Vec<&str> = self.unstated.iter().map(of).collect();
             parts.join(with)
         };
         NotTried {
@@ -59,9 +59,9 @@ pub fn untried(
     let effect = |name: &str| {
         let (effect, candidate) = candidate_of(name)?;
         let needed = needed(effect);
-        let unsaid = assumed.unsaid.iter().filter(|u| needed.contains(&u.property));
-        let unsaid: Vec<UnsaidProperty> = unsaid.cloned().collect();
-        if unsaid.is_empty() {
+        let unstated = assumed.unstated.iter().filter(|u| needed.contains(&u.property));
+        let unstated: Vec<UnstatedProperty> = unstated.cloned().collect();
+        if unstated.is_empty() {
             return None;
         }
         let wheel = name.split_once('.').map(|(_, wheel)| wheel);
@@ -69,7 +69,7 @@ pub fn untried(
         Some(UntriedEffect {
             effect: candidate,
             parameters,
-            unsaid,
+            unstated,
         })
     };
     // What no fitted run shows, no further line of the experiment would show.

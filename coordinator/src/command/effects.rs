@@ -5,7 +5,7 @@ use std::fmt::Write;
 use anyhow::Context;
 use formula::catalogue::{catalogue, find};
 use shared::model::ModelKind;
-use shared::model::effects::own;
+use shared::model::effects::read_user_effect;
 use shared::model::settings::unknown_effect;
 use shared::parameters::behind;
 use shared::text_file::read_text;
@@ -31,7 +31,7 @@ pub(super) async fn effects(config: &EffectsArguments) -> anyhow::Result<()> {
         (Some(path), _) => {
             // The checks are those of a job.
             let file = path.display().to_string();
-            let effect = own(&file, &read_text(path)?)?;
+            let effect = read_user_effect(&file, &read_text(path)?)?;
             check_own(&file, &effect)?;
             effect
         }

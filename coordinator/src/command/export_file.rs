@@ -35,11 +35,11 @@ pub(super) async fn export(config: &ExportArguments) -> anyhow::Result<()> {
             )
         }
         ExportFormat::Arrow => {
-            let file = format::arrow(&DrawTable::of(&data(&place, id).await?)?)?;
+            let file = format::arrow(&DrawTable::from_data(&data(&place, id).await?)?)?;
             write_bytes(output, &file)
         }
         ExportFormat::Parquet => {
-            let file = format::parquet(&DrawTable::of(&data(&place, id).await?)?)?;
+            let file = format::parquet(&DrawTable::from_data(&data(&place, id).await?)?)?;
             write_bytes(output, &file)
         }
         ExportFormat::Netcdf => write_bytes(output, &format::netcdf(&data(&place, id).await?)?),

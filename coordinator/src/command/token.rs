@@ -15,7 +15,7 @@ use store::{TokenTable, name_of};
 /// Longest name of a token.
 const LONGEST_NAME: usize = 64;
 /// Smallest length of a token that was made elsewhere: 128 random bits in hexadecimal digits.
-const LEAST_SECRET: usize = 32;
+const MIN_SECRET: usize = 32;
 
 pub(super) async fn token(command: &TokenCommand) -> anyhow::Result<()> {
     match command {
@@ -92,9 +92,9 @@ async fn add(name: &str, role: TokenRole, from: Option<&Path>, store: &StoreArgu
 fn secret_of(file: &Path) -> anyhow::Result<String> {
     let token = BearerToken::find(Some(file), None)?;
     let secret = token.as_ref().map(BearerToken::expose).unwrap_or_default();
-    if secret.len() < LEAST_SECRET {
+    if secret.len() < MIN_SECRET {
         bail!(
-            "{}: a token of {} characters must have at least {LEAST_SECRET}",
+            "{}: a token of {} characters must have at least {MIN_SECRET}",
             file.display(),
             secret.len()
         );

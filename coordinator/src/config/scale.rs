@@ -72,9 +72,9 @@ pub struct ScaleArguments {
 
 /// A positive number of at most ten years in seconds.
 fn positive(text: &str) -> Result<f64, String> {
-    const MOST: f64 = 315_360_000.0;
+    const MAX_SECONDS: f64 = 315_360_000.0;
     match text.parse::<f64>() {
-        Ok(value) if value > 0.0 && value <= MOST => Ok(value),
-        _ => Err(format!("must be a number in (0, {MOST}]")),
+        Ok(value) if value > 0.0 && value <= MAX_SECONDS => Ok(value),
+        _ => Err(format!("must be a number in (0, {MAX_SECONDS}]")),
     }
 }

@@ -128,7 +128,7 @@ impl EffectCard {
     }
 
     /// The card of a version of an effect that a user has added.
-    pub fn own(effect: &Effect, version: i64) -> Self {
+    pub fn user(effect: &Effect, version: i64) -> Self {
         EffectCard {
             origin: Origin::Own,
             version: Some(version),

@@ -61,7 +61,7 @@ async fn list(State(service): State<Service>) -> Result<Json<Vec<EffectCard>>, H
         let library = catalogue().iter().map(|effect| Ok(EffectCard::of(effect)));
         let added = added
             .iter()
-            .map(|stored| Ok(EffectCard::own(&read(stored)?, stored.version.version)));
+            .map(|stored| Ok(EffectCard::user(&read(stored)?, stored.version.version)));
         library.chain(added).collect::<Result<_, HttpError>>()
     });
     Ok(Json(cards.await.map_err(|_| Stopped)??))
@@ -81,7 +81,7 @@ async fn show(State(service): State<Service>, Name(name): Name) -> Result<Json<E
             let (versions, meant) =
                 stored.ok_or_else(|| HttpError::new(ErrorKind::NotFound, unknown_effect(&name)))?;
             let effect = read(&meant)?;
-            let card = EffectCard::own(&effect, meant.version.version);
+            let card = EffectCard::user(&effect, meant.version.version);
             (
                 effect,
                 card,

@@ -23,13 +23,13 @@ use farm::WorkerRecord;
 /// A poll may last so long `[ms]`.
 const LONGEST_WAIT_MS: u64 = 30_000;
 /// Largest number of leases in one answer.
-const MOST_WANTED: u32 = 10_000;
+const MAX_WANTED: u32 = 10_000;
 /// Longest name of a worker, or of the version of its equations `[bytes]`.
 const LONGEST_NAME: usize = 200;
 /// Longest name of a model that is not ours: a URL, and a name there `[bytes]`.
 const LONGEST_MODEL: usize = 400;
 /// Most of them that a worker runs.
-const MOST_MODELS: usize = 100;
+const MAX_MODELS: usize = 100;
 /// Longest mean time of a worker's evaluations, twelve days `[s]`.
 const LONGEST_EVALUATION_S: f64 = 1e6;
 /// Longest message of an outcome `[bytes]`.
@@ -73,7 +73,7 @@ async fn exchange(
     check_texts(&request)?;
     check_time(&request)?;
     request.wait_ms = request.wait_ms.min(LONGEST_WAIT_MS);
-    request.want = request.want.min(MOST_WANTED);
+    request.want = request.want.min(MAX_WANTED);
     let response = tokio::select! {
         response = service.exchange(request) => response?.to_bytes(answer),
         // Leases that were given meanwhile go to others: nobody receives them.
@@ -99,8 +99,8 @@ fn check_texts(request: &ExchangeRequest) -> Result<(), HttpError> {
         request.queue_job.as_deref().unwrap_or_default(),
         LONGEST_NAME,
     )?;
-    if request.models.len() > MOST_MODELS {
-        let message = format!("models: {} must be at most {MOST_MODELS}", request.models.len());
+    if request.models.len() > MAX_MODELS {
+        let message = format!("models: {} must be at most {MAX_MODELS}", request.models.len());
         return Err(HttpError::new(ErrorKind::InvalidBody, message));
     }
     for (name, version) in &request.models {

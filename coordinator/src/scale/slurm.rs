@@ -4,7 +4,7 @@ use super::pilot::{PilotSettings, Pilots};
 use super::program::{Invocation, ProgramError};
 
 /// Most jobs of one array; sites allow 1001 at least, where they have not changed `MaxArraySize`.
-const MOST_OF_ARRAY: u32 = 1000;
+const MAX_ARRAY_SIZE: u32 = 1000;
 
 /// Asks for this user's jobs of the name: each on a line of its own, with its state.
 pub(super) fn list(settings: &PilotSettings) -> Invocation {
@@ -39,7 +39,7 @@ pub(super) fn pilots(answer: &str) -> Result<Pilots, ProgramError> {
 /// Submits so many, as arrays.
 pub(super) fn start(settings: &PilotSettings, script: &str, more: u32) -> Vec<Invocation> {
     let array = |first: u32| {
-        let last = (more - first).min(MOST_OF_ARRAY) - 1;
+        let last = (more - first).min(MAX_ARRAY_SIZE) - 1;
         let arguments = [
             "--parsable".to_owned(),
             format!("--job-name={}", settings.name),
@@ -53,7 +53,7 @@ pub(super) fn start(settings: &PilotSettings, script: &str, more: u32) -> Vec<In
             ..Invocation::new("sbatch", arguments)
         }
     };
-    (0..more).step_by(MOST_OF_ARRAY as usize).map(array).collect()
+    (0..more).step_by(MAX_ARRAY_SIZE as usize).map(array).collect()
 }
 
 /// Takes jobs back.

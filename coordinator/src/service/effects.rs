@@ -4,7 +4,7 @@ use formula::Effect;
 use formula::catalogue::find;
 use sha2::{Digest, Sha256};
 use shared::file::{FileError, FileSet};
-use shared::model::effects::own;
+use shared::model::effects::read_user_effect;
 
 use super::clock::now_ms;
 use super::error::ServiceError;
@@ -30,7 +30,7 @@ impl Service {
             {
                 return Err(ServiceError::OfLibrary(effect.name));
             }
-            let effect = own(EFFECT, &text)?;
+            let effect = read_user_effect(EFFECT, &text)?;
             check_own(EFFECT, &effect)?;
             Ok(effect)
         });

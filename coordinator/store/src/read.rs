@@ -400,7 +400,7 @@ impl Reader {
                 None => Ok(observables::decode(row.get("observables"))?),
             };
             let number = row.get::<i64>("evaluation").unsigned_abs();
-            match EvaluationKey::of(number, 1) {
+            match EvaluationKey::from_number(number, 1) {
                 EvaluationKey::Prediction { holdout: true, .. } => {
                     if let Some(last) = predictions.last_mut() {
                         last.holdout = Some(result.into());

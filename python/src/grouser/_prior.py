@@ -51,7 +51,7 @@ def draw(provenance: Mapping[str, Any], parameters: Sequence[str], count: int, s
 
 
 def check_moments(drawn: Mapping[str, Draws], stated: Mapping[str, tuple[float, float]]) -> None:
-    """Compares draws with the mean and the sd that the coordinator states: physical bounds that the job leaves unsaid cut a prior.
+    """Compares draws with the mean and the sd that the coordinator states: physical bounds that the job does not state cut a prior.
 
     Raises:
         UnstatedPriorError: names the parameter.

@@ -38,7 +38,7 @@ pub struct Chosen {
 
 /// A parameter of an effect for which a job states neither prior nor value.
 #[derive(Debug, Clone)]
-pub struct Unsaid<'a> {
+pub struct UnstatedParameter<'a> {
     /// Its name in the job: `EFFECT.PARAMETER`, or `EFFECT.PARAMETER.WHEEL`.
     pub name: String,
     /// The effect, with its file.
@@ -56,7 +56,7 @@ fn parts(name: &str) -> Option<(&str, &str, Option<&str>)> {
 
 impl EffectSet {
     /// The maximum number of effects of a job.
-    pub const MOST: usize = 10;
+    pub const MAX_EFFECTS: usize = 10;
 
     /// Reads the effects that a model lists and, from the catalogue, those whose parameters are named.
     ///
@@ -107,8 +107,8 @@ impl EffectSet {
 
     /// Rejects more effects than a job may have.
     pub(super) fn check_count(count: usize) -> Result<(), ModelError> {
-        if count > Self::MOST {
-            let message = format!("{count} effects must be at most {}", Self::MOST);
+        if count > Self::MAX_EFFECTS {
+            let message = format!("{count} effects must be at most {}", Self::MAX_EFFECTS);
             return Err(ModelError::Invalid(message));
         }
         Ok(())
@@ -192,8 +192,12 @@ impl EffectSet {
 
     /// The parameters of effects that are missing among these names: for an effect on all wheels its parameters, and for an
     /// effect with a strength for one wheel the parameters of that wheel.
-    pub fn unsaid<'a>(&'a self, names: &BTreeSet<&str>, wheels: &BTreeSet<&str>) -> Vec<Unsaid<'a>> {
-        let mut unsaid = Vec::new();
+    pub fn unstated_parameters<'a>(
+        &'a self,
+        names: &BTreeSet<&str>,
+        wheels: &BTreeSet<&str>,
+    ) -> Vec<UnstatedParameter<'a>> {
+        let mut unstated = Vec::new();
         for chosen in &self.0 {
             let reach = Reach::new(&chosen.effect, names, wheels);
             for parameter in &chosen.effect.parameters {
@@ -211,14 +215,14 @@ impl EffectSet {
                 } else {
                     vec![None]
                 };
-                unsaid.extend(missing.into_iter().map(|wheel| Unsaid {
+                unstated.extend(missing.into_iter().map(|wheel| UnstatedParameter {
                     name: parameter_name(&chosen.effect, parameter, wheel),
                     chosen,
                     parameter,
                 }));
             }
         }
-        unsaid
+        unstated
     }
 
     /// Checks that the names of effects' parameters do not contradict each other, and that none is missing; [`ModelError`]
@@ -248,8 +252,8 @@ impl EffectSet {
                 }
             }
         }
-        match self.unsaid(names, wheels).first() {
-            Some(Unsaid { name, .. }) => Err(ModelError::Unset(name.clone())),
+        match self.unstated_parameters(names, wheels).first() {
+            Some(UnstatedParameter { name, .. }) => Err(ModelError::Unset(name.clone())),
             None => Ok(()),
         }
     }
@@ -318,7 +322,7 @@ impl<'a, 'n> Reach<'a, 'n> {
 
 /// Reads a user's effect file, which may not use names or mechanisms of the catalogue. A [`FileError`] names line and column
 /// if known.
-pub fn own(file: &str, text: &str) -> Result<Effect, FileError> {
+pub fn read_user_effect(file: &str, text: &str) -> Result<Effect, FileError> {
     let effect = Effect::read(text).map_err(|e| FileError {
         file: file.to_owned(),
         line: e.line,
@@ -364,14 +368,17 @@ mod tests {
         let effects: Vec<String> = effects.iter().map(|&e| e.to_owned()).collect();
         let files = ["mine.toml".to_owned()];
         let texts = BTreeMap::from([("mine.toml".to_owned(), mine.to_owned())]);
-        let read = |name: &str| texts.get(name).map(|text| own(name, text));
+        let read = |name: &str| texts.get(name).map(|text| read_user_effect(name, text));
         EffectSet::choose("job.toml", (&effects, &files), names.iter().copied(), read)
             .map_err(|e| e.to_string())
     }
 
-    fn unsaid(set: &EffectSet, names: &[&str]) -> Vec<String> {
+    fn unstated(set: &EffectSet, names: &[&str]) -> Vec<String> {
         let (names, wheels) = (names.iter().copied().collect(), BTreeSet::from(["w", "x"]));
-        set.unsaid(&names, &wheels).into_iter().map(|u| u.name).collect()
+        set.unstated_parameters(&names, &wheels)
+            .into_iter()
+            .map(|u| u.name)
+            .collect()
     }
 
     #[test]
@@ -389,14 +396,14 @@ mod tests {
     #[test]
     fn a_strength_for_one_wheel_leaves_the_others_alone_and_shapes_are_shared() {
         let set = choose(&[], &[], MINE).unwrap();
-        assert_eq!(unsaid(&set, &[]), ["mine.a", "mine.v_a"]);
-        assert_eq!(unsaid(&set, &["mine.a.w"]), ["mine.v_a"]);
-        assert_eq!(unsaid(&set, &["mine.a.w", "mine.v_a.w"]), Vec::<String>::new());
-        assert_eq!(unsaid(&set, &["mine.a", "mine.v_a.w"]), ["mine.v_a"]);
+        assert_eq!(unstated(&set, &[]), ["mine.a", "mine.v_a"]);
+        assert_eq!(unstated(&set, &["mine.a.w"]), ["mine.v_a"]);
+        assert_eq!(unstated(&set, &["mine.a.w", "mine.v_a.w"]), Vec::<String>::new());
+        assert_eq!(unstated(&set, &["mine.a", "mine.v_a.w"]), ["mine.v_a"]);
         let two = choose(&["peak_pressure_angle"], &[], MINE).unwrap();
         let stated = ["peak_pressure_angle.front_share.x", "mine.a", "mine.v_a"];
         assert_eq!(
-            unsaid(&two, &stated),
+            unstated(&two, &stated),
             ["peak_pressure_angle.front_share_per_slip.x"]
         );
     }

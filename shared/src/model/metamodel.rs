@@ -2,10 +2,10 @@
 
 use statistics::Metamodel;
 
-use super::companion::Companion;
 use super::effects::EffectSet;
 use super::error::ModelError;
 use super::kind::ModelKind;
+use super::low_fidelity::LowFidelityModel;
 use super::variant::ModelVariant;
 use crate::parameters;
 
@@ -16,7 +16,7 @@ impl ModelVariant {
         let coarse = ModelVariant {
             kind: ModelKind::QuasiStatic,
             spatial: None,
-            companion: None,
+            low_fidelity: None,
             histories: false,
             fixed: self
                 .fixed
@@ -34,8 +34,8 @@ impl ModelVariant {
     /// The variant with the metamodel of a stage.
     pub fn with_metamodel(&self, metamodel: &Metamodel) -> ModelVariant {
         ModelVariant {
-            companion: self.companion.as_ref().map(|companion| Companion {
-                values: companion.values.clone(),
+            low_fidelity: self.low_fidelity.as_ref().map(|low_fidelity| LowFidelityModel {
+                values: low_fidelity.values.clone(),
                 metamodel: Some(Box::new(metamodel.clone())),
             }),
             ..self.clone()

@@ -10,10 +10,9 @@
 //! - `names`: the meaning of parameter names, and the check that a set of them is complete.
 //! - `variant`: [`ModelVariant`], with the runs and readings (`condition`) to simulate; `capability`: the check that its
 //!   model can express it.
-//! - `companion`, `metamodel`: the quasi-static, low-fidelity model for the three-dimensional one.
+//! - `low_fidelity`, `metamodel`: the quasi-static, low-fidelity model for the three-dimensional one.
 
 mod capability;
-mod companion;
 mod condition;
 pub mod effects;
 mod error;
@@ -22,6 +21,7 @@ mod external_effects;
 mod external_table;
 pub mod grouser_key;
 mod kind;
+mod low_fidelity;
 mod metamodel;
 mod names;
 mod rolled_grousers;
@@ -29,12 +29,12 @@ pub mod settings;
 pub mod spatial;
 mod variant;
 
-pub use companion::Companion;
 pub use condition::{PlateCondition, RingCondition, RunCondition};
 pub use effects::{EffectSet, EffectText};
 pub use error::ModelError;
 pub use external::{ExternalModel, ExternalParameter, ExternalSource, RunInput};
 pub use kind::ModelKind;
+pub use low_fidelity::LowFidelityModel;
 pub use names::{ParameterScope, check_complete, lookup};
 pub use settings::ModelSettings;
 pub use spatial::SpatialSettings;

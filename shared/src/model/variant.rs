@@ -7,12 +7,12 @@ use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use utoipa::ToSchema;
 
-use super::companion::Companion;
 use super::condition::{PlateCondition, RingCondition, RunCondition};
 use super::effects::{EffectSet, EffectText};
 use super::error::ModelError;
 use super::external::ExternalModel;
 use super::kind::ModelKind;
+use super::low_fidelity::LowFidelityModel;
 use super::names::{ParameterScope, check_complete, lookup};
 use super::settings::ModelSettings;
 use super::spatial::SpatialSettings;
@@ -75,8 +75,8 @@ pub struct ModelVariant {
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub probe: Vec<f64>,
     /// The low-fidelity quasi-static model for a metamodel, if there is one.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub companion: Option<Companion>,
+    #[serde(default, rename = "companion", skip_serializing_if = "Option::is_none")]
+    pub low_fidelity: Option<LowFidelityModel>,
 }
 
 impl ModelVariant {
@@ -180,7 +180,7 @@ impl ModelVariant {
             plates: Vec::new(),
             rings: Vec::new(),
             probe: Vec::new(),
-            companion: None,
+            low_fidelity: None,
         };
         variant.check_expressible(effects)?;
         Ok(variant)
@@ -191,7 +191,7 @@ impl ModelVariant {
         let rolls = self.kind == ModelKind::Scm && !self.conditions.is_empty();
         rolls.then(|| ModelVariant {
             histories: true,
-            companion: None,
+            low_fidelity: None,
             ..self.clone()
         })
     }

@@ -1,9 +1,7 @@
 //! The likelihood, compared with hand-computed numbers.
 
 use nalgebra::{DMatrix, DVector};
-use statistics::likelihood::{
-    DISCREPANCY_LEVELS, GREATEST_DISCREPANCY, LEAST_DISCREPANCY, discrepancy_levels,
-};
+use statistics::likelihood::{DISCREPANCY_LEVELS, GREATEST_DISCREPANCY, MIN_DISCREPANCY, discrepancy_levels};
 use statistics::{
     CommonError, CommonErrorSize, Datum, Discrepancy, ErrorLaw, ErrorSd, Likelihood, LikelihoodError,
     LogLikelihood,
@@ -274,7 +272,7 @@ fn an_unknown_discrepancy_is_the_mean_over_its_values() {
     let levels = discrepancy_levels();
     assert_eq!(levels.len(), DISCREPANCY_LEVELS);
     assert!(
-        (levels[0] - LEAST_DISCREPANCY).abs() < 1e-12
+        (levels[0] - MIN_DISCREPANCY).abs() < 1e-12
             && (levels[DISCREPANCY_LEVELS - 1] - GREATEST_DISCREPANCY).abs() < 1e-12
     );
     let all = [0, 1, 2, 3, 4, 5];

@@ -315,13 +315,13 @@ fn the_coordinator_knows_no_physics_and_the_worker_in_one_file() {
     nowhere(
         &["worker/src"],
         &["statistics::"],
-        &["worker/src/model/companion.rs", "worker/src/model/variant.rs"],
+        &["worker/src/model/low_fidelity.rs", "worker/src/model/variant.rs"],
     );
     nowhere(
         &["shared/src"],
         &["statistics::"],
         &[
-            "shared/src/model/companion.rs",
+            "shared/src/model/low_fidelity.rs",
             "shared/src/model/metamodel.rs",
             "shared/src/exchange.rs",
         ],

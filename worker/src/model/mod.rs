@@ -5,7 +5,7 @@
 //! - `forward`: the forward model; `physics`: its equations; `spatial`: the settings of the three-dimensional one;
 //!   `bevameter`: plates and rings.
 //! - `external`: an external model, with the effects around it.
-//! - `companion`: the quasi-static model as low-fidelity model of the three-dimensional one, for a metamodel.
+//! - `low_fidelity`: the quasi-static model as low-fidelity model of the three-dimensional one, for a metamodel.
 //! - `error`: errors of compiling a variant.
 //! - `effects`: the effects, compiled, with the sources of their parameters.
 //! - `parameters`: the source of each physical quantity.
@@ -13,11 +13,11 @@
 
 mod bevameter;
 mod cache;
-mod companion;
 mod effects;
 mod error;
 mod external;
 mod forward;
+mod low_fidelity;
 mod parameters;
 mod physics;
 mod recording;

@@ -9,10 +9,10 @@ use shared::model::ModelVariant;
 use shared::outcome::{Fault, Outcome, ParameterRejection};
 use statistics::{Subchain, SubchainEnd};
 
-use super::companion::CompiledCompanion;
 use super::error::CompileError;
 use super::external::OutsideModel;
 use super::forward::ForwardModel;
+use super::low_fidelity::CompiledLowFidelity;
 use crate::external::allowed::AllowedModels;
 
 /// A variant ready to evaluate.
@@ -20,7 +20,7 @@ use crate::external::allowed::AllowedModels;
 pub struct CompiledVariant {
     model: Model,
     /// The low-fidelity model for a metamodel, if there is one.
-    companion: Option<CompiledCompanion>,
+    low_fidelity: Option<CompiledLowFidelity>,
 }
 
 /// The built-in or external model of a variant.
@@ -40,7 +40,7 @@ impl CompiledVariant {
         };
         Ok(CompiledVariant {
             model,
-            companion: CompiledCompanion::new(variant)?,
+            low_fidelity: CompiledLowFidelity::new(variant)?,
         })
     }
 
@@ -63,8 +63,8 @@ impl CompiledVariant {
             Model::Ours(forward) => forward.evaluate(theta, keep),
             Model::Outside(model) => model.evaluate(theta),
         };
-        if let (Outcome::Evaluated(observables), Some(companion)) = (&mut outcome, &self.companion) {
-            observables.coarse = companion.values(theta);
+        if let (Outcome::Evaluated(observables), Some(low_fidelity)) = (&mut outcome, &self.low_fidelity) {
+            observables.coarse = low_fidelity.values(theta);
         }
         outcome
     }
@@ -99,8 +99,9 @@ impl CompiledVariant {
         let Model::Ours(forward) = &self.model else {
             return fault("a subchain was asked of a model that is not ours".into());
         };
-        let companion = self.companion.as_ref();
-        let Some((companion, metamodel)) = companion.and_then(|c| Some((c, c.metamodel.as_ref()?))) else {
+        let low_fidelity = self.low_fidelity.as_ref();
+        let Some((low_fidelity, metamodel)) = low_fidelity.and_then(|c| Some((c, c.metamodel.as_ref()?)))
+        else {
             return fault("a subchain was asked of a variant without a metamodel".into());
         };
         if theta.len() < forward.dimension {
@@ -108,7 +109,7 @@ impl CompiledVariant {
             return fault(format!("theta has {given} entries, the variant has {needed}"));
         }
         let model = |theta: &[f64]| theta[..forward.dimension].to_vec();
-        match metamodel.run(subchain, theta, |theta| companion.values(&model(theta))) {
+        match metamodel.run(subchain, theta, |theta| low_fidelity.values(&model(theta))) {
             Ok(end) if end.accepted == 0 => (None, Some(end)),
             Ok(end) => (Some(self.evaluate(&model(&end.theta))), Some(end)),
             Err(error) => fault(format!("the metamodel: {error}")),

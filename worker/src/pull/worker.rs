@@ -20,7 +20,7 @@ use crate::model::{CompiledVariant, VariantCache};
 /// The amount of work that a worker holds `[s]`.
 const WORK_S: f64 = 1.5;
 /// The minimum work for an exchange `[s]`: about the time of an exchange with results on disk.
-const LEAST_WORK_S: f64 = 5e-3;
+const MIN_WORK_S: f64 = 5e-3;
 /// The longest wait of a long poll `[ms]`.
 const WAIT_MS: u64 = 20_000;
 /// The longest wait of a long poll with `--once` `[ms]`.
@@ -270,7 +270,7 @@ impl<C: Coordinator> Worker<C> {
     /// held, or when results or renewals have waited long enough.
     fn is_time_to_exchange(&self) -> bool {
         let half_done = self.held.len() * 2 <= self.last_answer.asked;
-        let much_done = self.outbox.len() as f64 >= self.evaluations_in(LEAST_WORK_S);
+        let much_done = self.outbox.len() as f64 >= self.evaluations_in(MIN_WORK_S);
         self.held.is_empty()
             || (half_done && (self.last_answer.remaining > 0 || much_done))
             || (!self.outbox.is_empty() && self.flushed.elapsed() >= FLUSH)
@@ -299,7 +299,7 @@ impl<C: Coordinator> Worker<C> {
     /// work to a faster one, but never splits below the amount that is worth an exchange. The same amount is requested from
     /// a round of unknown size.
     fn want(&self) -> u32 {
-        let least = self.evaluations_in(LEAST_WORK_S);
+        let least = self.evaluations_in(MIN_WORK_S);
         let share = self.last_answer.remaining as f64 / f64::from(self.last_answer.workers.max(1));
         let share = match (self.last_answer.remaining, self.last_answer.workers) {
             (0, _) => least,

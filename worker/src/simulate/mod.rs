@@ -22,7 +22,7 @@ use scm::spatial::History;
 use shared::channel::Channel;
 use shared::experiment::{Experiment, NoiseSd, Scatter, ScatterSd, TestRun};
 use shared::file::{FileError, number, parse_toml};
-use shared::model::effects::own;
+use shared::model::effects::read_user_effect;
 use shared::model::{EffectSet, ModelSettings, ModelVariant};
 use shared::outcome::Outcome;
 use shared::text_file::{read_beside, read_text};
@@ -154,7 +154,7 @@ fn variant(
         &model_name,
         (&settings.effects, &settings.effect_files),
         names,
-        |name| texts.get(name).map(|text| own(name, text)),
+        |name| texts.get(name).map(|text| read_user_effect(name, text)),
     )?;
     state_shapes(experiment, &effects, &mut settings.fixed, &parameters_name)?;
     ModelVariant::new(experiment, &settings, &effects, Vec::new(), runs)
@@ -170,20 +170,20 @@ fn state_shapes(
 ) -> Result<(), FileError> {
     let names = fixed.keys().map(String::as_str).collect();
     let mut defaults = Vec::new();
-    for unsaid in effects.unsaid(&names, &experiment.wheel_names()) {
-        let prior = &unsaid.parameter.prior;
+    for unstated in effects.unstated_parameters(&names, &experiment.wheel_names()) {
+        let prior = &unstated.parameter.prior;
         let Some(number) = number(prior) else {
-            let unit = match unsaid.parameter.unit.as_str() {
+            let unit = match unstated.parameter.unit.as_str() {
                 "1" => String::new(),
                 unit => format!(" [{unit}]"),
             };
             let message = format!(
                 "{}{unit} has no value: it is a parameter of effect {}",
-                unsaid.name, unsaid.chosen.effect.name
+                unstated.name, unstated.chosen.effect.name
             );
             return Err(FileError::whole(file, message));
         };
-        defaults.push((unsaid.name, number));
+        defaults.push((unstated.name, number));
     }
     fixed.extend(defaults);
     Ok(())

@@ -59,7 +59,7 @@ impl Campaign {
         let proposed = Query {
             model: QueriedModel::With(Vec::new()),
             is_proposed: true,
-            is_companion: false,
+            is_low_fidelity: false,
             theta: Vec::new(),
         };
         let task = local.models.task();
@@ -132,7 +132,7 @@ impl Answer {
 
     /// Whether the truth's class is claimed, or something else; `None` without a claim.
     pub fn is_right(&self) -> Option<bool> {
-        let class = |k: usize| self.conclusion.ranking.of(Some(k)).map(|own| own.class);
+        let class = |k: usize| self.conclusion.ranking.effect(Some(k)).map(|own| own.class);
         let truth = self.truth.map(|(_, _, class)| class);
         match self.conclusion.verdict {
             SearchVerdict::Named(k) => Some(truth.is_some() && class(k) == truth),

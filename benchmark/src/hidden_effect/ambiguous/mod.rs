@@ -11,7 +11,7 @@ pub mod strategy;
 
 use campaign::{Answer, Campaign};
 use story::Story;
-use strategy::{MOST, Strategy};
+use strategy::{MAX_STRATEGY_RUNS, Strategy};
 
 use crate::hidden_effect::study::error::StudyError;
 use crate::hidden_effect::study::parallel::each;
@@ -56,11 +56,14 @@ pub fn run(count: u64, seed: u64) -> Result<(), StudyError> {
         // A case that stays open is counted as if one more run resolved it.
         let needed: Vec<f64> = stories
             .iter()
-            .map(|s| s.right_after.unwrap_or(MOST + 1) as f64)
+            .map(|s| s.right_after.unwrap_or(MAX_STRATEGY_RUNS + 1) as f64)
             .collect();
         let [average, error] = mean(&needed);
         if strategy != Strategy::Batch {
-            println!("  runs needed, at most {}: {average:.2} ± {error:.2}", MOST + 1);
+            println!(
+                "  runs needed, at most {}: {average:.2} ± {error:.2}",
+                MAX_STRATEGY_RUNS + 1
+            );
         }
         println!(
             "  wrongly named: {} (goal 0)",

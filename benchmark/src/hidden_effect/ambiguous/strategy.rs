@@ -8,7 +8,7 @@ use super::campaign::{Answer, Campaign};
 use super::space::Space;
 
 /// Most further runs.
-pub const MOST: usize = 4;
+pub const MAX_STRATEGY_RUNS: usize = 4;
 
 /// How further runs are chosen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -46,7 +46,11 @@ impl Strategy {
 
     /// The numbers of runs after which a search is made.
     pub fn counts(self) -> RangeInclusive<usize> {
-        if self == Self::Batch { 2..=2 } else { 1..=MOST }
+        if self == Self::Batch {
+            2..=2
+        } else {
+            1..=MAX_STRATEGY_RUNS
+        }
     }
 
     /// The runs to make, the next one first.

@@ -11,7 +11,7 @@ use super::flaw::Flaw;
 /// Random streams of truths and noise.
 const STAGE: u64 = (1 << 47) + 1;
 /// Most draws of the prior in a row that the model rejects.
-const MOST_REFUSED: u64 = 1000;
+const MAX_REFUSED: u64 = 1000;
 const PLAN: Plan = Plan::Full;
 
 /// A campaign on a rig with a flaw.
@@ -41,7 +41,7 @@ impl RigCampaign {
         };
         let (stiffness, angle) = (place("log10_p_ref")?, place("friction_angle_deg")?);
         let prior = parameters.prior();
-        for refused in 0..MOST_REFUSED {
+        for refused in 0..MAX_REFUSED {
             let truth = prior.sample(&mut Stream::new(seed, STAGE, number, refused));
             let mut values = Vec::new();
             for (row, own) in rows.iter().zip(&disturbances) {
@@ -78,7 +78,7 @@ impl RigCampaign {
                 sds,
             });
         }
-        Err(format!("the model rejected {MOST_REFUSED} draws of the prior in a row").into())
+        Err(format!("the model rejected {MAX_REFUSED} draws of the prior in a row").into())
     }
 
     pub fn job(&self) -> FileSet {

@@ -5,7 +5,7 @@ use record::{Discovery, NONE, NOT_IN_LIBRARY, Verdict};
 use super::super::study::case::SyntheticCase;
 use super::super::study::design::Plan;
 use super::super::study::error::StudyError;
-use super::super::study::noise_free::{LEAST_SEPARATION, shortfall};
+use super::super::study::noise_free::{MIN_SEPARATION, shortfall};
 use super::super::study::parallel::each;
 use super::super::study::rate::Rate;
 use super::super::study::record::record;
@@ -15,7 +15,7 @@ use record::Extension;
 /// The truths are others than those of the other kinds.
 const FIRST: u64 = 2_000_000;
 /// Truths that are drawn until the effect is detectable.
-const MOST_DRAWN: u64 = 1000;
+const MAX_DRAWN: u64 = 1000;
 /// Effects with the lines of the experiment that they need.
 const TRUTHS: [(&str, &str); 2] = [
     ("bulldozing", "density_kg_m3 = 1400.0\n"),
@@ -52,10 +52,10 @@ pub fn run(count: u64, seed: u64) -> Result<(), StudyError> {
 
 /// One experiment: what is said, and a line about it.
 pub fn one(seed: u64, number: u64) -> Result<(Said, String), StudyError> {
-    let (name, unsaid) = TRUTHS[(number % TRUTHS.len() as u64) as usize];
+    let (name, unstated) = TRUTHS[(number % TRUTHS.len() as u64) as usize];
     let case = draw(name, seed, FIRST + number)?;
     let mut experiment = case.experiment();
-    experiment.toml = experiment.toml.replace(unsaid, "");
+    experiment.toml = experiment.toml.replace(unstated, "");
     let record = record(&case.plan.job(), &experiment, MAX_EFFECTS, 1)?;
     let first = record.effects.first();
     let said = said(&record, name);
@@ -93,11 +93,11 @@ fn leading_class(record: &Discovery) -> Option<u32> {
 /// A truth with one effect that can be detected.
 fn draw(name: &str, seed: u64, number: u64) -> Result<SyntheticCase, StudyError> {
     let hidden = [(name.to_owned(), Extension::Effect(name.to_owned()))];
-    for attempt in 0..MOST_DRAWN {
+    for attempt in 0..MAX_DRAWN {
         let case = SyntheticCase::draw(Plan::Full, &hidden, seed, number, attempt)?;
-        if shortfall(&case, &[])? >= LEAST_SEPARATION {
+        if shortfall(&case, &[])? >= MIN_SEPARATION {
             return Ok(case);
         }
     }
-    Err(format!("{MOST_DRAWN} strengths of {name} are not detectable").into())
+    Err(format!("{MAX_DRAWN} strengths of {name} are not detectable").into())
 }

@@ -16,7 +16,7 @@ use super::error::StudyError;
 /// Random streams of this study, separate from those of samplers and searches.
 const STAGE: u64 = 1 << 41;
 /// Most draws of the prior in a row that the model rejects.
-const MOST_REFUSED: u64 = 1000;
+const MAX_REFUSED: u64 = 1000;
 /// Noise sd of a channel over the root mean square of its noise-free values in the fitted runs.
 pub const NOISE: f64 = 0.03;
 
@@ -95,7 +95,7 @@ impl SyntheticCase {
         let truth_job = extended("job.toml", &plan.job(), &extensions)?;
         let rows = plan.rows();
         let prior = spec(&truth_job, &blank(&rows))?.prior();
-        for refused in 0..MOST_REFUSED {
+        for refused in 0..MAX_REFUSED {
             let stage = STAGE + 2 * attempt;
             let theta = prior.sample(&mut Stream::new(seed, stage, number, refused));
             let Some(noise_free) = run(&truth_job, &rows, &theta)? else {
@@ -128,7 +128,7 @@ impl SyntheticCase {
                 sds,
             });
         }
-        Err(format!("the model rejected {MOST_REFUSED} draws of the prior in a row").into())
+        Err(format!("the model rejected {MAX_REFUSED} draws of the prior in a row").into())
     }
 
     /// The files of a campaign on the same soil before its effects acted; `None` where the model rejects that.

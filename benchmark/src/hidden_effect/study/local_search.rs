@@ -53,7 +53,7 @@ impl LocalSearch {
         let query = |theta: &Vec<f64>| Query {
             model: QueriedModel::With(effects.to_vec()),
             is_proposed: false,
-            is_companion: false,
+            is_low_fidelity: false,
             theta: theta.clone(),
         };
         let Some(first) = thetas.first() else {
@@ -105,7 +105,7 @@ impl LocalSearch {
             self.ask(&Query {
                 model: QueriedModel::With(request.candidate.into_iter().collect()),
                 is_proposed: false,
-                is_companion: request.is_companion,
+                is_low_fidelity: request.is_low_fidelity,
                 theta: request.theta.clone(),
             })
         })

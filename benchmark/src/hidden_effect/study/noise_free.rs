@@ -13,7 +13,7 @@ use super::error::StudyError;
 use super::local_search::{LocalSearch, run};
 
 /// Nats by which the truth must beat a rival for a trial to count.
-pub const LEAST_SEPARATION: f64 = 10.0;
+pub const MIN_SEPARATION: f64 = 10.0;
 
 /// The log-likelihood of the truth without noise, the maximum.
 fn perfect(likelihood: &Likelihood) -> Result<f64, StudyError> {
@@ -75,7 +75,7 @@ impl NoiseFree {
 
     /// Nats by which the best rival outside the class of an effect falls short; of `None`, the best of all.
     pub fn separation(&self, effect: Option<usize>) -> f64 {
-        let own = effect.and_then(|k| self.ranking.of(Some(k))).map(|j| j.class);
+        let own = effect.and_then(|k| self.ranking.effect(Some(k))).map(|j| j.class);
         let rivals = self.ranking.effects.iter().filter(|j| Some(j.class) != own);
         self.perfect - rivals.map(|j| j.log_likelihood).fold(f64::NEG_INFINITY, f64::max)
     }

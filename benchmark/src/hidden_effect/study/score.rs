@@ -7,7 +7,7 @@ use discovery::{Conclusion, SearchTask, SearchVerdict};
 use super::case::SyntheticCase;
 use super::held_out::HeldOut;
 use super::kind::HiddenKind;
-use super::noise_free::LEAST_SEPARATION;
+use super::noise_free::MIN_SEPARATION;
 
 /// The class of an explanation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -213,8 +213,8 @@ impl TrialScore {
         match self.kind {
             HiddenKind::None => !self.is_claimed,
             HiddenKind::Two | HiddenKind::Three => self.is_exact,
-            HiddenKind::Outside => self.dependence || self.separation < LEAST_SEPARATION,
-            HiddenKind::One | HiddenKind::Spatial => self.is_right || self.separation < LEAST_SEPARATION,
+            HiddenKind::Outside => self.dependence || self.separation < MIN_SEPARATION,
+            HiddenKind::One | HiddenKind::Spatial => self.is_right || self.separation < MIN_SEPARATION,
         }
     }
 }

@@ -3,7 +3,7 @@
 use std::fmt;
 
 use super::kind::HiddenKind;
-use super::noise_free::LEAST_SEPARATION;
+use super::noise_free::MIN_SEPARATION;
 use super::rate::{Rate, mean};
 use super::score::TrialScore;
 use super::target::Target;
@@ -41,7 +41,7 @@ fn inside(all: &[&TrialScore]) -> Rate {
 }
 
 impl Tally<'_> {
-    fn of(&self, kinds: &[HiddenKind], holds: impl Fn(&TrialScore) -> bool) -> Vec<&TrialScore> {
+    fn matching(&self, kinds: &[HiddenKind], holds: impl Fn(&TrialScore) -> bool) -> Vec<&TrialScore> {
         let own = self.0.iter().filter(|score| kinds.contains(&score.kind));
         own.filter(|score| holds(score)).collect()
     }
@@ -53,7 +53,7 @@ impl Tally<'_> {
     }
 
     fn of_one(&self) -> Vec<Option<Target>> {
-        let one = self.of(&[HiddenKind::One], |x| x.separation >= LEAST_SEPARATION);
+        let one = self.matching(&[HiddenKind::One], |x| x.separation >= MIN_SEPARATION);
         let alone: Vec<&TrialScore> = one.iter().copied().filter(|x| x.is_alone).collect();
         let claimed: Vec<&TrialScore> = one.iter().copied().filter(|x| x.is_claimed).collect();
         let sizes = numbers(&one, |x| x.set_size as f64);
@@ -91,10 +91,10 @@ impl Tally<'_> {
 
     fn of_sets(&self) -> Vec<Option<Target>> {
         let (two, three) = (
-            self.of(&[HiddenKind::Two], |_| true),
-            self.of(&[HiddenKind::Three], |_| true),
+            self.matching(&[HiddenKind::Two], |_| true),
+            self.matching(&[HiddenKind::Three], |_| true),
         );
-        let several = self.of(&[HiddenKind::Two, HiddenKind::Three], |_| true);
+        let several = self.matching(&[HiddenKind::Two, HiddenKind::Three], |_| true);
         let false_law = rate(&several, TrialScore::is_outside);
         vec![
             Target::rate("two effects exact", rate(&two, |x| x.is_exact), [0.80, 0.94]),
@@ -109,8 +109,8 @@ impl Tally<'_> {
     }
 
     fn of_laws(&self) -> Vec<Option<Target>> {
-        let claimed = self.of(&[HiddenKind::Outside], |x| {
-            x.separation >= LEAST_SEPARATION && x.is_outside()
+        let claimed = self.matching(&[HiddenKind::Outside], |x| {
+            x.separation >= MIN_SEPARATION && x.is_outside()
         });
         vec![
             Target::rate(
@@ -128,12 +128,12 @@ impl Tally<'_> {
     }
 
     fn of_all(&self) -> Vec<Option<Target>> {
-        let none = self.of(&[HiddenKind::None], |_| true);
-        let single = self.of(&[HiddenKind::One, HiddenKind::None], |_| true);
-        let wheel = self.of(&[HiddenKind::One, HiddenKind::None], |x| {
+        let none = self.matching(&[HiddenKind::None], |_| true);
+        let single = self.matching(&[HiddenKind::One, HiddenKind::None], |_| true);
+        let wheel = self.matching(&[HiddenKind::One, HiddenKind::None], |x| {
             x.candidates <= ONE_WHEEL
         });
-        let spatial = self.of(&[HiddenKind::Spatial], |x| x.separation >= LEAST_SEPARATION);
+        let spatial = self.matching(&[HiddenKind::Spatial], |x| x.separation >= MIN_SEPARATION);
         let to_name = numbers(&wheel, |x| x.to_name as f64);
         let to_confirm = numbers(&wheel, |x| x.to_confirm as f64);
         vec![
@@ -164,16 +164,16 @@ impl Tally<'_> {
 impl fmt::Display for Tally<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for kind in HiddenKind::ALL {
-            let all = self.of(&[kind], |_| true);
+            let all = self.matching(&[kind], |_| true);
             if all.is_empty() {
                 continue;
             }
-            let shown = rate(&all, |x| x.over_base >= LEAST_SEPARATION);
-            let clear = self.of(&[kind], |x| x.separation >= LEAST_SEPARATION);
+            let shown = rate(&all, |x| x.over_base >= MIN_SEPARATION);
+            let clear = self.matching(&[kind], |x| x.separation >= MIN_SEPARATION);
             let evaluations = numbers(&all, |x| x.evaluations as f64);
             writeln!(
                 f,
-                "{}: {} experiments; {} beyond the base by {LEAST_SEPARATION} nats without noise, {} beyond every rival, a law claimed in {} \
+                "{}: {} experiments; {} beyond the base by {MIN_SEPARATION} nats without noise, {} beyond every rival, a law claimed in {} \
                  of these; {:.0} evaluations and {:.1} s each in the mean",
                 kind.name(),
                 all.len(),
@@ -192,7 +192,7 @@ impl fmt::Display for Tally<'_> {
         for target in self.targets() {
             writeln!(f, "{target}")?;
         }
-        let stated = self.of(&[HiddenKind::One, HiddenKind::None, HiddenKind::Outside], |_| {
+        let stated = self.matching(&[HiddenKind::One, HiddenKind::None, HiddenKind::Outside], |_| {
             true
         });
         for (k, low) in BINS.iter().enumerate() {

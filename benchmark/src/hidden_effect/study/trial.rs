@@ -17,13 +17,13 @@ use super::kind::HiddenKind;
 use super::laws::LAWS;
 use super::line::line;
 use super::local_search::LocalSearch;
-use super::noise_free::{LEAST_SEPARATION, NoiseFree, shortfall};
+use super::noise_free::{MIN_SEPARATION, NoiseFree, shortfall};
 use super::score::{TrialFacts, TrialScore};
 
 /// Random streams of the choice of effects that act together.
 const STAGE: u64 = 1 << 44;
 /// Combinations of effects that are drawn until each effect is detectable.
-const MOST_DRAWN: u64 = 1000;
+const MAX_DRAWN: u64 = 1000;
 /// Most effects in a combination of the search.
 const MAX_EFFECTS: usize = 3;
 
@@ -113,7 +113,7 @@ pub fn draw_of(
     seed: u64,
     number: u64,
 ) -> Result<SyntheticCase, StudyError> {
-    for attempt in 0..MOST_DRAWN {
+    for attempt in 0..MAX_DRAWN {
         let mut stream = Stream::new(seed, STAGE, number, attempt);
         let mut rest = known.to_vec();
         let mut hidden = Vec::new();
@@ -128,7 +128,7 @@ pub fn draw_of(
             return Ok(case);
         }
     }
-    Err(format!("each of {MOST_DRAWN} combinations of {count} effects has one that is not detectable").into())
+    Err(format!("each of {MAX_DRAWN} combinations of {count} effects has one that is not detectable").into())
 }
 
 /// The effects of the catalogue that a plan can have, each with its addition to the job.
@@ -148,7 +148,7 @@ fn each_is_detectable(case: &SyntheticCase, hidden: &[(String, Extension)]) -> R
     for left_out in 0..hidden.len() {
         let others = hidden.iter().enumerate().filter(|(k, _)| *k != left_out);
         let others: Vec<&Extension> = others.map(|(_, (_, extension))| extension).collect();
-        if shortfall(case, &others)? < LEAST_SEPARATION {
+        if shortfall(case, &others)? < MIN_SEPARATION {
             return Ok(false);
         }
     }

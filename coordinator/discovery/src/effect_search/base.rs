@@ -59,7 +59,7 @@ pub(crate) fn fits(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::settings::Roughness;
+    use crate::settings::Smoothness;
     use statistics::prior::{Distribution, Marginal, Prior};
 
     #[test]
@@ -67,7 +67,7 @@ mod tests {
         let uniform = |lower, upper| Marginal::new(Distribution::Uniform { lower, upper }, None).unwrap();
         let frame = NormalFrame::base(
             &Prior::new(vec![uniform(0.0, 1.0), uniform(0.0, 4.0)]),
-            Roughness::Smooth,
+            Smoothness::Smooth,
         );
         let thetas: Vec<Vec<f64>> = starts(&frame, 32).iter().map(|t| frame.theta(t)).collect();
         for quarter in 0..4 {

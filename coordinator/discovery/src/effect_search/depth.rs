@@ -2,7 +2,7 @@
 
 use crate::effect_search::base;
 use crate::laplace::fit::{FitStep, LaplaceFit};
-use crate::settings::Roughness;
+use crate::settings::Smoothness;
 
 /// How much a search spends, phase by phase.
 #[derive(Debug)]
@@ -91,10 +91,10 @@ impl Confirmation {
 
 impl Depth {
     /// The depth of the search for one effect of the library.
-    pub(crate) fn for_roughness(roughness: Roughness) -> &'static Self {
-        match roughness {
-            Roughness::Smooth => &FULL,
-            Roughness::Rough | Roughness::Unknown => &SPARING,
+    pub(crate) fn for_smoothness(smoothness: Smoothness) -> &'static Self {
+        match smoothness {
+            Smoothness::Smooth => &FULL,
+            Smoothness::Rough | Smoothness::Unknown => &SPARING,
         }
     }
 }

@@ -12,7 +12,7 @@ use crate::laplace::fit::{FitStep, FittedModel, LaplaceFit};
 use crate::laplace::importance::ImportanceSampler;
 use crate::laplace::point::FitPoint;
 use crate::laplace::reduced_discrepancy::reduced_discrepancy;
-use crate::settings::Roughness;
+use crate::settings::Smoothness;
 use inference::InferenceFailure;
 use statistics::likelihood::Likelihood;
 
@@ -120,14 +120,14 @@ impl EffectSearch {
             return self.measure_noise(batch, shorter);
         }
         self.evaluations.base += batch.evaluations();
-        if self.base_frame.roughness == Roughness::Unknown {
+        if self.base_frame.smoothness == Smoothness::Unknown {
             let mut best = batch.best().into_iter();
             let is_smooth =
                 best.any(|fit| numerical_noise::is_negligible(&self.likelihood, answers, &fit.theta()));
-            self.set_roughness(if is_smooth {
-                Roughness::Smooth
+            self.set_smoothness(if is_smooth {
+                Smoothness::Smooth
             } else {
-                Roughness::Rough
+                Smoothness::Rough
             });
         }
         self.continue_base(batch, answers);
@@ -221,7 +221,7 @@ impl EffectSearch {
             return self.screen(0, awaiting);
         }
         // The evaluations of a rough model are too expensive for fitting twice.
-        let is_smooth = self.base_frame.roughness == Roughness::Smooth;
+        let is_smooth = self.base_frame.smoothness == Smoothness::Smooth;
         let base = self.base.as_ref().filter(|_| is_smooth);
         match base.and_then(|base| reduced_discrepancy(&self.likelihood, &base.fit)) {
             Some(reduced) => {
@@ -308,8 +308,8 @@ impl EffectSearch {
         let Some(batch) = self.next_round(batch, Phase::Refinement) else {
             return;
         };
-        self.evaluations.polish += batch.evaluations();
-        self.take(batch, EvidenceMethod::Polished);
+        self.evaluations.refinement += batch.evaluations();
+        self.take(batch, EvidenceMethod::Refined);
         let Some(confirmation) = self.confirmation() else {
             return self.finish();
         };

@@ -10,7 +10,7 @@ pub enum EvidenceMethod {
     /// Laplace's approximation at a fit with Broyden's Jacobian.
     RankOne,
     /// Laplace's approximation at a fit with a finite-difference Jacobian.
-    Polished,
+    Refined,
     /// Laplace's approximation at the best of fits from several starts.
     Confirmed,
     /// Importance sampling about that fit.
@@ -60,7 +60,7 @@ pub struct EvaluationCounts {
     /// Evaluations of all extensions.
     pub extension: usize,
     /// Evaluations of the refinement.
-    pub polish: usize,
+    pub refinement: usize,
     /// Evaluations of the confirmation, importance sampling included.
     pub confirmation: usize,
 }
@@ -69,7 +69,7 @@ impl EvaluationCounts {
     /// Evaluations up to the refinement, which names the effect.
     #[must_use]
     pub fn to_name(&self) -> usize {
-        self.base + self.screen + self.extension + self.polish
+        self.base + self.screen + self.extension + self.refinement
     }
 
     /// Evaluations up to the confirmation.
@@ -127,7 +127,7 @@ impl EffectRanking {
 
     /// The result for a candidate.
     #[must_use]
-    pub fn of(&self, candidate: Option<usize>) -> Option<&RankedEffect> {
+    pub fn effect(&self, candidate: Option<usize>) -> Option<&RankedEffect> {
         self.effects.iter().find(|e| e.candidate == candidate)
     }
 

@@ -19,7 +19,7 @@ pub struct EffectRequest {
     /// The candidate that is switched on; `None`: the base model.
     pub candidate: Option<usize>,
     /// Whether the low-fidelity model is asked, in place of the model.
-    pub is_companion: bool,
+    pub is_low_fidelity: bool,
     /// The base's parameters, then the candidate's.
     pub theta: Vec<f64>,
 }
@@ -42,14 +42,15 @@ impl EffectSearch {
             return Err(CandidateError::NoBase);
         }
         candidates.iter().try_for_each(Candidate::check)?;
-        let frame = NormalFrame::base(prior, settings.roughness).with_low_fidelity(settings.has_companion);
+        let frame =
+            NormalFrame::base(prior, settings.smoothness).with_low_fidelity(settings.has_low_fidelity);
         let positions = match &settings.starts {
             Starts::Draws(draws) => draws.iter().map(|theta| frame.position(theta)).collect(),
             Starts::Even(count) => base::starts(&frame, *count),
         };
         let mut search = Self::unasked(frame, likelihood, candidates, settings.seed);
         search.measures_noise = settings.has_numerical_noise;
-        search.depth = Depth::for_roughness(settings.roughness);
+        search.depth = Depth::for_smoothness(settings.smoothness);
         search.ask(Asked::all_for_model(None, positions).collect());
         Ok(search)
     }
@@ -86,7 +87,7 @@ impl EffectSearch {
         let pairs = self.asked.iter().zip(self.round.pending());
         pairs.map(|(asked, proposal)| EffectRequest {
             candidate: asked.candidate,
-            is_companion: asked.is_low_fidelity,
+            is_low_fidelity: asked.is_low_fidelity,
             theta: proposal.theta.clone(),
         })
     }

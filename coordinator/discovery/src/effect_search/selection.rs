@@ -14,7 +14,7 @@ use crate::laplace::coordinate::NormalFrame;
 use crate::laplace::fit::{FittedModel, LaplaceFit};
 use crate::laplace::point::FitPoint;
 use crate::probability::DETECTED;
-use crate::settings::Roughness;
+use crate::settings::Smoothness;
 
 /// A projected change of the predictions shorter than this many noise standard deviations is invisible.
 const MIN_VISIBLE: f64 = 2.0;
@@ -61,9 +61,9 @@ impl EffectSearch {
     pub(super) fn is_wrong(&self) -> bool {
         let best = self.best(1).into_iter().find_map(|k| self.fit_of(k));
         // For a rough model the result decides how thoroughly it is confirmed; a discrepancy, which takes up any misfit, must not count.
-        let chi_square_of = match self.base_frame.roughness {
-            Roughness::Smooth => FitChiSquare::of_fit,
-            Roughness::Rough | Roughness::Unknown => FitChiSquare::of_declared_noise,
+        let chi_square_of = match self.base_frame.smoothness {
+            Smoothness::Smooth => FitChiSquare::of_fit,
+            Smoothness::Rough | Smoothness::Unknown => FitChiSquare::of_declared_noise,
         };
         let chi_square = best.and_then(|fit| chi_square_of(fit, &self.likelihood));
         chi_square.is_some_and(|chi| chi.is_wrong())
@@ -347,7 +347,7 @@ mod tests {
             neutral: 0.0,
             excludes: Vec::new(),
             family: None,
-            has_companion: false,
+            has_low_fidelity: false,
         };
         let clean = predicted(&[0.2, -0.4, 0.9], Some(0));
         let datum = |(run, value): (usize, f64)| Datum {
@@ -405,7 +405,7 @@ mod tests {
         }
         let ranking = search.ranking().unwrap();
         assert_eq!(ranking.refused, [refused]);
-        assert!(ranking.of(Some(refused)).is_none() && ranking.of(Some(1 - refused)).is_some());
+        assert!(ranking.effect(Some(refused)).is_none() && ranking.effect(Some(1 - refused)).is_some());
     }
 
     #[test]

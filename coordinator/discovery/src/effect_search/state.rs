@@ -10,7 +10,7 @@ use crate::laplace::batch::{Asked, FitBatch};
 use crate::laplace::coordinate::NormalFrame;
 use crate::laplace::fit::{FittedModel, LaplaceFit};
 use crate::laplace::importance::ImportanceSampler;
-use crate::settings::Roughness;
+use crate::settings::Smoothness;
 use inference::{InferenceFailure, Proposal, ProposalRound};
 use statistics::likelihood::Likelihood;
 
@@ -142,18 +142,18 @@ impl EffectSearch {
         }
     }
 
-    /// Continues the search at the depth of this roughness.
-    pub(super) fn set_roughness(&mut self, roughness: Roughness) {
-        self.depth = Depth::for_roughness(roughness);
-        self.base_frame.roughness = roughness;
+    /// Continues the search at the depth of this smoothness.
+    pub(super) fn set_smoothness(&mut self, smoothness: Smoothness) {
+        self.depth = Depth::for_smoothness(smoothness);
+        self.base_frame.smoothness = smoothness;
         for candidate in &mut self.candidates {
-            candidate.frame.roughness = roughness;
+            candidate.frame.smoothness = smoothness;
         }
     }
 
-    /// The roughness of the model, if it is known.
-    pub(crate) fn roughness(&self) -> Roughness {
-        self.base_frame.roughness
+    /// The smoothness of the model, if it is known.
+    pub(crate) fn smoothness(&self) -> Smoothness {
+        self.base_frame.smoothness
     }
 
     /// The fit of the base, once there is one.

@@ -3,7 +3,7 @@
 use statistics::prior::{Marginal, Prior, normal};
 
 use crate::candidate::Candidate;
-use crate::settings::Roughness;
+use crate::settings::Smoothness;
 
 /// Limit of the search, in standard deviations of the prior.
 const FARTHEST: f64 = 7.5;
@@ -38,7 +38,7 @@ pub(crate) struct NormalFrame {
     /// Prior of the base model; its correlations relate the coordinates to the normal scores of the parameters.
     base: Prior,
     /// Whether the predictions are a smooth function of the parameters.
-    pub(crate) roughness: Roughness,
+    pub(crate) smoothness: Smoothness,
     /// Whether the low-fidelity model has the base and every added candidate.
     pub(crate) has_low_fidelity: bool,
     /// Index of each strength of the last candidate, and its coordinate at which the candidate is absent.
@@ -105,11 +105,11 @@ impl NormalCoordinate {
 }
 
 impl NormalFrame {
-    pub(crate) fn base(prior: &Prior, roughness: Roughness) -> Self {
+    pub(crate) fn base(prior: &Prior, smoothness: Smoothness) -> Self {
         Self {
             coordinates: prior.marginals().iter().map(NormalCoordinate::whole).collect(),
             base: prior.clone(),
-            roughness,
+            smoothness,
             has_low_fidelity: false,
             strengths: Vec::new(),
             widened: Vec::new(),
@@ -152,9 +152,9 @@ impl NormalFrame {
         Self {
             coordinates,
             base: self.base.clone(),
-            roughness: self.roughness,
+            smoothness: self.smoothness,
             // A switch has no step along which the low-fidelity model could be a control variate.
-            has_low_fidelity: self.has_low_fidelity && candidate.has_companion && !candidate.is_switch(),
+            has_low_fidelity: self.has_low_fidelity && candidate.has_low_fidelity && !candidate.is_switch(),
             strengths,
             widened,
         }
@@ -277,9 +277,9 @@ mod tests {
             neutral: 0.0,
             excludes: Vec::new(),
             family: None,
-            has_companion: false,
+            has_low_fidelity: false,
         };
-        let frame = NormalFrame::base(&Prior::new(Vec::new()), Roughness::Smooth).with(&effect);
+        let frame = NormalFrame::base(&Prior::new(Vec::new()), Smoothness::Smooth).with(&effect);
         for t in [0.0, 0.1, 1.0, 2.5, 5.0] {
             let x = frame.theta(&[t])[0];
             assert!((x - 3.0 * t).abs() < 1e-6, "{x} at {t}");
@@ -292,7 +292,7 @@ mod tests {
     fn a_prior_is_contradicted_near_the_limit_of_the_search_unless_its_support_ends_there() {
         let far = |distribution, bounds, t: f64| {
             let marginal = Marginal::new(distribution, bounds).unwrap();
-            let frame = NormalFrame::base(&Prior::new(vec![marginal]), Roughness::Smooth);
+            let frame = NormalFrame::base(&Prior::new(vec![marginal]), Smoothness::Smooth);
             frame.implausible(&[t])
         };
         let normal = Distribution::Normal { mean: 1.0, sd: 0.1 };
@@ -318,7 +318,7 @@ mod tests {
         let prior = prior
             .correlated(vec![0, 1], &[vec![1.0, 0.6], vec![0.6, 1.0]])
             .unwrap();
-        let frame = NormalFrame::base(&prior, Roughness::Smooth);
+        let frame = NormalFrame::base(&prior, Smoothness::Smooth);
         // Given the first, the second has the mean 0.6 t and the sd 0.8.
         let theta = frame.theta(&[1.0, -0.5]);
         assert!(
@@ -342,9 +342,9 @@ mod tests {
             neutral: 0.0,
             excludes: Vec::new(),
             family: None,
-            has_companion: false,
+            has_low_fidelity: false,
         };
-        let frame = NormalFrame::base(&Prior::new(Vec::new()), Roughness::Smooth).with(&effect);
+        let frame = NormalFrame::base(&Prior::new(Vec::new()), Smoothness::Smooth).with(&effect);
         let (_, neutral) = frame.strength().unwrap();
         assert!((neutral + 0.5).abs() < 1e-12 && !frame.is_one_sided());
     }

@@ -8,7 +8,7 @@ use crate::laplace::noise;
 use crate::laplace::point::FitPoint;
 use crate::laplace::quadratic::quadratic;
 use crate::laplace::strength_prior::{mixed_evidence, stated_less_mixed};
-use crate::settings::Roughness;
+use crate::settings::Smoothness;
 use inference::lm::QuadraticModel;
 use statistics::likelihood::Likelihood;
 
@@ -235,7 +235,7 @@ impl LaplaceFit {
     /// Leaves trial steps that are no longer worth an evaluation, and the plan if its last round has gained nothing.
     fn end_trials(&mut self) {
         self.reset_damping();
-        let is_noisy = self.frame.roughness != Roughness::Smooth;
+        let is_noisy = self.frame.smoothness != Smoothness::Smooth;
         match &mut self.progress {
             Progress::Untried => self.plan.clear(),
             // The evidence needs the slope at the point, not the slope to where the steps failed.
@@ -258,7 +258,7 @@ impl LaplaceFit {
         let uncertainty = self.quadratic(likelihood).uncertainty();
         let offset = |k: usize| {
             let length = uncertainty[k].unwrap_or(DIFFERENCE);
-            let length = length.clamp(self.frame.roughness.min_difference(), DIFFERENCE);
+            let length = length.clamp(self.frame.smoothness.min_difference(), DIFFERENCE);
             if upper[k] >= length { length } else { -length }
         };
         let noise_sds = noise::coordinates(likelihood);
@@ -295,14 +295,14 @@ impl LaplaceFit {
 
     /// The next trial position and its predicted gain; `None` where no step is worth an evaluation.
     fn trial(&self, likelihood: &Likelihood) -> Option<(Vec<f64>, f64)> {
-        if self.failures >= self.frame.roughness.max_failures() {
+        if self.failures >= self.frame.smoothness.max_failures() {
             return None;
         }
         let quadratic = self.quadratic(likelihood);
         let step = quadratic.step(self.damping)?;
         let predicted = quadratic.decrease(&step);
         let pairs = self.point.position.iter().zip(&step);
-        (predicted > self.frame.roughness.min_gain())
+        (predicted > self.frame.smoothness.min_gain())
             .then(|| (pairs.map(|(t, by)| t + by).collect(), predicted))
     }
 
@@ -403,7 +403,7 @@ impl LaplaceFit {
                 let gain = self.point.value - point.value;
                 self.point = point;
                 self.has_moved = true;
-                if gain < self.frame.roughness.min_counted_gain() {
+                if gain < self.frame.smoothness.min_counted_gain() {
                     return self.fail();
                 }
                 self.failures = 0;
@@ -486,7 +486,7 @@ mod tests {
     use statistics::prior::{Distribution, Marginal, Prior};
 
     /// One parameter, and the datum 3 with the sd 1/2.
-    fn one_datum(roughness: Roughness) -> (NormalFrame, Likelihood) {
+    fn one_datum(smoothness: Smoothness) -> (NormalFrame, Likelihood) {
         let prior = Marginal::new(Distribution::Normal { mean: 0.0, sd: 1.0 }, None).unwrap();
         let datum = Datum {
             run: 0,
@@ -495,14 +495,14 @@ mod tests {
             sd: ErrorSd::Known(0.5),
         };
         (
-            NormalFrame::base(&Prior::new(vec![prior]), roughness),
+            NormalFrame::base(&Prior::new(vec![prior]), smoothness),
             Likelihood::new(vec![datum]).unwrap(),
         )
     }
 
     /// A fit of the model to that datum, in rounds from the prior's mean.
-    fn fitted(roughness: Roughness, model: impl Fn(f64) -> f64) -> LaplaceFit {
-        let (frame, likelihood) = one_datum(roughness);
+    fn fitted(smoothness: Smoothness, model: impl Fn(f64) -> f64) -> LaplaceFit {
+        let (frame, likelihood) = one_datum(smoothness);
         let start = FitPoint::new(&frame, &likelihood, vec![0.0], vec![model(0.0)]).unwrap();
         let plan = [FitStep::Rounds { max: 6, trials: 12 }, FitStep::Differences];
         let mut fit = LaplaceFit::new(frame, start, vec![vec![0.0]], &plan);
@@ -518,7 +518,7 @@ mod tests {
 
     #[test]
     fn a_derivative_that_was_measured_on_the_model_follows_the_low_fidelity_model() {
-        let (frame, likelihood) = one_datum(Roughness::Rough);
+        let (frame, likelihood) = one_datum(Smoothness::Rough);
         let frame = frame.with_low_fidelity(true);
         // The low-fidelity model has another slope and the same curvature.
         let low_fidelity = |t: f64| t + 0.5 * t * t;
@@ -562,7 +562,7 @@ mod tests {
     #[test]
     fn a_rough_fit_whose_steps_all_fail_keeps_the_jacobian_of_its_differences() {
         // The difference sees a slope of 1; longer steps lead downwards.
-        let fit = fitted(Roughness::Rough, |t| if t.abs() < 0.2 { t } else { -t.abs() });
+        let fit = fitted(Smoothness::Rough, |t| if t.abs() < 0.2 { t } else { -t.abs() });
         assert_eq!(fit.point.position, [0.0]);
         assert!((fit.columns[0][0] - 1.0).abs() < 1e-12, "{:?}", fit.columns);
     }
@@ -572,9 +572,9 @@ mod tests {
         // Beyond the difference the log posterior rises by 0.001 in all.
         let level = |t: f64| 3.0 - (0.5 * (18.0 - 0.5 * t * t - 0.001 * t.min(1.0))).sqrt();
         let model = |t: f64| if t < 0.2 { t } else { level(t) };
-        let fit = fitted(Roughness::Rough, model);
+        let fit = fitted(Smoothness::Rough, model);
         assert!(fit.point.position[0] > 0.0, "{:?}", fit.point);
         assert!(fit.evaluations <= 4, "{}", fit.evaluations);
-        assert!(fitted(Roughness::Smooth, model).evaluations > 4);
+        assert!(fitted(Smoothness::Smooth, model).evaluations > 4);
     }
 }

@@ -1,7 +1,7 @@
 //! The likelihood with a reduced model discrepancy, for a preliminary fit.
 
 use crate::laplace::fit::LaplaceFit;
-use statistics::likelihood::{Discrepancy, LEAST_DISCREPANCY, Likelihood};
+use statistics::likelihood::{Discrepancy, Likelihood, MIN_DISCREPANCY};
 
 /// The share of an unknown discrepancy that remains.
 const SHARE: f64 = 0.25;
@@ -30,7 +30,7 @@ pub(crate) fn reduced_discrepancy(likelihood: &Likelihood, fit: &LaplaceFit) -> 
             .map(|(discrepancy, levels)| match discrepancy {
                 Discrepancy::Unknown => {
                     let mean: f64 = levels.iter().map(|(m, probability)| m * probability).sum();
-                    Discrepancy::Known((SHARE * mean).max(LEAST_DISCREPANCY))
+                    Discrepancy::Known((SHARE * mean).max(MIN_DISCREPANCY))
                 }
                 certain => *certain,
             });

@@ -3,7 +3,7 @@
 use nalgebra::Cholesky;
 
 use crate::laplace::fit::LaplaceFit;
-use crate::settings::Roughness;
+use crate::settings::Smoothness;
 use statistics::likelihood::Likelihood;
 
 /// Parameter vectors one standard deviation to either side of a fit's mode, along a column of the factor L of the posterior
@@ -51,7 +51,7 @@ pub(crate) fn spread(fit: &LaplaceFit, likelihood: &Likelihood) -> Vec<Axis> {
     (0..mode.len())
         .map(|column| {
             let (above, below) = (theta(column, 1.0), theta(column, -1.0));
-            let is_expensive = fit.frame.roughness != Roughness::Smooth && !fit.frame.has_low_fidelity;
+            let is_expensive = fit.frame.smoothness != Smoothness::Smooth && !fit.frame.has_low_fidelity;
             if above.is_some() && is_expensive {
                 Axis {
                     sides: [above, None],

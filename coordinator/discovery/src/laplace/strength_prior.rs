@@ -159,7 +159,7 @@ fn precision(t: f64) -> f64 {
 mod tests {
     use super::*;
     use crate::candidate::Candidate;
-    use crate::settings::Roughness;
+    use crate::settings::Smoothness;
     use statistics::prior::{Distribution, Marginal, Prior};
 
     #[test]
@@ -172,9 +172,9 @@ mod tests {
             neutral: 0.0,
             excludes: Vec::new(),
             family: None,
-            has_companion: false,
+            has_low_fidelity: false,
         };
-        let frame = NormalFrame::base(&Prior::new(Vec::new()), Roughness::Smooth).with(&effect);
+        let frame = NormalFrame::base(&Prior::new(Vec::new()), Smoothness::Smooth).with(&effect);
         // The likelihood rises by 8 nats per standard deviation and hardly bends; the narrow parts balance it at once.
         let position = [0.04];
         let (mut gradient, mut hessian) = (position.to_vec(), DMatrix::from_element(1, 1, 1.001));

@@ -47,7 +47,7 @@ impl SearchBranch {
                     .reduction
                     .map_or(QueriedModel::With(effects), QueriedModel::Without),
                 is_proposed: false,
-                is_companion: request.is_companion,
+                is_low_fidelity: request.is_low_fidelity,
                 theta: request.theta,
             }
         });

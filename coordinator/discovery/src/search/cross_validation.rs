@@ -185,7 +185,7 @@ impl CrossValidation {
                         queries.push(Query {
                             model: QueriedModel::With(effects.clone()),
                             is_proposed: false,
-                            is_companion: is_low_fidelity,
+                            is_low_fidelity: is_low_fidelity,
                             theta,
                         });
                     }

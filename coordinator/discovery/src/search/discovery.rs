@@ -104,7 +104,7 @@ impl DiscoverySearch {
         let complete = self.round.tell(index, values.map(<[f64]>::to_vec))?;
         if complete {
             let (_, answers) = self.round.complete();
-            let of_model = self.queries.iter().filter(|query| !query.is_companion);
+            let of_model = self.queries.iter().filter(|query| !query.is_low_fidelity);
             self.state.evaluations += of_model.count();
             self.queries.clear();
             self.stage.take(answers);

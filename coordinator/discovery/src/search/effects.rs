@@ -9,7 +9,7 @@ use crate::search::branch::SearchBranch;
 use crate::search::hypotheses::{EffectCombination, candidate_set};
 use crate::search::stage::Stage;
 use crate::search::state::SearchState;
-use crate::settings::{Roughness, SearchSettings, Starts};
+use crate::settings::{SearchSettings, Smoothness, Starts};
 use inference::InferenceFailure;
 
 /// Beam width: number of combinations beyond which a further effect is searched.
@@ -161,7 +161,7 @@ impl SearchState {
     /// Whether combinations of effects that explain little alone are searched: the best explanation contradicts the data, and the
     /// model's evaluations are cheap.
     pub(super) fn searches_widely(&self) -> bool {
-        let is_smooth = self.task.settings.roughness == Roughness::Smooth;
+        let is_smooth = self.task.settings.smoothness == Smoothness::Smooth;
         is_smooth && self.task.max_effects > 1 && self.hypotheses.is_incomplete(&self.task.likelihood)
     }
 

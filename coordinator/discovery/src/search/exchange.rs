@@ -36,7 +36,7 @@ impl SearchState {
 
     fn exchanged(&self, best: &EffectCombination) -> Vec<SearchBranch> {
         let ranking = &self.hypotheses.ranking;
-        let class = |k: usize| Some(ranking.of(Some(k))?.class);
+        let class = |k: usize| Some(ranking.effect(Some(k))?.class);
         let same_class = |effect: &usize| -> Vec<usize> {
             let candidates = ranking.ranked().into_iter().filter_map(|ranked| ranked.candidate);
             candidates.filter(|k| class(*k) == class(*effect)).collect()

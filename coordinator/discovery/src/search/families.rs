@@ -65,7 +65,7 @@ impl SearchState {
                 // A set counts for a member that has an evidence alone.
                 let is_ranked = effects
                     .iter()
-                    .any(|k| self.hypotheses.ranking.of(Some(*k)).is_some());
+                    .any(|k| self.hypotheses.ranking.effect(Some(*k)).is_some());
                 let is_possible = is_ranked && effects.iter().all(combines);
                 if (2..=self.task.max_effects).contains(&effects.len()) && is_possible {
                     subsets.push(effects);

@@ -152,7 +152,7 @@ impl RunSelection {
             let queries = asked.thetas().map(|(is_low_fidelity, theta)| Query {
                 model: model.clone(),
                 is_proposed: true,
-                is_companion: is_low_fidelity,
+                is_low_fidelity: is_low_fidelity,
                 theta: theta.clone(),
             });
             queries.collect::<Vec<_>>()

@@ -17,7 +17,7 @@ pub struct Query {
     /// Whether the proposed runs are predicted, in place of the measured ones.
     pub is_proposed: bool,
     /// Whether the low-fidelity model is asked, in place of the model.
-    pub is_companion: bool,
+    pub is_low_fidelity: bool,
     /// The parameters, the base's first.
     pub theta: Vec<f64>,
 }

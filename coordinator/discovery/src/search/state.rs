@@ -41,11 +41,11 @@ impl SearchState {
     }
 
     /// Adds the numerical noise that the search for one effect has measured to the noise of measured and proposed data, and keeps
-    /// the roughness of the model.
+    /// the smoothness of the model.
     pub(super) fn take_numerical_noise(&mut self, search: &EffectSearch) {
         let task = &mut self.task;
         task.settings.has_numerical_noise = false;
-        task.settings.roughness = search.roughness();
+        task.settings.smoothness = search.smoothness();
         task.likelihood.clone_from(&search.likelihood);
         self.numerical_noise_sds.clone_from(&search.numerical_noise_sds);
         let proposed = task.proposed.channels.iter().zip(&mut task.proposed.noise_sds);

@@ -76,7 +76,7 @@ fn inclusion(hypotheses: &Hypotheses, cost: f64, misfit: f64) -> Inclusion {
 /// The effect of a combination with the highest inclusion weight; among equals, the one with the highest Bayes factor alone. `None`
 /// without an effect of the library. An effect that all good combinations have is thus not named after a rival that some have.
 fn leader(ranking: &EffectRanking, inclusion: &Inclusion, effects: &[usize]) -> Option<usize> {
-    let ranked = || effects.iter().filter_map(|&k| ranking.of(Some(k)));
+    let ranked = || effects.iter().filter_map(|&k| ranking.effect(Some(k)));
     let weight = |effect: &RankedEffect| {
         let weight = effect.candidate.and_then(|k| inclusion.get(&k));
         weight.copied().unwrap_or(f64::NEG_INFINITY)

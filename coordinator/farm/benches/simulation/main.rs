@@ -18,7 +18,7 @@ use world::search::{Search, search};
 /// Schedules where nothing is said.
 const SCHEDULES: u64 = 1_000_000;
 /// A planted bug must be found within.
-const MOST: Duration = Duration::from_secs(60);
+const MAX_TIME: Duration = Duration::from_secs(60);
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args()
@@ -85,7 +85,7 @@ fn planted() -> Result<bool, String> {
     let mut all = true;
     println!("{:<24} {:>10} {:>8}  found by", "planted bug", "schedules", "s");
     for plant in Plant::ALL {
-        let Search { tally, broken, time } = search(&cases, Some(plant), 1..u64::MAX, Some(MOST));
+        let Search { tally, broken, time } = search(&cases, Some(plant), 1..u64::MAX, Some(MAX_TIME));
         let found = broken.map_or("NOT FOUND".into(), |(seed, broken)| {
             format!("{broken} (seed {seed})")
         });

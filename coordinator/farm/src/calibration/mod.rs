@@ -267,7 +267,7 @@ impl Calibration {
 
     /// What an evaluation is for.
     fn key(&self, evaluation: u64) -> EvaluationKey {
-        EvaluationKey::of(evaluation, self.spec.algorithm.width())
+        EvaluationKey::from_number(evaluation, self.spec.algorithm.width())
     }
 
     /// The whole parameter vector of an evaluation that is asked for at present; of a subchain, where it starts.

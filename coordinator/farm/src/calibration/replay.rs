@@ -290,7 +290,7 @@ mod tests {
     fn vectors(facts: &[Fact]) -> u64 {
         let keys = rows(facts)
             .into_iter()
-            .map(|row| EvaluationKey::of(row.evaluation, 20));
+            .map(|row| EvaluationKey::from_number(row.evaluation, 20));
         keys.filter(|key| !key.is_of_holdout()).count() as u64
     }
 

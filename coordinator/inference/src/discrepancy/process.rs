@@ -67,21 +67,21 @@ impl Discrepancy {
 impl DiscrepancyProcess {
     /// Minimum number of misfits for this number of coordinates.
     #[must_use]
-    pub fn least_misfits(coordinates: usize) -> usize {
+    pub fn min_misfits(coordinates: usize) -> usize {
         coordinates + 3
     }
 
     /// Maximum number of misfits: a matrix of the square of their number is inverted.
-    pub const MOST_MISFITS: usize = 500;
+    pub const MAX_MISFITS: usize = 500;
 
     /// The process through misfits whose points have the same coordinates, each of which must vary, and whose noise is above 0; `None`
-    /// with fewer than [`DiscrepancyProcess::least_misfits`] or more than [`DiscrepancyProcess::MOST_MISFITS`], where all are 0, or
+    /// with fewer than [`DiscrepancyProcess::min_misfits`] or more than [`DiscrepancyProcess::MAX_MISFITS`], where all are 0, or
     /// where no covariance is regular to rounding.
     #[must_use]
     pub fn through(misfits: &[Misfit]) -> Option<Self> {
         let dimension = misfits.first()?.point.len();
         let is_usable = misfits.iter().any(|misfit| misfit.value.abs() > 0.0);
-        let numbers = Self::least_misfits(dimension)..=Self::MOST_MISFITS;
+        let numbers = Self::min_misfits(dimension)..=Self::MAX_MISFITS;
         if dimension == 0 || !numbers.contains(&misfits.len()) || !is_usable {
             return None;
         }
@@ -270,7 +270,7 @@ mod tests {
     #[test]
     fn too_few_misfits_too_many_and_none_make_no_process() {
         let all = misfits(surface);
-        assert_eq!(DiscrepancyProcess::least_misfits(2), 5);
+        assert_eq!(DiscrepancyProcess::min_misfits(2), 5);
         assert!(DiscrepancyProcess::through(&all[..4]).is_none());
         assert!(DiscrepancyProcess::through(&misfits(|_, _, _| 0.0)).is_none());
         let many: Vec<Misfit> = all.iter().cycle().take(501).cloned().collect();

@@ -30,16 +30,16 @@ pub struct GaussianProcess {
 impl GaussianProcess {
     /// Minimum number of observations for this number of coordinates: those that determine a plane, and one more.
     #[must_use]
-    pub fn least_observations(coordinates: usize) -> usize {
+    pub fn min_observations(coordinates: usize) -> usize {
         coordinates + 2
     }
 
     /// The process through observations of points that all have the same coordinates, each of which must vary; `None` with fewer
-    /// than [`GaussianProcess::least_observations`], or where their covariance is singular to rounding.
+    /// than [`GaussianProcess::min_observations`], or where their covariance is singular to rounding.
     #[must_use]
     pub fn through(observations: &[Observation]) -> Option<Self> {
         let dimension = observations.first()?.point.len();
-        if observations.len() < Self::least_observations(dimension) {
+        if observations.len() < Self::min_observations(dimension) {
             return None;
         }
         let points: Vec<&[f64]> = observations.iter().map(|o| o.point.as_slice()).collect();
@@ -145,7 +145,7 @@ mod tests {
     #[test]
     fn too_few_observations_make_no_process() {
         let few = &grid(|slip, _| slip)[4..7];
-        assert_eq!(GaussianProcess::least_observations(2), 4);
+        assert_eq!(GaussianProcess::min_observations(2), 4);
         assert!(GaussianProcess::through(few).is_none() && GaussianProcess::through(&[]).is_none());
     }
 }

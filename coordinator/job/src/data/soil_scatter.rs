@@ -102,6 +102,6 @@ impl SoilScatter {
             },
             (_, channel) => PredictedValue::Sensitivity { channel, run },
         };
-        sd * value.of(observables)
+        sd * value.select(observables)
     }
 }

@@ -61,7 +61,7 @@ fn share(
     scale: impl Fn(&TestRun) -> f64,
 ) -> Option<Question> {
     // An odd load is no measure of other values.
-    let has_odd_load = |run: &TestRun| limit::of("wheel_load_n")?.unusual(run.wheel_load_n);
+    let has_odd_load = |run: &TestRun| limit::find("wheel_load_n")?.unusual(run.wheel_load_n);
     let judged = experiment.runs.iter().filter(|run| has_odd_load(run).is_none());
     let sizes = judged.filter_map(|run| {
         let value = run.measured[channel.index()]?;

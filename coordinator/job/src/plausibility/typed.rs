@@ -35,7 +35,7 @@ pub(super) fn questions(spec: &Spec) -> Vec<Question> {
     }
     let model = spec.model.fixed.iter();
     for (name, &value) in model {
-        let limit = limit::of(base(name));
+        let limit = limit::find(base(name));
         if let Some((limit, why)) = limit.and_then(|limit| Some((limit, limit.unusual(value)?))) {
             questions.push(Question::new(limit.name, format!("{name}, fixed: {why}")));
         }
@@ -101,7 +101,7 @@ fn elsewhere<'a>(spec: &'a Spec, parameter: &str, [low, high]: [f64; 2]) -> Opti
 
 /// A prior of which hardly anything lies in the usual range.
 fn of_prior(parameter: &FreeParameter) -> Option<Question> {
-    let limit = limit::of(base(&parameter.name))?;
+    let limit = limit::find(base(&parameter.name))?;
     let end = 0.5 * (1.0 - CENTRAL);
     let [low, high] = [end, 1.0 - end].map(|p| parameter.marginal.quantile(p));
     // Both ends on the same side: nothing between them is usual.

@@ -201,7 +201,10 @@ impl Spec {
 
     /// The predicted values that the likelihood takes, of an evaluation of the fitted runs.
     pub fn predicted_values(&self, observables: &Observables) -> Vec<f64> {
-        self.predicted.iter().map(|value| value.of(observables)).collect()
+        self.predicted
+            .iter()
+            .map(|value| value.select(observables))
+            .collect()
     }
 
     /// Number of preparations of the soil that the fitted runs name; those without an id count each.

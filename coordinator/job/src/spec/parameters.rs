@@ -52,7 +52,7 @@ impl Parameters {
             }
         }
         check_reference(job, &scope).map_err(in_job)?;
-        add_unsaid(name, &effects, &wheels, &mut model, &mut free)?;
+        add_unstated(name, &effects, &wheels, &mut model, &mut free)?;
         bevameter
             .add_transfer(&model.fixed, &mut free)
             .map_err(|e| in_job(e.to_string()))?;
@@ -142,7 +142,7 @@ fn check_reference(job: &Job, scope: &ParameterScope) -> Result<(), String> {
 }
 
 /// Adds what a job does not say of its effects: the number or the prior that the effect's file has.
-fn add_unsaid(
+fn add_unstated(
     name: &str,
     effects: &EffectSet,
     wheels: &BTreeSet<&str>,
@@ -152,16 +152,17 @@ fn add_unsaid(
     let free = parameters.iter().map(|p| p.name.clone());
     let stated: Vec<String> = free.chain(model.fixed.keys().cloned()).collect();
     let stated = stated.iter().map(String::as_str).collect();
-    for unsaid in effects.unsaid(&stated, wheels) {
-        let parsed = ParsedPrior::of_effect(&unsaid.name, unsaid.parameter).map_err(|e| {
-            match &unsaid.chosen.file {
-                Some(file) => FileError::at(file, unsaid.parameter.line, e.to_string()),
-                None => FileError::whole(name, format!("effect {}: {e}", unsaid.chosen.effect.name)),
-            }
-        })?;
+    for unstated in effects.unstated_parameters(&stated, wheels) {
+        let parsed =
+            ParsedPrior::of_effect(&unstated.name, unstated.parameter).map_err(|e| {
+                match &unstated.chosen.file {
+                    Some(file) => FileError::at(file, unstated.parameter.line, e.to_string()),
+                    None => FileError::whole(name, format!("effect {}: {e}", unstated.chosen.effect.name)),
+                }
+            })?;
         match parsed {
             ParsedPrior::Fixed(value) => {
-                model.fixed.insert(unsaid.name.clone(), value);
+                model.fixed.insert(unstated.name.clone(), value);
             }
             ParsedPrior::Free(parameter) => parameters.push(parameter),
         }

@@ -1,7 +1,7 @@
 //! What workers evaluate: the fitted runs and the holdout runs, with everything that the model says of them.
 
 use shared::experiment::Experiment;
-use shared::model::{Companion, ModelKind, ModelVariant};
+use shared::model::{LowFidelityModel, ModelKind, ModelVariant};
 use shared::parameters::NOISE_PREFIX;
 
 use super::fitted::Fitted;
@@ -43,7 +43,7 @@ impl Variants {
         }
         bevameter.ask(&mut fit);
         if job.algorithm.has_metamodel() {
-            fit.companion = Some(companion(&fit, fitted)?);
+            fit.low_fidelity = Some(low_fidelity(&fit, fitted)?);
         }
         let holdout = match fitted.holdout_runs.as_slice() {
             [] => None,
@@ -75,7 +75,7 @@ fn of_runs(
 }
 
 /// The quasi-static model from which a metamodel is made.
-fn companion(fit: &ModelVariant, fitted: &Fitted) -> Result<Companion, String> {
+fn low_fidelity(fit: &ModelVariant, fitted: &Fitted) -> Result<LowFidelityModel, String> {
     if fit.kind != ModelKind::Scm {
         return Err(
             "metamodel_moves under [sampler]: the metamodel is made of quasi_static, and needs kind = \"scm\" to save runs of"
@@ -84,7 +84,7 @@ fn companion(fit: &ModelVariant, fitted: &Fitted) -> Result<Companion, String> {
     }
     fit.coarse()
         .map_err(|e| format!("metamodel_moves under [sampler]: {e}"))?;
-    Ok(Companion {
+    Ok(LowFidelityModel {
         values: fitted.predicted.clone(),
         metamodel: None,
     })

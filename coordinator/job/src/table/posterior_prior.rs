@@ -422,7 +422,7 @@ mod tests {
     }
 
     #[test]
-    fn what_the_job_leaves_unsaid_has_the_moments_of_the_draws() {
+    fn what_the_job_leaves_unstated_has_the_moments_of_the_draws() {
         let spec = spec("posterior = \"p.csv\"\ntransfer = 4.0", &csv()).unwrap();
         assert_eq!(covered(&spec), NAMES);
         let names: Vec<&str> = spec.parameters.iter().map(|p| p.name.as_str()).collect();

@@ -16,7 +16,7 @@ use result::words::number;
 /// over a few runs, each known to 1 / sqrt(2n) of itself.
 pub(crate) const RATIO: f64 = 1.5;
 /// Least held-out runs in which both have a value.
-pub(crate) const LEAST_RUNS: usize = 4;
+pub(crate) const MIN_RUNS: usize = 4;
 /// Probability of so large an error by noise alone below which noise is no excuse.
 pub(crate) const BY_CHANCE: f64 = 0.01;
 
@@ -43,7 +43,7 @@ pub(crate) fn interpolation_beats(study: &Study) -> Vec<Flag> {
         // An inferred noise is the model's own error: no excuse, and no news.
         let noise = Some(sigma).filter(|sigma| sigma.source != SigmaSource::Inferred);
         let is_excused = noise.is_some() && by_noise >= BY_CHANCE;
-        if model.runs < LEAST_RUNS || model.rmse <= RATIO * baseline.rmse || is_excused {
+        if model.runs < MIN_RUNS || model.rmse <= RATIO * baseline.rmse || is_excused {
             return None;
         }
         let noise = noise.map(|sigma| sigma.sd);

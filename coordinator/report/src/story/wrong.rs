@@ -6,7 +6,7 @@ use shared::experiment::RunUse;
 
 use super::pattern;
 use crate::diagnosis::diagnostics;
-use crate::flag::interpolation::{BY_CHANCE, LEAST_RUNS, RATIO};
+use crate::flag::interpolation::{BY_CHANCE, MIN_RUNS, RATIO};
 use result::diagnostics::trends::TrendDiagnostics;
 use result::finished_calibration::FinishedCalibration;
 use result::study::Study;
@@ -107,7 +107,7 @@ impl<'a> Judge<'a> {
         let beside_interpolation = self.beside_interpolation(channel, error.runs);
         let is_beaten = !is_noise
             && beside_interpolation
-                .is_some_and(|own| own.runs >= LEAST_RUNS && own.model_rmse > RATIO * own.interpolation_rmse);
+                .is_some_and(|own| own.runs >= MIN_RUNS && own.model_rmse > RATIO * own.interpolation_rmse);
         let is_judged = is_known || is_beaten;
         let rows: Vec<_> = rows_of(self.rows, usage)
             .filter(|row| row.channel == channel)

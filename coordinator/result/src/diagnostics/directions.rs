@@ -6,7 +6,7 @@ use crate::finished_calibration::FinishedCalibration;
 use crate::words::number;
 
 /// A parameter with a smaller share of a direction's squared length is not named.
-const LEAST_SHARE: f64 = 0.1;
+const MIN_SHARE: f64 = 0.1;
 /// Ratio of the best to the worst combination's standard deviation below which parameters are known only in combination.
 const NARROW: f64 = 0.5;
 /// A direction with more of the prior's standard deviation is unknown.
@@ -15,7 +15,7 @@ const UNKNOWN: f64 = 0.95;
 /// Most directions in a list of the worst known.
 pub const WORST_KNOWN: usize = 3;
 /// Components below are left out of a list.
-const LEAST_LOADING: f64 = 0.2;
+const MIN_LOADING: f64 = 0.2;
 
 /// A principal direction of the posterior, in units of the prior's standard deviations.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
@@ -41,7 +41,7 @@ impl DirectionDiagnostics {
         let mut named: Vec<_> = self
             .loadings
             .iter()
-            .filter(|l| l.loading.abs() >= LEAST_LOADING)
+            .filter(|l| l.loading.abs() >= MIN_LOADING)
             .collect();
         named.sort_by(|a, b| b.loading.abs().total_cmp(&a.loading.abs()));
         let words: Vec<String> = named
@@ -100,7 +100,7 @@ fn whitened(calibration: &FinishedCalibration, parameters: &[usize]) -> Vec<Vec<
 pub fn worst_known(calibration: &FinishedCalibration, directions: &[DirectionDiagnostics]) -> Option<String> {
     let worst = directions.first()?;
     let mut named: Vec<usize> = (0..worst.loadings.len())
-        .filter(|&i| worst.loadings[i].loading.powi(2) >= LEAST_SHARE)
+        .filter(|&i| worst.loadings[i].loading.powi(2) >= MIN_SHARE)
         .collect();
     named.sort_by(|&a, &b| {
         let size = |i: usize| worst.loadings[i].loading.abs();

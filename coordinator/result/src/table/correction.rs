@@ -80,10 +80,10 @@ impl Correction {
         let fitted: Vec<usize> = fitted.copied().collect();
         let runs: Vec<&TestRun> = fitted.iter().map(|&run| &all[run]).collect();
         let conditions = Conditions::of(&runs);
-        let least = DiscrepancyProcess::least_misfits(conditions.axes.len());
+        let least = DiscrepancyProcess::min_misfits(conditions.axes.len());
         let members = repeated(&runs);
         let name = channel.words();
-        let most = DiscrepancyProcess::MOST_MISFITS;
+        let most = DiscrepancyProcess::MAX_MISFITS;
         if members.len() > most {
             let count = members.len();
             return Err(format!(

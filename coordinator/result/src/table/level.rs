@@ -5,7 +5,7 @@ const TOLERANCE: f64 = 0.02;
 /// Values whose whole range is less than this share of the largest are one level: a condition that a rig holds so well does not vary.
 const HELD: f64 = 0.01;
 /// More levels than a table can show.
-const MOST: usize = 12;
+const MAX_LEVELS: usize = 12;
 
 /// Values of a condition that count as one, from the least to the largest.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -37,7 +37,7 @@ pub fn few_levels(values: impl IntoIterator<Item = f64>) -> Vec<Level> {
     let mut tolerance = TOLERANCE;
     loop {
         let found = within(&sorted, tolerance);
-        if found.len() <= MOST {
+        if found.len() <= MAX_LEVELS {
             return found;
         }
         tolerance *= 2.0;

@@ -14,7 +14,7 @@ pub struct Component {
 }
 
 /// A component with a smaller share of the weight moves no quantile visibly.
-const LEAST_SHARE: f64 = 1e-12;
+const MIN_SHARE: f64 = 1e-12;
 /// Width of the bracket that ends a search for a quantile, as a share of the first bracket.
 const CLOSE: f64 = 1e-13;
 
@@ -24,7 +24,7 @@ pub(super) fn quantile(components: &[Component], law: ErrorLaw, p: f64) -> f64 {
     let counted: Vec<Component> = components
         .iter()
         .copied()
-        .filter(|c| c.weight > LEAST_SHARE * total / components.len() as f64)
+        .filter(|c| c.weight > MIN_SHARE * total / components.len() as f64)
         .collect();
     let share_below = |y: f64| {
         let below = |c: &Component| match (c.scale, law) {

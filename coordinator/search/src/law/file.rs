@@ -36,7 +36,7 @@ impl LawFiles {
             let name = effect_name(text);
             effects.iter().all(|effect| Some(&effect.name) != name.as_ref())
         };
-        let forms = LawForm::ALL.iter().map(|form| (*form, form.of(dependence)));
+        let forms = LawForm::ALL.iter().map(|form| (*form, form.effect(dependence)));
         let forms = forms.filter(|(_, law)| is_new(law));
         Some(LawFiles {
             curve: beside(dependence.curve(), files),
@@ -104,7 +104,7 @@ mod tests {
 
     fn law(job: &FileSet, experiment: &FileSet, form: Option<LawForm>) -> Extension {
         let dependence = dependence(&spec_of(job, experiment).unwrap());
-        form.map_or_else(|| dependence.curve(), |form| form.of(&dependence))
+        form.map_or_else(|| dependence.curve(), |form| form.effect(&dependence))
             .extension
     }
 

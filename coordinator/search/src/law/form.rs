@@ -36,13 +36,13 @@ enum FormShape {
 }
 
 /// Least factor on a stress, which keeps its sign beyond the fitted range.
-const LEAST_FACTOR: f64 = 0.05;
+const MIN_FACTOR: f64 = 0.05;
 /// Lower end of a scale or threshold, as a share of the variable's maximum `[1]`.
-const LEAST_SCALE: f64 = 0.05;
+const MIN_SCALE: f64 = 0.05;
 /// The same for the depth, where the prior is log-uniform `[1]`.
-const LEAST_DEPTH: f64 = 1.0 / 30.0;
+const MIN_DEPTH: f64 = 1.0 / 30.0;
 /// Below this share of the variable's maximum a power is constant, where the range begins at 0 `[1]`.
-const LEAST_BASE: f64 = 0.01;
+const MIN_BASE: f64 = 0.01;
 
 impl LawForm {
     /// Every form.
@@ -73,7 +73,7 @@ impl LawForm {
     ///
     /// It has one strength, neutral at 0, and at most one shape parameter, with a prior over the range of the variable. Checked by
     /// `tests::forms_are_what_their_names_say`.
-    pub(crate) fn of(self, dependence: &Dependence) -> CandidateEffect {
+    pub(crate) fn effect(self, dependence: &Dependence) -> CandidateEffect {
         let name = format!("{}_{}", dependence.name(), self.name());
         let strength = self.strength(dependence);
         let formula = match dependence.addition_sd {
@@ -140,11 +140,11 @@ impl LawForm {
             magnitude(dependence),
             greatest(dependence),
         );
-        let (least, scale) = (LEAST_FACTOR, scale_name(dependence));
+        let (least, scale) = (MIN_FACTOR, scale_name(dependence));
         match self {
             LawForm::Power => format!(
                 "(max({m}, {:?}) / {:?})^{strength}",
-                least_base(dependence),
+                min_base(dependence),
                 middle(dependence)
             ),
             LawForm::Saturation => format!("(1 + {strength} * (1 - exp(-{m} / {scale})))"),
@@ -177,7 +177,7 @@ impl LawForm {
         );
         let scale = scale_name(dependence);
         match self {
-            LawForm::Power => format!("(max({m}, {:?}) / {greatest:?})^exponent", least_base(dependence)),
+            LawForm::Power => format!("(max({m}, {:?}) / {greatest:?})^exponent", min_base(dependence)),
             LawForm::Saturation => format!("(1 - exp(-{m} / {scale}))"),
             LawForm::Linear => format!("{x} / {greatest:?}"),
             LawForm::Step => format!("if({x} > {}, 1, 0)", threshold_name(dependence)),
@@ -208,8 +208,8 @@ impl LawForm {
         };
         let least = match (dependence.range.is_logarithmic, dependence.depends_on) {
             (true, _) => dependence.range.lowest,
-            (false, DependsOn::Z) => rounded(LEAST_DEPTH * highest, 4),
-            (false, _) => rounded(LEAST_SCALE * highest, 4),
+            (false, DependsOn::Z) => rounded(MIN_DEPTH * highest, 4),
+            (false, _) => rounded(MIN_SCALE * highest, 4),
         };
         match self.shape(dependence) {
             FormShape::None => None,
@@ -253,10 +253,10 @@ fn middle(dependence: &Dependence) -> f64 {
 }
 
 /// Below this a power is constant, so that it is finite at 0.
-fn least_base(dependence: &Dependence) -> f64 {
+fn min_base(dependence: &Dependence) -> f64 {
     match dependence.range.is_logarithmic {
         true => dependence.range.lowest,
-        false => rounded(LEAST_BASE * greatest(dependence), 4),
+        false => rounded(MIN_BASE * greatest(dependence), 4),
     }
 }
 
@@ -294,7 +294,7 @@ mod tests {
 
     /// The curve of a form at these values of its parameters.
     fn shown(form: LawForm, dependence: &Dependence, values: &[f64]) -> Vec<[f64; 2]> {
-        let candidate = form.of(dependence);
+        let candidate = form.effect(dependence);
         let (text, effect) = text(&candidate);
         let names = effect
             .parameters
@@ -310,7 +310,7 @@ mod tests {
             let (job, files, experiment) = read(folder);
             for dependence in dependences(&experiment) {
                 for form in LawForm::ALL {
-                    let candidate = form.of(&dependence);
+                    let candidate = form.effect(&dependence);
                     assert_eq!(candidate.name, format!("{}_{}", dependence.name(), form.name()));
                     let (_, effect) = text(&candidate);
                     assert_eq!(
@@ -369,7 +369,7 @@ mod tests {
     #[test]
     fn a_step_has_a_threshold_and_a_summary() {
         let slip = dependence("tests/data/shear-mobilisation", "shear_slip");
-        let candidate = LawForm::Step.of(&slip);
+        let candidate = LawForm::Step.effect(&slip);
         let (text, effect) = text(&candidate);
         assert_eq!(effect.name, "shear_slip_step");
         assert_eq!(

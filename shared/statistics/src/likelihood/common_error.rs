@@ -53,7 +53,7 @@ pub enum Discrepancy {
     None,
     /// The known m, > 0.
     Known(f64),
-    /// m is marginalised over [`DISCREPANCY_LEVELS`] values from [`LEAST_DISCREPANCY`] to [`GREATEST_DISCREPANCY`], equally
+    /// m is marginalised over [`DISCREPANCY_LEVELS`] values from [`MIN_DISCREPANCY`] to [`GREATEST_DISCREPANCY`], equally
     /// probable and equally spaced in ln m.
     ///
     /// Groups with correlated errors share one m.
@@ -63,15 +63,15 @@ pub enum Discrepancy {
 /// Number of values of an unknown m.
 pub const DISCREPANCY_LEVELS: usize = 17;
 /// The least value of an unknown m.
-pub const LEAST_DISCREPANCY: f64 = 0.25;
+pub const MIN_DISCREPANCY: f64 = 0.25;
 /// The largest value of an unknown m: a model with larger errors is useless.
 pub const GREATEST_DISCREPANCY: f64 = 64.0;
 
 /// The values of an unknown m, each with the same prior probability.
 pub fn discrepancy_levels() -> Vec<f64> {
-    let step = libm::log(GREATEST_DISCREPANCY / LEAST_DISCREPANCY) / (DISCREPANCY_LEVELS - 1) as f64;
+    let step = libm::log(GREATEST_DISCREPANCY / MIN_DISCREPANCY) / (DISCREPANCY_LEVELS - 1) as f64;
     (0..DISCREPANCY_LEVELS)
-        .map(|k| LEAST_DISCREPANCY * libm::exp(step * k as f64))
+        .map(|k| MIN_DISCREPANCY * libm::exp(step * k as f64))
         .collect()
 }
 

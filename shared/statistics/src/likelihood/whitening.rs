@@ -9,7 +9,7 @@ use super::law::ErrorLaw;
 use super::spread::CERTAIN;
 
 /// A value of the discrepancy with less probability changes slope and curvature by less than rounding.
-const LEAST_PROBABILITY: f64 = 1e-12;
+const MIN_PROBABILITY: f64 = 1e-12;
 
 /// The linear transform of errors to independent ones of sd 1, at one point.
 ///
@@ -114,7 +114,7 @@ impl Likelihood {
             }
             let levels = block.family.map_or(&CERTAIN[..], |family| &families[family]);
             for &(m, probability) in levels {
-                if probability > LEAST_PROBABILITY {
+                if probability > MIN_PROBABILITY {
                     self.whiten_block(block, m, probability, values, theta, &mut whitening)?;
                 }
             }

@@ -58,7 +58,7 @@ pub(crate) fn sum(pack: Pack) -> f64 {
 
 /// The least lane; none may be NaN.
 #[inline]
-pub(crate) fn least_of(pack: Pack) -> f64 {
+pub(crate) fn min_lane(pack: Pack) -> f64 {
     let [a, b, c, d] = pack.to_array();
     let (low, high) = (if a < c { a } else { c }, if b < d { b } else { d });
     if low < high { low } else { high }
@@ -66,8 +66,8 @@ pub(crate) fn least_of(pack: Pack) -> f64 {
 
 /// The greatest lane; none may be NaN.
 #[inline]
-pub(crate) fn greatest_of(pack: Pack) -> f64 {
-    -least_of(-pack)
+pub(crate) fn max_lane(pack: Pack) -> f64 {
+    -min_lane(-pack)
 }
 
 /// Four lanes of a row that begins at `first`.

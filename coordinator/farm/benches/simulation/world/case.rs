@@ -149,7 +149,7 @@ impl Kind {
             residual_load_n: values.clone(),
             nodes_in_contact: vec![1; runs],
             simulated_travel_m: values.clone(),
-            coarse: variant.companion.as_ref().map(|_| coarse(theta, values.len())),
+            coarse: variant.low_fidelity.as_ref().map(|_| coarse(theta, values.len())),
             histories: vec![history; if variant.histories { runs } else { 0 }],
             ..Observables::default()
         };
@@ -161,7 +161,7 @@ impl Kind {
 
     /// What a worker answers to a question.
     fn answer(self, variant: &ModelVariant, question: Question) -> (Option<Outcome>, Option<SubchainEnd>) {
-        let metamodel = variant.companion.as_ref().and_then(|c| c.metamodel.as_ref());
+        let metamodel = variant.low_fidelity.as_ref().and_then(|c| c.metamodel.as_ref());
         let Some((subchain, metamodel)) = question.subchain.zip(metamodel) else {
             return (Some(self.evaluate(variant, question.theta)), None);
         };

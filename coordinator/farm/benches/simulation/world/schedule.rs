@@ -23,7 +23,7 @@ use super::worker::{Act, Worker, lie};
 /// Version of the equations of some workers that fit no calibration that others have begun.
 const OTHER_EQUATIONS: &str = "scm-5";
 /// A calibration that has not ended after so many calm steps does not end.
-const MOST_CALM_STEPS: u64 = 40_000;
+const MAX_CALM_STEPS: u64 = 40_000;
 /// Steps after the end, for what is still on its way.
 const STEPS_AFTER: u64 = 20;
 /// Stage of the random streams, far from those of any sampler.
@@ -119,7 +119,7 @@ impl Schedule<'_> {
         }
         let rough = 30 + self.stream.below(250) as u64;
         let mut after = STEPS_AFTER;
-        for step in 0..rough + MOST_CALM_STEPS {
+        for step in 0..rough + MAX_CALM_STEPS {
             if step == rough {
                 self.calm();
             }
@@ -138,7 +138,7 @@ impl Schedule<'_> {
         }
         Err(Broken::new(
             Promise::End,
-            format!("not over after {MOST_CALM_STEPS} steps without a fault"),
+            format!("not over after {MAX_CALM_STEPS} steps without a fault"),
         ))
     }
 

@@ -76,7 +76,7 @@ impl Surface {
                 number::count(observations.len(), "fitted condition"),
                 channel.words(),
                 conditions.names(),
-                GaussianProcess::least_observations(axes)
+                GaussianProcess::min_observations(axes)
             ),
         })?;
         Ok(Surface {

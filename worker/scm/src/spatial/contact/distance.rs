@@ -1,6 +1,6 @@
 //! The geometry of a footprint: ends of the contact between nodes, areas, distances to the border.
 
-use super::super::pack::{LANES, PACK, Pack, greater, greatest_of, lanes_of, least_of, lesser, splat, sum};
+use super::super::pack::{LANES, PACK, Pack, greater, lanes_of, lesser, max_lane, min_lane, splat, sum};
 use super::super::terrain::Terrain;
 use super::Contact;
 use super::laws::Laws;
@@ -109,7 +109,7 @@ impl Contact {
             *along = near.to_array();
             *distance = greater(lesser(near, from_side), zero).to_array();
         }
-        let (least, greatest) = (least_of(nearest), greatest_of(farthest));
+        let (least, greatest) = (min_lane(nearest), max_lane(farthest));
         greatest * greatest - least * least
     }
 

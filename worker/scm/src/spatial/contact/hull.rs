@@ -1,6 +1,6 @@
 //! The hull of a footprint: the rectangle that its patches span together.
 
-use super::super::pack::{PACK, Pack, greater, greatest_of, lanes_of, lesser, splat, sum};
+use super::super::pack::{PACK, Pack, greater, lanes_of, lesser, max_lane, splat, sum};
 use super::super::terrain::Terrain;
 use super::Contact;
 use super::laws::Laws;
@@ -93,6 +93,6 @@ impl Contact {
             }
             greatest = greater(greatest, behind);
         }
-        greatest_of(greatest)
+        max_lane(greatest)
     }
 }

@@ -5,7 +5,7 @@ use super::super::pack::{Pack, splat};
 /// Number of sub-intervals of an octave.
 const STEPS: usize = 256;
 /// The least power of two that has a table entry; a shallower sinkage counts as 2^−40 m (1e-12 m).
-const LEAST_EXPONENT: i32 = -40;
+const MIN_EXPONENT: i32 = -40;
 const OCTAVES: usize = 64;
 /// Number of entries of the table: a power of two, so that a mask keeps an index in range.
 const SIZE: usize = OCTAVES * STEPS;
@@ -34,7 +34,7 @@ impl Power {
         }
         let mut powers = Box::new([0.0; SIZE]);
         for (octave, entries) in powers.chunks_exact_mut(STEPS).enumerate() {
-            let scale = libm::exp2(exponent * f64::from(LEAST_EXPONENT + octave as i32));
+            let scale = libm::exp2(exponent * f64::from(MIN_EXPONENT + octave as i32));
             for (entry, power) in entries.iter_mut().zip(mantissa_powers) {
                 *entry = power * scale;
             }
@@ -51,8 +51,8 @@ impl Power {
     /// z^n lane by lane; a negative z counts as zero.
     #[inline]
     pub(crate) fn raise(&self, z: Pack) -> Pack {
-        const LEAST: f64 = 1.0 / (1_u64 << -LEAST_EXPONENT) as f64;
-        const FIRST: usize = ((1023 + LEAST_EXPONENT) as usize) * STEPS;
+        const LEAST: f64 = 1.0 / (1_u64 << -MIN_EXPONENT) as f64;
+        const FIRST: usize = ((1023 + MIN_EXPONENT) as usize) * STEPS;
         let z = z.fast_max(splat(LEAST));
         let power = |z: f64| {
             let place = (z.to_bits() >> SHIFT) as usize;

@@ -1,6 +1,6 @@
 //! Four neighbouring nodes under the wheel.
 
-use super::super::pack::{PACK, Pack, greater, greatest_of, splat};
+use super::super::pack::{PACK, Pack, greater, max_lane, splat};
 use super::super::wheel::envelope::NOWHERE;
 
 /// The state of four neighbouring nodes under the wheel, in a step and at a trial height.
@@ -91,6 +91,6 @@ impl Under<'_> {
             quad.shear_z = shear_z;
             highest = greater(highest, quad.surface);
         }
-        greatest_of(highest)
+        max_lane(highest)
     }
 }

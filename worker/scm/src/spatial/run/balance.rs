@@ -6,7 +6,7 @@ const TOLERANCE: f64 = 1.5e-2;
 const NARROWEST: f64 = 1e-6;
 const MAX_TRIALS: u32 = 60;
 /// The flattest slope of the load against height that a chord may show, in wheel loads per metre.
-const LEAST_SLOPE: f64 = -10.0;
+const MIN_SLOPE: f64 = -10.0;
 
 /// Search with the last step's slope; `load` falls as the hub rises.
 #[derive(Debug, Clone, Copy)]
@@ -49,7 +49,7 @@ pub(crate) fn balance(
         let narrow = matches!((low, high), (Some((l, _)), Some((h, _))) if h - l < NARROWEST);
         if let Some((before, its_residual)) = last {
             let chord = (residual - its_residual) / (height - before);
-            if chord < LEAST_SLOPE * wheel_load && chord.is_finite() {
+            if chord < MIN_SLOPE * wheel_load && chord.is_finite() {
                 slope = chord;
             }
         }

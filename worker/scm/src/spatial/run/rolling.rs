@@ -323,7 +323,7 @@ impl<'a> Rolling<'a> {
         } else {
             0.2 * self.wheel.radius_m
         };
-        let least_rise = (self.hub - self.terrain.top - sinks * (margin / MARGIN) as f64).max(0.0);
+        let min_rise = (self.hub - self.terrain.top - sinks * (margin / MARGIN) as f64).max(0.0);
         let range = match self.touched {
             Some(touched) if margin < WIDEST_MARGIN => Range {
                 start: touched.start.saturating_sub(margin),
@@ -331,7 +331,7 @@ impl<'a> Rolling<'a> {
             },
             _ => {
                 let reach = self.underside.reach();
-                let half = (reach * reach - least_rise * least_rise).max(0.0).sqrt();
+                let half = (reach * reach - min_rise * min_rise).max(0.0).sqrt();
                 let column = |x: f64| (x / self.terrain.dx) as usize;
                 Range {
                     start: column(self.pose.x - half).saturating_sub(MARGIN),
@@ -343,7 +343,7 @@ impl<'a> Rolling<'a> {
             &self.terrain,
             self.pose,
             range,
-            least_rise,
+            min_rise,
             &self.contact.across,
             &mut self.envelope,
         );

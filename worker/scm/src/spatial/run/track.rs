@@ -20,7 +20,7 @@ const SPARE_REACH: f64 = 0.1;
 const MAX_NODES: f64 = 1e7;
 const MAX_STEPS: f64 = 2e6;
 /// Minimum share of the travel along the heading for steps to follow columns; below it the wheel slides sideways.
-const LEAST_ALONG: f64 = 1e-3;
+const MIN_ALONG: f64 = 1e-3;
 /// Time of a step with a free hub `[s]`: a twentieth of the period of the stiffest expected spring.
 const DYNAMIC_STEP_S: f64 = 1e-3;
 /// Longest path of the rim in one step, relative to the travel step, so that a grouser does not jump over nodes.
@@ -99,7 +99,7 @@ pub(crate) fn steps(
         Vertical::Balance => wanted,
         Vertical::Dynamic { .. } => wanted.min(DYNAMIC_STEP_S * condition.sled_speed_m_s),
     };
-    let (travel, to_column) = if along > LEAST_ALONG {
+    let (travel, to_column) = if along > MIN_ALONG {
         let to_column = libm::ceil(dx / (wanted * along)).max(1.0);
         (dx / (to_column * along), to_column)
     } else {

@@ -1,6 +1,6 @@
 //! The lanes of the terrain that the wheel covers.
 
-use super::super::pack::{PACK, Pack, greater, greatest_of, splat};
+use super::super::pack::{PACK, Pack, greater, max_lane, splat};
 use super::super::terrain::Terrain;
 use super::envelope::NOWHERE;
 
@@ -52,7 +52,7 @@ impl Across {
             .as_chunks()
             .0;
         let lanes = under.iter().zip(&self.bias);
-        greatest_of(lanes.fold(splat(NOWHERE), |high, (z, &bias)| {
+        max_lane(lanes.fold(splat(NOWHERE), |high, (z, &bias)| {
             greater(high, Pack::new(*z) + bias)
         }))
     }

@@ -82,13 +82,13 @@ impl Cylinder {
         }
     }
 
-    /// Fills the envelope over the columns of `range`, widened to hold every grouser whose rise exceeds `least_rise`.
+    /// Fills the envelope over the columns of `range`, widened to hold every grouser whose rise exceeds `min_rise`.
     pub(crate) fn lay(
         &mut self,
         terrain: &Terrain,
         pose: Pose,
         range: Range,
-        least_rise: f64,
+        min_rise: f64,
         across: &Across,
         out: &mut Envelope,
     ) {
@@ -99,11 +99,11 @@ impl Cylinder {
             share: 1.0,
         };
         let highest = |column| across.highest(terrain, column);
-        self.collect_grousers(terrain, pose, least_rise, row, highest, &mut pieces);
+        self.collect_grousers(terrain, pose, min_rise, row, highest, &mut pieces);
         self.pieces = pieces;
         let ends = self.pieces.first().zip(self.pieces.last());
         let ends = ends.map(|(first, last)| [first.rear, last.front]);
-        let range = self.widen(terrain, pose, range, ends, least_rise, across);
+        let range = self.widen(terrain, pose, range, ends, min_rise, across);
         out.facets.clear();
         out.strips.clear();
         let mut next_piece = 0;
@@ -143,7 +143,7 @@ impl Cylinder {
         pose: Pose,
         range: Range,
         grousers: Option<[f64; 2]>,
-        least_rise: f64,
+        min_rise: f64,
         across: &Across,
     ) -> Range {
         let mut range = range;
@@ -152,13 +152,13 @@ impl Cylinder {
             range.start = range.start.min(column(rear).saturating_sub(1));
             range.end = range.end.max(column(front) + 2);
         }
-        let least = least_rise.max(0.0);
+        let least = min_rise.max(0.0);
         let half = (self.radius * self.radius - least * least).max(0.0).sqrt();
         let column = |ahead: f64| (((pose.x + ahead) / terrain.dx) as usize).min(terrain.columns - 1);
         let touches = |c: &usize| {
             let ahead = ((terrain.x(*c) - pose.x).abs() - 0.5 * terrain.dx).max(0.0);
             let rise = (self.radius * self.radius - ahead * ahead).max(0.0).sqrt();
-            rise + across.highest(terrain, *c) > least_rise + terrain.top
+            rise + across.highest(terrain, *c) > min_rise + terrain.top
         };
         let rearmost = (column(-half)..range.start).find(touches);
         let foremost = (range.end..column(half) + 1).rev().find(touches);
@@ -212,14 +212,14 @@ impl Cylinder {
         (rise, slope)
     }
 
-    /// Collects the undersides of a row's grousers that reach below `least_rise` and may touch soil, from rear to front.
+    /// Collects the undersides of a row's grousers that reach below `min_rise` and may touch soil, from rear to front.
     ///
     /// `highest` gives the highest soil under the row in a column `[m]`.
     pub(super) fn collect_grousers(
         &self,
         terrain: &Terrain,
         pose: Pose,
-        least_rise: f64,
+        min_rise: f64,
         row: Row,
         highest: impl Fn(usize) -> f64,
         out: &mut Vec<Piece>,
@@ -229,11 +229,11 @@ impl Cylinder {
         }
         let pitch = self.pitch();
         let reach = self.reach();
-        if least_rise >= reach {
+        if min_rise >= reach {
             return;
         }
         // angles from straight down, positive forward; the wheel turns them backwards
-        let widest = libm::acos((least_rise / reach).max(-1.0)).min(0.5 * core::f64::consts::PI);
+        let widest = libm::acos((min_rise / reach).max(-1.0)).min(0.5 * core::f64::consts::PI);
         let phase = (pose.turned - row.angle) / pitch;
         let phase = phase - libm::floor(phase); // of a pitch
         let greatest = libm::floor(widest / pitch + phase) as i64;
@@ -246,7 +246,7 @@ impl Cylinder {
             let columns = ((tip - extent) / terrain.dx) as usize..=((tip + extent) / terrain.dx) as usize;
             let on_track = columns.take_while(|&column| column < terrain.columns);
             let highest = on_track.fold(f64::MIN, |high, column| high.max(highest(column)));
-            if deepest + highest > least_rise + terrain.top {
+            if deepest + highest > min_rise + terrain.top {
                 self.push_grouser(angle, row.share * self.grouser_thickness, out);
             }
         }

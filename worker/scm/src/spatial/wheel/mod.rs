@@ -87,21 +87,21 @@ impl Underside {
         }
     }
 
-    /// Fills the envelope over the columns of `range` and all others that may touch soil. `least_rise` is the height of the
+    /// Fills the envelope over the columns of `range` and all others that may touch soil. `min_rise` is the height of the
     /// hub above the highest soil, less the possible sinking of the hub in this step.
     pub(crate) fn lay(
         &mut self,
         terrain: &Terrain,
         pose: Pose,
         range: Range,
-        least_rise: f64,
+        min_rise: f64,
         across: &Across,
         out: &mut Envelope,
     ) {
         match self {
-            Self::Cylinder(cylinder) => cylinder.lay(terrain, pose, range, least_rise, across, out),
-            Self::Treaded(treaded) => treaded.lay(terrain, pose, range, least_rise, across, out),
-            Self::Mesh(mesh) => mesh.lay(terrain, pose, range, least_rise, across, out),
+            Self::Cylinder(cylinder) => cylinder.lay(terrain, pose, range, min_rise, across, out),
+            Self::Treaded(treaded) => treaded.lay(terrain, pose, range, min_rise, across, out),
+            Self::Mesh(mesh) => mesh.lay(terrain, pose, range, min_rise, across, out),
         }
     }
 }

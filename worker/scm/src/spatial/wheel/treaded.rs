@@ -62,23 +62,21 @@ impl Treaded {
         self.tread.is_symmetric()
     }
 
-    /// Fills the envelope over the columns of `range`, widened to hold every grouser whose rise exceeds `least_rise`.
+    /// Fills the envelope over the columns of `range`, widened to hold every grouser whose rise exceeds `min_rise`.
     pub(crate) fn lay(
         &mut self,
         terrain: &Terrain,
         pose: Pose,
         range: Range,
-        least_rise: f64,
+        min_rise: f64,
         across: &Across,
         out: &mut Envelope,
     ) {
         self.find_places(across);
-        self.collect_pieces(terrain, pose, least_rise, across);
+        self.collect_pieces(terrain, pose, min_rise, across);
         let ends = self.borders.first().zip(self.borders.last());
         let ends = ends.map(|(first, last)| [*first, *last]);
-        let range = self
-            .cylinder
-            .widen(terrain, pose, range, ends, least_rise, across);
+        let range = self.cylinder.widen(terrain, pose, range, ends, min_rise, across);
         self.cut(terrain, pose, range, out);
         self.fill(terrain, pose, across, out);
     }
@@ -117,8 +115,8 @@ impl Treaded {
         }
     }
 
-    /// Collects the undersides of grousers that reach below `least_rise`, and all their ends in order.
-    fn collect_pieces(&mut self, terrain: &Terrain, pose: Pose, least_rise: f64, across: &Across) {
+    /// Collects the undersides of grousers that reach below `min_rise`, and all their ends in order.
+    fn collect_pieces(&mut self, terrain: &Terrain, pose: Pose, min_rise: f64, across: &Across) {
         self.pieces.clear();
         self.starts.clear();
         for place in &self.places {
@@ -128,7 +126,7 @@ impl Treaded {
             let lane = across.first_lane + place.lane;
             let highest = |column: usize| terrain.surface[column * terrain.lanes + lane];
             self.cylinder
-                .collect_grousers(terrain, pose, least_rise, place.row, highest, &mut self.pieces);
+                .collect_grousers(terrain, pose, min_rise, place.row, highest, &mut self.pieces);
         }
         self.starts.resize(across.lanes + 1, self.pieces.len());
         self.borders.clear();

@@ -4,7 +4,7 @@ use formula::block::BLOCK;
 use formula::{Hook, Variable};
 
 use super::super::super::pack::{
-    LANES, PACK, Pack, greater, greatest_of, lanes_of, lesser, load, splat, store, sum,
+    LANES, PACK, Pack, greater, lanes_of, lesser, load, max_lane, splat, store, sum,
 };
 use super::super::Contact;
 use super::super::laws::Laws;
@@ -14,7 +14,7 @@ use super::{NodeFormulas, Point, strength};
 use crate::Rejection;
 
 /// The minimum depth that formulas see `[m]`, equal to that of the base's powers.
-const LEAST_DEPTH: f64 = 1e-12;
+const MIN_DEPTH: f64 = 1e-12;
 
 impl NodeFormulas<'_> {
     /// Computes pressures and strengths, and the vertical force that they exert.
@@ -61,7 +61,7 @@ impl NodeFormulas<'_> {
         let changes_pressure = self.laws.enter(Hook::Pressure);
         let block = &mut self.laws.block;
         if uses.contains(Variable::Z) {
-            let depth = greater(quad.depth, splat(LEAST_DEPTH));
+            let depth = greater(quad.depth, splat(MIN_DEPTH));
             store(block.column_mut(Variable::Z), at, depth);
         }
         if uses.contains(Variable::Position) {
@@ -172,7 +172,7 @@ impl Contact {
         let packs = self.across.packs();
         let farthest = |row: usize, end: fn(&Quad) -> Pack| {
             let quads = &self.quads[row * packs..(row + 1) * packs];
-            greatest_of(quads.iter().fold(splat(f64::MIN), |greatest, quad| {
+            max_lane(quads.iter().fold(splat(f64::MIN), |greatest, quad| {
                 greater(greatest, quad.touching(self.hub).select(end(quad), greatest))
             }))
         };

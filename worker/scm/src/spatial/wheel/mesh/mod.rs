@@ -113,12 +113,12 @@ impl Mesh {
         terrain: &Terrain,
         pose: Pose,
         range: Range,
-        least_rise: f64,
+        min_rise: f64,
         across: &Across,
         out: &mut Envelope,
     ) {
-        let range = self.widen(terrain, pose, range, least_rise, across);
-        let least = (least_rise - COLUMNS_BEYOND * terrain.dx).max(0.0);
+        let range = self.widen(terrain, pose, range, min_rise, across);
+        let least = (min_rise - COLUMNS_BEYOND * terrain.dx).max(0.0);
         self.place(terrain, pose, range, least);
         let samples = 2 * libm::ceil(0.5 * (terrain.dx / COARSEST - 1.0)).max(1.0) as usize + 1;
         self.raster.clear(terrain, pose, range, samples, across);
@@ -164,9 +164,9 @@ impl Mesh {
     }
 
     /// Widens `range` by the columns where some part of the wheel may touch the soil, and by one more on either side.
-    fn widen(&self, terrain: &Terrain, pose: Pose, range: Range, least_rise: f64, across: &Across) -> Range {
+    fn widen(&self, terrain: &Terrain, pose: Pose, range: Range, min_rise: f64, across: &Across) -> Range {
         let mut widened = range;
-        let least = least_rise.max(0.0);
+        let least = min_rise.max(0.0);
         if least < self.reach {
             let widest = libm::acos(least / self.reach).min(FRAC_PI_2);
             let sector = TAU / SECTORS as f64;
@@ -185,14 +185,14 @@ impl Mesh {
                     continue;
                 }
                 let (rear, front) = (
-                    column(self.least_ahead(begin, least, far)),
-                    column(-self.least_ahead(-end, least, far)),
+                    column(self.min_ahead(begin, least, far)),
+                    column(-self.min_ahead(-end, least, far)),
                 );
                 if rear >= widened.start && front < widened.end {
                     continue;
                 }
                 let highest = (rear..=front).fold(f64::MIN, |z, c| z.max(across.highest(terrain, c)));
-                if deepest + highest > least_rise + terrain.top {
+                if deepest + highest > min_rise + terrain.top {
                     widened.start = widened.start.min(rear.saturating_sub(1));
                     widened.end = widened.end.max(front + 2);
                 }
@@ -204,7 +204,7 @@ impl Mesh {
 
     /// The rearmost possible place `[m]` of a point at an angle or in front of it, with a rise of at least `least` and at
     /// most `far` from the axle.
-    fn least_ahead(&self, angle: f64, least: f64, far: f64) -> f64 {
+    fn min_ahead(&self, angle: f64, least: f64, far: f64) -> f64 {
         let (sin, cos) = (libm::sin(angle), libm::cos(angle));
         if sin < 0.0 {
             far * sin

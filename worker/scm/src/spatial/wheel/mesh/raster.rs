@@ -121,7 +121,7 @@ impl Raster {
             }
             let rise = a[2] + per_x * (x - a[0]) + per_y * (y - a[1]);
             // rounding on a steep plane must not leave the triangle
-            let rise = rise.max(placed.least_rise).min(placed.greatest_rise);
+            let rise = rise.max(placed.min_rise).min(placed.greatest_rise);
             let place = row + lane;
             let lower = rise - self.rise[place];
             if lower > SAME {

@@ -32,7 +32,7 @@ pub(super) struct Placed {
     pub(super) descent: [f64; 2],
     /// Slopes dh/dx and dh/dy with which it presses.
     pub(super) slopes: [f64; 2],
-    pub(super) least_rise: f64,
+    pub(super) min_rise: f64,
     pub(super) greatest_rise: f64,
 }
 
@@ -102,7 +102,7 @@ impl Triangle {
             corners: [a, b, c],
             descent: [-x, -y],
             slopes: [share * x, share * y],
-            least_rise: a[2].min(b[2]).min(c[2]),
+            min_rise: a[2].min(b[2]).min(c[2]),
             greatest_rise: a[2].max(b[2]).max(c[2]),
         })
     }

@@ -10,32 +10,35 @@ use super::forward::ForwardModel;
 
 /// A variant's low-fidelity model, ready to evaluate.
 #[derive(Debug)]
-pub(super) struct CompiledCompanion {
+pub(super) struct CompiledLowFidelity {
     coarse: ForwardModel,
     values: Vec<PredictedValue>,
     pub(super) metamodel: Option<Metamodel>,
 }
 
-impl CompiledCompanion {
+impl CompiledLowFidelity {
     /// The low-fidelity model of a variant; `None` if it has none. [`CompileError`] names what the quasi-static model cannot
     /// express.
     pub(super) fn new(variant: &ModelVariant) -> Result<Option<Self>, CompileError> {
-        let Some(companion) = &variant.companion else {
+        let Some(low_fidelity) = &variant.low_fidelity else {
             return Ok(None);
         };
         Ok(Some(Self {
             coarse: ForwardModel::new(&variant.coarse()?)?,
-            values: companion.values.clone(),
-            metamodel: companion.metamodel.as_deref().cloned(),
+            values: low_fidelity.values.clone(),
+            metamodel: low_fidelity.metamodel.as_deref().cloned(),
         }))
     }
 
     /// The quasi-static model's predicted values; `None` if it rejects the parameters.
     pub(super) fn values(&self, theta: &[f64]) -> Option<Vec<f64>> {
         match self.coarse.evaluate(theta, |_| {}) {
-            Outcome::Evaluated(observables) => {
-                Some(self.values.iter().map(|value| value.of(&observables)).collect())
-            }
+            Outcome::Evaluated(observables) => Some(
+                self.values
+                    .iter()
+                    .map(|value| value.select(&observables))
+                    .collect(),
+            ),
             Outcome::Rejected(_) | Outcome::Fault(_) => None,
         }
     }

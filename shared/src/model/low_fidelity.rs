@@ -9,7 +9,7 @@ use crate::predicted::PredictedValue;
 /// The low-fidelity, quasi-static model for a variant of the three-dimensional model.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
-pub struct Companion {
+pub struct LowFidelityModel {
     /// The predicted values of both models that are compared, in the order of the likelihood.
     pub values: Vec<PredictedValue>,
     /// The metamodel of a stage; absent before the first stage: then both models are evaluated, and no moves are taken.
