@@ -1,25 +1,33 @@
-//! Confirmation of the best extensions from several starts, to find other modes.
+//! Phase 5, the confirmation: the best candidates are fitted from several starts, to find other modes.
 
+use std::collections::BTreeMap;
+
+use crate::effect_search::base;
+use crate::effect_search::depth::Confirmation;
+use crate::effect_search::ranking::EvidenceMethod;
+use crate::effect_search::state::{EffectSearch, FitPhase, Phase};
+use crate::laplace::batch::{Asked, FitBatch};
 use crate::laplace::coordinate::NormalFrame;
 use crate::laplace::fit::LaplaceFit;
+use crate::laplace::point::FitPoint;
 
-/// How many extensions, the best, are confirmed at once.
+/// Maximum number of candidates that are confirmed at once.
 pub(crate) const COUNT: usize = 4;
-/// A fit that fell short of the screen's promise has not converged. It is confirmed if the promise, which is that of a linear
-/// model, exceeds this share of the best log Bayes factor.
+/// A fit whose log Bayes factor falls short of the screen's has not converged. It is confirmed if the screen's log Bayes factor,
+/// which is that of a linear model, exceeds this share of the best one.
 pub(crate) const STUCK: f64 = 0.6;
 /// A candidate beyond the first few is confirmed only if its log Bayes factor is higher \[nats\].
 pub(crate) const MIN_PROMISE: f64 = 0.0;
 
 /// Number of further starts that fill the prior, used where the best fit so far contradicts the data.
-pub(crate) const ANYWHERE: usize = 16;
+const ANYWHERE: usize = 16;
 
 /// Distances of the strength from its neutral value, in standard deviations of its prior.
 const ONE_SIDED: [f64; 4] = [0.05, 0.3, 1.0, 2.0];
 const TWO_SIDED: [f64; 4] = [0.5, -0.5, 1.5, -1.5];
 
-/// Starts at the base's fit with the effect added; a switch has only the base's fit.
-pub(crate) fn starts(frame: &NormalFrame, base: &LaplaceFit) -> Vec<Vec<f64>> {
+/// Returns starts at the base's fit with the effect added; a switch has only the base's fit.
+fn starts(frame: &NormalFrame, base: &LaplaceFit) -> Vec<Vec<f64>> {
     if frame.is_switch() {
         return vec![base.point.position.clone()];
     }
@@ -38,4 +46,109 @@ pub(crate) fn starts(frame: &NormalFrame, base: &LaplaceFit) -> Vec<Vec<f64>> {
         position
     };
     strengths.iter().enumerate().map(start).collect()
+}
+
+impl EffectSearch {
+    /// How a candidate is confirmed now; `None` if nothing is confirmed.
+    pub(super) fn confirmation(&self) -> Option<&'static Confirmation> {
+        let depth = self.depth.confirmation.as_ref()?;
+        Some(if self.is_wrong() {
+            &depth.if_wrong
+        } else {
+            &depth.usual
+        })
+    }
+
+    /// Evaluates the starts from which candidates are confirmed.
+    pub(super) fn begin_confirmation(&mut self, candidates: Vec<usize>) {
+        let Some(base) = &self.base else { return };
+        // A base that contradicts the data may lie at an end of its prior, and is then a poor start.
+        let is_wrong = self.is_wrong();
+        let mut asked = Vec::new();
+        for &k in &candidates {
+            // With numerical noise each fit may stop at another local maximum.
+            if !self.numerical_noise_sds.is_empty() {
+                let in_place = self.in_place_of_best(k);
+                asked.extend(in_place.map(|position| Asked::for_model(Some(k), position)));
+            }
+            if self.candidates[k].had_confirmation {
+                continue;
+            }
+            let frame = &self.candidates[k].frame;
+            asked.extend(Asked::all_for_model(Some(k), starts(frame, &base.fit)));
+            if is_wrong {
+                let anywhere = base::starts(frame, ANYWHERE);
+                asked.extend(Asked::all_for_model(Some(k), anywhere));
+            }
+            // The base may also improve from the extension's mode: a Bayes factor compares their best fits.
+            if let Some(fit) = self.fit_of(k) {
+                let position = fit.point.position[..self.base_frame.dimension()].to_vec();
+                asked.push(Asked::for_model(None, position));
+            }
+        }
+        if asked.is_empty() {
+            return self.finish();
+        }
+        for &k in &candidates {
+            self.candidates[k].had_confirmation = true;
+        }
+        self.ask(asked);
+        self.phase = Phase::ConfirmationStarts(candidates);
+    }
+
+    /// Begins fits at the most probable starts, and continues the best fit so far of each candidate.
+    pub(super) fn take_confirmation_starts(
+        &mut self,
+        candidates: Vec<usize>,
+        answers: Vec<Option<Vec<f64>>>,
+    ) {
+        let (Some(base), Some(confirmation)) = (&self.base, self.confirmation()) else {
+            return;
+        };
+        self.evaluations.confirmation += answers.len();
+        let mut points: BTreeMap<Option<usize>, Vec<FitPoint>> = BTreeMap::new();
+        for (asked, values) in std::mem::take(&mut self.asked).into_iter().zip(answers) {
+            let frame = self.frame(asked.candidate);
+            let point = values.and_then(|v| FitPoint::new(frame, &self.likelihood, asked.position, v));
+            points.entry(asked.candidate).or_default().extend(point);
+        }
+        let mut fits = Vec::new();
+        for (candidate, mut points) in points {
+            points.sort_by(|a, b| a.value.total_cmp(&b.value));
+            points.truncate(confirmation.max_starts);
+            let frame = self.frame(candidate);
+            let fitted = candidate.map_or(Some(&base.fit), |k| self.fit_of(k));
+            let zeros = || vec![vec![0.0; base.fit.point.values.len()]; frame.dimension()];
+            let fitted = fitted.filter(|_| confirmation.keeps_jacobian);
+            let columns = fitted.map_or_else(zeros, |fit| fit.columns.clone());
+            let corrections = fitted.map_or(&[][..], |fit| &fit.corrections);
+            for point in points {
+                let fit = LaplaceFit::new(frame.clone(), point, columns.clone(), confirmation.plan);
+                fits.push((candidate, fit.corrected(corrections)));
+            }
+        }
+        for k in candidates {
+            let estimate = self.candidates[k].estimate.as_ref();
+            let fitted = estimate.and_then(|estimate| Some((estimate.method, estimate.fit.as_ref()?)));
+            fits.extend(fitted.map(|(method, fit)| match method {
+                // A confirmed fit takes no further step; the new fits are compared with it.
+                EvidenceMethod::Confirmed | EvidenceMethod::Sampled => (Some(k), fit.continued(&[])),
+                _ => (Some(k), confirmation.continued(fit)),
+            }));
+        }
+        self.fit(FitPhase::Confirmation, FitBatch::new(fits));
+    }
+
+    /// Keeps the confirmed fits. Further candidates are confirmed while any is open; then evidences are sampled.
+    pub(super) fn take_confirmation(&mut self, batch: FitBatch) {
+        self.evaluations.confirmation += batch.evaluations();
+        self.take_base(&batch);
+        self.take(batch, EvidenceMethod::Confirmed);
+        let open = self.unconfirmed();
+        if !open.is_empty() {
+            return self.begin_confirmation(open);
+        }
+        let models = self.samplers();
+        self.sample(models);
+    }
 }

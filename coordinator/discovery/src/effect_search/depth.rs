@@ -1,6 +1,5 @@
 //! How much a search spends: which candidates each phase fits, and by which plans.
 
-use crate::effect_search::base;
 use crate::laplace::fit::{FitStep, LaplaceFit};
 use crate::settings::Smoothness;
 
@@ -99,7 +98,10 @@ impl Depth {
     }
 }
 
-/// As thorough as the base's fit.
+/// The final fit of the base. It ends once a new Jacobian predicts no gain: every candidate is compared with this fit.
+pub(crate) const BASE_PLAN: [FitStep; 2] = [FitStep::Rounds { max: 6, trials: 12 }, FitStep::Differences];
+
+/// Fits as thorough as that of the base.
 const THOROUGH: Confirmation = Confirmation {
     min_count: 4,
     max_starts: 6,
@@ -110,7 +112,7 @@ const THOROUGH: Confirmation = Confirmation {
 /// All candidates of a smooth model are fitted, and the best are confirmed.
 pub(crate) const FULL: Depth = Depth {
     base: BaseDepth {
-        plan: &base::PLAN,
+        plan: &BASE_PLAN,
         max_continued: usize::MAX,
     },
     screen: ScreenDepth {

@@ -1,16 +1,21 @@
-//! The fit of the base with one effect added, from the screen's result.
+//! Phase 3, the extensions: the best candidates of the screen are fitted, each together with the base.
 
 use crate::effect_search::depth::ExtensionDepth;
-use crate::effect_search::screen::Screened;
+use crate::effect_search::ranking::EvidenceMethod;
+use crate::effect_search::screened::Screened;
+use crate::effect_search::state::{EffectSearch, FitPhase, Phase};
+use crate::laplace::batch::FitBatch;
 use crate::laplace::coordinate::NormalFrame;
 use crate::laplace::correction::quotient;
 use crate::laplace::fit::LaplaceFit;
 use crate::laplace::point::FitPoint;
 use crate::laplace::quadratic::quadratic;
+use crate::laplace::reduced_discrepancy::reduced_discrepancy;
+use crate::settings::Smoothness;
 use statistics::likelihood::Likelihood;
 
-/// A fit that begins at the base's fit or at the screen's point, whichever is more probable; a switch begins at the screen's point.
-pub(crate) fn fit(
+/// Begins a fit at the base's fit or at the screen's point, whichever is more probable; a switch begins at the screen's point.
+fn fit(
     frame: &NormalFrame,
     base: &LaplaceFit,
     screened: &Screened,
@@ -54,7 +59,7 @@ pub(crate) fn fit(
     Some(fit)
 }
 
-/// The predicted values at the optimum of the model linearised where the fit begins: the effect's change before its fit has made a
+/// Returns the predicted values at the optimum of the model linearised where the fit begins: the effect's change before its fit has made a
 /// step. `None` if the fit cannot begin.
 pub(crate) fn linearised(
     frame: &NormalFrame,
@@ -70,4 +75,93 @@ pub(crate) fn linearised(
         fit.point.values[i] + changes.sum::<f64>()
     };
     Some((0..fit.point.values.len()).map(moved).collect())
+}
+
+impl EffectSearch {
+    /// Fits the best candidates of the screen, each with the base. Those that only the low-fidelity model has screened are screened on
+    /// the model first.
+    pub(super) fn begin_extensions(&mut self) {
+        let best = self.best(self.depth.extension.max_count).into_iter();
+        let (awaiting, candidates): (Vec<usize>, Vec<usize>) = best
+            .filter(|k| self.fit_of(*k).is_none())
+            .partition(|k| self.awaits_model(*k));
+        if !awaiting.is_empty() {
+            return self.screen(0, awaiting);
+        }
+        // The evaluations of a rough model are too expensive for fitting twice.
+        let is_smooth = self.base_frame.smoothness == Smoothness::Smooth;
+        let base = self.base.as_ref().filter(|_| is_smooth);
+        match base.and_then(|base| reduced_discrepancy(&self.likelihood, &base.fit)) {
+            Some(reduced) => {
+                let fits = self.extension_fits(candidates, &reduced);
+                self.fit_reduced_discrepancy(reduced, FitBatch::new(fits));
+            }
+            None => {
+                let fits = self.extension_fits(candidates, &self.likelihood);
+                self.fit(FitPhase::Extensions, FitBatch::new(fits));
+            }
+        }
+    }
+
+    /// Fits with a reduced discrepancy; the fits with the whole of it begin at the screen's points and, once more, at these modes.
+    pub(super) fn fit_reduced_discrepancy(&mut self, reduced: Likelihood, mut batch: FitBatch) {
+        let asked = batch.ask(&reduced);
+        if !asked.is_empty() {
+            self.ask(asked);
+            self.phase = Phase::ReducedDiscrepancy(reduced, batch);
+            return;
+        }
+        self.evaluations.extension += batch.evaluations();
+        let best = self.best(self.depth.extension.max_count);
+        let mut fits = self.extension_fits(best, &self.likelihood);
+        fits.extend(batch.fits.into_iter().filter_map(|(candidate, fit)| {
+            let FitPoint { position, values, .. } = fit.point;
+            let point = FitPoint::new(&fit.frame, &self.likelihood, position, values)?;
+            let plan = self.depth.extension.plan;
+            Some((candidate, LaplaceFit::new(fit.frame, point, fit.columns, plan)))
+        }));
+        self.fit(FitPhase::Extensions, FitBatch::new(fits));
+    }
+
+    /// Fits of candidates that begin at the screen's results.
+    fn extension_fits(
+        &self,
+        candidates: Vec<usize>,
+        likelihood: &Likelihood,
+    ) -> Vec<(Option<usize>, LaplaceFit)> {
+        let fits = candidates.into_iter().filter_map(|k| {
+            let base = &self.base.as_ref()?.fit;
+            let state = &self.candidates[k];
+            let screened = state.screened.as_ref()?;
+            let fit = fit(&state.frame, base, screened, likelihood, &self.depth.extension)?;
+            Some((Some(k), fit))
+        });
+        fits.collect()
+    }
+
+    /// Keeps the fits of the best candidates, and fits the candidates within reach of the best.
+    pub(super) fn take_extensions(&mut self, batch: FitBatch) {
+        self.evaluations.extension += batch.evaluations();
+        self.take(batch, EvidenceMethod::RankOne);
+        let near = self.within_reach();
+        let awaiting: Vec<usize> = near.iter().copied().filter(|k| self.awaits_model(*k)).collect();
+        if !awaiting.is_empty() {
+            return self.screen(0, awaiting);
+        }
+        let fits = self.extension_fits(near, &self.likelihood);
+        self.fit(FitPhase::WithinReach, FitBatch::new(fits));
+    }
+
+    /// Keeps the fits of the candidates within reach, and refines the best of all.
+    pub(super) fn take_within_reach(&mut self, batch: FitBatch) {
+        self.evaluations.extension += batch.evaluations();
+        self.take(batch, EvidenceMethod::RankOne);
+        let depth = &self.depth.refinement;
+        let fits = self
+            .best(depth.max_count)
+            .into_iter()
+            .filter_map(|k| Some((Some(k), self.fit_of(k)?.continued(depth.plan))));
+        let batch = FitBatch::new(fits.collect());
+        self.fit(FitPhase::Refinement, batch);
+    }
 }

@@ -1,7 +1,7 @@
-//! The screen of a rough model by its low-fidelity model, which selects the candidates that are worth evaluations of the model.
+//! Phase 2 of a rough model with a low-fidelity model: its screen on that model, which selects the candidates that are worth evaluations of the model.
 
 use crate::effect_search::ranking::EvidenceMethod;
-use crate::effect_search::screen::{self, Evaluated, Screened};
+use crate::effect_search::screened::{self, Evaluated, Screened};
 use crate::effect_search::state::{CandidateState, EffectSearch, EvidenceEstimate, Phase};
 use crate::laplace::batch::Asked;
 use crate::laplace::correction::Correction;
@@ -19,7 +19,7 @@ impl EffectSearch {
         let mut asked = vec![low_fidelity(None, base.clone())];
         for (k, state) in self.candidates.iter().enumerate() {
             if state.frame.has_low_fidelity {
-                let at = screen::positions(&state.frame, base, &self.depth.screen, None, 0);
+                let at = screened::positions(&state.frame, base, &self.depth.screen, None, 0);
                 asked.extend(at.into_iter().map(|position| low_fidelity(Some(k), position)));
             }
         }
@@ -52,7 +52,7 @@ impl EffectSearch {
             if evaluated.is_empty() {
                 continue;
             }
-            let screened = screen::screened(&state.frame, base, &self.likelihood, &evaluated);
+            let screened = screened::screened(&state.frame, base, &self.likelihood, &evaluated);
             // A candidate that does not change the low-fidelity predictions must be screened on the model.
             state.low_fidelity =
                 screened.filter(|screened| screened.change.iter().any(|change| *change != 0.0));

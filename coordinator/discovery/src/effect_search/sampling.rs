@@ -1,7 +1,8 @@
-//! The models whose evidence is sampled because Laplace's approximation is uncertain.
+//! The end of phase 5: where Laplace's approximation is uncertain, the evidence is computed by importance sampling.
 
 use crate::effect_search::ranking::EvidenceMethod;
-use crate::effect_search::state::EffectSearch;
+use crate::effect_search::state::{EffectSearch, Phase};
+use crate::laplace::batch::Asked;
 use crate::laplace::fit::LaplaceFit;
 use crate::laplace::importance::ImportanceSampler;
 
@@ -105,5 +106,46 @@ impl EffectSearch {
                 estimate.method = EvidenceMethod::Sampled;
             }
         }
+    }
+
+    /// Asks for the next draws of each importance sampler; the search ends once all samplers are done and no other is needed.
+    pub(super) fn sample(&mut self, mut models: Vec<(Option<usize>, ImportanceSampler)>) {
+        let mut asked = Vec::new();
+        let mut counts = Vec::new();
+        for (candidate, model) in &mut models {
+            let number = candidate.map_or(0, |k| k as u64 + 1);
+            let positions = model.ask(self.seed, number);
+            counts.push(positions.len());
+            asked.extend(Asked::all_for_model(*candidate, positions));
+        }
+        if asked.is_empty() {
+            self.take_sampled(&models);
+            // Another effect may lead now.
+            let samplers = self.samplers();
+            return if samplers.is_empty() {
+                self.finish()
+            } else {
+                self.sample(samplers)
+            };
+        }
+        self.ask(asked);
+        self.phase = Phase::Sampling(models, counts);
+    }
+
+    /// Takes the predicted values at the draws of each importance sampler.
+    pub(super) fn take_sample(
+        &mut self,
+        mut models: Vec<(Option<usize>, ImportanceSampler)>,
+        counts: &[usize],
+        answers: Vec<Option<Vec<f64>>>,
+    ) {
+        self.evaluations.confirmation += answers.len();
+        let mut answers = answers.into_iter();
+        for ((_, model), count) in models.iter_mut().zip(counts) {
+            if *count > 0 {
+                model.tell(&self.likelihood, answers.by_ref().take(*count).collect());
+            }
+        }
+        self.sample(models);
     }
 }

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use crate::candidate::Candidate;
 use crate::effect_search::depth::{Depth, FULL};
 use crate::effect_search::ranking::{EffectRanking, EvaluationCounts, EvidenceMethod};
-use crate::effect_search::screen::Screened;
+use crate::effect_search::screened::Screened;
 use crate::laplace::batch::{Asked, FitBatch};
 use crate::laplace::coordinate::NormalFrame;
 use crate::laplace::fit::{FittedModel, LaplaceFit};
@@ -69,25 +69,33 @@ pub(super) struct EvidenceEstimate {
     pub(super) fit: Option<LaplaceFit>,
 }
 
+/// A phase of fits with the likelihood of the search.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum FitPhase {
+    Base,
+    /// The best candidates of the screen.
+    Extensions,
+    /// Further candidates, within reach of the best.
+    WithinReach,
+    Refinement,
+    Confirmation,
+}
+
+/// The round that the search waits for.
 #[derive(Debug, Clone)]
 pub(super) enum Phase {
     /// The starts of the base's fits are evaluated.
     BaseStarts,
-    Base(FitBatch),
+    Fits(FitPhase, FitBatch),
     /// Holds the base's fits, and the distance of neighbouring positions on the line through the best of them.
     NumericalNoise(FitBatch, f64),
     LowFidelityScreen,
-    /// Holds the index of the strengths in [`LEVELS`](crate::effect_search::screen::LEVELS).
+    /// Holds the index of the strengths in [`LEVELS`](crate::effect_search::screened::LEVELS).
     Screen(usize),
     /// Holds the likelihood with the reduced discrepancy.
     ReducedDiscrepancy(Likelihood, FitBatch),
-    Extensions(FitBatch),
-    /// Fits of candidates within reach of the best.
-    WithinReach(FitBatch),
-    Refinement(FitBatch),
     /// Holds the candidates to confirm.
     ConfirmationStarts(Vec<usize>),
-    Confirmation(FitBatch),
     /// Holds a sampler for each model, and how many draws each waits for.
     Sampling(Vec<(Option<usize>, ImportanceSampler)>, Vec<usize>),
     Done(Box<EffectRanking>),

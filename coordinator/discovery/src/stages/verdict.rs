@@ -1,8 +1,8 @@
-//! The verdict of a search.
+//! The verdict of a discovery, from the probabilities (step 13).
 
 use crate::probability::DETECTED;
-use crate::search::hypotheses::{FittedLaw, Hypotheses};
-use crate::search::weighing::Weighing;
+use crate::stages::hypotheses::{FittedLaw, Hypotheses};
+use crate::stages::weighing::Weighing;
 use crate::task::SearchTask;
 
 /// A class or an effect is named if its probability is higher.

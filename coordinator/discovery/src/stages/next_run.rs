@@ -1,9 +1,9 @@
-//! The runs to make next: those that together discriminate best between the explanations.
+//! The choice of the runs to make next (step 13): those that together discriminate best between the explanations.
 
 use crate::laplace::fit::LaplaceFit;
 use crate::laplace::spread::{Axis, spread};
-use crate::search::query::{QueriedModel, Query};
-use crate::search::run_information::{Prediction, Predictive};
+use crate::stages::query::{QueriedModel, Query};
+use crate::stages::run_information::{Prediction, Predictive};
 use crate::task::{ProposedRuns, SearchTask};
 
 /// Maximum number of proposed runs.

@@ -1,10 +1,10 @@
-//! The stages of a search.
+//! The stage that a discovery is in, with the branches that it waits for.
 
-use crate::search::branch::SearchBranch;
-use crate::search::conclusion::Conclusion;
-use crate::search::cross_validation::CrossValidation;
-use crate::search::next_run::RunSelection;
-use crate::search::query::Query;
+use crate::stages::branch::SearchBranch;
+use crate::stages::conclusion::Conclusion;
+use crate::stages::cross_validation::CrossValidation;
+use crate::stages::next_run::RunSelection;
+use crate::stages::query::Query;
 use inference::InferenceFailure;
 
 /// A stage of a search.

@@ -1,4 +1,4 @@
-//! The queries that a search makes to the model.
+//! The queries that a discovery makes to the model.
 
 /// The model that is evaluated.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]

@@ -1,16 +1,16 @@
-//! The conclusion of a search.
+//! The conclusion of a discovery: its verdict with everything that is reported beside it (step 13).
 
 use crate::chi_square::{FitChiSquare, residuals};
 use crate::effect_search::ranking::EffectRanking;
 use crate::laplace::draws::draws;
 use crate::laplace::fit::LaplaceFit;
 use crate::probability::DETECTED;
-use crate::search::hypotheses::{FittedLaw, Hypotheses};
-use crate::search::next_run::{InformativeRun, RunChoice};
-use crate::search::noise_support::unsupported_noise;
-use crate::search::state::SearchState;
-use crate::search::verdict::SearchVerdict;
-use crate::search::weighing::{WeighedSet, Weighing};
+use crate::stages::hypotheses::{FittedLaw, Hypotheses};
+use crate::stages::next_run::{InformativeRun, RunChoice};
+use crate::stages::noise_support::unsupported_noise;
+use crate::stages::state::SearchState;
+use crate::stages::verdict::SearchVerdict;
+use crate::stages::weighing::{WeighedSet, Weighing};
 use crate::task::SearchTask;
 
 /// A law outside the library explains the misfit if it leaves at most this share of the library's chi-square excess.

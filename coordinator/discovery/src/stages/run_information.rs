@@ -1,4 +1,4 @@
-//! The joint prediction of runs not yet made, and their information on the explanations.
+//! The expected information of proposed runs on the explanations, from their joint prediction (step 13).
 
 use nalgebra::{Cholesky, DMatrix, DVector};
 

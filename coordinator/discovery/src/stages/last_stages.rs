@@ -1,11 +1,11 @@
-//! The last stages: predictions of the leading sets, and the runs to make next.
+//! Steps 12 and 13, the last stages: the leading sets predict left-out levels, and the runs to make next are chosen.
 
-use crate::search::conclusion::Conclusion;
-use crate::search::cross_validation::{ComparedModel, CrossValidation};
-use crate::search::next_run::{RunChoice, RunSelection};
-use crate::search::stage::Stage;
-use crate::search::state::SearchState;
-use crate::search::weighing::Weighing;
+use crate::stages::conclusion::Conclusion;
+use crate::stages::cross_validation::{ComparedModel, CrossValidation};
+use crate::stages::next_run::{RunChoice, RunSelection};
+use crate::stages::stage::Stage;
+use crate::stages::state::SearchState;
+use crate::stages::weighing::Weighing;
 
 impl SearchState {
     /// Lets the leading sets predict left-out levels, if the evidence leaves several.

@@ -1,11 +1,11 @@
-//! The interface of a search for one effect.
+//! How a search for one effect is asked and told: its constructors, the requests of a round, and the answers, which select the next phase.
 
 use crate::candidate::{Candidate, CandidateError};
 use crate::effect_search::base;
 use crate::effect_search::depth::Depth;
 use crate::effect_search::ranking::EffectRanking;
-use crate::effect_search::state::{EffectSearch, Phase};
-use crate::laplace::batch::Asked;
+use crate::effect_search::state::{EffectSearch, FitPhase, Phase};
+use crate::laplace::batch::{Asked, FitBatch};
 use crate::laplace::coordinate::NormalFrame;
 use crate::laplace::fit::FittedModel;
 use crate::settings::{SearchSettings, Starts};
@@ -119,6 +119,44 @@ impl EffectSearch {
             _ if complete => TellProgress::NextRound,
             _ => TellProgress::Waiting,
         })
+    }
+
+    /// Takes the answers of a round and begins the next.
+    fn advance(&mut self, answers: Vec<Option<Vec<f64>>>) {
+        match std::mem::replace(&mut self.phase, Phase::BaseStarts) {
+            Phase::BaseStarts => self.take_base_starts(answers),
+            Phase::NumericalNoise(batch, spacing) => self.take_noise(batch, spacing, &answers),
+            Phase::LowFidelityScreen => self.take_low_fidelity_screen(answers),
+            Phase::Screen(level) => self.take_screen(level, answers),
+            Phase::ReducedDiscrepancy(likelihood, mut batch) => {
+                batch.tell(&likelihood, answers);
+                self.fit_reduced_discrepancy(likelihood, batch);
+            }
+            Phase::Fits(phase, mut batch) => {
+                batch.tell(&self.likelihood, answers);
+                self.fit(phase, batch);
+            }
+            Phase::ConfirmationStarts(candidates) => self.take_confirmation_starts(candidates, answers),
+            Phase::Sampling(models, counts) => self.take_sample(models, &counts, answers),
+            over @ (Phase::Done(_) | Phase::Failed(_)) => self.phase = over,
+        }
+    }
+
+    /// Asks for the next evaluations of a batch of fits; once they are complete, begins what follows them.
+    pub(super) fn fit(&mut self, phase: FitPhase, mut batch: FitBatch) {
+        let asked = batch.ask(&self.likelihood);
+        if !asked.is_empty() {
+            self.ask(asked);
+            self.phase = Phase::Fits(phase, batch);
+            return;
+        }
+        match phase {
+            FitPhase::Base => self.take_base_fits(batch),
+            FitPhase::Extensions => self.take_extensions(batch),
+            FitPhase::WithinReach => self.take_within_reach(batch),
+            FitPhase::Refinement => self.take_refinement(batch),
+            FitPhase::Confirmation => self.take_confirmation(batch),
+        }
     }
 
     /// Why the search failed, if it did.

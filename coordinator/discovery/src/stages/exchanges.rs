@@ -1,13 +1,13 @@
-//! The stage that replaces effects of the best combination by others of their class.
+//! Step 8, the exchanges: with numerical noise, each effect of the best combination is replaced by other members of its class.
 
 use crate::effect_search::class::log_bayes_factor_deficit;
 use crate::effect_search::projection::Projection;
 use crate::effect_search::state::EffectSearch;
 use crate::laplace::coordinate::NormalFrame;
-use crate::search::branch::SearchBranch;
-use crate::search::hypotheses::{EffectCombination, candidate_set};
-use crate::search::stage::Stage;
-use crate::search::state::SearchState;
+use crate::stages::branch::SearchBranch;
+use crate::stages::hypotheses::{EffectCombination, candidate_set};
+use crate::stages::stage::Stage;
+use crate::stages::state::SearchState;
 
 /// Maximum number of exchanges in a round, and of rounds: the new best combination may have exchanges too.
 const MAX_EXCHANGES: usize = 4;
@@ -29,11 +29,13 @@ impl SearchState {
         Stage::Exchanges(round, branches)
     }
 
+    /// Keeps the exchanged combinations, and exchanges once more beyond the best of them.
     pub(super) fn after_exchanges(&mut self, round: usize, branches: &[SearchBranch]) -> Stage {
         self.add_fitted(branches);
         self.exchanges(round + 1)
     }
 
+    /// Returns the fits of the combination with one effect exchanged.
     fn exchanged(&self, best: &EffectCombination) -> Vec<SearchBranch> {
         let ranking = &self.hypotheses.ranking;
         let class = |k: usize| Some(ranking.effect(Some(k))?.class);
@@ -75,7 +77,7 @@ impl SearchState {
         branches.take(MAX_EXCHANGES).collect()
     }
 
-    /// The frame of a combination with one effect replaced, and a start where it predicts as the combination's fit does.
+    /// Returns the frame of a combination with one effect replaced, and a start at which it predicts as the combination's fit does.
     fn in_place(
         &self,
         best: &EffectCombination,
@@ -85,14 +87,11 @@ impl SearchState {
         let candidates = &self.hypotheses.candidates;
         let base = self.task.prior.dimension();
         let single = &self.hypotheses.single(substitute)?.fit;
-        let (base_position, mut rest) = best.fit.point.position.split_at(base);
-        let mut start = base_position.to_vec();
+        let mut start = best.fit.point.position[..base].to_vec();
         let (mut frame, mut old_frame) = (self.task.frame(), self.task.frame());
         let mut pair = None;
-        for (i, &k) in best.effects.iter().enumerate() {
+        for (i, (k, coordinates)) in self.coordinates(best).enumerate() {
             old_frame = old_frame.with(&candidates[k]);
-            let (coordinates, following) = rest.split_at(candidates[k].parameters.len());
-            rest = following;
             if i == place {
                 frame = frame.with(&candidates[substitute]);
                 start.extend_from_slice(&single.point.position[base..]);

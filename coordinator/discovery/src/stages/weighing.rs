@@ -1,12 +1,12 @@
-//! The probabilities of all hypotheses.
+//! The probabilities of all hypotheses, from which predictions, next runs and verdict follow (steps 12 and 13).
 
 use std::collections::BTreeMap;
 
 use crate::effect_search::ranking::{EffectRanking, EvidenceMethod, RankedEffect};
 use crate::laplace::evidence::log_sum_exp;
 use crate::probability::{DETECTED, ModelProbability, Probabilities};
-use crate::search::hypotheses::{EffectCombination, Hypotheses};
-use crate::search::next_run::OpenHypothesis;
+use crate::stages::hypotheses::{EffectCombination, Hypotheses};
+use crate::stages::next_run::OpenHypothesis;
 use crate::task::SearchTask;
 
 /// Further runs do not compare explanations that are less probable.

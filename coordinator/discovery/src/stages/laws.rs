@@ -1,4 +1,5 @@
-//! The stages that search laws outside the library: beyond the base, and beyond the best combination where that leaves misfit.
+//! Steps 9 to 11, laws outside the library: curves, then simple forms, then the cross-validation of the best, first beyond the base
+//! and then beyond the best combination if that leaves misfit.
 
 use crate::chi_square::{FURTHER_EFFECT, FitChiSquare, OUTSIDE_LAW};
 use crate::effect_search::depth::{ALL_CURVES, CURVES, Depth, FORMS};
@@ -6,11 +7,11 @@ use crate::effect_search::state::EffectSearch;
 use crate::laplace::evidence::log_sum_exp;
 use crate::laplace::fit::{FittedModel, LaplaceFit};
 use crate::probability::DETECTED;
-use crate::search::branch::SearchBranch;
-use crate::search::cross_validation::CrossValidation;
-use crate::search::hypotheses::{EffectCombination, FittedLaw, LawScan};
-use crate::search::stage::Stage;
-use crate::search::state::SearchState;
+use crate::stages::branch::SearchBranch;
+use crate::stages::cross_validation::CrossValidation;
+use crate::stages::hypotheses::{EffectCombination, FittedLaw, LawScan};
+use crate::stages::stage::Stage;
+use crate::stages::state::SearchState;
 
 /// Number of laws, the best, whose simple forms are fitted and that are cross-validated.
 const LAWS: usize = 3;

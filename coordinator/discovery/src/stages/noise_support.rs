@@ -1,4 +1,4 @@
-//! Which inferred noise sds are known well enough for a claim.
+//! The inferred noise sds that are known well enough to support a claim (step 13).
 //!
 //! An inferred sd measures the misfit of the fitted model. Each effect that bends the model towards the data shrinks it, and the
 //! smaller sd makes the next effect count more. Two things limit this: repeats of a condition, which no effect can follow, and many

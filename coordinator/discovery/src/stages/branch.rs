@@ -1,8 +1,8 @@
-//! A search for one effect as a part of the whole search, with candidates named by their indices in the task.
+//! A branch of a stage: a search for one effect, or a fit, with its candidates named by their indices in the task.
 
 use crate::effect_search::ranking::RankedEffect;
 use crate::effect_search::state::EffectSearch;
-use crate::search::query::{QueriedModel, Query};
+use crate::stages::query::{QueriedModel, Query};
 
 /// A search beyond a combination of effects, or a fit of the base without one of its effects.
 #[derive(Debug, Clone)]

@@ -1,12 +1,12 @@
-//! The interface of the whole search.
+//! How a discovery is asked and told: the queries of a round, and the answers, which select the next stage.
 
 use crate::candidate::{Candidate, CandidateError};
 use crate::effect_search::state::EffectSearch;
-use crate::search::branch::SearchBranch;
-use crate::search::conclusion::Conclusion;
-use crate::search::query::Query;
-use crate::search::stage::Stage;
-use crate::search::state::SearchState;
+use crate::stages::branch::SearchBranch;
+use crate::stages::conclusion::Conclusion;
+use crate::stages::query::Query;
+use crate::stages::stage::Stage;
+use crate::stages::state::SearchState;
 use crate::task::SearchTask;
 use inference::{InferenceFailure, Proposal, ProposalRound, TellError, TellProgress};
 use statistics::likelihood::LikelihoodError;

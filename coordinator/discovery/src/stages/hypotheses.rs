@@ -1,4 +1,4 @@
-//! Combinations of effects and laws outside the library, found so far.
+//! The hypotheses of a discovery: the combinations of effects and the laws outside the library that its stages have fitted.
 
 use std::collections::BTreeSet;
 

@@ -1,11 +1,11 @@
-//! The stage that fits the effects of a family together.
+//! Step 7, the families: effects that change one quantity, each in other conditions, are fitted together.
 
 use crate::effect_search::base::starts;
 use crate::effect_search::state::EffectSearch;
-use crate::search::branch::SearchBranch;
-use crate::search::hypotheses::candidate_set;
-use crate::search::stage::Stage;
-use crate::search::state::SearchState;
+use crate::stages::branch::SearchBranch;
+use crate::stages::hypotheses::candidate_set;
+use crate::stages::stage::Stage;
+use crate::stages::state::SearchState;
 
 /// Families with more members are not tried: their subsets are too many.
 const MAX_MEMBERS: usize = 4;

@@ -1,11 +1,11 @@
-//! Cross-validation: models are fitted without some of the data, and predict these.
+//! The cross-validation of steps 10 to 12: models are fitted without one level of the design, and predict its data.
 
 use std::collections::BTreeMap;
 
 use crate::laplace::correction::Correction;
 use crate::laplace::fit::{FitStep, LaplaceFit};
 use crate::laplace::point::FitPoint;
-use crate::search::query::{QueriedModel, Query};
+use crate::stages::query::{QueriedModel, Query};
 use statistics::likelihood::Likelihood;
 
 /// Refits begin at the fit to all data, so a few steps suffice.

@@ -1,0 +1,87 @@
+//! Step 8, the beam search: beyond each of the best combinations, one more effect is searched while misfit remains.
+
+use crate::chi_square::FURTHER_EFFECT;
+use crate::effect_search::depth::{GLANCE, QUICK};
+use crate::effect_search::state::EffectSearch;
+use crate::laplace::fit::FittedModel;
+use crate::probability::DETECTED;
+use crate::stages::branch::SearchBranch;
+use crate::stages::hypotheses::{EffectCombination, candidate_set};
+use crate::stages::stage::Stage;
+use crate::stages::state::SearchState;
+
+/// Beam width: number of combinations beyond which a further effect is searched.
+const BEAM: usize = 3;
+/// Number of single effects beyond which a further effect is searched if the best explanation contradicts the data: two effects
+/// that explain much together may explain little alone.
+const WIDE_BEAM: usize = 6;
+
+impl SearchState {
+    /// Searches one more effect beyond the best combinations of a size, unless the library fits already.
+    pub(super) fn beam_search(&mut self, size: usize) -> Stage {
+        let hypotheses = &self.hypotheses;
+        let is_wide = size == 1 && self.searches_widely();
+        let combinations = hypotheses.combinations.iter();
+        let eligible = combinations
+            .filter(|c| c.effects.len() == size && (c.log_bayes_factor > DETECTED || is_wide))
+            // A model with another setting may lack effects that the others have.
+            .filter(|c| !c.effects.iter().any(|k| self.task.library[*k].is_switch()));
+        let mut best: Vec<&EffectCombination> = eligible.collect();
+        let width = if is_wide { WIDE_BEAM } else { BEAM };
+        // Keep each family's best set in the beam even if it ranks low: an effect not added yet may make it the winner.
+        let is_of_family =
+            |c: &&EffectCombination| hypotheses.family_sets.contains(&candidate_set(&c.effects));
+        let family = best.iter().position(is_of_family).filter(|place| *place >= width);
+        let family = family.map(|place| best[place]);
+        best.truncate(width);
+        best.extend(family);
+        let leaves_misfit = hypotheses
+            .chi_square(&self.task.likelihood)
+            .is_none_or(|chi| chi.p() < FURTHER_EFFECT);
+        if size >= self.task.max_effects || best.is_empty() || !leaves_misfit {
+            return self.backward_elimination();
+        }
+        let branches = best.into_iter().enumerate().map(|(rank, combination)| {
+            let library = &self.task.library;
+            let combines = |k: usize| {
+                let mut effects = combination.effects.iter();
+                effects.all(|effect| *effect != k && library[k].combines_with(&library[*effect]))
+            };
+            let further: Vec<usize> = (0..library.len())
+                .filter(|k| combines(*k) && !library[*k].is_switch())
+                .collect();
+            let candidates: Vec<_> = further.iter().map(|&k| self.task.library[k].clone()).collect();
+            let base = FittedModel {
+                fit: combination.fit.clone(),
+                log_evidence: hypotheses.base_evidence() + combination.log_bayes_factor,
+            };
+            let likelihood = self.task.likelihood.clone();
+            let seed = self.task.settings.seed;
+            let depth = if rank < BEAM { &QUICK } else { &GLANCE };
+            let search = EffectSearch::beyond(base, likelihood, &candidates, depth, seed);
+            SearchBranch::new(combination.effects.clone(), further, search)
+        });
+        Stage::BeamSearch(size, branches.collect())
+    }
+
+    /// Keeps the extended combinations, and extends them once more if the best has grown.
+    pub(super) fn after_beam_search(&mut self, size: usize, branches: &[SearchBranch]) -> Stage {
+        let base = self.hypotheses.base_evidence();
+        for branch in branches {
+            let extended = branch
+                .search
+                .base_fit()
+                .map_or(0.0, |model| model.log_evidence - base);
+            self.add_combinations(branch, extended);
+        }
+        let has_grown = self
+            .hypotheses
+            .best()
+            .is_some_and(|best| best.effects.len() > size);
+        if has_grown {
+            self.beam_search(size + 1)
+        } else {
+            self.backward_elimination()
+        }
+    }
+}

@@ -1,0 +1,45 @@
+//! The stages of a discovery: one effect, combinations, laws outside the library, and the runs to make next.
+//!
+//! A stage asks the model in rounds (`Stage::queries`). Its `after_` function keeps the results and selects the next stage. The steps
+//! are those of docs/discovery.md:
+//!
+//! | step | stage | file |
+//! |---|---|---|
+//! | 1–5 | single effects: an [`EffectSearch`](crate::EffectSearch) over the library | `crate::effect_search` |
+//! | 6 | base reduction: the model is fitted without each of its effects | `base_reduction` |
+//! | 7 | families: if no single effect explains the data, effects of one quantity are fitted together | `families` |
+//! | 8 | beam search: beyond the best combinations, one more effect is searched while misfit remains | `beam_search` |
+//! | 8 | backward elimination: the best combination is fitted without each of its effects | `backward_elimination` |
+//! | 8 | exchanges: with numerical noise, each effect is replaced by a member of its class | `exchanges` |
+//! | 9 | curves and forms of laws outside the library, if misfit remains | `laws` |
+//! | 10 | cross-validation of the best laws by levels of the design that were left out | `laws`, `cross_validation` |
+//! | 11 | steps 9 and 10 beyond the best combination, if it contradicts the data | `laws` |
+//! | 12 | predictions of left-out levels by the leading sets | `last_stages`, `cross_validation` |
+//! | 13 | next runs: the runs that discriminate best between the explanations | `last_stages`, `next_run`, `run_information` |
+//! | 13 | probabilities, verdict and conclusion | `weighing`, `noise_support`, `verdict`, `conclusion` |
+//!
+//! # Layout
+//! - `ask_tell`: how a discovery is asked and told. `query`: a request to the model.
+//! - `stage`: the stage that a discovery is in. `branch`: a search for one effect, or a fit, that is part of a stage.
+//! - `state`: the task and the results so far. `hypotheses`: the fitted combinations and laws among them.
+
+pub(crate) mod ask_tell;
+mod backward_elimination;
+mod base_reduction;
+mod beam_search;
+mod branch;
+pub(crate) mod conclusion;
+mod cross_validation;
+mod exchanges;
+mod families;
+mod hypotheses;
+mod last_stages;
+mod laws;
+pub(crate) mod next_run;
+mod noise_support;
+pub(crate) mod query;
+mod run_information;
+mod stage;
+mod state;
+pub(crate) mod verdict;
+pub(crate) mod weighing;
