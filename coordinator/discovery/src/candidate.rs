@@ -1,4 +1,4 @@
-//! An effect that may be missing.
+//! A candidate: an effect that may be missing from the model.
 
 use statistics::prior::Marginal;
 
@@ -30,6 +30,7 @@ impl Candidate {
         self.parameters.is_empty()
     }
 
+    /// Whether both candidates may stand in one combination.
     pub(crate) fn combines_with(&self, candidate: &Self) -> bool {
         !self.excludes.contains(&candidate.name) && !candidate.excludes.contains(&self.name)
     }

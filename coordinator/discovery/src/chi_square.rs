@@ -1,4 +1,4 @@
-//! Goodness of fit.
+//! The goodness of a fit: its chi-square with the effective degrees of freedom, and the thresholds of its p-value.
 
 use crate::laplace::fit::LaplaceFit;
 use inference::diagnostics::chi_square_tail;
@@ -79,12 +79,13 @@ impl FitChiSquare {
         (self.value / self.degrees_of_freedom.max(1.0)).max(1.0)
     }
 
+    /// The chi-square less its degrees of freedom.
     pub(crate) fn excess(&self) -> f64 {
         self.value - self.degrees_of_freedom
     }
 }
 
-/// Measured less predicted value of each datum, in declared noise sds; 0 where the sd is inferred.
+/// Returns the measured less the predicted value of each datum, in declared noise sds; 0 where the sd is inferred.
 pub(crate) fn residuals(fit: &LaplaceFit, likelihood: &Likelihood) -> Vec<f64> {
     let pairs = likelihood.data().iter().zip(&fit.point.values);
     pairs

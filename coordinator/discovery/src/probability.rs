@@ -2,9 +2,11 @@
 
 use crate::laplace::evidence::log_sum_exp;
 
-/// A log Bayes factor above this is a detection; an effect of the model with a smaller one is dropped \[nats\].
+/// A log Bayes factor above this is a detection; an effect of the model that gains less may be dropped \[nats\].
 pub const DETECTED: f64 = 3.0;
+/// Prior probability that nothing is missing.
 const PRIOR_OF_NONE: f64 = 0.5;
+/// Probability of the credible set.
 const CREDIBLE: f64 = 0.95;
 
 /// The evidence for one explanation: nothing is missing, or one effect is.
@@ -43,7 +45,7 @@ pub(crate) struct Probabilities {
 }
 
 impl Probabilities {
-    /// The prior is 1/2 for nothing missing. The rest is shared equally by the classes and the law outside the library, and within
+    /// Weighs the explanations. The prior is 1/2 for nothing missing. The rest is shared equally by the classes and the law outside the library, and within
     /// a class by its members.
     ///
     /// # Arguments
@@ -112,7 +114,7 @@ impl Probabilities {
     }
 }
 
-/// The smallest set of classes with 95 % probability, from the probability of each class.
+/// Returns the smallest set of classes with 95 % probability, from the probability of each class.
 fn credible(mut by_class: Vec<(Option<usize>, f64)>) -> Vec<Option<usize>> {
     by_class.sort_by(|a, b| b.1.total_cmp(&a.1));
     let mut sum = 0.0;

@@ -1,4 +1,4 @@
-//! Settings of a search.
+//! The settings of a search: its starts, its seed, and properties of the model.
 
 /// The starts of the base's fit.
 #[derive(Debug, Clone, PartialEq)]

@@ -1,4 +1,4 @@
-//! The task of a search: a model, its data and the candidates.
+//! The task of a discovery: a model, its data, the candidates and the runs that the rig could make.
 
 use crate::candidate::Candidate;
 use crate::laplace::coordinate::NormalFrame;
@@ -80,16 +80,19 @@ impl SearchTask {
         self.library.iter().chain(outside).cloned().collect()
     }
 
+    /// The coordinates of the base.
     pub(crate) fn frame(&self) -> NormalFrame {
         NormalFrame::base(&self.prior, self.settings.smoothness)
             .with_low_fidelity(self.settings.has_low_fidelity)
     }
 
+    /// Index of a law's curve among the candidates.
     pub(crate) fn curve(&self, law: usize) -> usize {
         let before = self.laws[..law].iter().map(|law| 1 + law.forms.len());
         self.library.len() + before.sum::<usize>()
     }
 
+    /// Indices of a law's forms among the candidates.
     pub(crate) fn forms(&self, law: usize) -> std::ops::Range<usize> {
         let first = self.curve(law) + 1;
         first..first + self.laws[law].forms.len()

@@ -57,8 +57,8 @@ impl<A> ProposalRound<A> {
 
     /// Takes the result of a pending particle; returns whether it was the last one of the round.
     ///
+    /// # Errors
     /// [`TellError::NotPending`] or [`TellError::AlreadyTold`]; the round is unchanged then.
-    /// [`TellError::NotPending`], [`TellError::AlreadyTold`].
     pub fn tell(&mut self, particle: usize, answer: A) -> Result<bool, TellError> {
         let round = self.number;
         let slot = self

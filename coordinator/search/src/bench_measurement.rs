@@ -1,4 +1,4 @@
-//! Tests without a rolling wheel, and the effects that they measure.
+//! Bench measurements: tests without a rolling wheel, and the effects that each decides.
 
 use std::collections::BTreeSet;
 
@@ -53,7 +53,7 @@ const TESTS: [RigTest; 6] = [
     },
 ];
 
-/// The line of a job with a test's result for an effect's strength.
+/// Returns the line of a job with a test's result for an effect's strength.
 fn prior_line(effect: &str) -> Option<String> {
     if let Some(plain) = PlainParameter::find(effect) {
         return Some(format!("{} = {{ normal = [VALUE, SD] }}", plain.name));
@@ -66,7 +66,7 @@ fn prior_line(effect: &str) -> Option<String> {
     ))
 }
 
-/// The tests that distinguish open explanations; none where one is named.
+/// Describes the tests that distinguish open explanations; none if one is named.
 pub(super) fn deciding(open: &[&str], verdict: Verdict) -> Vec<String> {
     if matches!(verdict, Verdict::Named | Verdict::NothingDetectable) {
         return Vec::new();
@@ -77,8 +77,8 @@ pub(super) fn deciding(open: &[&str], verdict: Verdict) -> Vec<String> {
     };
     let open: Vec<String> = open.iter().map(effect).collect();
     let proposal = |test: &RigTest| {
-        let own = open.iter().filter(|name| test.decides.contains(&name.as_str()));
-        let lines: BTreeSet<String> = own.filter_map(|name| prior_line(name)).collect();
+        let decided = open.iter().filter(|name| test.decides.contains(&name.as_str()));
+        let lines: BTreeSet<String> = decided.filter_map(|name| prior_line(name)).collect();
         let lines: Vec<String> = lines.into_iter().collect();
         (!lines.is_empty()).then(|| {
             format!(

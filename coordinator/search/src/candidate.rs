@@ -1,4 +1,4 @@
-//! Candidate effects as additions to a job, and those of the library.
+//! The candidate effects of the library, each as an addition to a job.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
@@ -40,7 +40,7 @@ pub enum ExclusionReason {
     AbsentEverywhere,
 }
 
-/// The job with further effects, as a text.
+/// Returns the job with further effects, as a text.
 ///
 /// Effects of the catalogue join those under `[model]`, where a setting is turned; a plain parameter of the model gets its prior under
 /// `[priors]`; effect files come with the job; and an effect on one wheel is a line under `[priors]` for each of its strengths, with the
@@ -55,48 +55,51 @@ pub fn extended(name: &str, job: &FileSet, extensions: &[&Extension]) -> Result<
     extended_job(name, job, &addition.map_err(|e| FileError::whole(name, e))?)
 }
 
-/// The job with further effects, as a value.
+/// Returns the job with further effects, as a value.
 ///
 /// # Arguments
-/// - `read`: effect files that were read before.
+/// - `parsed`: effect files that were parsed before.
 ///
 /// # Errors
-/// As those of [`extended`], or the model is not valid with them.
+/// The errors of [`extended`], or the model is not valid with the effects.
 pub(crate) fn with_extensions(
     job: &Job,
     extensions: &[&Extension],
-    read: &NamedFiles,
+    parsed: &NamedFiles,
 ) -> Result<Job, FileError> {
-    let addition = addition(&job.candidate_priors, extensions, read);
+    let addition = addition(&job.candidate_priors, extensions, parsed);
     job.with(JOB, &addition.map_err(|e| FileError::whole(JOB, e))?)
 }
 
-/// What further effects add to a job that states these priors for candidates.
+/// Collects the changes of a job by further effects.
+///
+/// # Arguments
+/// - `stated`: the priors that the job states for candidates. `parsed`: effect files that were parsed before.
 fn addition(
     stated: &BTreeMap<String, toml::Value>,
     extensions: &[&Extension],
-    read: &NamedFiles,
+    parsed: &NamedFiles,
 ) -> Result<Addition, String> {
     let mut addition = Addition::default();
     for extension in extensions {
         match extension {
             Extension::Effect(name) => add_named(&mut addition, stated, name),
             Extension::OnWheel { effect, wheel } => {
-                let known = find(effect).ok_or_else(|| {
-                    let known = catalogue().iter().map(|e| e.name.as_str());
-                    unknown_word("effect", effect, known)
+                let effect = find(effect).ok_or_else(|| {
+                    let names = catalogue().iter().map(|e| e.name.as_str());
+                    unknown_word("effect", effect, names)
                 })?;
-                let strengths = known.parameters.iter().filter(|p| p.neutral.is_some());
+                let strengths = effect.parameters.iter().filter(|p| p.neutral.is_some());
                 let prior = |p: &Parameter| {
-                    let stated = stated.get(&parameter_name(known, p, None));
+                    let stated = stated.get(&parameter_name(effect, p, None));
                     stated.unwrap_or(&p.prior).clone()
                 };
-                let lines = strengths.map(|p| (parameter_name(known, p, Some(wheel)), prior(p)));
+                let lines = strengths.map(|p| (parameter_name(effect, p, Some(wheel)), prior(p)));
                 addition.priors.extend(lines);
             }
             Extension::File { name, text } => {
-                let known = read.get(name).filter(|file| file.text == *text);
-                let file = known.map_or_else(|| NamedFile::new(text.clone()), Arc::clone);
+                let parsed = parsed.get(name).filter(|file| file.text == *text);
+                let file = parsed.map_or_else(|| NamedFile::new(text.clone()), Arc::clone);
                 addition.files.push((name.clone(), file));
             }
         }
@@ -104,7 +107,7 @@ fn addition(
     Ok(addition)
 }
 
-/// Adds what has a name in the catalogue: a plain parameter, a setting of the model, or an effect.
+/// Adds a plain parameter, a setting of the model, or an effect of the catalogue by its name.
 fn add_named(addition: &mut Addition, stated: &BTreeMap<String, toml::Value>, name: &str) {
     if let Some((prior, _)) = PlainParameter::find(name).and_then(PlainParameter::prior) {
         let prior = stated.get(name).unwrap_or(prior).clone();
@@ -124,8 +127,8 @@ fn add_named(addition: &mut Addition, stated: &BTreeMap<String, toml::Value>, na
     if addition.effects.iter().any(|added| added == effect) {
         return;
     }
-    let of_effect = |parameter: &str| parameter.split_once('.').is_some_and(|(of, _)| of == effect);
-    let lines = stated.iter().filter(|(parameter, _)| of_effect(parameter));
+    let is_of_effect = |parameter: &str| parameter.split_once('.').is_some_and(|(name, _)| name == effect);
+    let lines = stated.iter().filter(|(parameter, _)| is_of_effect(parameter));
     addition
         .priors
         .extend(lines.map(|(parameter, prior)| (parameter.clone(), prior.clone())));
@@ -135,7 +138,7 @@ fn add_named(addition: &mut Addition, stated: &BTreeMap<String, toml::Value>, na
 /// A candidate of the library with the free parameters of the model that has it.
 pub type LibraryEffect = (CandidateEffect, Vec<FreeParameter>);
 
-/// The candidate effects of the library for an experiment.
+/// Lists the candidate effects of the library for an experiment.
 ///
 /// First every effect of the catalogue that the job does not have, in the order of the catalogue; then, where fitted runs have
 /// several wheels, each on each of these wheels alone; then those of the shear displacement with that on the nodes of the soil. Checked by
@@ -147,11 +150,11 @@ pub fn library(
     job: &Job,
     experiment: &Arc<Experiment>,
 ) -> (Vec<LibraryEffect>, Vec<(String, ExclusionReason)>) {
-    let (mut had, mut on_nodes, mut runs) = (BTreeSet::new(), Vec::new(), [].as_slice());
+    let (mut existing, mut on_nodes, mut runs) = (BTreeSet::new(), Vec::new(), [].as_slice());
     // An invalid job excludes every effect, each with the reason.
     if let Ok(base) = spec(job, experiment) {
         on_nodes.extend(EffectOnNodes::all_of(&base));
-        had.extend(base.fit_variant.effects.into_iter().map(|e| e.name));
+        existing.extend(base.fit_variant.effects.into_iter().map(|e| e.name));
         runs = &experiment.runs;
     }
     let fitted = || runs.iter().filter(|run| run.usage == RunUse::Fit);
@@ -161,7 +164,7 @@ pub fn library(
         fitted().next().is_none()
             || on_wheel.any(|run| !effect.is_absent_at(&variables(run.slip, run.slip_angle_deg.to_radians())))
     };
-    let missing = || catalogue().iter().filter(|e| !had.contains(&e.name));
+    let missing = || catalogue().iter().filter(|e| !existing.contains(&e.name));
     let everywhere = missing().map(|effect| (effect, None));
     let on_one = missing()
         .flat_map(|effect| wheels.iter().map(move |wheel| (effect, Some(*wheel))))
@@ -169,22 +172,22 @@ pub fn library(
     let (mut candidates, mut excluded) = (Vec::new(), Vec::new());
     for (effect, wheel) in everywhere.chain(on_one) {
         let candidate = candidate(effect, wheel);
-        // A mechanism alone may be one that the model does not have: then runs of no kind would show it.
+        // The model may lack the mechanism that the effect changes; then no runs would show the effect.
         let is_mechanism = effect.hooks().next().is_none();
-        let able = match acts(effect, wheel) {
+        let checked = match acts(effect, wheel) {
             true => check(job, experiment, &candidate.extension, effect, wheel),
             false if is_mechanism => check(job, experiment, &candidate.extension, effect, wheel)
                 .and(Err(ExclusionReason::AbsentEverywhere)),
             false => Err(ExclusionReason::AbsentEverywhere),
         };
-        match able {
+        match checked {
             Ok(parameters) => candidates.push((candidate, parameters)),
             Err(reason) => excluded.push((candidate.name, reason)),
         }
     }
     for on_nodes in on_nodes {
         let candidate = named(on_nodes.name());
-        // Where it cannot be on the rim, that has been said.
+        // An effect that the model cannot have is excluded above already.
         if let Ok(parameters) = check(job, experiment, &candidate.extension, on_nodes.effect, None) {
             candidates.push((candidate, parameters));
         }
@@ -192,7 +195,7 @@ pub fn library(
     (candidates, excluded)
 }
 
-/// The candidate of a name, with its effect; `None` for a name that is not in the catalogue.
+/// Returns the candidate of a name, with its effect; `None` for a name that is not in the catalogue.
 pub(super) fn candidate_of(name: &str) -> Option<(&'static Effect, CandidateEffect)> {
     if let Some(on_nodes) = EffectOnNodes::find(name) {
         return Some((on_nodes.effect, named(name.to_owned())));
@@ -219,7 +222,7 @@ fn candidate(effect: &Effect, wheel: Option<&str>) -> CandidateEffect {
     }
 }
 
-/// A candidate that a job gets by its name.
+/// Makes the candidate that a job adds by its name.
 fn named(name: String) -> CandidateEffect {
     CandidateEffect {
         extension: Extension::Effect(name.clone()),
@@ -227,7 +230,7 @@ fn named(name: String) -> CandidateEffect {
     }
 }
 
-/// The free parameters of the job's model with an effect.
+/// Returns the free parameters of the job's model with an effect.
 ///
 /// # Errors
 /// [`ExclusionReason`]: the model cannot have the effect, or none of its strengths is free.
@@ -253,7 +256,7 @@ pub(super) fn check(
 pub(super) const JOB: &str = "job.toml";
 pub(super) const EXPERIMENT: &str = "experiment.toml";
 
-/// The specification of a search's job.
+/// Returns the specification of a search's job.
 pub(super) fn spec(job: &Job, experiment: &Arc<Experiment>) -> Result<Spec, FileError> {
     Spec::from_values(JOB, job.clone(), EXPERIMENT, Arc::clone(experiment))
 }

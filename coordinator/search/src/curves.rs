@@ -1,4 +1,4 @@
-//! What the explanations of a search predict of the fitted measurements, for pictures.
+//! The curves of a search: the predictions of the fitted measurements by each explanation, for figures.
 
 use std::collections::BTreeMap;
 
@@ -9,10 +9,10 @@ use shared::channel::Channel;
 
 use super::models::SearchModels;
 
-/// The curves of the base and of every explanation; `None` where the base was not fitted.
+/// Returns the curves of the base and of every explanation; `None` if the base was not fitted.
 pub(super) fn curves(models: &SearchModels, conclusion: &Conclusion) -> Option<EffectCurves> {
     let spec = &models.base;
-    // Readings of plates and rings are no channel of a run.
+    // Readings of plates and rings do not belong to a channel of a run.
     let data = spec.likelihood.data().iter().enumerate();
     let data: Vec<(usize, CurveDatum)> = data
         .filter(|(_, datum)| datum.channel < PLATE)
@@ -26,12 +26,12 @@ pub(super) fn curves(models: &SearchModels, conclusion: &Conclusion) -> Option<E
         |values: &[f64]| -> Vec<f64> { data.iter().map(|(i, _)| six_digits(values[*i])).collect() };
     let ranking = &conclusion.ranking;
     let base = of_wheel(&ranking.effect(None)?.predicted);
-    let known = ranking
+    let predicted = ranking
         .effects
         .iter()
         .filter(|effect| !effect.predicted.is_empty());
     let effects =
-        known.filter_map(|effect| Some((models.name(effect.candidate?), of_wheel(&effect.predicted))));
+        predicted.filter_map(|effect| Some((models.name(effect.candidate?), of_wheel(&effect.predicted))));
     let law = conclusion.predicted_by_law.as_deref();
     let law = law.map(|values| (NOT_IN_LIBRARY.to_owned(), of_wheel(values)));
     let effects: BTreeMap<String, Vec<f64>> = effects.chain(law).collect();
@@ -39,7 +39,7 @@ pub(super) fn curves(models: &SearchModels, conclusion: &Conclusion) -> Option<E
     Some(EffectCurves { data, base, effects })
 }
 
-/// A number to six significant digits: more than a picture shows.
+/// Rounds to six significant digits, more than a figure shows.
 fn six_digits(x: f64) -> f64 {
     format!("{x:.5e}").parse().unwrap_or(x)
 }

@@ -7,18 +7,19 @@ use statistics::Likelihood;
 
 use job::{PLATE, Spec, levels_of};
 
-/// Least levels of a variable for the cross-validation: fewer do not determine an extrapolation.
+/// Minimum number of levels of a variable for the cross-validation: fewer do not support an extrapolation.
 const MIN_LEVELS: usize = 3;
 /// Slips of proposed runs.
 const SLIPS: [f64; 7] = [0.05, 0.1, 0.2, 0.3, 0.45, 0.6, 0.8];
-/// Slip of a braked run, proposed where the rig has made one.
+/// Slip of a braked run, proposed if the rig has made one.
 const BRAKED: f64 = -0.2;
-/// A rig reaches further than one campaign: half to twice its median load and rim speed, and all that it has measured.
+/// Ratio of the largest proposed load or rim speed to the median of the campaign, and of the median to the smallest; the measured
+/// range is proposed in any case.
 const REACH: f64 = 2.0;
 /// Number of loads, and of rim speeds.
 const LEVELS: usize = 3;
 
-/// The data of each level of slip, wheel load and rim speed, of the variables with enough levels.
+/// Returns the data of each level of slip, wheel load and rim speed, of the variables with enough levels.
 pub(super) fn levels(spec: &Spec) -> Vec<Vec<usize>> {
     let runs: Vec<&TestRun> = spec.fit_runs.iter().map(|&i| &spec.experiment.runs[i]).collect();
     let variables: [fn(&TestRun) -> f64; 3] = [
@@ -29,16 +30,17 @@ pub(super) fn levels(spec: &Spec) -> Vec<Vec<usize>> {
     let mut levels = Vec::new();
     for variable in variables {
         let values: Vec<f64> = runs.iter().map(|run| variable(run)).collect();
-        let own = levels_of(&values);
-        let count = own.iter().max().map_or(0, |most| most + 1);
+        let level_of_run = levels_of(&values);
+        let count = level_of_run.iter().max().map_or(0, |max| max + 1);
         if count >= MIN_LEVELS {
-            levels.extend((0..count).map(|level| of_runs(&spec.likelihood, |run| own[run] == level)));
+            levels
+                .extend((0..count).map(|level| of_runs(&spec.likelihood, |run| level_of_run[run] == level)));
         }
     }
     levels
 }
 
-/// The data of each condition of the fitted runs.
+/// Returns the data of each condition of the fitted runs.
 pub(super) fn conditions(spec: &Spec) -> Vec<Vec<usize>> {
     let conditions = job::conditions(&spec.experiment, &spec.fit_runs).into_iter();
     conditions
@@ -46,7 +48,7 @@ pub(super) fn conditions(spec: &Spec) -> Vec<Vec<usize>> {
         .collect()
 }
 
-/// The wheel data of some runs.
+/// Returns the wheel data of some runs.
 fn of_runs(likelihood: &Likelihood, is_in: impl Fn(usize) -> bool) -> Vec<usize> {
     let data = likelihood.data().iter().enumerate();
     data.filter(|(_, d)| d.channel < PLATE && is_in(d.run))
@@ -54,7 +56,7 @@ fn of_runs(likelihood: &Likelihood, is_in: impl Fn(usize) -> bool) -> Vec<usize>
         .collect()
 }
 
-/// The measured wheel loads, and rim speeds above 0.
+/// Returns the measured wheel loads, and the rim speeds above 0.
 fn measured(conditions: &[RunCondition]) -> [Vec<f64>; 2] {
     let rims = conditions.iter().map(|c| rim_speed_m_s(c.slip, c.sled_speed_m_s));
     [
@@ -63,7 +65,7 @@ fn measured(conditions: &[RunCondition]) -> [Vec<f64>; 2] {
     ]
 }
 
-/// Least and greatest of some values.
+/// Returns the smallest and the largest of some values.
 fn range(values: &[f64]) -> [f64; 2] {
     [
         values.iter().copied().fold(f64::INFINITY, f64::min),
@@ -71,7 +73,7 @@ fn range(values: &[f64]) -> [f64; 2] {
     ]
 }
 
-/// Values that the rig can set, equal ratios apart. The reach follows the median, so that it does not grow when a proposed run at its
+/// Returns values that the rig can set, equal ratios apart. Their range follows the median, so that it does not grow when a run at its
 /// end is added to the campaign.
 fn reach(values: &[f64]) -> Vec<f64> {
     let mut ascending = values.to_vec();
@@ -85,15 +87,15 @@ fn reach(values: &[f64]) -> Vec<f64> {
         .collect()
 }
 
-/// How far each run lies beyond the measured range of wheel load and rim speed: the logarithm of the ratio, 0 within the range.
+/// Returns how far each run lies beyond the measured range of wheel load and rim speed: the logarithm of the ratio, 0 within the range.
 pub(super) fn beyond(spec: &Spec, design: &[RunCondition]) -> Vec<f64> {
     let ranges = measured(&spec.fit_variant.conditions).map(|values| range(&values));
     let of_run = |condition: &RunCondition| {
-        let own = [
+        let values = [
             condition.wheel_load_n,
             rim_speed_m_s(condition.slip, condition.sled_speed_m_s),
         ];
-        let beyond = own
+        let beyond = values
             .iter()
             .zip(&ranges)
             .map(|(x, [least, greatest])| libm::log((least / x).max(x / greatest).max(1.0)));
@@ -102,7 +104,7 @@ pub(super) fn beyond(spec: &Spec, design: &[RunCondition]) -> Vec<f64> {
     design.iter().map(of_run).collect()
 }
 
-/// Runs that the rig could make, with wheel and soil of the first fitted run: each slip at each load and rim speed.
+/// Lists the runs that the rig could make, with wheel and soil of the first fitted run: each slip at each load and rim speed.
 pub(super) fn proposed(spec: &Spec) -> Vec<RunCondition> {
     let conditions = &spec.fit_variant.conditions;
     let Some(first) = conditions.first() else {
@@ -137,12 +139,12 @@ pub(super) fn proposed(spec: &Spec) -> Vec<RunCondition> {
     proposed
 }
 
-/// The measured channels with the mean noise sd of each.
+/// Returns the measured channels with the mean noise sd of each.
 pub(super) fn channels(spec: &Spec, theta: &[f64]) -> Vec<(Channel, f64)> {
     let data = spec.likelihood.data();
-    let of = |channel: &Channel| {
-        let own = data.iter().filter(|d| d.channel == channel.index());
-        let sds: Vec<f64> = own
+    let with_sd = |channel: &Channel| {
+        let data = data.iter().filter(|d| d.channel == channel.index());
+        let sds: Vec<f64> = data
             .filter_map(|d| match d.sd {
                 statistics::ErrorSd::Known(sd) => Some(sd),
                 statistics::ErrorSd::Inferred { parameter } => theta.get(parameter).copied(),
@@ -150,10 +152,10 @@ pub(super) fn channels(spec: &Spec, theta: &[f64]) -> Vec<(Channel, f64)> {
             .collect();
         inference::diagnostics::mean(&sds).map(|sd| (*channel, sd))
     };
-    Channel::ALL.iter().filter_map(of).collect()
+    Channel::ALL.iter().filter_map(with_sd).collect()
 }
 
-/// Rounded to two digits, as set on a rig.
+/// Rounds to two digits, to which a rig is set.
 fn two_digits(x: f64) -> f64 {
     format!("{x:.1e}").parse().unwrap_or(x)
 }

@@ -1,4 +1,4 @@
-//! The result of a search as it is stored.
+//! The record of a search: its conclusion in names, as it is stored.
 
 use std::collections::BTreeMap;
 
@@ -25,7 +25,7 @@ use super::remaining_misfit::remaining_misfit;
 /// A law outside the library with more probability is in the credible set.
 const MIN_CREDIBLE: f64 = 0.05;
 
-/// The record of a conclusion.
+/// Makes the record of a conclusion.
 pub(super) fn discovery_record(models: &SearchModels, conclusion: &Conclusion) -> Discovery {
     let names = |indices: &[usize]| -> Vec<String> { indices.iter().map(|&k| models.name(k)).collect() };
     let effects = effects(models, conclusion);
@@ -36,7 +36,7 @@ pub(super) fn discovery_record(models: &SearchModels, conclusion: &Conclusion) -
     let (verdict, extension) = match conclusion.verdict {
         SearchVerdict::NothingDetectable => (Verdict::NothingDetectable, None),
         SearchVerdict::Named(k) => match models.entry(k) {
-            // it cannot be added before the experiment states what it needs
+            // The effect cannot be added before the experiment states the property that it needs.
             Some(entry) if entry.not_tried.is_some() => (Verdict::Undecided, None),
             entry => (Verdict::Named, entry.map(|entry| entry.effect.extension.clone())),
         },
@@ -93,7 +93,7 @@ pub(super) fn discovery_record(models: &SearchModels, conclusion: &Conclusion) -
         }),
         unsupported_noise: unsupported_noise(models, conclusion),
         extension,
-        // Evidences tell too little where a prior is contradicted.
+        // Evidences are unreliable where a prior is contradicted.
         drop: conclusion
             .redundant()
             .filter(|_| conclusion.implausible.is_none())
@@ -121,19 +121,19 @@ pub(super) fn discovery_record(models: &SearchModels, conclusion: &Conclusion) -
     }
 }
 
-/// The inferred noise sds that support no claim, by their names.
+/// Names the inferred noise sds that do not support a claim.
 fn unsupported_noise(models: &SearchModels, conclusion: &Conclusion) -> Vec<String> {
     let sds = conclusion.unsupported_noise.iter();
     sds.filter_map(|&k| Some(models.base.parameters.get(k)?.name.clone()))
         .collect()
 }
 
-/// The channels that scatter, by their columns.
+/// Returns the numerical noise of each channel that has any, by its column.
 fn numerical_noise(sds: &[f64]) -> BTreeMap<String, f64> {
-    let own = Channel::ALL
+    let by_column = Channel::ALL
         .iter()
         .filter_map(|channel| Some((channel.column().to_owned(), *sds.get(channel.index())?)));
-    own.filter(|(_, sd)| *sd > 0.0).collect()
+    by_column.filter(|(_, sd)| *sd > 0.0).collect()
 }
 
 fn chi_square(chi: Option<FitChiSquare>, models: &SearchModels) -> ChiSquare {
@@ -145,12 +145,12 @@ fn chi_square(chi: Option<FitChiSquare>, models: &SearchModels) -> ChiSquare {
     }
 }
 
-/// Most probable values by the names of the parameters.
+/// Returns the most probable values by the names of the parameters.
 fn parameters(entry: &CandidateEntry, values: &[f64]) -> BTreeMap<String, f64> {
     entry.names.iter().cloned().zip(values.iter().copied()).collect()
 }
 
-/// Units by the names of the parameters.
+/// Returns the units by the names of the parameters.
 fn units(entry: &CandidateEntry) -> BTreeMap<String, String> {
     entry
         .names
@@ -160,7 +160,7 @@ fn units(entry: &CandidateEntry) -> BTreeMap<String, String> {
         .collect()
 }
 
-/// Every explanation by falling probability.
+/// Lists every explanation by falling probability.
 fn effects(models: &SearchModels, conclusion: &Conclusion) -> Vec<JudgedEffect> {
     let base = models.base.parameters.len();
     let judged = |effect: &RankedEffect| {
@@ -202,7 +202,7 @@ fn effects(models: &SearchModels, conclusion: &Conclusion) -> Vec<JudgedEffect> 
     effects
 }
 
-/// Every model that was compared.
+/// Lists every model that was compared.
 fn sets(models: &SearchModels, conclusion: &Conclusion) -> Vec<JudgedSet> {
     let set = |set: &WeighedSet| JudgedSet {
         members: match set.effects.as_deref() {
@@ -228,7 +228,7 @@ fn method(method: EvidenceMethod) -> &'static str {
     }
 }
 
-/// As it stands under `[discovery.priors]`, or else in the catalogue.
+/// Returns the prior of a candidate's strength: the one under `[discovery.priors]`, otherwise that of the catalogue.
 fn strength_prior(candidate: &CandidateEffect, models: &SearchModels) -> Option<String> {
     let stated = &models.job.candidate_priors;
     if let Some(plain) = PlainParameter::find(&candidate.name) {
@@ -244,29 +244,29 @@ fn strength_prior(candidate: &CandidateEffect, models: &SearchModels) -> Option<
     Some(format!("{name} = {prior}"))
 }
 
-/// The law with its curve, and its file as an extension.
-fn outside(models: &SearchModels, found: &OutsideLaw) -> Option<(Outside, Extension)> {
-    let law = models.laws.get(found.law)?;
-    let entry = models.entry(found.candidate)?;
+/// Returns the law with its curve, and its file as an extension.
+fn outside(models: &SearchModels, outside: &OutsideLaw) -> Option<(Outside, Extension)> {
+    let law = models.laws.get(outside.law)?;
+    let entry = models.entry(outside.candidate)?;
     let mut forms = law.forms.iter();
-    let form = forms.find(|(_, own)| own.effect.name == entry.effect.name);
+    let form = forms.find(|(_, form)| form.effect.name == entry.effect.name);
     let Extension::File { text, .. } = &entry.effect.extension else {
         return None;
     };
-    let best = parameters(entry, &found.parameters);
+    let best = parameters(entry, &outside.parameters);
     let effect_file = curve::with_values(text, &best);
-    let outside = Outside {
+    let record = Outside {
         acts_on: law.dependence.acts_on.name().to_owned(),
         depends_on: law.dependence.depends_on.name().to_owned(),
         form: form.map_or("spline", |(form, _)| form.name()).to_owned(),
-        log_bayes_factor: found.log_bayes_factor,
+        log_bayes_factor: outside.log_bayes_factor,
         curve: curve::curve(text, &best, &law.dependence).unwrap_or_default(),
         effect_file: effect_file.clone(),
-        left_out_nats: found.left_out_nats,
+        left_out_nats: outside.left_out_nats,
     };
     let extension = Extension::File {
         name: free_name(&entry.effect.name, &models.job.files),
         text: effect_file,
     };
-    Some((outside, extension))
+    Some((record, extension))
 }

@@ -1,4 +1,4 @@
-//! The candidates of a search with their additions to the job.
+//! The entries of a search: each candidate of the discovery with its addition to the job.
 
 use discovery::Candidate;
 use formula::Effect;
@@ -21,7 +21,8 @@ pub(super) struct CandidateEntry {
     pub(super) names: Vec<String>,
     /// Their units, in the same order.
     pub(super) units: Vec<String>,
-    /// Where the experiment does not state what the effect needs: it is weighed with typical values, and never named.
+    /// The property that the experiment leaves unstated, if the effect needs one: the effect is then weighed with a typical value, and
+    /// never named.
     pub(super) not_tried: Option<NotTried>,
 }
 
@@ -41,8 +42,13 @@ impl LawEntry {
 }
 
 impl CandidateEntry {
-    /// The candidate that is an effect of the catalogue, with the free parameters of the model that has it; `None` where none of the
-    /// parameters that it brings is a strength.
+    /// Makes the candidate of an effect of the catalogue.
+    ///
+    /// # Arguments
+    /// - `parameters`: the free parameters of the model with the effect.
+    ///
+    /// # Returns
+    /// `None` if none of the parameters that the effect adds is a strength.
     pub(super) fn of_library(
         candidate: CandidateEffect,
         parameters: Vec<FreeParameter>,
@@ -54,10 +60,10 @@ impl CandidateEntry {
         Self::new(candidate, effect, free.collect(), false)
     }
 
-    /// The candidate that is a parameter of the model itself; `None` where the job does not hold it fixed.
+    /// Makes the candidate that frees a parameter of the model itself; `None` if the job does not hold it fixed.
     pub(super) fn plain(plain: &PlainParameter, base: &Spec) -> Option<Self> {
         let (neutral, density) = plain.held_by(base)?;
-        let unit = of_models().find(|known| known.name == plain.name)?.unit;
+        let unit = of_models().find(|parameter| parameter.name == plain.name)?.unit;
         let name = plain.name.to_owned();
         Some(Self {
             candidate: Candidate {
@@ -67,7 +73,7 @@ impl CandidateEntry {
                 neutral,
                 excludes: Vec::new(),
                 family: None,
-                has_low_fidelity: !SPATIAL.iter().any(|own| own.name == plain.name),
+                has_low_fidelity: !SPATIAL.iter().any(|spatial| spatial.name == plain.name),
             },
             names: vec![name.clone()],
             units: vec![unit.to_owned()],
@@ -79,11 +85,11 @@ impl CandidateEntry {
         })
     }
 
-    /// The candidate that is another setting of the model; `None` where the job has it, and of the other kind of model unless the job asks
-    /// for it.
+    /// Makes the candidate that turns a setting of the model; `None` if the job has this setting already, and for the other kind of model
+    /// unless the job requests it.
     ///
     /// # Errors
-    /// [`NotTried`] where the model with it is not valid or has other parameters.
+    /// [`NotTried`] if the model with the setting is not valid or has other parameters.
     pub(super) fn switch(switch: &ModelSwitch, base: &Spec, job: &Job) -> Result<Option<Self>, NotTried> {
         if switch.is_on(base) || (switch.is_kind() && !base.discovery.other_kind) {
             return Ok(None);
@@ -103,8 +109,8 @@ impl CandidateEntry {
         let with = with.map_err(|e| not_tried(e.to_string()))?;
         let names = |spec: &Spec| spec.parameters.iter().map(|p| p.name.clone()).collect::<Vec<_>>();
         if names(&with) != names(base) {
-            let others = names(&with).join(", ");
-            return Err(not_tried(format!("its free parameters are others: {others}")));
+            let names = names(&with).join(", ");
+            return Err(not_tried(format!("its free parameters are others: {names}")));
         }
         Ok(Some(Self {
             candidate: Candidate {
@@ -114,7 +120,7 @@ impl CandidateEntry {
                 neutral: 0.0,
                 excludes: Vec::new(),
                 family: None,
-                // Of another kind of model, or of a setting, the corrections of the base are not those.
+                // The corrections of the base do not hold for another setting or kind of model.
                 has_low_fidelity: false,
             },
             names: Vec::new(),
@@ -124,7 +130,7 @@ impl CandidateEntry {
         }))
     }
 
-    /// The candidate with the free parameters that an effect brings; `None` without a free strength.
+    /// Makes the candidate of an effect with the free parameters that it adds; `None` without a free strength.
     ///
     /// # Arguments
     /// - `is_curve`: every strength counts. Otherwise the first one does, and the others shape the effect.
@@ -135,8 +141,8 @@ impl CandidateEntry {
         is_curve: bool,
     ) -> Option<Self> {
         let strengths = free.iter().enumerate().filter_map(|(k, parameter)| {
-            let own = parameter.name.split('.').nth(1)?;
-            let neutral = effect.parameters.iter().find(|p| p.name == own)?.neutral?;
+            let name = parameter.name.split('.').nth(1)?;
+            let neutral = effect.parameters.iter().find(|p| p.name == name)?.neutral?;
             Some((k, neutral))
         });
         let mut strengths: Vec<(usize, f64)> = strengths.collect();

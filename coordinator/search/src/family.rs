@@ -19,19 +19,19 @@ fn acts_in_part(effect: &Effect) -> bool {
     conditions.any(|(slip, angle)| effect.is_absent_at(&variables(slip, angle)))
 }
 
-/// The name of the effect's family: the quantities that it changes. `None` of one that acts in all conditions.
+/// Returns the name of the effect's family: the quantities that it changes. `None` for an effect that acts in all conditions.
 fn family(effect: &Effect) -> Option<String> {
     let quantities: Vec<&str> = effect.hooks().map(|hook| hook.name()).collect();
     (acts_in_part(effect) && !quantities.is_empty()).then(|| quantities.join(" "))
 }
 
-/// Joins the effects of the catalogue that change the same quantities on all wheels, each in part of the conditions.
+/// Sets the families: effects of the catalogue that change the same quantities on all wheels, each in part of the conditions.
 pub(super) fn set_families(entries: &mut [CandidateEntry]) {
-    for own in entries {
-        let is_on_all = matches!(own.effect.extension, Extension::Effect(_));
-        let effect = candidate_of(&own.effect.name).map(|(effect, _)| effect);
-        let effect = effect.filter(|effect| is_on_all && effect.name == own.effect.name);
-        own.candidate.family = effect.and_then(family);
+    for entry in entries {
+        let is_on_all = matches!(entry.effect.extension, Extension::Effect(_));
+        let effect = candidate_of(&entry.effect.name).map(|(effect, _)| effect);
+        let effect = effect.filter(|effect| is_on_all && effect.name == entry.effect.name);
+        entry.candidate.family = effect.and_then(family);
     }
 }
 

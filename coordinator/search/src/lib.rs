@@ -2,13 +2,13 @@
 //!
 //! # Layout
 //! - [`candidate`]: candidate effects as additions to a job, and those of the library. `law`: laws outside the library as effect files.
-//! - [`untried`]: effects that need what the experiment does not state.
-//! - `models`: the models of a search, made when they are queried; `entry`: their candidates, `family`: those that are tried together.
-//!   `design`: levels of the design, and
-//!   runs that the rig could make.
+//! - [`untried`]: effects that need a property which the experiment does not state.
+//! - `models`: the models of a search, made when they are queried. `entry`: their candidates. `family`: candidates that are tried
+//!   together. `design`: levels of the design, and runs that the rig could make.
 //! - `search`: a search in progress, as leases take it.
-//! - `discovery_record`: its result as stored; `curves`: what its explanations predict; `narrative`: in one sentence; `remaining_misfit`: what it leaves.
-//! - `bench_measurement`: measurements without a rolling wheel that tell explanations apart.
+//! - `discovery_record`: its result as it is stored. `curves`: the predictions of its explanations. `narrative`: its verdict in one
+//!   sentence. `remaining_misfit`: the misfit that remains.
+//! - `bench_measurement`: measurements without a rolling wheel that distinguish explanations.
 
 mod bench_measurement;
 pub mod candidate;

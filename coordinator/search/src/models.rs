@@ -1,4 +1,4 @@
-//! The models of a search, made when they are queried.
+//! The models of a search: its candidates, and the variant of each query, made when it is first needed.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
@@ -32,12 +32,12 @@ use job::{
 };
 use record::{Extension, NotTried};
 
-/// Position in the series of the campaign from which a rig goes on.
+/// Position of proposed runs in the series of the campaign: its end.
 const LAST_IN_SERIES: f64 = 0.5;
 /// Starts of the base's fit.
 const STARTS: usize = 32;
 
-/// What decides the variant of a query.
+/// The parts of a query that determine its variant.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 struct VariantKey {
     model: QueriedModel,
@@ -46,7 +46,7 @@ struct VariantKey {
 }
 
 impl VariantKey {
-    fn of(query: &Query) -> Self {
+    fn new(query: &Query) -> Self {
         Self {
             model: sorted(&query.model),
             is_proposed: query.is_proposed,
@@ -63,8 +63,8 @@ pub struct SearchModels {
     assumed: Arc<Experiment>,
     pub(super) base: Spec,
     pub(super) library: Vec<CandidateEntry>,
-    /// The other kind of model, where the job asks for it and cannot have it, and effects inside the contact of a model that does not
-    /// show it.
+    /// Candidates that cannot be searched: another kind of model that the job requests and cannot have, effects that an external model
+    /// does not show, and effects that act in no condition of the fitted runs.
     not_tried: Vec<NotTried>,
     pub(super) laws: Vec<LawEntry>,
     /// The files of the laws, each read once.
@@ -75,7 +75,7 @@ pub struct SearchModels {
     pub(super) design: Vec<RunCondition>,
     /// The measured channels with their noise sds.
     channels: Vec<(Channel, f64)>,
-    /// Hash and variant of what was asked.
+    /// Hash and variant of every query so far.
     variants: BTreeMap<VariantKey, (String, ModelVariant)>,
     /// Key of each variant by its hash.
     keys: BTreeMap<String, VariantKey>,
@@ -83,8 +83,10 @@ pub struct SearchModels {
 }
 
 impl SearchModels {
+    /// Reads job and experiment, and lists the candidates.
+    ///
     /// # Arguments
-    /// - `job`: of the base model, with its effects. `max_effects`: most effects in a combination, as far as a job has room for them.
+    /// - `job`: of the base model, with its effects. `max_effects`: maximum number of effects in a combination, if a job has room for them.
     ///
     /// # Errors
     /// [`FileError`] of job or experiment.
@@ -100,7 +102,7 @@ impl SearchModels {
         let mut library = library_entries(&job, &base, effects, untried, &mut not_tried);
         exclude_on_nodes(&mut library);
         set_families(&mut library);
-        // A job has at most so many effects; one place is for a law beyond the best combination.
+        // The number of effects of a job is limited; one place is kept for a law beyond the best combination.
         let room = EffectSet::MAX_EFFECTS.saturating_sub(base.fit_variant.effects.len());
         let laws = match room {
             0 | 1 => Vec::new(),
@@ -124,8 +126,8 @@ impl SearchModels {
         })
     }
 
-    /// What is not tried: effects that need what the experiment does not state, those that need what a model that is not ours does not
-    /// show, and another kind that the job cannot have.
+    /// Returns everything that is not tried: effects that need a property which the experiment does not state, and candidates that
+    /// cannot be searched.
     pub fn not_tried(&self) -> impl Iterator<Item = &NotTried> {
         let effects = self.library.iter().filter_map(|entry| entry.not_tried.as_ref());
         effects.chain(&self.not_tried)
@@ -163,9 +165,9 @@ impl SearchModels {
                 seed: base.algorithm.seed(),
                 smoothness: match base.model.kind {
                     ModelKind::QuasiStatic | ModelKind::WongReece | ModelKind::Rft => Smoothness::Smooth,
-                    // Fine as its grid may be, its evaluations are dear.
+                    // Its evaluations are expensive, however fine its grid is.
                     ModelKind::Scm => Smoothness::Rough,
-                    // Whether another model has a grid, nobody has said.
+                    // The search measures whether an external model has numerical noise.
                     ModelKind::Command | ModelKind::Umbridge => Smoothness::Unknown,
                 },
                 has_numerical_noise: base.model.kind != ModelKind::QuasiStatic,
@@ -191,7 +193,7 @@ impl SearchModels {
     /// # Errors
     /// [`FileError`] where the effects are incompatible.
     pub fn make<'q>(&mut self, queries: impl Iterator<Item = &'q Query>) -> Result<(), FileError> {
-        let keys: BTreeSet<VariantKey> = queries.map(VariantKey::of).collect();
+        let keys: BTreeSet<VariantKey> = queries.map(VariantKey::new).collect();
         let unknown = keys.into_iter().filter(|key| !self.variants.contains_key(key));
         let unknown: Vec<VariantKey> = unknown.collect();
         let one = |key: &VariantKey| {
@@ -206,7 +208,7 @@ impl SearchModels {
             Ok((variant.hash(), variant))
         };
         let made: Vec<Result<(String, ModelVariant), FileError>> = unknown.par_iter().map(one).collect();
-        // The first error in the order of the models, whichever came first in time.
+        // The first error in the order of the models is returned, whatever the order of the threads.
         let made: Vec<(String, ModelVariant)> = made.into_iter().collect::<Result<_, _>>()?;
         let keys = made
             .iter()
@@ -223,12 +225,12 @@ impl SearchModels {
     /// [`FileError`] where the effects are incompatible.
     pub fn variant(&mut self, query: &Query) -> Result<&(String, ModelVariant), FileError> {
         self.make(std::iter::once(query))?;
-        Ok(&self.variants[&VariantKey::of(query)])
+        Ok(&self.variants[&VariantKey::new(query)])
     }
 
     /// The variant of a query that was made before, with its hash.
     pub fn made(&self, query: &Query) -> Option<&(String, ModelVariant)> {
-        self.variants.get(&VariantKey::of(query))
+        self.variants.get(&VariantKey::new(query))
     }
 
     /// The variant of a hash that was made before.
@@ -237,10 +239,10 @@ impl SearchModels {
         self.variants.get(key).map(|(_, variant)| variant)
     }
 
-    /// The same model on the proposed runs.
+    /// Returns the same model on the proposed runs.
     fn of_proposed_runs(&self, mut variant: ModelVariant) -> ModelVariant {
-        // The soil's density is there only if an effect of this variant needs it, and so is the place in the series: proposed runs
-        // follow its end.
+        // Soil density and position in the series are set only if an effect of this variant needs them. Proposed runs follow the end of
+        // the series.
         let density_kg_m3 = variant.conditions.first().and_then(|c| c.density_kg_m3);
         let drifts = variant.conditions.iter().any(|c| c.order.is_some());
         variant.conditions.clone_from(&self.design);
@@ -282,14 +284,14 @@ impl SearchModels {
         let names: Vec<&str> = match &query.model {
             QueriedModel::With(effects) => {
                 let base = self.base.parameters.iter().map(|p| p.name.as_str());
-                let own = effects.iter().filter_map(|&k| self.entry(k));
-                base.chain(own.flat_map(|entry| entry.names.iter().map(String::as_str)))
+                let entries = effects.iter().filter_map(|&k| self.entry(k));
+                base.chain(entries.flat_map(|entry| entry.names.iter().map(String::as_str)))
                     .collect()
             }
             QueriedModel::Without(k) => self.reductions[*k].1.iter().map(String::as_str).collect(),
         };
         let value = |name: &String| {
-            let place = names.iter().position(|own| own == name);
+            let place = names.iter().position(|known| known == name);
             place.map_or(f64::NAN, |i| query.theta[i])
         };
         variant.parameters.iter().map(value).collect()
@@ -308,8 +310,8 @@ impl SearchModels {
     }
 }
 
-/// The candidates of the library, those that the model itself has, and those that are weighed with typical values. Settings that were
-/// asked for and that the model cannot have join what is not tried.
+/// Lists the candidates: effects of the library, parameters and settings of the model itself, and effects that are weighed with typical
+/// values. Another kind of model that the job requests and cannot have is added to `not_tried`.
 fn library_entries(
     job: &Job,
     base: &Spec,
@@ -326,7 +328,7 @@ fn library_entries(
     for switch in &MODEL_SWITCHES {
         match CandidateEntry::switch(switch, base, job) {
             Ok(entry) => entries.extend(entry),
-            // A setting that the model cannot have is none of the job's alternatives; another kind was asked for.
+            // The job does not request settings, so one that the model cannot have is left out without a record.
             Err(why) => not_tried.extend(switch.is_kind().then_some(why)),
         }
     }
@@ -341,7 +343,7 @@ fn library_entries(
     entries
 }
 
-/// The files of laws.
+/// Parses the files of laws.
 fn law_files(laws: &[LawEntry]) -> NamedFiles {
     let mut files = NamedFiles::default();
     for entry in laws.iter().flat_map(LawEntry::entries) {
@@ -352,7 +354,7 @@ fn law_files(laws: &[LawEntry]) -> NamedFiles {
     files
 }
 
-/// The laws outside the library that the experiment shows, as candidates.
+/// Lists the laws outside the library that the experiment can show, as candidates.
 fn laws(job: &Job, base: &Spec) -> Result<Vec<LawEntry>, FileError> {
     let fail = |message: String| FileError::whole(JOB, message);
     let entry = |law: CandidateEffect| -> Result<CandidateEntry, FileError> {
@@ -382,7 +384,7 @@ fn laws(job: &Job, base: &Spec) -> Result<Vec<LawEntry>, FileError> {
     Ok(laws)
 }
 
-/// The base's effects without which the job is valid, each with the names of the parameters that remain.
+/// Lists the base's effects without which the job is valid, each with the names of the parameters that remain.
 fn reductions(job: &Job, base: &Spec) -> Vec<(String, Vec<String>)> {
     let mut reductions = Vec::new();
     for effect in &base.fit_variant.effects {
@@ -395,26 +397,27 @@ fn reductions(job: &Job, base: &Spec) -> Vec<(String, Vec<String>)> {
     reductions
 }
 
-/// An effect with the displacement on the nodes puts that of all others there, too: it makes no combination with them.
+/// Excludes combinations of an effect whose shear displacement is kept on the nodes with other effects of the displacement, which it
+/// would move to the nodes, too.
 fn exclude_on_nodes(entries: &mut [CandidateEntry]) {
-    let uses_displacement = |own: &&CandidateEntry| {
-        let effect = candidate_of(&own.effect.name);
+    let uses_displacement = |entry: &&CandidateEntry| {
+        let effect = candidate_of(&entry.effect.name);
         effect.is_some_and(|(effect, _)| effect.uses().contains(Variable::J))
     };
     let names = entries
         .iter()
         .filter(uses_displacement)
-        .map(|own| own.effect.name.clone());
+        .map(|entry| entry.effect.name.clone());
     let names: Vec<String> = names.collect();
-    for own in entries {
-        if EffectOnNodes::find(&own.effect.name).is_some() {
-            let others = names.iter().filter(|other| **other != own.effect.name);
-            own.candidate.excludes = others.cloned().collect();
+    for entry in entries {
+        if EffectOnNodes::find(&entry.effect.name).is_some() {
+            let excluded = names.iter().filter(|name| **name != entry.effect.name);
+            entry.candidate.excludes = excluded.cloned().collect();
         }
     }
 }
 
-/// The effects that change nothing at the conditions of any fitted run.
+/// Lists the effects that change nothing at the conditions of any fitted run.
 fn absent(excluded: &[(String, ExclusionReason)]) -> impl Iterator<Item = NotTried> {
     let everywhere = excluded.iter().filter(|(name, reason)| {
         let is_on_one_wheel = name.contains('.');
@@ -427,18 +430,18 @@ fn absent(excluded: &[(String, ExclusionReason)]) -> impl Iterator<Item = NotTri
     })
 }
 
-/// The conditions in which an effect of the catalogue changes something, the simplest that do.
+/// Describes the simplest conditions in which an effect of the catalogue changes something.
 fn where_it_acts(name: &str) -> String {
     const SLIP: f64 = 0.3;
     const ANGLE_RAD: f64 = 0.26;
     let acts = |slip: f64, angle: f64| find(name).is_some_and(|e| !e.is_absent_at(&variables(slip, angle)));
     let straight = [("in drive", SLIP), ("in skid", -SLIP)];
-    let mut found: Vec<String> = straight
+    let mut conditions: Vec<String> = straight
         .into_iter()
         .filter(|(_, slip)| acts(*slip, 0.0))
         .map(|(words, _)| words.to_owned())
         .collect();
-    // An angle alone matters where it shows what straight runs of that slip do not.
+    // A slip angle matters if straight runs of the same slip do not show the effect.
     let at_angle: Vec<&str> = straight
         .into_iter()
         .filter(|(_, slip)| acts(*slip, ANGLE_RAD) && !acts(*slip, 0.0))
@@ -446,13 +449,13 @@ fn where_it_acts(name: &str) -> String {
         .collect();
     match at_angle.as_slice() {
         [] => {}
-        [one] if found.is_empty() => found.push(format!("at a slip angle {one}")),
-        _ => found.push("at a slip angle".to_owned()),
+        [one] if conditions.is_empty() => conditions.push(format!("at a slip angle {one}")),
+        _ => conditions.push("at a slip angle".to_owned()),
     }
-    found.join(" or ")
+    conditions.join(" or ")
 }
 
-/// The effects of the catalogue that cannot act around a model that is not ours.
+/// Lists the effects of the catalogue that cannot act on an external model.
 fn out_of_reach(model: &ExternalModel) -> impl Iterator<Item = NotTried> {
     let record = |effect: &Effect| {
         Some(NotTried {
@@ -464,7 +467,7 @@ fn out_of_reach(model: &ExternalModel) -> impl Iterator<Item = NotTried> {
     catalogue().iter().filter_map(record)
 }
 
-/// The model with its effects in the order of the candidates.
+/// Returns the model with its effects in the order of the candidates.
 fn sorted(model: &QueriedModel) -> QueriedModel {
     match model {
         QueriedModel::With(effects) => {

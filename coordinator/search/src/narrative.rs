@@ -1,4 +1,4 @@
-//! The result of a search in one sentence.
+//! The narrative of a search: its verdict in one sentence for a test engineer.
 
 use discovery::{Conclusion, DETECTED, SearchVerdict, WeighedSet};
 use job::{EffectOnNodes, ModelSwitch, PlainParameter};
@@ -13,10 +13,10 @@ use super::remaining_misfit::remaining_misfit;
 const MIN_LISTED: f64 = 0.005;
 /// An effect with a smaller log Bayes factor is not worth mentioning \[nats\].
 const MIN_MENTIONED: f64 = 0.05;
-/// Most names in a sentence.
+/// Maximum number of names in a sentence.
 const NAMES: usize = 6;
 
-/// The verdict in a sentence for a test engineer, and what it leaves open.
+/// Writes the verdict, and what remains unexplained, as a sentence.
 pub(super) fn sentence(
     models: &SearchModels,
     conclusion: &Conclusion,
@@ -53,10 +53,10 @@ pub(super) fn sentence(
     text
 }
 
-/// The parameter that contradicts its prior in the best explanation, and what to do.
+/// Names the parameter that contradicts its prior in the best explanation, with advice.
 fn implausible(models: &SearchModels, conclusion: &Conclusion) -> Option<String> {
     let (k, sds) = conclusion.implausible?;
-    let best = conclusion.best.effects.iter().map(|&own| models.name(own));
+    let best = conclusion.best.effects.iter().map(|&k| models.name(k));
     let best: Vec<String> = best.collect();
     let side = if sds < 0.0 { "below" } else { "above" };
     Some(format!(
@@ -67,7 +67,7 @@ fn implausible(models: &SearchModels, conclusion: &Conclusion) -> Option<String>
     ))
 }
 
-/// The inferred noise that supports no claim, and what to do.
+/// Names the inferred noise that does not support a claim, with advice.
 fn unsupported_noise(models: &SearchModels, conclusion: &Conclusion) -> Option<String> {
     let data = models.base.likelihood.data();
     let in_words = |&parameter: &usize| {
@@ -123,12 +123,12 @@ fn verdict(
         }
         (SearchVerdict::Named(k), _) => {
             let name = models.name(k);
-            let own = effects.iter().find(|e| e.name == name);
+            let judged = effects.iter().find(|e| e.name == name);
             if let Some(untried) = models.entry(k).and_then(|entry| entry.not_tried.as_ref()) {
                 return format!(
                     "{name} would explain the data best ({}, {:.1} nats over {kind}), but {}; state {} and search again",
-                    probability(own.map_or(0.0, |e| e.probability)),
-                    own.map_or(0.0, |e| e.log_bayes_factor),
+                    probability(judged.map_or(0.0, |e| e.probability)),
+                    judged.map_or(0.0, |e| e.log_bayes_factor),
                     untried.why,
                     untried.needs
                 );
@@ -148,21 +148,21 @@ fn verdict(
             };
             format!(
                 "{claim} ({}, {:.1} nats over {kind}{})",
-                probability(own.map_or(0.0, |e| e.probability)),
-                own.map_or(0.0, |e| e.log_bayes_factor),
-                beside(&conclusion.sets, k, |own| models.name(own)),
+                probability(judged.map_or(0.0, |e| e.probability)),
+                judged.map_or(0.0, |e| e.log_bayes_factor),
+                beside(&conclusion.sets, k, |k| models.name(k)),
             )
         }
         (SearchVerdict::Class(class), _) => {
-            let own = || library().filter(|e| e.class as usize == class && e.probability > MIN_LISTED);
+            let members = || library().filter(|e| e.class as usize == class && e.probability > MIN_LISTED);
             let untried = models.not_tried();
-            let untried = untried.filter(|untried| own().any(|e| e.name == untried.name));
+            let untried = untried.filter(|untried| members().any(|e| e.name == untried.name));
             let needs = untried.map(|untried| format!("; {} needs {}", untried.name, untried.needs));
-            let members: Vec<String> = own().map(weighed).collect();
+            let weighed_members: Vec<String> = members().map(weighed).collect();
             format!(
                 "one of {} is missing (joint {}); these data cannot distinguish them{}",
-                list(members.iter().map(String::as_str)),
-                probability(own().map(|e| e.probability).sum()),
+                list(weighed_members.iter().map(String::as_str)),
+                probability(members().map(|e| e.probability).sum()),
                 needs.collect::<String>()
             )
         }
@@ -186,7 +186,7 @@ fn verdict(
     }
 }
 
-/// What is said where the data decide nothing.
+/// Writes the sentence for data that do not decide between the explanations.
 fn undecided(effects: &[JudgedEffect]) -> String {
     let mut credible = effects.iter().filter(|e| e.in_credible_set);
     let question = match credible.any(|e| e.name == NONE) {
@@ -216,23 +216,23 @@ fn weighed(effect: &JudgedEffect) -> String {
     }
 }
 
-/// What the most probable set with an effect has beside it.
+/// Names the other effects of the most probable set with an effect.
 ///
 /// # Arguments
 /// - `sets`: by falling probability.
 fn beside(sets: &[WeighedSet], effect: usize, name: impl Fn(usize) -> String) -> String {
     let mut with = sets.iter().filter_map(|set| set.effects.as_ref());
-    match with.find(|own| own.contains(&effect)) {
+    match with.find(|effects| effects.contains(&effect)) {
         Some(effects) if effects.len() > 1 => {
-            let others = effects.iter().filter(|own| **own != effect);
-            let others: Vec<String> = others.map(|&own| name(own)).collect();
-            format!("; most probably with {}", list(others.iter().map(String::as_str)))
+            let rest = effects.iter().filter(|k| **k != effect);
+            let names: Vec<String> = rest.map(|&k| name(k)).collect();
+            format!("; most probably with {}", list(names.iter().map(String::as_str)))
         }
         _ => String::new(),
     }
 }
 
-/// A probability in words; never a certainty.
+/// Writes a probability, never as a certainty.
 fn probability(value: f64) -> String {
     match value {
         value if value > 0.999 => "probability > 0.999".into(),

@@ -1,4 +1,4 @@
-//! What the best explanation of a search leaves unexplained: which channel, how much, and along which condition.
+//! The misfit that the best explanation of a search leaves: its size by channel, and the condition with which it varies.
 
 use inference::diagnostics::chi_square_tail;
 use job::PLATE;
@@ -10,13 +10,14 @@ use super::models::SearchModels;
 
 /// p-value below which a channel is left unexplained.
 const UNLIKELY: f64 = 0.01;
-/// Standard normal score beyond which a correlation is not chance: two-sided p of 0.01 over five conditions.
+/// Standard normal score beyond which a correlation is significant: two-sided p of 0.01 over five conditions.
 const SCORE: f64 = 3.09;
 
 /// A condition of a run by its name in results.
 type Condition = (&'static str, fn(&TestRun) -> Option<f64>);
 
-/// Slip before the sled's speed, from which the rig may set it.
+/// The conditions of a run. Slip comes before sled speed: a rig may set the slip by the sled speed, and of equal correlations the first
+/// is reported.
 const CONDITIONS: [Condition; 5] = [
     ("slip", |run| Some(run.slip)),
     ("wheel_load", |run| Some(run.wheel_load_n)),
@@ -27,7 +28,7 @@ const CONDITIONS: [Condition; 5] = [
     ("order", |run| run.order.map(f64::from)),
 ];
 
-/// The channels that are left unexplained, the worst first.
+/// Lists the channels that are left unexplained, the worst first.
 ///
 /// # Arguments
 /// - `residuals`: measured less predicted value of each datum, in declared noise sds; empty where nothing is left.
@@ -35,18 +36,18 @@ pub(super) fn remaining_misfit(models: &SearchModels, residuals: &[f64]) -> Vec<
     let spec = &models.base;
     let of_channel = |channel: &Channel| {
         let data = spec.likelihood.data().iter().zip(residuals);
-        let own = data.filter(|(datum, _)| datum.channel < PLATE && datum.channel == channel.index());
-        let (runs, own): (Vec<&TestRun>, Vec<f64>) = own
+        let data = data.filter(|(datum, _)| datum.channel < PLATE && datum.channel == channel.index());
+        let (runs, residuals): (Vec<&TestRun>, Vec<f64>) = data
             .map(|(datum, residual)| (&spec.experiment.runs[spec.fit_runs[datum.run]], *residual))
             .unzip();
-        let squares: f64 = own.iter().map(|r| r * r).sum();
-        let is_unlikely = chi_square_tail(squares, own.len() as f64).is_some_and(|p| p < UNLIKELY);
+        let squares: f64 = residuals.iter().map(|r| r * r).sum();
+        let is_unlikely = chi_square_tail(squares, residuals.len() as f64).is_some_and(|p| p < UNLIKELY);
         is_unlikely.then(|| {
-            let along = along(&runs, &own);
+            let along = along(&runs, &residuals);
             RemainingMisfit {
                 channel: *channel,
-                noise_sds: (squares / own.len() as f64).sqrt(),
-                values: own.len() as u64,
+                noise_sds: (squares / residuals.len() as f64).sqrt(),
+                values: residuals.len() as u64,
                 along: along.map(|(name, _)| name.to_owned()),
                 correlation: along.map(|(_, correlation)| correlation),
             }
@@ -57,22 +58,27 @@ pub(super) fn remaining_misfit(models: &SearchModels, residuals: &[f64]) -> Vec<
     left
 }
 
-/// The condition with which residuals are most correlated, if by Fisher's z the correlation is not chance.
+/// Returns the condition with which residuals correlate most strongly, if the correlation is significant by Fisher's z.
 fn along(runs: &[&TestRun], residuals: &[f64]) -> Option<(&'static str, f64)> {
-    let found = CONDITIONS.iter().filter_map(|(name, of)| {
-        let values: Option<Vec<f64>> = runs.iter().map(|run| of(run)).collect();
+    let correlations = CONDITIONS.iter().filter_map(|(name, value)| {
+        let values: Option<Vec<f64>> = runs.iter().map(|run| value(run)).collect();
         Some((*name, correlation(&values?, residuals)?))
     });
-    let best = found.reduce(|a, b| if b.1.abs() > a.1.abs() { b } else { a })?;
+    let best = correlations.reduce(|a, b| if b.1.abs() > a.1.abs() { b } else { a })?;
     let score = libm::atanh(best.1.abs().min(1.0 - 1e-12)) * (runs.len() as f64 - 3.0).max(0.0).sqrt();
     (score > SCORE).then_some(best)
 }
 
-/// Pearson's correlation; `None` where either does not vary.
+/// Computes Pearson's correlation; `None` if either does not vary.
 fn correlation(x: &[f64], y: &[f64]) -> Option<f64> {
     let mean = |v: &[f64]| v.iter().sum::<f64>() / v.len() as f64;
-    let (of_x, of_y) = (mean(x), mean(y));
-    let sum = |f: fn(f64, f64) -> f64| x.iter().zip(y).map(|(a, b)| f(a - of_x, b - of_y)).sum::<f64>();
+    let (mean_x, mean_y) = (mean(x), mean(y));
+    let sum = |f: fn(f64, f64) -> f64| {
+        x.iter()
+            .zip(y)
+            .map(|(a, b)| f(a - mean_x, b - mean_y))
+            .sum::<f64>()
+    };
     let (xx, yy) = (sum(|a, _| a * a), sum(|_, b| b * b));
     (xx > 0.0 && yy > 0.0).then(|| sum(|a, b| a * b) / (xx * yy).sqrt())
 }

@@ -19,7 +19,7 @@ pub struct RunningDiscovery {
     leases: Vec<(String, Vec<f64>)>,
 }
 
-/// Why a search cannot begin or continue.
+/// The error with which a search cannot begin or continue.
 #[derive(Debug, thiserror::Error)]
 pub enum DiscoveryError {
     /// A model cannot be made.
@@ -34,7 +34,7 @@ pub enum DiscoveryError {
 }
 
 impl RunningDiscovery {
-    /// A search whose first round is pending.
+    /// Begins a search; its first round is pending.
     ///
     /// # Errors
     /// [`DiscoveryError`].
@@ -48,6 +48,7 @@ impl RunningDiscovery {
         Ok(running)
     }
 
+    /// Makes the variants of the round, and its leases.
     fn prepare(&mut self) -> Result<(), FileError> {
         let queries = || (0..self.search.pending().len()).filter_map(|index| self.search.query(index));
         self.models.make(queries())?;

@@ -1,4 +1,4 @@
-//! Effects that the experiment leaves no way to try as it is: weighed with typical values, never named.
+//! Untried effects: they need a property that the experiment does not state, so they are weighed with a typical value and never named.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -18,16 +18,16 @@ pub struct UntriedEffect {
     pub(super) effect: CandidateEffect,
     /// The free parameters of the model that has it, with typical values for what is not stated.
     pub(super) parameters: Vec<FreeParameter>,
-    /// What is not stated.
+    /// The properties that are not stated.
     unstated: Vec<UnstatedProperty>,
 }
 
 impl UntriedEffect {
-    /// Its record: what is not stated, and the lines that would state it.
+    /// Makes its record: the unstated properties, and the lines that would state them.
     pub fn record(&self) -> NotTried {
-        let join = |of: fn(&UnstatedProperty) -> &str, with: &str| {
-            let parts: Vec<&str> = self.unstated.iter().map(of).collect();
-            parts.join(with)
+        let join = |part: fn(&UnstatedProperty) -> &str, separator: &str| {
+            let parts: Vec<&str> = self.unstated.iter().map(part).collect();
+            parts.join(separator)
         };
         NotTried {
             name: self.effect.name.clone(),
@@ -37,11 +37,11 @@ impl UntriedEffect {
     }
 }
 
-/// The excluded effects that the model could have if the experiment stated more, and the experiment in which typical values stand for
-/// that.
+/// Lists the excluded effects that the model could have if the experiment stated more properties, and returns the experiment with typical
+/// values of these.
 ///
 /// # Arguments
-/// - `files`: the experiment as texts, which say what it states.
+/// - `files`: the texts of the experiment, which tell a stated value from a default.
 /// - `is_smooth`: whether the model rolls smooth rims, whatever grousers are declared.
 /// - `excluded`: names as [`library`] gives them.
 ///
@@ -72,15 +72,15 @@ pub fn untried(
             unstated,
         })
     };
-    // What no fitted run shows, no further line of the experiment would show.
-    let stated = excluded
+    // No statement about the experiment makes an effect visible that acts in no fitted run.
+    let possible = excluded
         .iter()
         .filter(|(_, reason)| !matches!(reason, ExclusionReason::AbsentEverywhere));
-    let untried = stated.filter_map(|(name, _)| effect(name)).collect();
+    let untried = possible.filter_map(|(name, _)| effect(name)).collect();
     Ok((untried, with_values))
 }
 
-/// What further lines of the experiment would add to the candidates of a search, a sentence for each.
+/// Describes which candidates of a search further lines of the experiment would add, a sentence for each line.
 ///
 /// # Errors
 /// [`FileError`] of job and experiment.
@@ -103,10 +103,10 @@ pub fn additions(job: &FileSet, files: &FileSet, is_smooth: bool) -> Result<Vec<
     Ok(sentences.collect())
 }
 
-/// The properties of the site that an effect uses.
+/// Lists the properties of the site that an effect uses.
 fn needed(effect: &Effect) -> Vec<SiteProperty> {
     let uses = effect.uses();
-    let of = [
+    let variables = [
         (SiteProperty::Density, [Variable::Density].as_slice()),
         (
             SiteProperty::Grousers,
@@ -114,7 +114,7 @@ fn needed(effect: &Effect) -> Vec<SiteProperty> {
         ),
         (SiteProperty::BinLength, &[Variable::BinLength]),
     ];
-    let used = of
+    let used = variables
         .into_iter()
         .filter(|(_, variables)| variables.iter().any(|v| uses.contains(*v)));
     used.map(|(property, _)| property).collect()

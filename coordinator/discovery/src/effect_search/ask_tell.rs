@@ -5,7 +5,7 @@ use crate::effect_search::base;
 use crate::effect_search::depth::Depth;
 use crate::effect_search::ranking::EffectRanking;
 use crate::effect_search::state::{EffectSearch, FitPhase, Phase};
-use crate::laplace::batch::{Asked, FitBatch};
+use crate::laplace::batch::{FitBatch, PositionRequest};
 use crate::laplace::coordinate::NormalFrame;
 use crate::laplace::fit::FittedModel;
 use crate::settings::{SearchSettings, Starts};
@@ -51,7 +51,7 @@ impl EffectSearch {
         let mut search = Self::unasked(frame, likelihood, candidates, settings.seed);
         search.measures_noise = settings.has_numerical_noise;
         search.depth = Depth::for_smoothness(settings.smoothness);
-        search.ask(Asked::all_for_model(None, positions).collect());
+        search.ask(PositionRequest::all_for_model(None, positions).collect());
         Ok(search)
     }
 
@@ -78,16 +78,16 @@ impl EffectSearch {
         seed: u64,
     ) -> Self {
         let mut search = Self::unasked(frame, likelihood, &[], seed);
-        search.ask(Asked::all_for_model(None, starts).collect());
+        search.ask(PositionRequest::all_for_model(None, starts).collect());
         search
     }
 
     /// The requests of this round; the position of one is its index.
     pub fn pending(&self) -> impl Iterator<Item = EffectRequest> {
-        let pairs = self.asked.iter().zip(self.round.pending());
-        pairs.map(|(asked, proposal)| EffectRequest {
-            candidate: asked.candidate,
-            is_low_fidelity: asked.is_low_fidelity,
+        let pairs = self.requests.iter().zip(self.round.pending());
+        pairs.map(|(request, proposal)| EffectRequest {
+            candidate: request.candidate,
+            is_low_fidelity: request.is_low_fidelity,
             theta: proposal.theta.clone(),
         })
     }
@@ -144,9 +144,9 @@ impl EffectSearch {
 
     /// Asks for the next evaluations of a batch of fits; once they are complete, begins what follows them.
     pub(super) fn fit(&mut self, phase: FitPhase, mut batch: FitBatch) {
-        let asked = batch.ask(&self.likelihood);
-        if !asked.is_empty() {
-            self.ask(asked);
+        let requests = batch.ask(&self.likelihood);
+        if !requests.is_empty() {
+            self.ask(requests);
             self.phase = Phase::Fits(phase, batch);
             return;
         }

@@ -3,7 +3,7 @@
 use crate::effect_search::depth::BASE_PLAN;
 use crate::effect_search::numerical_noise;
 use crate::effect_search::state::{EffectSearch, FitPhase, Phase};
-use crate::laplace::batch::{Asked, FitBatch};
+use crate::laplace::batch::{FitBatch, PositionRequest};
 use crate::laplace::coordinate::NormalFrame;
 use crate::laplace::fit::{FitStep, FittedModel, LaplaceFit};
 use crate::laplace::point::FitPoint;
@@ -63,9 +63,9 @@ fn fits(
 impl EffectSearch {
     /// Begins fits of the base at the most probable of its starts.
     pub(super) fn take_base_starts(&mut self, answers: Vec<Option<Vec<f64>>>) {
-        let positions = std::mem::take(&mut self.asked)
+        let positions = std::mem::take(&mut self.requests)
             .into_iter()
-            .map(|asked| asked.position);
+            .map(|request| request.position);
         let draws = answers.len();
         self.evaluations.base += draws;
         let evaluated = positions.zip(answers).collect();
@@ -103,8 +103,8 @@ impl EffectSearch {
     /// Evaluates the base along a line through its best fit.
     fn measure_noise(&mut self, batch: FitBatch, spacing: f64) {
         let Some(best) = batch.best() else { return };
-        let asked = numerical_noise::positions(&best.point.position, spacing);
-        self.ask(Asked::all_for_model(None, asked).collect());
+        let positions = numerical_noise::positions(&best.point.position, spacing);
+        self.ask(PositionRequest::all_for_model(None, positions).collect());
         self.phase = Phase::NumericalNoise(batch, spacing);
     }
 

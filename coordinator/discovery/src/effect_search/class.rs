@@ -2,18 +2,18 @@
 
 use nalgebra::DMatrix;
 
-/// Least `|cos|` between projected changes of one class.
+/// Smallest `|cos|` between projected changes of one class.
 const ALIKE: f64 = 0.98;
 /// Log Bayes factors of fits to a model with numerical noise differ by this amount \[nats\].
 const NOISE_OF_FITS: f64 = 3.0;
 
-/// How far the log Bayes factor of a class member may lie below that of another with `nats`, although both fit alike \[nats\]: the
+/// Returns how far the log Bayes factor of a class member may lie below that of another with `nats`, although both fit alike \[nats\]: the
 /// cost of the angle between their changes, at least the difference that fits have anyway.
 pub(crate) fn log_bayes_factor_deficit(nats: f64) -> f64 {
     (nats * (1.0 - ALIKE * ALIKE)).max(NOISE_OF_FITS)
 }
 
-/// Classes by complete linkage: each candidate joins the first class with `|cos| > 0.98` to every member.
+/// Forms classes by complete linkage: each candidate joins the first class with `|cos| > 0.98` to every member.
 ///
 /// # Arguments
 /// - `products`: inner products of the projected changes, `[n_candidates, n_candidates]`.

@@ -6,7 +6,7 @@ use crate::effect_search::base;
 use crate::effect_search::depth::Confirmation;
 use crate::effect_search::ranking::EvidenceMethod;
 use crate::effect_search::state::{EffectSearch, FitPhase, Phase};
-use crate::laplace::batch::{Asked, FitBatch};
+use crate::laplace::batch::{FitBatch, PositionRequest};
 use crate::laplace::coordinate::NormalFrame;
 use crate::laplace::fit::LaplaceFit;
 use crate::laplace::point::FitPoint;
@@ -64,35 +64,35 @@ impl EffectSearch {
         let Some(base) = &self.base else { return };
         // A base that contradicts the data may lie at an end of its prior, and is then a poor start.
         let is_wrong = self.is_wrong();
-        let mut asked = Vec::new();
+        let mut requests = Vec::new();
         for &k in &candidates {
             // With numerical noise each fit may stop at another local maximum.
             if !self.numerical_noise_sds.is_empty() {
                 let in_place = self.in_place_of_best(k);
-                asked.extend(in_place.map(|position| Asked::for_model(Some(k), position)));
+                requests.extend(in_place.map(|position| PositionRequest::for_model(Some(k), position)));
             }
             if self.candidates[k].had_confirmation {
                 continue;
             }
             let frame = &self.candidates[k].frame;
-            asked.extend(Asked::all_for_model(Some(k), starts(frame, &base.fit)));
+            requests.extend(PositionRequest::all_for_model(Some(k), starts(frame, &base.fit)));
             if is_wrong {
                 let anywhere = base::starts(frame, ANYWHERE);
-                asked.extend(Asked::all_for_model(Some(k), anywhere));
+                requests.extend(PositionRequest::all_for_model(Some(k), anywhere));
             }
             // The base may also improve from the extension's mode: a Bayes factor compares their best fits.
             if let Some(fit) = self.fit_of(k) {
                 let position = fit.point.position[..self.base_frame.dimension()].to_vec();
-                asked.push(Asked::for_model(None, position));
+                requests.push(PositionRequest::for_model(None, position));
             }
         }
-        if asked.is_empty() {
+        if requests.is_empty() {
             return self.finish();
         }
         for &k in &candidates {
             self.candidates[k].had_confirmation = true;
         }
-        self.ask(asked);
+        self.ask(requests);
         self.phase = Phase::ConfirmationStarts(candidates);
     }
 
@@ -107,10 +107,10 @@ impl EffectSearch {
         };
         self.evaluations.confirmation += answers.len();
         let mut points: BTreeMap<Option<usize>, Vec<FitPoint>> = BTreeMap::new();
-        for (asked, values) in std::mem::take(&mut self.asked).into_iter().zip(answers) {
-            let frame = self.frame(asked.candidate);
-            let point = values.and_then(|v| FitPoint::new(frame, &self.likelihood, asked.position, v));
-            points.entry(asked.candidate).or_default().extend(point);
+        for (request, values) in std::mem::take(&mut self.requests).into_iter().zip(answers) {
+            let frame = self.frame(request.candidate);
+            let point = values.and_then(|v| FitPoint::new(frame, &self.likelihood, request.position, v));
+            points.entry(request.candidate).or_default().extend(point);
         }
         let mut fits = Vec::new();
         for (candidate, mut points) in points {

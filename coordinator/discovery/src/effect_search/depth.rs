@@ -1,9 +1,9 @@
-//! How much a search spends: which candidates each phase fits, and by which plans.
+//! The depth of a search: which candidates each phase fits, and by which plans of steps.
 
 use crate::laplace::fit::{FitStep, LaplaceFit};
 use crate::settings::Smoothness;
 
-/// How much a search spends, phase by phase.
+/// The depth of a search, phase by phase.
 #[derive(Debug)]
 pub(crate) struct Depth {
     pub(crate) base: BaseDepth,
@@ -36,8 +36,8 @@ pub(crate) struct ScreenDepth {
 pub(crate) struct ExtensionDepth {
     /// How many candidates, the best of the screen, are fitted in any case.
     pub(crate) max_count: usize,
-    /// A further candidate is fitted if the screen promises more than this share of the best fit's log Bayes factor: the screen is
-    /// linear and may promise too little, but not four times too little. `None`: no further candidates.
+    /// A further candidate is fitted if its screened log Bayes factor exceeds this share of the best fitted one: the screen is
+    /// linear and may find too little, but rarely a quarter of the right value. `None`: no further candidates.
     pub(crate) reach: Option<f64>,
     pub(crate) plan: &'static [FitStep],
     /// Whether shapes are held at the screen's values at first: between two levels of a design a threshold changes nothing, so a
@@ -55,8 +55,8 @@ pub(crate) struct RefinementDepth {
 /// The fits of the best candidates from several starts.
 #[derive(Debug)]
 pub(crate) struct ConfirmationDepth {
-    /// A candidate whose log Bayes factor, fitted or promised, lies within this distance of the best is confirmed too, because a
-    /// fit that stuck may lead \[nats\].
+    /// A candidate whose fitted or screened log Bayes factor lies within this distance of the best is confirmed too, because a fit
+    /// that has not converged may be the best \[nats\].
     pub(crate) within: f64,
     /// Whether uncertain evidences are computed by importance sampling. The weights of a rough model scatter as its log-likelihood
     /// does, so that few draws dominate.
@@ -79,6 +79,7 @@ pub(crate) struct Confirmation {
 }
 
 impl Confirmation {
+    /// Continues a fit by the plan of this confirmation.
     pub(crate) fn continued(&self, fit: &LaplaceFit) -> LaplaceFit {
         if self.keeps_jacobian {
             fit.continued(self.plan)

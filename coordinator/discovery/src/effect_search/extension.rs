@@ -105,9 +105,9 @@ impl EffectSearch {
 
     /// Fits with a reduced discrepancy; the fits with the whole of it begin at the screen's points and, once more, at these modes.
     pub(super) fn fit_reduced_discrepancy(&mut self, reduced: Likelihood, mut batch: FitBatch) {
-        let asked = batch.ask(&reduced);
-        if !asked.is_empty() {
-            self.ask(asked);
+        let requests = batch.ask(&reduced);
+        if !requests.is_empty() {
+            self.ask(requests);
             self.phase = Phase::ReducedDiscrepancy(reduced, batch);
             return;
         }

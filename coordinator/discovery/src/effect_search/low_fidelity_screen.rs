@@ -3,7 +3,7 @@
 use crate::effect_search::ranking::EvidenceMethod;
 use crate::effect_search::screened::{self, Evaluated, Screened};
 use crate::effect_search::state::{CandidateState, EffectSearch, EvidenceEstimate, Phase};
-use crate::laplace::batch::Asked;
+use crate::laplace::batch::PositionRequest;
 use crate::laplace::correction::Correction;
 
 impl EffectSearch {
@@ -11,22 +11,22 @@ impl EffectSearch {
     pub(super) fn screen_low_fidelity(&mut self) {
         let Some(base) = &self.base else { return };
         let base = &base.fit.point.position;
-        let low_fidelity = |candidate: Option<usize>, position: Vec<f64>| Asked {
+        let low_fidelity = |candidate: Option<usize>, position: Vec<f64>| PositionRequest {
             candidate,
             position,
             is_low_fidelity: true,
         };
-        let mut asked = vec![low_fidelity(None, base.clone())];
+        let mut requests = vec![low_fidelity(None, base.clone())];
         for (k, state) in self.candidates.iter().enumerate() {
             if state.frame.has_low_fidelity {
                 let at = screened::positions(&state.frame, base, &self.depth.screen, None, 0);
-                asked.extend(at.into_iter().map(|position| low_fidelity(Some(k), position)));
+                requests.extend(at.into_iter().map(|position| low_fidelity(Some(k), position)));
             }
         }
-        if asked.len() == 1 {
+        if requests.len() == 1 {
             return self.screen(0, (0..self.candidates.len()).collect());
         }
-        self.ask(asked);
+        self.ask(requests);
         self.phase = Phase::LowFidelityScreen;
     }
 
@@ -34,7 +34,7 @@ impl EffectSearch {
     /// predictions of the model's base.
     pub(super) fn take_low_fidelity_screen(&mut self, answers: Vec<Option<Vec<f64>>>) {
         let Some(base) = &self.base else { return };
-        let mut pairs = std::mem::take(&mut self.asked).into_iter().zip(answers);
+        let mut pairs = std::mem::take(&mut self.requests).into_iter().zip(answers);
         let without = pairs.next().and_then(|(_, values)| values);
         let shifted = |with: Vec<f64>| {
             let without = without.as_ref()?.iter();
@@ -43,9 +43,9 @@ impl EffectSearch {
             Some(values.map(|(value, change)| value + change).collect())
         };
         let mut evaluated: Vec<Vec<Evaluated>> = vec![Vec::new(); self.candidates.len()];
-        for (asked, values) in pairs {
-            if let Some(k) = asked.candidate {
-                evaluated[k].push((asked.position, values.and_then(shifted)));
+        for (request, values) in pairs {
+            if let Some(k) = request.candidate {
+                evaluated[k].push((request.position, values.and_then(shifted)));
             }
         }
         for (state, evaluated) in self.candidates.iter_mut().zip(evaluated) {

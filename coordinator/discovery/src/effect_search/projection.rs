@@ -1,4 +1,4 @@
-//! Changes of the predictions after projection out of what the base absorbs.
+//! The projection of changes of the predictions out of those that a refit of the base would absorb.
 
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
@@ -21,7 +21,7 @@ pub(crate) struct Exchange {
 }
 
 impl Exchange {
-    /// The position of a model, whose first parameters are the base's, after the exchange.
+    /// Returns the position of a model, whose first parameters are the base's, after the exchange.
     ///
     /// # Arguments
     /// - `strength`: the index and the neutral value of the new strength.
@@ -35,7 +35,7 @@ impl Exchange {
 }
 
 impl Projection {
-    /// `None` where the data cannot be whitened at the base's fit.
+    /// Prepares the projection; `None` where the data cannot be whitened at the base's fit.
     pub(crate) fn new(base: &LaplaceFit, likelihood: &Likelihood) -> Option<Self> {
         let whitening = likelihood.whitening(&base.point.values, &base.theta()).ok()?;
         Some(Self {

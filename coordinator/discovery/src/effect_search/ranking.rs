@@ -1,4 +1,4 @@
-//! The result of a search for one effect.
+//! The result of a search for one effect: the base and every candidate, with evidence and probability.
 
 use crate::probability::{Explanation, Probabilities};
 

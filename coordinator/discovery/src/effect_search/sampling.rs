@@ -2,7 +2,7 @@
 
 use crate::effect_search::ranking::EvidenceMethod;
 use crate::effect_search::state::{EffectSearch, Phase};
-use crate::laplace::batch::Asked;
+use crate::laplace::batch::PositionRequest;
 use crate::laplace::fit::LaplaceFit;
 use crate::laplace::importance::ImportanceSampler;
 
@@ -17,7 +17,7 @@ const MAX_SAMPLED: usize = 3;
 /// Within this distance from the absence of the effect, in standard deviations of its prior, the prior of a strength is not normal.
 const NEARLY_ABSENT: f64 = 0.1;
 
-/// One of the best effects.
+/// One of the two best candidates, with its fit.
 struct Best<'a> {
     candidate: usize,
     log_bayes_factor: f64,
@@ -25,7 +25,7 @@ struct Best<'a> {
 }
 
 impl EffectSearch {
-    /// Samplers of the base and the best effect, if a parameter of either is at a bound or the effect is nearly absent, and of the
+    /// Returns samplers of the base and the best effect, if a parameter of either is at a bound or the effect is nearly absent, and of the
     /// second effect if it is close and of another class. Models that were sampled before are left out. A rough model has none.
     pub(super) fn samplers(&self) -> Vec<(Option<usize>, ImportanceSampler)> {
         let none = Vec::new();
@@ -110,15 +110,15 @@ impl EffectSearch {
 
     /// Asks for the next draws of each importance sampler; the search ends once all samplers are done and no other is needed.
     pub(super) fn sample(&mut self, mut models: Vec<(Option<usize>, ImportanceSampler)>) {
-        let mut asked = Vec::new();
+        let mut requests = Vec::new();
         let mut counts = Vec::new();
         for (candidate, model) in &mut models {
             let number = candidate.map_or(0, |k| k as u64 + 1);
             let positions = model.ask(self.seed, number);
             counts.push(positions.len());
-            asked.extend(Asked::all_for_model(*candidate, positions));
+            requests.extend(PositionRequest::all_for_model(*candidate, positions));
         }
-        if asked.is_empty() {
+        if requests.is_empty() {
             self.take_sampled(&models);
             // Another effect may lead now.
             let samplers = self.samplers();
@@ -128,7 +128,7 @@ impl EffectSearch {
                 self.sample(samplers)
             };
         }
-        self.ask(asked);
+        self.ask(requests);
         self.phase = Phase::Sampling(models, counts);
     }
 

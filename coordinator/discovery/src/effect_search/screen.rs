@@ -2,26 +2,26 @@
 
 use crate::effect_search::screened::{Evaluated, LEVELS, positions, screened};
 use crate::effect_search::state::{EffectSearch, Phase};
-use crate::laplace::batch::Asked;
+use crate::laplace::batch::PositionRequest;
 
 impl EffectSearch {
     /// Evaluates candidates at the strengths of a level.
     pub(super) fn screen(&mut self, level: usize, candidates: Vec<usize>) {
         let Some(base) = &self.base else { return };
-        let mut asked = Vec::new();
+        let mut requests = Vec::new();
         for &k in &candidates {
             let frame = &self.candidates[k].frame;
             let base = &base.fit.point.position;
             let positions = positions(frame, base, &self.depth.screen, self.best_shape(k), level);
-            asked.extend(Asked::all_for_model(Some(k), positions));
+            requests.extend(PositionRequest::all_for_model(Some(k), positions));
         }
-        if asked.is_empty() && level + 1 < LEVELS.len() {
+        if requests.is_empty() && level + 1 < LEVELS.len() {
             return self.screen(level + 1, candidates);
         }
-        if asked.is_empty() {
+        if requests.is_empty() {
             return self.begin_extensions();
         }
-        self.ask(asked);
+        self.ask(requests);
         self.phase = Phase::Screen(level);
     }
 
@@ -30,9 +30,9 @@ impl EffectSearch {
         let Some(base) = &self.base else { return };
         self.evaluations.screen += answers.len();
         let mut evaluated: Vec<Vec<Evaluated>> = vec![Vec::new(); self.candidates.len()];
-        for (asked, values) in std::mem::take(&mut self.asked).into_iter().zip(answers) {
-            if let Some(k) = asked.candidate {
-                evaluated[k].push((asked.position, values));
+        for (request, values) in std::mem::take(&mut self.requests).into_iter().zip(answers) {
+            if let Some(k) = request.candidate {
+                evaluated[k].push((request.position, values));
             }
         }
         let mut refused = Vec::new();

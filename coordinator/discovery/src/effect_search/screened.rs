@@ -10,7 +10,8 @@ use crate::laplace::quadratic::quadratic;
 use crate::laplace::strength_prior::mixed_evidence;
 use statistics::likelihood::Likelihood;
 
-/// Steps of each of several strengths. A single strength uses the last of them only. Each is tried where the model rejects the one before.
+/// Steps of each of several strengths; the next one is tried if the model rejects the last. A single strength has the steps of the
+/// [`ScreenDepth`], and then the last of these.
 pub(super) const LEVELS: [f64; 4] = [1.0, 0.3, 0.1, 0.03];
 
 /// A position with its predicted values; `None` where the model rejected it.
@@ -36,7 +37,7 @@ pub(super) struct Screened {
     pub(super) best_shape_log_bayes_factor: f64,
 }
 
-/// The positions to evaluate: every strength at the first shape and the first strength at the other shapes; a step along each of
+/// Returns the positions to evaluate: every strength at the first shape and the first strength at the other shapes; a step along each of
 /// several strengths; or, for a switch, the base's fit.
 ///
 /// # Arguments
@@ -89,7 +90,7 @@ pub(super) fn positions(
     }
 }
 
-/// The screen's result from the evaluated positions.
+/// Derives the screen's result from the evaluated positions.
 ///
 /// # Returns
 /// With one strength, the log Bayes factor of the extension linear in it, `s^2 / (2 (I + 1)) - ln(1 + I) / 2` with `I = g' P g` and
@@ -119,6 +120,7 @@ struct Node {
     change: Vec<f64>,
 }
 
+/// The best step of one strength, with the derivatives there.
 fn screen_one_strength(
     frame: &NormalFrame,
     strength: (usize, f64),
@@ -199,6 +201,7 @@ fn node(
     })
 }
 
+/// Whether two steps have the same shape.
 fn has_shape_of(a: &Node, b: &Node, shapes: &[usize]) -> bool {
     let coordinate = |node: &Node, k: usize| node.point.position[k].to_bits();
     shapes.iter().all(|&k| coordinate(a, k) == coordinate(b, k))
@@ -250,6 +253,7 @@ fn slope(node: &Node, nodes: &[Node], base: &LaplaceFit, shapes: &[usize]) -> Ve
     quotient(&to.point.values, from, to.step - low)
 }
 
+/// The result for another model with the same parameters.
 fn screen_switch(
     frame: &NormalFrame,
     base: &FittedModel,
@@ -272,7 +276,7 @@ fn screen_switch(
     })
 }
 
-/// The log Bayes factor is `g' H^-1 g / 2 - ln det(H) / 2` less the log evidence of the base.
+/// The result for several strengths. The log Bayes factor is `g' H^-1 g / 2 - ln det(H) / 2` less the log evidence of the base.
 fn screen_several_strengths(
     frame: &NormalFrame,
     base: &FittedModel,

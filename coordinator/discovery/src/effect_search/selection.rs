@@ -1,4 +1,4 @@
-//! The candidates that are kept, confirmed and ranked.
+//! The selection of candidates between the phases: which fit of each is kept, which are fitted next, and their final ranking.
 
 use std::collections::BTreeMap;
 
@@ -18,7 +18,7 @@ use crate::settings::Smoothness;
 
 /// A projected change of the predictions shorter than this many noise standard deviations is invisible.
 const MIN_VISIBLE: f64 = 2.0;
-/// A fit that is not confirmed counts at most this much less than the screen's log Bayes factor \[nats\].
+/// The log Bayes factor of a fit that is not confirmed counts as at most this much less than the screened one \[nats\].
 const MAX_DEFICIT: f64 = 3.0;
 
 /// The changes of the candidates after projection out of those that the base absorbs.
@@ -105,7 +105,7 @@ impl EffectSearch {
         self.promises().into_iter().take(count).map(|(k, _)| k).collect()
     }
 
-    /// Candidates that were only screened and whose promise is not far below the best fit.
+    /// Candidates that were only screened and whose log Bayes factor is not far below that of the best fit.
     pub(super) fn within_reach(&self) -> Vec<usize> {
         let is_fitted = |k: usize| self.fit_of(k).is_some();
         let log_bayes_factor = |k: usize| {
@@ -213,7 +213,7 @@ impl EffectSearch {
             .filter_map(|(k, state)| {
                 let estimate = state.estimate.as_ref()?;
                 let screened = state.screened.as_ref().map(|s| s.log_bayes_factor);
-                // A promise of the low-fidelity model alone does not count once the model is fitted.
+                // The screen of the low-fidelity model alone does not count once the model is fitted.
                 let is_of_model = state.low_fidelity.is_none() || state.is_screened_on_model;
                 let counts = estimate.method < EvidenceMethod::Confirmed && is_of_model;
                 let screened = screened.filter(|_| counts);

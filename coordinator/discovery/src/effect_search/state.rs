@@ -1,4 +1,4 @@
-//! The state of a search for one effect.
+//! The state of a search for one effect: its model, its candidates with their results, and the phase that it is in.
 
 use std::collections::BTreeMap;
 
@@ -6,7 +6,7 @@ use crate::candidate::Candidate;
 use crate::effect_search::depth::{Depth, FULL};
 use crate::effect_search::ranking::{EffectRanking, EvaluationCounts, EvidenceMethod};
 use crate::effect_search::screened::Screened;
-use crate::laplace::batch::{Asked, FitBatch};
+use crate::laplace::batch::{FitBatch, PositionRequest};
 use crate::laplace::coordinate::NormalFrame;
 use crate::laplace::fit::{FittedModel, LaplaceFit};
 use crate::laplace::importance::ImportanceSampler;
@@ -24,7 +24,7 @@ pub struct EffectSearch {
     pub(super) candidates: Vec<CandidateState>,
     pub(super) round: ProposalRound<Option<Vec<f64>>>,
     /// The requests of the round.
-    pub(super) asked: Vec<Asked>,
+    pub(super) requests: Vec<PositionRequest>,
     pub(super) phase: Phase,
     pub(super) seed: u64,
     pub(super) depth: &'static Depth,
@@ -103,8 +103,8 @@ pub(super) enum Phase {
 }
 
 impl CandidateState {
-    /// Whether the model refused it at every step of the screen or from all starts, or it has no evidence: the promise of its
-    /// screen is void then. This holds for all candidates before the screen.
+    /// Whether the model refused it at every step of the screen or from all starts, or it has no evidence: the result of
+    /// its screen is void then. This holds for all candidates before the screen.
     pub(super) fn is_refused(&self) -> bool {
         let has_fit = self
             .estimate
@@ -115,7 +115,7 @@ impl CandidateState {
 }
 
 impl EffectSearch {
-    /// A search that has asked nothing.
+    /// Makes a search without a pending round.
     pub(super) fn unasked(
         base_frame: NormalFrame,
         likelihood: Likelihood,
@@ -136,7 +136,7 @@ impl EffectSearch {
             candidates: candidates.collect(),
             base_frame,
             round: ProposalRound::default(),
-            asked: Vec::new(),
+            requests: Vec::new(),
             phase: Phase::BaseStarts,
             seed,
             depth: &FULL,
@@ -179,17 +179,16 @@ impl EffectSearch {
     }
 
     /// Begins a round.
-    pub(super) fn ask(&mut self, asked: Vec<Asked>) {
-        let of_model = asked.iter().filter(|asked| !asked.is_low_fidelity);
-        for candidate in of_model.filter_map(|asked| asked.candidate) {
+    pub(super) fn ask(&mut self, requests: Vec<PositionRequest>) {
+        let of_model = requests.iter().filter(|request| !request.is_low_fidelity);
+        for candidate in of_model.filter_map(|request| request.candidate) {
             self.candidates[candidate].evaluations += 1;
         }
-        let proposals = asked
-            .iter()
-            .enumerate()
-            .map(|(index, asked)| Proposal::plain(index, self.frame(asked.candidate).theta(&asked.position)));
+        let proposals = requests.iter().enumerate().map(|(index, request)| {
+            Proposal::plain(index, self.frame(request.candidate).theta(&request.position))
+        });
         let proposals = proposals.collect();
         self.round.ask(proposals);
-        self.asked = asked;
+        self.requests = requests;
     }
 }

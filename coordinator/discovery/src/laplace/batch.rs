@@ -1,11 +1,11 @@
-//! Several fits side by side, each at its own pace.
+//! A batch of fits whose evaluations share rounds, although each fit takes a different number of steps.
 
 use crate::laplace::fit::LaplaceFit;
 use statistics::likelihood::Likelihood;
 
 /// A position to evaluate.
 #[derive(Debug, Clone)]
-pub(crate) struct Asked {
+pub(crate) struct PositionRequest {
     /// The candidate that is switched on; `None`: the base.
     pub(crate) candidate: Option<usize>,
     pub(crate) position: Vec<f64>,
@@ -13,7 +13,7 @@ pub(crate) struct Asked {
     pub(crate) is_low_fidelity: bool,
 }
 
-impl Asked {
+impl PositionRequest {
     /// A request to the model itself.
     pub(crate) fn for_model(candidate: Option<usize>, position: Vec<f64>) -> Self {
         Self {
@@ -51,20 +51,20 @@ impl FitBatch {
     }
 
     /// The positions to evaluate next, each with its model; none once all fits are complete.
-    pub(crate) fn ask(&mut self, likelihood: &Likelihood) -> Vec<Asked> {
-        let mut asked = Vec::new();
+    pub(crate) fn ask(&mut self, likelihood: &Likelihood) -> Vec<PositionRequest> {
+        let mut requests = Vec::new();
         self.waiting.clear();
         for (candidate, fit) in &mut self.fits {
             let positions = fit.ask(likelihood);
             self.waiting.push(positions.len());
             let is_low_fidelity = fit.asks_low_fidelity();
-            asked.extend(positions.into_iter().map(|position| Asked {
+            requests.extend(positions.into_iter().map(|position| PositionRequest {
                 candidate: *candidate,
                 position,
                 is_low_fidelity,
             }));
         }
-        asked
+        requests
     }
 
     /// Takes the answers in the order of the positions.
@@ -83,6 +83,7 @@ impl FitBatch {
         fits.reduce(|a, b| if b.point.value < a.point.value { b } else { a })
     }
 
+    /// Evaluations of the model in all fits.
     pub(crate) fn evaluations(&self) -> usize {
         self.fits.iter().map(|(_, fit)| fit.evaluations).sum()
     }

@@ -1,4 +1,4 @@
-//! Parameters as coordinates in which every prior is standard normal or half-normal.
+//! The coordinates of a fit: parameters transformed so that every prior is standard normal or half-normal.
 
 use statistics::prior::{Marginal, Prior, normal};
 
@@ -10,7 +10,8 @@ const FARTHEST: f64 = 7.5;
 /// A parameter of the best fit within this distance from the limit \[standard deviations\] contradicts its prior: a better fit may
 /// lie beyond.
 const NEAR_LIMIT: f64 = 1.0;
-/// A support ends at a place if its end, in the sampling coordinate, lies no farther away than this share of the distance from -1 to 1 sd.
+/// A position counts as the end of a support if both lie no farther apart, in the sampling coordinate, than this share of the distance
+/// from -1 to 1 sd.
 const BEYOND: f64 = 0.01;
 
 /// The map from a parameter to its coordinate.
@@ -145,7 +146,7 @@ impl NormalFrame {
         };
         let strengths: Vec<(usize, f64)> = candidate.strengths.iter().map(&mut neutral).collect();
         let mut widened = self.widened.clone();
-        // The prior of a curve's knots is not widened: it was made for them.
+        // The prior of a curve's knots is not widened: it was chosen for this purpose.
         if let [(only, _)] = strengths.as_slice() {
             widened.push(*only);
         }
@@ -211,6 +212,7 @@ impl NormalFrame {
             .is_some_and(|(k, _)| self.coordinates[k].is_half())
     }
 
+    /// Returns the parameters at a position.
     pub(crate) fn theta(&self, position: &[f64]) -> Vec<f64> {
         let mut scores = position.to_vec();
         self.base.make_dependent(&mut scores);
@@ -218,6 +220,7 @@ impl NormalFrame {
         pairs.map(|(coordinate, t)| coordinate.value(t)).collect()
     }
 
+    /// Returns the position of parameters, within the limits of the search.
     pub(crate) fn position(&self, theta: &[f64]) -> Vec<f64> {
         let pairs = self.coordinates.iter().zip(theta);
         let mut position: Vec<f64> = pairs.map(|(coordinate, &x)| coordinate.score(x)).collect();
@@ -241,7 +244,7 @@ impl NormalFrame {
         lower.iter().all(|l| *l <= 0.0) && upper.iter().all(|u| *u >= 0.0)
     }
 
-    /// The parameter of the base that contradicts its prior most, and its coordinate. `None` if there is none; a bound that the
+    /// Returns the parameter of the base whose value is least plausible under its prior, and its coordinate. `None` if there is none; a bound that the
     /// user declared is no contradiction.
     pub(crate) fn implausible(&self, position: &[f64]) -> Option<(usize, f64)> {
         let base = self.coordinates.iter().zip(position).take(self.base.dimension());

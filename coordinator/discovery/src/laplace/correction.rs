@@ -4,7 +4,8 @@
 #[derive(Debug, Clone)]
 pub(crate) struct Correction {
     pub(crate) beyond: Vec<f64>,
-    /// Whether it was taken over a long step of the screen, which suffices for the steps of a fit but not for an evidence.
+    /// Whether it is a difference over a long step of the screen, which is accurate enough for the steps of a fit but not for an
+    /// evidence.
     pub(crate) is_secant: bool,
 }
 

@@ -9,7 +9,7 @@ use statistics::rng::Stream;
 /// Random streams of the draws.
 const STAGE: u64 = 1 << 43;
 
-/// The mode of a fit, then draws from its posterior; draws beyond the limits are left out.
+/// Returns the mode of a fit, then draws from its posterior; draws beyond the limits are left out.
 pub(crate) fn draws(
     fit: &LaplaceFit,
     likelihood: &Likelihood,

@@ -5,7 +5,7 @@ use nalgebra::{Cholesky, DVector, Dyn};
 use inference::lm::QuadraticModel;
 use statistics::prior::normal;
 
-/// Log evidence: ln of the integral of `N(t; 0, I) exp(log-likelihood)` where `-log-likelihood + |t|^2/2` is quadratic with value f,
+/// Returns the log evidence: ln of the integral of `N(t; 0, I) exp(log-likelihood)` where `-log-likelihood + |t|^2/2` is quadratic with value f,
 /// gradient g and Hessian H.
 ///
 /// `-f + g' H^-1 g / 2 - ln det(H) / 2`, plus `ln 2 Phi(m / sqrt v)` for each half-normal coordinate of mean m and variance v.

@@ -45,8 +45,8 @@ pub(crate) struct LaplaceFit {
     pub(crate) columns: Vec<Vec<f64>>,
     /// Correction of each column that was measured on the model; the low-fidelity model is a control variate of the differences.
     pub(crate) corrections: Vec<Option<Correction>>,
-    /// Whether a [`FitStep::Differences`] takes the column from the low-fidelity model, because an earlier fit measured the correction
-    /// near by. Corrections that this fit measures itself belong to the points that it passes.
+    /// Whether a [`FitStep::Differences`] may compute the column by the low-fidelity model, because an earlier fit of nearly the same
+    /// parameters measured its correction. A correction that this fit measures holds only at the point of its measurement.
     reuses_correction: Vec<bool>,
     /// Evaluations of the model, without those of the low-fidelity model.
     pub(crate) evaluations: usize,
@@ -63,7 +63,7 @@ pub(crate) struct LaplaceFit {
     pending: Pending,
 }
 
-/// The achievement of the trial steps since the last [`FitStep::Rounds`] began a round.
+/// The outcome of the trial steps since the last [`FitStep::Rounds`] began a round.
 #[derive(Debug, Clone)]
 enum Progress {
     /// No step was tried yet.
@@ -105,7 +105,7 @@ enum Pending {
 /// Index of a coordinate and the length of its difference.
 type Offset = (usize, f64);
 
-/// Why derivatives of the low-fidelity model are computed.
+/// The use of derivatives of the low-fidelity model.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Purpose {
     /// A full Jacobian; the model is asked for the columns without a correction to reuse.
@@ -165,6 +165,7 @@ impl LaplaceFit {
         matches!(self.pending, Pending::LowFidelity { .. })
     }
 
+    /// Fixes coordinates until a [`FitStep::Release`].
     pub(crate) fn hold(&mut self, coordinates: impl Iterator<Item = usize>) {
         for k in coordinates {
             self.held[k] = true;
@@ -232,13 +233,13 @@ impl LaplaceFit {
         vec![position]
     }
 
-    /// Leaves trial steps that are no longer worth an evaluation, and the plan if its last round has gained nothing.
+    /// Ends the trial steps of a round, and the whole plan if the round has gained nothing.
     fn end_trials(&mut self) {
         self.reset_damping();
         let is_noisy = self.frame.smoothness != Smoothness::Smooth;
         match &mut self.progress {
             Progress::Untried => self.plan.clear(),
-            // The evidence needs the slope at the point, not the slope to where the steps failed.
+            // The evidence needs the derivatives at the point. The failed steps have replaced them by slopes to the trial positions.
             Progress::Stuck { jacobian } if is_noisy => {
                 self.columns = std::mem::take(jacobian);
                 self.plan.clear();
@@ -322,7 +323,8 @@ impl LaplaceFit {
         }
     }
 
-    /// Takes the columns whose correction is known from the low-fidelity model; for a full Jacobian the model is asked for the others.
+    /// Takes the predictions of the low-fidelity model: a column with a known correction is the derivative of the low-fidelity model plus
+    /// that correction. For a full Jacobian, the differences of all other columns are evaluated by the model next.
     fn take_low_fidelity(
         &mut self,
         offsets: Vec<Offset>,
@@ -354,8 +356,8 @@ impl LaplaceFit {
         }
     }
 
-    /// Takes columns from the model. A rejected difference is attempted once more with the opposite sign; if the model rejects that
-    /// too, the old column stays.
+    /// Computes columns from predictions of the model. A difference that the model rejects is attempted once more with the opposite
+    /// sign; if the model rejects it again, the column keeps its value.
     fn take_differences(&mut self, offsets: Vec<Offset>, attempt: Attempt, answers: Vec<Option<Vec<f64>>>) {
         let (lower, upper) = self.frame.room(&self.point.position);
         let is_first = attempt == Attempt::First;
@@ -382,6 +384,7 @@ impl LaplaceFit {
         }
     }
 
+    /// Moves to a trial position if it is more probable, and adapts the damping.
     fn take_trial(
         &mut self,
         likelihood: &Likelihood,
@@ -507,11 +510,11 @@ mod tests {
         let plan = [FitStep::Rounds { max: 6, trials: 12 }, FitStep::Differences];
         let mut fit = LaplaceFit::new(frame, start, vec![vec![0.0]], &plan);
         loop {
-            let asked = fit.ask(&likelihood);
-            if asked.is_empty() {
+            let requests = fit.ask(&likelihood);
+            if requests.is_empty() {
                 return fit;
             }
-            let answers = asked.iter().map(|position| Some(vec![model(position[0])]));
+            let answers = requests.iter().map(|position| Some(vec![model(position[0])]));
             fit.tell(&likelihood, answers.collect());
         }
     }
@@ -526,12 +529,12 @@ mod tests {
         let differences = |mut fit: LaplaceFit| {
             let mut asked_model = 0;
             loop {
-                let asked = fit.ask(&likelihood);
-                if asked.is_empty() {
+                let requests = fit.ask(&likelihood);
+                if requests.is_empty() {
                     return (fit, asked_model);
                 }
                 let is_low_fidelity = fit.asks_low_fidelity();
-                asked_model += if is_low_fidelity { 0 } else { asked.len() };
+                asked_model += if is_low_fidelity { 0 } else { requests.len() };
                 let value = |t: f64| {
                     if is_low_fidelity {
                         low_fidelity(t)
@@ -539,7 +542,7 @@ mod tests {
                         model(t)
                     }
                 };
-                let answers = asked.iter().map(|position| Some(vec![value(position[0])]));
+                let answers = requests.iter().map(|position| Some(vec![value(position[0])]));
                 fit.tell(&likelihood, answers.collect());
             }
         };

@@ -1,4 +1,4 @@
-//! The evidence by importance sampling, where Laplace's approximation may be too inaccurate.
+//! An importance sampler of the evidence, for models of which Laplace's approximation may be too inaccurate.
 
 use nalgebra::{Cholesky, DMatrix, DVector};
 
@@ -38,7 +38,7 @@ pub(crate) struct ImportanceSampler {
     proposals: Vec<Student>,
     round: usize,
     /// Draws of the current round within the limits.
-    asked: Vec<Vec<f64>>,
+    pending: Vec<Vec<f64>>,
     /// Draws of all rounds with their log prior times likelihood.
     drawn: Vec<(Vec<f64>, f64)>,
     log_evidence: Option<f64>,
@@ -59,7 +59,7 @@ impl ImportanceSampler {
             frame: fitted.frame.clone(),
             proposals: vec![Student::new(mean, covariance)?],
             round: 0,
-            asked: Vec::new(),
+            pending: Vec::new(),
             drawn: Vec::new(),
             log_evidence: None,
             stated_gain: 0.0,
@@ -96,8 +96,8 @@ impl ImportanceSampler {
         };
         let mut stream = Stream::new(seed, STAGE, number, self.round as u64);
         let draws = (0..DRAWS).map(|_| proposal.draw(&mut stream));
-        self.asked = draws.filter(|position| self.frame.holds(position)).collect();
-        self.asked.clone()
+        self.pending = draws.filter(|position| self.frame.holds(position)).collect();
+        self.pending.clone()
     }
 
     /// Takes the predicted values at the positions of [`ask`](Self::ask); `None` where the model rejected one. Draws without
@@ -106,7 +106,7 @@ impl ImportanceSampler {
         let dimension = self.frame.dimension() as f64;
         // The prior of a half-normal coordinate is twice the normal one.
         let constant = libm::log(2.0) * self.frame.halves().len() as f64 - dimension * LN_SQRT_TAU;
-        for (position, values) in std::mem::take(&mut self.asked).into_iter().zip(answers) {
+        for (position, values) in std::mem::take(&mut self.pending).into_iter().zip(answers) {
             let point = values.and_then(|v| FitPoint::new(&self.frame, likelihood, position, v));
             self.drawn
                 .extend(point.map(|point| (point.position, constant - point.value)));

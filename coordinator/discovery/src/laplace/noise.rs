@@ -1,4 +1,4 @@
-//! Gradient and curvature along inferred sds of noise and of common errors, on which the predicted values do not depend.
+//! The gradient and curvature of the likelihood along inferred noise sds, on which the predicted values do not depend.
 
 use nalgebra::DMatrix;
 
@@ -9,7 +9,7 @@ use statistics::likelihood::{CommonErrorSize, ErrorSd, Likelihood};
 /// Half width of the central differences; the density is smooth and accurate to rounding.
 const DIFFERENCE: f64 = 1e-3;
 
-/// The coordinates that are sds: those of noise with the number of data that share them, those of common errors without.
+/// Lists the coordinates that are sds: those of noise with the number of data that share them, those of common errors without.
 pub(crate) fn coordinates(likelihood: &Likelihood) -> Vec<(usize, Option<usize>)> {
     let inferred = |sd: ErrorSd| match sd {
         ErrorSd::Inferred { parameter } => Some(parameter),

@@ -1,4 +1,4 @@
-//! An evaluated position.
+//! A point of a fit: an evaluated position with its log posterior.
 
 use crate::laplace::coordinate::NormalFrame;
 use crate::laplace::strength_prior;

@@ -33,7 +33,7 @@ impl Axis {
     }
 }
 
-/// The axes about a fit's mode; none where the posterior has no covariance.
+/// Returns the axes about a fit's mode; none where the posterior has no covariance.
 pub(crate) fn spread(fit: &LaplaceFit, likelihood: &Likelihood) -> Vec<Axis> {
     let covariance = Cholesky::new(fit.quadratic(likelihood).hessian).map(|c| c.inverse());
     let Some(factor) = covariance.and_then(Cholesky::new).map(|c| c.l()) else {

@@ -1,4 +1,4 @@
-//! A multivariate t, from which positions are drawn.
+//! The multivariate t density from which importance sampling draws positions.
 
 use nalgebra::{Cholesky, DMatrix, DVector};
 

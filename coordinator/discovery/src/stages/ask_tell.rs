@@ -152,6 +152,7 @@ impl DiscoverySearch {
         }
     }
 
+    /// Keeps the results of the stage, and begins the next.
     fn next_stage(&mut self) {
         let state = &mut self.state;
         self.stage = match &self.stage {

@@ -30,6 +30,8 @@ pub struct PosteriorModel {
 }
 
 impl PosteriorModel {
+    /// Draws from the posterior of a model.
+    ///
     /// # Arguments
     /// - `fit`: of the model; `None` leaves it without draws. `stream`: number of the random streams.
     fn new(task: &SearchTask, effects: Vec<usize>, fit: Option<&LaplaceFit>, stream: u64) -> Self {
@@ -129,8 +131,11 @@ struct Objections {
 }
 
 impl Objections {
-    /// - `explanation`: the fit of the law or combination that may be claimed. If only the base needs a parameter far out in its
-    ///   prior, that is no objection: a missing effect shows in this way.
+    /// Collects the objections to a claim. A base that needs a parameter far out in its prior is none: a missing effect has this
+    /// consequence.
+    ///
+    /// # Arguments
+    /// - `explanation`: the fit of the law or combination that may be claimed.
     fn new(
         task: &SearchTask,
         base: Option<&LaplaceFit>,
@@ -176,7 +181,7 @@ impl Remainder {
     }
 }
 
-/// The confirmed law, if it fits or leaves little of the chi-square excess of the library's best.
+/// Returns the confirmed law, if it fits or leaves little of the chi-square excess of the library's best.
 fn explaining_law<'a>(task: &SearchTask, hypotheses: &'a Hypotheses) -> Option<&'a FittedLaw> {
     let library = hypotheses.detected_of_library(task.library.len());
     let library = library.map(|best| &best.fit).or(hypotheses.base_fit());

@@ -27,6 +27,7 @@ struct Refit {
     waiting: Vec<Vec<f64>>,
 }
 
+/// Returns numbers as a key that can be compared.
 fn bits(values: &[f64]) -> Vec<u64> {
     values.iter().map(|x| x.to_bits()).collect()
 }
@@ -107,7 +108,7 @@ struct LeftOutLevel {
 }
 
 impl LeftOutLevel {
-    /// `None` if the level has no data, or all.
+    /// Splits the data; `None` if the level has no data, or all.
     fn new(likelihood: &Likelihood, left: &[usize]) -> Option<Self> {
         let count = likelihood.data().len();
         let kept: Vec<usize> = (0..count).filter(|i| !left.contains(i)).collect();
@@ -170,7 +171,7 @@ impl CrossValidation {
     pub(super) fn queries(&mut self) -> Vec<Query> {
         let mut queries = Vec::new();
         self.answered_by.clear();
-        let mut asked: BTreeMap<(Vec<usize>, bool, Vec<u64>), usize> = BTreeMap::new();
+        let mut numbers: BTreeMap<(Vec<usize>, bool, Vec<u64>), usize> = BTreeMap::new();
         for model in &mut self.models {
             let effects = &model.key.effects;
             for refit in model.refits.iter_mut().flatten() {
@@ -179,13 +180,13 @@ impl CrossValidation {
                 for position in &refit.waiting {
                     let theta = refit.fit.frame.theta(position);
                     let key = (effects.clone(), is_low_fidelity, bits(&theta));
-                    let number = *asked.entry(key).or_insert(queries.len());
+                    let number = *numbers.entry(key).or_insert(queries.len());
                     self.answered_by.push(number);
                     if number == queries.len() {
                         queries.push(Query {
                             model: QueriedModel::With(effects.clone()),
                             is_proposed: false,
-                            is_low_fidelity: is_low_fidelity,
+                            is_low_fidelity,
                             theta,
                         });
                     }
@@ -195,6 +196,7 @@ impl CrossValidation {
         queries
     }
 
+    /// Takes the answers to [`queries`](Self::queries), in their order.
     pub(super) fn take(&mut self, answers: &[Option<Vec<f64>>]) {
         let mut answered_by = std::mem::take(&mut self.answered_by).into_iter();
         let refits = self

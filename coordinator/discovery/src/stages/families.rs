@@ -28,6 +28,7 @@ impl SearchState {
         Stage::Families(branches.collect())
     }
 
+    /// Keeps the fitted sets, and begins the beam search.
     pub(super) fn after_families(&mut self, branches: &[SearchBranch]) -> Stage {
         self.add_fitted(branches);
         let fitted = branches.iter().map(|branch| candidate_set(&branch.effects));
@@ -75,6 +76,7 @@ impl SearchState {
         subsets
     }
 
+    /// Fits a set of effects together with the base.
     fn together(&self, effects: Vec<usize>) -> Option<SearchBranch> {
         let mut frame = self.task.frame();
         let base = &self.hypotheses.base_fit()?.point.position;

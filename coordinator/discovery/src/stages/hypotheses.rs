@@ -39,6 +39,7 @@ pub(super) struct Hypotheses {
 /// Candidates that act together, in any order.
 pub(super) type CandidateSet = BTreeSet<usize>;
 
+/// Returns the set of some effects.
 pub(super) fn candidate_set(effects: &[usize]) -> CandidateSet {
     effects.iter().copied().collect()
 }
@@ -160,6 +161,7 @@ impl Hypotheses {
         self.best().filter(|best| best.log_bayes_factor > DETECTED)
     }
 
+    /// The combination of one effect.
     pub(super) fn single(&self, candidate: usize) -> Option<&EffectCombination> {
         self.combination(&[candidate])
     }

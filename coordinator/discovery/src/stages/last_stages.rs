@@ -29,6 +29,7 @@ impl SearchState {
         Stage::Predictions(sets, validation)
     }
 
+    /// Keeps the predictive densities of the sets, and begins the choice of runs.
     pub(super) fn after_predictions(&mut self, sets: &[Vec<usize>], validation: &CrossValidation) -> Stage {
         let gains = validation.gains().unwrap_or_default();
         // A measurement is left out once for each condition whose level it belongs to.
@@ -43,6 +44,7 @@ impl SearchState {
         self.next_runs()
     }
 
+    /// Compares the open explanations on the runs that the rig could make.
     fn next_runs(&self) -> Stage {
         let open = Weighing::new(&self.task, &self.hypotheses).open(&self.hypotheses);
         match RunSelection::new(&self.task, open) {
@@ -51,6 +53,7 @@ impl SearchState {
         }
     }
 
+    /// Ends the discovery.
     pub(super) fn done(&self, choice: RunChoice) -> Stage {
         Stage::Done(Box::new(Conclusion::new(self, choice)))
     }

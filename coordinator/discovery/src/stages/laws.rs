@@ -19,7 +19,7 @@ const LAWS: usize = 3;
 const CURVE_BEATS_FORM: f64 = 5.0;
 
 impl SearchState {
-    /// Searches curves outside the library if the library leaves misfit or needs several effects, behind which there may be one law.
+    /// Searches curves outside the library if the library leaves misfit, or if it needs several effects, which one law may replace.
     pub(super) fn curves(&mut self) -> Stage {
         let chi_square = self.hypotheses.chi_square(&self.task.likelihood);
         let leaves_misfit = match (chi_square, self.hypotheses.detected()) {
@@ -101,6 +101,7 @@ impl SearchState {
         Some(SearchBranch::new(beyond, candidates, search))
     }
 
+    /// Keeps the curves, and fits the simple forms of the best.
     pub(super) fn after_curves(&mut self, branch: &SearchBranch) -> Stage {
         let law_of = |candidate| (0..self.task.laws.len()).find(|&law| self.task.curve(law) == candidate);
         let laws = branch.ranked().into_iter().filter_map(|(candidate, ranked)| {
@@ -132,6 +133,7 @@ impl SearchState {
         }
     }
 
+    /// Describes each law by its best form or its curve, and begins the cross-validation.
     pub(super) fn after_forms(&mut self, branch: &SearchBranch) -> Stage {
         let task = &self.task;
         let Some(scan) = self.hypotheses.current_scan() else {
@@ -181,6 +183,7 @@ impl SearchState {
         Stage::CrossValidation(rank, self.validated(&fits))
     }
 
+    /// Confirms the law of this rank if it predicts left-out levels, or cross-validates the next.
     pub(super) fn after_cross_validation(&mut self, rank: usize, validation: &CrossValidation) -> Stage {
         self.keep_refits(validation);
         // Gains over the base, and over the library's best.

@@ -43,10 +43,10 @@ pub(super) struct RunChoice {
 
 /// An explanation with the parameters at which its predictions are evaluated.
 #[derive(Debug, Clone)]
-struct AskedHypothesis {
+struct QueriedHypothesis {
     effects: Vec<usize>,
     probability: f64,
-    /// `None` once it is answered.
+    /// The parameters of the mode; `None` once their prediction has arrived.
     mode: Option<Vec<f64>>,
     /// Whether the low-fidelity model is asked for the spread, before the model.
     asks_low_fidelity: bool,
@@ -61,12 +61,12 @@ struct AskedHypothesis {
 /// The comparison of the explanations on the proposed runs.
 #[derive(Debug, Clone)]
 pub(super) struct RunSelection {
-    asked: Vec<AskedHypothesis>,
+    hypotheses: Vec<QueriedHypothesis>,
     proposed: ProposedRuns,
     seed: u64,
 }
 
-impl AskedHypothesis {
+impl QueriedHypothesis {
     /// The parameters to evaluate, each with whether the low-fidelity model is asked.
     fn thetas(&self) -> impl Iterator<Item = (bool, &Vec<f64>)> {
         let sides = self.spread.iter().flat_map(|axis| axis.sides.iter().flatten());
@@ -130,7 +130,7 @@ impl RunSelection {
         if explanations.len() < 2 || task.proposed.values() == 0 {
             return None;
         }
-        let asked = explanations.into_iter().map(|explanation| AskedHypothesis {
+        let hypotheses = explanations.into_iter().map(|explanation| QueriedHypothesis {
             effects: explanation.effects,
             probability: explanation.probability,
             mode: Some(explanation.fit.theta()),
@@ -140,45 +140,47 @@ impl RunSelection {
             prediction: None,
         });
         Some(Self {
-            asked: asked.collect(),
+            hypotheses: hypotheses.collect(),
             proposed: task.proposed.clone(),
             seed: task.settings.seed,
         })
     }
 
+    /// The queries of the next round; none once every explanation has its prediction.
     pub(super) fn queries(&self) -> Vec<Query> {
-        let queries_of = |asked: &AskedHypothesis| {
-            let model = QueriedModel::With(asked.effects.clone());
-            let queries = asked.thetas().map(|(is_low_fidelity, theta)| Query {
+        let queries_of = |hypothesis: &QueriedHypothesis| {
+            let model = QueriedModel::With(hypothesis.effects.clone());
+            let queries = hypothesis.thetas().map(|(is_low_fidelity, theta)| Query {
                 model: model.clone(),
                 is_proposed: true,
-                is_low_fidelity: is_low_fidelity,
+                is_low_fidelity,
                 theta: theta.clone(),
             });
             queries.collect::<Vec<_>>()
         };
-        self.asked.iter().flat_map(queries_of).collect()
+        self.hypotheses.iter().flat_map(queries_of).collect()
     }
 
+    /// Takes the answers to [`queries`](Self::queries), in their order.
     pub(super) fn take(&mut self, answers: Vec<Option<Vec<f64>>>) {
         let mut answers = answers.into_iter();
-        for asked in &mut self.asked {
-            let count = asked.thetas().count();
+        for hypothesis in &mut self.hypotheses {
+            let count = hypothesis.thetas().count();
             let part: Vec<_> = answers.by_ref().take(count).collect();
-            asked.take(part.into_iter());
+            hypothesis.take(part.into_iter());
         }
     }
 
     /// The most informative runs: the first has the most information alone, each further one adds the most to those before it.
     pub(super) fn best(&self) -> RunChoice {
         let predicted = self
-            .asked
+            .hypotheses
             .iter()
-            .filter_map(|asked| Some((asked, asked.prediction.as_ref()?)));
-        let (asked, predictions): (Vec<&AskedHypothesis>, Vec<_>) = predicted
-            .map(|(asked, prediction)| (asked, (asked.probability, prediction)))
+            .filter_map(|hypothesis| Some((hypothesis, hypothesis.prediction.as_ref()?)));
+        let (hypotheses, predictions): (Vec<&QueriedHypothesis>, Vec<_>) = predicted
+            .map(|(hypothesis, prediction)| (hypothesis, (hypothesis.probability, prediction)))
             .unzip();
-        if asked.len() < 2 {
+        if hypotheses.len() < 2 {
             return RunChoice::default();
         }
         let predictive = Predictive::new(predictions, &self.proposed.noise_sds, MAX_RUNS, self.seed);
@@ -212,7 +214,7 @@ impl RunSelection {
             runs.push(InformativeRun {
                 run,
                 information_nats: gain,
-                separates: separated.map(|k| asked[k].effects.clone()).collect(),
+                separates: separated.map(|k| hypotheses[k].effects.clone()).collect(),
             });
         }
         RunChoice { runs, alone }
@@ -223,9 +225,9 @@ impl RunSelection {
 mod tests {
     use super::*;
 
-    fn asked(sides: [Option<f64>; 2], spare: Option<f64>) -> AskedHypothesis {
+    fn hypothesis(sides: [Option<f64>; 2], spare: Option<f64>) -> QueriedHypothesis {
         let theta = |t: Option<f64>| t.map(|t| vec![t]);
-        AskedHypothesis {
+        QueriedHypothesis {
             effects: Vec::new(),
             probability: 0.5,
             mode: Some(vec![0.0]),
@@ -240,34 +242,34 @@ mod tests {
     }
 
     /// Answers with the parameter until nothing is asked; the model rejects what lies above 0.
-    fn columns(mut asked: AskedHypothesis) -> Vec<Vec<f64>> {
-        while asked.thetas().next().is_some() {
-            let answers = asked.thetas().map(|(_, t)| (t[0] <= 0.0).then(|| t.clone()));
+    fn columns(mut hypothesis: QueriedHypothesis) -> Vec<Vec<f64>> {
+        while hypothesis.thetas().next().is_some() {
+            let answers = hypothesis.thetas().map(|(_, t)| (t[0] <= 0.0).then(|| t.clone()));
             let answers: Vec<_> = answers.collect();
-            asked.take(answers.into_iter());
+            hypothesis.take(answers.into_iter());
         }
-        asked.prediction.unwrap().columns
+        hypothesis.prediction.unwrap().columns
     }
 
     #[test]
     fn where_the_model_rejects_the_side_that_is_asked_the_other_one_is_asked() {
-        assert_eq!(columns(asked([Some(1.0), None], Some(-1.0))), [[-1.0]]);
-        assert_eq!(columns(asked([Some(1.0), Some(-1.0)], None)), [[-1.0]]);
-        assert!(columns(asked([Some(1.0), None], None)).is_empty());
+        assert_eq!(columns(hypothesis([Some(1.0), None], Some(-1.0))), [[-1.0]]);
+        assert_eq!(columns(hypothesis([Some(1.0), Some(-1.0)], None)), [[-1.0]]);
+        assert!(columns(hypothesis([Some(1.0), None], None)).is_empty());
     }
 
     #[test]
     fn the_spread_is_that_of_the_low_fidelity_model_about_the_prediction_of_the_model() {
-        let mut asked = AskedHypothesis {
+        let mut hypothesis = QueriedHypothesis {
             asks_low_fidelity: true,
-            ..asked([Some(0.5), None], None)
+            ..hypothesis([Some(0.5), None], None)
         };
-        let answers: Vec<_> = asked
+        let answers: Vec<_> = hypothesis
             .thetas()
             .map(|(is_low_fidelity, theta)| Some(vec![if is_low_fidelity { 3.0 * theta[0] } else { 7.0 }]))
             .collect();
-        asked.take(answers.into_iter());
-        let prediction = asked.prediction.expect("the mode is answered");
+        hypothesis.take(answers.into_iter());
+        let prediction = hypothesis.prediction.expect("the mode is answered");
         assert_eq!(
             (prediction.mean, prediction.columns),
             (vec![7.0], vec![vec![1.5]])

@@ -18,7 +18,7 @@ const LARGEST_UNCERTAINTY: f64 = 0.2;
 /// Number of repeats from which the scatter is known, as for `"replicates"` in an experiment.
 const MIN_REPEATS: usize = 3;
 
-/// The parameters of inferred noise sds that do not support the claim; empty if the claim stands without them.
+/// Returns the parameters of inferred noise sds that do not support the claim; empty if the claim stands without them.
 ///
 /// An sd is supported by at least three repeats, or by `v` residual degrees of freedom with `1 / sqrt(2 v) <= 0.2`: the number of its data
 /// less its share of the fitted parameters. A claim that gains more than 3 nats in log-likelihood on the data of declared and supported
@@ -63,6 +63,8 @@ fn fitted_parameters(fit: &LaplaceFit, likelihood: &Likelihood) -> f64 {
         .sum()
 }
 
+/// Whether an sd has enough repeats or residual degrees of freedom.
+///
 /// # Arguments
 /// - `data`: indices of the sd's data. `count`: number of all data. `fitted`: effective number of fitted parameters.
 fn is_supported(data: &[usize], count: usize, fitted: f64, conditions: &[Vec<usize>]) -> bool {

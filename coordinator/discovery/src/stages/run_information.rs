@@ -20,6 +20,7 @@ pub(super) struct Prediction {
     pub(super) columns: Vec<Vec<f64>>,
 }
 
+/// The predictions of all explanations, with the random numbers of their simulated outcomes.
 pub(super) struct Predictive<'a> {
     predictions: Vec<(f64, &'a Prediction)>,
     noise_sds: &'a [f64],
@@ -47,6 +48,8 @@ impl JointNormal {
 }
 
 impl<'a> Predictive<'a> {
+    /// Draws the random numbers of the simulated outcomes.
+    ///
     /// # Arguments
     /// - `predictions`: probability and prediction of each explanation. `max_runs`: largest number of runs made together.
     pub(super) fn new(
@@ -72,7 +75,8 @@ impl<'a> Predictive<'a> {
     }
 
     /// The expected information of runs made together, `sum_m P_m E_m[ln p(y | m) - ln sum_k P_k p(y | k)]`, where p is normal with the
-    /// covariance of noise and parameters. All runs share the parameters, so a run that a parameter moves like another adds little.
+    /// covariance of noise and parameters. All runs share the parameters, so a run whose prediction depends on them as that of
+    /// another run adds little.
     ///
     /// # Returns
     /// Nats; `None` where a covariance is not positive definite.
@@ -126,6 +130,7 @@ impl<'a> Predictive<'a> {
         std::iter::once(first).chain(named).collect()
     }
 
+    /// Returns the joint prediction of some runs by one explanation.
     fn normal(&self, prediction: &Prediction, runs: &[usize]) -> Option<JointNormal> {
         let channels = self.noise_sds.len();
         let size = runs.len() * channels;

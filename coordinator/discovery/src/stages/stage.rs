@@ -45,6 +45,7 @@ impl Stage {
         }
     }
 
+    /// Takes the answers to [`queries`](Self::queries), in their order.
     pub(super) fn take(&mut self, answers: Vec<Option<Vec<f64>>>) {
         match self {
             Self::SingleEffects(branch) | Self::Curves(branch) | Self::Forms(branch) => branch.take(answers),

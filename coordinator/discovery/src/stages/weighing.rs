@@ -60,6 +60,7 @@ type Inclusion = BTreeMap<usize, f64>;
 /// combinations were tried.
 const SAME_WEIGHT: f64 = 0.01;
 
+/// Sums the weights of the combinations that include each effect.
 fn inclusion(hypotheses: &Hypotheses, cost: f64, misfit: f64) -> Inclusion {
     let mut weights: BTreeMap<usize, Vec<f64>> = BTreeMap::new();
     for combination in &hypotheses.combinations {
@@ -74,7 +75,8 @@ fn inclusion(hypotheses: &Hypotheses, cost: f64, misfit: f64) -> Inclusion {
 }
 
 /// The effect of a combination with the highest inclusion weight; among equals, the one with the highest Bayes factor alone. `None`
-/// without an effect of the library. An effect that all good combinations have is thus not named after a rival that some have.
+/// without an effect of the library. Of the effects of a combination, the one that all good combinations share is named, not one that
+/// only some have.
 fn leader(ranking: &EffectRanking, inclusion: &Inclusion, effects: &[usize]) -> Option<usize> {
     let ranked = || effects.iter().filter_map(|&k| ranking.effect(Some(k)));
     let weight = |effect: &RankedEffect| {

@@ -11,7 +11,7 @@ const INFORMED: f64 = 0.75;
 /// The distance of the posterior from the prior.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Conflict {
-    /// For each parameter the probability of a posterior this far out, if the prior is right; `None` where the data say too little.
+    /// For each parameter the probability of a posterior this far out, if the prior is right; `None` if the data hold too little information.
     pub parameters: Vec<Option<f64>>,
     /// Squared distance of the posterior's mean over all directions that the data inform.
     pub statistic: f64,

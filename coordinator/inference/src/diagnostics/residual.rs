@@ -13,7 +13,7 @@ pub struct Residual {
     pub error_sd: f64,
     /// Leverage h, the share of the error's variance that the fit absorbs; 1 or more where the linear identity fails.
     pub leverage: f64,
-    /// The residual over its standard deviation; `None` where h is 1 or more, or no other data show its noise.
+    /// The residual over its standard deviation; `None` where h is 1 or more, or where no other data determine its noise.
     pub studentised: Option<f64>,
     /// Two-sided probability of a residual this large.
     pub p: Option<f64>,
@@ -86,10 +86,10 @@ pub fn residuals(likelihood: &Likelihood, draws: &[PredictedDraw]) -> Result<Vec
         })
         .collect();
     for i in 0..rows.len() {
-        let judged = match own_scale(likelihood, i) {
+        let judged = match separate_noise_sd(likelihood, i) {
             Some(parameter) => {
                 let peers: Vec<Residual> = (0..rows.len())
-                    .filter(|&j| j != i && own_scale(likelihood, j) == Some(parameter))
+                    .filter(|&j| j != i && separate_noise_sd(likelihood, j) == Some(parameter))
                     .map(|j| rows[j])
                     .collect();
                 against_peers(rows[i], &peers)
@@ -102,7 +102,7 @@ pub fn residuals(likelihood: &Likelihood, draws: &[PredictedDraw]) -> Result<Vec
 }
 
 /// The parameter that is the sd of a datum with independent normal errors.
-pub(super) fn own_scale(likelihood: &Likelihood, i: usize) -> Option<usize> {
+pub(super) fn separate_noise_sd(likelihood: &Likelihood, i: usize) -> Option<usize> {
     match likelihood.data()[i].sd {
         ErrorSd::Inferred { parameter }
             if likelihood.is_alone(i) && likelihood.law() == ErrorLaw::Gaussian =>
@@ -113,12 +113,14 @@ pub(super) fn own_scale(likelihood: &Likelihood, i: usize) -> Option<usize> {
     }
 }
 
+/// Studentises a residual whose noise is known; returns it with its probability.
 fn against_law(row: Residual, law: ErrorLaw) -> Option<(f64, f64)> {
     let left = 1.0 - row.leverage;
     let t = (left > 0.0).then(|| row.value / (row.error_sd * left.sqrt()))?;
     Some((t, 2.0 * law.cumulative(-t.abs())))
 }
 
+/// Studentises a residual by the noise that its peers show; returns it with its probability.
 fn against_peers(row: Residual, peers: &[Residual]) -> Option<(f64, f64)> {
     let left = 1.0 - row.leverage;
     let usable = || peers.iter().filter(|peer| peer.leverage < 1.0);

@@ -18,7 +18,7 @@ pub struct Direction {
 ///
 /// # Arguments
 /// - `draws`: one vector of coordinates for each draw. In units of the prior's standard deviations the variances are
-///   shares of the prior's: 1 where the data say nothing.
+///   shares of the prior's: 1 along a direction of which the data hold no information.
 ///
 /// # Validity
 /// Where two variances are nearly equal, their directions are arbitrary within the plane that they span. Checked by `spectrum::tests`.
@@ -40,7 +40,7 @@ pub fn principal_directions(draws: &[Vec<f64>]) -> Vec<Direction> {
                 .fold(0.0_f64, |l, &x| if x.abs() > l.abs() { x } else { l });
             let sign = if largest < 0.0 { -1.0 } else { 1.0 };
             Direction {
-                // rounding may leave a variance of zero slightly below it
+                // Rounding may leave a variance of zero slightly below it
                 variance: eigen.eigenvalues[k].max(0.0),
                 loadings: loadings.into_iter().map(|x| sign * x).collect(),
             }

@@ -44,6 +44,7 @@ fn lower_series(a: f64, x: f64) -> f64 {
     sum
 }
 
+/// The continued fraction of the upper incomplete gamma function, by Lentz's method.
 fn upper_fraction(a: f64, x: f64) -> f64 {
     let kept = |v: f64| if v.abs() < 1e-300 { 1e-300 } else { v };
     let mut b = x + 1.0 - a;

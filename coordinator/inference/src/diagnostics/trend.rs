@@ -3,7 +3,7 @@
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
 use super::predicted_draw::PredictedDraw;
-use super::residual::own_scale;
+use super::residual::separate_noise_sd;
 use super::spectrum::mean_and_covariance;
 use statistics::likelihood::{ErrorLaw, Likelihood, LikelihoodError, Whitening};
 use statistics::prior::Prior;
@@ -156,7 +156,7 @@ impl<'a> TrendTest<'a> {
     /// The parameter that is the noise sd of all data that the regressor affects.
     fn scale_of(&self, regressor: &[f64]) -> Option<usize> {
         let concerned = (0..regressor.len()).filter(|&i| regressor[i].abs() > 0.0);
-        let mut scales = concerned.map(|i| own_scale(self.likelihood, i));
+        let mut scales = concerned.map(|i| separate_noise_sd(self.likelihood, i));
         let first = scales.next()??;
         scales.all(|scale| scale == Some(first)).then_some(first)
     }
@@ -176,7 +176,7 @@ impl<'a> TrendTest<'a> {
     /// chi-square with the mean and variance of their sum of squares (Satterthwaite).
     fn scale(&self, parameter: usize, slope: f64, sd: f64, left: &[f64]) -> Option<(f64, f64)> {
         let peers: Vec<usize> = (0..self.rows.len())
-            .filter(|&i| own_scale(self.likelihood, i) == Some(parameter))
+            .filter(|&i| separate_noise_sd(self.likelihood, i) == Some(parameter))
             .collect();
         let in_sds = |i: usize, value: f64| value / self.rows[i].0;
         // Share of the error i that remains in the residual j.

@@ -5,7 +5,7 @@
 pub struct Misfit {
     /// The condition's coordinates, each in its own unit.
     pub point: Vec<f64>,
-    /// Number of what was tested, for example a wheel on a soil. The misfits determine how much two groups have in common.
+    /// Number of the group, for example of the runs of one wheel on one soil. The correlation between groups is inferred.
     pub group: usize,
     /// The mean [unit of the channel].
     pub value: f64,

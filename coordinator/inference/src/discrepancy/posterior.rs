@@ -16,7 +16,7 @@ const LOCAL_SDS: [f64; 4] = [0.0, 1.0, 2.0, 4.0];
 const BETWEEN: [f64; 4] = [0.0, 0.5, 0.8, 0.95];
 /// Length scales over the range of a coordinate.
 const LENGTHS: [f64; 6] = [0.1, 0.2, 0.4, 0.8, 1.6, 3.2];
-/// Parameters less probable than the best by this many nats are not followed.
+/// The search does not continue from parameters less probable than the best by this many nats.
 const REACH: f64 = 6.0;
 /// Maximum number of parameters that are evaluated.
 const MAX_PLACES: usize = 2000;
@@ -96,7 +96,7 @@ struct Grid {
 impl Grid {
     fn new(misfits: &[Misfit]) -> Self {
         let has_groups = misfits.iter().any(|misfit| misfit.group != misfits[0].group);
-        // A group of few misfits is represented too.
+        // The group is a coordinate of the selection, so that a group of few misfits is represented.
         let places = misfits
             .iter()
             .map(|misfit| misfit.point.iter().copied().chain([misfit.group as f64]));

@@ -121,6 +121,7 @@ impl Evolution {
         self.ask();
     }
 
+    /// Appends a generation to the history.
     fn record(&mut self, generation: &[Individual]) {
         let accepted: Vec<f64> = generation
             .iter()

@@ -1,4 +1,4 @@
-//! An evaluated point.
+//! An individual: an evaluated point of an evolution.
 
 use std::cmp::Ordering;
 

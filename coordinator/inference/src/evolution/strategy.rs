@@ -1,4 +1,4 @@
-//! Either strategy with its state.
+//! The strategy of an evolution, a genetic algorithm or CMA-ES, with its state.
 
 use super::cma_es::Restarts;
 use super::ga::Population;

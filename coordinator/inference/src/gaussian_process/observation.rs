@@ -1,4 +1,4 @@
-//! A measurement at a point.
+//! An observation: the mean of the repeats at one point.
 
 /// The mean of the repeats at one point.
 #[derive(Debug, Clone, PartialEq)]

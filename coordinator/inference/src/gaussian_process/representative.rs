@@ -1,4 +1,4 @@
-//! Points that represent many.
+//! The selection of points that represent many.
 
 /// Values within this share of the range are one level.
 const ONE_LEVEL: f64 = 0.1;
@@ -17,7 +17,7 @@ pub(super) fn levels(points: &[&[f64]], coordinate: usize) -> Vec<f64> {
     levels
 }
 
-/// The ascending numbers of at most `max` points that represent every level of every coordinate. The next point is the one whose
+/// Returns the ascending numbers of at most `max` points that represent every level of every coordinate. The next point is the one whose
 /// least represented level is represented least; among equals the one whose levels together are; then the first.
 pub(crate) fn representative(points: &[&[f64]], max: usize) -> Vec<usize> {
     if points.len() <= max {

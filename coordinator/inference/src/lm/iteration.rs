@@ -52,7 +52,7 @@ impl LmFit {
     /// Continues from the best start; if all were rejected, draws more, up to half of the budget.
     pub(super) fn after_starts(&mut self, proposals: &[Proposal], answers: &[PredictedValues]) {
         match self.lowest(proposals, answers) {
-            Some((_, point)) => self.go_on_from(point, Sides::One),
+            Some((_, point)) => self.continue_from(point, Sides::One),
             None if 2 * (self.count.evaluations + self.settings.starts) <= self.settings.max_evaluations => {
                 self.ask_starts();
             }
@@ -63,7 +63,8 @@ impl LmFit {
         }
     }
 
-    fn go_on_from(&mut self, point: FitPoint, sides: Sides) {
+    /// Makes a point the best and begins a Jacobian there, or finishes.
+    fn continue_from(&mut self, point: FitPoint, sides: Sides) {
         self.best = Some(point);
         if self.objective.axes.is_empty() {
             // The model has noise sds only, which are profiled already.
@@ -141,7 +142,7 @@ impl LmFit {
     fn decide(&mut self) {
         let Some(point) = &self.best else { return };
         let parabola = self.objective.quadratic(point, &self.columns);
-        // A parabola without a minimum promises an unbounded decrease.
+        // A parabola without a minimum predicts an unbounded decrease.
         let promised = parabola
             .step(0.0)
             .map_or(f64::INFINITY, |step| parabola.decrease(&step));
@@ -159,6 +160,7 @@ impl LmFit {
         self.settings.decrease_tolerance * (1.0 + point.value.abs())
     }
 
+    /// Asks for the steps of several dampings, or finishes.
     fn try_steps(&mut self) {
         let Some(point) = &self.best else { return };
         if self.remaining() == 0 {
@@ -216,6 +218,6 @@ impl LmFit {
         self.damping.accept(damping, decrease / promised);
         self.steps += 1;
         let sides = if self.settled { Sides::Both } else { Sides::One };
-        self.go_on_from(point, sides);
+        self.continue_from(point, sides);
     }
 }

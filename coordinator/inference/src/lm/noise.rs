@@ -3,7 +3,8 @@
 use statistics::likelihood::{ErrorSd, Likelihood};
 use statistics::prior::{Marginal, Prior};
 
-/// If the prior reaches down to 0, the smallest noise sd as a share of the prior's sd: vanishing residuals would have no most probable one.
+/// Smallest noise sd as a share of the prior's sd, if the prior reaches down to 0: residuals of zero would make an sd of 0 infinitely
+/// probable.
 const MIN_SHARE: f64 = 1e-9;
 /// Cells of the grid on which the minimum is bracketed.
 const CELLS: u32 = 64;
@@ -83,7 +84,7 @@ impl InferredNoise {
             }
         }
         let v = 0.5 * (left + right);
-        // The ends do not pass through their logarithm, so that a bound is met exactly.
+        // At an end the sd is taken as given, not from its logarithm, so that it equals the bound exactly.
         let sd = if best == 0 && slope(low) >= 0.0 {
             lower_sd
         } else if best == CELLS && slope(high) <= 0.0 {
@@ -126,7 +127,7 @@ impl InferredNoise {
         } else if slope > 0.0 {
             lower
         } else {
-            // The density is flat: any value serves, as the optimum of the likelihood is inside or at an end.
+            // The density is flat, so any value bounds the search together with the optimum of the likelihood.
             0.5 * (lower + upper)
         }
     }

@@ -6,9 +6,9 @@ use statistics::prior::{LN_SQRT_TAU, Prior};
 
 /// Normal scores between which an sd without a closed form is searched.
 const FARTHEST_SCORE: f64 = 4.0;
-/// A score so near to an end of that interval lies at it.
+/// A score this close to an end of that interval counts as lying at the end.
 const AT_END: f64 = 0.01;
-/// Sections of that interval: down to a width of 2e-4.
+/// Number of golden sections of that interval, down to a width of 2e-4.
 const SECTIONS: u32 = 22;
 /// Maximum number of passes over the sds, and the change of the scores at which they end.
 const PASSES: u32 = 6;
@@ -44,8 +44,8 @@ impl NoiseProfile {
 
     /// The most probable sds at predicted values; those of theta are ignored.
     ///
-    /// Entangled sds maximise the density of their normal scores, one after the other by golden sections. A scatter that the data do not
-    /// show has its most probable value at 0, where nothing follows for its uncertainty; its score has an inner mode.
+    /// Entangled sds maximise the density of their normal scores, one after the other by golden sections. The most probable
+    /// value of an sd of which the data show nothing is 0, where the density has no curvature; the density of its score has an inner mode.
     pub(super) fn profile(
         &self,
         prior: &Prior,
@@ -98,6 +98,7 @@ fn inferred_sds(likelihood: &Likelihood) -> Vec<usize> {
     parameters
 }
 
+/// Maximises the density over the scores of entangled sds.
 fn entangled(
     parameters: &[usize],
     prior: &Prior,
@@ -148,7 +149,7 @@ fn entangled(
         .collect()
 }
 
-/// The score of the highest density, which has one maximum.
+/// Finds the score of the highest density by golden sections; the density has one maximum.
 fn golden_maximum(density: impl Fn(f64) -> f64) -> f64 {
     let (mut low, mut high) = (-FARTHEST_SCORE, FARTHEST_SCORE);
     let inner = |low: f64, high: f64| [high - GOLDEN * (high - low), low + GOLDEN * (high - low)];

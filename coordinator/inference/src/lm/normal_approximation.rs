@@ -20,7 +20,7 @@ const NO_GAIN: f64 = 1e-9;
 /// Half the width of differences along the score of an sd.
 const DIFFERENCE: f64 = 1e-3;
 
-/// The posterior with the model's values on their tangents at a point, over the normal scores of all parameters.
+/// The posterior of the model linearised at a point, over the normal scores of all parameters.
 struct LinearisedPosterior<'a> {
     objective: &'a Objective,
     point: &'a FitPoint,
@@ -35,11 +35,11 @@ impl Objective {
     /// ln Z   ~= ln q(z*) + d/2 ln(2 pi) - 1/2 ln det H
     /// ```
     ///
-    /// with m and J the model's values and their Jacobian at the fit, t the axes of the fit. `H` has the Gauss-Newton
-    /// approximation along the model's parameters, the actual curvature along each sd, and the prior's own. No draw leaves
-    /// the bounds of its prior, and a parameter at a bound has the flank of a normal.
+    /// with m and J the model's values and their Jacobian at the fit, and t the coordinates of the fit. `H` is the sum of the curvature
+    /// of the prior, the Gauss-Newton curvature of the likelihood along the model's parameters, and its exact curvature along each sd.
+    /// Scores keep every draw within the bounds of its prior; the draws of a parameter at a bound have one tail of a normal density.
     ///
-    /// `None` where q has no finite mode. Draws whose log-likelihood is minus infinity are left out.
+    /// Returns `None` if q has no finite mode. Draws whose log-likelihood is minus infinity are left out.
     ///
     /// Checked by `lm::draws_of_a_linear_model_have_its_closed_form_and_evidence`, `lm::draws_stay_within_bounds_where_the_mode_is_at_one`.
     pub(super) fn approximation(
@@ -84,7 +84,7 @@ impl LinearisedPosterior<'_> {
             .collect()
     }
 
-    /// The model's values on their tangents.
+    /// Returns the values of the linearised model.
     fn predicted(&self, theta: &[f64]) -> Vec<f64> {
         let mut predicted = self.point.predicted.clone();
         let axes = self.objective.axes.iter().zip(&self.point.position);
@@ -102,7 +102,7 @@ impl LinearisedPosterior<'_> {
             .objective
             .likelihood
             .log_likelihood(&self.predicted(theta), theta);
-        // The sd was drawn from the flank of a prior that reaches zero.
+        // An sd of zero can be drawn from a prior that reaches zero; it has no likelihood.
         scored.unwrap_or(LogLikelihood::Impossible)
     }
 

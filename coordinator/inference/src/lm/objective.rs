@@ -124,7 +124,7 @@ impl Objective {
                 }
             }
         }
-        // The width of a normal marginal's axis is its standard deviation, the correlations' unit.
+        // Correlations relate normal marginals in units of their sds, and the axis of a normal marginal has this unit.
         let correlation = self.prior.slopes_of_correlation(&point.theta);
         let axis_of = |parameter: usize| self.axes.iter().position(|axis| axis.parameter == parameter);
         for (parameter, slope) in correlation.slopes {

@@ -18,12 +18,11 @@ pub struct QuadraticModel {
 }
 
 impl QuadraticModel {
-    /// The minimum of the parabola with `damping D` added to H, D = max(diagonal of H, 1); `None` where it has none.
+    /// Minimises the parabola within the box after adding `damping D` to H, with D = max(diagonal of H, 1); returns `None` if it has no
+    /// minimum. D is Marquardt's scale, but damps each axis at least as much as a prior of one width would.
     ///
-    /// This is Marquardt's scale, but each axis is damped at least as a prior of one width would do.
-    ///
-    /// Active set: an axis at a bound from which the slope points outwards does not move. Of the axes that the step
-    /// would carry over a bound, the first to reach it is fixed there, and the others are solved again.
+    /// The method is an active set: an axis at a bound does not move if the parabola falls outwards there. If the minimum lies beyond
+    /// bounds, the axis that meets its bound first along the step is fixed at the bound, and the other axes are solved again.
     pub fn step(&self, damping: f64) -> Option<Vec<f64>> {
         let count = self.gradient.len();
         let mut step = vec![0.0; count];
@@ -36,7 +35,7 @@ impl QuadraticModel {
             .collect();
         while !free.is_empty() {
             let solved = self.solve(&free, &step, damping)?;
-            // The share of the step at which each axis meets its bound.
+            // The axis that meets its bound first, and the share of the step at which it does.
             let mut first: Option<(usize, f64)> = None;
             for (position, &k) in free.iter().enumerate() {
                 let target = solved[position];
@@ -90,8 +89,8 @@ impl QuadraticModel {
         solved.iter().all(|x| x.is_finite()).then_some(solved)
     }
 
-    /// Standard deviation along each axis by the curvature, the others free; `None` for axes that do not move, and where
-    /// the parabola has no minimum.
+    /// Returns the standard deviation along each axis, marginal over the other axes, from the curvature; `None` for axes that do not move,
+    /// and for all axes if the parabola has no minimum.
     pub fn uncertainty(&self) -> Vec<Option<f64>> {
         let moving: Vec<usize> = (0..self.held.len()).filter(|&k| !self.held[k]).collect();
         let mut uncertainty = vec![None; self.held.len()];

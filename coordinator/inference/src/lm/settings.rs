@@ -94,13 +94,13 @@ pub enum LmSettingsError {
         /// The step as given.
         value: f64,
     },
-    /// Too few draws for an interval.
+    /// The draws are too few for an interval.
     #[error("particles = {draws} must be 0 or at least {MIN_DRAWS}")]
     TooFewDraws {
         /// The draws as given.
         draws: usize,
     },
-    /// More draws than a store keeps well.
+    /// There are more draws than a store should keep.
     #[error("particles = {draws} must be at most {MAX_PARTICLES}")]
     TooManyDraws {
         /// The draws as given.

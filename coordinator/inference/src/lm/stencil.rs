@@ -12,7 +12,7 @@ pub(super) enum Sides {
     Both,
 }
 
-/// A rejected difference is tried on the other side, then shorter by this factor on both.
+/// A rejected difference is repeated on the other side, then on both sides with its length times this factor.
 const SHORTER: f64 = 0.25;
 
 /// The measured differences around a point.
@@ -23,6 +23,7 @@ pub(super) struct Stencil {
     asked: Vec<(usize, f64)>,
 }
 
+/// The differences along one axis.
 #[derive(Debug, Clone, Default)]
 struct Differences {
     /// Offset and predicted values there.
@@ -82,7 +83,7 @@ impl Stencil {
         }
     }
 
-    /// Whether an axis is without any difference.
+    /// Whether an axis has no difference yet and offsets left to try.
     pub(super) fn is_incomplete(&self) -> bool {
         self.axes
             .iter()

@@ -30,6 +30,7 @@ pub(super) fn em(
     Some(mixture)
 }
 
+/// Draws the components of the first round.
 fn start(points: &WeightedPoints, size: usize, stream: &mut Stream) -> Option<Vec<Component>> {
     let all = Moments::new(
         points,
@@ -68,6 +69,7 @@ fn start(points: &WeightedPoints, size: usize, stream: &mut Stream) -> Option<Ve
     Some(components)
 }
 
+/// Updates all components by one round of expectation-maximisation.
 fn round(mixture: &Mixture, points: &WeightedPoints) -> Option<Vec<Component>> {
     let (size, dimension) = (mixture.components.len(), points.dimension as f64);
     let nu = DEGREES_OF_FREEDOM as f64;

@@ -1,4 +1,4 @@
-//! Points with weights.
+//! The weighted points that a mixture is fitted to.
 
 /// Share of the largest weight below which a point is left out of a fit.
 const NEGLIGIBLE: f64 = 1e-6;

@@ -10,13 +10,13 @@ use crate::tmcmc::Particle;
 pub enum StopReason {
     /// No step can decrease f by more than the tolerance.
     Decrease,
-    /// No trial improves f, and shorter steps are below the tolerance: the resolution that the model's noise allows.
+    /// No trial improves f, and shorter steps are below the tolerance: the fit has reached the resolution of the model's noise.
     Step,
     /// The budget of evaluations is spent; a better point may be near.
     Budget,
     /// No improvement for many generations: converged.
     Stagnation,
-    /// The generations are used up while the best still improved; a better point may be near.
+    /// The evolution reached its maximum number of generations while the best still improved; a better point may be near.
     Generations,
 }
 

@@ -1,4 +1,4 @@
-//! Whether a stage's chains have forgotten their start.
+//! The equilibrium of a stage: whether its chains have forgotten their start.
 
 use crate::diagnostics::rank_correlation;
 
@@ -66,7 +66,7 @@ pub(super) fn is_alarming(z: f64) -> bool {
     z.abs() > DRIFT_ALARM
 }
 
-/// z-score of a drift that is too small to show in any one stage: sum / sqrt(count).
+/// Computes the z-score of a drift over all stages, sum / sqrt(count), which may be significant although that of no single stage is.
 ///
 /// Chance drifts of neighbouring stages cancel in part (a stage that ends too high by chance is followed by a fall),
 /// so this understates the drift.

@@ -1,4 +1,4 @@
-//! A member of the population.
+//! A particle: a member of the population.
 
 use statistics::metamodel::ChainState;
 use statistics::{LogLikelihood, Prior};

@@ -1,4 +1,4 @@
-//! The scale of a random walk: its initial value, and the acceptance rate that it is adapted to.
+//! The scale of a random walk: its initial value, and the acceptance rate to which it is adapted.
 
 /// The optimal scale of a random walk on a normal target.
 ///

@@ -1,6 +1,6 @@
 //! The settings of the sampler, and their errors.
 
-/// How the population moves at an exponent.
+/// The algorithm that moves the population at an exponent.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Algorithm {
     /// Every particle moves by several steps of a mixed, self-scaling proposal; the default.
@@ -115,7 +115,7 @@ pub enum TmcmcSettingsError {
         /// The components as given.
         value: usize,
     },
-    /// A metamodel takes moves, and the stages take none.
+    /// The metamodel moves particles, but the stages draw them.
     #[error("metamodel_moves {value} needs stages = \"moves\": independent draws take no moves")]
     MetamodelNeedsMoves {
         /// The moves of the metamodel as given.

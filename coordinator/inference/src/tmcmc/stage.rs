@@ -43,6 +43,7 @@ enum Kind {
     Delayed,
 }
 
+/// The outcome of a step: the new state if it was accepted, and the numbers of scaled moves and of accepted ones.
 struct Decision {
     state: Option<ChainState>,
     scaled: u32,

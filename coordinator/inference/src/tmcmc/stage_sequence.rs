@@ -170,6 +170,7 @@ impl Sampler {
         Drift::new(&start, &end, &clusters, self.passage.step, moved)
     }
 
+    /// Appends the record of a finished stage.
     fn record(&mut self, stage: &Stage, drift: Drift) {
         let Passage {
             step,

@@ -70,7 +70,7 @@ impl ActsOn {
         }
     }
 
-    /// The channel; `None` of a stress.
+    /// The channel; `None` for a stress.
     pub(crate) fn channel(self) -> Option<Channel> {
         match self {
             ActsOn::Pressure | ActsOn::Shear => None,
@@ -97,11 +97,11 @@ pub(crate) struct Dependence {
     pub(crate) depends_on: DependsOn,
     /// Range of the variable.
     pub(crate) range: VariableRange,
-    /// Prior standard deviation of the addition, in the channel's SI unit; `None` of a stress, which is multiplied.
+    /// Prior standard deviation of the addition, in the channel's SI unit; `None` for a stress, which is multiplied.
     pub(crate) addition_sd: Option<f64>,
 }
 
-/// The dependences that an experiment can show: 28, without unmeasured channels and variables with too few levels.
+/// Lists the dependences that an experiment can show: 28, without unmeasured channels and variables with too few levels.
 ///
 /// Checked by `tests::dependences_are_those_that_fitted_runs_can_show`.
 pub(crate) fn dependences(experiment: &Experiment) -> Vec<Dependence> {
@@ -137,7 +137,7 @@ fn root_mean_square(runs: &[&TestRun], channel: Channel) -> f64 {
 }
 
 impl Dependence {
-    /// Whether a model shows it: one that is not ours has no stresses, and only the channels that it gives.
+    /// Whether a model shows the dependence: an external model has no stresses, and only the channels that it outputs.
     pub(crate) fn is_shown_by(&self, external: Option<&ExternalModel>) -> bool {
         let Some(model) = external else {
             return true;
@@ -167,9 +167,9 @@ impl Dependence {
         self.depends_on.variable()
     }
 
-    /// A piecewise linear curve, constant beyond the range: of a stress the logarithm of the factor, of a channel the addition.
+    /// Makes a piecewise linear curve, constant beyond the range: the logarithm of the factor on a stress, or the addition to a channel.
     ///
-    /// The knots are equidistant, of a logarithmic range in the logarithm. Their values `a0` to `a4` are strengths, neutral at 0.
+    /// The knots are equidistant; those of a logarithmic range are equidistant in the logarithm. Their values `a0` to `a4` are strengths, neutral at 0.
     /// Checked by `tests::a_curve_of_one_value_multiplies_everywhere`.
     pub(crate) fn curve(&self) -> CandidateEffect {
         let (target, words) = (self.target(), self.depends_on.words());
@@ -234,7 +234,7 @@ impl Dependence {
     }
 }
 
-/// The sum of the hat functions of the knots, each times its value.
+/// Returns the formula of the sum of the hat functions of the knots, each times its value.
 fn hats() -> String {
     let hats: Vec<String> = (0..KNOTS)
         .map(|i| format!("a{i} * max(1 - abs(place - {i}), 0)"))

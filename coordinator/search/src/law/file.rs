@@ -1,4 +1,4 @@
-//! The files of a law that a job can take beside those that it has.
+//! The effect files of a law, under names that are free in the job.
 
 use job::{NamedFiles, effect_name};
 use record::Extension;
@@ -16,10 +16,10 @@ pub(crate) struct LawFiles {
 }
 
 impl LawFiles {
-    /// What a job can add of a dependence; `None` where the job has its curve.
+    /// Returns the curve and forms of a dependence that a job does not have yet; `None` if the job has the curve.
     ///
-    /// A law that the job has is fitted again with the job, so the same law is not offered a second time: two of one form only share
-    /// the strength of one. A curve has every form within it. Another form is offered: what the first one leaves may have it. Checked
+    /// A law that the job has is fitted again with the job, so the same law is not offered a second time: two laws of one form only
+    /// share the strength of one. A curve can take every form. Another form is offered, because the remaining misfit may have it. Checked
     /// by `tests::a_law_that_a_job_has_is_not_offered_again`.
     ///
     /// # Arguments
@@ -46,7 +46,7 @@ impl LawFiles {
     }
 }
 
-/// The law in a file that the job does not have yet.
+/// Renames the file of a law to a name that is free in the job.
 fn beside(law: CandidateEffect, files: &NamedFiles) -> CandidateEffect {
     match law.extension {
         Extension::File { name, text } => CandidateEffect {
@@ -60,7 +60,7 @@ fn beside(law: CandidateEffect, files: &NamedFiles) -> CandidateEffect {
     }
 }
 
-/// `NAME.toml`, or with a number where the job has such a file of another effect.
+/// Returns `NAME.toml`, or a numbered name if the job has a file of this name for another effect.
 pub(crate) fn free_name(name: &str, files: &NamedFiles) -> String {
     let numbered = (2..).map(|number| format!("{name}-{number}.toml"));
     let mut names = std::iter::once(format!("{name}.toml")).chain(numbered);

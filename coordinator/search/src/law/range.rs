@@ -11,7 +11,7 @@ use shared::experiment::{Experiment, RunUse, TestRun, rim_speed_m_s};
 
 /// Knots of a curve.
 pub(crate) const KNOTS: usize = 5;
-/// Least levels of a designed variable; two show a change, but not its form.
+/// Minimum number of levels of a designed variable; two show a change, but not its form.
 const LEVELS: usize = 3;
 /// Speeds that differ by less than this share are one level `[1]`: the accuracy of rigs is some per cent.
 const SPEED_TOLERANCE: f64 = 0.1;
@@ -21,8 +21,8 @@ const LOAD_TOLERANCE: f64 = 0.15;
 const SLIP_TOLERANCE: f64 = 0.02;
 /// Lower end of the range of a speed or displacement that varies along the contact, as a share of its maximum `[1]`.
 const REACH: f64 = 1.0 / 30.0;
-/// Least speed `[m/s]` and displacement `[m]` of a range.
-const LEAST: f64 = 1e-5;
+/// Smallest speed `[m/s]` and displacement `[m]` of a range.
+const MIN_LENGTH: f64 = 1e-5;
 /// Sinkage over the radius of the wheel, where none is measured `[1]`.
 const USUAL_SINKAGE: f64 = 0.1;
 
@@ -126,8 +126,8 @@ pub(crate) struct VariableRange {
 }
 
 impl VariableRange {
-    /// The range of a variable; `None` if it is empty.
-    fn of(variable: DependsOn, lowest: f64, highest: f64) -> Option<VariableRange> {
+    /// Makes the range of a variable; `None` if it is empty.
+    fn new(variable: DependsOn, lowest: f64, highest: f64) -> Option<VariableRange> {
         let range = VariableRange {
             lowest: rounded(lowest, 4),
             highest: rounded(highest, 4),
@@ -158,13 +158,13 @@ impl VariableRange {
     }
 }
 
-/// A number rounded to significant digits, as in files.
+/// Rounds a number to significant digits, as in files.
 pub(super) fn rounded(x: f64, digits: usize) -> f64 {
     let decimals = digits - 1;
     format!("{x:.decimals$e}").parse().unwrap_or(x)
 }
 
-/// The variables along which the fitted runs can show a dependence, with their ranges.
+/// Returns the variables along which the fitted runs can show a dependence, with their ranges.
 ///
 /// Slip, sled speed and wheel load need three designed levels. The sled speed needs them of sled and rim: where a rig keeps one of
 /// these speeds and sets the slip by the other, slip and speed are confounded. Variables within the contact are always used.
@@ -175,7 +175,7 @@ pub(crate) fn ranges(experiment: &Experiment) -> BTreeMap<DependsOn, VariableRan
         .iter()
         .filter(|r| r.usage == RunUse::Fit)
         .collect();
-    let all = |of: fn(&TestRun) -> f64| -> Vec<f64> { runs.iter().map(|&run| of(run)).collect() };
+    let all = |value: fn(&TestRun) -> f64| -> Vec<f64> { runs.iter().map(|&run| value(run)).collect() };
     let radius = |run: &TestRun| experiment.wheels[&run.wheel].radius_m;
     let sinkages: Vec<f64> = measured(&runs, Channel::Sinkage).collect();
     let deepest = match greatest(sinkages.iter().copied()) {
@@ -191,7 +191,7 @@ pub(crate) fn ranges(experiment: &Experiment) -> BTreeMap<DependsOn, VariableRan
     let turning = || runs.iter().filter(|run| rim(run) > 0.0);
     let into_soil = greatest(turning().map(|run| rim(run) * libm::sin(angle(run).min(FRAC_PI_2))));
     let slid = greatest(turning().map(|run| slide(run) / rim(run) * radius(run) * angle(run)));
-    let from_reach = |most: f64| ((REACH * most).max(LEAST), most.max(LEAST / REACH));
+    let from_reach = |max: f64| ((REACH * max).max(MIN_LENGTH), max.max(MIN_LENGTH / REACH));
     let of_designed = |variable: DependsOn| -> Option<(f64, f64)> {
         let (values, levels) = match variable {
             DependsOn::Slip => (all(|r| r.slip), slip_levels(all(|r| r.slip))),
@@ -208,7 +208,7 @@ pub(crate) fn ranges(experiment: &Experiment) -> BTreeMap<DependsOn, VariableRan
         DependsOn::Z => Some((0.0, 1.2 * deepest)),
         DependsOn::Vn => Some(from_reach(into_soil)),
         DependsOn::Vt => {
-            let lowest = (0.3 * slowest).max(LEAST);
+            let lowest = (0.3 * slowest).max(MIN_LENGTH);
             Some((lowest, (1.5 * fastest).max(lowest / REACH)))
         }
         DependsOn::J => Some(from_reach(slid)),
@@ -224,7 +224,7 @@ pub(crate) fn ranges(experiment: &Experiment) -> BTreeMap<DependsOn, VariableRan
         .filter(|_| !runs.is_empty())
         .filter_map(|variable| {
             let (lowest, highest) = ends(variable)?;
-            Some((variable, VariableRange::of(variable, lowest, highest)?))
+            Some((variable, VariableRange::new(variable, lowest, highest)?))
         })
         .collect()
 }
@@ -252,12 +252,12 @@ fn speed_levels(speeds: Vec<f64>) -> usize {
     levels(speeds, |first, _, speed| speed > first * (1.0 + SPEED_TOLERANCE))
 }
 
-/// A chain of neighbouring loads is scatter around one or two designed loads, however long it is.
+/// Counts levels of loads: a chain of neighbouring loads, however long it is, counts as scatter around one or two designed loads.
 fn load_levels(loads: Vec<f64>) -> usize {
     levels(loads, |_, before, load| load > before * (1.0 + LOAD_TOLERANCE))
 }
 
-/// Number of levels. `is_next` decides whether a value begins a level, from the first and the last value of the level before.
+/// Counts levels. `is_next` decides, from the first and the last value of a level, whether the next value begins another.
 fn levels(mut values: Vec<f64>, is_next: impl Fn(f64, f64, f64) -> bool) -> usize {
     values.sort_by(f64::total_cmp);
     let mut values = values.into_iter();

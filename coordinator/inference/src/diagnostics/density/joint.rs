@@ -90,9 +90,9 @@ impl Kernel {
         let pairs = values[0].iter().zip(values[1]);
         let cross: f64 = pairs.map(|(x, y)| (x - mean_x) * (y - mean_y)).sum();
         let correlation = cross / ((n - 1.0) * sd_x * sd_y);
-        // 1 - r^2, also where r is so near 1 that rounding decides
+        // This product is 1 - r^2, accurate even for r near 1.
         let rest = (1.0 - correlation) * (1.0 + correlation);
-        // a sd of 0 makes the correlation no number, which is not greater either
+        // An sd of 0 makes the correlation NaN.
         if rest <= 1e-12 || rest.is_nan() {
             return None;
         }

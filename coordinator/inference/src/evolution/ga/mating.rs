@@ -52,6 +52,7 @@ pub(super) fn children(pair: &MatingPair, stream: &mut Stream) -> [Vec<f64>; 2] 
     [first_child, second_child]
 }
 
+/// Moves a child along the difference of two members.
 fn drift(child: &mut [f64], [from, to]: [&[f64]; 2], stream: &mut Stream) {
     let length = stream.normal_pair().0;
     for (t, (a, b)) in child.iter_mut().zip(from.iter().zip(to)) {
@@ -71,8 +72,9 @@ fn spread_factor(stream: &mut Stream) -> f64 {
     }
 }
 
-fn mutate(child: &mut [f64], must: bool, stream: &mut Stream) {
-    let forced = if must {
+/// Mutates each coordinate with probability 1 / dimension; if `is_forced`, at least one.
+fn mutate(child: &mut [f64], is_forced: bool, stream: &mut Stream) {
+    let forced = if is_forced {
         stream.below(child.len())
     } else {
         child.len()

@@ -11,7 +11,7 @@ use statistics::rng::Stream;
 /// Individuals of a tournament; the best of them becomes a parent.
 const TOURNAMENT: usize = 3;
 
-/// The individuals that have children.
+/// The members that survive and have children, with the progress of the evolution.
 #[derive(Debug, Clone)]
 pub(crate) struct Population {
     settings: GaSettings,

@@ -1,4 +1,4 @@
-//! The coordinates in which a mixture is fitted, and a fit in them.
+//! The frame of a fit: the coordinates in which a mixture is fitted to draws.
 
 use statistics::prior::{LN_SQRT_TAU, Prior};
 use statistics::rng::Stream;
@@ -11,7 +11,7 @@ use crate::mixture::{Mixture, WeightedPoints, fitted};
 enum Frame {
     /// The coordinates of the sampler. A straight ridge of uniform parameters is straight here, however thin.
     Sampling,
-    /// The normal score of each parameter under its prior. A posterior at a bound of the prior is the flank of a normal density here.
+    /// The normal score of each parameter under its prior. A posterior at a bound of the prior is one tail of a normal density here.
     NormalScores,
 }
 

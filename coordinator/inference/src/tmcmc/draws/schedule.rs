@@ -5,10 +5,10 @@ use super::sample::WeightedSample;
 /// Smallest and largest ESS/N of the draws at the next exponent.
 const SHARES: [f64; 2] = [0.2, 0.5];
 
-/// Effective draws for each number of the mixture: a component has d + 1 numbers for each dimension, or fewer.
+/// Effective draws for each free number of the mixture: a component has d + 1 numbers for each dimension, or fewer.
 const DRAWS_A_NUMBER: f64 = 6.0;
 
-/// If the fit at the present exponent was poor, the next must leave this share of the effective draws, and this share suffices.
+/// If the fit at the present exponent was poor, the next exponent must leave at least this share of its effective draws.
 const KEPT: f64 = 0.1;
 
 /// Bisections on the logarithm of the step: to 1e-12 of it.

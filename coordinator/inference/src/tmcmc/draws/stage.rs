@@ -64,7 +64,7 @@ impl Forecast {
     }
 }
 
-/// The consequence of a completed round of draws.
+/// The decision after a completed round of draws.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Standing {
     /// The draws represent their target.
@@ -86,7 +86,7 @@ pub(crate) struct DrawStart {
     pub(crate) anchor: Anchor,
     /// The draws of the stage before.
     pub(crate) sample: WeightedSample,
-    /// The fit of which these were drawn; `None`: they are prior draws.
+    /// The fit that these were drawn from; `None`: they are prior draws.
     pub(crate) fit: Option<Fit>,
 }
 
@@ -176,7 +176,7 @@ impl DrawStage {
         }
     }
 
-    /// The consequence of the draws so far; `weights` are theirs at this stage's exponent.
+    /// Decides how the stage continues after the draws so far; `weights` are theirs at this stage's exponent.
     pub(crate) fn standing(&self, weights: Option<&ImportanceWeights>, particles: usize) -> Standing {
         // A proposal is judged by its first round.
         let drawn = self.sample.states.len();

@@ -1,4 +1,4 @@
-//! The transition from the pool of one stage to the chains of the next.
+//! The transition to the next stage: its exponent, its weights and its resampled chains.
 
 use super::ching_chen;
 use super::resample::systematic;

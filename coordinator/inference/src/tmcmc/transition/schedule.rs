@@ -2,6 +2,7 @@
 
 use super::weights::Weights;
 
+/// The search ends at this width of the bracket, or at this excess of the coefficient of variation, both of logarithms.
 const TOLERANCE: f64 = 1e-10;
 /// Maximum number of trials, far more than false position takes.
 const MAX_TRIALS: usize = 200;
