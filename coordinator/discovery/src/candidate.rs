@@ -24,6 +24,20 @@ pub struct Candidate {
 }
 
 impl Candidate {
+    /// Makes a candidate that is absent where its strengths are 0, combines with every other one and belongs to no family.
+    #[must_use]
+    pub fn new(name: impl Into<String>, parameters: Vec<Marginal>, strengths: Vec<usize>) -> Self {
+        Self {
+            name: name.into(),
+            parameters,
+            strengths,
+            neutral: 0.0,
+            excludes: Vec::new(),
+            family: None,
+            has_low_fidelity: false,
+        }
+    }
+
     /// Whether the candidate is another model with the same parameters.
     #[must_use]
     pub fn is_switch(&self) -> bool {

@@ -1,31 +1,12 @@
 //! The search for one effect, on linear models whose evidence has a closed form.
 
+use crate::setup::{data, effect, half_normal, normal, rank};
 use discovery::{Candidate, CandidateError, EffectRanking, EffectSearch, EvidenceMethod, SearchSettings};
 use nalgebra::{DMatrix, DVector};
-use statistics::{Datum, Distribution, ErrorSd, Likelihood, Marginal, Prior};
+use statistics::{Likelihood, Prior};
 
 const SD: f64 = 0.5;
 const DATA: usize = 12;
-
-fn normal(mean: f64, sd: f64) -> Marginal {
-    Marginal::new(Distribution::Normal { mean, sd }, None).unwrap()
-}
-
-fn half_normal(scale: f64) -> Marginal {
-    Marginal::new(Distribution::HalfNormal { scale }, None).unwrap()
-}
-
-fn effect(name: &str, prior: Marginal) -> Candidate {
-    Candidate {
-        name: name.into(),
-        parameters: vec![prior],
-        strengths: vec![0],
-        neutral: 0.0,
-        excludes: Vec::new(),
-        family: None,
-        has_low_fidelity: false,
-    }
-}
 
 /// How the predictions change with each parameter: two of the base, then an effect's.
 fn column(k: usize, i: usize) -> f64 {
@@ -43,7 +24,7 @@ fn column(k: usize, i: usize) -> f64 {
 
 /// Two straight-line parameters with unit priors.
 fn base() -> Prior {
-    Prior::new(vec![normal(0.0, 1.0), normal(0.0, 1.0)])
+    Prior::new(vec![normal(1.0), normal(1.0)])
 }
 
 fn measured(truth: &[(usize, f64)]) -> Vec<f64> {
@@ -53,13 +34,11 @@ fn measured(truth: &[(usize, f64)]) -> Vec<f64> {
 }
 
 fn likelihood(values: &[f64]) -> Likelihood {
-    let datum = |(run, &value): (usize, &f64)| Datum {
-        run,
-        channel: 0,
-        value,
-        sd: ErrorSd::Known(SD),
-    };
-    Likelihood::new(values.iter().enumerate().map(datum).collect()).unwrap()
+    Likelihood::new(data(values, SD)).unwrap()
+}
+
+fn begin(prior: &Prior, values: &[f64], candidates: &[Candidate]) -> Result<EffectSearch, CandidateError> {
+    EffectSearch::new(prior, likelihood(values), candidates, &SearchSettings::default())
 }
 
 /// Searches candidates; candidate k changes the predictions along column `columns[k]`, a switch by that column.
@@ -75,27 +54,15 @@ fn search_from(
     columns: &[usize],
     backwards: bool,
 ) -> EffectRanking {
-    let mut search =
-        EffectSearch::new(prior, likelihood(values), candidates, &SearchSettings::default()).unwrap();
-    while search.ranking().is_none() {
-        let pending: Vec<_> = search.pending().collect();
-        let mut order: Vec<usize> = (0..pending.len()).collect();
-        if backwards {
-            order.reverse();
-        }
-        for index in order {
-            let request = &pending[index];
-            let predict = |i: usize| {
-                let change = request.candidate.map_or(0.0, |k| {
-                    request.theta.get(2).unwrap_or(&1.0) * column(columns[k], i)
-                });
-                request.theta[0] * column(0, i) + request.theta[1] * column(1, i) + change
-            };
-            let predicted: Vec<f64> = (0..DATA).map(predict).collect();
-            search.tell(index, Some(&predicted)).unwrap();
-        }
-    }
-    search.ranking().unwrap().clone()
+    rank(begin(prior, values, candidates).unwrap(), backwards, |request| {
+        let predict = |i: usize| {
+            let change = request.candidate.map_or(0.0, |k| {
+                request.theta.get(2).unwrap_or(&1.0) * column(columns[k], i)
+            });
+            request.theta[0] * column(0, i) + request.theta[1] * column(1, i) + change
+        };
+        Some((0..DATA).map(predict).collect())
+    })
 }
 
 /// `ln N(y; 0, SD^2 I + sum_k scale_k^2 c_k c_k')`: the evidence of a linear model with normal priors.
@@ -145,7 +112,7 @@ fn mixed(evidence: impl Fn(f64) -> f64) -> f64 {
 #[test]
 fn evidence_of_a_linear_extension_is_exact() {
     let values = measured(&[(0, 0.7), (2, 1.5)]);
-    let ranking = search(&values, &[effect("square", normal(0.0, 2.0))], &[2], false);
+    let ranking = search(&values, &[effect("square", normal(2.0))], &[2], false);
     let with = |scale: f64| log_evidence(&values, &[BASE[0], BASE[1], (2, 2.0 * scale)]);
     let expected = mixed(with) - log_evidence(&values, &BASE);
     let ranked = ranking.effect(Some(0)).unwrap();
@@ -161,13 +128,7 @@ fn correlations_of_the_prior_count() {
     let prior = base()
         .correlated(vec![0, 1], &[vec![1.0, -0.8], vec![-0.8, 1.0]])
         .unwrap();
-    let ranking = search_from(
-        &prior,
-        &values,
-        &[effect("square", normal(0.0, 2.0))],
-        &[2],
-        false,
-    );
+    let ranking = search_from(&prior, &values, &[effect("square", normal(2.0))], &[2], false);
     // c0 z0 + c1 (-0.8 z0 + 0.6 z1): the same model with independent z along other columns.
     let evidence = |strength: &[(usize, f64)]| {
         let covariance = DMatrix::from_fn(DATA, DATA, |i, j| {
@@ -188,7 +149,7 @@ fn a_switch_has_the_evidence_of_its_model() {
     let switch = Candidate {
         parameters: Vec::new(),
         strengths: Vec::new(),
-        ..effect("other square", normal(0.0, 1.0))
+        ..effect("other square", normal(1.0))
     };
     for (truth, is_better) in [(1.0, true), (0.0, false)] {
         let values = measured(&[(0, 0.7), (2, truth)]);
@@ -262,7 +223,7 @@ fn a_strength_of_one_sign_is_truncated_exactly_on_either_side_of_zero() {
 /// Square, cube, all but the square again, and the base's own constant.
 fn four() -> ([Candidate; 4], [usize; 4]) {
     let names = ["square", "cube", "likeness", "constant"];
-    (names.map(|name| effect(name, normal(0.0, 1.0))), [2, 3, 4, 5])
+    (names.map(|name| effect(name, normal(1.0))), [2, 3, 4, 5])
 }
 
 /// The classes of the credible set, the most probable first.
@@ -317,7 +278,7 @@ fn effects_that_the_base_absorbs_cannot_be_excluded() {
     let values = measured(&[(0, 0.3)]);
     let (mut candidates, columns) = four();
     // Weaker than the noise even before the base is fitted again.
-    candidates[1].parameters[0] = normal(0.0, 0.1);
+    candidates[1].parameters[0] = normal(0.1);
     let ranking = search(&values, &candidates, &columns, false);
     assert_eq!(ranking.cannot_exclude, [1, 3]);
 }
@@ -334,50 +295,28 @@ fn the_order_within_a_round_does_not_matter() {
 
 #[test]
 fn a_candidate_that_the_model_always_rejects_is_listed_and_not_ranked() {
-    let candidates = vec![
-        effect("square", normal(0.0, 1.0)),
-        effect("cube", normal(0.0, 1.0)),
-    ];
-    let values = measured(&[(0, 0.3)]);
-    let mut search = EffectSearch::new(
-        &base(),
-        likelihood(&values),
-        &candidates,
-        &SearchSettings::default(),
-    )
-    .unwrap();
-    while search.ranking().is_none() {
-        for (index, request) in search.pending().collect::<Vec<_>>().iter().enumerate() {
-            let change = |i: usize| request.candidate.map_or(0.0, |_| request.theta[2] * column(2, i));
-            let line = |i: usize| request.theta[0] + request.theta[1] * column(1, i) + change(i);
-            let predicted: Vec<f64> = (0..DATA).map(line).collect();
-            let answer = (request.candidate != Some(1)).then_some(predicted);
-            search.tell(index, answer.as_deref()).unwrap();
-        }
-    }
-    let ranking = search.ranking().unwrap();
+    let candidates = [effect("square", normal(1.0)), effect("cube", normal(1.0))];
+    let search = begin(&base(), &measured(&[(0, 0.3)]), &candidates).unwrap();
+    let ranking = rank(search, false, |request| {
+        let change = |i: usize| request.candidate.map_or(0.0, |_| request.theta[2] * column(2, i));
+        let line = |i: usize| request.theta[0] + request.theta[1] * column(1, i) + change(i);
+        (request.candidate != Some(1)).then(|| (0..DATA).map(line).collect())
+    });
     assert_eq!(ranking.refused, [1]);
     assert!(ranking.effect(Some(1)).is_none() && ranking.effect(Some(0)).is_some());
 }
 
 #[test]
 fn a_candidate_without_a_strength_is_rejected_with_the_reason() {
-    let begin = |candidates: Vec<Candidate>| {
-        EffectSearch::new(
-            &base(),
-            likelihood(&measured(&[])),
-            &candidates,
-            &SearchSettings::default(),
-        )
-        .map(drop)
-    };
-    let mut broken = effect("square", normal(0.0, 1.0));
+    let begin =
+        |candidate: &Candidate| begin(&base(), &measured(&[]), std::slice::from_ref(candidate)).map(drop);
+    let mut broken = effect("square", normal(1.0));
     broken.strengths = vec![1];
     assert!(matches!(
-        begin(vec![broken.clone()]),
+        begin(&broken),
         Err(CandidateError::NoStrength { parameters: 1, .. })
     ));
     broken.strengths = vec![0];
     broken.neutral = f64::NAN;
-    assert!(matches!(begin(vec![broken]), Err(CandidateError::Neutral { .. })));
+    assert!(matches!(begin(&broken), Err(CandidateError::Neutral { .. })));
 }

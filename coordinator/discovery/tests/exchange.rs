@@ -3,7 +3,8 @@
 use discovery::{Conclusion, QueriedModel, Query, SearchSettings, Smoothness};
 use statistics::rng::Stream;
 
-use crate::search::{CONSTANT, SQUARE, WIDTH, answer, measured, run, task};
+use crate::search::{CONSTANT, SQUARE, WIDTH, answer, measured, task};
+use crate::setup;
 
 /// The width again, in place of the constant.
 const TWIN: usize = CONSTANT;
@@ -25,7 +26,7 @@ fn conclude(scatter: f64) -> Conclusion {
         has_numerical_noise: true,
         ..SearchSettings::default()
     };
-    run(task, false, |query| {
+    setup::conclude(task, false, |query| {
         let QueriedModel::With(effects) = &query.model else {
             return None;
         };

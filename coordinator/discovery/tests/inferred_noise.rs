@@ -1,9 +1,10 @@
 //! Claims on noise that is inferred with the misfit.
 
 use discovery::{Conclusion, Query, SearchTask, SearchVerdict};
-use statistics::{Datum, Distribution, ErrorSd, Likelihood, Marginal, Prior};
+use statistics::{Datum, ErrorSd, Likelihood, Prior};
 
-use super::search::{SQUARE, answer, measured, normal, run, task};
+use super::search::{SQUARE, answer, measured, task};
+use super::setup::{self, noise, normal};
 
 /// The parameter of the base that is the inferred sd.
 const NOISE: usize = 2;
@@ -15,11 +16,6 @@ const NOISE: usize = 2;
 fn conclude(is_known: impl Fn(usize) -> bool, conditions: Vec<Vec<usize>>) -> Conclusion {
     let values = measured(|x, _| 0.3 + 0.5 * x + 0.8 * x * x);
     let whole = task(&values);
-    let sd = Distribution::Lognormal {
-        median: 0.2,
-        factor: 3.0,
-    };
-    let sd = Marginal::new(sd, None).unwrap();
     let kept = || (0..values.len()).step_by(2);
     let data = kept().enumerate().map(|(place, i)| Datum {
         sd: match is_known(place) {
@@ -29,13 +25,13 @@ fn conclude(is_known: impl Fn(usize) -> bool, conditions: Vec<Vec<usize>>) -> Co
         ..whole.likelihood.data()[i]
     });
     let task = SearchTask {
-        prior: Prior::new(vec![normal(1.0), normal(1.0), sd]),
+        prior: Prior::new(vec![normal(1.0), normal(1.0), noise()]),
         likelihood: Likelihood::new(data.collect()).unwrap(),
         levels: Vec::new(),
         conditions,
         ..whole
     };
-    run(task, false, |query| {
+    setup::conclude(task, false, |query| {
         let mut model = query.clone();
         model.theta.remove(NOISE);
         let values = answer(&model);

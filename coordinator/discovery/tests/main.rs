@@ -8,3 +8,4 @@ mod inferred_noise;
 mod pairs;
 mod rough_model;
 mod search;
+mod setup;

@@ -1,14 +1,11 @@
 //! Effects that do little alone and much together, on a model that is linear in their strengths.
 
+use crate::setup::{self, data, effect, normal};
 use discovery::{
-    Candidate, Conclusion, DETECTED, DiscoverySearch, ProposedRuns, QueriedModel, Query, SearchSettings,
-    SearchTask,
+    Candidate, Conclusion, DETECTED, ProposedRuns, QueriedModel, Query, SearchSettings, SearchTask,
 };
 use statistics::rng::Stream;
-use statistics::{
-    CommonError, CommonErrorSize, Datum, Discrepancy, Distribution, ErrorLaw, ErrorSd, Likelihood, Marginal,
-    Prior,
-};
+use statistics::{CommonError, CommonErrorSize, Discrepancy, ErrorLaw, Likelihood, Prior};
 
 const DATA: usize = 24;
 /// The model lacks the difference of these two; either alone is nearly the same parabola, which the model has.
@@ -32,20 +29,8 @@ fn added(wave: f64, k: usize, x: f64) -> f64 {
     }
 }
 
-fn normal() -> Marginal {
-    Marginal::new(Distribution::Normal { mean: 0.0, sd: 1.0 }, None).unwrap()
-}
-
 fn library(steps: usize) -> Vec<Candidate> {
-    let candidate = |k: usize| Candidate {
-        name: k.to_string(),
-        parameters: vec![normal()],
-        strengths: vec![0],
-        neutral: 0.0,
-        excludes: Vec::new(),
-        family: None,
-        has_low_fidelity: false,
-    };
+    let candidate = |k: usize| effect(&k.to_string(), normal(1.0));
     (0..2 + steps).map(candidate).collect()
 }
 
@@ -72,25 +57,20 @@ fn found_in(library: Vec<Candidate>, wave: f64, sd: f64, has_discrepancy: bool) 
         let steps: f64 = (2..2 + STEPS).map(|k| 2.5 * sd * added(wave, k, x(i))).sum();
         0.3 + 0.5 * x(i) + 2.5 * (added(wave, WAVY, x(i)) - added(wave, PLAIN, x(i))) + steps
     };
-    let datum = |run: usize| Datum {
-        run,
-        channel: 0,
-        value: truth(run) + sd * noise[run],
-        sd: ErrorSd::Known(sd),
-    };
+    let values: Vec<f64> = (0..DATA).map(|run| truth(run) + sd * noise[run]).collect();
     let each = |i: usize| CommonError {
         data: vec![i],
         size: CommonErrorSize::Discrepancy { group: 0 },
     };
-    let data = (0..DATA).map(datum).collect();
     let (common, discrepancy) = if has_discrepancy {
         ((0..DATA).map(each).collect(), Discrepancy::Unknown)
     } else {
         (Vec::new(), Discrepancy::None)
     };
-    let likelihood = Likelihood::with_common(data, ErrorLaw::Gaussian, common, vec![discrepancy]).unwrap();
-    let mut search = DiscoverySearch::new(SearchTask {
-        prior: Prior::new(vec![normal(), normal()]),
+    let likelihood =
+        Likelihood::with_common(data(&values, sd), ErrorLaw::Gaussian, common, vec![discrepancy]).unwrap();
+    let task = SearchTask {
+        prior: Prior::new(vec![normal(1.0), normal(1.0)]),
         likelihood,
         library,
         laws: Vec::new(),
@@ -100,17 +80,8 @@ fn found_in(library: Vec<Candidate>, wave: f64, sd: f64, has_discrepancy: bool) 
         proposed: ProposedRuns::default(),
         max_effects: 2,
         settings: SearchSettings::default(),
-    })
-    .unwrap();
-    loop {
-        if let Some(conclusion) = search.conclusion() {
-            return conclusion.clone();
-        }
-        for index in 0..search.pending().len() {
-            let values = predict(wave, search.query(index).unwrap());
-            search.tell(index, Some(&values)).unwrap();
-        }
-    }
+    };
+    setup::conclude(task, false, |query| Some(predict(wave, query)))
 }
 
 fn effects(conclusion: &Conclusion) -> Vec<usize> {

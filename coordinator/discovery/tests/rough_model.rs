@@ -1,14 +1,12 @@
 //! The search of a rough model, whose evaluations are expensive, compared with the same model without its jumps.
 
+use crate::setup::{data, effect, half_normal, normal, rank};
 use discovery::{
     Candidate, EffectRanking, EffectRequest, EffectSearch, EvidenceMethod, RankedEffect, SearchSettings,
     Smoothness,
 };
 use statistics::rng::Stream;
-use statistics::{
-    CommonError, CommonErrorSize, Datum, Discrepancy, Distribution, ErrorLaw, ErrorSd, Likelihood, Marginal,
-    Prior,
-};
+use statistics::{CommonError, CommonErrorSize, Datum, Discrepancy, ErrorLaw, Likelihood, Prior};
 
 const DATA: usize = 48;
 const EFFECTS: usize = 30;
@@ -18,15 +16,9 @@ const SCATTER: f64 = 0.05;
 const STRENGTH: f64 = 1.5;
 
 fn candidate(k: usize) -> Candidate {
-    let prior = Marginal::new(Distribution::HalfNormal { scale: 1.0 }, None).unwrap();
     Candidate {
-        name: format!("effect {k}"),
-        parameters: vec![prior],
-        strengths: vec![0],
-        neutral: 0.0,
-        excludes: Vec::new(),
-        family: None,
         has_low_fidelity: true,
+        ..effect(&format!("effect {k}"), half_normal(1.0))
     }
 }
 
@@ -51,20 +43,19 @@ fn predicted(theta: &[f64], effect: Option<usize>, smoothness: Smoothness) -> Ve
     (0..DATA).map(value).collect()
 }
 
-fn data(truth: usize) -> Vec<Datum> {
+fn data_of(truth: usize) -> Vec<Datum> {
     let noise = Stream::new(2, 0, truth as u64, 0).normals(DATA);
     let clean = predicted(&[0.4, -0.7, STRENGTH], Some(truth), Smoothness::Smooth);
-    let datum = |(run, (value, noise)): (usize, (&f64, &f64))| Datum {
-        run,
-        channel: 0,
-        value: value + SD * noise,
-        sd: ErrorSd::Known(SD),
-    };
-    clean.iter().zip(&noise).enumerate().map(datum).collect()
+    let values: Vec<f64> = clean
+        .iter()
+        .zip(&noise)
+        .map(|(value, noise)| value + SD * noise)
+        .collect();
+    data(&values, SD)
 }
 
 fn search(truth: usize, smoothness: Smoothness) -> EffectRanking {
-    searched(Likelihood::new(data(truth)).unwrap(), smoothness)
+    searched(Likelihood::new(data_of(truth)).unwrap(), smoothness)
 }
 
 fn searched(likelihood: Likelihood, smoothness: Smoothness) -> EffectRanking {
@@ -92,7 +83,7 @@ fn beside(truth: usize, low_fidelity: impl Fn(&EffectRequest) -> Option<Vec<f64>
         has_low_fidelity: true,
         ..SearchSettings::default()
     };
-    let likelihood = Likelihood::new(data(truth)).unwrap();
+    let likelihood = Likelihood::new(data_of(truth)).unwrap();
     run(likelihood, &settings, |request| match request.is_low_fidelity {
         true => low_fidelity(request),
         false => Some(predicted(&request.theta, request.candidate, Smoothness::Rough)),
@@ -110,17 +101,13 @@ fn run(
     settings: &SearchSettings,
     answer: impl Fn(&EffectRequest) -> Option<Vec<f64>>,
 ) -> EffectRanking {
-    let normal = || Marginal::new(Distribution::Normal { mean: 0.0, sd: 1.0 }, None).unwrap();
     let candidates: Vec<Candidate> = (0..EFFECTS).map(candidate).collect();
-    let prior = Prior::new(vec![normal(), normal()]);
-    let mut search = EffectSearch::new(&prior, likelihood, &candidates, settings).unwrap();
-    while search.ranking().is_none() {
-        let pending: Vec<_> = search.pending().collect();
-        for (index, request) in pending.iter().enumerate() {
-            search.tell(index, answer(request).as_deref()).unwrap();
-        }
-    }
-    search.ranking().unwrap().clone()
+    let prior = Prior::new(vec![normal(1.0), normal(1.0)]);
+    rank(
+        EffectSearch::new(&prior, likelihood, &candidates, settings).unwrap(),
+        false,
+        answer,
+    )
 }
 
 fn leader(ranking: &EffectRanking) -> &RankedEffect {
@@ -155,7 +142,7 @@ fn a_rough_model_is_searched_with_fewer_evaluations_and_names_the_same() {
 #[test]
 fn a_rough_model_that_contradicts_the_data_is_confirmed_thoroughly_with_a_discrepancy_too() {
     let confirmation = |misfit: f64, discrepancy: bool| {
-        let mut data = data(13);
+        let mut data = data_of(13);
         for (i, datum) in data.iter_mut().enumerate() {
             datum.value += if i.is_multiple_of(2) { misfit } else { -misfit };
         }
@@ -211,7 +198,7 @@ fn what_is_out_of_reach_is_screened_alone_and_its_probability_is_small_by_either
 #[test]
 fn a_model_of_unknown_smoothness_is_searched_as_its_scatter_says() {
     let ranking =
-        |smoothness, declared| searched_as(Likelihood::new(data(13)).unwrap(), smoothness, declared);
+        |smoothness, declared| searched_as(Likelihood::new(data_of(13)).unwrap(), smoothness, declared);
     let rough = ranking(Smoothness::Rough, Smoothness::Unknown);
     assert_eq!(rough, ranking(Smoothness::Rough, Smoothness::Rough));
     let [smooth, thorough] =

@@ -3,13 +3,13 @@
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 
+use crate::setup::{conclude, data, effect, marginal, noise, normal};
 use discovery::{
-    Candidate, Conclusion, DETECTED, DiscoverySearch, EvidenceMethod, LawCandidate, ProposedRuns,
-    QueriedModel, Query, Reduction, SearchSettings, SearchTask, SearchVerdict,
+    Candidate, Conclusion, DETECTED, EvidenceMethod, LawCandidate, ProposedRuns, QueriedModel, Query,
+    Reduction, SearchSettings, SearchTask, SearchVerdict,
 };
-use inference::TellProgress;
 use statistics::rng::Stream;
-use statistics::{Datum, Distribution, ErrorSd, Likelihood, Marginal, Prior};
+use statistics::{Datum, Distribution, ErrorSd, Likelihood, Prior};
 
 const SD: f64 = 0.1;
 /// Eight levels of x, each with three values of w.
@@ -25,24 +25,8 @@ fn w(i: usize) -> f64 {
     (i % OF_LEVEL) as f64 - 1.0
 }
 
-pub(crate) fn normal(sd: f64) -> Marginal {
-    Marginal::new(Distribution::Normal { mean: 0.0, sd }, None).unwrap()
-}
-
-fn candidate(name: &str, parameters: Vec<Marginal>, strengths: Vec<usize>) -> Candidate {
-    Candidate {
-        name: name.into(),
-        parameters,
-        strengths,
-        neutral: 0.0,
-        excludes: Vec::new(),
-        family: None,
-        has_low_fidelity: false,
-    }
-}
-
 fn curve(name: &str) -> Candidate {
-    candidate(name, vec![normal(1.0); 5], (0..5).collect())
+    Candidate::new(name, vec![normal(1.0); 5], (0..5).collect())
 }
 
 /// Effects of the library: three powers of x, and one that the base absorbs.
@@ -58,26 +42,23 @@ const OVER_W: usize = LIBRARY + 2;
 
 fn library() -> Vec<Candidate> {
     let names = ["square", "cube", "width", "constant"];
-    names
-        .map(|name| candidate(name, vec![normal(1.0)], vec![0]))
-        .to_vec()
+    names.map(|name| effect(name, normal(1.0))).to_vec()
 }
 
 fn laws() -> Vec<LawCandidate> {
-    let threshold = Distribution::Uniform {
+    let threshold = marginal(Distribution::Uniform {
         lower: -1.0,
         upper: 1.0,
-    };
-    let threshold = Marginal::new(threshold, None).unwrap();
+    });
     vec![
         LawCandidate {
             curve: curve("x"),
-            forms: vec![candidate("x step", vec![normal(1.0), threshold], vec![0])],
+            forms: vec![Candidate::new("x step", vec![normal(1.0), threshold], vec![0])],
             is_description: false,
         },
         LawCandidate {
             curve: curve("w"),
-            forms: vec![candidate("w line", vec![normal(1.0)], vec![0])],
+            forms: vec![effect("w line", normal(1.0))],
             is_description: false,
         },
     ]
@@ -147,15 +128,9 @@ pub(crate) fn measured(truth: impl Fn(f64, f64) -> f64) -> Vec<f64> {
 }
 
 pub(crate) fn task(values: &[f64]) -> SearchTask {
-    let datum = |(run, &value): (usize, &f64)| Datum {
-        run,
-        channel: 0,
-        value,
-        sd: ErrorSd::Known(SD),
-    };
     SearchTask {
         prior: Prior::new(vec![normal(1.0), normal(1.0)]),
-        likelihood: Likelihood::new(values.iter().enumerate().map(datum).collect()).unwrap(),
+        likelihood: Likelihood::new(data(values, SD)).unwrap(),
         library: library(),
         laws: laws(),
         reductions: Vec::new(),
@@ -176,42 +151,17 @@ pub(crate) fn task(values: &[f64]) -> SearchTask {
 
 /// Runs a search to its end, the last query of each round told first if `backwards`.
 fn search(task: SearchTask, backwards: bool, answer: impl Fn(&Query) -> Vec<f64>) -> Conclusion {
-    run(task, backwards, |query| Some(answer(query)))
+    conclude(task, backwards, |query| Some(answer(query)))
 }
 
-/// Runs a search of a model that may refuse parameters.
-pub(crate) fn run(
-    task: SearchTask,
-    backwards: bool,
-    answer: impl Fn(&Query) -> Option<Vec<f64>>,
-) -> Conclusion {
-    let mut search = DiscoverySearch::new(task).unwrap();
-    loop {
-        if let Some(conclusion) = search.conclusion() {
-            return conclusion.clone();
-        }
-        let queries: Vec<Query> = (0..search.pending().len())
-            .map(|i| search.query(i).unwrap().clone())
-            .collect();
-        let mut order: Vec<usize> = (0..queries.len()).collect();
-        if backwards {
-            order.reverse();
-        }
-        for index in order {
-            let progress = search.tell(index, answer(&queries[index]).as_deref()).unwrap();
-            assert!(!matches!(progress, TellProgress::Failed(_)));
-        }
-    }
-}
-
-fn conclude(truth: impl Fn(f64, f64) -> f64) -> Conclusion {
+fn find(truth: impl Fn(f64, f64) -> f64) -> Conclusion {
     search(task(&measured(truth)), false, answer)
 }
 
 #[test]
 fn a_law_beyond_an_effect_is_found_beside_it() {
     let line_over_w = OVER_W + 1;
-    let conclusion = conclude(|x, w| 0.3 + 0.5 * x + 1.2 * x * x + 0.8 * w);
+    let conclusion = find(|x, w| 0.3 + 0.5 * x + 1.2 * x * x + 0.8 * w);
     assert_eq!(conclusion.verdict, SearchVerdict::Named(SQUARE));
     assert_eq!(conclusion.combination, [SQUARE, line_over_w]);
     assert_eq!(
@@ -226,7 +176,7 @@ fn a_law_beyond_an_effect_is_found_beside_it() {
 fn what_nothing_explains_is_left() {
     // Neither an effect nor a law follows a zigzag.
     let zigzag = |x: f64, w: f64| if libm::cos(20.0 * x * w) > 0.0 { 0.5 } else { -0.5 };
-    let conclusion = conclude(|x, w| 0.3 + 0.5 * x + 1.2 * x * x + zigzag(x, w));
+    let conclusion = find(|x, w| 0.3 + 0.5 * x + 1.2 * x * x + zigzag(x, w));
     assert_eq!(conclusion.complete, Some(false));
     assert_eq!(conclusion.remaining.len(), DATA);
     let squares: f64 = conclusion.remaining.iter().map(|r| r * r).sum();
@@ -235,7 +185,7 @@ fn what_nothing_explains_is_left() {
 
 #[test]
 fn where_nothing_is_hidden_nothing_is_claimed_and_no_law_is_searched() {
-    let conclusion = conclude(|x, _| 0.3 + 0.5 * x);
+    let conclusion = find(|x, _| 0.3 + 0.5 * x);
     assert_eq!(conclusion.verdict, SearchVerdict::NothingDetectable);
     assert!(conclusion.not_in_library.is_none() && conclusion.outside.is_none());
     assert!(conclusion.next_runs.is_empty());
@@ -244,7 +194,7 @@ fn where_nothing_is_hidden_nothing_is_claimed_and_no_law_is_searched() {
 
 #[test]
 fn one_effect_is_named() {
-    let conclusion = conclude(|x, _| 0.3 + 0.5 * x + 0.8 * x * x);
+    let conclusion = find(|x, _| 0.3 + 0.5 * x + 0.8 * x * x);
     assert_eq!(conclusion.verdict, SearchVerdict::Named(SQUARE));
     assert_eq!(conclusion.combination, [SQUARE]);
     assert!(conclusion.chi_square.unwrap().p() < 0.001 && conclusion.chi_square_best.unwrap().p() > 0.05);
@@ -255,7 +205,7 @@ fn where_the_prior_all_but_excludes_the_best_fit_nothing_is_claimed() {
     let values = measured(|x, _| 0.3 + 0.5 * x + 0.8 * x * x);
     let conclude = |slope: Distribution| {
         let mut task = task(&values);
-        task.prior = Prior::new(vec![normal(1.0), Marginal::new(slope, None).unwrap()]);
+        task.prior = Prior::new(vec![normal(1.0), marginal(slope)]);
         // A substitute for the slope beside the square.
         task.laws = Vec::new();
         task.library[CUBE].excludes = vec![task.library[SQUARE].name.clone()];
@@ -277,7 +227,7 @@ fn where_the_prior_all_but_excludes_the_best_fit_nothing_is_claimed() {
 
 #[test]
 fn every_explanation_has_its_predicted_values() {
-    let conclusion = conclude(|x, _| 0.3 + 0.5 * x + 0.8 * x * x);
+    let conclusion = find(|x, _| 0.3 + 0.5 * x + 0.8 * x * x);
     for effect in &conclusion.ranking.effects {
         let query = Query {
             model: QueriedModel::With(effect.candidate.into_iter().collect()),
@@ -293,7 +243,7 @@ fn every_explanation_has_its_predicted_values() {
 
 #[test]
 fn two_effects_are_found_together() {
-    let conclusion = conclude(|x, w| 0.3 + 0.8 * x * x + 0.7 * w * x);
+    let conclusion = find(|x, w| 0.3 + 0.8 * x * x + 0.7 * w * x);
     let mut best = conclusion.combination.clone();
     best.sort_unstable();
     assert_eq!(best, [SQUARE, WIDTH]);
@@ -318,7 +268,7 @@ fn candidates_that_exclude_each_other_make_no_combination() {
 
 #[test]
 fn a_step_outside_the_library_is_found_with_its_form() {
-    let conclusion = conclude(|x, _| 0.3 + 0.5 * x + if x > 0.3 { 0.9 } else { 0.0 });
+    let conclusion = find(|x, _| 0.3 + 0.5 * x + if x > 0.3 { 0.9 } else { 0.0 });
     assert_eq!(conclusion.verdict, SearchVerdict::NotInLibrary);
     let law = conclusion.outside.unwrap();
     assert_eq!((law.law, law.candidate), (0, STEP));
@@ -337,7 +287,7 @@ fn a_law_that_every_good_explanation_has_is_claimed() {
     // The step alone is the most probable explanation; then the step beside two effects is.
     for (step, cube, rough) in [(2.5, 0.0, 0.1), (2.5, 0.3, 0.15)] {
         let at = |x: f64| if x > 0.3 { step } else { 0.0 };
-        let conclusion = conclude(|x, w| 0.3 + 0.5 * x + cube * x * x * x + at(x) + rough * zigzag(x, w));
+        let conclusion = find(|x, w| 0.3 + 0.5 * x + cube * x * x * x + at(x) + rough * zigzag(x, w));
         let beside = conclusion.sets.iter().find(|set| set.effects.is_some()).unwrap();
         assert!(beside.effects.as_ref().unwrap().contains(&STEP) && beside.probability > 0.1);
         assert_eq!(
@@ -353,7 +303,7 @@ fn a_law_that_every_good_explanation_has_is_claimed() {
 #[test]
 fn a_law_that_fails_the_cross_validation_is_not_claimed() {
     // One level is off by itself: a curve follows it, and predicts nothing.
-    let conclusion = conclude(|x, _| 0.3 + 0.5 * x + if (x - 1.0 / 7.0).abs() < 0.01 { 1.2 } else { 0.0 });
+    let conclusion = find(|x, _| 0.3 + 0.5 * x + if (x - 1.0 / 7.0).abs() < 0.01 { 1.2 } else { 0.0 });
     assert_eq!(conclusion.verdict, SearchVerdict::Undecided);
     assert!(conclusion.outside.is_none() && conclusion.not_in_library.is_some());
 }
@@ -480,12 +430,7 @@ fn the_order_within_a_round_does_not_matter() {
 fn inferred_noise_is_fitted_too() {
     let values = measured(|x, _| 0.3 + 0.5 * x + 0.8 * x * x);
     let mut task = task(&values);
-    let sd = Distribution::Lognormal {
-        median: 0.2,
-        factor: 3.0,
-    };
-    let sd = Marginal::new(sd, None).unwrap();
-    task.prior = Prior::new(vec![normal(1.0), normal(1.0), sd]);
+    task.prior = Prior::new(vec![normal(1.0), normal(1.0), noise()]);
     let data = task.likelihood.data().iter().map(|d| Datum {
         sd: ErrorSd::Inferred { parameter: 2 },
         ..*d

@@ -1,8 +1,10 @@
 //! Evidence and moments on problems with known answers.
 
 use crate::problems::{self, Problem};
+use crate::setup::{correlated_pair, lognormal, sample};
+use inference::diagnostics::mean_and_sd;
 use inference::{StageMethod, TmcmcSettings};
-use statistics::{Distribution, Marginal};
+use statistics::Prior;
 
 const SEEDS: u64 = 4;
 
@@ -52,7 +54,7 @@ fn check_method(problem: &Problem, stages: StageMethod) {
                     (values, problem.mean[column], problem.sd[column])
                 }
             };
-            let (estimate, spread) = inference::diagnostics::mean_and_sd(&values).unwrap();
+            let (estimate, spread) = mean_and_sd(&values).unwrap();
             shifts[column] += (estimate - mean) / sd / SEEDS as f64;
             ratios[column] += spread / sd / SEEDS as f64;
         }
@@ -158,26 +160,12 @@ fn draws_do_not_follow_a_wrong_posterior() {
 /// A lognormal prior is sampled in ln x; conjugate with a likelihood that is normal in ln x.
 #[test]
 fn the_jacobian_of_log_coordinates_is_accounted_for() {
-    let prior = Marginal::new(
-        Distribution::Lognormal {
-            median: 2.0,
-            factor: 3.0,
-        },
-        None,
-    )
-    .unwrap();
     let sd = 0.2_f64;
-    let mut sampler =
-        inference::Sampler::new(statistics::Prior::new(vec![prior]), TmcmcSettings::default()).unwrap();
-    while sampler.posterior().is_none() {
-        for proposal in sampler.round().pending().to_vec() {
-            let z = libm::log(proposal.theta[0]) / sd;
-            let value = -0.5 * z * z - libm::log(sd) - 0.5 * libm::log(std::f64::consts::TAU);
-            sampler
-                .tell(proposal.particle, statistics::LogLikelihood::new(value).unwrap())
-                .unwrap();
-        }
-    }
+    let prior = Prior::new(vec![lognormal(2.0, 3.0)]);
+    let sampler = sample(prior, TmcmcSettings::default(), |theta| {
+        let z = libm::log(theta[0]) / sd;
+        -0.5 * z * z - libm::log(sd) - 0.5 * libm::log(std::f64::consts::TAU)
+    });
     // ln x ~ N(ln 2, s^2), datum 0 with variance v: Z = N(0; ln 2, s^2 + v), mean = ln 2 v / (s^2 + v).
     let (prior_variance, variance) = (3.0_f64.ln().powi(2), sd * sd);
     let total = prior_variance + variance;
@@ -186,7 +174,7 @@ fn the_jacobian_of_log_coordinates_is_accounted_for() {
     let error = (posterior.log_evidence - log_evidence) / posterior.log_evidence_se;
     assert!(error.abs() < K, "{error}");
     let logs: Vec<f64> = posterior.particles.iter().map(|p| p.theta[0].ln()).collect();
-    let (mean, spread) = inference::diagnostics::mean_and_sd(&logs).unwrap();
+    let (mean, spread) = mean_and_sd(&logs).unwrap();
     let posterior_sd = (prior_variance * variance / total).sqrt();
     assert!((mean - 2.0_f64.ln() * variance / total).abs() < K * posterior_sd / 250.0_f64.sqrt());
     assert!((spread / posterior_sd - 1.0).abs() < K / 500.0_f64.sqrt());
@@ -210,4 +198,43 @@ fn reported_standard_error_matches_the_scatter_over_seeds() {
     // The rmse of 40 errors has a relative standard error of 11 %.
     let ratio = (squares / variance).sqrt();
     assert!((0.65..1.45).contains(&ratio), "{ratio}");
+}
+
+/// A normal prior N(0, R) and one datum d of a + b with sd e: the posterior is normal, the evidence N(d; 0, 2 (1 + rho) + e^2).
+#[test]
+fn a_correlated_prior_is_updated_as_on_paper() {
+    let (rho, datum, sd): (f64, f64, f64) = (0.9, 3.0, 0.5);
+    let settings = TmcmcSettings {
+        particles: 2000,
+        seed: 4,
+        ..TmcmcSettings::default()
+    };
+    let sampler = sample(correlated_pair(rho), settings, |theta| {
+        let z = (datum - theta[0] - theta[1]) / sd;
+        -0.5 * z * z - 0.5 * libm::log(std::f64::consts::TAU * sd * sd)
+    });
+    let posterior = sampler.posterior().unwrap();
+    // The covariance of each of a and b with their sum is 1 + rho.
+    let variance = 2.0 * (1.0 + rho) + sd * sd;
+    let mean = (1.0 + rho) * datum / variance;
+    let spread = (1.0 - (1.0 + rho) * (1.0 + rho) / variance).sqrt();
+    let evidence = -0.5 * datum * datum / variance - 0.5 * libm::log(std::f64::consts::TAU * variance);
+    let moments = |f: &dyn Fn(&[f64]) -> f64| {
+        let values: Vec<f64> = posterior.particles.iter().map(|p| f(&p.theta)).collect();
+        mean_and_sd(&values).unwrap()
+    };
+    for parameter in [0, 1] {
+        let (estimate, sd) = moments(&|theta| theta[parameter]);
+        assert!((estimate - mean).abs() < 0.15 * spread, "{estimate} {mean}");
+        assert!((sd / spread - 1.0).abs() < 0.1, "{sd} {spread}");
+    }
+    // The datum holds no information on a - b, whose sd follows from the correlation alone.
+    let (_, sd) = moments(&|theta| theta[0] - theta[1]);
+    let difference = (2.0 * (1.0 - rho)).sqrt();
+    assert!((sd / difference - 1.0).abs() < 0.1, "{sd} {difference}");
+    assert!(
+        (posterior.log_evidence - evidence).abs() < 0.2,
+        "{}",
+        posterior.log_evidence
+    );
 }

@@ -1,12 +1,12 @@
 //! The ask/tell protocol: order, refusals, impossible likelihoods, rounds without proposals.
 
 use crate::problems;
+use crate::setup::{shuffle, uniform};
 use inference::{
     Algorithm, InferenceFailure, Sampler, StageMethod, TellError, TellProgress, TmcmcSettings,
     TmcmcSettingsError,
 };
-use statistics::rng::Stream;
-use statistics::{Distribution, LogLikelihood, Marginal, Prior};
+use statistics::{LogLikelihood, Prior};
 
 fn small() -> TmcmcSettings {
     TmcmcSettings {
@@ -17,27 +17,16 @@ fn small() -> TmcmcSettings {
 }
 
 fn unit_prior(dimension: usize) -> Prior {
-    let marginal = Marginal::new(
-        Distribution::Uniform {
-            lower: 0.0,
-            upper: 1.0,
-        },
-        None,
-    )
-    .unwrap();
-    Prior::new(vec![marginal; dimension])
+    Prior::new(vec![uniform(0.0, 1.0); dimension])
 }
 
 /// Runs to the end, telling each round in an order of its own.
-fn run(prior: Prior, settings: TmcmcSettings, score: impl Fn(&[f64]) -> f64, shuffle: u64) -> Sampler {
+fn run(prior: Prior, settings: TmcmcSettings, score: impl Fn(&[f64]) -> f64, seed: u64) -> Sampler {
     let mut sampler = Sampler::new(prior, settings).unwrap();
     loop {
         let mut proposals = sampler.round().pending().to_vec();
-        let mut stream = Stream::new(shuffle, 0, 0, sampler.round().number());
-        for last in (1..proposals.len()).rev() {
-            if shuffle > 0 {
-                proposals.swap(last, stream.below(last + 1));
-            }
+        if seed > 0 {
+            shuffle(&mut proposals, seed, sampler.round().number());
         }
         let mut progress = TellProgress::Waiting;
         for proposal in proposals {
@@ -65,7 +54,7 @@ fn the_order_of_tells_is_irrelevant() {
     for algorithm in [Algorithm::Tmcmc, Algorithm::ChingChen2007, Algorithm::Basis] {
         let settings = TmcmcSettings { algorithm, ..small() };
         let score = |theta: &[f64]| problem.score(theta).value();
-        let [straight, shuffled] = [0, 99].map(|shuffle| run(problem.prior(), settings, score, shuffle));
+        let [straight, shuffled] = [0, 99].map(|seed| run(problem.prior(), settings, score, seed));
         let bits = |sampler: &Sampler| {
             let posterior = sampler.posterior().unwrap();
             let mut bits: Vec<u64> = posterior
@@ -220,38 +209,31 @@ fn a_flat_likelihood_gives_back_the_prior() {
 
 #[test]
 fn settings_that_cannot_work_are_refused() {
-    let refuse = |prior: Prior, settings| Sampler::new(prior, settings).map(|_| ()).unwrap_err();
-    assert_eq!(refuse(unit_prior(0), small()), TmcmcSettingsError::NoParameters);
+    let refuse = |dimension, settings| {
+        Sampler::new(unit_prior(dimension), settings)
+            .map(drop)
+            .unwrap_err()
+    };
+    assert_eq!(refuse(0, small()), TmcmcSettingsError::NoParameters);
+    let few = TmcmcSettings {
+        particles: 11,
+        ..small()
+    };
     assert_eq!(
-        refuse(
-            unit_prior(5),
-            TmcmcSettings {
-                particles: 11,
-                ..small()
-            }
-        )
-        .to_string(),
+        refuse(5, few).to_string(),
         "11 particles are too few for 5 parameters, which need at least 12"
     );
+    let moves = TmcmcSettings {
+        moves: [5, 4],
+        ..small()
+    };
     assert_eq!(
-        refuse(
-            unit_prior(1),
-            TmcmcSettings {
-                moves: [5, 4],
-                ..small()
-            }
-        )
-        .to_string(),
+        refuse(1, moves).to_string(),
         "moves [5, 4] are not 1 <= least <= most <= 10000"
     );
-    assert!(matches!(
-        refuse(
-            unit_prior(1),
-            TmcmcSettings {
-                target_cov: f64::NAN,
-                ..small()
-            }
-        ),
-        TmcmcSettingsError::TargetCov { .. }
-    ));
+    let target = TmcmcSettings {
+        target_cov: f64::NAN,
+        ..small()
+    };
+    assert!(matches!(refuse(1, target), TmcmcSettingsError::TargetCov { .. }));
 }

@@ -1,12 +1,10 @@
 //! Diagnostics on linear models with normal errors, where every answer is known.
 
+use crate::setup::{correlated_pair, standard_normals, uniform};
 use inference::diagnostics::{self, BINS, PredictedDraw, Region, Side};
 use nalgebra::{Cholesky, DMatrix, DVector};
 use statistics::rng::Stream;
-use statistics::{
-    CommonError, CommonErrorSize, Datum, Discrepancy, Distribution, ErrorLaw, ErrorSd, Likelihood, Marginal,
-    Prior,
-};
+use statistics::{CommonError, CommonErrorSize, Datum, Discrepancy, ErrorLaw, ErrorSd, Likelihood, Prior};
 
 /// `y = X theta + sd e`, every parameter standard normal before the data.
 struct Linear {
@@ -87,9 +85,14 @@ fn stream(k: u64) -> Stream {
     Stream::new(7, 0, k, 0)
 }
 
-fn standard_normals(count: usize) -> Prior {
-    let normal = Distribution::Normal { mean: 0.0, sd: 1.0 };
-    Prior::new(vec![Marginal::new(normal, None).unwrap(); count])
+/// The conflict of a prior with draws.
+fn conflict<T: AsRef<[f64]>>(prior: &Prior, draws: &[T]) -> diagnostics::Conflict {
+    let draws: Vec<&[f64]> = draws.iter().map(AsRef::as_ref).collect();
+    diagnostics::conflict(prior, &draws).unwrap()
+}
+
+fn thetas(draws: Vec<PredictedDraw>) -> Vec<Vec<f64>> {
+    draws.into_iter().map(|draw| draw.theta).collect()
 }
 
 #[test]
@@ -243,9 +246,7 @@ fn conflict_is_rare_where_the_prior_is_right() {
     let check = |value: fn(&diagnostics::Conflict) -> f64| {
         level(4000, |stream| {
             let y = model.data(&model.truth(stream), stream);
-            let draws = model.posterior(&y);
-            let draws: Vec<&[f64]> = draws.iter().map(|d| d.theta.as_slice()).collect();
-            vec![value(&diagnostics::conflict(&prior, &draws).unwrap())]
+            vec![value(&conflict(&prior, &thetas(model.posterior(&y))))]
         })
     };
     // Four draws only, so the sampling error of their mean, which these draws do not have, makes it a little rarer.
@@ -259,19 +260,17 @@ fn conflict_is_rare_where_the_prior_is_right() {
 fn a_prior_that_is_wrong_is_contradicted() {
     let model = Linear::new(12, 1.3, false);
     let prior = standard_normals(2);
-    let conflict = |truth: [f64; 2]| {
+    let at = |truth: [f64; 2]| {
         let y = &model.design * DVector::from_column_slice(&truth);
-        let draws = model.posterior(&y);
-        let draws: Vec<&[f64]> = draws.iter().map(|d| d.theta.as_slice()).collect();
-        diagnostics::conflict(&prior, &draws).unwrap()
+        conflict(&prior, &thetas(model.posterior(&y)))
     };
-    let wrong = conflict([5.0, 0.0]);
+    let wrong = at([5.0, 0.0]);
     assert!(
         wrong.parameters[0].unwrap() < 1e-4 && wrong.p.unwrap() < 1e-4,
         "{wrong:?}"
     );
     assert!(wrong.parameters[1].unwrap() > 0.5, "{wrong:?}");
-    let right = conflict([0.5, -0.5]);
+    let right = at([0.5, -0.5]);
     assert!(right.p.unwrap() > 0.3, "{right:?}");
 }
 
@@ -280,10 +279,6 @@ fn a_prior_that_is_wrong_is_contradicted() {
 #[test]
 fn what_a_joint_prior_forbids_is_contradicted() {
     let (rho, noise): (f64, f64) = (0.98, 0.1);
-    let normal = Marginal::new(Distribution::Normal { mean: 0.0, sd: 1.0 }, None).unwrap();
-    let prior = Prior::new(vec![normal.clone(), normal])
-        .correlated(vec![0, 1], &[vec![1.0, rho], vec![rho, 1.0]])
-        .unwrap();
     // The sum and the difference are independent: N(0, 2 (1 + rho)) and N(0, v) with v = 2 (1 - rho).
     let v = 2.0 * (1.0 - rho);
     let measured = 6.0 * (v + noise * noise).sqrt();
@@ -293,35 +288,29 @@ fn what_a_joint_prior_forbids_is_contradicted() {
     );
     let draws: Vec<[f64; 2]> = (0..4000)
         .map(|k| {
-            let (x, y) = statistics::rng::Stream::new(8, 0, k, 0).normal_pair();
+            let (x, y) = Stream::new(8, 0, k, 0).normal_pair();
             let (sum, difference) = (x * (2.0 * (1.0 + rho)).sqrt(), mean + sd * y);
             [0.5 * (sum + difference), 0.5 * (sum - difference)]
         })
         .collect();
-    let draws: Vec<&[f64]> = draws.iter().map(|d| d.as_slice()).collect();
-    let result = diagnostics::conflict(&prior, &draws).unwrap();
+    let result = conflict(&correlated_pair(rho), &draws);
     assert_eq!(result.degrees_of_freedom, 1, "{result:?}");
     assert!((result.statistic - 36.0).abs() < 3.0, "{result:?}");
     assert!(result.parameters.iter().flatten().all(|p| *p > 0.1), "{result:?}");
 }
 
 #[test]
-fn a_uniform_prior_is_contradicted_at_its_end_and_data_without_a_word_contradict_nothing() {
-    let uniform = Distribution::Uniform {
-        lower: 2.0,
-        upper: 4.0,
-    };
-    let prior = Prior::new(vec![Marginal::new(uniform, None).unwrap()]);
-    let conflict = |from: f64, to: f64| {
+fn a_uniform_prior_is_contradicted_at_its_end_and_data_without_information_contradict_nothing() {
+    let prior = Prior::new(vec![uniform(2.0, 4.0)]);
+    let between = |from: f64, to: f64| {
         let draws: Vec<[f64; 1]> = (0..200)
             .map(|k| [from + (to - from) * (k as f64 + 0.5) / 200.0])
             .collect();
-        let draws: Vec<&[f64]> = draws.iter().map(|d| d.as_slice()).collect();
-        diagnostics::conflict(&prior, &draws).unwrap()
+        conflict(&prior, &draws)
     };
-    assert!(conflict(3.99, 4.0).parameters[0].unwrap() < 0.01);
-    assert!(conflict(2.9, 3.1).parameters[0].unwrap() > 0.9);
-    let silent = conflict(2.0, 4.0);
+    assert!(between(3.99, 4.0).parameters[0].unwrap() < 0.01);
+    assert!(between(2.9, 3.1).parameters[0].unwrap() > 0.9);
+    let silent = between(2.0, 4.0);
     assert_eq!((silent.parameters[0], silent.p), (None, None));
     assert_eq!(silent.degrees_of_freedom, 0);
 }
@@ -343,11 +332,7 @@ fn the_signal_of_a_linear_model_is_its_slope() {
 
 #[test]
 fn a_uniform_prior_falls_into_equal_bins() {
-    let uniform = Distribution::Uniform {
-        lower: 2.0,
-        upper: 4.0,
-    };
-    let marginal = Marginal::new(uniform, None).unwrap();
+    let marginal = uniform(2.0, 4.0);
     let bin = |x: f64| diagnostics::bin(marginal.cumulative(x));
     assert_eq!([2.0, 2.39, 2.41, 3.0, 3.99, 4.0].map(bin), [0, 0, 1, 2, 4, 4]);
     let mut counts = [0; BINS];

@@ -1,11 +1,11 @@
 //! Optima by generations: known ones, bounds, rejections, determinism.
 
 use crate::problems::{self, Problem};
+use crate::setup::{lognormal, shuffle, uniform};
 use inference::evolution::{CmaEsSettings, Evolution, EvolutionSettings, EvolutionSettingsError, GaSettings};
 use inference::point_estimate::{ModeEstimate, StopReason};
 use inference::{InferenceFailure, TellError, TellProgress};
-use statistics::rng::Stream;
-use statistics::{Distribution, LogLikelihood, Marginal, Prior};
+use statistics::{LogLikelihood, Marginal, Prior};
 
 const SEEDS: std::ops::RangeInclusive<u64> = 1..=4;
 
@@ -26,10 +26,6 @@ fn adapting(seed: u64) -> EvolutionSettings {
 /// Settings of both strategies, for every seed.
 fn all() -> impl Iterator<Item = EvolutionSettings> {
     SEEDS.flat_map(|seed| [genetic(seed), adapting(seed)])
-}
-
-fn uniform(lower: f64, upper: f64) -> Marginal {
-    Marginal::new(Distribution::Uniform { lower, upper }, None).unwrap()
 }
 
 /// Runs an evolution to its end, each generation told in an order of its own.
@@ -131,11 +127,7 @@ fn an_optimum_in_a_corner_is_reached_exactly() {
 /// A lognormal prior's mode is that of its density as declared, exp(mu - s^2), not of ln x.
 #[test]
 fn the_density_as_declared_counts() {
-    let lognormal = Distribution::Lognormal {
-        median: 2.0,
-        factor: libm::exp(0.5),
-    };
-    let prior = [Marginal::new(lognormal, None).unwrap()];
+    let prior = [lognormal(2.0, libm::exp(0.5))];
     for settings in all() {
         let estimate = find(&prior, settings, |_| 0.0);
         assert!(
@@ -211,15 +203,11 @@ fn the_order_within_a_generation_does_not_matter() {
         }
     };
     let prior = [uniform(0.0, 1.0), uniform(-1.0, 3.0)];
-    let shuffle = |indices: &mut Vec<usize>, round: u64| {
-        let mut stream = Stream::new(3, 0, 0, round);
-        for last in (1..indices.len()).rev() {
-            indices.swap(last, stream.below(last + 1));
-        }
-    };
     for settings in [genetic(1), adapting(1)] {
         let straight = run(&prior, settings, score, |_, _| ());
-        let shuffled = run(&prior, settings, score, shuffle);
+        let shuffled = run(&prior, settings, score, |indices, round| {
+            shuffle(indices, 3, round)
+        });
         assert_eq!(straight.estimate(), shuffled.estimate());
     }
     for [first, second] in [[genetic(1), genetic(2)], [adapting(1), adapting(2)]] {
@@ -312,49 +300,51 @@ fn what_nobody_asked_for_is_refused_and_changes_nothing() {
 
 #[test]
 fn settings_that_cannot_work_are_refused() {
-    let refuse = |settings: EvolutionSettings| settings.check(2).unwrap_err().to_string();
-    let ga = GaSettings::default();
     assert_eq!(genetic(1).check(0), Err(EvolutionSettingsError::NoParameters));
     assert_eq!(adapting(1).check(0), Err(EvolutionSettingsError::NoParameters));
-    assert_eq!(
-        refuse(EvolutionSettings::Ga(GaSettings { population: 7, ..ga })),
-        "population = 7 is not from 8 to 100000"
-    );
-    assert_eq!(
-        refuse(EvolutionSettings::Ga(GaSettings { generations: 1, ..ga })),
-        "generations = 1 is not from 2 to 100000"
-    );
-    for elite in [0, 51] {
-        let message = refuse(EvolutionSettings::Ga(GaSettings { elite, ..ga }));
-        assert_eq!(
-            message,
-            format!("elite = {elite} is not from 1 to half of the population, 100")
-        );
+    let ga = |change: fn(&mut GaSettings)| {
+        let mut settings = GaSettings::default();
+        change(&mut settings);
+        EvolutionSettings::Ga(settings)
+    };
+    let cma_es = |change: fn(&mut CmaEsSettings)| {
+        let mut settings = CmaEsSettings::default();
+        change(&mut settings);
+        EvolutionSettings::CmaEs(settings)
+    };
+    for (settings, message) in [
+        (ga(|s| s.population = 7), "population = 7 is not from 8 to 100000"),
+        (
+            ga(|s| s.generations = 1),
+            "generations = 1 is not from 2 to 100000",
+        ),
+        (
+            ga(|s| s.elite = 0),
+            "elite = 0 is not from 1 to half of the population, 100",
+        ),
+        (
+            ga(|s| s.elite = 51),
+            "elite = 51 is not from 1 to half of the population, 100",
+        ),
+        (
+            ga(|s| s.tolerance = f64::NAN),
+            "tolerance = NaN is not a finite number above 0",
+        ),
+        (
+            cma_es(|s| s.population = Some(3)),
+            "population = 3 is not from 4 to 100000",
+        ),
+        // Two parameters: 4 + floor(3 ln 2) = 6.
+        (
+            cma_es(|s| s.max_evaluations = 11),
+            "max_evaluations = 11 is not from 12 (two generations) to 1000000",
+        ),
+        (cma_es(|s| s.restarts = 21), "restarts = 21 is above 20"),
+        (
+            cma_es(|s| s.tolerance = 0.0),
+            "tolerance = 0 is not a finite number above 0",
+        ),
+    ] {
+        assert_eq!(settings.check(2).unwrap_err().to_string(), message);
     }
-    let tolerance = f64::NAN;
-    assert!(refuse(EvolutionSettings::Ga(GaSettings { tolerance, ..ga })).starts_with("tolerance = NaN"));
-    let cma = CmaEsSettings::default();
-    let population = Some(3);
-    assert_eq!(
-        refuse(EvolutionSettings::CmaEs(CmaEsSettings { population, ..cma })),
-        "population = 3 is not from 4 to 100000"
-    );
-    // Two parameters: 4 + floor(3 ln 2) = 6.
-    let max_evaluations = 11;
-    assert_eq!(
-        refuse(EvolutionSettings::CmaEs(CmaEsSettings {
-            max_evaluations,
-            ..cma
-        })),
-        "max_evaluations = 11 is not from 12 (two generations) to 1000000"
-    );
-    let restarts = 21;
-    assert_eq!(
-        refuse(EvolutionSettings::CmaEs(CmaEsSettings { restarts, ..cma })),
-        "restarts = 21 is above 20"
-    );
-    let tolerance = 0.0;
-    assert!(
-        refuse(EvolutionSettings::CmaEs(CmaEsSettings { tolerance, ..cma })).starts_with("tolerance = 0")
-    );
 }

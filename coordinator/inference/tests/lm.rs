@@ -1,49 +1,24 @@
 //! Fits against closed forms, and on models with noise, ridges and rejections.
 
+use crate::setup::{correlated_pair, data, end, lognormal, marginal, normal, uniform};
 use inference::lm::{LmFit, LmSettings, LmSettingsError};
 use inference::point_estimate::{ModeEstimate, StopReason};
 use inference::{InferenceFailure, TellError, TellProgress};
 use nalgebra::{DMatrix, DVector};
-use statistics::{Datum, Distribution, ErrorSd, Likelihood, LikelihoodError, Marginal, Prior};
+use statistics::{Distribution, ErrorSd, Likelihood, LikelihoodError, Marginal, Prior};
 
 /// A model: one predicted value for each datum, or none.
 type Model<'a> = &'a dyn Fn(&[f64]) -> Option<Vec<f64>>;
-
-fn uniform(lower: f64, upper: f64) -> Marginal {
-    Marginal::new(Distribution::Uniform { lower, upper }, None).unwrap()
-}
-
-fn normal(mean: f64, sd: f64) -> Marginal {
-    Marginal::new(Distribution::Normal { mean, sd }, None).unwrap()
-}
-
-fn data(values: &[f64], sd: impl Fn(usize) -> ErrorSd) -> Likelihood {
-    let datum = |(run, &value): (usize, &f64)| Datum {
-        run,
-        channel: 0,
-        value,
-        sd: sd(run),
-    };
-    Likelihood::new(values.iter().enumerate().map(datum).collect()).unwrap()
-}
 
 fn begin(prior: &[Marginal], likelihood: &Likelihood, settings: LmSettings) -> LmFit {
     LmFit::new(Prior::new(prior.to_vec()), likelihood.clone(), settings).unwrap()
 }
 
-/// Runs a fit to its end, each round's results told in an order of its own.
-fn end(mut fit: LmFit, model: Model, order: impl Fn(u64, &mut Vec<usize>)) -> LmFit {
-    while !fit.round().pending().is_empty() {
-        let pending = fit.round().pending().to_vec();
-        let mut indices: Vec<usize> = (0..pending.len()).collect();
-        order(fit.round().number(), &mut indices);
-        for k in indices {
-            let proposal = &pending[k];
-            fit.tell(proposal.particle, model(&proposal.theta).as_deref())
-                .unwrap();
-        }
+fn from_one_start() -> LmSettings {
+    LmSettings {
+        starts: 1,
+        ..LmSettings::default()
     }
-    fit
 }
 
 fn fit(prior: &[Marginal], likelihood: &Likelihood, settings: LmSettings, model: Model) -> ModeEstimate {
@@ -134,11 +109,7 @@ fn a_curved_valley_is_followed_to_its_end() {
     let likelihood = data(&[0.0, 1.0], |_| ErrorSd::Known(1.0));
     let model = |theta: &[f64]| Some(vec![10.0 * (theta[1] - theta[0] * theta[0]), theta[0]]);
     let prior = [uniform(-4.4, 2.0), uniform(-2.0, 4.0)];
-    let settings = LmSettings {
-        starts: 1,
-        ..LmSettings::default()
-    };
-    let estimate = fit(&prior, &likelihood, settings, &model);
+    let estimate = fit(&prior, &likelihood, from_one_start(), &model);
     assert_eq!(estimate.stop, StopReason::Decrease);
     near(estimate.theta[0], 1.0, 1e-3);
     near(estimate.theta[1], 1.0, 2e-3);
@@ -180,15 +151,7 @@ fn a_bound_in_the_way_of_the_first_steps_is_left_again() {
     let likelihood = data(&[0.5, 1.3], |_| ErrorSd::Known(0.01));
     let model = |theta: &[f64]| Some(vec![theta[0] * theta[1], theta[0] + theta[1] * theta[1]]);
     let prior = [uniform(0.0, 4.0), uniform(0.0, 2.0)];
-    let estimate = fit(
-        &prior,
-        &likelihood,
-        LmSettings {
-            starts: 1,
-            ..LmSettings::default()
-        },
-        &model,
-    );
+    let estimate = fit(&prior, &likelihood, from_one_start(), &model);
     assert_eq!(estimate.at_bound, [false, false]);
     let values = model(&estimate.theta).unwrap();
     near(values[0], 0.5, 1e-4);
@@ -201,48 +164,37 @@ fn noise_has_its_closed_form() {
     let values = [0.3, -0.8, 1.1, 0.2, -0.5, 0.9, -1.3, 0.4];
     let model = |theta: &[f64]| Some(vec![theta[0]; 8]);
     let count = 8.0;
-    let noise = |distribution, bounds| {
-        let prior = [normal(0.0, 1e-7), Marginal::new(distribution, bounds).unwrap()];
+    let noise = |marginal| {
         let likelihood = data(&values, |_| ErrorSd::Inferred { parameter: 1 });
-        fit(&prior, &likelihood, LmSettings::default(), &model)
+        fit(
+            &[normal(0.0, 1e-7), marginal],
+            &likelihood,
+            LmSettings::default(),
+            &model,
+        )
     };
     let squares: f64 = values.iter().map(|v| v * v).sum();
-    let flat = noise(
-        Distribution::Uniform {
-            lower: 0.0,
-            upper: 5.0,
-        },
-        None,
-    );
+    let flat = noise(uniform(0.0, 5.0));
     near(flat.theta[1], (squares / count).sqrt(), 1e-8);
     // f'' along ln sd is 2 n there.
     near(flat.sd(1).unwrap(), flat.theta[1] / (2.0 * count).sqrt(), 1e-8);
-    let log_flat = noise(
-        Distribution::Loguniform {
-            lower: 1e-3,
-            upper: 10.0,
-        },
-        None,
-    );
+    let log_flat = noise(marginal(Distribution::Loguniform {
+        lower: 1e-3,
+        upper: 10.0,
+    }));
     near(log_flat.theta[1], (squares / (count + 1.0)).sqrt(), 1e-8);
     // n - S/v + v/s^2 = 0 for the variance v.
     let scale = 0.4_f64;
-    let half = noise(Distribution::HalfNormal { scale }, None);
+    let half = noise(marginal(Distribution::HalfNormal { scale }));
     let s2 = scale * scale;
     let variance = 0.5 * s2 * (-count + (count * count + 4.0 * squares / s2).sqrt());
     near(half.theta[1], variance.sqrt(), 1e-8);
     // Lognormal: n - S/sd^2 + (ln sd - ln median) / (ln factor)^2 + 1 = 0.
-    let lognormal = noise(
-        Distribution::Lognormal {
-            median: 0.3,
-            factor: 1.5,
-        },
-        None,
-    );
-    let sd = lognormal.theta[1];
+    let sd = noise(lognormal(0.3, 1.5)).theta[1];
     let pull = (libm::log(sd) - libm::log(0.3)) / (libm::log(1.5) * libm::log(1.5));
     near(count - squares / sd / sd + pull + 1.0, 0.0, 1e-8);
-    let bounded = noise(Distribution::Normal { mean: 0.2, sd: 0.1 }, Some([0.1, 0.3]));
+    let bounded = Marginal::new(Distribution::Normal { mean: 0.2, sd: 0.1 }, Some([0.1, 0.3]));
+    let bounded = noise(bounded.unwrap());
     assert_eq!(
         (bounded.theta[1].to_bits(), bounded.at_bound[1], bounded.sd(1)),
         (0.3_f64.to_bits(), true, None)
@@ -365,11 +317,7 @@ fn rejections_around_the_start_turn_differences_round_and_shorten_steps() {
         (!refused).then(|| linear(theta)).flatten()
     };
     let free = fit(&prior, &likelihood, LmSettings::default(), &linear);
-    let settings = LmSettings {
-        starts: 1,
-        ..LmSettings::default()
-    };
-    let estimate = fit(&prior, &likelihood, settings, &wall);
+    let estimate = fit(&prior, &likelihood, from_one_start(), &wall);
     assert!(estimate.rejected >= 3, "{estimate:?}");
     for i in 0..3 {
         near(estimate.theta[i], free.theta[i], 1e-6);
@@ -381,15 +329,7 @@ fn a_fit_walled_in_on_one_axis_holds_it() {
     let likelihood = data(&measured(), |_| ErrorSd::Known(0.1));
     let prior = [uniform(-3.0, 5.0), uniform(-4.0, 4.0), uniform(-3.0, 5.0)];
     let slit = |theta: &[f64]| ((theta[1]).abs() < 1e-6).then(|| linear(theta)).flatten();
-    let estimate = fit(
-        &prior,
-        &likelihood,
-        LmSettings {
-            starts: 1,
-            ..LmSettings::default()
-        },
-        &slit,
-    );
+    let estimate = fit(&prior, &likelihood, from_one_start(), &slit);
     assert!(estimate.theta[1].abs() < 1e-6);
     assert_eq!(estimate.sd(1), None);
     assert!(estimate.sd(0).is_some() && estimate.sd(2).is_some());
@@ -400,7 +340,7 @@ fn a_model_that_refuses_everything_fails_with_half_of_the_budget() {
     let likelihood = data(&[1.0], |_| ErrorSd::Known(0.1));
     let ended = end(
         begin(&[uniform(0.0, 1.0)], &likelihood, LmSettings::default()),
-        &|_| None,
+        |_| None,
         |_, _| (),
     );
     assert_eq!(
@@ -416,14 +356,7 @@ fn the_order_within_a_round_does_not_matter() {
         uniform(4.0, 5.6),
         normal(1.1, 0.2),
         normal(0.55, 0.1),
-        Marginal::new(
-            Distribution::Lognormal {
-                median: 1.0,
-                factor: 3.0,
-            },
-            None,
-        )
-        .unwrap(),
+        lognormal(1.0, 3.0),
     ];
     let values = wheel(&[4.9, 1.0, 0.6]);
     let likelihood = data(&values, |i| match i % 3 {
@@ -470,9 +403,8 @@ fn the_budget_is_never_exceeded_and_says_so() {
     let model = |theta: &[f64]| Some(vec![10.0 * (theta[1] - theta[0] * theta[0]), theta[0]]);
     for max_evaluations in 4..40 {
         let settings = LmSettings {
-            starts: 1,
             max_evaluations,
-            ..LmSettings::default()
+            ..from_one_start()
         };
         let estimate = fit(&prior, &likelihood, settings, &model);
         assert!(estimate.evaluations <= max_evaluations as u64);
@@ -524,41 +456,32 @@ fn what_fits_no_datum_is_refused_and_changes_nothing() {
 #[test]
 fn settings_that_cannot_work_are_refused() {
     let ok = LmSettings::default();
-    assert_eq!(ok.check(0), Err(LmSettingsError::NoParameters));
-    assert_eq!(
-        LmSettings { starts: 0, ..ok }.check(2),
-        Err(LmSettingsError::NoStart)
-    );
-    assert_eq!(
-        LmSettings {
-            max_evaluations: 13,
+    let starts = LmSettings { starts: 0, ..ok };
+    let budget = |max_evaluations| LmSettings {
+        max_evaluations,
+        ..ok
+    };
+    let too_few = LmSettingsError::TooFewEvaluations {
+        max_evaluations: 13,
+        min: 14,
+        starts: 5,
+        dimension: 8,
+    };
+    for (settings, dimension, expected) in [
+        (ok, 0, Err(LmSettingsError::NoParameters)),
+        (starts, 2, Err(LmSettingsError::NoStart)),
+        (budget(13), 8, Err(too_few)),
+        (budget(14), 8, Ok(())),
+    ] {
+        assert_eq!(settings.check(dimension), expected);
+    }
+    for difference_step in [0.0, -0.1, 0.6, f64::NAN] {
+        let checked = LmSettings {
+            difference_step,
             ..ok
         }
-        .check(8),
-        Err(LmSettingsError::TooFewEvaluations {
-            max_evaluations: 13,
-            min: 14,
-            starts: 5,
-            dimension: 8
-        })
-    );
-    assert_eq!(
-        LmSettings {
-            max_evaluations: 14,
-            ..ok
-        }
-        .check(8),
-        Ok(())
-    );
-    for value in [0.0, -0.1, 0.6, f64::NAN] {
-        assert!(matches!(
-            LmSettings {
-                difference_step: value,
-                ..ok
-            }
-            .check(2),
-            Err(LmSettingsError::DifferenceStep { .. })
-        ));
+        .check(2);
+        assert!(matches!(checked, Err(LmSettingsError::DifferenceStep { .. })));
     }
 }
 
@@ -566,16 +489,17 @@ fn settings_that_cannot_work_are_refused() {
 #[test]
 fn a_correlated_prior_counts_as_on_paper() {
     let (rho, datum, sd) = (-0.7, 1.5, 0.4);
-    let prior = Prior::new(vec![normal(0.0, 1.0), normal(0.0, 1.0)])
-        .correlated(vec![0, 1], &[vec![1.0, rho], vec![rho, 1.0]])
-        .unwrap();
     let likelihood = data(&[datum], |_| ErrorSd::Known(sd));
     let settings = LmSettings {
         starts: 2,
         ..LmSettings::default()
     };
-    let begun = LmFit::new(prior, likelihood, settings).unwrap();
-    let ended = end(begun, &|theta| Some(vec![theta[0] + 2.0 * theta[1]]), |_, _| ());
+    let begun = LmFit::new(correlated_pair(rho), likelihood, settings).unwrap();
+    let ended = end(
+        begun,
+        |theta: &[f64]| Some(vec![theta[0] + 2.0 * theta[1]]),
+        |_, _| (),
+    );
     let estimate = ended.estimate().unwrap();
     let covariance = [1.0 + 2.0 * rho, rho + 2.0];
     let variance = covariance[0] + 2.0 * covariance[1] + sd * sd;

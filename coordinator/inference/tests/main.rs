@@ -4,7 +4,6 @@
 
 mod answers;
 mod ask_tell;
-mod correlated_prior;
 mod diagnostics;
 mod draws;
 mod evolution;
@@ -13,4 +12,5 @@ mod lm;
 mod metamodel;
 mod normal_approximation;
 mod problems;
+mod setup;
 mod trends;

@@ -1,10 +1,9 @@
 //! A metamodel saves evaluations and keeps the posterior.
 
+use crate::setup::{data, standard_normals};
 use inference::diagnostics::mean_and_sd;
 use inference::{EvaluationResult, PosteriorSample, Sampler, StageMethod, TmcmcSettings};
-use statistics::{
-    Datum, Distribution, ErrorSd, Likelihood, LogLikelihood, Marginal, Metamodel, ModelPair, Prior,
-};
+use statistics::{ErrorSd, Likelihood, LogLikelihood, Metamodel, ModelPair};
 
 const MEASURED: [f64; 2] = [1.2, 0.9];
 const NOISE: f64 = 0.25;
@@ -22,24 +21,13 @@ fn coarse(theta: &[f64]) -> Option<Vec<f64>> {
 }
 
 fn likelihood() -> Likelihood {
-    let datum = |run: usize| Datum {
-        run,
-        channel: 0,
-        value: MEASURED[run],
-        sd: ErrorSd::Known(NOISE),
-    };
-    Likelihood::new(vec![datum(0), datum(1)]).unwrap()
-}
-
-fn prior() -> Prior {
-    let normal = Marginal::new(Distribution::Normal { mean: 0.0, sd: 1.0 }, None).unwrap();
-    Prior::new(vec![normal.clone(), normal])
+    data(&MEASURED, |_| ErrorSd::Known(NOISE))
 }
 
 /// A sampler at its end, the metamodel's moves, and how many of them were accepted.
 fn run(settings: TmcmcSettings, coarse: fn(&[f64]) -> Option<Vec<f64>>) -> (Sampler, [u64; 3]) {
     let likelihood = likelihood();
-    let mut sampler = Sampler::with_metamodel(prior(), settings, likelihood.clone()).unwrap();
+    let mut sampler = Sampler::with_metamodel(standard_normals(2), settings, likelihood.clone()).unwrap();
     let [mut moves, mut subchains, mut found_out] = [0; 3];
     let score = |theta: &[f64]| -> (LogLikelihood, Option<ModelPair>) {
         let fine = fine(theta);
@@ -76,7 +64,7 @@ fn run(settings: TmcmcSettings, coarse: fn(&[f64]) -> Option<Vec<f64>>) -> (Samp
 
 /// Means of x, y, their squares, and ln Z, by sums over a grid.
 fn truth() -> ([f64; 4], f64) {
-    let (likelihood, prior) = (likelihood(), prior());
+    let (likelihood, prior) = (likelihood(), standard_normals(2));
     let step = 0.02;
     let mut sums = [0.0; 5];
     for i in -250..=250 {
@@ -190,7 +178,7 @@ fn subchains_that_never_move_ask_for_nothing() {
 
 #[test]
 fn an_answer_to_another_question_is_refused() {
-    let mut sampler = Sampler::with_metamodel(prior(), settings(1, 5), likelihood()).unwrap();
+    let mut sampler = Sampler::with_metamodel(standard_normals(2), settings(1, 5), likelihood()).unwrap();
     let end = statistics::SubchainEnd {
         theta: vec![0.0, 0.0],
         log_gain: 0.0,
@@ -211,6 +199,6 @@ fn the_algorithms_without_steps_take_no_metamodel() {
         algorithm: inference::Algorithm::Basis,
         ..settings(1, 5)
     };
-    let error = Sampler::with_metamodel(prior(), settings, likelihood()).unwrap_err();
+    let error = Sampler::with_metamodel(standard_normals(2), settings, likelihood()).unwrap_err();
     assert!(error.to_string().contains("metamodel_moves 5"), "{error}");
 }

@@ -1,13 +1,10 @@
 //! Draws and evidence of the normal approximation against closed forms and quadrature.
 
+use crate::setup::{correlated_pair, end, marginal, normal, uniform};
 use inference::lm::{LmFit, LmSettings};
 use inference::point_estimate::ModeEstimate;
 use statistics::likelihood::{CommonError, CommonErrorSize, ErrorLaw};
-use statistics::{Datum, Distribution, ErrorSd, Likelihood, Marginal, Prior};
-
-fn marginal(distribution: Distribution) -> Marginal {
-    Marginal::new(distribution, None).unwrap()
-}
+use statistics::{Datum, Distribution, ErrorSd, Likelihood, Prior};
 
 fn datum(run: usize, value: f64, sd: f64) -> Datum {
     Datum {
@@ -23,14 +20,9 @@ fn fit(prior: Prior, likelihood: Likelihood, model: impl Fn(&[f64]) -> Vec<f64>)
         draws: 4000,
         ..LmSettings::default()
     };
-    let mut fit = LmFit::new(prior, likelihood, settings).unwrap();
-    while !fit.round().pending().is_empty() {
-        for proposal in fit.round().pending().to_vec() {
-            fit.tell(proposal.particle, Some(&model(&proposal.theta)))
-                .unwrap();
-        }
-    }
-    fit.estimate().unwrap().clone()
+    let fit = LmFit::new(prior, likelihood, settings).unwrap();
+    let ended = end(fit, |theta| Some(model(theta)), |_, _| ());
+    ended.estimate().unwrap().clone()
 }
 
 fn moments(estimate: &ModeEstimate, parameter: usize) -> (f64, f64) {
@@ -52,12 +44,10 @@ fn near(computed: f64, expected: f64, tolerance: f64) {
 #[test]
 fn draws_of_a_linear_model_have_its_closed_form_and_evidence() {
     let (rho, value, sd) = (-0.7, 1.5, 0.4);
-    let normal = || marginal(Distribution::Normal { mean: 0.0, sd: 1.0 });
-    let prior = Prior::new(vec![normal(), normal()])
-        .correlated(vec![0, 1], &[vec![1.0, rho], vec![rho, 1.0]])
-        .unwrap();
     let likelihood = Likelihood::new(vec![datum(0, value, sd)]).unwrap();
-    let estimate = fit(prior, likelihood, |theta| vec![theta[0] + 2.0 * theta[1]]);
+    let estimate = fit(correlated_pair(rho), likelihood, |theta| {
+        vec![theta[0] + 2.0 * theta[1]]
+    });
     let covariance = [1.0 + 2.0 * rho, rho + 2.0];
     let variance = covariance[0] + 2.0 * covariance[1] + sd * sd;
     for (k, covariance_with_datum) in covariance.into_iter().enumerate() {
@@ -76,13 +66,9 @@ fn draws_of_a_linear_model_have_its_closed_form_and_evidence() {
 /// A prior uniform over [0, 1] and a datum two sds below it: the mode is the bound, the density falls from there.
 #[test]
 fn draws_stay_within_bounds_where_the_mode_is_at_one() {
-    let uniform = Distribution::Uniform {
-        lower: 0.0,
-        upper: 1.0,
-    };
     let (value, sd) = (-1.0, 0.5);
     let likelihood = Likelihood::new(vec![datum(0, value, sd)]).unwrap();
-    let estimate = fit(Prior::new(vec![marginal(uniform)]), likelihood, |theta| {
+    let estimate = fit(Prior::new(vec![uniform(0.0, 1.0)]), likelihood, |theta| {
         vec![theta[0]]
     });
     assert!(estimate.at_bound[0]);
@@ -115,11 +101,8 @@ fn the_sd_of_common_errors_is_inferred_with_the_parameter() {
         size: CommonErrorSize::Shift(ErrorSd::Inferred { parameter: 1 }),
     });
     let likelihood = Likelihood::with_common(data, ErrorLaw::Gaussian, common.collect(), Vec::new()).unwrap();
-    let wide = Distribution::Normal { mean: 0.0, sd: 10.0 };
-    let prior = Prior::new(vec![
-        marginal(wide),
-        marginal(Distribution::HalfNormal { scale: 1.0 }),
-    ]);
+    let half_normal = marginal(Distribution::HalfNormal { scale: 1.0 });
+    let prior = Prior::new(vec![normal(0.0, 10.0), half_normal]);
     let estimate = fit(prior.clone(), likelihood.clone(), |theta| vec![theta[0]; 24]);
     let (mut evidence, mut mean_sd) = (0.0, 0.0);
     for i in 0..300 {

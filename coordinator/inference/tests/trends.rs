@@ -1,9 +1,10 @@
 //! The test for trends in residuals on linear models with normal errors, where every answer is known.
 
+use crate::setup::{lognormal, normal};
 use inference::diagnostics::{PredictedDraw, Trend, TrendTest};
 use nalgebra::{Cholesky, DMatrix, DVector};
 use statistics::rng::Stream;
-use statistics::{Datum, Distribution, ErrorSd, Likelihood, Marginal, Prior};
+use statistics::{Datum, ErrorSd, Likelihood, Prior};
 
 const CHANNELS: usize = 3;
 const SLIPS: [f64; 4] = [0.05, 0.2, 0.4, 0.6];
@@ -76,15 +77,9 @@ impl Rig {
     }
 
     fn prior(&self) -> Prior {
-        let normal = Distribution::Normal { mean: 0.0, sd: 1.0 };
-        let noise = Distribution::Lognormal {
-            median: SD,
-            factor: 2.0,
-        };
-        let one = |distribution| Marginal::new(distribution, None).unwrap();
-        let mut marginals = vec![one(normal); PARAMETERS];
+        let mut marginals = vec![normal(0.0, 1.0); PARAMETERS];
         if self.inferred {
-            marginals.extend(vec![one(noise); CHANNELS]);
+            marginals.extend(vec![lognormal(SD, 2.0); CHANNELS]);
         }
         Prior::new(marginals)
     }

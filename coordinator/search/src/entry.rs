@@ -67,13 +67,9 @@ impl CandidateEntry {
         let name = plain.name.to_owned();
         Some(Self {
             candidate: Candidate {
-                name: name.clone(),
-                parameters: vec![density],
-                strengths: vec![0],
                 neutral,
-                excludes: Vec::new(),
-                family: None,
                 has_low_fidelity: !SPATIAL.iter().any(|spatial| spatial.name == plain.name),
+                ..Candidate::new(&name, vec![density], vec![0])
             },
             names: vec![name.clone()],
             units: vec![unit.to_owned()],
@@ -113,16 +109,8 @@ impl CandidateEntry {
             return Err(not_tried(format!("its free parameters are others: {names}")));
         }
         Ok(Some(Self {
-            candidate: Candidate {
-                name: name.clone(),
-                parameters: Vec::new(),
-                strengths: Vec::new(),
-                neutral: 0.0,
-                excludes: Vec::new(),
-                family: None,
-                // The corrections of the base do not hold for another setting or kind of model.
-                has_low_fidelity: false,
-            },
+            // The low-fidelity model has no switch: the corrections of the base do not hold for another setting or kind of model.
+            candidate: Candidate::new(&name, Vec::new(), Vec::new()),
             names: Vec::new(),
             units: Vec::new(),
             not_tried: None,
@@ -152,14 +140,14 @@ impl CandidateEntry {
         let &(_, neutral) = strengths.first()?;
         Some(Self {
             candidate: Candidate {
-                name: candidate.name.clone(),
-                parameters: free.iter().map(|p| p.marginal.clone()).collect(),
-                strengths: strengths.into_iter().map(|(k, _)| k).collect(),
                 neutral,
-                excludes: Vec::new(),
-                family: None,
                 has_low_fidelity: ModelKind::QuasiStatic.has_form(effect)
                     && EffectOnNodes::find(&candidate.name).is_none(),
+                ..Candidate::new(
+                    &candidate.name,
+                    free.iter().map(|p| p.marginal.clone()).collect(),
+                    strengths.into_iter().map(|(k, _)| k).collect(),
+                )
             },
             units: free.iter().map(|p| p.unit.clone()).collect(),
             names: free.into_iter().map(|p| p.name).collect(),

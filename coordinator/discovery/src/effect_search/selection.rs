@@ -340,15 +340,7 @@ mod tests {
 
     fn searched() -> EffectSearch {
         let normal = || Marginal::new(Distribution::Normal { mean: 0.0, sd: 1.0 }, None).unwrap();
-        let candidate = |name: &str| Candidate {
-            name: name.into(),
-            parameters: vec![normal()],
-            strengths: vec![0],
-            neutral: 0.0,
-            excludes: Vec::new(),
-            family: None,
-            has_low_fidelity: false,
-        };
+        let candidate = |name: &str| Candidate::new(name, vec![normal()], vec![0]);
         let clean = predicted(&[0.2, -0.4, 0.9], Some(0));
         let datum = |(run, value): (usize, f64)| Datum {
             run,

@@ -273,15 +273,7 @@ mod tests {
     #[test]
     fn a_half_normal_strength_is_its_own_coordinate_in_units_of_its_scale() {
         let half = Marginal::new(Distribution::HalfNormal { scale: 3.0 }, None).unwrap();
-        let effect = Candidate {
-            name: "e".into(),
-            parameters: vec![half],
-            strengths: vec![0],
-            neutral: 0.0,
-            excludes: Vec::new(),
-            family: None,
-            has_low_fidelity: false,
-        };
+        let effect = Candidate::new("e", vec![half], vec![0]);
         let frame = NormalFrame::base(&Prior::new(Vec::new()), Smoothness::Smooth).with(&effect);
         for t in [0.0, 0.1, 1.0, 2.5, 5.0] {
             let x = frame.theta(&[t])[0];
@@ -338,15 +330,7 @@ mod tests {
     #[test]
     fn a_strength_of_either_sign_is_absent_at_the_score_of_its_neutral_value() {
         let normal = Marginal::new(Distribution::Normal { mean: 1.0, sd: 2.0 }, None).unwrap();
-        let effect = Candidate {
-            name: "e".into(),
-            parameters: vec![normal],
-            strengths: vec![0],
-            neutral: 0.0,
-            excludes: Vec::new(),
-            family: None,
-            has_low_fidelity: false,
-        };
+        let effect = Candidate::new("e", vec![normal], vec![0]);
         let frame = NormalFrame::base(&Prior::new(Vec::new()), Smoothness::Smooth).with(&effect);
         let (_, neutral) = frame.strength().unwrap();
         assert!((neutral + 0.5).abs() < 1e-12 && !frame.is_one_sided());

@@ -165,15 +165,7 @@ mod tests {
     #[test]
     fn a_fit_that_a_narrow_part_holds_near_absence_promises_no_more_than_it_may() {
         let prior = Marginal::new(Distribution::Normal { mean: 0.0, sd: 1.0 }, None).unwrap();
-        let effect = Candidate {
-            name: "e".into(),
-            parameters: vec![prior],
-            strengths: vec![0],
-            neutral: 0.0,
-            excludes: Vec::new(),
-            family: None,
-            has_low_fidelity: false,
-        };
+        let effect = Candidate::new("e", vec![prior], vec![0]);
         let frame = NormalFrame::base(&Prior::new(Vec::new()), Smoothness::Smooth).with(&effect);
         // The likelihood rises by 8 nats per standard deviation and hardly bends; the narrow parts balance it at once.
         let position = [0.04];
