@@ -38,13 +38,13 @@ impl Candidate {
         }
     }
 
-    /// Whether the candidate is another model with the same parameters.
+    /// Returns whether the candidate is another model with the same parameters.
     #[must_use]
     pub fn is_switch(&self) -> bool {
         self.parameters.is_empty()
     }
 
-    /// Whether both candidates may stand in one combination.
+    /// Returns whether both candidates may stand in one combination.
     pub(crate) fn combines_with(&self, candidate: &Self) -> bool {
         !self.excludes.contains(&candidate.name) && !candidate.excludes.contains(&self.name)
     }

@@ -23,7 +23,7 @@ pub struct FitChiSquare {
 }
 
 impl FitChiSquare {
-    /// The chi-square of a fit; `None` with inferred noise, heavy tails or a model discrepancy.
+    /// Computes the chi-square of a fit; `None` with inferred noise, heavy tails or a model discrepancy.
     pub(crate) fn of_fit(fit: &LaplaceFit, likelihood: &Likelihood) -> Option<Self> {
         let unknown = |sd: ErrorSd| matches!(sd, ErrorSd::Inferred { .. });
         let is_known = likelihood.law() == ErrorLaw::Gaussian
@@ -46,7 +46,7 @@ impl FitChiSquare {
         })
     }
 
-    /// The chi-square of a fit; with a model discrepancy, by the declared noise alone.
+    /// Computes the chi-square of a fit; with a model discrepancy, by the declared noise alone.
     pub(crate) fn of_declared_noise(fit: &LaplaceFit, likelihood: &Likelihood) -> Option<Self> {
         Self::of_fit(fit, likelihood).or_else(|| {
             let declared = Likelihood::new(likelihood.data().to_vec()).ok()?;
@@ -56,30 +56,30 @@ impl FitChiSquare {
         })
     }
 
-    /// p-value of the fit.
+    /// Returns the p-value of the fit.
     #[must_use]
     pub fn p(&self) -> f64 {
         chi_square_tail(self.value, self.degrees_of_freedom).unwrap_or(1.0)
     }
 
-    /// Whether the fit contradicts the data: p < 0.001.
+    /// Returns whether the fit contradicts the data: p < 0.001.
     #[must_use]
     pub fn is_wrong(&self) -> bool {
         self.p() < WRONG
     }
 
-    /// Whether the fit leaves nothing to explain: p >= 0.01.
+    /// Returns whether the fit leaves nothing to explain: p >= 0.01.
     #[must_use]
     pub fn is_complete(&self) -> bool {
         self.p() >= INCOMPLETE
     }
 
-    /// The chi-square over its degrees of freedom, at least 1.
+    /// Returns the chi-square over its degrees of freedom, at least 1.
     pub(crate) fn ratio(&self) -> f64 {
         (self.value / self.degrees_of_freedom.max(1.0)).max(1.0)
     }
 
-    /// The chi-square less its degrees of freedom.
+    /// Returns the chi-square less its degrees of freedom.
     pub(crate) fn excess(&self) -> f64 {
         self.value - self.degrees_of_freedom
     }

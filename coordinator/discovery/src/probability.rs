@@ -45,13 +45,13 @@ pub(crate) struct Probabilities {
 }
 
 impl Probabilities {
-    /// Weighs the explanations. The prior is 1/2 for nothing missing. The rest is shared equally by the classes and the law outside the library, and within
-    /// a class by its members.
+    /// Weighs the explanations. The prior is 1/2 for nothing missing. The rest is shared equally by the classes and the law
+    /// outside the library, and within a class by its members.
     ///
     /// # Arguments
     /// - `outside`: log Bayes factor of a law outside the library; `None`: not searched.
-    /// - `misfit`: chi-square of the best explanation over its degrees of freedom, 1 where it fits. Log Bayes factors are divided by it,
-    ///   as if the noise were larger by its root: where every explanation is wrong, differences between them mean less.
+    /// - `misfit`: chi-square of the best explanation over its degrees of freedom, 1 where it fits. Log Bayes factors are divided
+    ///   by it, as if the noise were larger by its root: where every explanation is wrong, differences between them mean less.
     ///
     /// # Source
     /// Kass & Raftery 1995, section 5.3, doi:10.1080/01621459.1995.10476572. Checked by

@@ -21,7 +21,7 @@ pub enum Smoothness {
 }
 
 impl Smoothness {
-    /// Shortest finite difference, in standard deviations of the prior; shorter ones resolve the jumps.
+    /// Returns the shortest finite difference, in standard deviations of the prior; shorter ones resolve the jumps.
     pub(crate) fn min_difference(self) -> f64 {
         match self {
             Self::Smooth => 0.03,
@@ -29,7 +29,8 @@ impl Smoothness {
         }
     }
 
-    /// A fit ends its trial steps when the predicted gain is smaller \[nats\]; the log-likelihood of a rough model has more noise.
+    /// Returns a fit ends its trial steps when the predicted gain is smaller \[nats\]; the log-likelihood of a rough model has
+    /// more noise.
     pub(crate) fn min_gain(self) -> f64 {
         match self {
             Self::Smooth => 0.01,
@@ -37,7 +38,7 @@ impl Smoothness {
         }
     }
 
-    /// A step that gains less is accepted, but counts as rejected \[nats\].
+    /// Returns a step that gains less is accepted, but counts as rejected \[nats\].
     pub(crate) fn min_counted_gain(self) -> f64 {
         match self {
             Self::Smooth => 0.0,
@@ -45,7 +46,7 @@ impl Smoothness {
         }
     }
 
-    /// Number of consecutive rejected steps that ends the trials.
+    /// Returns the number of consecutive rejected steps that ends the trials.
     pub(crate) fn max_failures(self) -> usize {
         match self {
             Self::Smooth => 4,
@@ -70,7 +71,7 @@ pub struct SearchSettings {
 }
 
 impl Default for SearchSettings {
-    /// 32 starts that fill the prior, seed 1, for a smooth model without numerical noise.
+    /// Returns 32 starts that fill the prior, seed 1, for a smooth model without numerical noise.
     fn default() -> Self {
         Self {
             starts: Starts::Even(32),

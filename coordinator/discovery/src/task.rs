@@ -38,7 +38,8 @@ pub struct LawCandidate {
     pub curve: Candidate,
     /// The dependence in simple forms.
     pub forms: Vec<Candidate>,
-    /// Whether the law changes a measured channel instead of a stress. Such a law describes the data, and yields to one that explains them.
+    /// Whether the law changes a measured channel instead of a stress. Such a law describes the data, and yields to one that
+    /// explains them.
     pub is_description: bool,
 }
 
@@ -63,14 +64,15 @@ pub struct ProposedRuns {
 }
 
 impl ProposedRuns {
-    /// Number of predicted values: each channel of the first run, then of the next.
+    /// Returns the number of predicted values: each channel of the first run, then of the next.
     pub(crate) fn values(&self) -> usize {
         self.runs * self.noise_sds.len()
     }
 }
 
 impl SearchTask {
-    /// All candidates: the library, then the curve and the forms of each law. Other items name a candidate by its index in this list.
+    /// Returns all candidates: the library, then the curve and the forms of each law. Other items name a candidate by its index
+    /// in this list.
     #[must_use]
     pub fn candidates(&self) -> Vec<Candidate> {
         let outside = self
@@ -80,19 +82,19 @@ impl SearchTask {
         self.library.iter().chain(outside).cloned().collect()
     }
 
-    /// The coordinates of the base.
+    /// Returns the coordinates of the base.
     pub(crate) fn frame(&self) -> NormalFrame {
         NormalFrame::base(&self.prior, self.settings.smoothness)
             .with_low_fidelity(self.settings.has_low_fidelity)
     }
 
-    /// Index of a law's curve among the candidates.
+    /// Returns the index of a law's curve among the candidates.
     pub(crate) fn curve(&self, law: usize) -> usize {
         let before = self.laws[..law].iter().map(|law| 1 + law.forms.len());
         self.library.len() + before.sum::<usize>()
     }
 
-    /// Indices of a law's forms among the candidates.
+    /// Returns indices of a law's forms among the candidates.
     pub(crate) fn forms(&self, law: usize) -> std::ops::Range<usize> {
         let first = self.curve(law) + 1;
         first..first + self.laws[law].forms.len()

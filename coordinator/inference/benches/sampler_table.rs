@@ -6,7 +6,8 @@
 //!
 //! Below it, unless one problem was asked for: what it costs to find the most probable parameters (`fits`).
 //!
-//! `cargo bench -p inference --bench sampler_table [-- SEEDS [LABEL [PROBLEM]]]` with the start of a row's label, or `-- fits [SEEDS]`
+//! `cargo bench -p inference --bench sampler_table [-- SEEDS [LABEL [PROBLEM]]]` with the start of a row's label, or `-- fits
+//! [SEEDS]`
 
 #![expect(clippy::unwrap_used, reason = "helpers of tests may panic as tests do")]
 

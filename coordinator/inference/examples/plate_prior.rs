@@ -2,10 +2,10 @@
 //!
 //! `cargo run --release -p inference --example plate_prior -- examples/cmu-sand/plates.csv`
 //!
-//! `ln p = ln p_ref + ln[(1 + kappa b_ref / b) / (1 + kappa)] + (n + v) x + u + e`, `x = ln(z / z_ref)`, with `u ~ N(0, s_u^2)` and `v ~
-//! N(0, s_v^2)` for each test and `e ~ N(0, s_e^2)` for each reading. Tests of one box are prepared anew each time, so pooling their
-//! readings would take 200 readings for 200 independent facts. `u` and `v` are integrated in closed form: a test's readings are jointly
-//! normal with the covariance `s_e^2 I + s_u^2 1 1' + s_v^2 x x'`.
+//! `ln p = ln p_ref + ln[(1 + kappa b_ref / b) / (1 + kappa)] + (n + v) x + u + e`, `x = ln(z / z_ref)`, with `u ~ N(0, s_u^2)`
+//! and `v ~ N(0, s_v^2)` for each test and `e ~ N(0, s_e^2)` for each reading. Tests of one box are prepared anew each time, so
+//! pooling their readings would take 200 readings for 200 independent facts. `u` and `v` are integrated in closed form: a test's
+//! readings are jointly normal with the covariance `s_e^2 I + s_u^2 1 1' + s_v^2 x x'`.
 
 use std::collections::BTreeMap;
 

@@ -25,7 +25,7 @@ impl<W, R> RunPhase<W, R> {
         }
     }
 
-    /// The progress after a told result; `complete`: it was the last one of its round.
+    /// Returns the progress after a told result; `complete`: it was the last one of its round.
     pub(crate) fn progress(&self, complete: bool) -> TellProgress {
         match self {
             Self::Done(_) => TellProgress::Finished,

@@ -15,7 +15,7 @@ pub struct Proposal {
 }
 
 impl Proposal {
-    /// A proposal without a subchain.
+    /// Makes a proposal without a subchain.
     #[must_use]
     pub fn plain(particle: usize, theta: Vec<f64>) -> Self {
         Self {
@@ -79,38 +79,38 @@ impl<A> ProposalRound<A> {
         (std::mem::take(&mut self.pending), answers)
     }
 
-    /// Number of completed rounds.
+    /// Returns the number of completed rounds.
     #[must_use]
     pub fn number(&self) -> u64 {
         self.number
     }
 
-    /// The proposals, told or not.
+    /// Returns the proposals, told or not.
     #[must_use]
     pub fn pending(&self) -> &[Proposal] {
         &self.pending
     }
 
-    /// Number of proposals that have been told.
+    /// Returns the number of proposals that have been told.
     #[must_use]
     pub fn told(&self) -> usize {
         self.pending.len() - self.missing
     }
 
-    /// Whether a pending particle has been told.
+    /// Returns whether a pending particle has been told.
     #[must_use]
     pub fn is_told(&self, particle: usize) -> bool {
         self.slot(particle)
             .is_some_and(|slot| self.answers[slot].is_some())
     }
 
-    /// The proposal of a pending particle.
+    /// Returns the proposal of a pending particle.
     #[must_use]
     pub fn proposal(&self, particle: usize) -> Option<&Proposal> {
         self.slot(particle).map(|slot| &self.pending[slot])
     }
 
-    /// Position of a particle among the pending proposals.
+    /// Returns the position of a particle among the pending proposals.
     fn slot(&self, particle: usize) -> Option<usize> {
         self.pending
             .binary_search_by_key(&particle, |proposal| proposal.particle)

@@ -485,7 +485,8 @@ fn settings_that_cannot_work_are_refused() {
     }
 }
 
-/// A prior N(0, R) and a datum of a + 2 b: the most probable point is C w d / (w' C w + e^2), the covariance C - C w w' C / (w' C w + e^2).
+/// A prior N(0, R) and a datum of a + 2 b: the most probable point is C w d / (w' C w + e^2), the covariance C - C w w' C / (w' C
+/// w + e^2).
 #[test]
 fn a_correlated_prior_counts_as_on_paper() {
     let (rho, datum, sd) = (-0.7, 1.5, 0.4);

@@ -42,9 +42,9 @@ pub enum ExclusionReason {
 
 /// Returns the job with further effects, as a text.
 ///
-/// Effects of the catalogue join those under `[model]`, where a setting is turned; a plain parameter of the model gets its prior under
-/// `[priors]`; effect files come with the job; and an effect on one wheel is a line under `[priors]` for each of its strengths, with the
-/// prior of the effect's file. A prior under `[discovery.priors]` replaces that of the catalogue.
+/// Effects of the catalogue join those under `[model]`, where a setting is turned; a plain parameter of the model gets its prior
+/// under `[priors]`; effect files come with the job; and an effect on one wheel is a line under `[priors]` for each of its
+/// strengths, with the prior of the effect's file. A prior under `[discovery.priors]` replaces that of the catalogue.
 ///
 /// # Errors
 /// [`FileError`] of the job: an effect is unknown, a file or a line exists already, the text is not a job. Whether the model can
@@ -141,8 +141,9 @@ pub type LibraryEffect = (CandidateEffect, Vec<FreeParameter>);
 /// Lists the candidate effects of the library for an experiment.
 ///
 /// First every effect of the catalogue that the job does not have, in the order of the catalogue; then, where fitted runs have
-/// several wheels, each on each of these wheels alone; then those of the shear displacement with that on the nodes of the soil. Checked by
-/// `tests::of_several_wheels_each_may_have_an_effect_alone` and `tests::an_effect_of_the_displacement_may_be_on_the_nodes`.
+/// several wheels, each on each of these wheels alone; then those of the shear displacement with that on the nodes of the soil.
+/// Checked by `tests::of_several_wheels_each_may_have_an_effect_alone` and
+/// `tests::an_effect_of_the_displacement_may_be_on_the_nodes`.
 ///
 /// # Returns
 /// The candidates, and the names of the effects that are excluded here with the reason.

@@ -73,8 +73,8 @@ fn range(values: &[f64]) -> [f64; 2] {
     ]
 }
 
-/// Returns values that the rig can set, equal ratios apart. Their range follows the median, so that it does not grow when a run at its
-/// end is added to the campaign.
+/// Returns values that the rig can set, equal ratios apart. Their range follows the median, so that it does not grow when a run
+/// at its end is added to the campaign.
 fn reach(values: &[f64]) -> Vec<f64> {
     let mut ascending = values.to_vec();
     ascending.sort_by(f64::total_cmp);
@@ -87,7 +87,8 @@ fn reach(values: &[f64]) -> Vec<f64> {
         .collect()
 }
 
-/// Returns how far each run lies beyond the measured range of wheel load and rim speed: the logarithm of the ratio, 0 within the range.
+/// Returns how far each run lies beyond the measured range of wheel load and rim speed: the logarithm of the ratio, 0 within the
+/// range.
 pub(super) fn beyond(spec: &Spec, design: &[RunCondition]) -> Vec<f64> {
     let ranges = measured(&spec.fit_variant.conditions).map(|values| range(&values));
     let of_run = |condition: &RunCondition| {

@@ -21,8 +21,8 @@ pub(super) struct CandidateEntry {
     pub(super) names: Vec<String>,
     /// Their units, in the same order.
     pub(super) units: Vec<String>,
-    /// The property that the experiment leaves unstated, if the effect needs one: the effect is then weighed with a typical value, and
-    /// never named.
+    /// The property that the experiment leaves unstated, if the effect needs one: the effect is then weighed with a typical
+    /// value, and never named.
     pub(super) not_tried: Option<NotTried>,
 }
 
@@ -35,7 +35,7 @@ pub(super) struct LawEntry {
 }
 
 impl LawEntry {
-    /// Its candidates: the curve, then the forms.
+    /// Returns its candidates: the curve, then the forms.
     pub(super) fn entries(&self) -> impl Iterator<Item = &CandidateEntry> {
         std::iter::once(&self.curve).chain(self.forms.iter().map(|(_, entry)| entry))
     }
@@ -81,8 +81,8 @@ impl CandidateEntry {
         })
     }
 
-    /// Makes the candidate that turns a setting of the model; `None` if the job has this setting already, and for the other kind of model
-    /// unless the job requests it.
+    /// Makes the candidate that turns a setting of the model; `None` if the job has this setting already, and for the other kind
+    /// of model unless the job requests it.
     ///
     /// # Errors
     /// [`NotTried`] if the model with the setting is not valid or has other parameters.

@@ -11,7 +11,7 @@ use super::entry::CandidateEntry;
 const SLIPS: [f64; 3] = [-0.3, 0.0, 0.3];
 const SLIP_ANGLES_RAD: [f64; 2] = [0.0, 0.26];
 
-/// Whether the effect does nothing in some conditions.
+/// Returns whether the effect does nothing in some conditions.
 fn acts_in_part(effect: &Effect) -> bool {
     let mut conditions = SLIPS
         .iter()

@@ -1,7 +1,8 @@
 //! The search for a missing effect on the farm: its models as jobs, and its result in names and sentences.
 //!
 //! # Layout
-//! - [`candidate`]: candidate effects as additions to a job, and those of the library. `law`: laws outside the library as effect files.
+//! - [`candidate`]: candidate effects as additions to a job, and those of the library. `law`: laws outside the library as effect
+//!   files.
 //! - [`untried`]: effects that need a property which the experiment does not state.
 //! - `models`: the models of a search, made when they are queried. `entry`: their candidates. `family`: candidates that are tried
 //!   together. `design`: levels of the design, and runs that the rig could make.

@@ -63,8 +63,8 @@ pub struct SearchModels {
     assumed: Arc<Experiment>,
     pub(super) base: Spec,
     pub(super) library: Vec<CandidateEntry>,
-    /// Candidates that cannot be searched: another kind of model that the job requests and cannot have, effects that an external model
-    /// does not show, and effects that act in no condition of the fitted runs.
+    /// Candidates that cannot be searched: another kind of model that the job requests and cannot have, effects that an external
+    /// model does not show, and effects that act in no condition of the fitted runs.
     not_tried: Vec<NotTried>,
     pub(super) laws: Vec<LawEntry>,
     /// The files of the laws, each read once.
@@ -86,7 +86,8 @@ impl SearchModels {
     /// Reads job and experiment, and lists the candidates.
     ///
     /// # Arguments
-    /// - `job`: of the base model, with its effects. `max_effects`: maximum number of effects in a combination, if a job has room for them.
+    /// - `job`: of the base model, with its effects. `max_effects`: maximum number of effects in a combination, if a job has room
+    ///   for them.
     ///
     /// # Errors
     /// [`FileError`] of job or experiment.
@@ -133,7 +134,7 @@ impl SearchModels {
         effects.chain(&self.not_tried)
     }
 
-    /// The task of the search.
+    /// Returns the task of the search.
     pub fn task(&self) -> SearchTask {
         let base = &self.base;
         let place = |name: &String| base.parameters.iter().position(|p| p.name == *name);
@@ -176,13 +177,13 @@ impl SearchModels {
         }
     }
 
-    /// The candidate of an index: the library, then the curve and the forms of each law.
+    /// Returns the candidate of an index: the library, then the curve and the forms of each law.
     pub(super) fn entry(&self, index: usize) -> Option<&CandidateEntry> {
         let of_laws = self.laws.iter().flat_map(LawEntry::entries);
         self.library.iter().chain(of_laws).nth(index)
     }
 
-    /// The name of a candidate; empty without one.
+    /// Returns the name of a candidate; empty without one.
     pub(super) fn name(&self, index: usize) -> String {
         let entry = self.entry(index);
         entry.map_or(String::new(), |entry| entry.effect.name.clone())
@@ -219,7 +220,7 @@ impl SearchModels {
         Ok(())
     }
 
-    /// The variant of a query, with its hash.
+    /// Returns the variant of a query, with its hash.
     ///
     /// # Errors
     /// [`FileError`] where the effects are incompatible.
@@ -228,12 +229,12 @@ impl SearchModels {
         Ok(&self.variants[&VariantKey::new(query)])
     }
 
-    /// The variant of a query that was made before, with its hash.
+    /// Returns the variant of a query that was made before, with its hash.
     pub fn made(&self, query: &Query) -> Option<&(String, ModelVariant)> {
         self.variants.get(&VariantKey::new(query))
     }
 
-    /// The variant of a hash that was made before.
+    /// Returns the variant of a hash that was made before.
     pub fn of_hash(&self, hash: &str) -> Option<&ModelVariant> {
         let key = self.keys.get(hash)?;
         self.variants.get(key).map(|(_, variant)| variant)
@@ -241,8 +242,8 @@ impl SearchModels {
 
     /// Returns the same model on the proposed runs.
     fn of_proposed_runs(&self, mut variant: ModelVariant) -> ModelVariant {
-        // Soil density and position in the series are set only if an effect of this variant needs them. Proposed runs follow the end of
-        // the series.
+        // Soil density and position in the series are set only if an effect of this variant needs them. Proposed runs follow the
+        // end of the series.
         let density_kg_m3 = variant.conditions.first().and_then(|c| c.density_kg_m3);
         let drifts = variant.conditions.iter().any(|c| c.order.is_some());
         variant.conditions.clone_from(&self.design);
@@ -279,7 +280,7 @@ impl SearchModels {
         Ok(spec(&job, experiment)?.fit_variant)
     }
 
-    /// The parameters of a query in the order of its variant.
+    /// Returns the parameters of a query in the order of its variant.
     pub fn model_theta(&self, query: &Query, variant: &ModelVariant) -> Vec<f64> {
         let names: Vec<&str> = match &query.model {
             QueriedModel::With(effects) => {
@@ -297,7 +298,7 @@ impl SearchModels {
         variant.parameters.iter().map(value).collect()
     }
 
-    /// The values that answer a query.
+    /// Returns the values that answer a query.
     pub fn values(&self, query: &Query, observables: &Observables) -> Vec<f64> {
         if !query.is_proposed {
             return self.base.predicted_values(observables);
@@ -310,8 +311,8 @@ impl SearchModels {
     }
 }
 
-/// Lists the candidates: effects of the library, parameters and settings of the model itself, and effects that are weighed with typical
-/// values. Another kind of model that the job requests and cannot have is added to `not_tried`.
+/// Lists the candidates: effects of the library, parameters and settings of the model itself, and effects that are weighed with
+/// typical values. Another kind of model that the job requests and cannot have is added to `not_tried`.
 fn library_entries(
     job: &Job,
     base: &Spec,
@@ -397,8 +398,8 @@ fn reductions(job: &Job, base: &Spec) -> Vec<(String, Vec<String>)> {
     reductions
 }
 
-/// Excludes combinations of an effect whose shear displacement is kept on the nodes with other effects of the displacement, which it
-/// would move to the nodes, too.
+/// Excludes combinations of an effect whose shear displacement is kept on the nodes with other effects of the displacement, which
+/// it would move to the nodes, too.
 fn exclude_on_nodes(entries: &mut [CandidateEntry]) {
     let uses_displacement = |entry: &&CandidateEntry| {
         let effect = candidate_of(&entry.effect.name);

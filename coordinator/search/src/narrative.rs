@@ -196,14 +196,14 @@ fn undecided(effects: &[JudgedEffect]) -> String {
     format!("{question}: {}", credible_set(effects))
 }
 
-/// `the 95 % set is moisture (0.50), adhesion (0.47)`.
+/// Writes the credible set: `the 95 % set is moisture (0.50), adhesion (0.47)`.
 fn credible_set(effects: &[JudgedEffect]) -> String {
     let credible = effects.iter().filter(|e| e.in_credible_set);
     let set: Vec<String> = credible.map(weighed).collect();
     format!("the 95 % set is {}", list(set.iter().map(String::as_str)))
 }
 
-/// `slip_sinkage (0.68)`.
+/// Writes an effect with its probability: `slip_sinkage (0.68)`.
 fn weighed(effect: &JudgedEffect) -> String {
     let name = match effect.name.as_str() {
         NONE => "nothing",

@@ -16,8 +16,8 @@ const SCORE: f64 = 3.09;
 /// A condition of a run by its name in results.
 type Condition = (&'static str, fn(&TestRun) -> Option<f64>);
 
-/// The conditions of a run. Slip comes before sled speed: a rig may set the slip by the sled speed, and of equal correlations the first
-/// is reported.
+/// The conditions of a run. Slip comes before sled speed: a rig may set the slip by the sled speed, and of equal correlations the
+/// first is reported.
 const CONDITIONS: [Condition; 5] = [
     ("slip", |run| Some(run.slip)),
     ("wheel_load", |run| Some(run.wheel_load_n)),

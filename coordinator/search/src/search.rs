@@ -60,28 +60,28 @@ impl RunningDiscovery {
         Ok(())
     }
 
-    /// Number of completed rounds.
+    /// Returns the number of completed rounds.
     pub fn round(&self) -> u64 {
         self.search.round()
     }
 
-    /// The queries of this round.
+    /// Returns the queries of this round.
     pub fn pending(&self) -> &[Proposal] {
         self.search.pending()
     }
 
-    /// The hash of a query's variant, and its parameters.
+    /// Returns the hash of a query's variant, and its parameters.
     pub fn lease(&self, particle: usize) -> Option<(&str, &[f64])> {
         let (hash, theta) = self.leases.get(particle)?;
         Some((hash, theta))
     }
 
-    /// The variant of a hash.
+    /// Returns the variant of a hash.
     pub fn variant(&self, hash: &str) -> Option<&ModelVariant> {
         self.models.of_hash(hash)
     }
 
-    /// The values that answer a query of this round.
+    /// Returns the values that answer a query of this round.
     pub fn values(&self, particle: usize, observables: &Observables) -> Option<Vec<f64>> {
         let query = self.search.query(particle)?;
         Some(self.models.values(query, observables))
@@ -99,7 +99,7 @@ impl RunningDiscovery {
         Ok(progress)
     }
 
-    /// The result; `None` while the search is running.
+    /// Returns the result; `None` while the search is running.
     pub fn record(&self) -> Option<Discovery> {
         let conclusion = self.search.conclusion()?;
         Some(discovery_record(&self.models, conclusion))

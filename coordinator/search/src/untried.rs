@@ -1,4 +1,5 @@
-//! Untried effects: they need a property that the experiment does not state, so they are weighed with a typical value and never named.
+//! Untried effects: they need a property that the experiment does not state, so they are weighed with a typical value and never
+//! named.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -37,8 +38,8 @@ impl UntriedEffect {
     }
 }
 
-/// Lists the excluded effects that the model could have if the experiment stated more properties, and returns the experiment with typical
-/// values of these.
+/// Lists the excluded effects that the model could have if the experiment stated more properties, and returns the experiment with
+/// typical values of these.
 ///
 /// # Arguments
 /// - `files`: the texts of the experiment, which tell a stated value from a default.

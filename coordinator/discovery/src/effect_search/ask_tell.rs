@@ -1,4 +1,5 @@
-//! How a search for one effect is asked and told: its constructors, the requests of a round, and the answers, which select the next phase.
+//! How a search for one effect is asked and told: its constructors, the requests of a round, and the answers, which select the
+//! next phase.
 
 use crate::candidate::{Candidate, CandidateError};
 use crate::effect_search::base;
@@ -25,7 +26,7 @@ pub struct EffectRequest {
 }
 
 impl EffectSearch {
-    /// A search whose first round holds the starts of the base's fit.
+    /// Makes a search whose first round holds the starts of the base's fit.
     ///
     /// # Arguments
     /// - `prior`: the prior of the base's parameters, which include inferred noise sds. `likelihood`: the data.
@@ -55,7 +56,7 @@ impl EffectSearch {
         Ok(search)
     }
 
-    /// A search that extends a model that is fitted already. Without candidates it is done at once.
+    /// Makes a search that extends a model that is fitted already. Without candidates it is done at once.
     pub(crate) fn beyond(
         base: FittedModel,
         likelihood: Likelihood,
@@ -70,7 +71,7 @@ impl EffectSearch {
         search
     }
 
-    /// A fit of one model from the best of these starts, without candidates.
+    /// Makes a fit of one model from the best of these starts, without candidates.
     pub(crate) fn refit(
         frame: NormalFrame,
         starts: Vec<Vec<f64>>,
@@ -82,7 +83,7 @@ impl EffectSearch {
         search
     }
 
-    /// The requests of this round; the position of one is its index.
+    /// Returns the requests of this round; the position of one is its index.
     pub fn pending(&self) -> impl Iterator<Item = EffectRequest> {
         let pairs = self.requests.iter().zip(self.round.pending());
         pairs.map(|(request, proposal)| EffectRequest {
@@ -159,7 +160,7 @@ impl EffectSearch {
         }
     }
 
-    /// Why the search failed, if it did.
+    /// Returns why the search failed, if it did.
     #[must_use]
     pub fn failure(&self) -> Option<InferenceFailure> {
         match self.phase {
@@ -168,7 +169,7 @@ impl EffectSearch {
         }
     }
 
-    /// The result; `None` while the search is running, and where it failed.
+    /// Returns the result; `None` while the search is running, and where it failed.
     #[must_use]
     pub fn ranking(&self) -> Option<&EffectRanking> {
         match &self.phase {

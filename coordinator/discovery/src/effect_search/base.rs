@@ -14,8 +14,8 @@ use statistics::likelihood::Likelihood;
 /// Number of starts, the most probable, at which fits begin.
 const COUNT: usize = 3;
 
-/// Returns starts that fill the prior evenly: Kronecker's sequence with the generalised golden ratio, mapped by the quantiles of the
-/// priors.
+/// Returns starts that fill the prior evenly: Kronecker's sequence with the generalised golden ratio, mapped by the quantiles of
+/// the priors.
 ///
 /// # Source
 /// Roberts 2018, "The unreasonable effectiveness of quasirandom sequences". Checked by `tests::starts_fill_the_prior`.

@@ -7,8 +7,8 @@ const ALIKE: f64 = 0.98;
 /// Log Bayes factors of fits to a model with numerical noise differ by this amount \[nats\].
 const NOISE_OF_FITS: f64 = 3.0;
 
-/// Returns how far the log Bayes factor of a class member may lie below that of another with `nats`, although both fit alike \[nats\]: the
-/// cost of the angle between their changes, at least the difference that fits have anyway.
+/// Returns how far the log Bayes factor of a class member may lie below that of another with `nats`, although both fit alike
+/// \[nats\]: the cost of the angle between their changes, at least the difference that fits have anyway.
 pub(crate) fn log_bayes_factor_deficit(nats: f64) -> f64 {
     (nats * (1.0 - ALIKE * ALIKE)).max(NOISE_OF_FITS)
 }

@@ -49,7 +49,7 @@ fn starts(frame: &NormalFrame, base: &LaplaceFit) -> Vec<Vec<f64>> {
 }
 
 impl EffectSearch {
-    /// How a candidate is confirmed now; `None` if nothing is confirmed.
+    /// Returns the depth at which a candidate is confirmed now; `None` if nothing is confirmed.
     pub(super) fn confirmation(&self) -> Option<&'static Confirmation> {
         let depth = self.depth.confirmation.as_ref()?;
         Some(if self.is_wrong() {

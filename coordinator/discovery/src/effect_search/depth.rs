@@ -90,7 +90,7 @@ impl Confirmation {
 }
 
 impl Depth {
-    /// The depth of the search for one effect of the library.
+    /// Returns the depth of the search for one effect of the library.
     pub(crate) fn for_smoothness(smoothness: Smoothness) -> &'static Self {
         match smoothness {
             Smoothness::Smooth => &FULL,

@@ -59,8 +59,8 @@ fn fit(
     Some(fit)
 }
 
-/// Returns the predicted values at the optimum of the model linearised where the fit begins: the effect's change before its fit has made a
-/// step. `None` if the fit cannot begin.
+/// Returns the predicted values at the optimum of the model linearised where the fit begins: the effect's change before its fit
+/// has made a step. `None` if the fit cannot begin.
 pub(crate) fn linearised(
     frame: &NormalFrame,
     base: &LaplaceFit,
@@ -78,8 +78,8 @@ pub(crate) fn linearised(
 }
 
 impl EffectSearch {
-    /// Fits the best candidates of the screen, each with the base. Those that only the low-fidelity model has screened are screened on
-    /// the model first.
+    /// Fits the best candidates of the screen, each with the base. Those that only the low-fidelity model has screened are
+    /// screened on the model first.
     pub(super) fn begin_extensions(&mut self) {
         let best = self.best(self.depth.extension.max_count).into_iter();
         let (awaiting, candidates): (Vec<usize>, Vec<usize>) = best

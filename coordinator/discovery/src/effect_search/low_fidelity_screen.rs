@@ -1,4 +1,5 @@
-//! Phase 2 of a rough model with a low-fidelity model: its screen on that model, which selects the candidates that are worth evaluations of the model.
+//! Phase 2 of a rough model with a low-fidelity model: its screen on that model, which selects the candidates that are worth
+//! evaluations of the model.
 
 use crate::effect_search::ranking::EvidenceMethod;
 use crate::effect_search::screened::{self, Evaluated, Screened};
@@ -65,8 +66,8 @@ impl EffectSearch {
         self.screen(0, candidates);
     }
 
-    /// Candidates that the low-fidelity model could not screen, and those with one strength that it ranks near the best. A
-    /// candidate with several strengths begins its fit at the base and needs derivatives alone.
+    /// Returns candidates that the low-fidelity model could not screen, and those with one strength that it ranks near the best.
+    /// A candidate with several strengths begins its fit at the base and needs derivatives alone.
     fn worth_evaluations(&self) -> Vec<usize> {
         let promise = |k: &usize| {
             self.candidates[*k]
@@ -89,8 +90,8 @@ impl EffectSearch {
         all().filter(is_worth).collect()
     }
 
-    /// The coordinate of the shapes that fits best on the low-fidelity model; `None` if it was not evaluated, has no shape, or the
-    /// model refused that shape.
+    /// Returns the coordinate of the shapes that fits best on the low-fidelity model; `None` if it was not evaluated, has no
+    /// shape, or the model refused that shape.
     pub(super) fn best_shape(&self, candidate: usize) -> Option<f64> {
         let state = &self.candidates[candidate];
         let position = &state.low_fidelity.as_ref()?.point.position;
@@ -99,7 +100,7 @@ impl EffectSearch {
         shapes.next().map(|k| position[k])
     }
 
-    /// Whether a candidate's screen on the low-fidelity model must be repeated on the model.
+    /// Returns whether a candidate's screen on the low-fidelity model must be repeated on the model.
     pub(super) fn awaits_model(&self, k: usize) -> bool {
         let state = &self.candidates[k];
         let awaits_screen = state.low_fidelity.is_some() && !state.is_screened_on_model;
@@ -108,7 +109,8 @@ impl EffectSearch {
 }
 
 impl CandidateState {
-    /// Takes the result of the screen on the model. Derivatives along shapes, and the mean over them, come from the low-fidelity screen.
+    /// Takes the result of the screen on the model. Derivatives along shapes, and the mean over them, come from the low-fidelity
+    /// screen.
     pub(super) fn take_screened(&mut self, screened: Option<Screened>, base_dimension: usize) {
         self.is_screened_on_model = true;
         self.screened = screened;
@@ -134,7 +136,7 @@ impl CandidateState {
 }
 
 impl Screened {
-    /// This result with corrections of zero, as if the model changed as the low-fidelity model does.
+    /// Returns this result with corrections of zero, as if the model changed as the low-fidelity model does.
     fn as_of_model(&self) -> Self {
         let none = |column: &Vec<f64>| Some(Correction::none(column.len()));
         Self {

@@ -17,27 +17,27 @@ const SUM_OF_SQUARES: f64 = 70.0;
 /// A scatter below this share of a channel's noise is neglected.
 const NEGLIGIBLE: f64 = 0.1;
 
-/// The distances of neighbours to be tried, in standard deviations of the prior.
+/// Returns the distances of neighbours to be tried, in standard deviations of the prior.
 pub(super) fn spacings() -> impl Iterator<Item = f64> {
     let shorter = |spacing: &f64| Some(SHORTER * spacing).filter(|s| *s > MIN_SPACING);
     std::iter::successors(Some(SPACING), shorter)
 }
 
-/// The positions to evaluate: evenly on a line through the fit, which moves all parameters at once.
+/// Returns the positions to evaluate: evenly on a line through the fit, which moves all parameters at once.
 pub(super) fn positions(fit: &[f64], spacing: f64) -> Vec<Vec<f64>> {
     let offset = |i: usize| spacing * (i as f64 - (POINTS / 2) as f64);
     let moved = |i| fit.iter().map(|t| t + offset(i)).collect();
     (0..POINTS).map(moved).collect()
 }
 
-/// Whether enough neighbouring positions were accepted for a difference.
+/// Returns whether enough neighbouring positions were accepted for a difference.
 pub(super) fn are_enough(answers: &[Option<Vec<f64>>]) -> bool {
     let mut windows = answers.windows(FOURTH_DIFFERENCE.len());
     windows.any(|window| window.iter().all(Option::is_some))
 }
 
-/// The scatter of each channel by its index, in its unit: the root mean square of the fourth differences over the root of 70, over all
-/// data of the channel. `None` without data.
+/// Returns the scatter of each channel by its index, in its unit: the root mean square of the fourth differences over the root of
+/// 70, over all data of the channel. `None` without data.
 ///
 /// # Arguments
 /// - `answers`: the values at [`positions`]; a difference with a rejected position is left out.
@@ -65,8 +65,8 @@ fn scatter(likelihood: &Likelihood, answers: &[Option<Vec<f64>>]) -> Option<Vec<
     Some(squares.into_iter().map(sd).collect())
 }
 
-/// The [`scatter`] that counts as noise; 0 for a channel whose noise is inferred, because that includes the scatter. `None` if all
-/// are negligible beside the declared noise.
+/// Returns the [`scatter`] that counts as noise; 0 for a channel whose noise is inferred, because that includes the scatter.
+/// `None` if all are negligible beside the declared noise.
 pub(super) fn sds(likelihood: &Likelihood, answers: &[Option<Vec<f64>>]) -> Option<Vec<f64>> {
     let data = likelihood.data();
     let is_declared = |channel: usize| {
@@ -85,7 +85,7 @@ pub(super) fn sds(likelihood: &Likelihood, answers: &[Option<Vec<f64>>]) -> Opti
     matters.then_some(sds)
 }
 
-/// Whether the scatter was measured, and is negligible beside the noise of every datum, declared or inferred.
+/// Returns whether the scatter was measured, and is negligible beside the noise of every datum, declared or inferred.
 ///
 /// # Arguments
 /// - `theta`: the parameters of the fit.

@@ -49,7 +49,7 @@ impl Projection {
         })
     }
 
-    /// Whitened inner products of a change with the base's columns.
+    /// Returns whitened inner products of a change with the base's columns.
     fn along(&self, whitened: &[f64]) -> DVector<f64> {
         let products = self.columns.iter().map(|c| self.whitening.curvature(c, whitened));
         DVector::from_iterator(self.columns.len(), products)
@@ -75,7 +75,7 @@ impl Projection {
         }
     }
 
-    /// Inner products of changes after projection out of `[J; I]`: `a'b - a'J (I + J'J)^-1 J'b`, whitened.
+    /// Returns inner products of changes after projection out of `[J; I]`: `a'b - a'J (I + J'J)^-1 J'b`, whitened.
     pub(super) fn products(&self, changes: &[Vec<f64>]) -> DMatrix<f64> {
         let changes: Vec<Vec<f64>> = changes.iter().map(|g| self.whitening.apply(g)).collect();
         let along: Vec<DVector<f64>> = changes.iter().map(|g| self.along(g)).collect();

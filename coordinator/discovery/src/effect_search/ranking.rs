@@ -66,13 +66,13 @@ pub struct EvaluationCounts {
 }
 
 impl EvaluationCounts {
-    /// Evaluations up to the refinement, which names the effect.
+    /// Returns the number of evaluations up to the refinement, which names the effect.
     #[must_use]
     pub fn to_name(&self) -> usize {
         self.base + self.screen + self.extension + self.refinement
     }
 
-    /// Evaluations up to the confirmation.
+    /// Returns the number of evaluations up to the confirmation.
     #[must_use]
     pub fn to_confirm(&self) -> usize {
         self.to_name() + self.confirmation
@@ -118,20 +118,20 @@ impl EffectRanking {
         probabilities
     }
 
-    /// Probability of a class.
+    /// Returns the probability of a class.
     #[must_use]
     pub fn class_probability(&self, class: usize) -> f64 {
         let members = self.effects.iter().filter(|e| e.class == class);
         members.map(|e| e.probability).sum()
     }
 
-    /// The result for a candidate.
+    /// Returns the result for a candidate.
     #[must_use]
     pub fn effect(&self, candidate: Option<usize>) -> Option<&RankedEffect> {
         self.effects.iter().find(|e| e.candidate == candidate)
     }
 
-    /// The candidates by falling Bayes factor.
+    /// Returns the candidates by falling Bayes factor.
     #[must_use]
     pub fn ranked(&self) -> Vec<&RankedEffect> {
         let mut ranked: Vec<&RankedEffect> = self.effects.iter().filter(|e| e.candidate.is_some()).collect();

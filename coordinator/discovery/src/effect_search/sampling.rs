@@ -25,8 +25,9 @@ struct Best<'a> {
 }
 
 impl EffectSearch {
-    /// Returns samplers of the base and the best effect, if a parameter of either is at a bound or the effect is nearly absent, and of the
-    /// second effect if it is close and of another class. Models that were sampled before are left out. A rough model has none.
+    /// Returns samplers of the base and the best effect, if a parameter of either is at a bound or the effect is nearly absent,
+    /// and of the second effect if it is close and of another class. Models that were sampled before are left out. A rough model
+    /// has none.
     pub(super) fn samplers(&self) -> Vec<(Option<usize>, ImportanceSampler)> {
         let none = Vec::new();
         let (Some(base), Some((first, rest))) = (&self.base, self.fits_of_best()) else {
@@ -75,7 +76,7 @@ impl EffectSearch {
             .collect()
     }
 
-    /// The best effect and the second, with their fits.
+    /// Returns the best effect and the second, with their fits.
     fn fits_of_best(&self) -> Option<(Best<'_>, Option<Best<'_>>)> {
         let mut best = self.best(2).into_iter().filter_map(|candidate| {
             let estimate = self.candidates[candidate].estimate.as_ref()?;

@@ -37,8 +37,8 @@ pub(super) struct Screened {
     pub(super) best_shape_log_bayes_factor: f64,
 }
 
-/// Returns the positions to evaluate: every strength at the first shape and the first strength at the other shapes; a step along each of
-/// several strengths; or, for a switch, the base's fit.
+/// Returns the positions to evaluate: every strength at the first shape and the first strength at the other shapes; a step along
+/// each of several strengths; or, for a switch, the base's fit.
 ///
 /// # Arguments
 /// - `shape`: the best coordinate of the shapes, if it is known; no other is evaluated then.
@@ -120,7 +120,7 @@ struct Node {
     change: Vec<f64>,
 }
 
-/// The best step of one strength, with the derivatives there.
+/// Returns the best step of one strength, with the derivatives there.
 fn screen_one_strength(
     frame: &NormalFrame,
     strength: (usize, f64),
@@ -167,7 +167,7 @@ fn screen_one_strength(
     })
 }
 
-/// The step to an evaluated position, with the log Bayes factor of the model linear in the strength.
+/// Returns the step to an evaluated position, with the log Bayes factor of the model linear in the strength.
 fn node(
     frame: &NormalFrame,
     (strength, neutral): (usize, f64),
@@ -201,13 +201,13 @@ fn node(
     })
 }
 
-/// Whether two steps have the same shape.
+/// Returns whether two steps have the same shape.
 fn has_shape_of(a: &Node, b: &Node, shapes: &[usize]) -> bool {
     let coordinate = |node: &Node, k: usize| node.point.position[k].to_bits();
     shapes.iter().all(|&k| coordinate(a, k) == coordinate(b, k))
 }
 
-/// Log of the mean Bayes factor over the shapes, each at its best strength.
+/// Returns the log of the mean Bayes factor over the shapes, each at its best strength.
 fn mean_over_shapes(nodes: &[Node], shapes: &[usize]) -> f64 {
     let highest = |i: usize| {
         nodes
@@ -226,7 +226,7 @@ fn mean_over_shapes(nodes: &[Node], shapes: &[usize]) -> f64 {
     log_sum_exp(by_shape.iter().copied()) - libm::log(by_shape.len() as f64)
 }
 
-/// The derivative along a shape at the best node, from the nearest other shape at the usual strength; `None` without one.
+/// Returns the derivative along a shape at the best node, from the nearest other shape at the usual strength; `None` without one.
 fn shape_column(shape: usize, best: &Node, usual: &Node, nodes: &[Node]) -> Option<Vec<f64>> {
     let t = |node: &Node| node.point.position[shape];
     let distance = |node: &Node| (t(node) - t(usual)).abs();
@@ -239,7 +239,7 @@ fn shape_column(shape: usize, best: &Node, usual: &Node, nodes: &[Node]) -> Opti
     Some(pairs.map(|(x, m)| (x - m) * share).collect())
 }
 
-/// The derivative along the strength at a node, between the neighbouring steps; the base is the step of length zero.
+/// Returns the derivative along the strength at a node, between the neighbouring steps; the base is the step of length zero.
 fn slope(node: &Node, nodes: &[Node], base: &LaplaceFit, shapes: &[usize]) -> Vec<f64> {
     let same_shape = || nodes.iter().filter(|a| has_shape_of(a, node, shapes));
     let below = same_shape()
@@ -253,7 +253,7 @@ fn slope(node: &Node, nodes: &[Node], base: &LaplaceFit, shapes: &[usize]) -> Ve
     quotient(&to.point.values, from, to.step - low)
 }
 
-/// The result for another model with the same parameters.
+/// Returns the result for another model with the same parameters.
 fn screen_switch(
     frame: &NormalFrame,
     base: &FittedModel,
@@ -276,7 +276,8 @@ fn screen_switch(
     })
 }
 
-/// The result for several strengths. The log Bayes factor is `g' H^-1 g / 2 - ln det(H) / 2` less the log evidence of the base.
+/// Returns the result for several strengths. The log Bayes factor is `g' H^-1 g / 2 - ln det(H) / 2` less the log evidence of the
+/// base.
 fn screen_several_strengths(
     frame: &NormalFrame,
     base: &FittedModel,

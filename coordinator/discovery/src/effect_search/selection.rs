@@ -57,10 +57,11 @@ impl EffectSearch {
         }
     }
 
-    /// Whether the best fit so far contradicts the data.
+    /// Returns whether the best fit so far contradicts the data.
     pub(super) fn is_wrong(&self) -> bool {
         let best = self.best(1).into_iter().find_map(|k| self.fit_of(k));
-        // For a rough model the result decides how thoroughly it is confirmed; a discrepancy, which takes up any misfit, must not count.
+        // For a rough model the result decides how thoroughly it is confirmed; a discrepancy, which takes up any misfit, must not
+        // count.
         let chi_square_of = match self.base_frame.smoothness {
             Smoothness::Smooth => FitChiSquare::of_fit,
             Smoothness::Rough | Smoothness::Unknown => FitChiSquare::of_declared_noise,
@@ -99,13 +100,13 @@ impl EffectSearch {
         }
     }
 
-    /// The candidates with the highest Bayes factors. Until a candidate is confirmed the screen's Bayes factor counts if it is higher,
-    /// because its fit may not have converged.
+    /// Returns the candidates with the highest Bayes factors. Until a candidate is confirmed the screen's Bayes factor counts if
+    /// it is higher, because its fit may not have converged.
     pub(super) fn best(&self, count: usize) -> Vec<usize> {
         self.promises().into_iter().take(count).map(|(k, _)| k).collect()
     }
 
-    /// Candidates that were only screened and whose log Bayes factor is not far below that of the best fit.
+    /// Returns candidates that were only screened and whose log Bayes factor is not far below that of the best fit.
     pub(super) fn within_reach(&self) -> Vec<usize> {
         let is_fitted = |k: usize| self.fit_of(k).is_some();
         let log_bayes_factor = |k: usize| {
@@ -124,8 +125,8 @@ impl EffectSearch {
         near.map(|(k, _)| k).collect()
     }
 
-    /// Candidates to confirm next: those near the best that are not confirmed. Once there are none and the model has numerical
-    /// noise: those whose fits got stuck (once), then members of the best candidate's class that fall short of it.
+    /// Returns candidates to confirm next: those near the best that are not confirmed. Once there are none and the model has
+    /// numerical noise: those whose fits got stuck (once), then members of the best candidate's class that fall short of it.
     pub(super) fn unconfirmed(&mut self) -> Vec<usize> {
         let promises = self.promises();
         let (Some(&(_, best)), Some(depth)) = (promises.first(), &self.depth.confirmation) else {
@@ -161,8 +162,8 @@ impl EffectSearch {
         self.same_class()
     }
 
-    /// Members of the best candidate's class that fall short of it, once for each of the first few best candidates. Effects that
-    /// change the predictions alike fit alike, unless a fit got stuck.
+    /// Returns members of the best candidate's class that fall short of it, once for each of the first few best candidates.
+    /// Effects that change the predictions alike fit alike, unless a fit got stuck.
     fn same_class(&mut self) -> Vec<usize> {
         let promises = self.promises();
         let Some(&(best, nats)) = promises.first() else {
@@ -179,8 +180,9 @@ impl EffectSearch {
         short.map(|(k, _)| k).take(confirmation::COUNT).collect()
     }
 
-    /// A start for a member of the best candidate's class that predicts as the best fit does: the strength gives an equal change, and the
-    /// base's parameters absorb the rest. `None` for the best itself, for other classes, without a single strength, and beyond the limits.
+    /// Returns a start for a member of the best candidate's class that predicts as the best fit does: the strength gives an equal
+    /// change, and the base's parameters absorb the rest. `None` for the best itself, for other classes, without a single
+    /// strength, and beyond the limits.
     pub(super) fn in_place_of_best(&self, candidate: usize) -> Option<Vec<f64>> {
         let best = self.best(1).pop().filter(|best| *best != candidate)?;
         let projected = self.projected()?;
@@ -205,7 +207,7 @@ impl EffectSearch {
         frame.holds(&position).then_some(position)
     }
 
-    /// The candidates with their Bayes factors, the highest first.
+    /// Returns the candidates with their Bayes factors, the highest first.
     fn promises(&self) -> Vec<(usize, f64)> {
         let states = self.candidates.iter().enumerate();
         let mut order: Vec<(usize, f64)> = states
@@ -263,7 +265,7 @@ impl EffectSearch {
         self.phase = Phase::Done(Box::new(ranking));
     }
 
-    /// The entry of a model in the ranking, without evidence and probability.
+    /// Returns the entry of a model in the ranking, without evidence and probability.
     fn ranked(&self, candidate: Option<usize>, frame: &NormalFrame, point: &FitPoint) -> RankedEffect {
         RankedEffect {
             candidate,
@@ -283,7 +285,7 @@ impl EffectSearch {
         }
     }
 
-    /// The entry of a candidate with its evidence; `None` if the model refused it.
+    /// Returns the entry of a candidate with its evidence; `None` if the model refused it.
     fn ranked_candidate(&self, k: usize, class: usize, base: &LaplaceFit) -> Option<RankedEffect> {
         let state = &self.candidates[k];
         let (estimate, screened) = (state.estimate.as_ref()?, state.screened.as_ref()?);

@@ -103,7 +103,7 @@ pub(super) enum Phase {
 }
 
 impl CandidateState {
-    /// Whether the model refused it at every step of the screen or from all starts, or it has no evidence: the result of
+    /// Returns whether the model refused it at every step of the screen or from all starts, or it has no evidence: the result of
     /// its screen is void then. This holds for all candidates before the screen.
     pub(super) fn is_refused(&self) -> bool {
         let has_fit = self
@@ -159,17 +159,17 @@ impl EffectSearch {
         }
     }
 
-    /// The smoothness of the model, if it is known.
+    /// Returns the smoothness of the model, if it is known.
     pub(crate) fn smoothness(&self) -> Smoothness {
         self.base_frame.smoothness
     }
 
-    /// The fit of the base, once there is one.
+    /// Returns the fit of the base, once there is one.
     pub(crate) fn base_fit(&self) -> Option<&FittedModel> {
         self.base.as_ref()
     }
 
-    /// The best fit of a candidate so far.
+    /// Returns the best fit of a candidate so far.
     pub(crate) fn fit_of(&self, candidate: usize) -> Option<&LaplaceFit> {
         self.candidates[candidate].estimate.as_ref()?.fit.as_ref()
     }

@@ -14,7 +14,7 @@ pub(crate) struct PositionRequest {
 }
 
 impl PositionRequest {
-    /// A request to the model itself.
+    /// Makes a request to the model itself.
     pub(crate) fn for_model(candidate: Option<usize>, position: Vec<f64>) -> Self {
         Self {
             candidate,
@@ -23,7 +23,7 @@ impl PositionRequest {
         }
     }
 
-    /// Requests to the model itself.
+    /// Returns requests to the model itself.
     pub(crate) fn all_for_model(
         candidate: Option<usize>,
         positions: Vec<Vec<f64>>,
@@ -50,7 +50,7 @@ impl FitBatch {
         }
     }
 
-    /// The positions to evaluate next, each with its model; none once all fits are complete.
+    /// Returns the positions to evaluate next, each with its model; none once all fits are complete.
     pub(crate) fn ask(&mut self, likelihood: &Likelihood) -> Vec<PositionRequest> {
         let mut requests = Vec::new();
         self.waiting.clear();
@@ -77,13 +77,13 @@ impl FitBatch {
         }
     }
 
-    /// The most probable fit; of equal ones the first.
+    /// Returns the most probable fit; of equal ones the first.
     pub(crate) fn best(&self) -> Option<&LaplaceFit> {
         let fits = self.fits.iter().map(|(_, fit)| fit);
         fits.reduce(|a, b| if b.point.value < a.point.value { b } else { a })
     }
 
-    /// Evaluations of the model in all fits.
+    /// Returns the number of evaluations of the model in all fits.
     pub(crate) fn evaluations(&self) -> usize {
         self.fits.iter().map(|(_, fit)| fit.evaluations).sum()
     }

@@ -10,8 +10,8 @@ const FARTHEST: f64 = 7.5;
 /// A parameter of the best fit within this distance from the limit \[standard deviations\] contradicts its prior: a better fit may
 /// lie beyond.
 const NEAR_LIMIT: f64 = 1.0;
-/// A position counts as the end of a support if both lie no farther apart, in the sampling coordinate, than this share of the distance
-/// from -1 to 1 sd.
+/// A position counts as the end of a support if both lie no farther apart, in the sampling coordinate, than this share of the
+/// distance from -1 to 1 sd.
 const BEYOND: f64 = 0.01;
 
 /// The map from a parameter to its coordinate.
@@ -56,7 +56,7 @@ impl NormalCoordinate {
         }
     }
 
-    /// The normal score of x, without limits.
+    /// Returns the normal score of x, without limits.
     fn score(&self, x: f64) -> f64 {
         let [below, above] = self.marginal.tails(x);
         match self.side {
@@ -66,17 +66,17 @@ impl NormalCoordinate {
         }
     }
 
-    /// The coordinate of a normal score, within the limits of the search.
+    /// Returns the coordinate of a normal score, within the limits of the search.
     fn limited(&self, t: f64) -> f64 {
         t.max(self.lower()).min(FARTHEST)
     }
 
-    /// The coordinate of x.
+    /// Returns the coordinate of x.
     pub(crate) fn position(&self, x: f64) -> f64 {
         self.limited(self.score(x))
     }
 
-    /// The value of a parameter at a coordinate.
+    /// Returns the value of a parameter at a coordinate.
     pub(crate) fn value(&self, t: f64) -> f64 {
         match self.side {
             Side::Both => self.marginal.of_normal_score(t),
@@ -85,7 +85,7 @@ impl NormalCoordinate {
         }
     }
 
-    /// Whether the support ends at a coordinate, as that of a uniform density does at a far one.
+    /// Returns whether the support ends at a coordinate, as that of a uniform density does at a far one.
     fn ends_at(&self, t: f64) -> bool {
         let (lower, upper) = self.marginal.support();
         let end = self.marginal.coordinate(if t < 0.0 { lower } else { upper });
@@ -117,7 +117,7 @@ impl NormalFrame {
         }
     }
 
-    /// This frame, with or without a low-fidelity model.
+    /// Returns this frame, with or without a low-fidelity model.
     pub(crate) fn with_low_fidelity(self, has_low_fidelity: bool) -> Self {
         Self {
             has_low_fidelity,
@@ -125,7 +125,7 @@ impl NormalFrame {
         }
     }
 
-    /// This frame with the coordinates of a candidate appended.
+    /// Returns this frame with the coordinates of a candidate appended.
     pub(crate) fn with(&self, candidate: &Candidate) -> Self {
         let mut coordinates = self.coordinates.clone();
         let first = coordinates.len();
@@ -161,7 +161,7 @@ impl NormalFrame {
         }
     }
 
-    /// The strength, if the candidate has a single one.
+    /// Returns the strength, if the candidate has a single one.
     pub(crate) fn strength(&self) -> Option<(usize, f64)> {
         match self.strengths.as_slice() {
             [only] => Some(*only),
@@ -169,17 +169,17 @@ impl NormalFrame {
         }
     }
 
-    /// Whether the last candidate is a switch, without parameters.
+    /// Returns whether the last candidate is a switch, without parameters.
     pub(crate) fn is_switch(&self) -> bool {
         self.strengths.is_empty()
     }
 
-    /// Whether a coordinate is a strength of the last candidate.
+    /// Returns whether a coordinate is a strength of the last candidate.
     pub(crate) fn is_strength(&self, k: usize) -> bool {
         self.strengths.iter().any(|(strength, _)| *strength == k)
     }
 
-    /// The half-normal coordinates.
+    /// Returns the half-normal coordinates.
     pub(crate) fn halves(&self) -> Vec<usize> {
         let all = self.coordinates.iter().enumerate();
         all.filter(|(_, coordinate)| coordinate.is_half())
@@ -187,7 +187,7 @@ impl NormalFrame {
             .collect()
     }
 
-    /// A position with the last candidate absent.
+    /// Returns a position with the last candidate absent.
     pub(crate) fn without(&self, position: &[f64]) -> Vec<f64> {
         let mut absent = position.to_vec();
         for &(k, neutral) in &self.strengths {
@@ -200,13 +200,13 @@ impl NormalFrame {
         self.coordinates.len()
     }
 
-    /// The largest distance of a strength of the last candidate from the middle of its prior, in standard deviations.
+    /// Returns the largest distance of a strength of the last candidate from the middle of its prior, in standard deviations.
     pub(crate) fn strength_distance(&self, position: &[f64]) -> f64 {
         let distances = self.strengths.iter().map(|&(k, _)| position[k].abs());
         distances.fold(0.0, f64::max)
     }
 
-    /// Whether the single strength is half-normal.
+    /// Returns whether the single strength is half-normal.
     pub(crate) fn is_one_sided(&self) -> bool {
         self.strength()
             .is_some_and(|(k, _)| self.coordinates[k].is_half())
@@ -229,7 +229,7 @@ impl NormalFrame {
         limited.map(|(coordinate, t)| coordinate.limited(t)).collect()
     }
 
-    /// The distance of each coordinate from its lower and upper limit.
+    /// Returns the distance of each coordinate from its lower and upper limit.
     pub(crate) fn room(&self, position: &[f64]) -> (Vec<f64>, Vec<f64>) {
         let pairs = || self.coordinates.iter().zip(position);
         (
@@ -238,14 +238,14 @@ impl NormalFrame {
         )
     }
 
-    /// Whether a position is within the limits.
+    /// Returns whether a position is within the limits.
     pub(crate) fn holds(&self, position: &[f64]) -> bool {
         let (lower, upper) = self.room(position);
         lower.iter().all(|l| *l <= 0.0) && upper.iter().all(|u| *u >= 0.0)
     }
 
-    /// Returns the parameter of the base whose value is least plausible under its prior, and its coordinate. `None` if there is none; a bound that the
-    /// user declared is no contradiction.
+    /// Returns the parameter of the base whose value is least plausible under its prior, and its coordinate. `None` if there is
+    /// none; a bound that the user declared is no contradiction.
     pub(crate) fn implausible(&self, position: &[f64]) -> Option<(usize, f64)> {
         let base = self.coordinates.iter().zip(position).take(self.base.dimension());
         let far = base
@@ -255,7 +255,8 @@ impl NormalFrame {
             .max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))
     }
 
-    /// Whether each parameter lies within 2 % of a bound of its range, or at the value at which a half-normal strength is absent.
+    /// Returns whether each parameter lies within 2 % of a bound of its range, or at the value at which a half-normal strength is
+    /// absent.
     pub(crate) fn at_bound(&self, position: &[f64]) -> Vec<bool> {
         let near = |((coordinate, x), &t): ((&NormalCoordinate, f64), &f64)| {
             coordinate.marginal.at_bound(x, x) || (coordinate.is_half() && t <= 0.0)

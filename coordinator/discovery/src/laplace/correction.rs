@@ -10,7 +10,7 @@ pub(crate) struct Correction {
 }
 
 impl Correction {
-    /// A correction of zero, which a fit must replace by a measured one.
+    /// Makes a correction of zero, which a fit must replace by a measured one.
     pub(crate) fn none(values: usize) -> Self {
         Self {
             beyond: vec![0.0; values],
@@ -18,7 +18,7 @@ impl Correction {
         }
     }
 
-    /// The correction from both derivatives over the same step.
+    /// Returns the correction from both derivatives over the same step.
     pub(crate) fn between(model: &[f64], low_fidelity: &[f64], is_secant: bool) -> Self {
         let pairs = model.iter().zip(low_fidelity);
         Self {
@@ -27,7 +27,7 @@ impl Correction {
         }
     }
 
-    /// The model's derivative, from the low-fidelity derivative.
+    /// Returns the model's derivative, from the low-fidelity derivative.
     pub(crate) fn applied_to(&self, low_fidelity: &[f64]) -> Vec<f64> {
         let pairs = low_fidelity.iter().zip(&self.beyond);
         pairs
@@ -36,7 +36,7 @@ impl Correction {
     }
 }
 
-/// The difference quotient of predicted values over a step of one coordinate.
+/// Returns the difference quotient of predicted values over a step of one coordinate.
 pub(crate) fn quotient(values: &[f64], from: &[f64], step: f64) -> Vec<f64> {
     let pairs = values.iter().zip(from);
     pairs.map(|(to, from)| (to - from) / step).collect()

@@ -5,8 +5,8 @@ use nalgebra::{Cholesky, DVector, Dyn};
 use inference::lm::QuadraticModel;
 use statistics::prior::normal;
 
-/// Returns the log evidence: ln of the integral of `N(t; 0, I) exp(log-likelihood)` where `-log-likelihood + |t|^2/2` is quadratic with value f,
-/// gradient g and Hessian H.
+/// Returns the log evidence: ln of the integral of `N(t; 0, I) exp(log-likelihood)` where `-log-likelihood + |t|^2/2` is
+/// quadratic with value f, gradient g and Hessian H.
 ///
 /// `-f + g' H^-1 g / 2 - ln det(H) / 2`, plus `ln 2 Phi(m / sqrt v)` for each half-normal coordinate of mean m and variance v.
 ///
@@ -39,7 +39,7 @@ pub(crate) fn log_evidence(quadratic: &QuadraticModel, value: f64, halves: &[usi
     Some(whole + halves.iter().map(share).sum::<f64>())
 }
 
-/// `-ln det(H) / 2`; `None` where the Hessian is not positive definite.
+/// Returns `-ln det(H) / 2`; `None` where the Hessian is not positive definite.
 pub(crate) fn log_volume(quadratic: &QuadraticModel) -> Option<f64> {
     Some(log_volume_of(&Cholesky::new(quadratic.hessian.clone())?))
 }
@@ -49,12 +49,12 @@ fn log_volume_of(cholesky: &Cholesky<f64, Dyn>) -> f64 {
     -(0..lower.nrows()).map(|k| libm::log(lower[(k, k)])).sum::<f64>()
 }
 
-/// `ln 2 Phi(mean / sqrt(variance))`: the evidence under a half-normal prior over that under the normal one.
+/// Returns `ln 2 Phi(mean / sqrt(variance))`: the evidence under a half-normal prior over that under the normal one.
 fn log_share_above_zero(mean: f64, variance: f64) -> f64 {
     libm::log(2.0) + normal::log_cdf(mean / variance.sqrt())
 }
 
-/// `ln sum exp`; minus infinity for an empty sum.
+/// Returns `ln sum exp`; minus infinity for an empty sum.
 pub(crate) fn log_sum_exp(values: impl Iterator<Item = f64> + Clone) -> f64 {
     let highest = values.clone().fold(f64::NEG_INFINITY, f64::max);
     if !highest.is_finite() {

@@ -26,13 +26,14 @@ const MAX_UNREACHED: f64 = 3.0;
 pub(crate) enum FitStep {
     /// Frees the coordinates that were held.
     Release,
-    /// Computes the Jacobian by finite differences: of the low-fidelity model where its correction is known, of the model elsewhere.
+    /// Computes the Jacobian by finite differences: of the low-fidelity model where its correction is known, of the model
+    /// elsewhere.
     Differences,
     /// At most this number of trial steps, one evaluation each. After a step that gains, the low-fidelity model, if there is one,
     /// updates the Jacobian.
     Trials(usize),
-    /// `Differences` and `Trials(trials)`, repeated at most `max` times, until a new Jacobian predicts no gain, which ends the plan.
-    /// With numerical noise a round without a gain ends the plan too, with the Jacobian that its differences gave.
+    /// `Differences` and `Trials(trials)`, repeated at most `max` times, until a new Jacobian predicts no gain, which ends the
+    /// plan. With numerical noise a round without a gain ends the plan too, with the Jacobian that its differences gave.
     Rounds { max: usize, trials: usize },
 }
 
@@ -45,8 +46,8 @@ pub(crate) struct LaplaceFit {
     pub(crate) columns: Vec<Vec<f64>>,
     /// Correction of each column that was measured on the model; the low-fidelity model is a control variate of the differences.
     pub(crate) corrections: Vec<Option<Correction>>,
-    /// Whether a [`FitStep::Differences`] may compute the column by the low-fidelity model, because an earlier fit of nearly the same
-    /// parameters measured its correction. A correction that this fit measures holds only at the point of its measurement.
+    /// Whether a [`FitStep::Differences`] may compute the column by the low-fidelity model, because an earlier fit of nearly the
+    /// same parameters measured its correction. A correction that this fit measures holds only at the point of its measurement.
     reuses_correction: Vec<bool>,
     /// Evaluations of the model, without those of the low-fidelity model.
     pub(crate) evaluations: usize,
@@ -141,17 +142,17 @@ impl LaplaceFit {
         }
     }
 
-    /// This fit continued with another plan.
+    /// Returns this fit continued with another plan.
     pub(crate) fn continued(&self, plan: &[FitStep]) -> Self {
         self.measured_again(plan).corrected(&self.corrections)
     }
 
-    /// This fit continued with another plan, without its corrections: all differences are measured on the model again.
+    /// Returns this fit continued with another plan, without its corrections: all differences are measured on the model again.
     pub(crate) fn measured_again(&self, plan: &[FitStep]) -> Self {
         Self::new(self.frame.clone(), self.point.clone(), self.columns.clone(), plan)
     }
 
-    /// This fit with the corrections of a fit of the same model, or of one that it extends.
+    /// Returns this fit with the corrections of a fit of the same model, or of one that it extends.
     pub(crate) fn corrected(mut self, corrections: &[Option<Correction>]) -> Self {
         self.corrections[..corrections.len()].clone_from_slice(corrections);
         let is_local =
@@ -160,7 +161,7 @@ impl LaplaceFit {
         self
     }
 
-    /// Whether the positions that it asked for last are to be evaluated by the low-fidelity model.
+    /// Returns whether the positions that it asked for last are to be evaluated by the low-fidelity model.
     pub(crate) fn asks_low_fidelity(&self) -> bool {
         matches!(self.pending, Pending::LowFidelity { .. })
     }
@@ -176,7 +177,7 @@ impl LaplaceFit {
         self.frame.theta(&self.point.position)
     }
 
-    /// The positions to evaluate next; none once the plan is complete.
+    /// Returns the positions to evaluate next; none once the plan is complete.
     pub(crate) fn ask(&mut self, likelihood: &Likelihood) -> Vec<Vec<f64>> {
         if let Pending::Differences { offsets, .. } = &self.pending {
             return self.positions(offsets);
@@ -239,7 +240,8 @@ impl LaplaceFit {
         let is_noisy = self.frame.smoothness != Smoothness::Smooth;
         match &mut self.progress {
             Progress::Untried => self.plan.clear(),
-            // The evidence needs the derivatives at the point. The failed steps have replaced them by slopes to the trial positions.
+            // The evidence needs the derivatives at the point. The failed steps have replaced them by slopes to the trial
+            // positions.
             Progress::Stuck { jacobian } if is_noisy => {
                 self.columns = std::mem::take(jacobian);
                 self.plan.clear();
@@ -253,7 +255,7 @@ impl LaplaceFit {
         self.failures = 0;
     }
 
-    /// The difference of each coordinate that the predictions depend on and that is not held.
+    /// Returns the difference of each coordinate that the predictions depend on and that is not held.
     fn offsets(&self, likelihood: &Likelihood) -> Vec<Offset> {
         let (_, upper) = self.frame.room(&self.point.position);
         let uncertainty = self.quadratic(likelihood).uncertainty();
@@ -294,7 +296,7 @@ impl LaplaceFit {
         offsets.iter().map(moved).collect()
     }
 
-    /// The next trial position and its predicted gain; `None` where no step is worth an evaluation.
+    /// Returns the next trial position and its predicted gain; `None` where no step is worth an evaluation.
     fn trial(&self, likelihood: &Likelihood) -> Option<(Vec<f64>, f64)> {
         if self.failures >= self.frame.smoothness.max_failures() {
             return None;
@@ -323,8 +325,8 @@ impl LaplaceFit {
         }
     }
 
-    /// Takes the predictions of the low-fidelity model: a column with a known correction is the derivative of the low-fidelity model plus
-    /// that correction. For a full Jacobian, the differences of all other columns are evaluated by the model next.
+    /// Takes the predictions of the low-fidelity model: a column with a known correction is the derivative of the low-fidelity
+    /// model plus that correction. For a full Jacobian, the differences of all other columns are evaluated by the model next.
     fn take_low_fidelity(
         &mut self,
         offsets: Vec<Offset>,
@@ -426,7 +428,7 @@ impl LaplaceFit {
         self.damping = (DAMPING_FACTOR * self.damping).max(FIRST_DAMPING);
     }
 
-    /// Broyden's update: the smallest change of the Jacobian that reproduces the values at the new position.
+    /// Applies Broyden's update: the smallest change of the Jacobian that reproduces the values at the new position.
     ///
     /// # Source
     /// Broyden 1965, doi:10.1090/S0025-5718-1965-0198670-6.
@@ -451,18 +453,18 @@ impl LaplaceFit {
         }
     }
 
-    /// Log evidence by Laplace's approximation at the point; `None` where the Hessian is not positive definite.
+    /// Returns the log evidence by Laplace's approximation at the point; `None` where the Hessian is not positive definite.
     ///
-    /// The gradient counts only along half-normal coordinates at their bound. Elsewhere it is set to zero: a gain that was predicted
-    /// but not reached by a trial step is unbounded far from the mode or at the limits of the search.
+    /// The gradient counts only along half-normal coordinates at their bound. Elsewhere it is set to zero: a gain that was
+    /// predicted but not reached by a trial step is unbounded far from the mode or at the limits of the search.
     pub(crate) fn log_evidence(&self, likelihood: &Likelihood) -> Option<f64> {
         let quadratic = self.at_mode(likelihood);
         let (position, value) = (&self.point.position, self.point.value);
         mixed_evidence(&self.frame, position, &quadratic, value, MAX_UNREACHED)
     }
 
-    /// The log evidence with the stated priors of the strengths less that with the widened ones; `None` if the Hessian is not
-    /// positive definite.
+    /// Returns the log evidence with the stated priors of the strengths less that with the widened ones; `None` if the Hessian is
+    /// not positive definite.
     pub(crate) fn stated_gain(&self, likelihood: &Likelihood) -> Option<f64> {
         let quadratic = self.at_mode(likelihood);
         let (position, value) = (&self.point.position, self.point.value);

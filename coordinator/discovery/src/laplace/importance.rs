@@ -89,7 +89,7 @@ impl ImportanceSampler {
         self
     }
 
-    /// The positions to evaluate next; none once the sampling has ended.
+    /// Returns the positions to evaluate next; none once the sampling has ended.
     pub(crate) fn ask(&mut self, seed: u64, number: u64) -> Vec<Vec<f64>> {
         let Some(proposal) = self.proposals.get(self.round).filter(|_| !self.is_done) else {
             return Vec::new();
@@ -135,7 +135,7 @@ impl ImportanceSampler {
         self.proposals.extend(adapted);
     }
 
-    /// The t with mean and scale of the weighted draws; `None` where their covariance is singular.
+    /// Returns the t with mean and scale of the weighted draws; `None` where their covariance is singular.
     fn adapted(&self, shares: &[f64]) -> Option<Student> {
         let old_scale = self.proposals.last()?.scale();
         let dimension = self.frame.dimension();
@@ -151,18 +151,18 @@ impl ImportanceSampler {
         Student::new(mean, scale)
     }
 
-    /// Log evidence; `None` where the effective sample size is too small.
+    /// Returns the log evidence; `None` where the effective sample size is too small.
     pub(crate) fn log_evidence(&self) -> Option<f64> {
         self.log_evidence
     }
 
-    /// The log evidence with the stated priors of the strengths less [`log_evidence`](Self::log_evidence).
+    /// Returns the log evidence with the stated priors of the strengths less [`log_evidence`](Self::log_evidence).
     pub(crate) fn stated_gain(&self) -> f64 {
         self.stated_gain
     }
 }
 
-/// The share of each draw in the sum of the weights raised to a power.
+/// Returns the share of each draw in the sum of the weights raised to a power.
 fn shares(log_weights: &[f64], power: f64) -> Vec<f64> {
     let log_sum = log_sum_exp(log_weights.iter().map(|w| power * w));
     log_weights
@@ -171,7 +171,7 @@ fn shares(log_weights: &[f64], power: f64) -> Vec<f64> {
         .collect()
 }
 
-/// The effective sample size of the shares; 0 without draws.
+/// Returns the effective sample size of the shares; 0 without draws.
 fn effective(shares: &[f64]) -> f64 {
     if shares.is_empty() {
         return 0.0;
@@ -179,8 +179,8 @@ fn effective(shares: &[f64]) -> f64 {
     1.0 / shares.iter().map(|s| s * s).sum::<f64>()
 }
 
-/// The shares at the highest power of the weights, up to 1, whose effective sample size suffices for an estimate: a t adapted to
-/// fewer draws would collapse.
+/// Returns the shares at the highest power of the weights, up to 1, whose effective sample size suffices for an estimate: a t
+/// adapted to fewer draws would collapse.
 fn tempered(log_weights: &[f64]) -> Vec<f64> {
     let all = shares(log_weights, 1.0);
     if effective(&all) >= MIN_SIZE {

@@ -3,7 +3,8 @@
 //! # Layout
 //! - `coordinate`: parameters as standard normal coordinates. `strength_prior`: the heavier tails of a candidate's strengths.
 //! - `point`: an evaluated position. `quadratic`: the expansion of the log posterior about it. `noise`: its part along noise sds.
-//! - `fit`: the posterior mode of one model; `correction`: its derivatives with a low-fidelity model. `batch`: several fits in parallel.
+//! - `fit`: the posterior mode of one model; `correction`: its derivatives with a low-fidelity model. `batch`: several fits in
+//!   parallel.
 //! - `evidence`: the integral over a quadratic. `importance`: the same integral by importance sampling. `draws`: posterior draws.
 //! - `spread`: points one standard deviation from the mode. `reduced_discrepancy`: the likelihood of preliminary fits.
 

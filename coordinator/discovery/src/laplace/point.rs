@@ -15,7 +15,7 @@ pub(crate) struct FitPoint {
 }
 
 impl FitPoint {
-    /// `None` where the likelihood is zero.
+    /// Evaluates a position; `None` where the likelihood is zero.
     pub(crate) fn new(
         frame: &NormalFrame,
         likelihood: &Likelihood,
@@ -33,7 +33,7 @@ impl FitPoint {
         })
     }
 
-    /// `ln p(data | t)`.
+    /// Returns `ln p(data | t)`.
     pub(crate) fn log_likelihood(&self, frame: &NormalFrame) -> f64 {
         strength_prior::penalty(frame, &self.position) - self.value
     }

@@ -9,7 +9,7 @@ use crate::laplace::strength_prior;
 use inference::lm::QuadraticModel;
 use statistics::likelihood::Likelihood;
 
-/// The Gauss-Newton expansion of the negative log posterior about a point.
+/// Returns the Gauss-Newton expansion of the negative log posterior about a point.
 ///
 /// # Arguments
 /// - `columns`: the derivatives of the predicted values, one column for each coordinate.

@@ -6,8 +6,8 @@ use statistics::likelihood::{Discrepancy, Likelihood, MIN_DISCREPANCY};
 /// The share of an unknown discrepancy that remains.
 const SHARE: f64 = 0.25;
 
-/// Returns the likelihood with each unknown discrepancy fixed at a quarter of its posterior mean at a fit, or at its lower limit; `None` if
-/// no discrepancy is unknown.
+/// Returns the likelihood with each unknown discrepancy fixed at a quarter of its posterior mean at a fit, or at its lower limit;
+/// `None` if no discrepancy is unknown.
 ///
 /// An unknown discrepancy grows until it covers the misfit of the model, so that a small step gains little: the model without the
 /// effect may be a local maximum. A smaller discrepancy gives the data more weight, and a fit with it leads away from that maximum.

@@ -10,14 +10,15 @@ use statistics::likelihood::Likelihood;
 /// covariance L L' by Laplace's approximation.
 #[derive(Debug, Clone)]
 pub(crate) struct Axis {
-    /// The vectors to evaluate, `None` beyond the limits. A rough model, whose evaluations are expensive, is evaluated on one side only.
+    /// The vectors to evaluate, `None` beyond the limits. A rough model, whose evaluations are expensive, is evaluated on one
+    /// side only.
     pub(crate) sides: [Option<Vec<f64>>; 2],
     /// The vector to evaluate if the model rejects these.
     pub(crate) spare: Option<Vec<f64>>,
 }
 
 impl Axis {
-    /// This axis with one side to evaluate and the other in reserve.
+    /// Returns this axis with one side to evaluate and the other in reserve.
     pub(crate) fn one_sided(self) -> Self {
         let [above, below] = self.sides;
         match above {

@@ -8,19 +8,20 @@ use crate::laplace::evidence::{log_evidence, log_sum_exp, log_volume};
 
 /// Weight and scale of each component, in standard deviations of the stated prior.
 ///
-/// The stated width of a strength's prior is a judgement from the literature, often by orders of magnitude. It holds with 40 %; otherwise
-/// the prior is four times wider, or four or sixteen times narrower. A strength of five standard deviations then costs 3.8 nats instead of
-/// 12.5; one of a twentieth gains 1.3. The widths of the priors alone do not separate two effects that fit alike.
+/// The stated width of a strength's prior is a judgement from the literature, often by orders of magnitude. It holds with 40 %;
+/// otherwise the prior is four times wider, or four or sixteen times narrower. A strength of five standard deviations then costs
+/// 3.8 nats instead of 12.5; one of a twentieth gains 1.3. The widths of the priors alone do not separate two effects that fit
+/// alike.
 const PARTS: [(f64, f64); 4] = [(0.4, 1.0), (0.2, 4.0), (0.2, 0.25), (0.2, 0.0625)];
 
-/// `-ln` of the prior density of a position, relative to that of independent standard normals at the origin: `t^2 / 2` of the
-/// coordinates of the base, of shapes and of curves, and `-ln sum_i w_i exp(-t^2 / (2 s_i^2)) / s_i` of the other strengths.
+/// Returns `-ln` of the prior density of a position, relative to that of independent standard normals at the origin: `t^2 / 2` of
+/// the coordinates of the base, of shapes and of curves, and `-ln sum_i w_i exp(-t^2 / (2 s_i^2)) / s_i` of the other strengths.
 pub(crate) fn penalty(frame: &NormalFrame, position: &[f64]) -> f64 {
     let all: f64 = position.iter().map(|t| t * t).sum();
     0.5 * all + stated_over_mixed(frame, position)
 }
 
-/// Log of the density of the stated priors of the strengths over that of the mixture.
+/// Returns the log of the density of the stated priors of the strengths over that of the mixture.
 pub(crate) fn stated_over_mixed(frame: &NormalFrame, position: &[f64]) -> f64 {
     let log_ratios = frame.widened.iter().map(|&k| {
         let t = position[k];
@@ -47,7 +48,7 @@ struct MixturePart {
     log_peak: f64,
 }
 
-/// Log evidence under the mixture: its components are normal priors, whose evidences add.
+/// Returns the log evidence under the mixture: its components are normal priors, whose evidences add.
 ///
 /// # Arguments
 /// - `quadratic`, `value`: the expansion at `position`, with the prior of [`add`] and [`penalty`].
@@ -94,8 +95,8 @@ pub(crate) fn mixed_evidence(
     Some(log_sum_exp(evidences?.into_iter()))
 }
 
-/// `ln(likelihood times priors)` at a position of this `value`, with half-normal priors doubled and without the priors of the
-/// widened strengths.
+/// Returns `ln(likelihood times priors)` at a position of this `value`, with half-normal priors doubled and without the priors of
+/// the widened strengths.
 fn highest(frame: &NormalFrame, position: &[f64], value: f64) -> f64 {
     let log_mixtures = frame
         .widened
@@ -104,7 +105,8 @@ fn highest(frame: &NormalFrame, position: &[f64], value: f64) -> f64 {
     libm::log(2.0) * frame.halves().len() as f64 - value + log_mixtures.sum::<f64>()
 }
 
-/// The log evidence under the stated priors less [`mixed_evidence`] \[nats\]; `None` where a Hessian is not positive definite.
+/// Returns the log evidence under the stated priors less [`mixed_evidence`] \[nats\]; `None` where a Hessian is not positive
+/// definite.
 ///
 /// # Arguments
 /// - `max_gain`: bounds both evidences, because a bound of one alone would be the difference.
@@ -123,7 +125,7 @@ pub(crate) fn stated_less_mixed(
     Some(evidence - mixed_evidence(frame, position, quadratic, value, max_gain)?)
 }
 
-/// The expansion with the stated priors of the strengths.
+/// Returns the expansion with the stated priors of the strengths.
 pub(crate) fn stated(frame: &NormalFrame, position: &[f64], quadratic: &QuadraticModel) -> QuadraticModel {
     let strengths = frame.widened.iter();
     strengths.fold(quadratic.clone(), |stated, &k| {
@@ -131,7 +133,7 @@ pub(crate) fn stated(frame: &NormalFrame, position: &[f64], quadratic: &Quadrati
     })
 }
 
-/// The expansion with a normal prior of another precision for the strength `k`, at t.
+/// Returns the expansion with a normal prior of another precision for the strength `k`, at t.
 fn with_precision(quadratic: &QuadraticModel, k: usize, t: f64, new_precision: f64) -> QuadraticModel {
     let mut changed = quadratic.clone();
     let excess = new_precision - precision(t);
@@ -140,7 +142,7 @@ fn with_precision(quadratic: &QuadraticModel, k: usize, t: f64, new_precision: f
     changed
 }
 
-/// `ln (w_i / s_i) - t^2 / (2 s_i^2)` of each part.
+/// Returns `ln (w_i / s_i) - t^2 / (2 s_i^2)` of each part.
 fn log_parts(t: f64) -> impl Iterator<Item = f64> + Clone {
     PARTS
         .iter()

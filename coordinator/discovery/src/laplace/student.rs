@@ -18,7 +18,7 @@ pub(crate) struct Student {
 }
 
 impl Student {
-    /// `None` where the scale matrix `[d, d]` is not positive definite.
+    /// Makes the density; `None` where the scale matrix `[d, d]` is not positive definite.
     pub(crate) fn new(mean: DVector<f64>, scale: DMatrix<f64>) -> Option<Self> {
         let factor = Cholesky::new(scale)?.l();
         let (d, nu) = (mean.len() as f64, FREEDOM as f64);

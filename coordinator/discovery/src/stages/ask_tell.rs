@@ -23,7 +23,7 @@ pub struct DiscoverySearch {
 }
 
 impl DiscoverySearch {
-    /// A search whose first round holds the starts of the base's fit.
+    /// Makes a search whose first round holds the starts of the base's fit.
     ///
     /// # Errors
     /// [`CandidateError`] if the base has no parameter or a candidate is ill-defined.
@@ -46,25 +46,25 @@ impl DiscoverySearch {
         Ok(discovery)
     }
 
-    /// Number of completed rounds.
+    /// Returns the number of completed rounds.
     #[must_use]
     pub fn round(&self) -> u64 {
         self.round.number()
     }
 
-    /// The parameter vectors of this round, numbered from 0.
+    /// Returns the parameter vectors of this round, numbered from 0.
     #[must_use]
     pub fn pending(&self) -> &[Proposal] {
         self.round.pending()
     }
 
-    /// The query of a parameter vector of this round.
+    /// Returns the query of a parameter vector of this round.
     #[must_use]
     pub fn query(&self, index: usize) -> Option<&Query> {
         self.queries.get(index)
     }
 
-    /// Number of values that answer a query.
+    /// Returns the number of values that answer a query.
     fn expected(&self, query: &Query) -> usize {
         if query.is_proposed {
             self.state.task.proposed.values()
@@ -118,7 +118,7 @@ impl DiscoverySearch {
         })
     }
 
-    /// The result; `None` while the search is running, and where it failed.
+    /// Returns the result; `None` while the search is running, and where it failed.
     #[must_use]
     pub fn conclusion(&self) -> Option<&Conclusion> {
         match &self.stage {
@@ -127,7 +127,7 @@ impl DiscoverySearch {
         }
     }
 
-    /// Why the search failed, if it did.
+    /// Returns why the search failed, if it did.
     #[must_use]
     pub fn failure(&self) -> Option<InferenceFailure> {
         match self.stage {

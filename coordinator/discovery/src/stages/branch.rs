@@ -26,7 +26,7 @@ impl SearchBranch {
         }
     }
 
-    /// The fit of the base without one of its effects.
+    /// Returns the fit of the base without one of its effects.
     pub(super) fn without(reduction: usize, search: EffectSearch) -> Self {
         Self {
             reduction: Some(reduction),
@@ -34,7 +34,7 @@ impl SearchBranch {
         }
     }
 
-    /// The queries of the current round; none once the search is done.
+    /// Returns the queries of the current round; none once the search is done.
     pub(super) fn queries(&self) -> Vec<Query> {
         if self.search.ranking().is_some() || self.search.failure().is_some() {
             return Vec::new();
@@ -62,7 +62,7 @@ impl SearchBranch {
         }
     }
 
-    /// The candidates by falling Bayes factor, each with its index in the task.
+    /// Returns the candidates by falling Bayes factor, each with its index in the task.
     pub(super) fn ranked(&self) -> Vec<(usize, &RankedEffect)> {
         let ranked = self
             .search

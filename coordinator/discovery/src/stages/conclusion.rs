@@ -78,7 +78,8 @@ pub struct Conclusion {
     /// Index and normal score of the base's parameter that the best explanation puts near the limit of the search. Evidences then
     /// measure how each explanation relieves that prior, so nothing is claimed. `None` if there is none.
     pub implausible: Option<(usize, f64)>,
-    /// Indices of the inferred noise sds that are too uncertain for a claim; nothing is claimed then. Empty if nothing was detected.
+    /// Indices of the inferred noise sds that are too uncertain for a claim; nothing is claimed then. Empty if nothing was
+    /// detected.
     pub unsupported_noise: Vec<usize>,
     /// The single effects, with the probabilities of all explanations.
     pub ranking: EffectRanking,
@@ -92,7 +93,8 @@ pub struct Conclusion {
     pub agreed: Option<usize>,
     /// Whether the best explanation fits the declared noise; `None` where the noise is not known.
     pub complete: Option<bool>,
-    /// The share of the base's excess chi-square that the best explanation removes, 0 to 1; `None` without an excess or with unknown noise.
+    /// The share of the base's excess chi-square that the best explanation removes, 0 to 1; `None` without an excess or with
+    /// unknown noise.
     pub explained: Option<f64>,
     /// Residual of each datum under the best explanation, in noise sds (declared and numerical); empty if it is complete or the
     /// noise unknown.
@@ -118,7 +120,8 @@ pub struct Conclusion {
     pub next_runs: Vec<InformativeRun>,
     /// Index of each proposed run with its information when made alone \[nats\]; empty where no explanations are compared.
     pub information: Vec<(usize, f64)>,
-    /// Numerical noise sd of each channel by its index, in its unit, which counts as noise of the data; empty where it is negligible.
+    /// Numerical noise sd of each channel by its index, in its unit, which counts as noise of the data; empty where it is
+    /// negligible.
     pub numerical_noise_sds: Vec<f64>,
     /// Number of all evaluations; the ranking has those of the search for one effect.
     pub evaluations: usize,
@@ -251,7 +254,7 @@ impl Conclusion {
         }
     }
 
-    /// The reductions that cost no detectable evidence: their effects may be dropped.
+    /// Returns the reductions that cost no detectable evidence: their effects may be dropped.
     pub fn redundant(&self) -> impl Iterator<Item = usize> {
         let gains = self.gains.iter().enumerate();
         gains

@@ -161,13 +161,13 @@ impl CrossValidation {
         }
     }
 
-    /// The refitted models, for use in another cross-validation.
+    /// Returns the refitted models, for use in another cross-validation.
     pub(super) fn refitted(&self) -> impl Iterator<Item = (ModelKey, RefittedModel)> {
         self.models.iter().map(|model| (model.key.clone(), model.clone()))
     }
 
-    /// The queries of the next round; none once all fits are complete. Refits of a model that ask for the same parameters, for
-    /// example the first differences at the fit to all data, share a query.
+    /// Returns the queries of the next round; none once all fits are complete. Refits of a model that ask for the same
+    /// parameters, for example the first differences at the fit to all data, share a query.
     pub(super) fn queries(&mut self) -> Vec<Query> {
         let mut queries = Vec::new();
         self.answered_by.clear();
@@ -224,8 +224,8 @@ impl CrossValidation {
         }
     }
 
-    /// Log predictive density of each model over that of the first, summed over the levels that all models predict; `None` if there
-    /// are none.
+    /// Returns the log predictive density of each model over that of the first, summed over the levels that all models predict;
+    /// `None` if there are none.
     pub(super) fn gains(&self) -> Option<Vec<f64>> {
         let mut sums = vec![0.0; self.models.len()];
         let mut predicted = 0;

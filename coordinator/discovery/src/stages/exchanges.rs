@@ -14,8 +14,9 @@ const MAX_EXCHANGES: usize = 4;
 const ROUNDS: usize = 2;
 
 impl SearchState {
-    /// Fits the best combination with each of its effects replaced by a member of its class that has a fit. Effects that change the
-    /// predictions alike fit alike, but with numerical noise each fit may stop at another local maximum, and evidences would reflect that.
+    /// Fits the best combination with each of its effects replaced by a member of its class that has a fit. Effects that change
+    /// the predictions alike fit alike, but with numerical noise each fit may stop at another local maximum, and evidences would
+    /// reflect that.
     pub(super) fn exchanges(&mut self, round: usize) -> Stage {
         let branches = match self.hypotheses.detected() {
             Some(best) if round < ROUNDS && !self.numerical_noise_sds.is_empty() => self.exchanged(best),

@@ -36,7 +36,7 @@ impl SearchState {
         self.beam_search(1)
     }
 
-    /// The subsets of all families, of two effects and more.
+    /// Returns the subsets of all families, of two effects and more.
     fn subsets(&self) -> Vec<Vec<usize>> {
         let library = &self.task.library;
         let mut names: Vec<&String> = library

@@ -26,7 +26,8 @@ pub(super) struct Hypotheses {
     pub(super) family_sets: BTreeSet<CandidateSet>,
     /// The sets that were fitted after an exchange of one effect.
     pub(super) exchanged: BTreeSet<CandidateSet>,
-    /// Log Bayes factor of the base over itself without each effect that may be dropped; `None` where the reduction cannot be fitted.
+    /// Log Bayes factor of the base over itself without each effect that may be dropped; `None` where the reduction cannot be
+    /// fitted.
     pub(super) gains: Vec<Option<f64>>,
     /// Laws outside the library beyond the base; `None`: not searched.
     pub(super) laws: Option<LawScan>,
@@ -80,8 +81,8 @@ pub(super) struct FittedLaw {
 }
 
 impl LawScan {
-    /// Log Bayes factor of a law outside the library over the model that was scanned: the mean over all possible laws, where one
-    /// that could not be fitted counts as without evidence.
+    /// Returns the log Bayes factor of a law outside the library over the model that was scanned: the mean over all possible
+    /// laws, where one that could not be fitted counts as without evidence.
     pub(super) fn log_bayes_factor(&self, possible: usize) -> f64 {
         let means = self.laws.iter().map(|law| law.mean_log_bayes_factor);
         log_sum_exp(means) - libm::log(possible.max(1) as f64)
@@ -108,7 +109,7 @@ impl Hypotheses {
         self.base.as_ref().map(|base| &base.fit)
     }
 
-    /// Log evidence of the base; 0 before it is fitted.
+    /// Returns the log evidence of the base; 0 before it is fitted.
     pub(super) fn base_evidence(&self) -> f64 {
         self.base.as_ref().map_or(0.0, |base| base.log_evidence)
     }
@@ -128,12 +129,12 @@ impl Hypotheses {
             .sort_by(|a, b| b.log_bayes_factor.total_cmp(&a.log_bayes_factor));
     }
 
-    /// The best combination, after the cost of each effect after the first.
+    /// Returns the best combination, after the cost of each effect after the first.
     pub(super) fn best(&self) -> Option<&EffectCombination> {
         self.best_of(|_| true)
     }
 
-    /// The best combination of library effects alone: a combination that includes a law is no rival of that law.
+    /// Returns the best combination of library effects alone: a combination that includes a law is no rival of that law.
     ///
     /// # Arguments
     /// - `library`: number of the library's effects, which come first among the candidates.
@@ -141,7 +142,7 @@ impl Hypotheses {
         self.best_of(|combination| combination.effects.iter().all(|k| *k < library))
     }
 
-    /// The best combination of the library's effects alone, if it is a detection.
+    /// Returns the best combination of the library's effects alone, if it is a detection.
     pub(super) fn detected_of_library(&self, library: usize) -> Option<&EffectCombination> {
         self.best_of_library(library)
             .filter(|best| best.log_bayes_factor > DETECTED)
@@ -156,47 +157,47 @@ impl Hypotheses {
             .reduce(|best, c| if score(c) > score(best) { c } else { best })
     }
 
-    /// The best combination, if it is a detection.
+    /// Returns the best combination, if it is a detection.
     pub(super) fn detected(&self) -> Option<&EffectCombination> {
         self.best().filter(|best| best.log_bayes_factor > DETECTED)
     }
 
-    /// The combination of one effect.
+    /// Returns the combination of one effect.
     pub(super) fn single(&self, candidate: usize) -> Option<&EffectCombination> {
         self.combination(&[candidate])
     }
 
-    /// The combination of these effects in this order.
+    /// Returns the combination of these effects in this order.
     pub(super) fn combination(&self, effects: &[usize]) -> Option<&EffectCombination> {
         self.combinations.iter().find(|c| c.effects == effects)
     }
 
-    /// The log Bayes factor of these effects, if they were fitted together.
+    /// Returns the log Bayes factor of these effects, if they were fitted together.
     pub(super) fn log_bayes_factor_of(&self, effects: &CandidateSet) -> Option<f64> {
         let mut combinations = self.combinations.iter();
         let combination = combinations.find(|c| candidate_set(&c.effects) == *effects)?;
         Some(combination.log_bayes_factor)
     }
 
-    /// The scan for laws that is in progress, or the last one.
+    /// Returns the scan for laws that is in progress, or the last one.
     pub(super) fn current_scan(&mut self) -> Option<&mut LawScan> {
         self.further_laws.as_mut().or(self.laws.as_mut())
     }
 
-    /// The law beyond the base that passed the cross-validation.
+    /// Returns the law beyond the base that passed the cross-validation.
     pub(super) fn confirmed_law(&self) -> Option<&FittedLaw> {
         let scan = self.laws.as_ref()?;
         scan.laws.get(scan.confirmed?)
     }
 
-    /// Goodness of fit of the detected combination, otherwise of the base.
+    /// Returns the goodness of fit of the detected combination, otherwise of the base.
     pub(super) fn chi_square(&self, likelihood: &Likelihood) -> Option<FitChiSquare> {
         let best = self.detected().map(|best| &best.fit);
         FitChiSquare::of_fit(best.or(self.base_fit())?, likelihood)
     }
 
-    /// Chi-square over degrees of freedom of the best explanation, which is the library's or a law that passed the cross-validation
-    /// and fits better. 1 where it fits or the noise is not known.
+    /// Returns the chi-square over degrees of freedom of the best explanation, which is the library's or a law that passed the
+    /// cross-validation and fits better. 1 where it fits or the noise is not known.
     pub(super) fn misfit(&self, likelihood: &Likelihood) -> f64 {
         let library = self.chi_square(likelihood);
         let law = self
@@ -210,7 +211,7 @@ impl Hypotheses {
             .map_or(1.0, |chi| chi.ratio())
     }
 
-    /// Whether the best explanation contradicts the data; with a model discrepancy, by the declared noise.
+    /// Returns whether the best explanation contradicts the data; with a model discrepancy, by the declared noise.
     pub(super) fn is_incomplete(&self, likelihood: &Likelihood) -> bool {
         let fit = self.detected().map(|best| &best.fit).or(self.base_fit());
         let chi = fit.and_then(|fit| FitChiSquare::of_declared_noise(fit, likelihood));

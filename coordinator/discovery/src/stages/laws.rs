@@ -73,7 +73,7 @@ impl SearchState {
         }
     }
 
-    /// A search of some candidates beyond a combination; `None` without candidates.
+    /// Returns a search of some candidates beyond a combination; `None` without candidates.
     fn branch(
         &self,
         beyond: Vec<usize>,
@@ -194,7 +194,8 @@ impl SearchState {
         let Some(scan) = self.hypotheses.current_scan() else {
             return self.predictions();
         };
-        // A law that replaces the library's best must not predict worse; a law beyond it must predict better by a detectable amount.
+        // A law that replaces the library's best must not predict worse; a law beyond it must predict better by a detectable
+        // amount.
         let min_gain = if scan.beyond.is_empty() { 0.0 } else { DETECTED };
         let passes =
             gains.is_some_and(|[over_base, over_library]| over_base > DETECTED && over_library > min_gain);

@@ -1,7 +1,7 @@
 //! The stages of a discovery: one effect, combinations, laws outside the library, and the runs to make next.
 //!
-//! A stage asks the model in rounds (`Stage::queries`). Its `after_` function keeps the results and selects the next stage. The steps
-//! are those of docs/discovery.md:
+//! A stage asks the model in rounds (`Stage::queries`). Its `after_` function keeps the results and selects the next stage. The
+//! steps are those of docs/discovery.md:
 //!
 //! | step | stage | file |
 //! |---|---|---|

@@ -50,7 +50,8 @@ struct QueriedHypothesis {
     mode: Option<Vec<f64>>,
     /// Whether the low-fidelity model is asked for the spread, before the model.
     asks_low_fidelity: bool,
-    /// The prediction that the spread is compared with: that of the low-fidelity model at the mode if it is asked, otherwise of the model.
+    /// The prediction that the spread is compared with: that of the low-fidelity model at the mode if it is asked, otherwise of
+    /// the model.
     middle: Option<Vec<f64>>,
     /// The axes that are not answered yet.
     spread: Vec<Axis>,
@@ -67,7 +68,7 @@ pub(super) struct RunSelection {
 }
 
 impl QueriedHypothesis {
-    /// The parameters to evaluate, each with whether the low-fidelity model is asked.
+    /// Returns the parameters to evaluate, each with whether the low-fidelity model is asked.
     fn thetas(&self) -> impl Iterator<Item = (bool, &Vec<f64>)> {
         let sides = self.spread.iter().flat_map(|axis| axis.sides.iter().flatten());
         let middle = self.mode.iter().filter(|_| self.asks_low_fidelity);
@@ -125,7 +126,7 @@ impl QueriedHypothesis {
 }
 
 impl RunSelection {
-    /// `None` if there are fewer than two explanations or no proposed runs.
+    /// Prepares the comparison; `None` if there are fewer than two explanations or no proposed runs.
     pub(super) fn new(task: &SearchTask, explanations: Vec<OpenHypothesis>) -> Option<Self> {
         if explanations.len() < 2 || task.proposed.values() == 0 {
             return None;
@@ -146,7 +147,7 @@ impl RunSelection {
         })
     }
 
-    /// The queries of the next round; none once every explanation has its prediction.
+    /// Returns the queries of the next round; none once every explanation has its prediction.
     pub(super) fn queries(&self) -> Vec<Query> {
         let queries_of = |hypothesis: &QueriedHypothesis| {
             let model = QueriedModel::With(hypothesis.effects.clone());
@@ -171,7 +172,8 @@ impl RunSelection {
         }
     }
 
-    /// The most informative runs: the first has the most information alone, each further one adds the most to those before it.
+    /// Returns the most informative runs: the first has the most information alone, each further one adds the most to those
+    /// before it.
     pub(super) fn best(&self) -> RunChoice {
         let predicted = self
             .hypotheses

@@ -20,9 +20,10 @@ const MIN_REPEATS: usize = 3;
 
 /// Returns the parameters of inferred noise sds that do not support the claim; empty if the claim stands without them.
 ///
-/// An sd is supported by at least three repeats, or by `v` residual degrees of freedom with `1 / sqrt(2 v) <= 0.2`: the number of its data
-/// less its share of the fitted parameters. A claim that gains more than 3 nats in log-likelihood on the data of declared and supported
-/// noise alone stands. Checked by `inferred_noise::an_effect_is_named_on_inferred_noise_only_with_data_or_repeats_enough`.
+/// An sd is supported by at least three repeats, or by `v` residual degrees of freedom with `1 / sqrt(2 v) <= 0.2`: the number of
+/// its data less its share of the fitted parameters. A claim that gains more than 3 nats in log-likelihood on the data of
+/// declared and supported noise alone stands. Checked by
+/// `inferred_noise::an_effect_is_named_on_inferred_noise_only_with_data_or_repeats_enough`.
 ///
 /// # Arguments
 /// - `base`, `best`: the fits of the base and of the explanation that would be claimed.
@@ -38,7 +39,7 @@ pub(super) fn unsupported_noise(task: &SearchTask, base: &LaplaceFit, best: &Lap
     if gain > DETECTED { Vec::new() } else { unsupported }
 }
 
-/// The data of each inferred noise sd, by its parameter.
+/// Returns the data of each inferred noise sd, by its parameter.
 fn data_of_sds(likelihood: &Likelihood) -> BTreeMap<usize, Vec<usize>> {
     let mut data: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
     for (place, datum) in likelihood.data().iter().enumerate() {
@@ -49,7 +50,7 @@ fn data_of_sds(likelihood: &Likelihood) -> BTreeMap<usize, Vec<usize>> {
     data
 }
 
-/// Effective number of fitted parameters without sds, the sum of 1 - posterior variance over prior variance.
+/// Returns the effective number of fitted parameters without sds, the sum of 1 - posterior variance over prior variance.
 fn fitted_parameters(fit: &LaplaceFit, likelihood: &Likelihood) -> f64 {
     let sds: Vec<usize> = noise::coordinates(likelihood)
         .into_iter()
@@ -63,7 +64,7 @@ fn fitted_parameters(fit: &LaplaceFit, likelihood: &Likelihood) -> f64 {
         .sum()
 }
 
-/// Whether an sd has enough repeats or residual degrees of freedom.
+/// Returns whether an sd has enough repeats or residual degrees of freedom.
 ///
 /// # Arguments
 /// - `data`: indices of the sd's data. `count`: number of all data. `fitted`: effective number of fitted parameters.
@@ -78,7 +79,7 @@ fn is_supported(data: &[usize], count: usize, fitted: f64, conditions: &[Vec<usi
         || 2.0 * freedom * LARGEST_UNCERTAINTY * LARGEST_UNCERTAINTY >= 1.0
 }
 
-/// The explanation's gain in log-likelihood on the data of other noise sds than these; 0 without such data.
+/// Returns the explanation's gain in log-likelihood on the data of other noise sds than these; 0 without such data.
 fn gain_without(sds: &[usize], likelihood: &Likelihood, base: &LaplaceFit, best: &LaplaceFit) -> f64 {
     let is_of = |sd: ErrorSd| matches!(sd, ErrorSd::Inferred { parameter } if sds.contains(&parameter));
     let data = likelihood.data().iter().enumerate();

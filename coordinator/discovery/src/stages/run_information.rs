@@ -36,7 +36,7 @@ struct JointNormal {
 }
 
 impl JointNormal {
-    /// Log density up to a constant common to all explanations.
+    /// Returns the log density up to a constant common to all explanations.
     fn log_density(&self, outcome: &DVector<f64>) -> f64 {
         -0.5 * self.whitened(&(outcome - &self.mean)).norm_squared() - self.half_log_determinant
     }
@@ -74,9 +74,9 @@ impl<'a> Predictive<'a> {
         }
     }
 
-    /// The expected information of runs made together, `sum_m P_m E_m[ln p(y | m) - ln sum_k P_k p(y | k)]`, where p is normal with the
-    /// covariance of noise and parameters. All runs share the parameters, so a run whose prediction depends on them as that of
-    /// another run adds little.
+    /// Returns the expected information of runs made together, `sum_m P_m E_m[ln p(y | m) - ln sum_k P_k p(y | k)]`, where p is
+    /// normal with the covariance of noise and parameters. All runs share the parameters, so a run whose prediction depends on
+    /// them as that of another run adds little.
     ///
     /// # Returns
     /// Nats; `None` where a covariance is not positive definite.
@@ -106,7 +106,7 @@ impl<'a> Predictive<'a> {
         Some(nats)
     }
 
-    /// The most probable explanation and those that a run distinguishes from it; all others if it distinguishes none.
+    /// Returns the most probable explanation and those that a run distinguishes from it; all others if it distinguishes none.
     pub(super) fn separated(&self, run: usize) -> Vec<usize> {
         let normals: Option<Vec<JointNormal>> = self
             .predictions

@@ -30,7 +30,7 @@ pub(super) enum Stage {
 }
 
 impl Stage {
-    /// The queries of the next round; none once the stage is complete.
+    /// Returns the queries of the next round; none once the stage is complete.
     pub(super) fn queries(&mut self) -> Vec<Query> {
         match self {
             Self::SingleEffects(branch) | Self::Curves(branch) | Self::Forms(branch) => branch.queries(),

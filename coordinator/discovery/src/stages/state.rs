@@ -33,7 +33,7 @@ impl SearchState {
         }
     }
 
-    /// The cross-validation of some models, which reuses earlier refits.
+    /// Returns the cross-validation of some models, which reuses earlier refits.
     pub(super) fn validated(&self, models: &[ComparedModel]) -> CrossValidation {
         CrossValidation::new(&self.task.likelihood, &self.task.levels, models, &self.refitted)
     }
@@ -58,8 +58,8 @@ impl SearchState {
         }
     }
 
-    /// Whether combinations of effects that explain little alone are searched: the best explanation contradicts the data, and the
-    /// model's evaluations are cheap.
+    /// Returns whether combinations of effects that explain little alone are searched: the best explanation contradicts the data,
+    /// and the model's evaluations are cheap.
     pub(super) fn searches_widely(&self) -> bool {
         let is_smooth = self.task.settings.smoothness == Smoothness::Smooth;
         is_smooth && self.task.max_effects > 1 && self.hypotheses.is_incomplete(&self.task.likelihood)

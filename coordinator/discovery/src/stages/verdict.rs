@@ -24,7 +24,7 @@ pub enum SearchVerdict {
 }
 
 impl SearchVerdict {
-    /// Whether the verdict names a missing effect, class or law.
+    /// Returns whether the verdict names a missing effect, class or law.
     pub fn is_claim(self) -> bool {
         matches!(self, Self::Named(_) | Self::Class(_) | Self::NotInLibrary)
     }

@@ -29,7 +29,8 @@ pub struct WeighedSet {
     pub prior: f64,
     /// Posterior probability; over all sets they sum to 1.
     pub probability: f64,
-    /// Log predictive density of left-out levels over that of the base, each measurement counted once; `None` if it was not computed.
+    /// Log predictive density of left-out levels over that of the base, each measurement counted once; `None` if it was not
+    /// computed.
     pub predictive: Option<f64>,
 }
 
@@ -74,9 +75,9 @@ fn inclusion(hypotheses: &Hypotheses, cost: f64, misfit: f64) -> Inclusion {
     weights.into_iter().map(sum).collect()
 }
 
-/// The effect of a combination with the highest inclusion weight; among equals, the one with the highest Bayes factor alone. `None`
-/// without an effect of the library. Of the effects of a combination, the one that all good combinations share is named, not one that
-/// only some have.
+/// Returns the effect of a combination with the highest inclusion weight; among equals, the one with the highest Bayes factor
+/// alone. `None` without an effect of the library. Of the effects of a combination, the one that all good combinations share is
+/// named, not one that only some have.
 fn leader(ranking: &EffectRanking, inclusion: &Inclusion, effects: &[usize]) -> Option<usize> {
     let ranked = || effects.iter().filter_map(|&k| ranking.effect(Some(k)));
     let weight = |effect: &RankedEffect| {
@@ -96,8 +97,8 @@ fn leader(ranking: &EffectRanking, inclusion: &Inclusion, effects: &[usize]) -> 
     best.and_then(|effect| effect.candidate)
 }
 
-/// Whether a set without an effect predicts left-out levels better than every set with it. Sets that have the effect differ in
-/// other effects only.
+/// Returns whether a set without an effect predicts left-out levels better than every set with it. Sets that have the effect
+/// differ in other effects only.
 fn disputes(sets: &[WeighedSet], effect: usize, misfit: f64) -> bool {
     let highest = |has: bool| {
         let sets = sets
@@ -111,7 +112,7 @@ fn disputes(sets: &[WeighedSet], effect: usize, misfit: f64) -> bool {
     }
 }
 
-/// The ranking of the single effects, with the better fits that the backward elimination may have found.
+/// Returns the ranking of the single effects, with the better fits that the backward elimination may have found.
 fn updated_ranking(task: &SearchTask, hypotheses: &Hypotheses) -> EffectRanking {
     let mut ranking = hypotheses.ranking.clone();
     for effect in &mut ranking.effects {
@@ -139,6 +140,8 @@ fn updated_ranking(task: &SearchTask, hypotheses: &Hypotheses) -> EffectRanking 
 struct LedCombinations<'a>(BTreeMap<usize, Vec<LedCombination<'a>>>);
 
 impl<'a> LedCombinations<'a> {
+    /// Groups the combinations by their leading effect.
+    ///
     /// # Arguments
     /// - `cost`: log prior cost of each effect after the first.
     fn new(hypotheses: &'a Hypotheses, ranking: &EffectRanking, inclusion: &Inclusion, cost: f64) -> Self {
@@ -159,7 +162,7 @@ impl<'a> LedCombinations<'a> {
         self.0.get(&effect).map_or(&[], Vec::as_slice)
     }
 
-    /// The set of a model; `None` if the model is unknown.
+    /// Returns the set of a model; `None` if the model is unknown.
     fn set(&self, ranking: &EffectRanking, model: &ModelProbability) -> Option<WeighedSet> {
         let effect = ranking.effects.get(model.explanation)?;
         let (effects, log_bayes_factor) = match (model.combination, effect.candidate) {
@@ -180,7 +183,7 @@ impl<'a> LedCombinations<'a> {
     }
 }
 
-/// The set of a law outside the library, if it was searched.
+/// Returns the set of a law outside the library, if it was searched.
 fn outside_set(outside: Option<f64>, probabilities: &Probabilities) -> Option<WeighedSet> {
     Some(WeighedSet {
         effects: None,
@@ -192,7 +195,8 @@ fn outside_set(outside: Option<f64>, probabilities: &Probabilities) -> Option<We
 }
 
 impl Weighing {
-    /// Computes all probabilities. A combination counts for its leading effect; each further effect has the prior 1 / number of candidates.
+    /// Computes all probabilities. A combination counts for its leading effect; each further effect has the prior 1 / number of
+    /// candidates.
     pub(super) fn new(task: &SearchTask, hypotheses: &Hypotheses) -> Self {
         let mut ranking = updated_ranking(task, hypotheses);
         let cost = libm::log(task.library.len().max(1) as f64);
@@ -228,7 +232,7 @@ impl Weighing {
         }
     }
 
-    /// The sets of effects that may explain the data, by falling probability; none without a detection.
+    /// Returns the sets of effects that may explain the data, by falling probability; none without a detection.
     pub(super) fn leading<'a>(&self, hypotheses: &'a Hypotheses) -> Vec<&'a EffectCombination> {
         if hypotheses.detected().is_none() {
             return Vec::new();
@@ -241,8 +245,8 @@ impl Weighing {
         combinations.take(MAX_LEADING).collect()
     }
 
-    /// The effect to begin with, if several sets remain and evidence and prediction agree on the best: every rival predicts
-    /// left-out levels worse by a detectable amount.
+    /// Returns the effect to begin with, if several sets remain and evidence and prediction agree on the best: every rival
+    /// predicts left-out levels worse by a detectable amount.
     pub(super) fn agreed(&self) -> Option<usize> {
         let best = self.sets.first()?;
         let (effects, best_gain) = (best.effects.as_ref()?, best.predictive?);
@@ -259,25 +263,25 @@ impl Weighing {
         leader.filter(|_| predicted.all(is_beaten) && unpredicted_are_improbable)
     }
 
-    /// The sets that count for an effect, by falling probability.
+    /// Returns the sets that count for an effect, by falling probability.
     fn led_by(&self, effect: usize) -> impl Iterator<Item = &[usize]> {
         let sets = self.sets.iter().filter_map(|set| set.effects.as_deref());
         sets.filter(move |effects| leader(&self.ranking, &self.inclusion, effects) == Some(effect))
     }
 
-    /// Probability of the sets that contain both this law and effects.
+    /// Returns the probability of the sets that contain both this law and effects.
     pub(super) fn beside_effects(&self, task: &SearchTask, law: usize) -> f64 {
         let is_law = |k: &usize| *k == task.curve(law) || task.forms(law).contains(k);
         let has_law = |set: &&WeighedSet| set.effects.as_ref().is_some_and(|k| k.iter().any(is_law));
         self.sets.iter().filter(has_law).map(|set| set.probability).sum()
     }
 
-    /// Whether a set without an effect predicts left-out levels better, by a detectable amount, than every set with it.
+    /// Returns whether a set without an effect predicts left-out levels better, by a detectable amount, than every set with it.
     pub(super) fn is_disputed(&self, effect: usize) -> bool {
         disputes(&self.sets, effect, self.misfit)
     }
 
-    /// The explanations that further runs should distinguish; none without a detection.
+    /// Returns the explanations that further runs should distinguish; none without a detection.
     pub(super) fn open<'a>(&self, hypotheses: &'a Hypotheses) -> Vec<OpenHypothesis<'a>> {
         let (Some(base), Some(_)) = (hypotheses.base_fit(), hypotheses.detected()) else {
             return Vec::new();

@@ -11,7 +11,8 @@ const INFORMED: f64 = 0.75;
 /// The distance of the posterior from the prior.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Conflict {
-    /// For each parameter the probability of a posterior this far out, if the prior is right; `None` if the data hold too little information.
+    /// For each parameter the probability of a posterior this far out, if the prior is right; `None` if the data hold too little
+    /// information.
     pub parameters: Vec<Option<f64>>,
     /// Squared distance of the posterior's mean over all directions that the data inform.
     pub statistic: f64,
@@ -24,17 +25,18 @@ pub struct Conflict {
 /// Compares the posterior with the prior; `None` with fewer than two draws.
 ///
 /// # Equation
-/// Every parameter is turned into its normal score `u = Phi^-1(F(theta))`, F its prior distribution, so that the prior
-/// is standard normal; where it is correlated, D takes scores made independent. With m and S the posterior's mean and
-/// covariance of u, `z_i = m_i / sqrt(1 - S_ii)`, and over the eigenvectors v of S with eigenvalues l, `D = sum (v'm)^2 / (1 - l)`. Under the prior predictive distribution
-/// `Cov(m) = I - S`, so z is standard normal and D chi-square.
+/// Every parameter is turned into its normal score `u = Phi^-1(F(theta))`, F its prior distribution, so that the prior is
+/// standard normal; where it is correlated, D takes scores made independent. With m and S the posterior's mean and covariance of
+/// u, `z_i = m_i / sqrt(1 - S_ii)`, and over the eigenvectors v of S with eigenvalues l, `D = sum (v'm)^2 / (1 - l)`. Under the
+/// prior predictive distribution `Cov(m) = I - S`, so z is standard normal and D chi-square.
 ///
 /// # Arguments
 /// - `draws`: equally weighted draws of the posterior, in the order of the prior.
 ///
 /// # Validity
-/// Exact where predictions are linear in the scores and errors normal with known sds; D is then the check of Evans and Moshonov on the
-/// minimal sufficient statistic. Directions whose variance is above 0.75 of the prior's are left out: 1 - l would be sampling error.
+/// Exact where predictions are linear in the scores and errors normal with known sds; D is then the check of Evans and Moshonov
+/// on the minimal sufficient statistic. Directions whose variance is above 0.75 of the prior's are left out: 1 - l would be
+/// sampling error.
 ///
 /// # Source
 /// Evans & Moshonov 2006, *Checking for prior-data conflict*, Bayesian Analysis 1:893, doi:10.1214/06-BA129, section 3. Checked by
@@ -79,7 +81,7 @@ pub fn conflict(prior: &Prior, draws: &[&[f64]]) -> Option<Conflict> {
     })
 }
 
-/// P(|Z| >= z) of a standard normal Z.
+/// Returns P(|Z| >= z) of a standard normal Z.
 fn two_sided(z: f64) -> f64 {
     2.0 * ErrorLaw::Gaussian.cumulative(-z.abs())
 }

@@ -1,6 +1,6 @@
 //! Effective sample size of weights, and rank correlation.
 
-/// Effective sample size of weights, `(sum w)^2 / sum w^2` (Kish 1965); 0 if no weight is positive.
+/// Returns the effective sample size of weights, `(sum w)^2 / sum w^2` (Kish 1965); 0 if no weight is positive.
 #[must_use]
 pub fn kish_ess(weights: &[f64]) -> f64 {
     let sum: f64 = weights.iter().sum();
@@ -8,7 +8,7 @@ pub fn kish_ess(weights: &[f64]) -> f64 {
     if squares > 0.0 { sum * sum / squares } else { 0.0 }
 }
 
-/// Coefficient of variation of weights: sd / mean with divisor n; infinite if no weight is positive.
+/// Returns the coefficient of variation of weights: sd / mean with divisor n; infinite if no weight is positive.
 #[must_use]
 pub fn weight_cov(weights: &[f64]) -> f64 {
     let ess = kish_ess(weights);
@@ -19,7 +19,8 @@ pub fn weight_cov(weights: &[f64]) -> f64 {
     }
 }
 
-/// Spearman's rank correlation of two equally long slices, ties at their mean rank; `None` if a slice is constant or the lengths differ.
+/// Returns Spearman's rank correlation of two equally long slices, ties at their mean rank; `None` if a slice is constant or the
+/// lengths differ.
 #[must_use]
 pub fn rank_correlation(first: &[f64], second: &[f64]) -> Option<f64> {
     if first.len() != second.len() {

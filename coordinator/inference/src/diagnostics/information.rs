@@ -20,17 +20,19 @@ pub struct ChannelSignal {
 }
 
 impl ChannelSignal {
-    /// Whether all data of the channel together, as independent measurements of one quantity, would hold as much information as the prior.
+    /// Returns whether all data of the channel together, as independent measurements of one quantity, would hold as much
+    /// information as the prior.
     #[must_use]
     pub fn is_heard_together(&self) -> bool {
         self.ratio * (self.data as f64).sqrt() >= 1.0
     }
 }
 
-/// The signal of every channel that has data; empty with fewer than two draws.
+/// Returns the signal of every channel that has data; empty with fewer than two draws.
 ///
 /// # Arguments
-/// - `error_variances`: the variance of each datum, as [`Likelihood::error_variances`](statistics::Likelihood::error_variances) gives it.
+/// - `error_variances`: the variance of each datum, as [`Likelihood::error_variances`](statistics::Likelihood::error_variances)
+///   gives it.
 /// - `prior_draws`: predictions at draws from the prior that the model accepted.
 ///
 /// Checked by `diagnostics::the_signal_of_a_linear_model_is_its_slope`.

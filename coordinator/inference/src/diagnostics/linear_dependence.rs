@@ -7,11 +7,12 @@ const REMAINING: f64 = 1e-12;
 /// Weight, in standard deviations, from which a quantity counts.
 const WEIGHT: f64 = 1e-6;
 
-/// The first quantity that is a linear function of earlier ones, with the quantities that it depends on.
+/// Returns the first quantity that is a linear function of earlier ones, with the quantities that it depends on.
 ///
 /// # Equation
-/// Quantity k is regressed on those before it: the weights are `w = C^-1 c`, with C their correlations among each other and c those with k;
-/// the unexplained share of its variance is `1 - w'c`, at least 1e-12 where k is not determined. A dependency counts from `|w| = 1e-6`.
+/// Quantity k is regressed on those before it: the weights are `w = C^-1 c`, with C their correlations among each other and c
+/// those with k; the unexplained share of its variance is `1 - w'c`, at least 1e-12 where k is not determined. A dependency
+/// counts from `|w| = 1e-6`.
 ///
 /// # Arguments
 /// - `correlations`: a row for each quantity, symmetric, 1 on the diagonal.

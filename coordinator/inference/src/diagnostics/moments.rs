@@ -1,12 +1,12 @@
 //! Mean and standard deviation of draws.
 
-/// Arithmetic mean; `None` for an empty slice.
+/// Returns the arithmetic mean; `None` for an empty slice.
 #[must_use]
 pub fn mean(values: &[f64]) -> Option<f64> {
     (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
 }
 
-/// Mean and sample standard deviation (divisor n - 1; 0 for a single value), the latter in two passes.
+/// Returns the mean and sample standard deviation (divisor n - 1; 0 for a single value), the latter in two passes.
 #[must_use]
 pub fn mean_and_sd(values: &[f64]) -> Option<(f64, f64)> {
     let mean = mean(values)?;

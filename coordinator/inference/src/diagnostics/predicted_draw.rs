@@ -10,7 +10,7 @@ pub struct PredictedDraw {
 }
 
 impl PredictedDraw {
-    /// The mean over draws; `None` with fewer than two.
+    /// Returns the mean over draws; `None` with fewer than two.
     #[must_use]
     pub fn mean(draws: &[PredictedDraw]) -> Option<PredictedDraw> {
         let first = draws.first().filter(|_| draws.len() > 1)?;

@@ -17,7 +17,7 @@ pub struct DrawSummary {
     pub q95: f64,
 }
 
-/// Mean, sd and quantiles of equally weighted draws; `None` for an empty slice.
+/// Returns the mean, sd and quantiles of equally weighted draws; `None` for an empty slice.
 #[must_use]
 pub fn summary(values: &[f64]) -> Option<DrawSummary> {
     let (mean, sd) = mean_and_sd(values)?;
@@ -33,7 +33,8 @@ pub fn summary(values: &[f64]) -> Option<DrawSummary> {
     })
 }
 
-/// Quantile of type 7: linear between order statistics at (n - 1) p (Hyndman & Fan 1996, doi:10.1080/00031305.1996.10473566).
+/// Returns the quantile of type 7: linear between order statistics at (n - 1) p (Hyndman & Fan 1996,
+/// doi:10.1080/00031305.1996.10473566).
 ///
 /// `None` for an empty slice or `p` outside [0, 1].
 #[must_use]
@@ -46,7 +47,7 @@ pub fn quantile(values: &[f64], p: f64) -> Option<f64> {
     Some(quantile_of_sorted(&sorted, p))
 }
 
-/// The quantile of a non-empty ascending slice, for p in [0, 1].
+/// Returns the quantile of a non-empty ascending slice, for p in [0, 1].
 fn quantile_of_sorted(sorted: &[f64], p: f64) -> f64 {
     let position = (sorted.len() - 1) as f64 * p;
     let below = libm::floor(position) as usize;

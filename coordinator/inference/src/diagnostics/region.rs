@@ -29,13 +29,13 @@ pub struct Region {
     pub p: f64,
 }
 
-/// The bin of a probability: the prior's distribution function at a draw.
+/// Returns the bin of a probability: the prior's distribution function at a draw.
 #[must_use]
 pub fn bin(probability: f64) -> usize {
     ((probability * BINS as f64) as usize).min(BINS - 1)
 }
 
-/// The region with the least probability by chance, among the ends of every parameter and of every pair; `None` where all
+/// Returns the region with the least probability by chance, among the ends of every parameter and of every pair; `None` where all
 /// draws failed or none did.
 ///
 /// Among equal regions the first one is taken; one parameter goes before two.

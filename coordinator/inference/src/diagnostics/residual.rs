@@ -33,37 +33,40 @@ pub struct ResidualChiSquare {
 }
 
 impl ResidualChiSquare {
-    /// Data minus effective parameters.
+    /// Returns the number of data minus the effective number of parameters.
     #[must_use]
     pub fn degrees_of_freedom(&self) -> f64 {
         self.data as f64 - self.effective_parameters
     }
 }
 
-/// Every residual of the posterior's mean prediction, studentised for its leverage.
+/// Returns every residual of the posterior's mean prediction, studentised for its leverage.
 ///
 /// # Equation
-/// `t_i = r_i / sqrt(R_ii - V_i)`, R the covariance of the errors, `V_i` the posterior variance of the prediction; for independent errors
-/// `r_i / (sigma_i sqrt(1 - h_i))` with `h_i = V_i / sigma_i^2`. A noise sd that is inferred is re-estimated from the other data that share
-/// it: `s^2 = mean_j r_j^2 / (1 - h_j)`, j not i, with `sum (1 - h) - 1` degrees of freedom (external studentisation).
+/// `t_i = r_i / sqrt(R_ii - V_i)`, R the covariance of the errors, `V_i` the posterior variance of the prediction; for
+/// independent errors `r_i / (sigma_i sqrt(1 - h_i))` with `h_i = V_i / sigma_i^2`. A noise sd that is inferred is re-estimated
+/// from the other data that share it: `s^2 = mean_j r_j^2 / (1 - h_j)`, j not i, with `sum (1 - h) - 1` degrees of freedom
+/// (external studentisation).
 ///
 /// # Arguments
 /// - `draws`: equally weighted draws of the posterior with their predictions; with fewer than two the result is empty.
 ///
 /// # Returns
-/// A residual for each datum, in their order. The probability follows the likelihood's law, or Student's t where the sd is estimated.
+/// A residual for each datum, in their order. The probability follows the likelihood's law, or Student's t where the sd is
+/// estimated.
 ///
 /// # Errors
 /// The errors of [`Likelihood::log_likelihood`].
 ///
 /// # Validity
-/// `Cov(r) = R - X S X'` holds exactly for predictions that are linear in normal parameters, with R known; R is taken at the posterior
-/// mean. Where predictions bend over the posterior, or R is inferred among errors in common, it is an approximation. Where the sd is
-/// estimated, false alarms are a little rarer than stated: 4.2 % at 5 %, with twelve data and two parameters.
+/// `Cov(r) = R - X S X'` holds exactly for predictions that are linear in normal parameters, with R known; R is taken at the
+/// posterior mean. Where predictions bend over the posterior, or R is inferred among errors in common, it is an approximation.
+/// Where the sd is estimated, false alarms are a little rarer than stated: 4.2 % at 5 %, with twelve data and two parameters.
 ///
 /// # Source
-/// Cook & Weisberg 1982, *Residuals and Influence in Regression*, section 2.2, with the posterior covariance S in place of `(X'X)^-1`.
-/// Checked by `diagnostics::leverage_of_a_line_is_its_closed_form` and `diagnostics::studentised_residuals_keep_their_level`.
+/// Cook & Weisberg 1982, *Residuals and Influence in Regression*, section 2.2, with the posterior covariance S in place of
+/// `(X'X)^-1`. Checked by `diagnostics::leverage_of_a_line_is_its_closed_form` and
+/// `diagnostics::studentised_residuals_keep_their_level`.
 pub fn residuals(likelihood: &Likelihood, draws: &[PredictedDraw]) -> Result<Vec<Residual>, LikelihoodError> {
     let Some(mean) = PredictedDraw::mean(draws) else {
         return Ok(Vec::new());
@@ -101,7 +104,7 @@ pub fn residuals(likelihood: &Likelihood, draws: &[PredictedDraw]) -> Result<Vec
     Ok(rows)
 }
 
-/// The parameter that is the sd of a datum with independent normal errors.
+/// Returns the parameter that is the sd of a datum with independent normal errors.
 pub(super) fn separate_noise_sd(likelihood: &Likelihood, i: usize) -> Option<usize> {
     match likelihood.data()[i].sd {
         ErrorSd::Inferred { parameter }
@@ -137,7 +140,7 @@ fn against_peers(row: Residual, peers: &[Residual]) -> Option<(f64, f64)> {
     Some((t, 2.0 * law.cumulative(-t.abs())))
 }
 
-/// The chi-square of the data that `keep` keeps and whose noise is known; `None` where there are none, the law is not
+/// Returns the chi-square of the data that `keep` keeps and whose noise is known; `None` where there are none, the law is not
 /// normal, or there are fewer than two draws.
 ///
 /// # Equation
@@ -154,8 +157,8 @@ fn against_peers(row: Residual, peers: &[Residual]) -> Option<(f64, f64)> {
 /// sum is right by construction.
 ///
 /// # Source
-/// Spiegelhalter et al. 2002, J. R. Stat. Soc. B 64:583, doi:10.1111/1467-9868.00353, section 4 (leverage as effective parameters). Checked by
-/// `diagnostics::chi_square_of_a_line_is_its_closed_form` and `diagnostics::chi_square_keeps_its_level`.
+/// Spiegelhalter et al. 2002, J. R. Stat. Soc. B 64:583, doi:10.1111/1467-9868.00353, section 4 (leverage as effective
+/// parameters). Checked by `diagnostics::chi_square_of_a_line_is_its_closed_form` and `diagnostics::chi_square_keeps_its_level`.
 pub fn chi_square(
     likelihood: &Likelihood,
     draws: &[PredictedDraw],

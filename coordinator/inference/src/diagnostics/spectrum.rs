@@ -11,7 +11,7 @@ pub struct Direction {
     pub loadings: Vec<f64>,
 }
 
-/// The principal directions of equally weighted draws, the widest first; empty with fewer than two draws.
+/// Returns the principal directions of equally weighted draws, the widest first; empty with fewer than two draws.
 ///
 /// # Equation
 /// Eigenvalues and eigenvectors of the sample covariance (divisor n - 1).
@@ -21,7 +21,8 @@ pub struct Direction {
 ///   shares of the prior's: 1 along a direction of which the data hold no information.
 ///
 /// # Validity
-/// Where two variances are nearly equal, their directions are arbitrary within the plane that they span. Checked by `spectrum::tests`.
+/// Where two variances are nearly equal, their directions are arbitrary within the plane that they span. Checked by
+/// `spectrum::tests`.
 #[must_use]
 pub fn principal_directions(draws: &[Vec<f64>]) -> Vec<Direction> {
     let Some((_, covariance)) = mean_and_covariance(draws) else {
@@ -50,7 +51,7 @@ pub fn principal_directions(draws: &[Vec<f64>]) -> Vec<Direction> {
     directions
 }
 
-/// Mean and sample covariance of draws; `None` with fewer than two.
+/// Returns the mean and sample covariance of draws; `None` with fewer than two.
 pub(super) fn mean_and_covariance(draws: &[Vec<f64>]) -> Option<(Vec<f64>, DMatrix<f64>)> {
     let dimension = draws.first()?.len();
     if draws.len() < 2 {

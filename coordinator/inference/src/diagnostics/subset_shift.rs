@@ -19,12 +19,14 @@ pub struct SubsetShift {
     pub rms_after: f64,
 }
 
-/// The least-squares step that residuals ask for, with a standard deviation that holds where the errors of a group are common.
+/// Returns the least-squares step that residuals ask for, with a standard deviation that holds where the errors of a group are
+/// common.
 ///
 /// # Equation
-/// With J the derivatives and r the residuals, `d = (J'J)^-1 J'r`, `e = r − J d`, and over the G groups g of k parameters `Cov(d) = G / (G
-/// − k) (J'J)^-1 (sum_g J_g' e_g e_g' J_g) (J'J)^-1`; `d_i / sd_i` is compared with Student's t of G − k degrees. If all data agree, d has
-/// a smaller variance than that, because the parameters have been fitted to these data too. So p is too large rather than too small.
+/// With J the derivatives and r the residuals, `d = (J'J)^-1 J'r`, `e = r − J d`, and over the G groups g of k parameters `Cov(d)
+/// = G / (G − k) (J'J)^-1 (sum_g J_g' e_g e_g' J_g) (J'J)^-1`; `d_i / sd_i` is compared with Student's t of G − k degrees. If all
+/// data agree, d has a smaller variance than that, because the parameters have been fitted to these data too. So p is too large
+/// rather than too small.
 ///
 /// # Arguments
 /// - `derivatives`: the derivatives of each prediction by each parameter. `residuals`: measured minus predicted. `groups`: the
@@ -79,13 +81,14 @@ pub fn subset_shift(derivatives: &[Vec<f64>], residuals: &[f64], groups: &[usize
     shift.p.iter().all(|p| p.is_finite()).then_some(shift)
 }
 
-/// The derivatives of predictions by parameters, from draws: the least-squares plane through them.
+/// Returns the derivatives of predictions by parameters, from draws: the least-squares plane through them.
 ///
 /// # Arguments
 /// - `parameters`: the parameters of each draw. `predicted`: its predictions.
 ///
 /// # Returns
-/// For each prediction its derivative by each parameter; `None` with fewer draws than parameters + 2, or where these lie in a plane.
+/// For each prediction its derivative by each parameter; `None` with fewer draws than parameters + 2, or where these lie in a
+/// plane.
 #[must_use]
 pub fn derivatives_from_draws(parameters: &[Vec<f64>], predicted: &[Vec<f64>]) -> Option<Vec<Vec<f64>>> {
     let (draws, k) = (parameters.len(), parameters.first()?.len());

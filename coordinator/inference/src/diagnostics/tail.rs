@@ -3,7 +3,7 @@
 /// Number of terms after which the series and the fraction have converged for any degrees of freedom below 1e6.
 const TERMS: u32 = 10_000;
 
-/// P(chi-square with these degrees of freedom >= `x`); the degrees of freedom need not be whole. 1 for `x` <= 0.
+/// Returns P(chi-square with these degrees of freedom >= `x`); the degrees of freedom need not be whole. 1 for `x` <= 0.
 ///
 /// # Returns
 /// `Q(nu / 2, x / 2)`, the upper regularised incomplete gamma function; `None` unless `nu` > 0 and `x` is a number.
@@ -31,7 +31,7 @@ pub fn chi_square_tail(x: f64, nu: f64) -> Option<f64> {
     })
 }
 
-/// `sum_k x^k / (a (a + 1) ... (a + k))`.
+/// Returns `sum_k x^k / (a (a + 1) ... (a + k))`.
 fn lower_series(a: f64, x: f64) -> f64 {
     let (mut term, mut sum) = (1.0 / a, 1.0 / a);
     for k in 1..TERMS {
@@ -44,7 +44,7 @@ fn lower_series(a: f64, x: f64) -> f64 {
     sum
 }
 
-/// The continued fraction of the upper incomplete gamma function, by Lentz's method.
+/// Returns the continued fraction of the upper incomplete gamma function, by Lentz's method.
 fn upper_fraction(a: f64, x: f64) -> f64 {
     let kept = |v: f64| if v.abs() < 1e-300 { 1e-300 } else { v };
     let mut b = x + 1.0 - a;
@@ -66,7 +66,8 @@ fn upper_fraction(a: f64, x: f64) -> f64 {
     fraction
 }
 
-/// `ln P(X >= hits)`, where X is the number of marked ones among `drawn` of `all`, of which `marked` are marked: the hypergeometric tail.
+/// Returns `ln P(X >= hits)`, where X is the number of marked ones among `drawn` of `all`, of which `marked` are marked: the
+/// hypergeometric tail.
 ///
 /// # Source
 /// Fisher's exact test, one-sided. Checked by `tail::tests`.

@@ -29,20 +29,21 @@ pub struct Trend {
 /// The posterior as a linear model with normal parameters, to test any number of regressors.
 ///
 /// # Equation
-/// With the parameters as independent standard normal scores u, predictions are `f + X (u - m)`, m the posterior mean of u and X the
-/// regression of the predictions on u over the draws. A regressor x, added with an unknown factor, has the efficient score and information
-/// `U = x' R^-1 r - a' (X' R^-1 r - m)`, `I = x' R^-1 x - a' X' R^-1 x`, `a = (1 + X' R^-1 X)^-1 X' R^-1 x`, with r the residuals and R the
-/// covariance of the errors. `slope = U / I`, `sd = 1 / sqrt(I)`, and `U / sqrt(I)` is standard normal where nothing is missing: `I = x'
-/// C^-1 x`, C the prior predictive covariance of the data. Where the noise sd of all data of a regressor is inferred, it is re-estimated
-/// from the residuals without the trend, and the statistic is Student's.
+/// With the parameters as independent standard normal scores u, predictions are `f + X (u - m)`, m the posterior mean of u and X
+/// the regression of the predictions on u over the draws. A regressor x, added with an unknown factor, has the efficient score
+/// and information `U = x' R^-1 r - a' (X' R^-1 r - m)`, `I = x' R^-1 x - a' X' R^-1 x`, `a = (1 + X' R^-1 X)^-1 X' R^-1 x`, with
+/// r the residuals and R the covariance of the errors. `slope = U / I`, `sd = 1 / sqrt(I)`, and `U / sqrt(I)` is standard normal
+/// where nothing is missing: `I = x' C^-1 x`, C the prior predictive covariance of the data. Where the noise sd of all data of a
+/// regressor is inferred, it is re-estimated from the residuals without the trend, and the statistic is Student's.
 ///
 /// # Validity
-/// Exact for predictions that are linear in normal scores and normal errors of known covariance (or one unknown sd, under a
-/// weak prior); under Student's errors asymptotic. A small distance of the posterior mean from the mode has no effect at first order.
+/// Exact for predictions that are linear in normal scores and normal errors of known covariance (or one unknown sd, under a weak
+/// prior); under Student's errors asymptotic. A small distance of the posterior mean from the mode has no effect at first order.
 ///
 /// # Source
-/// Cox & Hinkley 1974, *Theoretical Statistics*, section 9.3 (score test with nuisance parameters); Neyman 1959 (C(alpha)). Checked by
-/// `trends::a_trend_of_a_line_is_its_closed_form`, `trends::trends_keep_their_level` and `trends::a_real_trend_is_found`.
+/// Cox & Hinkley 1974, *Theoretical Statistics*, section 9.3 (score test with nuisance parameters); Neyman 1959 (C(alpha)).
+/// Checked by `trends::a_trend_of_a_line_is_its_closed_form`, `trends::trends_keep_their_level` and
+/// `trends::a_real_trend_is_found`.
 #[derive(Debug)]
 pub struct TrendTest<'a> {
     likelihood: &'a Likelihood,
@@ -114,7 +115,7 @@ impl<'a> TrendTest<'a> {
         }))
     }
 
-    /// The trend of the residuals with a regressor; `None` where the fit absorbs all of it, or no residuals are left to
+    /// Returns the trend of the residuals with a regressor; `None` where the fit absorbs all of it, or no residuals are left to
     /// estimate the noise from.
     ///
     /// # Arguments
@@ -153,7 +154,7 @@ impl<'a> TrendTest<'a> {
         })
     }
 
-    /// The parameter that is the noise sd of all data that the regressor affects.
+    /// Returns the parameter that is the noise sd of all data that the regressor affects.
     fn scale_of(&self, regressor: &[f64]) -> Option<usize> {
         let concerned = (0..regressor.len()).filter(|&i| regressor[i].abs() > 0.0);
         let mut scales = concerned.map(|i| separate_noise_sd(self.likelihood, i));
@@ -161,7 +162,7 @@ impl<'a> TrendTest<'a> {
         scales.all(|scale| scale == Some(first)).then_some(first)
     }
 
-    /// The residual of a regressor after the fit.
+    /// Returns the residual of a regressor after the fit.
     fn left_of(&self, regressor: &[f64], absorbed: &DVector<f64>) -> Vec<f64> {
         let mut left = regressor.to_vec();
         for (column, share) in self.sensitivities.iter().zip(absorbed.iter()) {
@@ -172,7 +173,7 @@ impl<'a> TrendTest<'a> {
         left
     }
 
-    /// The noise sd of the residuals without the trend over the posterior's, and its degrees of freedom: those of the
+    /// Returns the noise sd of the residuals without the trend over the posterior's, and its degrees of freedom: those of the
     /// chi-square with the mean and variance of their sum of squares (Satterthwaite).
     fn scale(&self, parameter: usize, slope: f64, sd: f64, left: &[f64]) -> Option<(f64, f64)> {
         let peers: Vec<usize> = (0..self.rows.len())
@@ -197,7 +198,7 @@ impl<'a> TrendTest<'a> {
     }
 }
 
-/// Parameters as independent standard normal numbers.
+/// Returns parameters as independent standard normal numbers.
 fn scores(prior: &Prior, theta: &[f64]) -> Vec<f64> {
     let marginals = prior.marginals().iter().zip(theta);
     let mut scores: Vec<f64> = marginals.map(|(marginal, &x)| marginal.normal_score(x)).collect();
@@ -205,7 +206,7 @@ fn scores(prior: &Prior, theta: &[f64]) -> Vec<f64> {
     scores
 }
 
-/// The mean scores of the draws and the regression of the predictions on them, a column for each score.
+/// Returns the mean scores of the draws and the regression of the predictions on them, a column for each score.
 fn sensitivities(
     scores: &[Vec<f64>],
     draws: &[PredictedDraw],

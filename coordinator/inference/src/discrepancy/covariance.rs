@@ -18,13 +18,13 @@ pub(super) struct Covariance {
 }
 
 impl Covariance {
-    /// The covariance of the smooth parts of two conditions.
+    /// Returns the covariance of the smooth parts of two conditions.
     pub(super) fn between(&self, a: (&[f64], usize), b: (&[f64], usize)) -> f64 {
         let groups = if a.1 == b.1 { 1.0 } else { self.between_groups };
         self.sd * self.sd * groups * matern(a.0, b.0, &self.lengths)
     }
 
-    /// The factor of the covariance of misfits, noise included; `None` where it is singular to rounding.
+    /// Returns the factor of the covariance of misfits, noise included; `None` where it is singular to rounding.
     pub(super) fn factor(&self, misfits: &[Misfit]) -> Option<Cholesky<f64, Dyn>> {
         let n = misfits.len();
         let mut matrix = DMatrix::zeros(n, n);

@@ -30,9 +30,9 @@ const MAX_KEPT: usize = 64;
 /// Places on the grid: sd, local sd, correlation of groups, then the lengths.
 type Place = Vec<usize>;
 
-/// The covariances that hold nearly all of the probability, with their shares of it, the most probable first. The prior is equal at
-/// all places of the grid. The search begins in the middle; next it evaluates the neighbours of the most probable place that has
-/// unevaluated ones.
+/// Returns the covariances that hold nearly all of the probability, with their shares of it, the most probable first. The prior
+/// is equal at all places of the grid. The search begins in the middle; next it evaluates the neighbours of the most probable
+/// place that has unevaluated ones.
 pub(super) fn posterior(misfits: &[Misfit]) -> Vec<(Covariance, f64)> {
     let grid = Grid::new(misfits);
     let mut open: BTreeMap<Place, f64> = BTreeMap::new();
@@ -115,7 +115,7 @@ impl Grid {
         }
     }
 
-    /// Number of values at each place.
+    /// Returns the number of values at each place.
     fn sizes(&self) -> Place {
         let between = if self.has_groups { BETWEEN.len() } else { 1 };
         let mut sizes = vec![SDS.len(), LOCAL_SDS.len(), between];
@@ -147,7 +147,7 @@ impl Grid {
         }
     }
 
-    /// Log density of the misfits, up to a constant.
+    /// Returns the log density of the misfits, up to a constant.
     fn log_probability(&self, place: &Place) -> f64 {
         let Some(factor) = self.covariance(place).factor(&self.misfits) else {
             return f64::NEG_INFINITY;

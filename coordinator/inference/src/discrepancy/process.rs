@@ -9,10 +9,11 @@ use crate::gaussian_process::UnitRange;
 
 /// The discrepancy of a model as a Gaussian process through its misfits.
 ///
-/// `y_i = d(x_i, g_i) + u_i + e_i`: misfit of condition `x_i` of group `g_i`, smooth discrepancy d, local discrepancy u of the condition
-/// and noise e. `cov(d(x, g), d(x', g')) = s^2 c (1 + r + r^2 / 3) exp(-r)`, `r^2 = 5 sum_k ((x_k - x'_k) / l_k)^2` (Matérn, 5/2),
-/// coordinates over their range, c = 1 within a group and one correlation between groups. The mean is 0: far from the misfits the model
-/// stands as it is. s, the sd of u, c and the `l_k` are averaged over a grid by their posterior probability.
+/// `y_i = d(x_i, g_i) + u_i + e_i`: misfit of condition `x_i` of group `g_i`, smooth discrepancy d, local discrepancy u of the
+/// condition and noise e. `cov(d(x, g), d(x', g')) = s^2 c (1 + r + r^2 / 3) exp(-r)`, `r^2 = 5 sum_k ((x_k - x'_k) / l_k)^2`
+/// (Matérn, 5/2), coordinates over their range, c = 1 within a group and one correlation between groups. The mean is 0: far from
+/// the misfits the model stands as it is. s, the sd of u, c and the `l_k` are averaged over a grid by their posterior
+/// probability.
 ///
 /// The model's parameters are those of its calibration, which ignores d (modularisation): a process as flexible as the model would
 /// otherwise absorb what the model can explain.
@@ -57,7 +58,7 @@ pub struct DiscrepancyComponent {
 }
 
 impl Discrepancy {
-    /// The mean [unit of the channel].
+    /// Returns the mean [unit of the channel].
     #[must_use]
     pub fn mean(&self) -> f64 {
         self.components.iter().map(|law| law.probability * law.mean).sum()
@@ -65,7 +66,7 @@ impl Discrepancy {
 }
 
 impl DiscrepancyProcess {
-    /// Minimum number of misfits for this number of coordinates.
+    /// Returns the minimum number of misfits for this number of coordinates.
     #[must_use]
     pub fn min_misfits(coordinates: usize) -> usize {
         coordinates + 3
@@ -74,9 +75,9 @@ impl DiscrepancyProcess {
     /// Maximum number of misfits: a matrix of the square of their number is inverted.
     pub const MAX_MISFITS: usize = 500;
 
-    /// The process through misfits whose points have the same coordinates, each of which must vary, and whose noise is above 0; `None`
-    /// with fewer than [`DiscrepancyProcess::min_misfits`] or more than [`DiscrepancyProcess::MAX_MISFITS`], where all are 0, or
-    /// where no covariance is regular to rounding.
+    /// Returns the process through misfits whose points have the same coordinates, each of which must vary, and whose noise is
+    /// above 0; `None` with fewer than [`DiscrepancyProcess::min_misfits`] or more than [`DiscrepancyProcess::MAX_MISFITS`],
+    /// where all are 0, or where no covariance is regular to rounding.
     #[must_use]
     pub fn through(misfits: &[Misfit]) -> Option<Self> {
         let dimension = misfits.first()?.point.len();
@@ -105,7 +106,8 @@ impl DiscrepancyProcess {
         (!parts.is_empty()).then_some(DiscrepancyProcess { unit, misfits, parts })
     }
 
-    /// The discrepancy of a group in a condition. A group without a misfit has only the part that it shares with the others.
+    /// Returns the discrepancy of a group in a condition. A group without a misfit has only the part that it shares with the
+    /// others.
     #[must_use]
     pub fn at(&self, point: &[f64], group: usize) -> Discrepancy {
         let point = self.unit.scaled(point);
@@ -124,7 +126,7 @@ impl DiscrepancyProcess {
         })
     }
 
-    /// The discrepancy in the condition of a misfit, predicted from the other misfits; the covariance stays the same.
+    /// Returns the discrepancy in the condition of a misfit, predicted from the other misfits; the covariance stays the same.
     ///
     /// # Arguments
     /// - `left_out`: number of the misfit.
@@ -138,7 +140,7 @@ impl DiscrepancyProcess {
         })
     }
 
-    /// The mixture from the weights and the variance that each covariance gives.
+    /// Returns the mixture from the weights and the variance that each covariance gives.
     fn mixture(&self, law: impl Fn(&Part) -> (DVector<f64>, f64)) -> Discrepancy {
         let values =
             DVector::from_iterator(self.misfits.len(), self.misfits.iter().map(|misfit| misfit.value));

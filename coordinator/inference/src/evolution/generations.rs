@@ -32,7 +32,7 @@ pub struct Evolution {
 }
 
 impl Evolution {
-    /// An evolution whose first generation is pending.
+    /// Makes an evolution whose first generation is pending.
     ///
     /// # Errors
     /// [`EvolutionSettingsError`] names the setting, its value and its bound.
@@ -54,31 +54,31 @@ impl Evolution {
         Ok(evolution)
     }
 
-    /// The round in progress, a generation; its list of proposals is empty only when the evolution has ended.
+    /// Returns the round in progress, a generation; its list of proposals is empty only when the evolution has ended.
     #[must_use]
     pub fn round(&self) -> &ProposalRound<LogLikelihood> {
         &self.round
     }
 
-    /// The result, once finished.
+    /// Returns the result, once finished.
     #[must_use]
     pub fn estimate(&self) -> Option<&ModeEstimate> {
         self.phase.result()
     }
 
-    /// Why the evolution failed, if it did.
+    /// Returns why the evolution failed, if it did.
     #[must_use]
     pub fn failure(&self) -> Option<InferenceFailure> {
         self.phase.failure()
     }
 
-    /// Evaluations told so far in completed rounds.
+    /// Returns evaluations told so far in completed rounds.
     #[must_use]
     pub fn count(&self) -> EvaluationCount {
         self.count
     }
 
-    /// The completed generations.
+    /// Returns the completed generations.
     #[must_use]
     pub fn history(&self) -> &[Generation] {
         &self.history

@@ -15,7 +15,7 @@ pub(crate) struct Individual {
 }
 
 impl Individual {
-    /// ln p(data | theta) + ln p(theta); minus infinity where the model rejected the parameters.
+    /// Returns ln p(data | theta) + ln p(theta); minus infinity where the model rejected the parameters.
     pub(crate) fn log_posterior(&self) -> f64 {
         self.log_likelihood.value() + self.log_prior
     }
@@ -24,7 +24,7 @@ impl Individual {
         self.log_posterior() > f64::NEG_INFINITY
     }
 
-    /// The order of rank: the better first.
+    /// Returns the order of rank: the better first.
     pub(crate) fn rank(&self, rival: &Self) -> Ordering {
         rival.log_posterior().total_cmp(&self.log_posterior())
     }

@@ -1,7 +1,7 @@
 //! The most probable parameters by generations (genetic algorithm, CMA-ES), by ask and tell.
 //!
-//! [`Evolution`] never runs the model. A round is a generation: its [`Proposal`](crate::Proposal)s can be evaluated at the same time and
-//! are told their log-likelihoods in any order; rejected ones rank last. [`ga`] or [`cma_es`] makes the next generation.
+//! [`Evolution`] never runs the model. A round is a generation: its [`Proposal`](crate::Proposal)s can be evaluated at the same
+//! time and are told their log-likelihoods in any order; rejected ones rank last. [`ga`] or [`cma_es`] makes the next generation.
 //!
 //! Neither knows the curvature at the optimum, so the [`ModeEstimate`](crate::point_estimate::ModeEstimate) has no standard
 //! deviations. It has the history of the generations instead.

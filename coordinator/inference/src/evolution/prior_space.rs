@@ -43,7 +43,7 @@ impl PriorSpace {
         pairs.map(|(axis, &x)| axis.position(x)).collect()
     }
 
-    /// The nearest position within the bounds; exactly at a bound where it is within [`NEAR`].
+    /// Returns the nearest position within the bounds; exactly at a bound where it is within [`NEAR`].
     pub(crate) fn inside(&self, position: &[f64]) -> Vec<f64> {
         let inside = |(axis, &t): (&PriorAxis, &f64)| {
             if t < axis.lower + NEAR {
@@ -57,13 +57,13 @@ impl PriorSpace {
         self.axes.iter().zip(position).map(inside).collect()
     }
 
-    /// The parameters at a position; exact at a bound.
+    /// Returns the parameters at a position; exact at a bound.
     pub(crate) fn theta(&self, position: &[f64]) -> Vec<f64> {
         let pairs = self.axes.iter().zip(position);
         pairs.map(|(axis, &t)| axis.value(t)).collect()
     }
 
-    /// Whether each coordinate of a position is at a bound.
+    /// Returns whether each coordinate of a position is at a bound.
     pub(crate) fn at_bound(&self, position: &[f64]) -> Vec<bool> {
         let pairs = self.axes.iter().zip(position);
         pairs.map(|(axis, &t)| axis.is_bound(t)).collect()

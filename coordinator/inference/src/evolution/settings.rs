@@ -14,7 +14,7 @@ pub enum EvolutionSettings {
 }
 
 impl EvolutionSettings {
-    /// Seed of all random numbers.
+    /// Returns the seed of all random numbers.
     #[must_use]
     pub fn seed(&self) -> u64 {
         match self {
@@ -23,7 +23,7 @@ impl EvolutionSettings {
         }
     }
 
-    /// Maximum number of evaluations of all generations together.
+    /// Returns the maximum number of evaluations of all generations together.
     #[must_use]
     pub fn max_evaluations(&self) -> usize {
         match self {

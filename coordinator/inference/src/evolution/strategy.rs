@@ -22,7 +22,7 @@ impl Strategy {
         }
     }
 
-    /// The next generation, for as many evaluations as remain.
+    /// Returns the next generation, for as many evaluations as remain.
     pub(super) fn next(&mut self, space: &PriorSpace, remaining: usize) -> NextGeneration {
         match self {
             Self::Ga(population) => population.next(space),

@@ -7,7 +7,8 @@ use super::observation::Observation;
 /// Prior variance of each coefficient of the plane, over that of the process about it: large, so that the data choose the plane.
 const PLANE: f64 = 100.0;
 
-/// Correlation of the values at two points: `(1 + r + r^2 / 3) exp(-r)`, `r^2 = 5 sum_k ((x_k - y_k) / l_k)^2` (Matérn, 5/2).
+/// Returns the correlation of the values at two points: `(1 + r + r^2 / 3) exp(-r)`, `r^2 = 5 sum_k ((x_k - y_k) / l_k)^2`
+/// (Matérn, 5/2).
 pub(crate) fn matern(a: &[f64], b: &[f64], lengths: &[f64]) -> f64 {
     let mut squares = 0.0;
     for ((x, y), length) in a.iter().zip(b).zip(lengths) {
@@ -27,7 +28,7 @@ pub(super) struct Kernel {
 }
 
 impl Kernel {
-    /// Covariance of the values at two points, without noise.
+    /// Returns the covariance of the values at two points, without noise.
     pub(super) fn covariance(&self, a: &[f64], b: &[f64]) -> f64 {
         let product: f64 = a.iter().zip(b).map(|(x, y)| x * y).sum();
         PLANE * (1.0 + product) + matern(a, b, &self.lengths)

@@ -9,11 +9,12 @@ use super::unit_range::UnitRange;
 
 /// A Gaussian process through observations: a plane and a smooth process about it.
 ///
-/// `y(x) = a + b'x + f(x) + e`, with `f` of the covariance `s^2 (1 + r + r^2 / 3) exp(-r)`, `r^2 = 5 sum_k ((x_k - x'_k) / l_k)^2` (Matérn,
-/// 5/2), coordinates over their range, and noise `e` of the variance `s^2 q / repeats`. Between observations the mean interpolates; beyond
-/// them it returns to the plane. The `l_k`, from 0.1 to 3.2 of the range, and `q`, from 1e-4 to 1, are those with the smallest squared
-/// error of the observations when each is left out; with more than 150 observations, of 150 that represent every level of every coordinate.
-/// A coordinate of two levels has the longest `l_k`: between them the process is nearly straight.
+/// `y(x) = a + b'x + f(x) + e`, with `f` of the covariance `s^2 (1 + r + r^2 / 3) exp(-r)`, `r^2 = 5 sum_k ((x_k - x'_k) /
+/// l_k)^2` (Matérn, 5/2), coordinates over their range, and noise `e` of the variance `s^2 q / repeats`. Between observations the
+/// mean interpolates; beyond them it returns to the plane. The `l_k`, from 0.1 to 3.2 of the range, and `q`, from 1e-4 to 1, are
+/// those with the smallest squared error of the observations when each is left out; with more than 150 observations, of 150 that
+/// represent every level of every coordinate. A coordinate of two levels has the longest `l_k`: between them the process is
+/// nearly straight.
 ///
 /// # Source
 /// Rasmussen & Williams 2006, Gaussian Processes for Machine Learning, Eqs. 2.25, 4.17 (covariance) and 5.12 (leaving one out),
@@ -28,14 +29,14 @@ pub struct GaussianProcess {
 }
 
 impl GaussianProcess {
-    /// Minimum number of observations for this number of coordinates: those that determine a plane, and one more.
+    /// Returns the minimum number of observations for this number of coordinates: those that determine a plane, and one more.
     #[must_use]
     pub fn min_observations(coordinates: usize) -> usize {
         coordinates + 2
     }
 
-    /// The process through observations of points that all have the same coordinates, each of which must vary; `None` with fewer
-    /// than [`GaussianProcess::min_observations`], or where their covariance is singular to rounding.
+    /// Returns the process through observations of points that all have the same coordinates, each of which must vary; `None`
+    /// with fewer than [`GaussianProcess::min_observations`], or where their covariance is singular to rounding.
     #[must_use]
     pub fn through(observations: &[Observation]) -> Option<Self> {
         let dimension = observations.first()?.point.len();
@@ -64,7 +65,7 @@ impl GaussianProcess {
         })
     }
 
-    /// The mean of the process at a point [unit of the values].
+    /// Returns the mean of the process at a point [unit of the values].
     #[must_use]
     pub fn mean(&self, point: &[f64]) -> f64 {
         let point = self.unit.scaled(point);
@@ -75,7 +76,7 @@ impl GaussianProcess {
         self.mean + sum
     }
 
-    /// Whether a point lies within the range of the observations in every coordinate, up to 2 % of it.
+    /// Returns whether a point lies within the range of the observations in every coordinate, up to 2 % of it.
     #[must_use]
     pub fn reaches(&self, point: &[f64]) -> bool {
         let point = self.unit.scaled(point);

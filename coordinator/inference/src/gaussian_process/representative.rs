@@ -3,8 +3,8 @@
 /// Values within this share of the range are one level.
 const ONE_LEVEL: f64 = 0.1;
 
-/// The smallest value of each level of a coordinate over its range, ascending. A value further than [`ONE_LEVEL`] above the start
-/// of a level begins the next, so values without a gap form many levels.
+/// Returns the smallest value of each level of a coordinate over its range, ascending. A value further than [`ONE_LEVEL`] above
+/// the start of a level begins the next, so values without a gap form many levels.
 pub(super) fn levels(points: &[&[f64]], coordinate: usize) -> Vec<f64> {
     let mut values: Vec<f64> = points.iter().map(|point| point[coordinate]).collect();
     values.sort_by(f64::total_cmp);
@@ -17,8 +17,8 @@ pub(super) fn levels(points: &[&[f64]], coordinate: usize) -> Vec<f64> {
     levels
 }
 
-/// Returns the ascending numbers of at most `max` points that represent every level of every coordinate. The next point is the one whose
-/// least represented level is represented least; among equals the one whose levels together are; then the first.
+/// Returns the ascending numbers of at most `max` points that represent every level of every coordinate. The next point is the
+/// one whose least represented level is represented least; among equals the one whose levels together are; then the first.
 pub(crate) fn representative(points: &[&[f64]], max: usize) -> Vec<usize> {
     if points.len() <= max {
         return (0..points.len()).collect();

@@ -17,7 +17,8 @@ const ROUNDS: usize = 8;
 /// With more observations this many determine the kernel: the cost grows with the cube of their number.
 const MAX_OBSERVATIONS: usize = 150;
 
-/// The kernel with the least squared errors of the observations left out one by one, by steps along one coordinate at a time.
+/// Returns the kernel with the least squared errors of the observations left out one by one, by steps along one coordinate at a
+/// time.
 pub(super) fn smoothest(observations: &[Observation], dimension: usize) -> Kernel {
     let points: Vec<&[f64]> = observations.iter().map(|o| o.point.as_slice()).collect();
     let chosen = representative(&points, MAX_OBSERVATIONS).into_iter();
@@ -50,7 +51,7 @@ pub(super) fn smoothest(observations: &[Observation], dimension: usize) -> Kerne
     best
 }
 
-/// A kernel with every other value of one coordinate, the noise being the last.
+/// Returns a kernel with every other value of one coordinate, the noise being the last.
 fn trials(kernel: &Kernel, coordinate: usize) -> Vec<Kernel> {
     let values: &[f64] = match coordinate < kernel.lengths.len() {
         true => &LENGTHS,
@@ -67,8 +68,8 @@ fn trials(kernel: &Kernel, coordinate: usize) -> Vec<Kernel> {
     values.iter().map(trial).filter(|trial| trial != kernel).collect()
 }
 
-/// The squared errors of the observations, each predicted from the others: `sum ((K^-1 y)_i / (K^-1)_ii)^2`; infinite where K is
-/// singular to rounding.
+/// Returns the squared errors of the observations, each predicted from the others: `sum ((K^-1 y)_i / (K^-1)_ii)^2`; infinite
+/// where K is singular to rounding.
 fn left_out_squares(observations: &[Observation], kernel: &Kernel) -> f64 {
     let Some(factor) = Cholesky::new(kernel.matrix(observations)) else {
         return f64::INFINITY;

@@ -8,7 +8,7 @@ pub(crate) struct UnitRange {
 }
 
 impl UnitRange {
-    /// The range of points that all have the coordinates of the first.
+    /// Returns the range of points that all have the coordinates of the first.
     pub(crate) fn new(points: &[&[f64]]) -> Self {
         let dimension = points.first().map_or(0, |point| point.len());
         let extreme = |k: usize, pick: fn(f64, f64) -> f64| {
@@ -20,7 +20,7 @@ impl UnitRange {
         UnitRange { origin, range }
     }
 
-    /// A point, 0 at the least value of each coordinate and 1 at the greatest.
+    /// Returns a point, 0 at the least value of each coordinate and 1 at the greatest.
     pub(crate) fn scaled(&self, point: &[f64]) -> Vec<f64> {
         let scaled = point.iter().zip(&self.origin).zip(&self.range);
         scaled.map(|((x, origin), range)| (x - origin) / range).collect()

@@ -28,14 +28,14 @@ impl Default for Damping {
 }
 
 impl Damping {
-    /// The dampings of a round: none, then increasing ones.
+    /// Returns the dampings of a round: none, then increasing ones.
     pub(super) fn trials(&self) -> Vec<f64> {
         let whole = self.undamped.then_some(0.0);
         let damped = TRIALS.into_iter().map(|factor| self.lowest * factor);
         whole.into_iter().chain(damped).collect()
     }
 
-    /// The damping after a step whose decrease is `ratio` times the predicted one.
+    /// Sets the damping after a step whose decrease is `ratio` times the predicted one.
     ///
     /// Nielsen's rule, `damping * max(1/3, 1 - (2 ratio - 1)^3)`, with 1/[`SPREAD`] in place of 1/3 because several
     /// dampings are tried at once.
@@ -49,7 +49,7 @@ impl Damping {
         };
     }
 
-    /// The damping after a round without a decrease: more than any tried, growing ever faster.
+    /// Sets the damping after a round without a decrease: above all that were tried, and with a factor that doubles each time.
     pub(super) fn reject(&mut self) {
         self.lowest *= TRIALS[TRIALS.len() - 1] * self.growth;
         self.growth *= 2.0;

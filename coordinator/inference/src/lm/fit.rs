@@ -49,7 +49,7 @@ pub(super) enum FitRound {
 }
 
 impl LmFit {
-    /// A fit whose first round holds the prior mean and prior draws.
+    /// Makes a fit whose first round holds the prior mean and prior draws.
     ///
     /// # Arguments
     /// - `likelihood`: the data; their order is that of the values that [`LmFit::tell`] takes. A parameter that it names
@@ -79,31 +79,31 @@ impl LmFit {
         Ok(optimiser)
     }
 
-    /// The round in progress; its list of proposals is empty only when the fit has ended.
+    /// Returns the round in progress; its list of proposals is empty only when the fit has ended.
     #[must_use]
     pub fn round(&self) -> &ProposalRound<Option<Vec<f64>>> {
         &self.round
     }
 
-    /// The result, once finished.
+    /// Returns the result, once finished.
     #[must_use]
     pub fn estimate(&self) -> Option<&ModeEstimate> {
         self.phase.result()
     }
 
-    /// Why the fit failed, if it did.
+    /// Returns why the fit failed, if it did.
     #[must_use]
     pub fn failure(&self) -> Option<InferenceFailure> {
         self.phase.failure()
     }
 
-    /// Number of evaluations in completed rounds.
+    /// Returns the number of evaluations in completed rounds.
     #[must_use]
     pub fn count(&self) -> EvaluationCount {
         self.count
     }
 
-    /// Number of steps so far.
+    /// Returns the number of steps so far.
     #[must_use]
     pub fn steps(&self) -> usize {
         self.steps
@@ -112,7 +112,8 @@ impl LmFit {
     /// Takes the predicted values of a pending proposal; the last one of a round advances the fit.
     ///
     /// # Arguments
-    /// - `predicted`: the model's values as [`Likelihood::log_likelihood`] takes them; `None` where the model rejected the parameters.
+    /// - `predicted`: the model's values as [`Likelihood::log_likelihood`] takes them; `None` where the model rejected the
+    ///   parameters.
     ///
     /// # Errors
     /// [`TellError`] for an answer that was told before or is not pending, or with a wrong number of values or infinite ones. The

@@ -14,7 +14,7 @@ use statistics::rng::Stream;
 const MUCH_LONGER: f64 = 1.5;
 
 impl LmFit {
-    /// The prior mean, then one prior draw after the other; each draw has a stream of its own.
+    /// Asks for the prior mean, then one prior draw after the other; each draw has its random stream.
     pub(super) fn ask_starts(&mut self) {
         let (first, seed) = (self.count.evaluations, self.settings.seed);
         let prior = &self.objective.prior;
@@ -27,7 +27,7 @@ impl LmFit {
         self.ask(FitRound::Starts, starts.into_iter());
     }
 
-    /// The point with the lowest f; among equals the first.
+    /// Returns the point with the lowest f; among equals the first.
     fn lowest<'a>(
         &self,
         proposals: &'a [Proposal],

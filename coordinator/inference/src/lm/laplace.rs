@@ -6,7 +6,7 @@ use super::objective::{Column, FitPoint, Objective};
 use crate::point_estimate::{Laplace, ModeEstimate, StopReason};
 
 impl Objective {
-    /// The estimate at a point; evaluations are counted by the caller.
+    /// Returns the estimate at a point; evaluations are counted by the caller.
     pub(super) fn estimate(&self, point: &FitPoint, columns: &[Column], stop: StopReason) -> ModeEstimate {
         let dimension = self.prior.dimension();
         let mut at_bound = vec![false; dimension];

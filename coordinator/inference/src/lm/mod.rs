@@ -18,9 +18,9 @@
 //! Before it ends, a fit takes differences to both sides and over longer steps, because over short ones the numerical
 //! noise of the model looks like information.
 //!
-//! Noise standard deviations cost no evaluation: given the residuals, each is the solution of a one-dimensional problem, solved at every
-//! point before points are compared (profiling). Every step keeps to the bounds, and a parameter that ends at one is reported so. Sds that
-//! depend on each other (of common errors, of heavy tails) are searched one after the other.
+//! Noise standard deviations cost no evaluation: given the residuals, each is the solution of a one-dimensional problem, solved
+//! at every point before points are compared (profiling). Every step keeps to the bounds, and a parameter that ends at one is
+//! reported so. Sds that depend on each other (of common errors, of heavy tails) are searched one after the other.
 //!
 //! # Layout
 //! - `settings`: starts, budget, step of the differences.

@@ -3,8 +3,8 @@
 use statistics::likelihood::{ErrorSd, Likelihood};
 use statistics::prior::{Marginal, Prior};
 
-/// Smallest noise sd as a share of the prior's sd, if the prior reaches down to 0: residuals of zero would make an sd of 0 infinitely
-/// probable.
+/// Smallest noise sd as a share of the prior's sd, if the prior reaches down to 0: residuals of zero would make an sd of 0
+/// infinitely probable.
 const MIN_SHARE: f64 = 1e-9;
 /// Cells of the grid on which the minimum is bracketed.
 const CELLS: u32 = 64;
@@ -29,7 +29,7 @@ pub(super) struct Profiled {
 }
 
 impl InferredNoise {
-    /// The inferred noise sds of a likelihood, by ascending parameter.
+    /// Returns the inferred noise sds of a likelihood, by ascending parameter.
     pub(super) fn all(prior: &Prior, likelihood: &Likelihood) -> Vec<Self> {
         let data = likelihood.data();
         prior
@@ -54,8 +54,8 @@ impl InferredNoise {
     /// - `residuals`: measured minus predicted for all data, each in its unit.
     ///
     /// # Returns
-    /// The sd in the unit of its data. It lies between the optimum of the likelihood, sqrt(S/n), and the mode of the prior; along ln sd the
-    /// minimum is bracketed on a grid and refined by bisection. Checked by `lm::noise_has_its_closed_form`.
+    /// The sd in the unit of its data. It lies between the optimum of the likelihood, sqrt(S/n), and the mode of the prior; along
+    /// ln sd the minimum is bracketed on a grid and refined by bisection. Checked by `lm::noise_has_its_closed_form`.
     pub(super) fn profile(&self, residuals: &[f64]) -> Profiled {
         let squares: f64 = self.data.iter().map(|&i| residuals[i] * residuals[i]).sum();
         let count = self.data.len() as f64;
@@ -101,7 +101,7 @@ impl InferredNoise {
         }
     }
 
-    /// Slope and curvature of the objective along v = ln sd.
+    /// Returns the slope and curvature of the objective along v = ln sd.
     fn slope(&self, v: f64, count: f64, squares: f64) -> (f64, f64) {
         let sd = libm::exp(v);
         let ratio = squares / sd / sd;
@@ -119,7 +119,7 @@ impl InferredNoise {
         )
     }
 
-    /// The mode of the prior between two sds.
+    /// Returns the mode of the prior between two sds.
     fn mode(&self, lower: f64, upper: f64) -> f64 {
         let (slope, curvature) = self.marginal.slope(0.0);
         if curvature > 0.0 {

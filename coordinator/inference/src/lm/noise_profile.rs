@@ -34,7 +34,7 @@ impl NoiseProfile {
         }
     }
 
-    /// The indices of the sds in theta.
+    /// Returns the indices of the sds in theta.
     pub(super) fn parameters(&self) -> Vec<usize> {
         match self {
             Self::Separate(noises) => noises.iter().map(|noise| noise.parameter).collect(),
@@ -42,10 +42,11 @@ impl NoiseProfile {
         }
     }
 
-    /// The most probable sds at predicted values; those of theta are ignored.
+    /// Returns the most probable sds at predicted values; those of theta are ignored.
     ///
-    /// Entangled sds maximise the density of their normal scores, one after the other by golden sections. The most probable
-    /// value of an sd of which the data show nothing is 0, where the density has no curvature; the density of its score has an inner mode.
+    /// Entangled sds maximise the density of their normal scores, one after the other by golden sections. The most probable value
+    /// of an sd of which the data show nothing is 0, where the density has no curvature; the density of its score has an inner
+    /// mode.
     pub(super) fn profile(
         &self,
         prior: &Prior,
@@ -63,7 +64,7 @@ impl NoiseProfile {
         }
     }
 
-    /// The gain of the log-density when scores replace entangled sds; 0 for separate ones.
+    /// Returns the gain of the log-density when scores replace entangled sds; 0 for separate ones.
     pub(super) fn change_of_measure(&self, prior: &Prior, theta: &[f64]) -> f64 {
         match self {
             Self::Separate(_) => 0.0,
@@ -79,7 +80,7 @@ impl NoiseProfile {
     }
 }
 
-/// Every inferred sd, of noise and of common errors, by ascending parameter.
+/// Returns every inferred sd, of noise and of common errors, by ascending parameter.
 fn inferred_sds(likelihood: &Likelihood) -> Vec<usize> {
     let common_sds = likelihood.common().iter().filter_map(|error| match error.size {
         CommonErrorSize::Shift(sd) | CommonErrorSize::Sensitivity { sd, .. } => Some(sd),

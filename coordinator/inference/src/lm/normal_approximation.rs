@@ -35,13 +35,15 @@ impl Objective {
     /// ln Z   ~= ln q(z*) + d/2 ln(2 pi) - 1/2 ln det H
     /// ```
     ///
-    /// with m and J the model's values and their Jacobian at the fit, and t the coordinates of the fit. `H` is the sum of the curvature
-    /// of the prior, the Gauss-Newton curvature of the likelihood along the model's parameters, and its exact curvature along each sd.
-    /// Scores keep every draw within the bounds of its prior; the draws of a parameter at a bound have one tail of a normal density.
+    /// with m and J the model's values and their Jacobian at the fit, and t the coordinates of the fit. `H` is the sum of the
+    /// curvature of the prior, the Gauss-Newton curvature of the likelihood along the model's parameters, and its exact curvature
+    /// along each sd. Scores keep every draw within the bounds of its prior; the draws of a parameter at a bound have one tail of
+    /// a normal density.
     ///
     /// Returns `None` if q has no finite mode. Draws whose log-likelihood is minus infinity are left out.
     ///
-    /// Checked by `lm::draws_of_a_linear_model_have_its_closed_form_and_evidence`, `lm::draws_stay_within_bounds_where_the_mode_is_at_one`.
+    /// Checked by `lm::draws_of_a_linear_model_have_its_closed_form_and_evidence`,
+    /// `lm::draws_stay_within_bounds_where_the_mode_is_at_one`.
     pub(super) fn approximation(
         &self,
         point: &FitPoint,
@@ -106,7 +108,7 @@ impl LinearisedPosterior<'_> {
         scored.unwrap_or(LogLikelihood::Impossible)
     }
 
-    /// ln q of scores.
+    /// Returns ln q of scores.
     fn log_density(&self, scores: &[f64]) -> f64 {
         let theta = self.theta(scores);
         let prior = &self.objective.prior;
@@ -117,7 +119,7 @@ impl LinearisedPosterior<'_> {
         self.log_likelihood(&theta).value() + scores_density + correlation_density
     }
 
-    /// The mode of q, ln q there, and its precision; by Newton steps that are halved until they gain.
+    /// Returns the mode of q, ln q there, and its precision; by Newton steps that are halved until they gain.
     fn mode(&self) -> Option<(DVector<f64>, f64, Cholesky<f64, Dyn>)> {
         let marginals = self.objective.prior.marginals().iter().zip(&self.point.theta);
         let start = marginals.map(|(marginal, &x)| marginal.normal_score(x));
@@ -142,7 +144,7 @@ impl LinearisedPosterior<'_> {
         Some((scores, value, Cholesky::new(hessian)?))
     }
 
-    /// Gradient of ln q and curvature of -ln q at scores; `None` where the data have probability zero.
+    /// Returns the gradient of ln q and curvature of -ln q at scores; `None` where the data have probability zero.
     fn parabola(&self, scores: &DVector<f64>) -> Option<(DVector<f64>, DMatrix<f64>)> {
         let Objective {
             prior,

@@ -56,7 +56,7 @@ impl Objective {
         }
     }
 
-    /// The point of a parameter vector, whose noise sds are ignored; `None` where f is infinite.
+    /// Returns the point of a parameter vector, whose noise sds are ignored; `None` where f is infinite.
     pub(super) fn point(&self, theta: &[f64], predicted: &[f64]) -> Option<FitPoint> {
         let noise = self
             .noises
@@ -86,7 +86,7 @@ impl Objective {
         })
     }
 
-    /// The parameter vector at a position, with the noise sds of a point.
+    /// Returns the parameter vector at a position, with the noise sds of a point.
     pub(super) fn theta(&self, point: &FitPoint, position: &[f64]) -> Vec<f64> {
         let mut theta = point.theta.clone();
         for (axis, &t) in self.axes.iter().zip(position) {
@@ -95,8 +95,9 @@ impl Objective {
         theta
     }
 
-    /// The parabola of f along the axes around a point: slopes `-sum_i J_ik r_i / sd_i^2 + (-ln p_k)'`, curvatures `sum_i J_ik J_il /
-    /// sd_i^2 + (-ln p_k)''`; of correlated or heavy-tailed data with [`Whitening`](statistics::likelihood::Whitening) in place of the sds.
+    /// Returns the parabola of f along the axes around a point: slopes `-sum_i J_ik r_i / sd_i^2 + (-ln p_k)'`, curvatures `sum_i
+    /// J_ik J_il / sd_i^2 + (-ln p_k)''`; of correlated or heavy-tailed data with
+    /// [`Whitening`](statistics::likelihood::Whitening) in place of the sds.
     ///
     /// This is the Gauss-Newton approximation: it leaves out the model's curvature and that of the noise sds, whose mixed curvature
     /// with the axes has expectation zero. Axes without a column do not move.
@@ -154,7 +155,7 @@ impl Objective {
             .collect()
     }
 
-    /// The position after a step; exactly at a bound if the step ends there.
+    /// Returns the position after a step; exactly at a bound if the step ends there.
     pub(super) fn moved(&self, point: &FitPoint, step: &[f64]) -> Vec<f64> {
         self.axes
             .iter()

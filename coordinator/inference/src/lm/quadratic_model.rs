@@ -18,11 +18,12 @@ pub struct QuadraticModel {
 }
 
 impl QuadraticModel {
-    /// Minimises the parabola within the box after adding `damping D` to H, with D = max(diagonal of H, 1); returns `None` if it has no
-    /// minimum. D is Marquardt's scale, but damps each axis at least as much as a prior of one width would.
+    /// Minimises the parabola within the box after adding `damping D` to H, with D = max(diagonal of H, 1); returns `None` if it
+    /// has no minimum. D is Marquardt's scale, but damps each axis at least as much as a prior of one width would.
     ///
-    /// The method is an active set: an axis at a bound does not move if the parabola falls outwards there. If the minimum lies beyond
-    /// bounds, the axis that meets its bound first along the step is fixed at the bound, and the other axes are solved again.
+    /// The method is an active set: an axis at a bound does not move if the parabola falls outwards there. If the minimum lies
+    /// beyond bounds, the axis that meets its bound first along the step is fixed at the bound, and the other axes are solved
+    /// again.
     pub fn step(&self, damping: f64) -> Option<Vec<f64>> {
         let count = self.gradient.len();
         let mut step = vec![0.0; count];
@@ -66,7 +67,7 @@ impl QuadraticModel {
         Some(step)
     }
 
-    /// The free components of the minimum, the others given.
+    /// Returns the free components of the minimum, the others given.
     fn solve(&self, free: &[usize], step: &[f64], damping: f64) -> Option<Vec<f64>> {
         let matrix = DMatrix::from_fn(free.len(), free.len(), |row, column| {
             let (k, l) = (free[row], free[column]);
@@ -89,8 +90,8 @@ impl QuadraticModel {
         solved.iter().all(|x| x.is_finite()).then_some(solved)
     }
 
-    /// Returns the standard deviation along each axis, marginal over the other axes, from the curvature; `None` for axes that do not move,
-    /// and for all axes if the parabola has no minimum.
+    /// Returns the standard deviation along each axis, marginal over the other axes, from the curvature; `None` for axes that do
+    /// not move, and for all axes if the parabola has no minimum.
     pub fn uncertainty(&self) -> Vec<Option<f64>> {
         let moving: Vec<usize> = (0..self.held.len()).filter(|&k| !self.held[k]).collect();
         let mut uncertainty = vec![None; self.held.len()];
@@ -106,7 +107,7 @@ impl QuadraticModel {
         uncertainty
     }
 
-    /// The decrease of the undamped parabola at a step.
+    /// Returns the decrease of the undamped parabola at a step.
     pub fn decrease(&self, step: &[f64]) -> f64 {
         let mut decrease = 0.0;
         for (k, component) in step.iter().enumerate() {

@@ -15,12 +15,12 @@ pub struct LmSettings {
     /// Shortest step of the differences, in units of the prior's width: its standard deviation, or that of a uniform
     /// density between its bounds where these are closer.
     ///
-    /// The error of a difference over h is the model's curvature times h/2 plus its noise times 2/h. A model on a grid has noise of about
-    /// 0.3 % of a force; over one width of its prior an influential parameter changes a force by a third or more, so 2 % of a width changes
-    /// it by twice the noise: enough for the direction of descent from dozens of data. It is not enough where parameters can compensate
-    /// each other: there the noise looks like information. So once the parabola gives the uncertainty of a parameter, steps grow to a
-    /// quarter of it and, for the last Jacobian, to all of it, taken to both sides; to at most ten times the setting. Checked by
-    /// `lm::a_model_with_the_noise_of_a_grid_is_fitted_within_its_uncertainty`.
+    /// The error of a difference over h is the model's curvature times h/2 plus its noise times 2/h. A model on a grid has noise
+    /// of about 0.3 % of a force; over one width of its prior an influential parameter changes a force by a third or more, so 2 %
+    /// of a width changes it by twice the noise: enough for the direction of descent from dozens of data. It is not enough where
+    /// parameters can compensate each other: there the noise looks like information. So once the parabola gives the uncertainty
+    /// of a parameter, steps grow to a quarter of it and, for the last Jacobian, to all of it, taken to both sides; to at most
+    /// ten times the setting. Checked by `lm::a_model_with_the_noise_of_a_grid_is_fitted_within_its_uncertainty`.
     pub difference_step: f64,
     /// Seed of the prior draws.
     pub seed: u64,
@@ -31,7 +31,8 @@ pub struct LmSettings {
 }
 
 impl Default for LmSettings {
-    /// 5 starts, 200 evaluations, 1000 draws, differences over 2 % of the prior's width, seed 1, tolerances 1e-6 and 1e-4.
+    /// Returns 5 starts, 200 evaluations, 1000 draws, differences over 2 % of the prior's width, seed 1, tolerances 1e-6 and
+    /// 1e-4.
     fn default() -> Self {
         Self {
             starts: 5,
@@ -122,7 +123,7 @@ impl LmSettings {
     /// Longest difference: a step to one side always fits between the bounds.
     pub const MAX_DIFFERENCE_STEP: f64 = 0.5;
 
-    /// Step of a difference along an axis with this uncertainty, if it is known; both in prior widths.
+    /// Returns the step of a difference along an axis with this uncertainty, if it is known; both in prior widths.
     pub(super) fn difference(&self, sides: Sides, uncertainty: Option<f64>) -> f64 {
         let share = match sides {
             Sides::One => SHARE_TO_ONE_SIDE,

@@ -33,7 +33,7 @@ struct Differences {
 }
 
 impl Stencil {
-    /// A stencil around a position, with a step for each axis.
+    /// Makes a stencil around a position, with a step for each axis.
     pub(super) fn new(axes: &[PriorAxis], position: &[f64], steps: &[f64]) -> Self {
         let differences = |((axis, &t), &step): ((&PriorAxis, &f64), &f64)| {
             let inside = |offset: &f64| (axis.lower..=axis.upper).contains(&(t + offset));
@@ -83,14 +83,14 @@ impl Stencil {
         }
     }
 
-    /// Whether an axis has no difference yet and offsets left to try.
+    /// Returns whether an axis has no difference yet and offsets left to try.
     pub(super) fn is_incomplete(&self) -> bool {
         self.axes
             .iter()
             .any(|axis| axis.measured.is_empty() && !axis.untried.is_empty())
     }
 
-    /// The columns of the Jacobian. With differences at a and, on the other side, b: the slope of the parabola through
+    /// Returns the columns of the Jacobian. With differences at a and, on the other side, b: the slope of the parabola through
     /// all three points: `(b^2 (m_a - m) - a^2 (m_b - m)) / (a b (b - a))`.
     pub(super) fn columns(&self, predicted: &[f64]) -> Vec<Column> {
         let column = |axis: &Differences| match axis.measured.as_slice() {

@@ -63,7 +63,7 @@ impl Component {
         })
     }
 
-    /// (x - m)' C^-1 (x - m).
+    /// Returns (x - m)' C^-1 (x - m).
     pub(super) fn square_distance(&self, x: &[f64], scratch: &mut Vec<f64>) -> f64 {
         let dimension = self.mean.len();
         scratch.clear();
@@ -81,7 +81,8 @@ impl Component {
         sum
     }
 
-    /// `(1 + s / nu)^(-(nu + d) / 2)` at the square distance s: the density without its constants, and without a logarithm.
+    /// Returns `(1 + s / nu)^(-(nu + d) / 2)` at the square distance s: the density without its constants, and without a
+    /// logarithm.
     pub(super) fn kernel(&self, square_distance: f64) -> f64 {
         let base = 1.0 / (1.0 + square_distance / DEGREES_OF_FREEDOM as f64);
         let twice = DEGREES_OF_FREEDOM + self.mean.len();
@@ -92,7 +93,7 @@ impl Component {
         power
     }
 
-    /// m + scale L z.
+    /// Returns m + scale L z.
     pub(super) fn at(&self, normals: &[f64], scale: f64) -> Vec<f64> {
         let dimension = self.mean.len();
         (0..dimension)
@@ -105,7 +106,7 @@ impl Component {
     }
 }
 
-/// ln of the constant of a t-density without its determinant.
+/// Returns ln of the constant of a t-density without its determinant.
 pub(super) fn log_constant(dimension: usize) -> f64 {
     let (nu, d) = (DEGREES_OF_FREEDOM as f64, dimension as f64);
     libm::lgamma(0.5 * (nu + d)) - libm::lgamma(0.5 * nu) - 0.5 * d * libm::log(nu * std::f64::consts::PI)

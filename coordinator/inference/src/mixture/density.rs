@@ -49,7 +49,7 @@ impl Mixture {
         Self::new(components).unwrap_or_else(|| self.clone())
     }
 
-    /// ln q(x).
+    /// Returns ln q(x).
     pub(crate) fn log_density(&self, x: &[f64], scratch: &mut Vec<f64>) -> f64 {
         let pairs = self.components.iter().zip(&self.factors);
         let sum: f64 = pairs

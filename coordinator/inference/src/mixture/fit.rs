@@ -12,11 +12,12 @@ const MIN_POINTS: f64 = 0.2;
 /// component's scatter: a component of few points takes the common shape.
 const COMMON_POINTS: f64 = 1.0;
 
-/// A mixture of `size` components after `rounds` rounds; components that lose their points are dropped.
+/// Returns a mixture of `size` components after `rounds` rounds; components that lose their points are dropped.
 ///
-/// The start: means drawn by weight and square distance from the means so far (k-means++, Arthur & Vassilvitskii 2007), scatters that of
-/// all points, shrunk by `size^(-2/d)`. Each round updates weights, means and scatters as Peel and `McLachlan` 2000 do (Stat. Comput.
-/// 10:339, doi:10.1023/A:1008981510081), each point counted by its weight. `None` if the points' scatter is singular.
+/// The start: means drawn by weight and square distance from the means so far (k-means++, Arthur & Vassilvitskii 2007), scatters
+/// that of all points, shrunk by `size^(-2/d)`. Each round updates weights, means and scatters as Peel and `McLachlan` 2000 do
+/// (Stat. Comput. 10:339, doi:10.1023/A:1008981510081), each point counted by its weight. `None` if the points' scatter is
+/// singular.
 pub(super) fn em(
     points: &WeightedPoints,
     size: usize,
@@ -128,7 +129,7 @@ struct Moments {
 }
 
 impl Moments {
-    /// mean = sum p x / sum p and scatter = sum p (x - mean)(x - mean)' / sum r, with shares r and pulls p.
+    /// Returns mean = sum p x / sum p and scatter = sum p (x - mean)(x - mean)' / sum r, with shares r and pulls p.
     fn new(
         points: &WeightedPoints,
         shares: impl Iterator<Item = f64>,

@@ -56,7 +56,7 @@ impl WeightedPoints {
         1.0 / self.weights.iter().map(|w| w * w).sum::<f64>()
     }
 
-    /// Every second point, from the first or the second on.
+    /// Returns every second point, from the first or the second on.
     pub(super) fn half(&self, first: usize) -> Self {
         let chosen = || (first..self.weights.len()).step_by(2);
         Self::new(

@@ -12,8 +12,8 @@ const ROUNDS: usize = 25;
 /// Sizes in a row that may predict worse before the search ends.
 const PATIENCE: usize = 2;
 
-/// The mixture of 1, 2, 4, ... up to `max` components whose fit to one half of the points predicts the other best, and the quality
-/// of that prediction: the mean of ln (q / reference) over both halves.
+/// Returns the mixture of 1, 2, 4, ... up to `max` components whose fit to one half of the points predicts the other best, and
+/// the quality of that prediction: the mean of ln (q / reference) over both halves.
 ///
 /// # Returns
 /// `None` if the points' scatter is singular.
@@ -31,7 +31,7 @@ pub(crate) fn fitted(points: &WeightedPoints, max: usize, stream: &mut Stream) -
     Some((em(points, size_of_best, ROUNDS, stream)?, best))
 }
 
-/// Mean ln (q / reference) of each half under the fit to the other.
+/// Returns the mean ln (q / reference) of each half under the fit to the other.
 fn score(halves: &[WeightedPoints; 2], size: usize, stream: &mut Stream) -> Option<f64> {
     let [first, second] = halves;
     let mut scratch = Vec::new();

@@ -25,13 +25,13 @@ impl PriorAxis {
         }
     }
 
-    /// t of a parameter; exact at a bound.
+    /// Returns t of a parameter; exact at a bound.
     pub(crate) fn position(&self, x: f64) -> f64 {
         let t = self.marginal.coordinate(x) / self.width;
         t.max(self.lower).min(self.upper)
     }
 
-    /// The parameter at t; exact at a bound.
+    /// Returns the parameter at t; exact at a bound.
     pub(crate) fn value(&self, t: f64) -> f64 {
         let (lower, upper) = self.marginal.support();
         if t <= self.lower {
@@ -43,18 +43,18 @@ impl PriorAxis {
         }
     }
 
-    /// Whether t lies at a bound.
+    /// Returns whether t lies at a bound.
     pub(crate) fn is_bound(&self, t: f64) -> bool {
         t <= self.lower || t >= self.upper
     }
 
-    /// Slope and curvature of -ln p(x) along t.
+    /// Returns the slope and curvature of -ln p(x) along t.
     pub(crate) fn slope(&self, t: f64) -> (f64, f64) {
         let (slope, curvature) = self.marginal.slope(t * self.width);
         (slope * self.width, curvature * self.width * self.width)
     }
 
-    /// dx/dt at t.
+    /// Returns dx/dt at t.
     pub(crate) fn rate(&self, t: f64) -> f64 {
         self.marginal.rate(self.value(t)) * self.width
     }

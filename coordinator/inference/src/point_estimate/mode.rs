@@ -30,13 +30,13 @@ impl StopReason {
         Self::Generations,
     ];
 
-    /// Whether it stopped before convergence.
+    /// Returns whether it stopped before convergence.
     #[must_use]
     pub fn is_early(self) -> bool {
         matches!(self, Self::Budget | Self::Generations)
     }
 
-    /// The reason as a word: `decrease`, `step`, `budget`, `stagnation`, `generations`.
+    /// Returns the reason as a word: `decrease`, `step`, `budget`, `stagnation`, `generations`.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -48,7 +48,7 @@ impl StopReason {
         }
     }
 
-    /// The reason with this name.
+    /// Returns the reason with this name.
     #[must_use]
     pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|stop| stop.name() == name)
@@ -117,13 +117,13 @@ pub struct ModeEstimate {
 }
 
 impl ModeEstimate {
-    /// ln p(data | theta) + ln p(theta), in nats; without the evidence, which no point estimate knows.
+    /// Returns ln p(data | theta) + ln p(theta), in nats; without the evidence, which no point estimate knows.
     #[must_use]
     pub fn log_posterior(&self) -> f64 {
         self.log_likelihood + self.log_prior
     }
 
-    /// Standard deviation of a parameter by the Laplace approximation.
+    /// Returns the standard deviation of a parameter by the Laplace approximation.
     #[must_use]
     pub fn sd(&self, parameter: usize) -> Option<f64> {
         *self.laplace.as_ref()?.sd.get(parameter)?

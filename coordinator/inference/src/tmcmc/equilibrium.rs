@@ -26,7 +26,7 @@ pub(super) struct Drift {
 }
 
 impl Drift {
-    /// Drift of particles from `start` to `end`; particles of one cluster are dependent.
+    /// Computes the drift of particles from `start` to `end`; particles of one cluster are dependent.
     ///
     /// `step` is the growth of the exponent before; `moved` decides where the log-likelihoods are all equal and have no ranks.
     pub(super) fn new(start: &[f64], end: &[f64], clusters: &[usize], step: f64, moved: bool) -> Self {
@@ -48,25 +48,26 @@ impl Drift {
         }
     }
 
-    /// Whether a stage may end here.
+    /// Returns whether a stage may end here.
     pub(super) fn is_settled(self) -> bool {
         self.correlation < CORRELATION_LIMIT
             && self.z.abs() < DRIFT_LIMIT
             && self.weight_z.abs() < DRIFT_LIMIT
     }
 
-    /// Whether the stage forgot its start and did not drift.
+    /// Returns whether the stage forgot its start and did not drift.
     pub(super) fn is_equilibrated(self) -> bool {
         self.correlation < CORRELATION_LIMIT && !is_alarming(self.z) && !is_alarming(self.weight_z)
     }
 }
 
-/// Whether a z-score says that the target was not reached.
+/// Returns whether a z-score says that the target was not reached.
 pub(super) fn is_alarming(z: f64) -> bool {
     z.abs() > DRIFT_ALARM
 }
 
-/// Computes the z-score of a drift over all stages, sum / sqrt(count), which may be significant although that of no single stage is.
+/// Computes the z-score of a drift over all stages, sum / sqrt(count), which may be significant although that of no single stage
+/// is.
 ///
 /// Chance drifts of neighbouring stages cancel in part (a stage that ends too high by chance is followed by a fall),
 /// so this understates the drift.
@@ -75,13 +76,13 @@ pub(super) fn pooled_z(z: impl ExactSizeIterator<Item = f64>) -> f64 {
     z.sum::<f64>() / count.sqrt()
 }
 
-/// z-score of the mean of paired changes whose members of one cluster may be dependent:
-/// `z = sum d_i / sqrt(sum_c (sum_{i in c} (d_i - mean d))^2)`.
+/// Computes the z-score of the mean of paired changes whose members of one cluster may be dependent: `z = sum d_i / sqrt(sum_c
+/// (sum_{i in c} (d_i - mean d))^2)`.
 ///
-/// Chains that start from one ancestor share their start, so only clusters are independent. The start's own sampling error is covered: a
-/// chain that forgets its start changes by (new - start), and the clusters' sums of the starts have the variance of the weighted sample
-/// they were drawn from. 0 when nothing changes. Where the clusters do not show the spread (one cluster, or all alike) the z-score is
-/// unbounded; it is then [`DRIFT_UNKNOWN`], with the sign of the change.
+/// Chains that start from one ancestor share their start, so only clusters are independent. The start's own sampling error is
+/// covered: a chain that forgets its start changes by (new - start), and the clusters' sums of the starts have the variance of
+/// the weighted sample they were drawn from. 0 when nothing changes. Where the clusters do not show the spread (one cluster, or
+/// all alike) the z-score is unbounded; it is then [`DRIFT_UNKNOWN`], with the sign of the change.
 fn clustered_z(changes: &[f64], clusters: &[usize]) -> f64 {
     let total: f64 = changes.iter().sum();
     if total.abs() <= 0.0 || changes.is_empty() {

@@ -1,9 +1,10 @@
 //! Transitional Markov chain Monte Carlo (TMCMC) by ask and tell.
 //!
-//! Prior draws are weighted by a growing power of the likelihood. At each power the particles of a stage are drawn independently from a
-//! mixture fitted to the weighted draws of the last ([`StageMethod::Draws`]), or resampled and moved by Metropolis-Hastings steps
-//! ([`StageMethod::Moves`]). A stage whose draws miss their target falls back to moves, and the stages after it keep to them. [`Sampler`]
-//! never calls the likelihood: it lists [`Proposal`](crate::Proposal)s and waits until each has been told, in any order.
+//! Prior draws are weighted by a growing power of the likelihood. At each power the particles of a stage are drawn independently
+//! from a mixture fitted to the weighted draws of the last ([`StageMethod::Draws`]), or resampled and moved by
+//! Metropolis-Hastings steps ([`StageMethod::Moves`]). A stage whose draws miss their target falls back to moves, and the stages
+//! after it keep to them. [`Sampler`] never calls the likelihood: it lists [`Proposal`](crate::Proposal)s and waits until each
+//! has been told, in any order.
 //!
 //! # Departures from the paper
 //! - Draws instead of moves, see `draws`; the other departures concern moves.
@@ -12,13 +13,15 @@
 //! - Every state that a chain visits is weighted for the next stage, not its last one alone (Dau & Chopin 2022).
 //! - The evidence is a bridge estimate between neighbouring stages instead of a mean of the weights of the earlier one.
 //! - Prior draws that the model rejects are always dropped, and the evidence multiplied by the surviving fraction.
-//! - A stage ends when its particles have forgotten their start; a stage that does not reach this is flagged, and the result with it.
+//! - A stage ends when its particles have forgotten their start; a stage that does not reach this is flagged, and the result with
+//!   it.
 //!
 //! # Layout
 //! - `sampler`: the rounds. `stage_sequence`: from the prior draws through the stages to the posterior sample.
 //! - `settings`, `evaluation`, `record`, `particle`: inputs and outputs.
 //! - `transition`: from the pool of a stage to the chains of the next.
-//! - `draws`, `draw_sequence`: stages of independent draws. `stage`, `scale`: the moves of the chains. `equilibrium`: when they end.
+//! - `draws`, `draw_sequence`: stages of independent draws. `stage`, `scale`: the moves of the chains. `equilibrium`: when they
+//!   end.
 //! - `evidence`: the log-evidence and its standard error.
 //!
 //! # Source

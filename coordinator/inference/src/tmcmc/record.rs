@@ -59,7 +59,8 @@ pub struct PosteriorSample {
     pub log_evidence: f64,
     /// Standard error of the log-evidence within the run.
     pub log_evidence_se: f64,
-    /// The `drift_z` of the stages of moves taken together: their sum / sqrt(number of stages); that of the last stage, if it was drawn.
+    /// The `drift_z` of the stages of moves taken together: their sum / sqrt(number of stages); that of the last stage, if it was
+    /// drawn.
     pub drift_z: f64,
     /// The `weight_drift_z` of the stages taken together, in the same way.
     pub weight_drift_z: f64,

@@ -48,7 +48,7 @@ pub(super) enum SamplerRound {
 pub(super) type SamplerPhase = RunPhase<SamplerRound, PosteriorSample>;
 
 impl Sampler {
-    /// A sampler whose round 0 holds the prior draws.
+    /// Makes a sampler whose round 0 holds the prior draws.
     ///
     /// # Errors
     /// [`TmcmcSettingsError`] names the setting, its value and its bound.
@@ -75,7 +75,7 @@ impl Sampler {
         Ok(sampler)
     }
 
-    /// A sampler whose chains move by a metamodel between evaluations.
+    /// Makes a sampler whose chains move by a metamodel between evaluations.
     ///
     /// # Arguments
     /// - `settings`: settings of [`Algorithm::Tmcmc`](super::Algorithm::Tmcmc); with `metamodel_moves` = 0 there is no metamodel.
@@ -93,7 +93,7 @@ impl Sampler {
         Ok(sampler)
     }
 
-    /// The round in progress.
+    /// Returns the round in progress.
     ///
     /// Proposals outside the prior's support are rejected at once and never listed. The list is empty only when the
     /// sampler has finished or failed.
@@ -102,7 +102,7 @@ impl Sampler {
         &self.round
     }
 
-    /// The metamodel of the stage in progress; `None` without one, and while the prior is drawn.
+    /// Returns the metamodel of the stage in progress; `None` without one, and while the prior is drawn.
     #[must_use]
     pub fn metamodel(&self) -> Option<&Metamodel> {
         match &self.phase {
@@ -111,25 +111,25 @@ impl Sampler {
         }
     }
 
-    /// The finished stages.
+    /// Returns the finished stages.
     #[must_use]
     pub fn stages(&self) -> &[StageRecord] {
         &self.stages
     }
 
-    /// The result, once finished.
+    /// Returns the result, once finished.
     #[must_use]
     pub fn posterior(&self) -> Option<&PosteriorSample> {
         self.phase.result()
     }
 
-    /// Why the sampler failed, if it did.
+    /// Returns why the sampler failed, if it did.
     #[must_use]
     pub fn failure(&self) -> Option<InferenceFailure> {
         self.phase.failure()
     }
 
-    /// The stage in progress, for display; the last stage once finished.
+    /// Returns the stage in progress, for display; the last stage once finished.
     #[must_use]
     pub fn progress(&self) -> StageProgress {
         match (&self.phase, self.stages.last()) {

@@ -1,6 +1,6 @@
 //! The scale of a random walk: its initial value, and the acceptance rate to which it is adapted.
 
-/// The optimal scale of a random walk on a normal target.
+/// Returns the optimal scale of a random walk on a normal target.
 ///
 /// # Source
 /// Roberts, Gelman & Gilks 1997, Ann. Appl. Probab. 7:110, doi:10.1214/aoap/1034625254.
@@ -8,7 +8,7 @@ pub(super) fn initial_scale(dimension: usize) -> f64 {
     2.38 / (dimension as f64).sqrt()
 }
 
-/// The target acceptance rate: 0.44 in one dimension, 0.23 in many.
+/// Returns the target acceptance rate: 0.44 in one dimension, 0.23 in many.
 pub(super) fn target_acceptance(dimension: usize) -> f64 {
     0.21 / dimension as f64 + 0.23
 }

@@ -12,14 +12,15 @@ pub enum Algorithm {
     ChingChen2007,
     /// BASIS: every resampled particle takes one step of the original sampler's random walk.
     ///
-    /// Wu, Angelikopoulos, Papadimitriou & Koumoutsakos 2018, ASCE-ASME J. Risk Uncertainty B 4:011008, doi:10.1115/1.4037450, with their
-    /// chain length of 1. All chains are equally long, which removes the bias of the original sampler, and a stage takes one round. One
-    /// step forgets even less than the original sampler's chains, so its runs are reported as not equilibrated.
+    /// Wu, Angelikopoulos, Papadimitriou & Koumoutsakos 2018, ASCE-ASME J. Risk Uncertainty B 4:011008, doi:10.1115/1.4037450,
+    /// with their chain length of 1. All chains are equally long, which removes the bias of the original sampler, and a stage
+    /// takes one round. One step forgets even less than the original sampler's chains, so its runs are reported as not
+    /// equilibrated.
     Basis,
 }
 
 impl Algorithm {
-    /// Whether the population is every state of the chains, not their last states alone.
+    /// Returns whether the population is every state of the chains, not their last states alone.
     pub(super) fn keeps_every_step(self) -> bool {
         matches!(self, Self::ChingChen2007 | Self::Basis)
     }
@@ -56,7 +57,7 @@ pub struct TmcmcSettings {
 }
 
 impl Default for TmcmcSettings {
-    /// TMCMC by draws, 1000 particles, at most 32 components, 10 to 60 moves, seed 1, coefficient of variation 1.
+    /// Returns TMCMC by draws, 1000 particles, at most 32 components, 10 to 60 moves, seed 1, coefficient of variation 1.
     fn default() -> Self {
         Self {
             algorithm: Algorithm::Tmcmc,
@@ -73,7 +74,8 @@ impl Default for TmcmcSettings {
 
 /// Maximum number of particles of a sample, and of draws of a normal approximation: at 310 bytes each, they take 31 MB.
 pub const MAX_PARTICLES: usize = 100_000;
-/// Minimum number of particles of a stage of draws, for each of d + 1 numbers: a fifth of them is the smallest effective sample for a fit.
+/// Minimum number of particles of a stage of draws, for each of d + 1 numbers: a fifth of them is the smallest effective sample
+/// for a fit.
 const DRAWN_PARTICLES: usize = 8;
 
 /// A setting outside its bounds.
@@ -147,14 +149,15 @@ impl TmcmcSettings {
     /// Largest number of moves in a stage.
     pub const MAX_MOVES: usize = 10_000;
 
-    /// Whether stages of a problem of `dimension` parameters are drawn: small populations move from the start.
+    /// Returns whether stages of a problem of `dimension` parameters are drawn: small populations move from the start.
     pub(crate) fn draws(&self, dimension: usize) -> bool {
         self.stages == StageMethod::Draws
             && self.algorithm == Algorithm::Tmcmc
             && self.particles >= DRAWN_PARTICLES * (dimension + 1)
     }
 
-    /// Checks the settings for a prior of `dimension` parameters; at least `2 dimension + 2` particles and at most [`MAX_PARTICLES`].
+    /// Checks the settings for a prior of `dimension` parameters; at least `2 dimension + 2` particles and at most
+    /// [`MAX_PARTICLES`].
     ///
     /// # Errors
     /// [`TmcmcSettingsError`] with the setting and its bound.

@@ -96,7 +96,7 @@ impl Stage {
         }
     }
 
-    /// Share of the proposals accepted so far, those outside the prior counted as rejected.
+    /// Returns the share of the proposals accepted so far, those outside the prior counted as rejected.
     pub(super) fn acceptance(&self) -> Option<f64> {
         (self.proposed > 0).then(|| self.accepted as f64 / self.proposed as f64)
     }
@@ -180,7 +180,7 @@ impl Stage {
         }
     }
 
-    /// Whether every chain has taken all its steps.
+    /// Returns whether every chain has taken all its steps.
     pub(super) fn is_exhausted(&self) -> bool {
         self.chains.iter().all(|chain| self.step >= chain.length)
     }
@@ -240,7 +240,7 @@ fn decide(
     }
 }
 
-/// The state at the end of a subchain.
+/// Returns the state at the end of a subchain.
 fn moved(
     prior: &Prior,
     end: &SubchainEnd,

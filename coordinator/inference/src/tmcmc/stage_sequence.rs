@@ -86,7 +86,7 @@ impl Sampler {
         Ok(RunPhase::Waiting(SamplerRound::Moves(Box::new(stage))))
     }
 
-    /// The metamodel of a stage, from the pool that it begins with.
+    /// Returns the metamodel of a stage, from the pool that it begins with.
     fn learn(
         &self,
         stage: &Stage,
@@ -154,8 +154,8 @@ impl Sampler {
         })))
     }
 
-    /// Drift of a stage: of its chains from start to end or, in the original sampler and in BASIS, of every particle from the
-    /// leader of its chain. The chains have moved if they accepted one step each on average.
+    /// Computes the drift of a stage: of its chains from start to end or, in the original sampler and in BASIS, of every particle
+    /// from the leader of its chain. The chains have moved if they accepted one step each on average.
     fn drift(&self, stage: &Stage) -> Drift {
         let chains = &stage.chains;
         let moved = stage.accepted >= chains.len() as u64;

@@ -12,7 +12,7 @@ use super::range::rounded;
 /// Points of a curve.
 const POINTS: usize = 41;
 
-/// Why an effect file has no curve.
+/// The error of an effect file that has no curve.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum CurveError {
     /// The text is not an effect file.
@@ -54,8 +54,8 @@ pub(crate) enum CurveError {
     },
 }
 
-/// The factor on a stress, or the addition to a channel in its SI unit, at 41 points over the range of the variable: pairs of
-/// variable and value, from the formula itself.
+/// Returns the factor on a stress, or the addition to a channel in its SI unit, at 41 points over the range of the variable:
+/// pairs of variable and value, from the formula itself.
 ///
 /// # Arguments
 /// - `effect_text`: an effect file that acts on the quantity of the dependence.
@@ -115,7 +115,7 @@ pub(crate) fn curve(
     Ok(curve)
 }
 
-/// An effect file with the most probable value of each parameter in a comment.
+/// Returns an effect file with the most probable value of each parameter in a comment.
 ///
 /// # Arguments
 /// - `best`: by their names in a job, `EFFECT.PARAMETER`; a parameter without a value has no comment.

@@ -43,7 +43,7 @@ impl ActsOn {
         ActsOn::Sinkage,
     ];
 
-    /// The hook of its formula.
+    /// Returns the hook of its formula.
     pub(crate) fn hook(self) -> Hook {
         match self {
             ActsOn::Pressure => Hook::Pressure,
@@ -54,12 +54,12 @@ impl ActsOn {
         }
     }
 
-    /// Name in effect files and results.
+    /// Returns the name in effect files and results.
     pub(crate) fn name(self) -> &'static str {
         self.hook().name()
     }
 
-    /// Name in sentences.
+    /// Returns the name in sentences.
     pub(crate) fn words(self) -> &'static str {
         match self {
             ActsOn::Pressure => "the normal pressure",
@@ -70,7 +70,7 @@ impl ActsOn {
         }
     }
 
-    /// The channel; `None` for a stress.
+    /// Returns the channel; `None` for a stress.
     pub(crate) fn channel(self) -> Option<Channel> {
         match self {
             ActsOn::Pressure | ActsOn::Shear => None,
@@ -129,7 +129,7 @@ pub(crate) fn dependences(experiment: &Experiment) -> Vec<Dependence> {
     dependences
 }
 
-/// Root mean square of the measurements; 0 without any.
+/// Returns the root mean square of the measurements; 0 without any.
 fn root_mean_square(runs: &[&TestRun], channel: Channel) -> f64 {
     let squares = measured(runs, channel).map(|value| value * value);
     let (sum, count) = squares.fold((0.0, 0_u32), |(sum, count), square| (sum + square, count + 1));
@@ -137,7 +137,7 @@ fn root_mean_square(runs: &[&TestRun], channel: Channel) -> f64 {
 }
 
 impl Dependence {
-    /// Whether a model shows the dependence: an external model has no stresses, and only the channels that it outputs.
+    /// Returns whether a model shows the dependence: an external model has no stresses, and only the channels that it outputs.
     pub(crate) fn is_shown_by(&self, external: Option<&ExternalModel>) -> bool {
         let Some(model) = external else {
             return true;
@@ -147,30 +147,31 @@ impl Dependence {
         self.acts_on.channel().is_some_and(has) && knows_variable
     }
 
-    /// Name in results: `pressure_z`.
+    /// Returns the name in results: `pressure_z`.
     pub(crate) fn name(&self) -> String {
         format!("{}_{}", self.acts_on.name(), self.depends_on.name())
     }
 
-    /// The variable that the formula replaces: `p`.
+    /// Returns the variable that the formula replaces: `p`.
     pub(super) fn target(&self) -> &'static str {
         self.acts_on.hook().target().name()
     }
 
-    /// Unit of the addition; that of a factor is 1.
+    /// Returns the unit of the addition; that of a factor is 1.
     pub(super) fn unit(&self) -> &'static str {
         self.acts_on.channel().map_or("1", Channel::unit)
     }
 
-    /// The variable.
+    /// Returns the variable.
     pub(super) fn variable(&self) -> Variable {
         self.depends_on.variable()
     }
 
-    /// Makes a piecewise linear curve, constant beyond the range: the logarithm of the factor on a stress, or the addition to a channel.
+    /// Makes a piecewise linear curve, constant beyond the range: the logarithm of the factor on a stress, or the addition to a
+    /// channel.
     ///
-    /// The knots are equidistant; those of a logarithmic range are equidistant in the logarithm. Their values `a0` to `a4` are strengths, neutral at 0.
-    /// Checked by `tests::a_curve_of_one_value_multiplies_everywhere`.
+    /// The knots are equidistant; those of a logarithmic range are equidistant in the logarithm. Their values `a0` to `a4` are
+    /// strengths, neutral at 0. Checked by `tests::a_curve_of_one_value_multiplies_everywhere`.
     pub(crate) fn curve(&self) -> CandidateEffect {
         let (target, words) = (self.target(), self.depends_on.words());
         let (formula, summary, sd) = match self.addition_sd {
@@ -215,7 +216,7 @@ impl Dependence {
         }
     }
 
-    /// The formula of the place among the knots, from 0 to their number minus one.
+    /// Returns the formula of the place among the knots, from 0 to their number minus one.
     fn place(&self) -> String {
         let VariableRange {
             lowest,

@@ -18,9 +18,9 @@ pub(crate) struct LawFiles {
 impl LawFiles {
     /// Returns the curve and forms of a dependence that a job does not have yet; `None` if the job has the curve.
     ///
-    /// A law that the job has is fitted again with the job, so the same law is not offered a second time: two laws of one form only
-    /// share the strength of one. A curve can take every form. Another form is offered, because the remaining misfit may have it. Checked
-    /// by `tests::a_law_that_a_job_has_is_not_offered_again`.
+    /// A law that the job has is fitted again with the job, so the same law is not offered a second time: two laws of one form
+    /// only share the strength of one. A curve can take every form. Another form is offered, because the remaining misfit may
+    /// have it. Checked by `tests::a_law_that_a_job_has_is_not_offered_again`.
     ///
     /// # Arguments
     /// - `files`, `effects`: the files and the effects that the job has.

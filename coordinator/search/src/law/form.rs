@@ -56,7 +56,7 @@ impl LawForm {
         LawForm::InversePower,
     ];
 
-    /// Name in results.
+    /// Returns the name in results.
     pub(crate) fn name(self) -> &'static str {
         match self {
             LawForm::Power => "power",
@@ -69,7 +69,7 @@ impl LawForm {
         }
     }
 
-    /// The effect file of this form of a dependence.
+    /// Returns the effect file of this form of a dependence.
     ///
     /// It has one strength, neutral at 0, and at most one shape parameter, with a prior over the range of the variable. Checked by
     /// `tests::forms_are_what_their_names_say`.
@@ -124,7 +124,7 @@ impl LawForm {
         }
     }
 
-    /// The name of the strength.
+    /// Returns the name of the strength.
     fn strength(self, dependence: &Dependence) -> String {
         match (dependence.addition_sd, self) {
             (Some(_), _) => format!("addition{}", suffix(dependence.unit())),
@@ -133,7 +133,7 @@ impl LawForm {
         }
     }
 
-    /// The factor on a stress.
+    /// Returns the factor on a stress.
     fn factor(self, dependence: &Dependence, strength: &str) -> String {
         let (x, m, greatest) = (
             dependence.depends_on.name(),
@@ -156,7 +156,7 @@ impl LawForm {
         }
     }
 
-    /// The prior of the strength of a factor, bounded where the factor would change its sign within the range.
+    /// Returns the prior of the strength of a factor, bounded where the factor would change its sign within the range.
     fn factor_prior(self) -> &'static str {
         match self {
             LawForm::Power => "{ normal = [0.0, 0.3] }",
@@ -168,7 +168,7 @@ impl LawForm {
         }
     }
 
-    /// The addition to a channel per unit of the strength.
+    /// Returns the addition to a channel per unit of the strength.
     fn added(self, dependence: &Dependence) -> String {
         let (x, m, greatest) = (
             dependence.depends_on.name(),
@@ -197,7 +197,7 @@ impl LawForm {
         }
     }
 
-    /// Name, unit and prior of the shape parameter.
+    /// Returns the name, unit and prior of the shape parameter.
     fn shape_parameter(self, dependence: &Dependence) -> Option<(String, &'static str, String)> {
         let unit = dependence.variable().unit_name();
         let highest = greatest(dependence);
@@ -229,7 +229,7 @@ impl LawForm {
     }
 }
 
-/// The formula of the magnitude: that of a negative slip counts, that of a negative sinkage is 0.
+/// Returns the formula of the magnitude: that of a negative slip counts, that of a negative sinkage is 0.
 fn magnitude(dependence: &Dependence) -> String {
     let x = dependence.depends_on.name();
     match dependence.depends_on {
@@ -243,7 +243,7 @@ fn greatest(dependence: &Dependence) -> f64 {
     dependence.range.greatest()
 }
 
-/// Where a power is 1: the middle of the range.
+/// Returns the middle of the range, where a power is 1.
 fn middle(dependence: &Dependence) -> f64 {
     let middle = match dependence.range.is_logarithmic {
         true => (dependence.range.lowest * dependence.range.highest).sqrt(),
@@ -252,7 +252,7 @@ fn middle(dependence: &Dependence) -> f64 {
     rounded(middle, 4)
 }
 
-/// Below this a power is constant, so that it is finite at 0.
+/// Returns the value below which a power is constant, so that it is finite at 0.
 fn min_base(dependence: &Dependence) -> f64 {
     match dependence.range.is_logarithmic {
         true => dependence.range.lowest,
@@ -268,7 +268,7 @@ fn threshold_name(dependence: &Dependence) -> String {
     format!("threshold{}", suffix(dependence.variable().unit_name()))
 }
 
-/// The suffix of a name for its unit: `_m_s`.
+/// Returns the suffix of a name for its unit: `_m_s`.
 fn suffix(unit: &str) -> String {
     match unit {
         "1" => String::new(),

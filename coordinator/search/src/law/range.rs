@@ -70,7 +70,7 @@ impl DependsOn {
         DependsOn::Sinkage,
     ];
 
-    /// The variable of formulas.
+    /// Returns the variable of formulas.
     pub(crate) fn variable(self) -> Variable {
         match self {
             DependsOn::Z => Variable::Z,
@@ -85,12 +85,12 @@ impl DependsOn {
         }
     }
 
-    /// Name in formulas and results.
+    /// Returns the name in formulas and results.
     pub(crate) fn name(self) -> &'static str {
         self.variable().name()
     }
 
-    /// Name in sentences, without an article.
+    /// Returns the name in sentences, without an article.
     pub(crate) fn words(self) -> &'static str {
         match self {
             DependsOn::Z => "depth",
@@ -105,7 +105,7 @@ impl DependsOn {
         }
     }
 
-    /// Whether its range is logarithmic.
+    /// Returns whether its range is logarithmic.
     fn is_logarithmic(self) -> bool {
         matches!(
             self,
@@ -137,7 +137,7 @@ impl VariableRange {
         (is_wide && (range.lowest > 0.0 || !range.is_logarithmic)).then_some(range)
     }
 
-    /// Points from the lower to the upper end, 2 or more.
+    /// Returns points from the lower to the upper end, 2 or more.
     pub(crate) fn points(&self, count: usize) -> Vec<f64> {
         let share = |i: usize| i as f64 / (count - 1) as f64;
         let between = |share: f64| match self.is_logarithmic {
@@ -147,12 +147,12 @@ impl VariableRange {
         (0..count).map(|i| between(share(i))).collect()
     }
 
-    /// The knots of a curve.
+    /// Returns the knots of a curve.
     pub(crate) fn knots(&self) -> Vec<f64> {
         self.points(KNOTS)
     }
 
-    /// The greatest magnitude.
+    /// Returns the greatest magnitude.
     pub(crate) fn greatest(&self) -> f64 {
         self.highest.max(-self.lowest)
     }
@@ -229,7 +229,7 @@ pub(crate) fn ranges(experiment: &Experiment) -> BTreeMap<DependsOn, VariableRan
         .collect()
 }
 
-/// The measurements of a channel.
+/// Returns the measurements of a channel.
 pub(super) fn measured(runs: &[&TestRun], channel: Channel) -> impl Iterator<Item = f64> {
     runs.iter().filter_map(move |run| run.measured[channel.index()])
 }

@@ -3,11 +3,11 @@
 use super::kernel::REACH;
 use crate::diagnostics::moments::mean_and_sd;
 
-/// The joint density of draws of two parameters on a grid, by a Gaussian kernel of constant window.
+/// Returns the joint density of draws of two parameters on a grid, by a Gaussian kernel of constant window.
 ///
-/// `f(x) = 1/(n 2 pi |H|^(1/2)) sum_i exp(-(x - x_i)' H^-1 (x - x_i) / 2)` with `H = n^(-1/3) S`, S the covariance of the draws. The
-/// kernel has the correlation of the draws, so a ridge is not smoothed across. The estimate is reflected at the bounds of
-/// the support, in each coordinate.
+/// `f(x) = 1/(n 2 pi |H|^(1/2)) sum_i exp(-(x - x_i)' H^-1 (x - x_i) / 2)` with `H = n^(-1/3) S`, S the covariance of the draws.
+/// The kernel has the correlation of the draws, so a ridge is not smoothed across. The estimate is reflected at the bounds of the
+/// support, in each coordinate.
 ///
 /// # Arguments
 /// - `values`: the draws of both parameters, equally weighted, pairwise, within their supports.
@@ -19,7 +19,8 @@ use crate::diagnostics::moments::mean_and_sd;
 /// fewer than three draws, of lists of different lengths, and where the draws lie on a line.
 ///
 /// # Validity
-/// It integrates to 1 over the support where the bandwidth is small against the support's width. One image is reflected at each bound.
+/// It integrates to 1 over the support where the bandwidth is small against the support's width. One image is reflected at each
+/// bound.
 ///
 /// # Source
 /// Scott 1992, Multivariate Density Estimation, Eq. 6.42 with d = 2: the bandwidth that is optimal for a normal density;
@@ -61,7 +62,7 @@ pub fn joint_density(values: [&[f64]; 2], support: [(f64, f64); 2], grid: [&[f64
     Some(density)
 }
 
-/// A point and its mirror images in the bounds within reach of the kernel; none for a point beyond the support.
+/// Returns a point and its mirror images in the bounds within reach of the kernel; none for a point beyond the support.
 fn folds(x: f64, (lower, upper): (f64, f64), reach: f64) -> Vec<f64> {
     if x < lower || x > upper {
         return Vec::new();
@@ -106,7 +107,7 @@ impl Kernel {
         })
     }
 
-    /// L^-1 (x, y).
+    /// Returns L^-1 (x, y).
     fn round(&self, x: f64, y: f64) -> [f64; 2] {
         let [first, below, second] = self.factor;
         let u = x / first;
@@ -114,7 +115,7 @@ impl Kernel {
     }
 }
 
-/// The levels of a density whose contours enclose given shares of the probability: highest-density regions.
+/// Returns the levels of a density whose contours enclose given shares of the probability: highest-density regions.
 ///
 /// # Arguments
 /// - `density`: values on a grid of equal cells.
@@ -124,7 +125,8 @@ impl Kernel {
 /// For each share the lowest density of the region; empty where the density is 0 everywhere.
 ///
 /// # Source
-/// Hyndman 1996, Computing and graphing highest density regions, Am. Stat. 50:120, doi:10.1080/00031305.1996.10474359. Checked by `levels_enclose_their_shares`.
+/// Hyndman 1996, Computing and graphing highest density regions, Am. Stat. 50:120, doi:10.1080/00031305.1996.10474359. Checked by
+/// `levels_enclose_their_shares`.
 #[must_use]
 pub fn highest_density_levels(density: &[f64], shares: &[f64]) -> Vec<f64> {
     let mut sorted = density.to_vec();

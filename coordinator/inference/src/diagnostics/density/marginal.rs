@@ -4,7 +4,7 @@ use super::kernel::REACH;
 use crate::diagnostics::moments::mean_and_sd;
 use crate::diagnostics::quantile::quantile;
 
-/// The bandwidth that is optimal for a normal density: h = (4 / (3 n))^(1/5) s.
+/// Returns the bandwidth that is optimal for a normal density: h = (4 / (3 n))^(1/5) s.
 ///
 /// s is the smaller of standard deviation and interquartile range / 1.349, so that neither tails nor a second mode
 /// oversmooth; where half the draws are equal, the standard deviation.
@@ -29,7 +29,7 @@ pub fn bandwidth(values: &[f64]) -> Option<f64> {
     (spread > 0.0).then(|| libm::pow(4.0 / (3.0 * values.len() as f64), 0.2) * spread)
 }
 
-/// The density of draws at the points of a grid, by a Gaussian kernel that is reflected at the bounds of the support.
+/// Returns the density of draws at the points of a grid, by a Gaussian kernel that is reflected at the bounds of the support.
 ///
 /// `f(x) = 1/(n h sqrt(2 pi)) sum_i sum_k exp(-(x - x_ik)^2 / (2 h^2))`, `x_ik` the draw and its mirror images in the bounds.
 ///
@@ -63,7 +63,7 @@ pub fn density(values: &[f64], support: (f64, f64), grid: &[f64]) -> Option<Vec<
     Some(grid.iter().map(at).collect())
 }
 
-/// A draw and its mirror images in the bounds of a support.
+/// Returns a draw and its mirror images in the bounds of a support.
 fn images(x: f64, (lower, upper): (f64, f64)) -> Vec<f64> {
     match (lower.is_finite(), upper.is_finite()) {
         (false, false) => vec![x],

@@ -1,8 +1,9 @@
 //! Covariance matrix adaptation (CMA-ES).
 //!
-//! A generation is drawn from a normal distribution, in units of the prior's width along every axis. Its better half moves the mean and
-//! shapes the covariance (rank-mu update), as does the path of the mean (rank-one update); the length of that path controls the step size.
-//! It needs no derivative and is invariant to scaling and rotation of the parameters, so it learns thin ridges.
+//! A generation is drawn from a normal distribution, in units of the prior's width along every axis. Its better half moves the
+//! mean and shapes the covariance (rank-mu update), as does the path of the mean (rank-one update); the length of that path
+//! controls the step size. It needs no derivative and is invariant to scaling and rotation of the parameters, so it learns thin
+//! ridges.
 //!
 //! - **Bounds**: an individual beyond a bound is evaluated on it, with a penalty for its distance.
 //! - **Rejections**: an individual that the model rejected ranks last and moves nothing. When the model rejects

@@ -2,7 +2,7 @@
 //!
 //! Table 1 of Hansen 2016, arXiv:1604.00772, without negative weights.
 
-/// Default population for a dimension.
+/// Returns the default population for a dimension.
 pub(super) fn default_population(dimension: usize) -> usize {
     4 + (3.0 * libm::log(dimension.max(1) as f64)) as usize
 }

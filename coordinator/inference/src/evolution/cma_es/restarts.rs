@@ -39,7 +39,7 @@ impl Restarts {
         }
     }
 
-    /// The positions of the next generation, for as many evaluations as remain.
+    /// Returns the positions of the next generation, for as many evaluations as remain.
     pub(crate) fn next(&mut self, space: &PriorSpace, remaining: usize) -> NextGeneration {
         let mut population = self.run.population();
         if self.run.end.is_some() {
@@ -67,7 +67,7 @@ impl Restarts {
         self.run.accept(generation, self.settings.tolerance);
     }
 
-    /// The best so far, and whether a run converged there.
+    /// Returns the best so far, and whether a run converged there.
     fn best(&self) -> (f64, bool) {
         let (best, converged) = self.earlier;
         let now = self.run.end == Some(End::Converged);

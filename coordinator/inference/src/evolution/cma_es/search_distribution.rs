@@ -33,7 +33,7 @@ impl SearchDistribution {
         }
     }
 
-    /// mean + sigma axes diag(lengths) z.
+    /// Returns mean + sigma axes diag(lengths) z.
     pub(super) fn draw(&self, normals: &[f64]) -> Vec<f64> {
         let stretched = DVector::from_column_slice(normals).component_mul(&self.lengths);
         (&self.mean + &self.axes * stretched * self.sigma)
@@ -42,19 +42,19 @@ impl SearchDistribution {
             .collect()
     }
 
-    /// Longest standard deviation along a coordinate.
+    /// Returns the longest standard deviation along a coordinate.
     pub(super) fn widest(&self) -> f64 {
         let variances = (0..self.mean.len()).map(|k| self.covariance[(k, k)]);
         self.sigma * variances.fold(0.0, f64::max).sqrt()
     }
 
-    /// Longest over shortest principal axis, squared.
+    /// Returns the longest over shortest principal axis, squared.
     pub(super) fn condition(&self) -> f64 {
         let ratio = self.lengths.max() / self.lengths.min();
         ratio * ratio
     }
 
-    /// Mean of the variances along the coordinates.
+    /// Returns the mean of the variances along the coordinates.
     pub(super) fn mean_variance(&self) -> f64 {
         self.sigma * self.sigma * self.covariance.trace() / self.mean.len() as f64
     }

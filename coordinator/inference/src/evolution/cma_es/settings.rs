@@ -6,7 +6,8 @@ use crate::evolution::settings_error::{EvolutionSettingsError, check_population}
 /// Settings of CMA-ES.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CmaEsSettings {
-    /// Individuals of a generation of the first run; `None`: 4 + floor(3 ln d) for d parameters. More individuals keep more workers busy.
+    /// Individuals of a generation of the first run; `None`: 4 + floor(3 ln d) for d parameters. More individuals keep more
+    /// workers busy.
     pub population: Option<usize>,
     /// Maximum number of evaluations of all runs together.
     pub max_evaluations: usize,
@@ -19,7 +20,7 @@ pub struct CmaEsSettings {
 }
 
 impl Default for CmaEsSettings {
-    /// The default population, 5000 evaluations, 4 restarts, seed 1, tolerance 0.001 nats.
+    /// Returns the default population, 5000 evaluations, 4 restarts, seed 1, tolerance 0.001 nats.
     fn default() -> Self {
         Self {
             population: None,
@@ -39,7 +40,7 @@ impl CmaEsSettings {
     /// Largest number of restarts; the population doubles with each.
     pub const MAX_RESTARTS: usize = 20;
 
-    /// Individuals of a generation of the first run.
+    /// Returns individuals of a generation of the first run.
     #[must_use]
     pub fn first_population(&self, dimension: usize) -> usize {
         self.population.unwrap_or_else(|| default_population(dimension))

@@ -21,12 +21,12 @@ pub(super) struct MatingPair<'a> {
     pub(super) drift_pair: [&'a [f64]; 2],
 }
 
-/// Two children, not yet within the bounds.
+/// Returns two children, not yet within the bounds.
 ///
-/// Half of the crossed pairs have one spread factor for all coordinates, so that children lie on the line through their parents and keep
-/// correlations; the others have one for each coordinate. For the same reason some children move along the difference of two members,
-/// N(0, 1) times as far. Every coordinate mutates with probability 1 / dimension, a child that is not crossed in at least one: N(0, s^2) with ln
-/// s uniform over six decades, which serves exploration and convergence alike.
+/// Half of the crossed pairs have one spread factor for all coordinates, so that children lie on the line through their parents
+/// and keep correlations; the others have one for each coordinate. For the same reason some children move along the difference of
+/// two members, N(0, 1) times as far. Every coordinate mutates with probability 1 / dimension, a child that is not crossed in at
+/// least one: N(0, s^2) with ln s uniform over six decades, which serves exploration and convergence alike.
 pub(super) fn children(pair: &MatingPair, stream: &mut Stream) -> [Vec<f64>; 2] {
     let MatingPair { first, second, .. } = pair;
     let (mut first_child, mut second_child) = (first.to_vec(), second.to_vec());
@@ -60,8 +60,8 @@ fn drift(child: &mut [f64], [from, to]: [&[f64]; 2], stream: &mut Stream) {
     }
 }
 
-/// The distance of two children over that of their parents: beta with density
-/// (n + 1) beta^n / 2 below 1 and (n + 1) beta^-(n + 2) / 2 above.
+/// Returns the distance of two children over that of their parents: beta with density (n + 1) beta^n / 2 below 1 and (n + 1)
+/// beta^-(n + 2) / 2 above.
 fn spread_factor(stream: &mut Stream) -> f64 {
     let u = stream.uniform();
     let exponent = 1.0 / (CROSSOVER_INDEX + 1.0);

@@ -35,7 +35,7 @@ impl Population {
         }
     }
 
-    /// The positions of the next generation: prior draws as long as the model has accepted none, then children.
+    /// Returns the positions of the next generation: prior draws as long as the model has accepted none, then children.
     pub(crate) fn next(&self, space: &PriorSpace) -> NextGeneration {
         let GaSettings {
             population,
@@ -69,7 +69,7 @@ impl Population {
         NextGeneration::Ask(pairs.take(count).map(|child| space.inside(&child)).collect())
     }
 
-    /// The best of some drawn members.
+    /// Returns the best of some drawn members.
     fn parent(&self, stream: &mut Stream) -> &Individual {
         let drawn = (0..TOURNAMENT).map(|_| stream.below(self.members.len())).min();
         &self.members[drawn.unwrap_or(0)]

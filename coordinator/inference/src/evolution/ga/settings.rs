@@ -20,7 +20,7 @@ pub struct GaSettings {
 }
 
 impl Default for GaSettings {
-    /// 100 individuals, 200 generations, seed 1, 2 of the elite, 25 generations without a gain of 0.001 nats.
+    /// Returns 100 individuals, 200 generations, seed 1, 2 of the elite, 25 generations without a gain of 0.001 nats.
     fn default() -> Self {
         Self {
             population: 100,
@@ -39,7 +39,7 @@ impl GaSettings {
     /// Largest number of generations.
     pub const MAX_GENERATIONS: usize = 100_000;
 
-    /// Maximum number of evaluations of all generations; the elite saves some.
+    /// Returns the maximum number of evaluations of all generations; the elite saves some.
     #[must_use]
     pub fn max_evaluations(&self) -> usize {
         self.population.saturating_mul(self.generations)

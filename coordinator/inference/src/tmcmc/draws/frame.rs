@@ -11,12 +11,13 @@ use crate::mixture::{Mixture, WeightedPoints, fitted};
 enum Frame {
     /// The coordinates of the sampler. A straight ridge of uniform parameters is straight here, however thin.
     Sampling,
-    /// The normal score of each parameter under its prior. A posterior at a bound of the prior is one tail of a normal density here.
+    /// The normal score of each parameter under its prior. A posterior at a bound of the prior is one tail of a normal density
+    /// here.
     NormalScores,
 }
 
 impl Frame {
-    /// The coordinates of a state, from those of the sampler.
+    /// Returns the coordinates of a state, from those of the sampler.
     fn coordinates(self, prior: &Prior, sampling: &[f64]) -> Vec<f64> {
         match self {
             Self::Sampling => sampling.to_vec(),
@@ -29,7 +30,7 @@ impl Frame {
         }
     }
 
-    /// The inverse of [`Frame::coordinates`].
+    /// Returns the inverse of [`Frame::coordinates`].
     fn sampling(self, prior: &Prior, coordinates: Vec<f64>) -> Vec<f64> {
         match self {
             Self::Sampling => coordinates,
@@ -42,7 +43,7 @@ impl Frame {
         }
     }
 
-    /// ln of the prior density in these coordinates.
+    /// Returns ln of the prior density in these coordinates.
     fn log_prior(self, prior: &Prior, coordinates: &[f64]) -> f64 {
         match self {
             Self::Sampling => prior.log_density_of_coordinates(coordinates),
@@ -59,7 +60,8 @@ pub(crate) struct Fit {
 }
 
 impl Fit {
-    /// The fit to weighted draws, in the coordinates in which it predicts better. `None` if the draws do not span the space.
+    /// Returns the fit to weighted draws, in the coordinates in which it predicts better. `None` if the draws do not span the
+    /// space.
     ///
     /// Scores of correlated priors are not independent: these are fitted in the sampling coordinates.
     pub(crate) fn new(
@@ -85,7 +87,7 @@ impl Fit {
         best.map(|(_, fit)| fit)
     }
 
-    /// The fit in given coordinates, and how well it predicts: the mean of ln (density / prior density).
+    /// Returns the fit in given coordinates, and how well it predicts: the mean of ln (density / prior density).
     fn in_frame(
         frame: Frame,
         (sample, weights): (&WeightedSample, &ImportanceWeights),
@@ -112,7 +114,7 @@ impl Fit {
         self.mixture.size()
     }
 
-    /// This fit with a defensive share of weight moved from heavy to light components.
+    /// Returns this fit with a defensive share of weight moved from heavy to light components.
     pub(crate) fn defensive(&self, share: f64) -> Self {
         Self {
             frame: self.frame,
@@ -120,12 +122,12 @@ impl Fit {
         }
     }
 
-    /// A draw, in sampling coordinates.
+    /// Returns a draw, in sampling coordinates.
     pub(crate) fn draw(&self, prior: &Prior, stream: &mut Stream) -> Vec<f64> {
         self.frame.sampling(prior, self.mixture.draw(stream))
     }
 
-    /// ln (density / prior density) at sampling coordinates inside the support.
+    /// Returns ln (density / prior density) at sampling coordinates inside the support.
     pub(crate) fn log_relative_density(
         &self,
         prior: &Prior,

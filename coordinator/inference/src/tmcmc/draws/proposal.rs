@@ -45,7 +45,7 @@ impl DrawKey {
         )
     }
 
-    /// The stream of the fit that leads to this proposal.
+    /// Returns the stream of the fit that leads to this proposal.
     pub(crate) fn fit(self) -> Stream {
         self.stream(FIT_STREAM)
     }
@@ -117,7 +117,7 @@ impl DrawProposal {
         from.draw(prior, stream)
     }
 
-    /// ln (density / prior density) before the cut.
+    /// Returns ln (density / prior density) before the cut.
     fn log_relative_density(&self, prior: &Prior, coordinates: &[f64], scratch: &mut Vec<f64>) -> f64 {
         let fitted = self.fit.log_relative_density(prior, coordinates, scratch);
         let Some(defence) = &self.defence else {
@@ -130,7 +130,7 @@ impl DrawProposal {
         largest + libm::log(sum)
     }
 
-    /// The next draws inside the support.
+    /// Returns the next draws inside the support.
     pub(crate) fn draws(&mut self, count: usize, prior: &Prior) -> Vec<Draw> {
         let mut draws = Vec::with_capacity(count);
         let mut scratch = Vec::new();

@@ -30,18 +30,18 @@ pub(crate) struct Expectation {
 }
 
 impl ImportanceWeights {
-    /// Variance of `log_mean`, the relative variance of the mean weight.
+    /// Returns the variance of `log_mean`, the relative variance of the mean weight.
     pub(crate) fn log_mean_variance(&self) -> f64 {
         let count = self.normalised.len() as f64;
         (count / self.ess - 1.0).max(0.0) / count
     }
 
-    /// Effective sample size over the number of draws, ESS/N.
+    /// Returns the effective sample size over the number of draws, ESS/N.
     pub(crate) fn share(&self) -> f64 {
         self.ess / self.normalised.len() as f64
     }
 
-    /// Coefficient of variation.
+    /// Returns the coefficient of variation.
     pub(crate) fn cov(&self) -> f64 {
         (1.0 / self.share() - 1.0).max(0.0).sqrt()
     }
@@ -65,7 +65,7 @@ impl WeightedSample {
         self.push(state, 0.0);
     }
 
-    /// ln of the weights at an exponent.
+    /// Returns ln of the weights at an exponent.
     pub(crate) fn log_weights(&self, exponent: f64) -> Vec<f64> {
         let pairs = self.states.iter().zip(&self.log_ratios);
         pairs
@@ -79,7 +79,7 @@ impl WeightedSample {
             .collect()
     }
 
-    /// The weights at an exponent; `None` if every draw was rejected, or a weight is no number.
+    /// Returns the weights at an exponent; `None` if every draw was rejected, or a weight is no number.
     pub(crate) fn weights(&self, exponent: f64) -> Option<ImportanceWeights> {
         let log_weights = self.log_weights(exponent);
         let largest = log_weights.iter().copied().fold(f64::NEG_INFINITY, f64::max);
@@ -103,7 +103,7 @@ impl WeightedSample {
         })
     }
 
-    /// Share of the draws that the model did not reject.
+    /// Returns the share of the draws that the model did not reject.
     pub(crate) fn possible(&self) -> f64 {
         let possible = self
             .states
@@ -112,7 +112,7 @@ impl WeightedSample {
         possible.count() as f64 / self.states.len() as f64
     }
 
-    /// The mean log-likelihood under the target of these weights: `sum w l`, with variance `sum w^2 (l - mean)^2`.
+    /// Returns the mean log-likelihood under the target of these weights: `sum w l`, with variance `sum w^2 (l - mean)^2`.
     pub(crate) fn mean_log_likelihood(&self, weights: &ImportanceWeights) -> Expectation {
         let terms = || {
             let pairs = self.states.iter().zip(&weights.normalised);
@@ -128,7 +128,7 @@ impl WeightedSample {
         }
     }
 
-    /// A sample of equal weights, by systematic resampling; copies of one draw belong to one chain.
+    /// Returns a sample of equal weights, by systematic resampling; copies of one draw belong to one chain.
     pub(crate) fn resampled(&self, weights: &ImportanceWeights, count: usize, tooth: f64) -> Pool {
         let mut pool = Pool::default();
         for index in systematic(&weights.normalised, count, tooth) {

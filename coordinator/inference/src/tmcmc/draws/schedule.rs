@@ -14,10 +14,11 @@ const KEPT: f64 = 0.1;
 /// Bisections on the logarithm of the step: to 1e-12 of it.
 const BISECTIONS: usize = 48;
 
-/// The exponent above `exponent` that leaves enough effective draws for the next fit; at most 1.
+/// Returns the exponent above `exponent` that leaves enough effective draws for the next fit; at most 1.
 ///
-/// Six draws for each component and each of its d + 1 numbers suffice, if the next fit takes as many `components` as the last, but at least
-/// 20 % and at most 50 % of the draws that the model accepts. If fewer are effective at `exponent` already, 30 to 60 % of these suffice.
+/// Six draws for each component and each of its d + 1 numbers suffice, if the next fit takes as many `components` as the last,
+/// but at least 20 % and at most 50 % of the draws that the model accepts. If fewer are effective at `exponent` already, 30 to 60
+/// % of these suffice.
 pub(crate) fn next_exponent(sample: &WeightedSample, exponent: f64, components: usize) -> f64 {
     let share = |exponent: f64| sample.weights(exponent).map_or(0.0, |weights| weights.share());
     let dimension = sample.states.first().map_or(0, |state| state.coordinates.len());

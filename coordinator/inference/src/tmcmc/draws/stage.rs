@@ -248,12 +248,12 @@ impl DrawStage {
     }
 }
 
-/// The exponent after a miss.
+/// Returns the exponent after a miss.
 fn shorter(from: f64, exponent: f64) -> f64 {
     from + RETREAT * (exponent - from)
 }
 
-/// The prediction for `exponent` from the draws of the stage before, and a proposal fitted to them.
+/// Returns the prediction for `exponent` from the draws of the stage before, and a proposal fitted to them.
 fn first_proposal(
     start: &DrawStart,
     (exponent, key): (f64, DrawKey),
@@ -266,13 +266,13 @@ fn first_proposal(
     Some((Forecast::new(&start.sample, &weights), fitted))
 }
 
-/// Whether draws have missed their target.
+/// Returns whether draws have missed their target.
 fn is_poor(weights: &ImportanceWeights, sample: &WeightedSample) -> bool {
     let dimension = sample.states.first().map_or(0, |state| state.coordinates.len());
     weights.share() < MIN_SHARE || weights.ess < 2.0 * (dimension as f64 + 1.0)
 }
 
-/// A fit to weighted draws, and the proposal: the fit as a defensive mixture, with a share of the one before.
+/// Returns a fit to weighted draws, and the proposal: the fit as a defensive mixture, with a share of the one before.
 fn propose(
     (sample, weights, before): (&WeightedSample, &ImportanceWeights, Option<&Fit>),
     (exponent, key): (f64, DrawKey),

@@ -16,7 +16,7 @@ pub(crate) struct Bridge {
 }
 
 impl Bridge {
-    /// Bridge between pools whose targets differ by the factor exp(step l).
+    /// Computes the bridge between pools whose targets differ by the factor exp(step l).
     ///
     /// `mean_before f(step l - r) = mean_after f(r - step l)` with f(x) = 1 / (1 + exp(-x)), both pools given equal
     /// weight. It uses the later pool too, so a region that the earlier one missed still counts.

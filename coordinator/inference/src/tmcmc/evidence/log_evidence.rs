@@ -7,10 +7,10 @@ use statistics::metamodel::Pool;
 ///
 /// `ln Z = ln(survivors / draws) + sum_j ln r_j`, with `r_j` the bridge between the pools of stages j - 1 and j.
 ///
-/// Its variance, in first order: each chain has a share of the error of the (one or two) ratios that its pool enters. Chains with a common
-/// ancestor are not independent, nor is a chain of its descendants, so the variance sums the squares of the shares of siblings and twice
-/// their products with the shares of all later descendants of their common parent (after Chan & Lai 2013). The surviving fraction f of n
-/// prior draws adds (1 - f) / (f n).
+/// Its variance, in first order: each chain has a share of the error of the (one or two) ratios that its pool enters. Chains with
+/// a common ancestor are not independent, nor is a chain of its descendants, so the variance sums the squares of the shares of
+/// siblings and twice their products with the shares of all later descendants of their common parent (after Chan & Lai 2013). The
+/// surviving fraction f of n prior draws adds (1 - f) / (f n).
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Evidence {
     pub(crate) log: f64,
@@ -30,7 +30,7 @@ struct Level {
 }
 
 impl Evidence {
-    /// An evidence that is known up to an exponent, with its variance.
+    /// Makes an evidence that is known up to an exponent, with its variance.
     pub(crate) fn from_estimate(log: f64, variance: f64) -> Self {
         Self {
             log,

@@ -3,7 +3,7 @@
 /// beta: the random walk's covariance is beta^2 = 0.04 times the weighted covariance of the pool.
 pub(crate) const SCALE: f64 = 0.2;
 
-/// Leaders and their chain lengths from resampled indices (ascending): an index drawn m times leads a chain of m steps.
+/// Returns leaders and their chain lengths from resampled indices (ascending): an index drawn m times leads a chain of m steps.
 pub(crate) fn leaders(indices: &[usize]) -> Vec<(usize, usize)> {
     indices
         .chunk_by(|a, b| a == b)

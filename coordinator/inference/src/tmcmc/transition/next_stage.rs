@@ -24,7 +24,7 @@ pub(crate) struct Passage {
     pub(crate) log_evidence: f64,
 }
 
-/// The random number of a stage's systematic resampling.
+/// Returns the random number of a stage's systematic resampling.
 pub(crate) fn tooth(seed: u64, stage: usize) -> f64 {
     Stream::new(seed, stage as u64, RESAMPLING, 0).uniform()
 }

@@ -1,6 +1,6 @@
 //! Systematic resampling.
 
-/// Systematic resampling: `count` indices, ascending, with one uniform number in (0, 1) for all.
+/// Resamples systematically: returns `count` indices, ascending, with one uniform number in (0, 1) for all.
 ///
 /// Index i is drawn floor or ceil of `count * weights[i]` times. The weights sum to one.
 pub(crate) fn systematic(weights: &[f64], count: usize, uniform: f64) -> Vec<usize> {

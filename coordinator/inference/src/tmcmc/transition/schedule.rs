@@ -7,11 +7,12 @@ const TOLERANCE: f64 = 1e-10;
 /// Maximum number of trials, far more than false position takes.
 const MAX_TRIALS: usize = 200;
 
-/// The step of the exponent at which the weights of `log_likelihoods` have the coefficient of variation
-/// `target`, or `remaining` = 1 - exponent if that comes first.
+/// Returns the step of the exponent at which the weights of `log_likelihoods` have the coefficient of variation `target`, or
+/// `remaining` = 1 - exponent if that comes first.
 ///
-/// The coefficient rises with the step, nearly in proportion where it is small, so false position on the logarithms of both finds it in a
-/// few trials. The scale is logarithmic because the first step can be 1e-10 or less. The log-likelihoods are finite and not empty.
+/// The coefficient rises with the step, nearly in proportion where it is small, so false position on the logarithms of both finds
+/// it in a few trials. The scale is logarithmic because the first step can be 1e-10 or less. The log-likelihoods are finite and
+/// not empty.
 ///
 /// # Source
 /// Dowell & Jarratt 1971, BIT 11:168, doi:10.1007/BF01934364 (Illinois variant of false position).

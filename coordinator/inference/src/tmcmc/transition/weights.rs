@@ -12,7 +12,7 @@ pub(crate) struct Weights {
 }
 
 impl Weights {
-    /// Weights of finite log-likelihoods for a step of the exponent, 0 < `step` <= 1.
+    /// Computes the weights of finite log-likelihoods for a step of the exponent, 0 < `step` <= 1.
     pub(crate) fn new(log_likelihoods: &[f64], step: f64) -> Self {
         let max = log_likelihoods
             .iter()
