@@ -371,7 +371,7 @@ fn the_order_within_a_round_does_not_matter() {
         (theta[1] > 0.7).then_some(noisy)
     };
     let run = |order: &dyn Fn(u64, &mut Vec<usize>)| {
-        let fit = end(begin(&prior, &likelihood, LmSettings::default()), &model, order);
+        let fit = end(begin(&prior, &likelihood, LmSettings::default()), model, order);
         format!("{:?}", fit.estimate().unwrap())
     };
     let forwards = run(&|_, _| ());
