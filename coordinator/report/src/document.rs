@@ -85,7 +85,7 @@ mod tests {
         other.row.id = 2;
         let study = Study {
             models: 2,
-            others: vec![other],
+            other_models: vec![other],
             ..Study::from(fixture::calibration())
         };
         let answers = answers(&study);

@@ -149,7 +149,7 @@ impl StudyOverview {
             archived: false,
             model_kind,
             current: None,
-            failure: StudyFailure::of(members.iter()),
+            failure: StudyFailure::from_members(members.iter()),
             calibrations: members.iter().map(|m| m.id).collect(),
             members: members
                 .into_iter()
@@ -253,7 +253,7 @@ fn members_with_stories(study: &Study) -> Vec<MemberOverview> {
         let calibration = study.calibrations().find(|finished| finished.row.id == member.id);
         MemberOverview {
             member: member.clone(),
-            story: calibration.map(|finished| Story::of(study, finished)),
+            story: calibration.map(|finished| Story::new(study, finished)),
         }
     };
     study.members.iter().map(with_story).collect()

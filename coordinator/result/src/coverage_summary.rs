@@ -15,8 +15,8 @@ pub struct CoverageSummary {
 
 impl CoverageSummary {
     /// Of the counts of each kind of runs.
-    pub fn of(count: impl Fn(RunUse) -> Option<Coverage>) -> Self {
-        let share = |usage| count(usage).map(|own| own.inside as f64 / own.of as f64);
+    pub fn from_counts(count: impl Fn(RunUse) -> Option<Coverage>) -> Self {
+        let share = |usage| count(usage).map(|coverage| coverage.inside as f64 / coverage.total as f64);
         CoverageSummary {
             fit: share(RunUse::Fit),
             holdout: share(RunUse::Holdout),

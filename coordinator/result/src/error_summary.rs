@@ -45,12 +45,12 @@ pub struct CorrectedSummary {
 
 impl CorrectedSummary {
     /// The corrected predictions of a comparison.
-    pub fn of(comparison: &Comparison) -> Self {
+    pub fn new(comparison: &Comparison) -> Self {
         let coverage = |usage| Coverage::count_corrected(rows_of(&comparison.rows, usage));
         CorrectedSummary {
             fit: comparison.corrected_fit.clone(),
             holdout: comparison.corrected_holdout.clone(),
-            coverage90: CoverageSummary::of(coverage),
+            coverage90: CoverageSummary::from_counts(coverage),
             missing: comparison.not_corrected.clone(),
         }
     }
@@ -78,22 +78,24 @@ pub struct CombinedSummary {
 
 impl CombinedSummary {
     /// `None` where nothing is corrected.
-    pub fn of(rows: &[CombinedRow], sigmas: &FixedSigmas) -> Option<Self> {
-        let of = |usage| rows.iter().filter(move |own| own.row.usage == usage);
+    pub fn new(rows: &[CombinedRow], sigmas: &FixedSigmas) -> Option<Self> {
+        let used = |usage| rows.iter().filter(move |combined| combined.row.usage == usage);
         let errors = |usage| {
-            let table = ErrorTable::of(of(usage).map(|own| (&own.row, own.mean)))?;
+            let table = ErrorTable::new(used(usage).map(|combined| (&combined.row, combined.mean)))?;
             Some(table.in_fixed_sigmas(sigmas))
         };
         let models = rows
             .iter()
-            .map(|own| own.models)
+            .map(|combined| combined.models)
             .max()
             .filter(|models| *models > 0)?;
         Some(CombinedSummary {
             models,
             fit: errors(RunUse::Fit),
             holdout: errors(RunUse::Holdout),
-            coverage90: CoverageSummary::of(|usage| Coverage::of(of(usage).filter_map(CombinedRow::covered))),
+            coverage90: CoverageSummary::from_counts(|usage| {
+                Coverage::from_outcomes(used(usage).filter_map(CombinedRow::covered))
+            }),
         })
     }
 }
@@ -112,7 +114,7 @@ pub struct BaselineSummary {
 
 impl BaselineSummary {
     /// The interpolation of a comparison.
-    pub fn of(comparison: &Comparison) -> Self {
+    pub fn new(comparison: &Comparison) -> Self {
         BaselineSummary {
             name: "interpolation".into(),
             holdout: comparison.baseline_holdout.clone(),

@@ -237,8 +237,8 @@ mod tests {
 
     #[test]
     fn a_prior_about_zero_has_the_mean_zero() {
-        let of = |mean| prior_mean(&Marginal::new(Distribution::Normal { mean, sd: 0.2 }, None).unwrap());
-        assert_eq!(of(0.0).to_bits(), 0.0_f64.to_bits());
-        assert!((of(1e-6) - 1e-6).abs() < 1e-15);
+        let shown = |mean| prior_mean(&Marginal::new(Distribution::Normal { mean, sd: 0.2 }, None).unwrap());
+        assert_eq!(shown(0.0).to_bits(), 0.0_f64.to_bits());
+        assert!((shown(1e-6) - 1e-6).abs() < 1e-15);
     }
 }

@@ -114,8 +114,8 @@ pub fn with_smooth_misfit() -> FinishedCalibration {
     }
     let mut calibration = build(&runs);
     let spec = &calibration.spec;
-    let values = |of: &[usize], shift: f64| -> Vec<f64> {
-        let slips = of.iter().map(|&i| spec.experiment.runs[i].slip);
+    let values = |runs: &[usize], shift: f64| -> Vec<f64> {
+        let slips = runs.iter().map(|&i| spec.experiment.runs[i].slip);
         slips
             .map(|slip| 10.0 * slip - 3.0 * libm::sin(3.0 * slip) + shift)
             .collect()
@@ -164,7 +164,8 @@ pub fn with_refused_runs() -> FinishedCalibration {
         let Some(holdout) = prediction.holdout.as_mut() else {
             continue;
         };
-        let reason = |of: &str| RejectionReason(format!("no_support: condition {of}: z = 0.11 m"));
+        let reason =
+            |condition: &str| RejectionReason(format!("no_support: condition {condition}: z = 0.11 m"));
         let together = std::mem::replace(&mut holdout.together, Err(reason("1")));
         for run in 0..4 {
             let of_run = |all: &Observables| Observables {

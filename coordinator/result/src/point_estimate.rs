@@ -121,8 +121,8 @@ impl FinishedCalibration {
                 .then(|| fitted().map(|p| (name(p), p.sd)).collect()),
             at_bound: fitted().filter(|p| p.at_bound).map(name).collect(),
             log_posterior: estimate.log_posterior(),
-            baseline: BaselineSummary::of(comparison),
-            corrected: CorrectedSummary::of(comparison),
+            baseline: BaselineSummary::new(comparison),
+            corrected: CorrectedSummary::new(comparison),
             error: ErrorSummary {
                 fit: comparison.fit.clone(),
                 holdout: comparison.holdout.clone(),

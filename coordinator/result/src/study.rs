@@ -19,7 +19,7 @@ pub struct Study {
     /// The job as it was submitted; of the models that it compares, the one with the most evidence.
     pub lead: FinishedCalibration,
     /// The others of these models, oldest first.
-    pub others: Vec<FinishedCalibration>,
+    pub other_models: Vec<FinishedCalibration>,
     /// The point estimates that the job asks for, of the same model and measurements.
     pub point_estimates: Vec<FinishedCalibration>,
     /// Those of other models or measurements: extended by effects, or by runs.
@@ -45,14 +45,14 @@ impl Study {
 
     /// Every finished calibration: that line, after the other models that the job compares.
     pub fn calibrations(&self) -> impl Iterator<Item = &FinishedCalibration> {
-        self.others.iter().chain(self.line())
+        self.other_models.iter().chain(self.line())
     }
 
     /// The plain parameters of the model that the study freed since the submitted job.
     pub fn freed(&self, calibration: &FinishedCalibration) -> Vec<String> {
         let had = self.lead.spec.freed();
         let freed = calibration.spec.freed().into_iter();
-        freed.filter(|own| !had.contains(own)).collect()
+        freed.filter(|part| !had.contains(part)).collect()
     }
 
     /// What a calibration has: its effects, and what the study freed.
@@ -85,7 +85,7 @@ impl From<FinishedCalibration> for Study {
             state: lead.row.state,
             models: 1,
             lead,
-            others: Vec::new(),
+            other_models: Vec::new(),
             point_estimates: Vec::new(),
             extensions: Vec::new(),
             rounds: Vec::new(),

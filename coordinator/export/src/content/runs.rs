@@ -110,13 +110,13 @@ impl<'a> Part<'a> {
     pub(super) fn predictive(&self, group: &str) -> VariableGroup {
         let law = self.calibration.spec.likelihood.law();
         let seed = self.calibration.spec.algorithm.seed();
-        let new = NewMeasurements::of(self.calibration);
+        let new_measurements = NewMeasurements::new(self.calibration);
         let size = self.places.len() * self.channels.len();
         let empty = vec![f64::NAN; size * self.calibration.predictive_draws().len()];
         let (mut values, mut measurements) = (empty.clone(), empty);
         for (run, &place) in self.places.iter().enumerate() {
             for (column, &channel) in self.channels.iter().enumerate() {
-                for prediction in new.at(place, channel) {
+                for prediction in new_measurements.at(place, channel) {
                     let mut stream = Stream::new(
                         seed,
                         NEW,

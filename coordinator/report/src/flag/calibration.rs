@@ -173,9 +173,9 @@ fn refused_holdout(calibration: &FinishedCalibration) -> Option<String> {
     let mut words: Vec<String> = shown
         .map(|(run, refusal)| format!("{run} at {}", refusal.words()))
         .collect();
-    let others = refused.len().saturating_sub(SHOWN_REFUSED);
-    if others > 0 {
-        words.push(format!("{others} more"));
+    let more = refused.len().saturating_sub(SHOWN_REFUSED);
+    if more > 0 {
+        words.push(format!("{more} more"));
     }
     let whole = refused
         .iter()
@@ -217,7 +217,7 @@ mod tests {
 
     #[test]
     fn a_fit_that_was_to_have_a_posterior_and_has_none_says_so() {
-        let of = |draws: usize| {
+        let is_flagged = |draws: usize| {
             let mut fit = fixture::fit();
             fit.spec.algorithm = job::AlgorithmSettings::Fit(inference::lm::LmSettings {
                 draws,
@@ -228,7 +228,7 @@ mod tests {
                 .iter()
                 .any(|f| f.kind == FlagKind::NotEquilibrated && f.text.contains("tmcmc"))
         };
-        assert!(of(1000));
-        assert!(!of(0));
+        assert!(is_flagged(1000));
+        assert!(!is_flagged(0));
     }
 }

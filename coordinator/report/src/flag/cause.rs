@@ -81,7 +81,7 @@ pub(crate) fn shared_causes(trends: &[TrendDiagnostics]) -> Vec<String> {
 
 /// `drawbar pull is over-predicted at low slip and under-predicted at high slip, by about 4.1 N from one end to the other`.
 fn sentence(trend: &TrendDiagnostics) -> String {
-    let by = ShownUnit::of(trend.channel).size(trend.change.abs());
+    let by = ShownUnit::new(trend.channel).size(trend.change.abs());
     let (channel, pattern) = (trend.channel.words(), pattern(trend));
     match trend.against {
         TrendVariable::Constant => {
@@ -97,8 +97,8 @@ fn sentence(trend: &TrendDiagnostics) -> String {
 /// The strongest trend of a channel that is beyond chance: `over-predicted at low slip and under-predicted at high slip`.
 pub(crate) fn pattern_of(trends: &[TrendDiagnostics], channel: Channel) -> Option<String> {
     let strongest = strongest(&alarming(trends));
-    let own = strongest.iter().find(|(trend, _)| trend.channel == channel)?;
-    Some(pattern(own.0))
+    let found = strongest.iter().find(|(trend, _)| trend.channel == channel)?;
+    Some(pattern(found.0))
 }
 
 fn pattern(trend: &TrendDiagnostics) -> String {
@@ -125,14 +125,16 @@ fn pattern(trend: &TrendDiagnostics) -> String {
 fn causes(alarming: &[(&TrendDiagnostics, f64)]) -> Vec<Cause> {
     let strongest = strongest(alarming);
     let change = |channel: Channel, against: TrendVariable| {
-        let mut own = strongest.iter().map(|(trend, _)| trend);
-        own.find(|t| t.channel == channel && t.against == against)
+        let mut trends = strongest.iter().map(|(trend, _)| trend);
+        trends
+            .find(|t| t.channel == channel && t.against == against)
             .map(|t| t.change)
     };
     // One of pull and torque may follow another condition more strongly.
     let weaker = |channel: Channel| {
-        let mut own = alarming.iter().map(|(trend, _)| trend);
-        own.find(|t| t.channel == channel && t.against == TrendVariable::Slip)
+        let mut trends = alarming.iter().map(|(trend, _)| trend);
+        trends
+            .find(|t| t.channel == channel && t.against == TrendVariable::Slip)
             .map(|t| t.change)
     };
     let mut causes = Vec::new();

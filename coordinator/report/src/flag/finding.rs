@@ -81,13 +81,13 @@ fn outliers(residuals: &[ResidualDiagnostics]) -> Vec<Flag> {
         }
     }
     let text = |(row, p, count): (&ResidualDiagnostics, f64, usize)| {
-        let others = match count {
+        let further = match count {
             1 => String::new(),
             2 => "; 1 more residual of this channel is beyond chance".to_owned(),
             n => format!("; {} more residuals of this channel are beyond chance", n - 1),
         };
         let text = format!(
-            "{} of run {} lies {} {} the prediction, {} of its standard deviations ({} among {tests} residuals): a measurement error, or a condition outside the model's validity{others}",
+            "{} of run {} lies {} {} the prediction, {} of its standard deviations ({} among {tests} residuals): a measurement error, or a condition outside the model's validity{further}",
             row.channel.words(),
             row.run,
             row.channel.shown().size(row.residual.abs()),

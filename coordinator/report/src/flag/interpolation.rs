@@ -47,7 +47,7 @@ pub(crate) fn interpolation_beats(study: &Study) -> Vec<Flag> {
             return None;
         }
         let noise = noise.map(|sigma| sigma.sd);
-        let unit = ShownUnit::of(channel);
+        let unit = ShownUnit::new(channel);
         let text = format!(
             "interpolation between the fitted measurements predicts {} better than the model: {} against {} on {} of held-out runs{}: the model misses something that the measurements show",
             channel.words(),

@@ -56,8 +56,8 @@ pub fn model_limits(spec: &Spec) -> Vec<String> {
 fn of_external(spec: &Spec, model: &ExternalModel) -> Vec<String> {
     let runs = &spec.experiment.runs;
     let mut unseen = Vec::new();
-    let mut varies = |inputs: &[RunInput], of: fn(&TestRun) -> f64| {
-        let mut values = runs.iter().map(of);
+    let mut varies = |inputs: &[RunInput], value: fn(&TestRun) -> f64| {
+        let mut values = runs.iter().map(value);
         let first = values.next().unwrap_or_default();
         if values.any(|value| value.to_bits() != first.to_bits()) && !inputs.iter().any(|i| model.takes(*i)) {
             unseen.extend(inputs.first().map(|input| input.name()));

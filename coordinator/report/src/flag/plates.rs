@@ -53,14 +53,14 @@ fn against_posterior(calibration: &FinishedCalibration) -> Option<Flag> {
     let draws: Vec<&[f64]> = draws.iter().map(Vec::as_slice).collect();
     let found = conflict(&prior, &draws)?;
     let tests = 1 + found.parameters.iter().flatten().count();
-    let least = found
+    let min = found
         .parameters
         .iter()
         .flatten()
         .copied()
         .chain(found.p)
         .reduce(f64::min)?;
-    let p = (least * tests as f64).min(1.0);
+    let p = (min * tests as f64).min(1.0);
     if p >= LEVEL {
         return None;
     }
@@ -167,14 +167,14 @@ fn against_readings(calibration: &FinishedCalibration) -> Option<Flag> {
     let residuals: Vec<f64> = readings.iter().enumerate().map(residual).collect();
     let plates = &spec.bevameter.plates;
     let tests: BTreeSet<&str> = plates.iter().map(|reading| reading.test.as_str()).collect();
-    let group = |test: &str| tests.iter().position(|own| *own == test);
+    let group = |test: &str| tests.iter().position(|other| *other == test);
     let groups = plates.iter().map(|reading| group(&reading.test));
     let groups: Vec<usize> = groups.collect::<Option<_>>()?;
     let found = subset_shift(&derivatives, &residuals, &groups)?;
     let free: Vec<&FreeParameter> = places.iter().map(|&i| &spec.parameters[i]).collect();
-    let mean = |k: usize| parameters.iter().map(|own| own[k]).sum::<f64>() / parameters.len() as f64;
+    let mean = |k: usize| parameters.iter().map(|draw| draw[k]).sum::<f64>() / parameters.len() as f64;
     let from: Vec<f64> = (0..free.len()).map(mean).collect();
-    flag_of(&found, &free, &from, tests.len())
+    readings_flag(&found, &free, &from, tests.len())
 }
 
 /// Whether a prior excludes a value, and all within [`ALLOWED`] sds of it.
@@ -186,7 +186,7 @@ fn excludes(prior: &Marginal, value: f64, sd: f64) -> bool {
 
 /// # Arguments
 /// - `from`: the values that all data ask for.
-fn flag_of(found: &SubsetShift, free: &[&FreeParameter], from: &[f64], tests: usize) -> Option<Flag> {
+fn readings_flag(found: &SubsetShift, free: &[&FreeParameter], from: &[f64], tests: usize) -> Option<Flag> {
     let count = found.p.len();
     let p = found.p.iter().copied().reduce(f64::min)? * count as f64;
     if p >= LEVEL || found.rms_after > MUCH * found.rms_before {
@@ -200,10 +200,11 @@ fn flag_of(found: &SubsetShift, free: &[&FreeParameter], from: &[f64], tests: us
     // What the prior excludes, no wheel need have moved. Derivatives change along the way, so the end of it is rough: that the prior is
     // the cause is said where it excludes even half of the way.
     let excluded = |share: f64| -> Vec<String> {
-        let of = |&k: &usize| excludes(&free[k].marginal, from[k] + share * found.shift[k], found.sd[k]);
+        let is_excluded =
+            |&k: &usize| excludes(&free[k].marginal, from[k] + share * found.shift[k], found.sd[k]);
         let names = (0..count)
             .filter(is_pulled)
-            .filter(of)
+            .filter(is_excluded)
             .map(|k| free[k].name.clone());
         names.collect()
     };

@@ -22,10 +22,11 @@ pub fn flags(study: &Study) -> Vec<Flag> {
 
 /// The flags of a study, each with the calibration that it is about; `None` if it is about several.
 pub(crate) fn flags_by_calibration(study: &Study) -> Vec<(Option<i64>, Flag)> {
-    let of = |calibration: &FinishedCalibration| diagnostics(calibration, calibration.comparison()).flags;
+    let flags_of =
+        |calibration: &FinishedCalibration| diagnostics(calibration, calibration.comparison()).flags;
     let mut flags: Vec<_> = missed_modes(study).into_iter().map(|flag| (None, flag)).collect();
     let lead = Some(study.lead.row.id);
-    flags.extend(of(&study.lead).into_iter().map(|flag| (lead, flag)));
+    flags.extend(flags_of(&study.lead).into_iter().map(|flag| (lead, flag)));
     let beside = study.point_estimates.iter().map(|o| (o.spec.algorithm.name(), o));
     let extensions = study.extensions.iter().map(|o| (o.experiment.as_str(), o));
     for (name, calibration) in beside.chain(extensions) {
@@ -33,8 +34,8 @@ pub(crate) fn flags_by_calibration(study: &Study) -> Vec<(Option<i64>, Flag)> {
             text: format!("{name}: {}", flag.text),
             ..flag
         };
-        let own = of(calibration).into_iter();
-        flags.extend(own.map(|flag| (Some(calibration.row.id), named(flag))));
+        let found = flags_of(calibration).into_iter();
+        flags.extend(found.map(|flag| (Some(calibration.row.id), named(flag))));
     }
     let current = study.current().map(|calibration| calibration.row.id);
     flags.extend(interpolation_beats(study).into_iter().map(|flag| (current, flag)));

@@ -99,7 +99,7 @@ fn misses(table: &ErrorTable) -> String {
     let miss = |c: Channel| {
         Some(format!(
             "{} in {}",
-            ShownUnit::of(c).size(table.channel(c)?.rmse),
+            ShownUnit::new(c).size(table.channel(c)?.rmse),
             c.words()
         ))
     };
@@ -231,7 +231,7 @@ fn coverage(comparison: &Comparison) -> Option<String> {
             let [low, high] = c.expected();
             Some(format!(
                 "{} of {} {word} measurements ({low} to {high} expected)",
-                c.inside, c.of
+                c.inside, c.total
             ))
         })
         .collect();
@@ -258,7 +258,7 @@ fn inferred_noise(calibration: &FinishedCalibration) -> Option<String> {
             }
             None => mean_and_sd(&calibration.draws(parameter))?,
         };
-        let unit = ShownUnit::of(channel);
+        let unit = ShownUnit::new(channel);
         let shown = if sd > 0.0 {
             number::with_spread(value * unit.factor, sd * unit.factor)
         } else {
@@ -315,11 +315,11 @@ pub(super) fn notes(calibration: &FinishedCalibration) -> Vec<String> {
     let mut notes = Vec::new();
     if let Some(campaign) = &calibration.spec.experiment.campaign {
         let words = CampaignWords::from(campaign);
-        let said = |what: &str, text: &str| format!("{what}{}.", text.trim_end_matches('.'));
-        notes.push(said("Measurements: ", &words.citation));
-        notes.extend(words.digitised.iter().map(|text| said("They are ", text)));
-        notes.extend(words.method.iter().map(|text| said("Method, ", text)));
-        notes.extend(words.doubts.iter().map(|text| said("Doubt: ", text)));
+        let note = |what: &str, text: &str| format!("{what}{}.", text.trim_end_matches('.'));
+        notes.push(note("Measurements: ", &words.citation));
+        notes.extend(words.digitised.iter().map(|text| note("They are ", text)));
+        notes.extend(words.method.iter().map(|text| note("Method, ", text)));
+        notes.extend(words.doubts.iter().map(|text| note("Doubt: ", text)));
     }
     let accepted = calibration.spec.accepted.join(", ");
     if !accepted.is_empty() {

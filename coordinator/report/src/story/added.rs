@@ -74,28 +74,31 @@ pub(crate) fn added(study: &Study, calibration: &FinishedCalibration) -> Vec<Add
     let mut found = Vec::new();
     // The newest search comes first: further runs may have decided what an earlier one left open.
     for round in study.rounds.iter().rev() {
-        let Some(before) = study.calibrations().find(|own| own.row.id == round.calibration) else {
+        let Some(before) = study
+            .calibrations()
+            .find(|searched| searched.row.id == round.calibration)
+        else {
             continue;
         };
         let is_ancestor = study.parts(before).iter().all(|part| has.contains(part));
         while let Some(judged) = judged(&round.record, &left).filter(|_| is_ancestor) {
-            let own = parts(&judged.name);
-            left.retain(|part| !own.contains(part));
+            let effect_parts = parts(&judged.name);
+            left.retain(|part| !effect_parts.contains(part));
             let effect = of_search(study, round, before, &judged, &has);
-            found.push((position(&order, &own), effect));
+            found.push((position(&order, &effect_parts), effect));
         }
     }
     let by_hand = left.into_iter().map(|name| {
-        let own = [name.clone()];
+        let effect_parts = [name.clone()];
         let effect = AddedEffect {
-            held_out_noise_sds: bought(study, calibration, &own),
+            held_out_noise_sds: held_out_errors(study, calibration, &effect_parts),
             name,
             probability: None,
             searched: None,
             rivals: Vec::new(),
             deciding_run: None,
         };
-        (position(&order, &own), effect)
+        (position(&order, &effect_parts), effect)
     });
     found.extend(by_hand);
     found.sort_by_key(|(position, _)| *position);
@@ -122,16 +125,21 @@ fn judged(record: &Discovery, left: &[String]) -> Option<Alternative> {
         };
         Alternative { name, probability }
     });
-    let is_there = |own: &Alternative| {
-        let parts = parts(&own.name);
+    let is_there = |explanation: &Alternative| {
+        let parts = parts(&explanation.name);
         !parts.is_empty() && parts.iter().all(|part| left.contains(part))
     };
     let explanations = named
         .into_iter()
         .chain(open(record).into_iter().map(Alternative::from));
     let there: Vec<Alternative> = explanations.filter(is_there).collect();
-    let largest = there.iter().map(|own| parts(&own.name).len()).max()?;
-    there.into_iter().find(|own| parts(&own.name).len() == largest)
+    let largest = there
+        .iter()
+        .map(|explanation| parts(&explanation.name).len())
+        .max()?;
+    there
+        .into_iter()
+        .find(|explanation| parts(&explanation.name).len() == largest)
 }
 
 fn of_search(
@@ -141,17 +149,17 @@ fn of_search(
     judged: &Alternative,
     has: &[String],
 ) -> AddedEffect {
-    let own = parts(&judged.name);
+    let effect_parts = parts(&judged.name);
     let is_rival = |rival: &Alternative| {
         let parts = parts(&rival.name);
-        parts != own && !parts.iter().all(|part| has.contains(part))
+        parts != effect_parts && !parts.iter().all(|part| has.contains(part))
     };
     let rivals: Vec<Alternative> = open(&round.record)
         .into_iter()
         .map(Alternative::from)
         .filter(is_rival)
         .collect();
-    let extended = [study.parts(before), own].concat();
+    let extended = [study.parts(before), effect_parts].concat();
     AddedEffect {
         name: judged.name.clone(),
         probability: Some(judged.probability),
@@ -168,9 +176,17 @@ fn of_search(
 }
 
 /// The errors without and with the parts of a model, where the study has the model without them.
-fn bought(study: &Study, calibration: &FinishedCalibration, own: &[String]) -> Option<[f64; 2]> {
+fn held_out_errors(
+    study: &Study,
+    calibration: &FinishedCalibration,
+    effect_parts: &[String],
+) -> Option<[f64; 2]> {
     let has = study.parts(calibration);
-    let rest: Vec<String> = has.iter().filter(|part| !own.contains(part)).cloned().collect();
+    let rest: Vec<String> = has
+        .iter()
+        .filter(|part| !effect_parts.contains(part))
+        .cloned()
+        .collect();
     errors(study, alike(study, calibration, &rest)?, &has)
 }
 
@@ -274,14 +290,14 @@ mod tests {
             (added[0].name.as_str(), added[0].probability),
             ("janosi_hanamoto_node", Some(0.96))
         );
-        let text = Story::of(&study, extension).missing.text;
+        let text = Story::new(&study, extension).missing.text;
         assert!(
             text.starts_with("janosi_hanamoto_node was missing (P 0.96) and is added"),
             "{text}"
         );
         assert!(!text.contains("by hand"), "{text}");
         // Nor is it advised again.
-        let next = Story::of(&study, &study.lead).next;
+        let next = Story::new(&study, &study.lead).next;
         assert!(next.steps.iter().all(|step| step.effect.is_none()), "{next:?}");
     }
 
@@ -289,7 +305,7 @@ mod tests {
     fn what_an_effect_bought_on_held_out_runs_stands_beside_it() {
         let mut study = fixture::of_a_class();
         for prediction in &mut study.lead.predictions {
-            if let Some(Ok(held)) = prediction.holdout.as_mut().map(|own| &mut own.together) {
+            if let Some(Ok(held)) = prediction.holdout.as_mut().map(|holdout| &mut holdout.together) {
                 held.drawbar_pull_n.iter_mut().for_each(|pull| *pull += 5.0);
             }
         }

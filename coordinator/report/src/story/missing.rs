@@ -46,12 +46,12 @@ pub struct NamedEffect {
 /// The search of a calibration's model; of several the last.
 pub(super) fn search_of<'a>(study: &'a Study, calibration: &FinishedCalibration) -> Option<&'a Discovery> {
     let mut rounds = study.rounds.iter().rev();
-    let of_it = rounds.find(|round| round.calibration == calibration.row.id)?;
-    Some(&of_it.record)
+    let search = rounds.find(|round| round.calibration == calibration.row.id)?;
+    Some(&search.record)
 }
 
 impl Missing {
-    pub(super) fn of(study: &Study, calibration: &FinishedCalibration) -> Missing {
+    pub(super) fn new(study: &Study, calibration: &FinishedCalibration) -> Missing {
         let already_added = added(study, calibration);
         let mut text: Vec<String> = already_added.iter().map(AddedEffect::words).collect();
         let Some(record) = search_of(study, calibration) else {
@@ -88,16 +88,16 @@ impl Missing {
 /// The probability of the verdict.
 fn probability(record: &Discovery, named: &[NamedEffect]) -> Option<f64> {
     let effects = record.effects.iter();
-    let of = |name: &str| {
+    let probability = |name: &str| {
         let mut effects = record.effects.iter();
         effects.find(|e| e.name == name).map(|e| e.probability)
     };
     match record.verdict {
-        Verdict::NothingDetectable => of(NONE),
-        Verdict::NotInLibrary => of(NOT_IN_LIBRARY),
-        Verdict::Undecided => Some(effects.fold(0.0, |most, e| f64::max(most, e.probability))),
+        Verdict::NothingDetectable => probability(NONE),
+        Verdict::NotInLibrary => probability(NOT_IN_LIBRARY),
+        Verdict::Undecided => Some(effects.fold(0.0, |max, e| f64::max(max, e.probability))),
         Verdict::Named | Verdict::Class => {
-            let of_named = effects.filter(|e| named.iter().any(|own| label(own) == e.name));
+            let of_named = effects.filter(|e| named.iter().any(|named| label(named) == e.name));
             Some(of_named.map(|e| e.probability).sum())
         }
     }
@@ -106,17 +106,17 @@ fn probability(record: &Discovery, named: &[NamedEffect]) -> Option<f64> {
 /// The explanations that the verdict does not say itself, by falling probability.
 fn alternatives(record: &Discovery, named: &[NamedEffect]) -> Vec<Alternative> {
     let leader = record.effects.iter().map(|e| e.probability).fold(0.0, f64::max);
-    let is_said = |name: &str| match record.verdict {
+    let is_named = |name: &str| match record.verdict {
         Verdict::NothingDetectable => name == NONE,
         Verdict::NotInLibrary => name == NOT_IN_LIBRARY,
-        Verdict::Named | Verdict::Class => named.iter().any(|own| label(own) == name),
+        Verdict::Named | Verdict::Class => named.iter().any(|named| label(named) == name),
         Verdict::Undecided => false,
     };
-    let others = record.effects.iter().filter(|effect| {
+    let further = record.effects.iter().filter(|effect| {
         let is_open = record.verdict == Verdict::Undecided && effect.in_credible_set;
-        effect.probability > LEAST && effect.probability < leader && !is_open && !is_said(&effect.name)
+        effect.probability > LEAST && effect.probability < leader && !is_open && !is_named(&effect.name)
     });
-    others.take(ALTERNATIVES).map(Alternative::from).collect()
+    further.take(ALTERNATIVES).map(Alternative::from).collect()
 }
 
 /// The alternatives in words; where nothing is missing they are no news.
@@ -207,21 +207,21 @@ fn label(effect: &NamedEffect) -> String {
 
 /// The effects that were not tried, without the wheels, and without those that the verdict speaks of: these were weighed.
 fn not_tried(record: &Discovery, named: &[NamedEffect], alternatives: &[Alternative]) -> Vec<String> {
-    let is_said = |name: &str| {
+    let is_named = |name: &str| {
         let mut of_set = record.effects.iter().filter(|e| e.in_credible_set);
         match record.verdict {
             Verdict::NothingDetectable => false,
             Verdict::Undecided if of_set.any(|e| split(&e.name).0 == name) => true,
             _ => {
-                let mut others = alternatives.iter().map(|own| split(&own.name).0);
-                named.iter().any(|own| own.name == name) || others.any(|own| own == name)
+                let mut less_probable = alternatives.iter().map(|alternative| split(&alternative.name).0);
+                named.iter().any(|effect| effect.name == name) || less_probable.any(|effect| effect == name)
             }
         }
     };
     let mut names: Vec<String> = Vec::new();
     for effect in record.not_tried.iter().filter(|effect| effect.lacks_data()) {
         let (name, _) = split(&effect.name);
-        if !names.iter().any(|own| own == name) && !is_said(name) {
+        if !names.iter().any(|listed| listed == name) && !is_named(name) {
             names.push(name.to_owned());
         }
     }
@@ -237,7 +237,7 @@ mod tests {
     #[test]
     fn a_model_without_a_search_says_so() {
         let study = fixture::study();
-        let missing = Missing::of(&study, &study.lead);
+        let missing = Missing::new(&study, &study.lead);
         assert_eq!((missing.verdict, missing.probability), (None, None));
         assert_eq!(missing.text, "this model was not searched");
     }
@@ -245,7 +245,7 @@ mod tests {
     #[test]
     fn a_named_effect_has_its_probability_and_its_alternatives() {
         let study = fixture::grown();
-        let missing = Missing::of(&study, &study.lead);
+        let missing = Missing::new(&study, &study.lead);
         assert_eq!(missing.verdict, Some(Verdict::Named));
         assert_eq!(missing.named[0].name, "slip_sinkage");
         assert_eq!(missing.probability, Some(0.96));
@@ -278,7 +278,7 @@ mod tests {
                 needs: "density_kg_m3".into(),
             })
             .into();
-        let missing = Missing::of(&study, &study.lead);
+        let missing = Missing::new(&study, &study.lead);
         let names: Vec<&str> = missing.alternatives.iter().map(|a| a.name.as_str()).collect();
         assert_eq!(names, [NOT_IN_LIBRARY], "{missing:?}");
         assert!(
@@ -291,7 +291,7 @@ mod tests {
         // The effects of the set were judged.
         assert_eq!(missing.not_tried, ["end_wall"]);
         let class = fixture::of_a_class();
-        let class = Missing::of(&class, &class.lead);
+        let class = Missing::new(&class, &class.lead);
         let names: Vec<&str> = class.alternatives.iter().map(|a| a.name.as_str()).collect();
         assert_eq!(names, ["bulldozing"]);
     }
@@ -308,13 +308,13 @@ mod tests {
             calibration: 3,
             record,
         });
-        let missing = Missing::of(&study, &study.extensions[0]);
+        let missing = Missing::new(&study, &study.extensions[0]);
         assert_eq!(missing.verdict, Some(Verdict::NothingDetectable));
         assert!(
             missing.named.is_empty() && missing.text.contains("that nothing is missing"),
             "{missing:?}"
         );
         // The first search still speaks of the first model.
-        assert_eq!(Missing::of(&study, &study.lead).verdict, Some(Verdict::Named));
+        assert_eq!(Missing::new(&study, &study.lead).verdict, Some(Verdict::Named));
     }
 }

@@ -12,7 +12,7 @@ mod next;
 mod pattern;
 mod wrong;
 
-use next::Known;
+use next::Facts;
 use result::finished_calibration::FinishedCalibration;
 use result::study::Study;
 
@@ -40,17 +40,17 @@ pub struct Story {
 
 impl Story {
     /// The story of a calibration of the study.
-    pub fn of(study: &Study, calibration: &FinishedCalibration) -> Story {
-        let wrong = Wrong::of(study, calibration);
-        let missing = Missing::of(study, calibration);
-        let known = Known {
+    pub fn new(study: &Study, calibration: &FinishedCalibration) -> Story {
+        let wrong = Wrong::new(study, calibration);
+        let missing = Missing::new(study, calibration);
+        let facts = Facts {
             is_within_noise: wrong.is_within_noise(),
             added: &missing.already_added,
         };
         Story {
             calibration: calibration.row.id,
             model: study.model_comparison().map(|comparison| comparison.text),
-            next: Next::of(study, calibration, known),
+            next: Next::new(study, calibration, facts),
             missing,
             wrong,
         }
@@ -58,6 +58,6 @@ impl Story {
 
     /// The story of the study's current model; of the submitted job where no calibration has a posterior.
     pub fn current(study: &Study) -> Story {
-        Story::of(study, study.current().unwrap_or(&study.lead))
+        Story::new(study, study.current().unwrap_or(&study.lead))
     }
 }

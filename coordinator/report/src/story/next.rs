@@ -93,7 +93,7 @@ impl NextStep {
 
 /// The facts that the steps follow from, beside the search.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Known<'a> {
+pub(super) struct Facts<'a> {
     /// Whether noise alone explains the errors of every channel.
     pub(super) is_within_noise: bool,
     /// The effects that the study added to the model.
@@ -101,14 +101,14 @@ pub(super) struct Known<'a> {
 }
 
 impl Next {
-    pub(super) fn of(study: &Study, calibration: &FinishedCalibration, known: Known<'_>) -> Next {
-        let steps = steps(study, calibration, known);
+    pub(super) fn new(study: &Study, calibration: &FinishedCalibration, facts: Facts<'_>) -> Next {
+        let steps = steps(study, calibration, facts);
         let text = steps.first().map_or_else(String::new, |step| step.text.clone());
         Next { steps, text }
     }
 }
 
-fn steps(study: &Study, calibration: &FinishedCalibration, known: Known<'_>) -> Vec<NextStep> {
+fn steps(study: &Study, calibration: &FinishedCalibration, facts: Facts<'_>) -> Vec<NextStep> {
     let id = calibration.row.id;
     if let Some(current) = study.current().filter(|current| current.row.id != id) {
         let text = format!(
@@ -122,7 +122,7 @@ fn steps(study: &Study, calibration: &FinishedCalibration, known: Known<'_>) -> 
         let command = format!("export {id} --output {POSTERIOR}");
         NextStep::new(StepKind::Predict, text, Some(command))
     };
-    let deciding = known.added.iter().filter_map(deciding);
+    let deciding = facts.added.iter().filter_map(deciding);
     let Some(record) = search_of(study, calibration) else {
         let text = "search the library for the effect that the model is missing";
         let mut steps = vec![NextStep::new(
@@ -130,7 +130,7 @@ fn steps(study: &Study, calibration: &FinishedCalibration, known: Known<'_>) -> 
             text,
             Some(format!("discover {id}")),
         )];
-        if known.is_within_noise {
+        if facts.is_within_noise {
             steps.push(predict(
                 "predict with the posterior: its errors are within the noise",
             ));
@@ -144,10 +144,10 @@ fn steps(study: &Study, calibration: &FinishedCalibration, known: Known<'_>) -> 
         .filter(|extension| !is_made(study, calibration, &parts_of(extension)))
         .map(|extension| addition(id, record, extension));
     let runs = (!record.next_runs.is_empty()).then(|| runs(id, &record.next_runs));
-    let widen = record.implausible.as_ref().map(|own| {
+    let widen = record.implausible.as_ref().map(|parameter| {
         let text = format!(
             "widen the prior of {} in the job (one from a posterior by a larger transfer), and calibrate and search again",
-            own.name
+            parameter.name
         );
         NextStep::new(StepKind::WidenPrior, text, None)
     });
@@ -161,7 +161,7 @@ fn steps(study: &Study, calibration: &FinishedCalibration, known: Known<'_>) -> 
             .collect(),
         _ => add.into_iter().chain(runs).collect(),
     };
-    if steps.is_empty() && known.is_within_noise {
+    if steps.is_empty() && facts.is_within_noise {
         steps.push(predict(
             "predict with the posterior: the model explains the runs to within the noise",
         ));
@@ -175,8 +175,8 @@ fn steps(study: &Study, calibration: &FinishedCalibration, known: Known<'_>) -> 
         .map(|effect| (effect.needs.as_str(), effect.lacks_runs()))
         .collect();
     steps.extend(needs.into_iter().map(|(needs, are_runs)| {
-        let own = record.not_tried.iter().filter(|effect| effect.needs == needs);
-        let mut names: Vec<String> = own.map(|effect| effect.name.clone()).collect();
+        let lacking = record.not_tried.iter().filter(|effect| effect.needs == needs);
+        let mut names: Vec<String> = lacking.map(|effect| effect.name.clone()).collect();
         names.dedup();
         let names = number::list(&names);
         match are_runs {
@@ -221,8 +221,8 @@ fn is_made(study: &Study, calibration: &FinishedCalibration, added: &[String]) -
     let same = study
         .line()
         .filter(|other| other.row.experiment == calibration.row.experiment);
-    let mut others = same.map(|other| study.parts(other));
-    others.any(|other| parts.iter().all(|part| other.contains(part)))
+    let mut extended = same.map(|other| study.parts(other));
+    extended.any(|other| parts.iter().all(|part| other.contains(part)))
 }
 
 /// The run that tells an added effect from what the data do not exclude in its place. It is added to the model without the effect,
@@ -313,15 +313,15 @@ mod tests {
     use crate::fixture;
 
     /// Errors beyond the noise, or within it.
-    fn open() -> Known<'static> {
-        Known {
+    fn open() -> Facts<'static> {
+        Facts {
             is_within_noise: false,
             added: &[],
         }
     }
 
-    fn closed() -> Known<'static> {
-        Known {
+    fn closed() -> Facts<'static> {
+        Facts {
             is_within_noise: true,
             ..open()
         }
@@ -341,11 +341,11 @@ mod tests {
     #[test]
     fn what_was_not_searched_is_searched_next() {
         let study = fixture::study();
-        let next = Next::of(&study, &study.lead, open());
+        let next = Next::new(&study, &study.lead, open());
         assert_eq!(kinds(&next), [StepKind::Discover]);
         assert_eq!(next.steps[0].command.as_deref(), Some("discover 1"));
         assert_eq!(
-            kinds(&Next::of(&study, &study.lead, closed()))[1],
+            kinds(&Next::new(&study, &study.lead, closed()))[1],
             StepKind::Predict
         );
     }
@@ -353,7 +353,7 @@ mod tests {
     #[test]
     fn a_named_effect_is_added_before_runs_are_made_and_an_open_one_after() {
         let mut study = searched();
-        let next = Next::of(&study, &study.lead, open());
+        let next = Next::new(&study, &study.lead, open());
         assert_eq!(
             kinds(&next),
             [StepKind::AddEffect, StepKind::MakeRuns, StepKind::MeasureOther]
@@ -367,7 +367,7 @@ mod tests {
             "{next:?}"
         );
         study.rounds[0].record.verdict = Verdict::Undecided;
-        let open = Next::of(&study, &study.lead, open());
+        let open = Next::new(&study, &study.lead, open());
         assert_eq!(kinds(&open)[..2], [StepKind::MakeRuns, StepKind::AddEffect]);
     }
 
@@ -381,7 +381,7 @@ mod tests {
             name: "n".into(),
             prior_sds: -7.1,
         });
-        let next = Next::of(&study, &study.lead, open());
+        let next = Next::new(&study, &study.lead, open());
         assert_eq!(kinds(&next)[..2], [StepKind::WidenPrior, StepKind::MakeRuns]);
         assert!(next.text.starts_with("widen the prior of n"), "{}", next.text);
     }
@@ -393,7 +393,7 @@ mod tests {
         record.verdict = Verdict::Undecided;
         record.extension = None;
         record.unsupported_noise = vec!["noise.torque_n_m".into(), "noise.sinkage_m".into()];
-        let next = Next::of(&study, &study.lead, open());
+        let next = Next::new(&study, &study.lead, open());
         assert_eq!(
             kinds(&next)[..2],
             [StepKind::StateInExperiment, StepKind::MakeRuns]
@@ -410,7 +410,7 @@ mod tests {
     fn an_extension_that_the_study_has_made_is_not_advised_again() {
         let mut study = fixture::grown();
         let advises =
-            |study: &Study| kinds(&Next::of(study, &study.lead, open())).contains(&StepKind::AddEffect);
+            |study: &Study| kinds(&Next::new(study, &study.lead, open())).contains(&StepKind::AddEffect);
         study.rounds[0].record.extension = Some(Extension::Effect("cohesion_pa".into()));
         assert!(advises(&study));
         study.extensions[0].spec.parameters[0].name = "cohesion_pa".into();
@@ -425,7 +425,7 @@ mod tests {
     fn a_superseded_model_sends_to_the_current_one() {
         let mut study = fixture::grown();
         study.extensions[0].row.log_evidence = Some(10.0);
-        let next = Next::of(&study, &study.lead, open());
+        let next = Next::new(&study, &study.lead, open());
         assert_eq!(kinds(&next), [StepKind::Predict]);
         assert_eq!(next.steps[0].command.as_deref(), Some("report 3"));
     }
@@ -437,7 +437,7 @@ mod tests {
             name: "anything.toml".into(),
             text: "name = \"shear_slip_step\"\n".into(),
         });
-        let next = Next::of(&study, &study.lead, open());
+        let next = Next::new(&study, &study.lead, open());
         assert_eq!(next.steps[0].kind, StepKind::AddEffectFile);
         let file = next.steps[0].effect_file.as_ref().unwrap();
         assert_eq!(file.name, "shear_slip_step.toml");
@@ -456,7 +456,7 @@ mod tests {
             why: "the length of the bin is not stated".into(),
             needs: "bin_length_m under [rig]".into(),
         }];
-        let next = Next::of(&study, &study.lead, closed());
+        let next = Next::new(&study, &study.lead, closed());
         assert_eq!(kinds(&next), [StepKind::Predict, StepKind::StateInExperiment]);
         assert!(next.steps[1].text.contains("bin_length_m under [rig]"));
     }
@@ -470,7 +470,7 @@ mod tests {
             why: "it changes nothing at the slips and slip angles of the fitted runs".into(),
             needs: "runs at a slip angle".into(),
         }];
-        let next = Next::of(&study, &study.lead, closed());
+        let next = Next::new(&study, &study.lead, closed());
         let step = next.steps.last().unwrap();
         assert_eq!(
             (step.kind, step.text.as_str()),

@@ -23,7 +23,11 @@ const CONDITIONS: [Condition; 4] = [
 ];
 
 /// The trend of the fitted residuals that is beyond chance; else one direction in every run; else the level that stands out.
-pub(super) fn of(channel: Channel, rows: &[&ComparisonRow], trends: &[TrendDiagnostics]) -> Option<String> {
+pub(super) fn place(
+    channel: Channel,
+    rows: &[&ComparisonRow],
+    trends: &[TrendDiagnostics],
+) -> Option<String> {
     let residuals = rows
         .iter()
         .filter_map(|row| Some((*row, row.measured - row.predicted?)));
@@ -44,17 +48,20 @@ fn one_direction(residuals: &[(&ComparisonRow, f64)]) -> Option<String> {
 }
 
 fn standing_out(residuals: &[(&ComparisonRow, f64)]) -> Option<String> {
-    let rms = |own: &[f64]| (own.iter().map(|r| r * r).sum::<f64>() / own.len() as f64).sqrt();
+    let rms = |values: &[f64]| (values.iter().map(|r| r * r).sum::<f64>() / values.len() as f64).sqrt();
     let all: Vec<f64> = residuals.iter().map(|(_, r)| *r).collect();
-    let least = STANDS_OUT * rms(&all);
+    let threshold = STANDS_OUT * rms(&all);
     let mut worst: Option<(f64, String)> = None;
     for (name, factor, unit, value) in CONDITIONS {
         let levels = few_levels(residuals.iter().map(|(row, _)| value(row)));
         for level in levels.iter().filter(|_| levels.len() > 1) {
-            let own = residuals.iter().filter(|(row, _)| level.holds(value(row)));
-            let own: Vec<f64> = own.map(|(_, r)| *r).collect();
-            let (error, mean) = (rms(&own), own.iter().sum::<f64>() / own.len() as f64);
-            if error > worst.as_ref().map_or(least, |(largest, _)| *largest) {
+            let of_level = residuals.iter().filter(|(row, _)| level.holds(value(row)));
+            let of_level: Vec<f64> = of_level.map(|(_, r)| *r).collect();
+            let (error, mean) = (
+                rms(&of_level),
+                of_level.iter().sum::<f64>() / of_level.len() as f64,
+            );
+            if error > worst.as_ref().map_or(threshold, |(largest, _)| *largest) {
                 let middle = 0.5 * (level.from + level.to) * factor;
                 let direction = match mean {
                     m if m > 0.5 * error => ", under-predicted there",
@@ -87,7 +94,7 @@ mod tests {
                 ..comparison.rows[0].clone()
             })
             .collect();
-        of(Channel::DrawbarPull, &rows.iter().collect::<Vec<_>>(), &[])
+        place(Channel::DrawbarPull, &rows.iter().collect::<Vec<_>>(), &[])
     }
 
     #[test]

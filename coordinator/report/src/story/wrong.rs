@@ -106,13 +106,14 @@ impl<'a> Judge<'a> {
         let is_noise = is_known && by_noise.is_some_and(|p| p >= BY_CHANCE);
         let beside_interpolation = self.beside_interpolation(channel, error.runs);
         let is_beaten = !is_noise
-            && beside_interpolation
-                .is_some_and(|own| own.runs >= MIN_RUNS && own.model_rmse > RATIO * own.interpolation_rmse);
+            && beside_interpolation.is_some_and(|both| {
+                both.runs >= MIN_RUNS && both.model_rmse > RATIO * both.interpolation_rmse
+            });
         let is_judged = is_known || is_beaten;
         let rows: Vec<_> = rows_of(self.rows, usage)
             .filter(|row| row.channel == channel)
             .collect();
-        let place = || pattern::of(channel, &rows, &self.trends);
+        let place = || pattern::place(channel, &rows, &self.trends);
         Some(ChannelFailure {
             channel,
             usage,
@@ -127,13 +128,13 @@ impl<'a> Judge<'a> {
         })
     }
 
-    fn beside_interpolation(&self, channel: Channel, of: usize) -> Option<BesideInterpolation> {
+    fn beside_interpolation(&self, channel: Channel, predicted_runs: usize) -> Option<BesideInterpolation> {
         let [model, interpolation] = &self.beside;
         let model = model.as_ref()?.channel(channel)?;
         let interpolation = interpolation.as_ref()?.channel(channel)?;
         Some(BesideInterpolation {
             runs: model.runs,
-            of,
+            of: predicted_runs,
             model_rmse: model.rmse,
             interpolation_rmse: interpolation.rmse,
         })
@@ -141,11 +142,12 @@ impl<'a> Judge<'a> {
 }
 
 impl Wrong {
-    pub(super) fn of(study: &Study, calibration: &FinishedCalibration) -> Wrong {
+    pub(super) fn new(study: &Study, calibration: &FinishedCalibration) -> Wrong {
         let rows = &calibration.comparison().rows;
         let judge = Judge::new(study, calibration, rows);
         let failures = Channel::ALL.into_iter();
-        let mut channels: Vec<ChannelFailure> = failures.filter_map(|own| judge.failure(own)).collect();
+        let mut channels: Vec<ChannelFailure> =
+            failures.filter_map(|channel| judge.failure(channel)).collect();
         let rank = |c: &ChannelFailure| {
             let sds = c.noise_sds.unwrap_or(f64::INFINITY);
             (c.is_beaten, c.is_judged, sds)
@@ -226,12 +228,18 @@ fn clause(failure: &ChannelFailure, before: Option<&ChannelFailure>) -> String {
     }
     let interpolation = failure.beside_interpolation.filter(|_| failure.is_beaten);
     match (interpolation, failure.noise_sds) {
-        (Some(both), _) => text += &beaten(failure.channel, both, before.is_some_and(|own| own.is_beaten)),
+        (Some(both), _) => {
+            text += &beaten(
+                failure.channel,
+                both,
+                before.is_some_and(|before| before.is_beaten),
+            )
+        }
         (None, Some(sds)) => text += &format!(", {} times the noise", number::significant(sds, 2)),
         (None, None) => {}
     }
     match (&failure.place, before.and_then(|before| before.place.as_ref())) {
-        (Some(place), Some(said)) if place == said => text += ", likewise",
+        (Some(place), Some(earlier)) if place == earlier => text += ", likewise",
         (Some(place), _) => text += &format!(": {place}"),
         (None, _) => {}
     }
@@ -254,7 +262,7 @@ fn beaten(channel: Channel, both: BesideInterpolation, is_repeated: bool) -> Str
 
 /// `11.7 N`.
 fn size(channel: Channel, si: f64) -> String {
-    let unit = ShownUnit::of(channel);
+    let unit = ShownUnit::new(channel);
     let decimals = if unit.factor * si < 1.0 { 2 } else { 3 };
     format!(
         "{} {}",
@@ -279,7 +287,7 @@ mod tests {
 
     fn wrong(calibration: FinishedCalibration) -> Wrong {
         let study = Study::from(calibration);
-        Wrong::of(&study, &study.lead)
+        Wrong::new(&study, &study.lead)
     }
 
     #[test]
@@ -307,7 +315,7 @@ mod tests {
         for holdout in calibration
             .predictions
             .iter_mut()
-            .flat_map(|own| &mut own.holdout)
+            .flat_map(|prediction| &mut prediction.holdout)
         {
             let observables = holdout.together.as_mut().unwrap();
             observables.drawbar_pull_n[4..]
@@ -315,7 +323,7 @@ mod tests {
                 .for_each(|pull| *pull += 72.0);
         }
         let study = Study::from(calibration);
-        let wrong = Wrong::of(&study, &study.lead);
+        let wrong = Wrong::new(&study, &study.lead);
         let first = &wrong.channels[0];
         let both = first.beside_interpolation.unwrap();
         assert_eq!((both.runs, both.of), (4, 8));

@@ -147,10 +147,10 @@ pub fn calibration_summary(calibration: &FinishedCalibration) -> Option<Calibrat
             })
             .collect(),
         parameters: calibration.parameter_summaries().into_iter().collect(),
-        baseline: BaselineSummary::of(comparison),
-        corrected: CorrectedSummary::of(comparison),
+        baseline: BaselineSummary::new(comparison),
+        corrected: CorrectedSummary::new(comparison),
         noise_sd,
-        coverage90: CoverageSummary::of(|usage| Coverage::count(rows_of(&comparison.rows, usage))),
+        coverage90: CoverageSummary::from_counts(|usage| Coverage::count(rows_of(&comparison.rows, usage))),
         error: ErrorSummary {
             fit: comparison.fit.clone(),
             holdout: comparison.holdout.clone(),

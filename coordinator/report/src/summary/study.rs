@@ -90,7 +90,7 @@ pub(crate) fn point_estimate_summaries(study: &Study, sigmas: &FixedSigmas) -> V
 
 /// Summarises what the models of the ledger predict together; `None` if nothing is corrected.
 pub(crate) fn combined_summary(study: &Study, sigmas: &FixedSigmas) -> Option<CombinedSummary> {
-    CombinedSummary::of(study.combined(), sigmas)
+    CombinedSummary::new(study.combined(), sigmas)
 }
 
 /// `summary.json`.
@@ -110,7 +110,7 @@ pub fn summary(study: &Study) -> StudySummary {
         fixed_sigma: sigmas.by_name(),
         models: study.model_comparison(),
         flags: flags(study),
-        discovery: DiscoverySummary::of(&study.rounds, added(study)),
+        discovery: DiscoverySummary::new(&study.rounds, added(study)),
     }
 }
 
@@ -153,7 +153,7 @@ mod tests {
         (other.row.id, other.row.log_evidence) = (2, Some(-12.0));
         let study = Study {
             models: 2,
-            others: vec![other],
+            other_models: vec![other],
             ..fixture::calibration().into()
         };
         assert!(crate::study_file::file(&study, crate::StudyFile::Figures(2)).is_some());

@@ -22,7 +22,7 @@ pub fn comparison(comparison: &Comparison) -> String {
         false => "measured",
     };
     let value = |row: &ComparisonRow, v: Option<f64>| {
-        cell(v, |v| format!("{:.2}", v * ShownUnit::of(row.channel).factor))
+        cell(v, |v| format!("{:.2}", v * ShownUnit::new(row.channel).factor))
     };
     let interval = |row: &ComparisonRow, q05: Option<f64>, q95: Option<f64>| match q05 {
         Some(_) => format!("{} to {}", value(row, q05), value(row, q95)),
@@ -77,7 +77,7 @@ fn errors(comparison: &Comparison) -> String {
     for channel in Channel::ALL {
         let width = if channel == Channel::LateralForce { 14 } else { 16 };
         table = table.right(width, &channel_title(channel), move |(_, errors)| {
-            let scale = ShownUnit::of(channel).factor;
+            let scale = ShownUnit::new(channel).factor;
             cell(errors.channel(channel), |e| {
                 format!("{:.2} ({})", e.rmse * scale, e.runs)
             })

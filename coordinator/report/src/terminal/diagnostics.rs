@@ -142,11 +142,11 @@ fn residuals(all: &[ResidualDiagnostics]) -> String {
 }
 
 fn trends(all: &[TrendDiagnostics]) -> String {
-    let shown = |t: &TrendDiagnostics, x: f64| number::four_digits(ShownUnit::of(t.channel).factor * x);
+    let shown = |t: &TrendDiagnostics, x: f64| number::four_digits(ShownUnit::new(t.channel).factor * x);
     Table::<&TrendDiagnostics>::new()
         .left(14, "trend of", |t| t.channel.name())
         .left(18, "against", |t| t.against.name())
-        .left(4, "unit", |t| ShownUnit::of(t.channel).name)
+        .left(4, "unit", |t| ShownUnit::new(t.channel).name)
         .right(10, "change", |t| shown(t, t.change))
         .right(10, "sd", |t| shown(t, t.change_sd))
         .right(10, "share left", |t| format!("{:.2}", t.share_left))

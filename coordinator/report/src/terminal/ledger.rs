@@ -68,7 +68,7 @@ fn table(study: &Study, predictions: &[(&str, Option<&ErrorTable>)]) -> String {
         table = table.right(10, &channel_title(channel), move |row| {
             cell(row.errors.channel(channel), |error| {
                 let mark = if row.worse.contains(&channel) { "*" } else { "" };
-                format!("{mark}{:.2}", error.rmse * ShownUnit::of(channel).factor)
+                format!("{mark}{:.2}", error.rmse * ShownUnit::new(channel).factor)
             })
         });
     }
@@ -77,7 +77,7 @@ fn table(study: &Study, predictions: &[(&str, Option<&ErrorTable>)]) -> String {
             cell(row.errors.all.rmse_fixed_sigma, |s| format!("{s:.2}"))
         })
         .right(9, "inside", |row| {
-            cell(row.coverage, |c| format!("{} of {}", c.inside, c.of))
+            cell(row.coverage, |c| format!("{} of {}", c.inside, c.total))
         });
     let mut text = table.header();
     for line in &lines {

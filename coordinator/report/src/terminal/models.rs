@@ -40,7 +40,7 @@ pub(super) fn models(study: &Study) -> String {
         table = table.right(10, &channel_title(channel), move |model| {
             let error = model.left_out.as_ref().and_then(|errors| errors.channel(channel));
             cell(error, |e| {
-                format!("{:.2}", e.rmse * ShownUnit::of(channel).factor)
+                format!("{:.2}", e.rmse * ShownUnit::new(channel).factor)
             })
         });
     }

@@ -99,7 +99,7 @@ impl<'a, R: Copy> Table<'a, R> {
 
 /// The title of a channel's column: `sinkage mm`.
 pub(super) fn channel_title(channel: Channel) -> String {
-    format!("{} {}", short_name(channel), ShownUnit::of(channel).name)
+    format!("{} {}", short_name(channel), ShownUnit::new(channel).name)
 }
 
 #[cfg(test)]

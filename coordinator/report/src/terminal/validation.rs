@@ -31,7 +31,7 @@ pub fn validation(validation: &Validation) -> String {
         .left(width, "left out", |row| row.name)
         .right(4, "runs", |row| row.runs);
     for &channel in &channels {
-        let scale = ShownUnit::of(channel).factor;
+        let scale = ShownUnit::new(channel).factor;
         table = table.right(17, &channel_title(channel), move |row| {
             row.pair(|errors| Some(format!("{:.2}", errors.channel(channel)?.rmse * scale)))
         });
@@ -155,14 +155,14 @@ mod tests {
 
     #[test]
     fn a_level_is_judged_by_its_own_rows_and_the_total_by_all() {
-        let (of, others) = (fixture::without_holdout(), fixture::calibration());
+        let (whole, rest) = (fixture::without_holdout(), fixture::calibration());
         let level = |run: &str| LeftOutLevel {
             name: format!("slip of {run}"),
             from: Some(0.4),
             to: Some(0.4),
             runs: vec![run.to_owned()],
         };
-        let judged = ValidatedLevel::predicted(level("e"), &of, &others);
+        let judged = ValidatedLevel::predicted(level("e"), &whole, &rest);
         let judgement = judged.judgement.clone().unwrap();
         let model = judgement.model.clone().unwrap();
         assert_eq!(
@@ -178,7 +178,7 @@ mod tests {
             judged,
             ValidatedLevel::refused(level("d"), "too few repeats".into()),
         ];
-        let judged = Validation::new(&of, Factor::Slip, AlgorithmName::Lm, levels);
+        let judged = Validation::new(&whole, Factor::Slip, AlgorithmName::Lm, levels);
         assert_eq!(judged.total, judgement);
         let text = validation(&judged);
         for words in ["slip of e", "slip of d", "too few repeats", "all", "2 of 2"] {
@@ -191,28 +191,27 @@ mod tests {
 
     #[test]
     fn model_and_interpolation_are_compared_on_the_rows_of_both_and_the_rest_is_counted_with_its_reason() {
-        let (of, mut others) = (fixture::without_holdout(), fixture::with_refused_runs());
+        let (whole, mut rest) = (fixture::without_holdout(), fixture::with_refused_runs());
         // h0 is of a wheel that was never fitted.
         let place = |run: &str| {
-            others
-                .spec
+            rest.spec
                 .experiment
                 .runs
                 .iter()
                 .position(|candidate| candidate.name == run)
         };
         let (h0, runs) = (place("h0").unwrap(), ["h0", "h1", "h2", "h3"]);
-        let mut wheels = others.spec.experiment.wheels.clone();
+        let mut wheels = rest.spec.experiment.wheels.clone();
         wheels.insert("b".into(), wheels["a"].clone());
-        Arc::make_mut(&mut others.spec.experiment).wheels = wheels;
-        Arc::make_mut(&mut others.spec.experiment).runs[h0].wheel = "b".into();
+        Arc::make_mut(&mut rest.spec.experiment).wheels = wheels;
+        Arc::make_mut(&mut rest.spec.experiment).runs[h0].wheel = "b".into();
         let level = LeftOutLevel {
             name: "load 25.0 N".into(),
             from: Some(25.0),
             to: Some(25.0),
             runs: runs.map(str::to_owned).into(),
         };
-        let judged = ValidatedLevel::predicted(level, &of, &others);
+        let judged = ValidatedLevel::predicted(level, &whole, &rest);
         let judgement = judged.judgement.clone().unwrap();
         let rows = |table: &Option<ErrorTable>| table.as_ref().map(|table| table.drawbar_pull.unwrap().runs);
         // Predicted are h0 and h3, interpolated h1, h2 and h3.
@@ -229,7 +228,7 @@ mod tests {
             [("wheel b on soil sand has no fitted drawbar pull".to_owned(), 1)].into()
         );
         let text = validation(&Validation::new(
-            &of,
+            &whole,
             Factor::Load,
             AlgorithmName::Lm,
             vec![judged],

@@ -108,7 +108,7 @@ impl CoverageCount {
         let [expected_from, expected_to] = coverage.expected();
         CoverageCount {
             inside: coverage.inside,
-            of: coverage.of,
+            of: coverage.total,
             expected_from,
             expected_to,
         }
@@ -125,8 +125,8 @@ pub fn channels(
     let data = calibration.spec.likelihood.data();
     let signals = signals(calibration, residuals);
     let declared = |index: usize| {
-        let own = data.iter().filter(|d| d.channel == index);
-        let sds: Option<Vec<f64>> = own
+        let of_channel = data.iter().filter(|d| d.channel == index);
+        let sds: Option<Vec<f64>> = of_channel
             .map(|d| match d.sd {
                 ErrorSd::Known(sd) => Some(sd),
                 ErrorSd::Inferred { .. } => None,
@@ -136,22 +136,23 @@ pub fn channels(
         diagnostics::mean(&squares).map(f64::sqrt)
     };
     let channel = |(index, channel): (usize, DataChannel)| {
-        let own = || residuals.iter().filter(|r| r.channel == channel);
+        let rows = || residuals.iter().filter(|r| r.channel == channel);
         let count = |usage| {
-            let rows = rows_of(&comparison.rows, usage).filter(|r| DataChannel::Wheel(r.channel) == channel);
-            Coverage::count(rows).map(CoverageCount::new)
+            let compared =
+                rows_of(&comparison.rows, usage).filter(|r| DataChannel::Wheel(r.channel) == channel);
+            Coverage::count(compared).map(CoverageCount::new)
         };
         let signal = signals.get(&index);
-        let rows = own().count();
-        let squares: f64 = own().map(|r| r.error_sd * r.error_sd).sum();
+        let row_count = rows().count();
+        let squares: f64 = rows().map(|r| r.error_sd * r.error_sd).sum();
         ChannelDiagnostics {
             channel,
             unit: channel.si_unit().into(),
             data: data.iter().filter(|d| d.channel == index).count(),
-            error_sd: (rows > 0).then(|| (squares / rows as f64).sqrt()),
+            error_sd: (row_count > 0).then(|| (squares / row_count as f64).sqrt()),
             prior_predictive_sd: signal.map(|s| s.prior_sd),
             information: signal.map(|s| s.ratio),
-            effective_parameters: (rows > 0).then(|| own().map(|r| r.leverage).sum()),
+            effective_parameters: (row_count > 0).then(|| rows().map(|r| r.leverage).sum()),
             chi_square: chi_square(calibration, posterior, |i| data[i].channel == index),
             coverage90_fit: count(RunUse::Fit),
             coverage90_holdout: count(RunUse::Holdout),

@@ -106,8 +106,8 @@ pub fn worst_known(calibration: &FinishedCalibration, directions: &[DirectionDia
         let size = |i: usize| worst.loadings[i].loading.abs();
         size(b).total_cmp(&size(a))
     });
-    let own = diagnostics::principal_directions(&whitened(calibration, &named));
-    let (wide, narrow) = (own.first()?, own.last()?);
+    let among_named = diagnostics::principal_directions(&whitened(calibration, &named));
+    let (wide, narrow) = (among_named.first()?, among_named.last()?);
     let names: Vec<String> = named
         .iter()
         .map(|&i| worst.loadings[i].parameter.clone())

@@ -58,7 +58,7 @@ pub fn parameters(calibration: &FinishedCalibration) -> (Vec<ParameterDiagnostic
     };
     let parameter = |(i, free): (usize, &FreeParameter)| {
         let draws = calibration.draws(i);
-        let of = |c: &Conflict| c.parameters[i];
+        let p_value = |c: &Conflict| c.parameters[i];
         ParameterDiagnostics {
             name: free.name.clone(),
             unit: free.unit.clone(),
@@ -71,7 +71,7 @@ pub fn parameters(calibration: &FinishedCalibration) -> (Vec<ParameterDiagnostic
                 Some(estimate) => estimate.at_bound[i],
                 None => diagnostics::summary(&draws).is_some_and(|s| free.marginal.at_bound(s.q05, s.q95)),
             },
-            conflict_p: conflict.as_ref().and_then(of),
+            conflict_p: conflict.as_ref().and_then(p_value),
         }
     };
     let together = conflict.as_ref().map(|c| PriorConflict {

@@ -132,13 +132,13 @@ fn edge(free: &FreeParameter, bin: usize) -> f64 {
 }
 
 fn bin<'a>(free: &FreeParameter, number: usize, draws: impl Iterator<Item = &'a PriorDraw>) -> PriorBin {
-    let own: Vec<&PriorDraw> = draws.collect();
+    let draws: Vec<&PriorDraw> = draws.collect();
     PriorBin {
         from: finite(edge(free, number)),
         to: finite(edge(free, number + 1)),
-        draws: own.len() as u64,
-        refused: reasons(own.iter().copied()),
-        faults: own.iter().map(|d| d.faults).sum(),
+        draws: draws.len() as u64,
+        refused: reasons(draws.iter().copied()),
+        faults: draws.iter().map(|d| d.faults).sum(),
     }
 }
 
@@ -163,7 +163,7 @@ fn prior_region(
             .iter()
             .all(|s| (s.from..s.to).contains(&bins[s.parameter]))
     };
-    let own = draws.iter().zip(binned).filter(|(_, (bins, _))| inside(bins));
+    let drawn = draws.iter().zip(binned).filter(|(_, (bins, _))| inside(bins));
     let side = |side: &Side| {
         let free = &spec.parameters[side.parameter];
         RegionSide {
@@ -176,7 +176,7 @@ fn prior_region(
     PriorRegion {
         sides: region.sides.iter().map(side).collect(),
         draws: region.drawn as u64,
-        refused: reasons(own.map(|(draw, _)| draw)),
+        refused: reasons(drawn.map(|(draw, _)| draw)),
         p: region.p,
     }
 }

@@ -39,7 +39,7 @@ pub fn residuals(calibration: &FinishedCalibration, posterior: &[PredictedDraw])
     rows.iter()
         .zip(likelihood.data())
         .map(|(row, datum)| {
-            let channel = DataChannel::of(datum.channel);
+            let channel = DataChannel::from_index(datum.channel);
             ResidualDiagnostics {
                 run: run_name(&calibration.spec, datum).to_owned(),
                 channel,

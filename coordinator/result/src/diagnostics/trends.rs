@@ -60,7 +60,7 @@ impl TrendVariable {
 
     /// Whether these runs vary it on enough levels: two, of slip three.
     fn is_varied(self, runs: &[&TestRun]) -> bool {
-        let count = |of: TrendVariable| levels(runs.iter().map(|run| of.value(run))).len();
+        let count = |variable: TrendVariable| levels(runs.iter().map(|run| variable.value(run))).len();
         match self {
             TrendVariable::Constant => true,
             TrendVariable::Slip | TrendVariable::Order => count(self) >= 3,
@@ -78,9 +78,9 @@ impl TrendVariable {
             return values;
         }
         let mean = values.iter().sum::<f64>() / values.len() as f64;
-        let least = values.iter().copied().fold(f64::INFINITY, f64::min);
-        let largest = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        values.iter().map(|v| (v - mean) / (largest - least)).collect()
+        let min = values.iter().copied().fold(f64::INFINITY, f64::min);
+        let max = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        values.iter().map(|v| (v - mean) / (max - min)).collect()
     }
 }
 
@@ -115,19 +115,19 @@ pub fn trends(calibration: &FinishedCalibration, posterior: &[PredictedDraw]) ->
     let data = spec.likelihood.data();
     let mut found = Vec::new();
     for channel in Channel::ALL {
-        let own: Vec<usize> = (0..data.len())
+        let indices: Vec<usize> = (0..data.len())
             .filter(|&i| data[i].channel == channel.index())
             .collect();
-        let runs: Vec<&TestRun> = own
+        let runs: Vec<&TestRun> = indices
             .iter()
             .map(|&i| &spec.experiment.runs[spec.fit_runs[data[i].run]])
             .collect();
         for against in TrendVariable::ALL {
-            if own.is_empty() || !against.is_varied(&runs) {
+            if indices.is_empty() || !against.is_varied(&runs) {
                 continue;
             }
             let mut regressor = vec![0.0; data.len()];
-            for (&i, value) in own.iter().zip(against.regressor(&runs)) {
+            for (&i, value) in indices.iter().zip(against.regressor(&runs)) {
                 regressor[i] = value;
             }
             found.extend(test.against(&regressor).map(|trend| TrendDiagnostics {

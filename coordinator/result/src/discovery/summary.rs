@@ -43,7 +43,7 @@ pub struct DiscoverySummary {
 impl DiscoverySummary {
     /// The block of a study; `added` are the effects of its best calibration that the first one did not have.
     /// `None` where nothing was searched.
-    pub fn of(rounds: &[DiscoveryRound], added: Vec<String>) -> Option<DiscoverySummary> {
+    pub fn new(rounds: &[DiscoveryRound], added: Vec<String>) -> Option<DiscoverySummary> {
         let records: Vec<Discovery> = rounds
             .iter()
             .map(|round| round.record.clone().without_curves())
@@ -105,7 +105,7 @@ mod tests {
     }
 
     fn rounds() -> Vec<DiscoveryRound> {
-        let of = |calibration, record| DiscoveryRound { calibration, record };
+        let round = |calibration, record| DiscoveryRound { calibration, record };
         let last = Discovery {
             given: vec!["slip_sinkage".into()],
             verdict: Verdict::NothingDetectable,
@@ -114,31 +114,34 @@ mod tests {
             next_runs: Vec::new(),
             ..record()
         };
-        vec![of(1, record()), of(3, last)]
+        vec![round(1, record()), round(3, last)]
     }
 
     #[test]
     fn a_study_without_searches_says_nothing() {
-        assert!(DiscoverySummary::of(&[], vec!["slip_sinkage".into()]).is_none());
+        assert!(DiscoverySummary::new(&[], vec!["slip_sinkage".into()]).is_none());
     }
 
     #[test]
     fn what_was_added_is_the_verdict_of_the_study() {
-        let of = |added: &[&str]| {
+        let verdict = |added: &[&str]| {
             let added = added.iter().map(|&e| e.to_owned()).collect();
-            let summary = DiscoverySummary::of(&rounds(), added).unwrap();
+            let summary = DiscoverySummary::new(&rounds(), added).unwrap();
             (summary.verdict, summary.chosen)
         };
-        assert_eq!(of(&[]), (Verdict::Named, vec!["slip_sinkage".to_owned()]));
-        assert_eq!(of(&["adhesion"]), (Verdict::Named, vec!["adhesion".to_owned()]));
+        assert_eq!(verdict(&[]), (Verdict::Named, vec!["slip_sinkage".to_owned()]));
+        assert_eq!(
+            verdict(&["adhesion"]),
+            (Verdict::Named, vec!["adhesion".to_owned()])
+        );
         // A file of the user's own is no finding.
         let file = ["shear_slip_step"];
-        assert_eq!(of(&file), (Verdict::Named, file.map(String::from).to_vec()));
+        assert_eq!(verdict(&file), (Verdict::Named, file.map(String::from).to_vec()));
     }
 
     #[test]
     fn explanations_are_the_first_search_s_and_open_questions_the_last_one_s() {
-        let summary = DiscoverySummary::of(&rounds(), vec!["slip_sinkage".into()]).unwrap();
+        let summary = DiscoverySummary::new(&rounds(), vec!["slip_sinkage".into()]).unwrap();
         assert_eq!(summary.effects, record().effects);
         assert_eq!(summary.cannot_exclude, ["adhesion"]);
         assert!(summary.next_runs.is_empty());

@@ -72,8 +72,8 @@ fn density(study: &Study, sample: &FinishedCalibration, channel: Channel) -> Opt
         let at = errors(calibration).first().copied();
         marks.extend(at.map(|at| Mark::new(MarkKind::PointEstimate, label, at)));
     }
-    let most = over_draws.iter().chain(marks.iter().map(|m| &m.at)).copied();
-    let reach = most.fold(0.0, f64::max) + 3.0 * diagnostics::bandwidth(&over_draws).unwrap_or(0.0);
+    let shown = over_draws.iter().chain(marks.iter().map(|m| &m.at)).copied();
+    let reach = shown.fold(0.0, f64::max) + 3.0 * diagnostics::bandwidth(&over_draws).unwrap_or(0.0);
     let grid: Vec<f64> = (0..GRID).map(|k| reach * k as f64 / (GRID - 1) as f64).collect();
     let data = sample.spec.likelihood.data();
     Some(ErrorDensity {

@@ -33,10 +33,12 @@ impl Study {
     /// The figures of one calibration of the study. The point estimates of the study are marks on those of the submitted model alone:
     /// another model has other parameters.
     pub fn figures_of(&self, calibration: &FinishedCalibration) -> CalibrationFigures {
-        let is_submitted = self.submitted().any(|own| own.row.id == calibration.row.id);
+        let is_submitted = self
+            .submitted()
+            .any(|submitted| submitted.row.id == calibration.row.id);
         let beside = self
             .submitted()
-            .filter(|own| is_submitted && own.row.id != calibration.row.id);
+            .filter(|other| is_submitted && other.row.id != calibration.row.id);
         let sample = Some(calibration).filter(|calibration| calibration.estimate().is_none());
         CalibrationFigures {
             calibration: calibration.row.id,
@@ -104,7 +106,7 @@ mod tests {
             // serde_json writes null where a number is none: only these may be null.
             let mut nulls = Vec::new();
             find_nulls("", &json, &mut nulls);
-            let known = [
+            let nullable = [
                 "/histories",
                 "/populations",
                 "/mean",
@@ -114,7 +116,7 @@ mod tests {
                 "/at/x",
                 "/at/y",
             ];
-            nulls.retain(|path| !known.iter().any(|k| path.ends_with(k)));
+            nulls.retain(|path| !nullable.iter().any(|end| path.ends_with(end)));
             assert_eq!(nulls, Vec::<String>::new());
         }
     }

@@ -88,10 +88,10 @@ impl FinishedCalibration {
 pub(super) fn all(study: &Study) -> Option<Vec<ChannelHistory>> {
     let mut each = study.submitted().filter_map(FinishedCalibration::histories);
     let mut histories = each.next()?;
-    for others in each {
+    for further in each {
         // The calibrations of a study fit the same runs.
-        for (own, other) in histories.iter_mut().zip(others) {
-            own.model.extend(other.model);
+        for (history, other) in histories.iter_mut().zip(further) {
+            history.model.extend(other.model);
         }
     }
     Some(histories)

@@ -73,20 +73,20 @@ fn density(
 ) -> MarginalDensity {
     let prior = &parameter.marginal;
     let (lower, upper) = prior.support();
-    let least = draws.iter().copied().fold(f64::INFINITY, f64::min);
-    let most = draws.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let min = draws.iter().copied().fold(f64::INFINITY, f64::min);
+    let max = draws.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     // Only priors in ln x have a coordinate of their own.
     let in_ratios = prior.coordinate(2.0) < 1.0;
-    let logarithmic = in_ratios && least > 0.0 && most > WIDE * least;
+    let logarithmic = in_ratios && min > 0.0 && max > WIDE * min;
     let forward = |x: f64| if logarithmic { libm::log(x) } else { x };
     let backward = |u: f64| if logarithmic { libm::exp(u) } else { u };
     let reach = REACH * (forward(summary.q95) - forward(summary.q05));
     let low = forward(prior.quantile(TAIL))
         .max(forward(summary.q05) - reach)
-        .min(forward(least));
+        .min(forward(min));
     let high = forward(prior.quantile(1.0 - TAIL))
         .min(forward(summary.q95) + reach)
-        .max(forward(most));
+        .max(forward(max));
     let step = (high - low) / (GRID - 1) as f64;
     let coordinates: Vec<f64> = (0..GRID).map(|k| low + step * k as f64).collect();
     let before = |&u: &f64| {

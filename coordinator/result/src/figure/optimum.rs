@@ -10,7 +10,9 @@ impl Study {
         &'a self,
         sample: &FinishedCalibration,
     ) -> impl Iterator<Item = (String, &'a FinishedCalibration)> {
-        let is_submitted = self.submitted().any(|own| own.row.id == sample.row.id);
+        let is_submitted = self
+            .submitted()
+            .any(|submitted| submitted.row.id == sample.row.id);
         let fitted = self
             .submitted()
             .filter(move |calibration| is_submitted && calibration.estimate().is_some());

@@ -160,10 +160,10 @@ fn round(share: f64) -> f64 {
 
 /// Ends of the grid: around the draws, within the support.
 fn ends(values: &[f64], (lower, upper): (f64, f64)) -> [f64; 2] {
-    let least = values.iter().copied().fold(f64::INFINITY, f64::min);
-    let most = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    let margin = MARGIN * (most - least);
-    [(least - margin).max(lower), (most + margin).min(upper)]
+    let min = values.iter().copied().fold(f64::INFINITY, f64::min);
+    let max = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let margin = MARGIN * (max - min);
+    [(min - margin).max(lower), (max + margin).min(upper)]
 }
 
 fn marks(

@@ -32,7 +32,7 @@ struct Draw<'a> {
 
 impl LeftOut {
     /// `None` without draws, or where one condition is all there is.
-    pub(super) fn of(calibration: &FinishedCalibration) -> Option<Self> {
+    pub(super) fn new(calibration: &FinishedCalibration) -> Option<Self> {
         let spec = &calibration.spec;
         let likelihood = &spec.likelihood;
         let draws = calibration.predictive_draws().iter();
@@ -72,24 +72,22 @@ impl LeftOut {
             return Some(());
         }
         let (rest, places) = spec.likelihood.subset(&kept).ok()?;
-        let own = |draw: &Draw| {
+        let log_density = |draw: &Draw| {
             let values: Vec<f64> = places.iter().map(|&i| draw.values[i]).collect();
             Some(draw.log_likelihood - log_likelihood(&rest, &values, draw.theta)?)
         };
-        let log_densities: Vec<f64> = draws.iter().map(own).collect::<Option<_>>()?;
+        let log_densities: Vec<f64> = draws.iter().map(log_density).collect::<Option<_>>()?;
         let weights = weights(&log_densities);
         let total: f64 = weights.iter().sum();
-        let most = log_densities
-            .iter()
-            .fold(f64::NEG_INFINITY, |most, l| most.max(*l));
+        let max = log_densities.iter().fold(f64::NEG_INFINITY, |max, l| max.max(*l));
         let terms = weights.iter().zip(&log_densities);
-        let mean: f64 = terms.map(|(w, l)| w * libm::exp(l - most)).sum::<f64>() / total;
-        self.log_density += most + libm::log(mean);
+        let mean: f64 = terms.map(|(w, l)| w * libm::exp(l - max)).sum::<f64>() / total;
+        self.log_density += max + libm::log(mean);
         for &run in runs {
             let name = &spec.experiment.runs[spec.fit_runs[run]].name;
             for channel in Channel::ALL {
-                let of = |draw: &Draw| draw.observables.channel(channel).get(run).copied();
-                let values: Option<Vec<f64>> = draws.iter().map(of).collect();
+                let value = |draw: &Draw| draw.observables.channel(channel).get(run).copied();
+                let values: Option<Vec<f64>> = draws.iter().map(value).collect();
                 if let Some(values) = values {
                     let sum: f64 = values.iter().zip(&weights).map(|(value, w)| value * w).sum();
                     self.predicted.insert((name.clone(), channel), sum / total);
@@ -117,8 +115,8 @@ fn log_likelihood(likelihood: &Likelihood, values: &[f64], theta: &[f64]) -> Opt
 
 /// The weight of each draw, relative to the greatest before it is limited.
 fn weights(log_densities: &[f64]) -> Vec<f64> {
-    let least = log_densities.iter().fold(f64::INFINITY, |least, l| least.min(*l));
-    let raw: Vec<f64> = log_densities.iter().map(|l| libm::exp(least - l)).collect();
+    let min = log_densities.iter().fold(f64::INFINITY, |min, l| min.min(*l));
+    let raw: Vec<f64> = log_densities.iter().map(|l| libm::exp(min - l)).collect();
     let count = raw.len() as f64;
     let limit = raw.iter().sum::<f64>() / count * count.sqrt();
     raw.into_iter().map(|weight| weight.min(limit)).collect()
@@ -138,7 +136,7 @@ fn conditions<'a>(runs: impl Iterator<Item = &'a TestRun>) -> Vec<Vec<usize>> {
     let mut found: Vec<(_, Vec<usize>)> = Vec::new();
     for (position, run) in runs.enumerate() {
         let key = key(run);
-        match found.iter_mut().find(|(known, _)| *known == key) {
+        match found.iter_mut().find(|(other, _)| *other == key) {
             Some((_, positions)) => positions.push(position),
             None => found.push((key, vec![position])),
         }
@@ -162,7 +160,7 @@ mod tests {
     #[test]
     fn every_measured_row_is_predicted_from_the_others() {
         let calibration = fixture::without_holdout();
-        let left_out = LeftOut::of(&calibration).unwrap();
+        let left_out = LeftOut::new(&calibration).unwrap();
         assert!(left_out.log_density.is_finite());
         let comparison = calibration.comparison();
         let rows = left_out.rows(&comparison.rows);

@@ -79,19 +79,19 @@ pub enum LeftOutBy {
 impl Study {
     /// The comparison of the models of the job; `None` where it has one, or where one is not finished.
     pub fn model_comparison(&self) -> Option<ModelComparison> {
-        let mut compared: Vec<&FinishedCalibration> = self.others.iter().chain([&self.lead]).collect();
+        let mut compared: Vec<&FinishedCalibration> = self.other_models.iter().chain([&self.lead]).collect();
         if self.models == 1 || compared.len() != self.models {
             return None;
         }
         compared.sort_by_key(|calibration| calibration.row.id);
         let sigmas = self.fixed_sigmas();
-        let probabilities = probabilities(compared.iter().map(|own| own.row.log_evidence));
+        let probabilities = probabilities(compared.iter().map(|calibration| calibration.row.log_evidence));
         let models = compared
             .iter()
             .zip(probabilities)
             .map(|(calibration, probability)| {
                 let comparison = calibration.comparison();
-                let left_out = LeftOut::of(calibration);
+                let left_out = LeftOut::new(calibration);
                 let (by, errors) = match comparison.holdout {
                     Some(_) => (
                         LeftOutBy::Holdout,
@@ -138,8 +138,8 @@ impl Study {
 
 /// Posterior probabilities from equal prior ones; a model without evidence has none.
 fn probabilities(log_evidences: impl Iterator<Item = Option<f64>> + Clone) -> Vec<f64> {
-    let most = log_evidences.clone().flatten().fold(f64::NEG_INFINITY, f64::max);
-    let weight = |log: Option<f64>| log.map_or(0.0, |log| libm::exp(log - most));
+    let max = log_evidences.clone().flatten().fold(f64::NEG_INFINITY, f64::max);
+    let weight = |log: Option<f64>| log.map_or(0.0, |log| libm::exp(log - max));
     let total: f64 = log_evidences.clone().map(weight).sum();
     log_evidences
         .map(|log| if total > 0.0 { weight(log) / total } else { 0.0 })
@@ -167,8 +167,8 @@ fn best_predicting(models: &[ComparedModel]) -> Option<&ComparedModel> {
     if unpredicted.any(|other| other != first) {
         return None;
     }
-    let known = models.iter().filter_map(|model| Some((model, error(model)?)));
-    let best = known.reduce(|best, own| if own.1 < best.1 { own } else { best })?;
+    let judged = models.iter().filter_map(|model| Some((model, error(model)?)));
+    let best = judged.reduce(|best, model| if model.1 < best.1 { model } else { best })?;
     Some(best.0)
 }
 
@@ -179,12 +179,12 @@ fn text(models: &[ComparedModel], best: &ComparedModel, none_of_these: Option<bo
             None => number::fixed(log, 1),
         })
     };
-    let mut others: Vec<&ComparedModel> = models
+    let mut further: Vec<&ComparedModel> = models
         .iter()
         .filter(|m| m.calibration != best.calibration)
         .collect();
-    others.sort_by(|a, b| b.probability.total_cmp(&a.probability));
-    let others: Vec<String> = others
+    further.sort_by(|a, b| b.probability.total_cmp(&a.probability));
+    let further: Vec<String> = further
         .iter()
         .map(|model| format!("{} {}", model.name, log(model)))
         .collect();
@@ -197,7 +197,7 @@ fn text(models: &[ComparedModel], best: &ComparedModel, none_of_these: Option<bo
             p => probability(p),
         },
         log(best),
-        others.join(", ")
+        further.join(", ")
     );
     let error = |model: &ComparedModel| {
         let sds = model
@@ -211,7 +211,7 @@ fn text(models: &[ComparedModel], best: &ComparedModel, none_of_these: Option<bo
         LeftOutBy::Condition => "each condition from the others",
     };
     match best_predicting(models) {
-        Some(own) if own.calibration == best.calibration => {
+        Some(model) if model.calibration == best.calibration => {
             text += &format!("; it also predicts {data} best, {} times the noise", error(best));
         }
         Some(other) => {
@@ -247,7 +247,7 @@ mod tests {
         (other.row.id, other.row.log_evidence) = (1, Some(evidences[1]));
         Study {
             models: 2,
-            others: vec![other],
+            other_models: vec![other],
             ..Study::from(lead)
         }
     }
@@ -276,7 +276,7 @@ mod tests {
     #[test]
     fn the_line_goes_on_with_the_most_probable() {
         let study = study([-10.0, -12.0]);
-        assert_eq!(study.ledger().map(|own| own.row.id).collect::<Vec<_>>(), [2]);
+        assert_eq!(study.ledger().map(|line| line.row.id).collect::<Vec<_>>(), [2]);
     }
 
     #[test]

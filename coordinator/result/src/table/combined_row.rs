@@ -31,16 +31,22 @@ pub struct CombinedRow {
 
 impl CombinedRow {
     /// Of what each model predicts, with its weight.
-    pub(super) fn of(row: &ComparisonRow, of_models: impl Iterator<Item = (Option<Corrected>, f64)>) -> Self {
+    pub(super) fn new(
+        row: &ComparisonRow,
+        of_models: impl Iterator<Item = (Option<Corrected>, f64)>,
+    ) -> Self {
         let counted = of_models.filter(|(_, weight)| *weight > 0.0);
-        let counted: Vec<(Corrected, f64)> =
-            counted.filter_map(|(own, weight)| Some((own?, weight))).collect();
+        let counted: Vec<(Corrected, f64)> = counted
+            .filter_map(|(corrected, weight)| Some((corrected?, weight)))
+            .collect();
         let total: f64 = counted.iter().map(|(_, weight)| weight).sum();
-        let shares = counted.iter().map(|(own, weight)| own.mean * weight / total);
-        let component = |&(own, weight): &(Corrected, f64)| {
-            let [q05, q95] = own.interval?;
+        let shares = counted
+            .iter()
+            .map(|(corrected, weight)| corrected.mean * weight / total);
+        let component = |&(corrected, weight): &(Corrected, f64)| {
+            let [q05, q95] = corrected.interval?;
             Some(Component {
-                mean: own.mean,
+                mean: corrected.mean,
                 scale: Some((q95 - q05) / (2.0 * TO_Q95)),
                 weight,
             })
@@ -75,35 +81,35 @@ mod tests {
             ..rows[0].clone()
         };
         let of_model = |&(corrected, weight): &(Option<f64>, f64)| {
-            let own = corrected.map(|mean| Corrected {
+            let prediction = corrected.map(|mean| Corrected {
                 mean,
                 interval: Some([mean - TO_Q95, mean + TO_Q95]),
             });
-            (own, weight)
+            (prediction, weight)
         };
-        CombinedRow::of(&row, corrected.iter().map(of_model))
+        CombinedRow::new(&row, corrected.iter().map(of_model))
     }
 
     /// The same of models that count alike.
     fn combined(corrected: &[Option<f64>]) -> CombinedRow {
-        weighted(&corrected.iter().map(|own| (*own, 1.0)).collect::<Vec<_>>())
+        weighted(&corrected.iter().map(|mean| (*mean, 1.0)).collect::<Vec<_>>())
     }
 
     #[test]
     fn the_mean_is_weighted() {
-        let own = weighted(&[(Some(1.0), 1.0), (Some(5.0), 0.25), (Some(1e6), 0.0)]);
+        let row = weighted(&[(Some(1.0), 1.0), (Some(5.0), 0.25), (Some(1e6), 0.0)]);
         assert!(
-            (own.mean.unwrap() - 1.8).abs() < 1e-12 && own.models == 2,
-            "{own:?}"
+            (row.mean.unwrap() - 1.8).abs() < 1e-12 && row.models == 2,
+            "{row:?}"
         );
     }
 
     #[test]
     fn models_that_err_to_both_sides_are_better_together() {
-        let own = combined(&[Some(2.0), None, Some(-2.0)]);
-        assert_eq!((own.mean, own.models), (Some(0.0), 2));
+        let row = combined(&[Some(2.0), None, Some(-2.0)]);
+        assert_eq!((row.mean, row.models), (Some(0.0), 2));
         assert_eq!(combined(&[Some(2.0)]).covered(), Some(false));
-        assert_eq!(own.covered(), Some(true));
+        assert_eq!(row.covered(), Some(true));
     }
 
     #[test]
@@ -121,7 +127,7 @@ mod tests {
 
     #[test]
     fn without_a_correction_there_is_nothing_to_combine() {
-        let own = combined(&[None]);
-        assert_eq!((own.mean, own.interval, own.models), (None, None, 0));
+        let row = combined(&[None]);
+        assert_eq!((row.mean, row.interval, row.models), (None, None, 0));
     }
 }

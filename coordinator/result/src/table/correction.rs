@@ -23,13 +23,13 @@ pub(crate) struct Corrections<'a> {
 }
 
 impl<'a> Corrections<'a> {
-    pub(crate) fn of(calibration: &'a FinishedCalibration) -> Self {
-        let sigmas = FixedSigmas::of(calibration);
+    pub(crate) fn new(calibration: &'a FinishedCalibration) -> Self {
+        let sigmas = FixedSigmas::new(calibration);
         let correction = |channel: Channel| {
             let sigma = sigmas
                 .get(channel)
                 .ok_or(format!("{} has no noise", channel.words()))?;
-            Correction::of(calibration, channel, sigma.sd)
+            Correction::new(calibration, channel, sigma.sd)
         };
         Corrections {
             calibration,
@@ -72,53 +72,53 @@ fn group(run: &TestRun) -> Group {
 }
 
 impl Correction {
-    fn of(calibration: &FinishedCalibration, channel: Channel, noise_sd: f64) -> Result<Self, String> {
+    fn new(calibration: &FinishedCalibration, channel: Channel, noise_sd: f64) -> Result<Self, String> {
         let spec = &calibration.spec;
         let all = &spec.experiment.runs;
         let measured = |run: usize| all[run].measured[channel.index()];
         let fitted = spec.fit_runs.iter().filter(|&&run| measured(run).is_some());
         let fitted: Vec<usize> = fitted.copied().collect();
         let runs: Vec<&TestRun> = fitted.iter().map(|&run| &all[run]).collect();
-        let conditions = Conditions::of(&runs);
-        let least = DiscrepancyProcess::min_misfits(conditions.axes.len());
+        let conditions = Conditions::new(&runs);
+        let min = DiscrepancyProcess::min_misfits(conditions.axes.len());
         let members = repeated(&runs);
         let name = channel.words();
-        let most = DiscrepancyProcess::MAX_MISFITS;
-        if members.len() > most {
+        let max = DiscrepancyProcess::MAX_MISFITS;
+        if members.len() > max {
             let count = members.len();
             return Err(format!(
-                "{name} has {count} fitted conditions, and a discrepancy is computed for at most {most}"
+                "{name} has {count} fitted conditions, and a discrepancy is computed for at most {max}"
             ));
         }
-        if conditions.axes.is_empty() || members.len() < least {
+        if conditions.axes.is_empty() || members.len() < min {
             return Err(match runs.len() {
                 0 => format!("{name} has no fitted measurement"),
                 _ if conditions.axes.is_empty() => format!("{name} was fitted in one condition"),
                 _ => format!(
-                    "{name} has {}, and a discrepancy over {} needs {least}",
+                    "{name} has {}, and a discrepancy over {} needs {min}",
                     number::count(members.len(), "fitted condition"),
                     conditions.names()
                 ),
             });
         }
-        let of_condition = |own: Vec<usize>| own.into_iter().map(|i| fitted[i]).collect();
-        let members: Vec<Vec<usize>> = members.into_iter().map(of_condition).collect();
+        let positions = |repeats: Vec<usize>| repeats.into_iter().map(|i| fitted[i]).collect();
+        let members: Vec<Vec<usize>> = members.into_iter().map(positions).collect();
         let mut groups: Vec<Group> = runs.iter().map(|&run| group(run)).collect();
         groups.sort();
         groups.dedup();
         let draws = means(calibration, channel, &members);
-        let misfit = |(condition, own): (usize, &Vec<usize>)| {
-            let repeats: Vec<&TestRun> = own.iter().map(|&run| &all[run]).collect();
-            let values: Vec<f64> = own.iter().filter_map(|&run| measured(run)).collect();
-            let of_draws: Vec<f64> = draws.iter().map(|(_, means)| means[condition]).collect();
-            let variances = own
+        let misfit = |(condition, repeated): (usize, &Vec<usize>)| {
+            let repeats: Vec<&TestRun> = repeated.iter().map(|&run| &all[run]).collect();
+            let values: Vec<f64> = repeated.iter().filter_map(|&run| measured(run)).collect();
+            let modelled: Vec<f64> = draws.iter().map(|(_, means)| means[condition]).collect();
+            let variances = repeated
                 .iter()
                 .map(|&run| noise_variance(calibration, run, channel, noise_sd));
             Some(Misfit {
                 point: conditions.mean_point(&repeats),
                 group: groups.binary_search(&group(repeats[0])).ok()?,
-                value: mean(&values)? - mean(&of_draws)?,
-                noise_variance: variances.sum::<f64>() / (own.len() * own.len()) as f64,
+                value: mean(&values)? - mean(&modelled)?,
+                noise_variance: variances.sum::<f64>() / (repeated.len() * repeated.len()) as f64,
             })
         };
         let misfits: Option<Vec<Misfit>> = members.iter().enumerate().map(misfit).collect();
@@ -140,26 +140,26 @@ impl Correction {
         run: usize,
         model: Predictive,
     ) -> Result<Corrected, String> {
-        let own = &calibration.spec.experiment.runs[run];
-        if let Some(reason) = self.conditions.beside(self.channel.words(), own) {
+        let predicted = &calibration.spec.experiment.runs[run];
+        if let Some(reason) = self.conditions.reason_beside(self.channel.words(), predicted) {
             return Err(reason);
         }
         let discrepancy = match self.members.iter().position(|members| members.contains(&run)) {
             Some(condition) => self.process.without(condition),
             // A group that was not fitted comes after those that were.
             None => self.process.at(
-                &self.conditions.point(own),
+                &self.conditions.point(predicted),
                 self.groups
-                    .binary_search(&group(own))
+                    .binary_search(&group(predicted))
                     .unwrap_or(self.groups.len()),
             ),
         };
         let (shift, spread) = self.paired(calibration, run, &discrepancy);
         let noise = noise_variance(calibration, run, self.channel, self.noise_sd);
-        let component = |own: &DiscrepancyComponent| Component {
-            mean: model.mean + own.mean + shift,
-            scale: Some((own.variance + spread * spread + noise).sqrt()),
-            weight: own.probability,
+        let component = |part: &DiscrepancyComponent| Component {
+            mean: model.mean + part.mean + shift,
+            scale: Some((part.variance + spread * spread + noise).sqrt()),
+            weight: part.probability,
         };
         let components: Vec<Component> = discrepancy.components.iter().map(component).collect();
         let law = calibration.spec.likelihood.law();
@@ -175,16 +175,16 @@ impl Correction {
     /// alone, and the standard deviation of the corrected value. Where a draw moves the model in the run and in the fitted conditions
     /// alike, the correction takes it back.
     fn paired(&self, calibration: &FinishedCalibration, run: usize, discrepancy: &Discrepancy) -> (f64, f64) {
-        let own = values(calibration, run, self.channel);
+        let values = values(calibration, run, self.channel);
         let taken = |means: &[f64]| -> f64 {
             let weighted = means.iter().zip(&discrepancy.weights);
             weighted.map(|(mean, weight)| mean * weight).sum()
         };
         let all: Vec<f64> = self.draws.iter().map(|(_, means)| taken(means)).collect();
         let pairs = self.draws.iter().zip(&all);
-        let pairs = pairs.filter_map(|((number, _), taken)| Some((own.get(number)?, *taken)));
+        let pairs = pairs.filter_map(|((number, _), taken)| Some((values.get(number)?, *taken)));
         let (corrected, paired): (Vec<f64>, Vec<f64>) =
-            pairs.map(|(own, taken)| (own - taken, taken)).unzip();
+            pairs.map(|(value, taken)| (value - taken, taken)).unzip();
         let shift = mean(&all)
             .zip(mean(&paired))
             .map_or(0.0, |(all, paired)| all - paired);
@@ -200,12 +200,16 @@ fn means(
 ) -> Vec<(usize, Vec<f64>)> {
     let of_runs: Vec<Vec<BTreeMap<usize, f64>>> = members
         .iter()
-        .map(|own| own.iter().map(|&run| values(calibration, run, channel)).collect())
+        .map(|runs| {
+            runs.iter()
+                .map(|&run| values(calibration, run, channel))
+                .collect()
+        })
         .collect();
     let numbers = of_runs[0][0].keys();
     let of_draw = |number: &usize| {
-        let of_condition = |own: &Vec<BTreeMap<usize, f64>>| {
-            let values: Option<Vec<f64>> = own.iter().map(|values| values.get(number).copied()).collect();
+        let of_condition = |runs: &Vec<BTreeMap<usize, f64>>| {
+            let values: Option<Vec<f64>> = runs.iter().map(|values| values.get(number).copied()).collect();
             mean(&values?)
         };
         let means: Option<Vec<f64>> = of_runs.iter().map(of_condition).collect();
@@ -216,7 +220,7 @@ fn means(
 
 /// The model's values of a run and channel by number of the final draw.
 fn values(calibration: &FinishedCalibration, run: usize, channel: Channel) -> BTreeMap<usize, f64> {
-    let Some(place) = RunPosition::of(&calibration.spec, run) else {
+    let Some(place) = RunPosition::find(&calibration.spec, run) else {
         return BTreeMap::new();
     };
     let of_draw = |(number, _, observables, position): (usize, _, &Observables, usize)| {
@@ -228,7 +232,7 @@ fn values(calibration: &FinishedCalibration, run: usize, channel: Channel) -> BT
 /// Variance of one measurement of a run: noise, and the scatter of the soil.
 fn noise_variance(calibration: &FinishedCalibration, run: usize, channel: Channel, noise_sd: f64) -> f64 {
     let sd = calibration.spec.experiment.runs[run].sd[channel.index()].unwrap_or(noise_sd);
-    let place = RunPosition::of(&calibration.spec, run);
+    let place = RunPosition::find(&calibration.spec, run);
     let draws = place.into_iter().flat_map(|place| accepted(calibration, place));
     let squares: Vec<f64> = draws
         .map(|(_, theta, observables, position)| {
@@ -281,7 +285,7 @@ mod tests {
             .iter()
             .position(|run| run.name == "h1")
             .unwrap();
-        let correction = Correction::of(&calibration, Channel::DrawbarPull, 1.0).unwrap();
+        let correction = Correction::new(&calibration, Channel::DrawbarPull, 1.0).unwrap();
         let discrepancy = correction.process.at(
             &correction
                 .conditions
@@ -305,12 +309,12 @@ mod tests {
                 held_out.together = Err(record::RejectionReason("no balance".to_owned()));
             }
         }
-        let of = |own: &FinishedCalibration| {
-            let row = row(own, "h1");
+        let predictions = |calibration: &FinishedCalibration| {
+            let row = row(calibration, "h1");
             (row.predicted.unwrap(), row.corrected.unwrap())
         };
-        let (predicted, corrected) = of(&whole);
-        let (moved, paired) = of(&fewer);
+        let (predicted, corrected) = predictions(&whole);
+        let (moved, paired) = predictions(&fewer);
         assert!(
             (moved - predicted - 1.0 / 3.0).abs() < 0.05,
             "{moved} {predicted}"

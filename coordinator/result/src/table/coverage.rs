@@ -13,27 +13,27 @@ pub struct Coverage {
     /// Inside.
     pub inside: usize,
     /// With an interval.
-    pub of: usize,
+    pub total: usize,
 }
 
 impl Coverage {
     /// Counts rows; `None` where no row has an interval.
     pub fn count<'a>(rows: impl Iterator<Item = &'a ComparisonRow>) -> Option<Self> {
-        Self::of(rows.filter_map(ComparisonRow::covered))
+        Self::from_outcomes(rows.filter_map(ComparisonRow::covered))
     }
 
     /// The same by the intervals of the corrected predictions.
     pub fn count_corrected<'a>(rows: impl Iterator<Item = &'a ComparisonRow>) -> Option<Self> {
-        Self::of(rows.filter_map(ComparisonRow::covered_corrected))
+        Self::from_outcomes(rows.filter_map(ComparisonRow::covered_corrected))
     }
 
     /// Counts which of them are inside; `None` of none.
-    pub fn of(covered: impl Iterator<Item = bool>) -> Option<Self> {
+    pub fn from_outcomes(covered: impl Iterator<Item = bool>) -> Option<Self> {
         let covered: Vec<bool> = covered.collect();
         let inside = covered.iter().filter(|c| **c).count();
         (!covered.is_empty()).then_some(Coverage {
             inside,
-            of: covered.len(),
+            total: covered.len(),
         })
     }
 
@@ -41,13 +41,13 @@ impl Coverage {
     /// range of the binomial distribution.
     pub fn expected(self) -> [usize; 2] {
         let tail = 0.5 * (1.0 - EXPECTED);
-        [quantile(self.of, tail), quantile(self.of, 1.0 - tail)]
+        [quantile(self.total, tail), quantile(self.total, 1.0 - tail)]
     }
 
     /// `42 of 48 (44 to 47 expected)`.
     pub fn words(self) -> String {
         let [low, high] = self.expected();
-        format!("{} of {} ({low} to {high} expected)", self.inside, self.of)
+        format!("{} of {} ({low} to {high} expected)", self.inside, self.total)
     }
 }
 
@@ -73,8 +73,8 @@ mod tests {
     #[test]
     fn the_expected_range_is_the_binomial_s() {
         // P(0 of 1) = 0.1 and P(1 of 1) = 0.9: either may happen.
-        assert_eq!(Coverage { inside: 1, of: 1 }.expected(), [0, 1]);
+        assert_eq!(Coverage { inside: 1, total: 1 }.expected(), [0, 1]);
         // Of ten: P(<= 6) = 0.0128, P(<= 7) = 0.0702, P(10) = 0.349.
-        assert_eq!(Coverage { inside: 9, of: 10 }.expected(), [7, 10]);
+        assert_eq!(Coverage { inside: 9, total: 10 }.expected(), [7, 10]);
     }
 }

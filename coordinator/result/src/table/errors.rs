@@ -49,21 +49,21 @@ pub struct AllError {
 impl ErrorTable {
     /// Errors of the posterior-mean prediction; `None` without rows.
     pub fn of_model<'a>(rows: impl Iterator<Item = &'a ComparisonRow>) -> Option<ErrorTable> {
-        Self::of(rows.map(|r| (r, r.predicted)))
+        Self::new(rows.map(|r| (r, r.predicted)))
     }
 
     /// Errors of interpolation without physics where the model has a prediction too; `None` where there is no such row.
     pub fn of_baseline<'a>(rows: impl Iterator<Item = &'a ComparisonRow>) -> Option<ErrorTable> {
-        Self::of(rows.map(|r| (r, r.interpolated.filter(|_| r.predicted.is_some()))))
+        Self::new(rows.map(|r| (r, r.interpolated.filter(|_| r.predicted.is_some()))))
     }
 
     /// Errors of the corrected prediction; `None` where there is none.
     pub fn of_corrected<'a>(rows: impl Iterator<Item = &'a ComparisonRow>) -> Option<ErrorTable> {
-        Self::of(rows.map(|r| (r, r.corrected)))
+        Self::new(rows.map(|r| (r, r.corrected)))
     }
 
     /// Errors of any predictions; `None` where there is none.
-    pub fn of<'a>(rows: impl Iterator<Item = (&'a ComparisonRow, Option<f64>)>) -> Option<ErrorTable> {
+    pub fn new<'a>(rows: impl Iterator<Item = (&'a ComparisonRow, Option<f64>)>) -> Option<ErrorTable> {
         let mut squares: BTreeMap<Channel, Squares> = BTreeMap::new();
         let mut all = Squares::default();
         let mut unpredicted = 0;

@@ -49,9 +49,9 @@ pub struct FixedSigmas(BTreeMap<Channel, FixedSigma>);
 impl FixedSigmas {
     /// Of a study whose first calibration this is: declared; else the scatter of fitted repeats; else the noise that the
     /// calibration inferred.
-    pub fn of(first: &FinishedCalibration) -> Self {
-        let own = |channel| Some((channel, fixed_sigma(first, channel)?));
-        FixedSigmas(Channel::ALL.into_iter().filter_map(own).collect())
+    pub fn new(first: &FinishedCalibration) -> Self {
+        let sigma = |channel| Some((channel, fixed_sigma(first, channel)?));
+        FixedSigmas(Channel::ALL.into_iter().filter_map(sigma).collect())
     }
 
     /// That of a channel.
@@ -71,7 +71,7 @@ impl FixedSigmas {
     /// `pull 1.2 N (declared), sinkage 0.58 mm (from repeats of a condition)`.
     pub fn words(&self) -> String {
         let words = self.0.iter().map(|(&channel, sigma)| {
-            let unit = ShownUnit::of(channel);
+            let unit = ShownUnit::new(channel);
             let sd = number::significant(sigma.sd * unit.factor, 2);
             format!(
                 "{} {sd} {} ({})",
@@ -143,7 +143,7 @@ mod tests {
     #[test]
     fn a_declared_noise_comes_first_and_an_inferred_one_last() {
         let calibration = fixture::calibration();
-        let sigmas = FixedSigmas::of(&calibration);
+        let sigmas = FixedSigmas::new(&calibration);
         let pull = sigmas.get(Channel::DrawbarPull).unwrap();
         assert_eq!((pull.sd, pull.source), (1.0, SigmaSource::Declared));
         // Three fitted measurements at three conditions: no repeats.
@@ -159,7 +159,7 @@ mod tests {
 
     #[test]
     fn errors_of_different_calibrations_are_in_the_same_noise() {
-        let sigmas = FixedSigmas::of(&fixture::calibration());
+        let sigmas = FixedSigmas::new(&fixture::calibration());
         let table = fixture::calibration()
             .comparison()
             .fit

@@ -93,13 +93,13 @@ pub fn error_groups(rows: &[ComparisonRow]) -> Vec<ErrorGroup> {
     ];
     let mut groups = Vec::new();
     for usage in [RunUse::Fit, RunUse::Holdout] {
-        let own = || rows_of(rows, usage);
+        let selected = || rows_of(rows, usage);
         for (by, value) in conditions {
             // The same levels for both uses, so that they can be compared.
             let levels = few_levels(rows.iter().map(value));
             for level in levels.iter().filter(|_| levels.len() > 1) {
                 let Level { from, to } = *level;
-                let channels = errors(own().filter(|r| level.holds(value(r))));
+                let channels = errors(selected().filter(|r| level.holds(value(r))));
                 groups.push(ErrorGroup {
                     usage,
                     by,
@@ -120,7 +120,7 @@ pub fn error_groups(rows: &[ComparisonRow]) -> Vec<ErrorGroup> {
                 wheel: Some((*wheel).to_owned()),
                 from: None,
                 to: None,
-                channels: errors(own().filter(|r| r.wheel == *wheel)),
+                channels: errors(selected().filter(|r| r.wheel == *wheel)),
             });
         }
     }
@@ -138,17 +138,17 @@ fn errors<'a>(rows: impl Iterator<Item = &'a ComparisonRow>) -> BTreeMap<String,
                 .push(residual);
         }
     }
-    let error = |own: &Vec<f64>| {
-        let count = own.len() as f64;
+    let error = |residuals: &Vec<f64>| {
+        let count = residuals.len() as f64;
         GroupError {
-            rmse_sigma: (own.iter().map(|r| r * r).sum::<f64>() / count).sqrt(),
-            mean_sigma: own.iter().sum::<f64>() / count,
-            runs: own.len(),
+            rmse_sigma: (residuals.iter().map(|r| r * r).sum::<f64>() / count).sqrt(),
+            mean_sigma: residuals.iter().sum::<f64>() / count,
+            runs: residuals.len(),
         }
     };
     residuals
         .iter()
-        .map(|(channel, own)| (channel.clone(), error(own)))
+        .map(|(channel, residuals)| (channel.clone(), error(residuals)))
         .collect()
 }
 

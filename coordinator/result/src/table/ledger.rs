@@ -39,7 +39,7 @@ pub struct LedgerRow {
 impl Study {
     /// The noise sds that all lines of the ledger are measured by.
     pub fn fixed_sigmas(&self) -> FixedSigmas {
-        FixedSigmas::of(&self.lead)
+        FixedSigmas::new(&self.lead)
     }
 
     /// The ledger, line by line.
@@ -124,7 +124,7 @@ mod tests {
         };
         assert_eq!(marked(0.0, &|_| ()), []);
         assert_eq!(marked(0.05, &|_| ()), [Channel::Sinkage]);
-        assert_eq!(marked(0.05, &|own| own.row.experiment += 1), []);
+        assert_eq!(marked(0.05, &|extension| extension.row.experiment += 1), []);
     }
 
     #[test]
@@ -133,8 +133,11 @@ mod tests {
         let after = || {
             let mut refused = fixture::with_refused_runs();
             refused.row.id += 1;
-            let holdouts = refused.predictions.iter_mut().flat_map(|own| &mut own.holdout);
-            for observables in holdouts.flat_map(|own| own.alone.values_mut().flatten()) {
+            let holdouts = refused
+                .predictions
+                .iter_mut()
+                .flat_map(|prediction| &mut prediction.holdout);
+            for observables in holdouts.flat_map(|holdout| holdout.alone.values_mut().flatten()) {
                 observables.drawbar_pull_n.iter_mut().for_each(|f| *f += 500.0);
             }
             refused

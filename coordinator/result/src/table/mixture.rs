@@ -113,9 +113,9 @@ mod tests {
     #[test]
     fn quantiles_of_one_normal_are_the_normal_s() {
         let draws = [component(3.0, 2.0, 1.0); 5];
-        let of = |p| quantile(&draws, ErrorLaw::Gaussian, p);
-        assert!((of(0.95) - (3.0 + 2.0 * 1.644_853_627)).abs() < 1e-6);
-        assert!((of(0.05) - (3.0 - 2.0 * 1.644_853_627)).abs() < 1e-6);
+        let at = |p| quantile(&draws, ErrorLaw::Gaussian, p);
+        assert!((at(0.95) - (3.0 + 2.0 * 1.644_853_627)).abs() < 1e-6);
+        assert!((at(0.05) - (3.0 - 2.0 * 1.644_853_627)).abs() < 1e-6);
     }
 
     #[test]

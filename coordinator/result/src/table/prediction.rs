@@ -58,8 +58,8 @@ pub struct PredictionRow {
 }
 
 impl PredictionRow {
-    fn of(own: &CombinedRow) -> Self {
-        let row = own.row.clone();
+    fn new(combined: &CombinedRow) -> Self {
+        let row = combined.row.clone();
         PredictionRow {
             run: row.run,
             usage: row.usage,
@@ -77,10 +77,10 @@ impl PredictionRow {
             corrected: row.corrected,
             corrected_q05: row.corrected_q05,
             corrected_q95: row.corrected_q95,
-            combined: own.mean,
-            combined_q05: own.interval.map(|[q05, _]| q05),
-            combined_q95: own.interval.map(|[_, q95]| q95),
-            models: own.models,
+            combined: combined.mean,
+            combined_q05: combined.interval.map(|[q05, _]| q05),
+            combined_q95: combined.interval.map(|[_, q95]| q95),
+            models: combined.models,
             interpolated: row.interpolated,
         }
     }
@@ -89,7 +89,7 @@ impl PredictionRow {
 impl Study {
     /// Every measurement that the current model is compared with.
     pub fn predictions(&self) -> Vec<PredictionRow> {
-        self.combined().iter().map(PredictionRow::of).collect()
+        self.combined().iter().map(PredictionRow::new).collect()
     }
 }
 
@@ -140,7 +140,7 @@ mod tests {
     fn a_fit_without_draws_has_its_own_predictions() {
         let study = Study::from(fixture::search());
         let rows = study.combined();
-        assert!(rows.iter().any(|own| own.row.predicted.is_some()));
+        assert!(rows.iter().any(|row| row.row.predicted.is_some()));
         let csv = to_csv(&study.predictions());
         assert_eq!(csv.lines().count(), 1 + rows.len());
     }
@@ -151,7 +151,7 @@ mod tests {
         let csv = to_csv(&study.predictions());
         let lines: Vec<&str> = csv.lines().collect();
         assert_eq!(lines.len(), 1 + study.lead.comparison().rows.len());
-        let column = |name: &str| lines[0].split(',').position(|own| own == name).unwrap();
+        let column = |name: &str| lines[0].split(',').position(|title| title == name).unwrap();
         let h1 = lines
             .iter()
             .find(|line| line.starts_with("h1,holdout") && line.contains("pull"));

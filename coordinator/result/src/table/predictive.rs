@@ -60,7 +60,9 @@ pub fn predictive(
     channel: Channel,
 ) -> Option<Predictive> {
     let refusal = || calibration.refusal(run);
-    if calibration.spec.holdout_runs.contains(&run) && refusal().is_some_and(|own| own.is_at_half_or_more()) {
+    if calibration.spec.holdout_runs.contains(&run)
+        && refusal().is_some_and(|refusal| refusal.is_at_half_or_more())
+    {
         return None;
     }
     let draws = new_measurements(calibration, levels, run, channel)?;
@@ -109,8 +111,8 @@ pub struct NewMeasurements<'a> {
 
 impl<'a> NewMeasurements<'a> {
     /// Of a calibration.
-    pub fn of(calibration: &'a FinishedCalibration) -> Self {
-        let levels = Levels::of(calibration);
+    pub fn new(calibration: &'a FinishedCalibration) -> Self {
+        let levels = Levels::new(calibration);
         NewMeasurements { calibration, levels }
     }
 
@@ -132,7 +134,7 @@ fn new_measurements(
 ) -> Option<Vec<NewMeasurement>> {
     let spec = &calibration.spec;
     let source = noise_source(calibration, run, channel);
-    let place = RunPosition::of(spec, run)?;
+    let place = RunPosition::find(spec, run)?;
     let of_draw = |(draw, theta, observables, position): (usize, &[f64], &Observables, usize)| {
         let noise_sd = source.map(|s| match s {
             ErrorSd::Known(sd) => sd,
@@ -179,7 +181,7 @@ pub struct Levels(Vec<[Vec<(f64, f64)>; 4]>);
 
 impl Levels {
     /// The values of every final draw of a calibration.
-    pub fn of(calibration: &FinishedCalibration) -> Self {
+    pub fn new(calibration: &FinishedCalibration) -> Self {
         let draws = calibration.predictive_draws().iter();
         Levels(draws.map(|draw| Self::at(&calibration.spec, draw)).collect())
     }
@@ -206,8 +208,8 @@ impl Levels {
 }
 
 /// A sd widened by others; itself, to the bit, where these are 0.
-fn widened(sd: f64, others: [f64; 2]) -> f64 {
-    let more: f64 = others.iter().map(|o| o * o).sum();
+fn widened(sd: f64, further: [f64; 2]) -> f64 {
+    let more: f64 = further.iter().map(|o| o * o).sum();
     if more > 0.0 { (sd * sd + more).sqrt() } else { sd }
 }
 
@@ -221,7 +223,7 @@ pub fn discrepancy_posterior(calibration: &FinishedCalibration) -> Vec<(Channel,
     let is_unknown =
         |channel: &Channel| spec.likelihood_settings.discrepancies[channel.index()] == Discrepancy::Unknown;
     let unknown = Channel::ALL.into_iter().filter(|c| is_unknown(c) && is_fitted(c));
-    let draws = Levels::of(calibration).0;
+    let draws = Levels::new(calibration).0;
     let posterior = |channel: Channel| {
         let mut sum: Vec<(f64, f64)> = discrepancy_levels().into_iter().map(|m| (m, 0.0)).collect();
         for levels in &draws {
@@ -254,7 +256,7 @@ pub(super) enum RunPosition {
 
 impl RunPosition {
     /// `None` of a run that is neither fitted nor held out.
-    pub(super) fn of(spec: &Spec, run: usize) -> Option<Self> {
+    pub(super) fn find(spec: &Spec, run: usize) -> Option<Self> {
         let position = |runs: &[usize]| runs.iter().position(|&r| r == run);
         match position(&spec.fit_runs) {
             Some(position) => Some(RunPosition::Fit(position)),

@@ -77,12 +77,12 @@ fn error(
     let names: BTreeSet<&str> = tests.iter().copied().collect();
     let mut within = Vec::with_capacity(residuals.len());
     for name in &names {
-        let own: Vec<f64> = (0..tests.len())
+        let of_test: Vec<f64> = (0..tests.len())
             .filter(|&i| tests[i] == *name)
             .map(|i| residuals[i])
             .collect();
-        let mean = own.iter().sum::<f64>() / own.len() as f64;
-        within.extend(own.iter().map(|r| r - mean));
+        let mean = of_test.iter().sum::<f64>() / of_test.len() as f64;
+        within.extend(of_test.iter().map(|r| r - mean));
     }
     Some(ReadingError {
         test,

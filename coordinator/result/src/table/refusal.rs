@@ -72,7 +72,7 @@ mod tests {
         let half = row.refused.clone().unwrap();
         assert_eq!((half.draws, half.of), (10, 19));
         assert!(half.is_at_half_or_more() && row.predicted.is_none() && row.q05.is_none());
-        let new = crate::NewMeasurements::of(&refused);
+        let new_measurements = crate::NewMeasurements::new(&refused);
         let place = refused
             .spec
             .experiment
@@ -80,7 +80,7 @@ mod tests {
             .iter()
             .position(|run| run.name == "h2");
         // What the other draws say is told all the same: it judges nothing.
-        let told = new.at(place.unwrap(), shared::channel::Channel::DrawbarPull);
-        assert_eq!(told.len(), 9);
+        let measurements = new_measurements.at(place.unwrap(), shared::channel::Channel::DrawbarPull);
+        assert_eq!(measurements.len(), 9);
     }
 }

@@ -25,7 +25,7 @@ pub struct Judgement {
 
 impl Judgement {
     /// Of rows, in the noise of a study.
-    pub(super) fn of(rows: &[ComparisonRow], sigmas: &FixedSigmas) -> Self {
+    pub(super) fn new(rows: &[ComparisonRow], sigmas: &FixedSigmas) -> Self {
         let table = |table: Option<ErrorTable>| table.map(|table| table.in_fixed_sigmas(sigmas));
         let coverage = Coverage::count(rows.iter());
         let is_beyond = |row: &&ComparisonRow| row.interpolated_over == Some(InterpolatedOver::Extrapolation);
@@ -39,7 +39,7 @@ impl Judgement {
             model_beside: table(ErrorTable::of_model(both())),
             extrapolated: rows.iter().filter(is_beyond).count(),
             inside: coverage.map_or(0, |c| c.inside),
-            with_interval: coverage.map_or(0, |c| c.of),
+            with_interval: coverage.map_or(0, |c| c.total),
         }
     }
 }

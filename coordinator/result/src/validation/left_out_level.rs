@@ -64,9 +64,12 @@ fn by_value(factor: Factor, runs: &[&TestRun], values: &[f64]) -> Vec<LeftOutLev
     for ((level, &value), run) in levels_of(values).into_iter().zip(values).zip(runs) {
         levels.entry(level).or_default().push((value, run.name.clone()));
     }
-    let level = |own: Vec<(f64, String)>| {
-        let from = own.iter().map(|(value, _)| *value).fold(f64::INFINITY, f64::min);
-        let to = own
+    let level = |members: Vec<(f64, String)>| {
+        let from = members
+            .iter()
+            .map(|(value, _)| *value)
+            .fold(f64::INFINITY, f64::min);
+        let to = members
             .iter()
             .map(|(value, _)| *value)
             .fold(f64::NEG_INFINITY, f64::max);
@@ -74,7 +77,7 @@ fn by_value(factor: Factor, runs: &[&TestRun], values: &[f64]) -> Vec<LeftOutLev
             name: factor.words(from, to),
             from: Some(from),
             to: Some(to),
-            runs: own.into_iter().map(|(_, run)| run).collect(),
+            runs: members.into_iter().map(|(_, run)| run).collect(),
         }
     };
     levels.into_values().map(level).collect()

@@ -1,4 +1,4 @@
-//! What is predicted of every level from the others.
+//! What is predicted of every level from the rest.
 
 use std::collections::BTreeMap;
 
@@ -12,7 +12,7 @@ use crate::finished_calibration::FinishedCalibration;
 use crate::table::fixed_sigma::{FixedSigma, FixedSigmas};
 use crate::table::row::ComparisonRow;
 
-/// The levels of a factor, each predicted from the others.
+/// The levels of a factor, each predicted from the rest.
 #[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
 pub struct Validation {
     /// The calibration whose model predicts.
@@ -33,7 +33,7 @@ pub struct Validation {
     pub total: Judgement,
 }
 
-/// A level, predicted from the others.
+/// A level, predicted from the rest.
 #[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
 pub struct ValidatedLevel {
     /// The level.
@@ -55,21 +55,21 @@ impl ValidatedLevel {
     ///
     /// # Arguments
     /// - `of`: the calibration on all fitted runs.
-    pub fn predicted(level: LeftOutLevel, of: &FinishedCalibration, others: &FinishedCalibration) -> Self {
-        let mut rows = others.comparison().rows.clone();
+    pub fn predicted(level: LeftOutLevel, whole: &FinishedCalibration, rest: &FinishedCalibration) -> Self {
+        let mut rows = rest.comparison().rows.clone();
         rows.retain(|row| level.runs.contains(&row.run));
         let mut not_interpolated = BTreeMap::new();
-        let runs = others.spec.experiment.runs.iter().enumerate();
+        let runs = rest.spec.experiment.runs.iter().enumerate();
         for (i, _) in runs.filter(|(_, run)| level.runs.contains(&run.name)) {
-            let missing = |channel: Channel| others.interpolations().missing_at(i, channel);
+            let missing = |channel: Channel| rest.interpolations().missing_at(i, channel);
             for reason in Channel::ALL.into_iter().filter_map(missing) {
                 *not_interpolated.entry(reason.to_owned()).or_default() += 1;
             }
         }
         ValidatedLevel {
             level,
-            calibration: Some(others.row.id),
-            judgement: Some(Judgement::of(&rows, &FixedSigmas::of(of))),
+            calibration: Some(rest.row.id),
+            judgement: Some(Judgement::new(&rows, &FixedSigmas::new(whole))),
             refused: None,
             not_interpolated,
             rows,
@@ -92,24 +92,24 @@ impl ValidatedLevel {
 impl Validation {
     /// Of a calibration on all fitted runs.
     pub fn new(
-        of: &FinishedCalibration,
+        whole: &FinishedCalibration,
         leave_out: Factor,
         algorithm: AlgorithmName,
         levels: Vec<ValidatedLevel>,
     ) -> Self {
-        let sigmas = FixedSigmas::of(of);
+        let sigmas = FixedSigmas::new(whole);
         let rows: Vec<ComparisonRow> = levels
             .iter()
             .flat_map(|level| level.rows.iter().cloned())
             .collect();
         Validation {
-            calibration: of.row.id,
-            name: of.row.name.clone(),
-            effects: of.effects(),
+            calibration: whole.row.id,
+            name: whole.row.name.clone(),
+            effects: whole.effects(),
             leave_out,
             algorithm,
             fixed_sigma: sigmas.by_name(),
-            total: Judgement::of(&rows, &sigmas),
+            total: Judgement::new(&rows, &sigmas),
             levels,
         }
     }

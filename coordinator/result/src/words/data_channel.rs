@@ -46,7 +46,7 @@ impl BevameterTest {
 
 impl DataChannel {
     /// The channel of an index of the likelihood.
-    pub fn of(index: usize) -> Self {
+    pub fn from_index(index: usize) -> Self {
         match index {
             PLATE => DataChannel::Bevameter(BevameterTest::Plates),
             RING => DataChannel::Bevameter(BevameterTest::Rings),
@@ -81,7 +81,7 @@ impl DataChannel {
     /// The unit in which it is shown: percent of a stress.
     pub fn shown(self) -> ShownUnit {
         match self {
-            DataChannel::Wheel(channel) => ShownUnit::of(channel),
+            DataChannel::Wheel(channel) => ShownUnit::new(channel),
             DataChannel::Bevameter(_) => ShownUnit {
                 factor: 100.0,
                 name: "%",
@@ -92,7 +92,7 @@ impl DataChannel {
 
 impl ShownUnit {
     /// The unit in which a channel of the wheel is shown: sinkage in millimetres, everything else in SI.
-    pub fn of(channel: Channel) -> Self {
+    pub fn new(channel: Channel) -> Self {
         let (factor, name) = match channel {
             Channel::Sinkage => (1000.0, "mm"),
             other => (1.0, other.unit()),

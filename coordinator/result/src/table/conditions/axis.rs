@@ -65,7 +65,7 @@ impl Axis {
     }
 
     /// Those that tell runs apart: slip, angle, load, and the speed that was set: that of sled or rim, of which there are fewer values.
-    pub(super) fn of(runs: &[&TestRun]) -> [Axis; 4] {
+    pub(super) fn distinguishing(runs: &[&TestRun]) -> [Axis; 4] {
         let speed = match Axis::RimSpeed.count(runs) < Axis::SledSpeed.count(runs) {
             true => Axis::RimSpeed,
             false => Axis::SledSpeed,

@@ -16,8 +16,10 @@ pub(crate) struct Conditions {
 }
 
 impl Conditions {
-    pub(crate) fn of(runs: &[&TestRun]) -> Self {
-        let (axes, held) = Axis::of(runs).into_iter().partition(|axis| axis.varies(runs));
+    pub(crate) fn new(runs: &[&TestRun]) -> Self {
+        let (axes, held) = Axis::distinguishing(runs)
+            .into_iter()
+            .partition(|axis| axis.varies(runs));
         Conditions {
             axes,
             held,
@@ -48,19 +50,20 @@ impl Conditions {
     ///
     /// # Arguments
     /// - `of`: what the runs are of, to begin the sentence with.
-    pub(crate) fn beside(&self, of: &str, run: &TestRun) -> Option<String> {
-        let is_fitted = |axis: &Axis| self.runs.iter().any(|own| axis.is_same(own, run));
+    pub(crate) fn reason_beside(&self, subject: &str, run: &TestRun) -> Option<String> {
+        let is_fitted = |axis: &Axis| self.runs.iter().any(|fitted| axis.is_same(fitted, run));
         let axis = *self.held.iter().find(|axis| !is_fitted(axis))?;
         let fitted: Vec<&TestRun> = self.runs.iter().collect();
         if axis != Axis::WheelLoad || axis.count(&fitted) == 1 {
-            return Some(format!("{of} was fitted at one {} alone", axis.words()));
+            return Some(format!("{subject} was fitted at one {} alone", axis.words()));
         }
-        let loads = || fitted.iter().map(|own| axis.value(own));
-        let (least, most) = loads().fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), load| {
-            (least.min(load), most.max(load))
-        });
-        let [least, most] = [least, most].map(|load| number::significant(load, 3));
-        Some(format!("{of} was fitted at loads of {least} to {most} N alone"))
+        let loads = || fitted.iter().map(|run| axis.value(run));
+        let ends = [
+            loads().fold(f64::INFINITY, f64::min),
+            loads().fold(f64::NEG_INFINITY, f64::max),
+        ];
+        let [min, max] = ends.map(|load| number::significant(load, 3));
+        Some(format!("{subject} was fitted at loads of {min} to {max} N alone"))
     }
 }
 
@@ -68,8 +71,11 @@ impl Conditions {
 pub(crate) fn repeated(runs: &[&TestRun]) -> Vec<Vec<usize>> {
     let mut conditions: Vec<Vec<usize>> = Vec::new();
     for (i, run) in runs.iter().enumerate() {
-        match conditions.iter_mut().find(|own| repeats(runs[own[0]], run)) {
-            Some(own) => own.push(i),
+        match conditions
+            .iter_mut()
+            .find(|members| repeats(runs[members[0]], run))
+        {
+            Some(members) => members.push(i),
             None => conditions.push(vec![i]),
         }
     }

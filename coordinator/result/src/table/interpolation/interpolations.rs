@@ -18,7 +18,7 @@ pub struct Interpolations {
 
 impl Interpolations {
     /// Of every held-out measurement.
-    pub fn of(experiment: &Experiment) -> Self {
+    pub fn new(experiment: &Experiment) -> Self {
         let mut values = BTreeMap::new();
         let mut missing = BTreeMap::new();
         let mut surfaces = Surfaces::new(experiment);
@@ -95,7 +95,7 @@ mod tests {
 
     #[test]
     fn an_angle_and_a_slip_that_were_not_fitted_are_interpolated() {
-        let found = Interpolations::of(&experiment(&[
+        let found = Interpolations::new(&experiment(&[
             "a,sand,0.15,100,0.01,22,1",
             "a,sand,0.3,100,0.01,75,1",
             "a,sand,0.2,100,0.01,30,1",
@@ -106,12 +106,12 @@ mod tests {
             (1, 0.3, 75.0, InterpolatedOver::Extrapolation, 2.0),
             (2, 0.2, 30.0, InterpolatedOver::Slip, 0.2),
         ] {
-            let own = at(run);
-            assert_eq!(own.over, over, "run {run}");
+            let interpolated = at(run);
+            assert_eq!(interpolated.over, over, "run {run}");
             assert!(
-                (own.value - force(slip, angle)).abs() < within,
+                (interpolated.value - force(slip, angle)).abs() < within,
                 "run {run}: {}",
-                own.value
+                interpolated.value
             );
         }
         assert!(found.missing().is_empty());
@@ -141,20 +141,20 @@ mod tests {
             files: [("runs.csv".into(), runs)].into(),
         };
         let experiment = Experiment::parse("experiment.toml", &files).unwrap();
-        let found = Interpolations::of(&experiment);
+        let found = Interpolations::new(&experiment);
         for (i, run) in experiment
             .runs
             .iter()
             .enumerate()
             .filter(|(_, run)| run.usage == RunUse::Holdout)
         {
-            let own = found.at(i, Channel::LateralForce).unwrap();
-            assert_eq!(own.over, InterpolatedOver::Conditions);
+            let interpolated = found.at(i, Channel::LateralForce).unwrap();
+            assert_eq!(interpolated.over, InterpolatedOver::Conditions);
             assert!(
-                (own.value - force(run.slip, 30.0)).abs() < 0.5,
+                (interpolated.value - force(run.slip, 30.0)).abs() < 0.5,
                 "{}: {}",
                 run.slip,
-                own.value
+                interpolated.value
             );
         }
     }
@@ -173,13 +173,16 @@ mod tests {
             files: [("runs.csv".into(), runs)].into(),
         };
         let experiment = Experiment::parse("experiment.toml", &files).unwrap();
-        let own = Interpolations::of(&experiment).at(12, Channel::LateralForce);
-        assert!((own.unwrap().value - 9.3).abs() < 0.1, "{own:?}");
+        let interpolated = Interpolations::new(&experiment).at(12, Channel::LateralForce);
+        assert!(
+            (interpolated.unwrap().value - 9.3).abs() < 0.1,
+            "{interpolated:?}"
+        );
     }
 
     #[test]
     fn what_cannot_be_interpolated_says_why() {
-        let found = Interpolations::of(&experiment(&[
+        let found = Interpolations::new(&experiment(&[
             "a,sand,0.15,200,0.01,22,1",
             "b,sand,0.15,100,0.01,22,1",
             "a,sand,0.15,100,0.02,22,1",
@@ -198,7 +201,7 @@ mod tests {
             run.wheel_load_n = 100.0 + i as f64;
         }
         assert_eq!(
-            Interpolations::of(&scattered).missing(),
+            Interpolations::new(&scattered).missing(),
             ["wheel a on soil sand was fitted at loads of 100 to 139 N alone"]
         );
         let mut few = experiment(&["a,sand,0.15,100,0.01,22,1"]);
@@ -210,7 +213,7 @@ mod tests {
                     && (run.slip < 0.0 || run.slip_angle_deg > 1.0))
         });
         assert_eq!(
-            Interpolations::of(&few).missing(),
+            Interpolations::new(&few).missing(),
             [
                 "wheel a on soil sand has 3 fitted conditions of lateral force, and a Gaussian process over slip and slip angle needs 4"
             ]
