@@ -1,4 +1,4 @@
-//! Why a study failed, and what to do about it.
+//! The failure of a study: its reason, and advice on what to do.
 
 use shared::api::CalibrationState;
 
@@ -9,16 +9,16 @@ use crate::study_member::{Rejections, StudyMember};
 pub struct StudyFailure {
     /// Its id.
     pub calibration: i64,
-    /// Why it failed, with what the model rejected.
+    /// Reason, with the counts of rejections.
     pub reason: String,
-    /// What to do.
+    /// Advice.
     pub advice: String,
-    /// Both in a sentence.
+    /// Reason and advice in a sentence.
     pub text: String,
 }
 
 impl StudyFailure {
-    /// Of the first member that failed; `None` where none did.
+    /// Describes the failure of the first failed member; `None` if none failed.
     pub fn from_members<'a>(mut members: impl Iterator<Item = &'a StudyMember>) -> Option<StudyFailure> {
         let failed = members.find(|member| member.state == CalibrationState::Failed)?;
         let message = failed.message.as_deref().unwrap_or("no reason is stored");
@@ -37,7 +37,7 @@ impl StudyFailure {
     }
 }
 
-/// What to do where the model rejects most of the parameter vectors for this reason.
+/// Returns advice for a study whose model rejected most parameter vectors for the reason `kind`.
 fn advice(kind: Option<&str>) -> &'static str {
     match kind {
         Some("no_support") => {

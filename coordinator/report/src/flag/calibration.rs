@@ -1,4 +1,4 @@
-//! Flags of a calibration.
+//! All flags of one calibration.
 
 use job::{SetCondition, confounded_orders};
 use shared::parameters::behind;
@@ -21,12 +21,12 @@ use result::words::number;
 
 /// Ratio of posterior to prior standard deviation, in the sampler's coordinate, above which the data are called uninformative.
 const NO_CONTRACTION: f64 = 0.95;
-/// More refused runs than this are counted, not named.
+/// Maximum number of refused runs that are named.
 const SHOWN_REFUSED: usize = 3;
 /// Share of rejected parameter vectors above which the prior is questioned.
 const MANY_REJECTED: f64 = 0.5;
 
-/// All flags; a flag that casts doubt on the others comes first.
+/// Returns all flags. Those that cast doubt on the others come first.
 pub(crate) fn flags(calibration: &FinishedCalibration, diagnostics: &Diagnostics) -> Vec<Flag> {
     let mut flags: Vec<Flag> = disputed(calibration)
         .into_iter()
@@ -128,7 +128,7 @@ pub(crate) fn flags(calibration: &FinishedCalibration, diagnostics: &Diagnostics
     flags
 }
 
-/// Conditions that were set in the order of the runs.
+/// Returns a flag for each condition that was set in the order of the runs.
 fn confounded(calibration: &FinishedCalibration) -> impl Iterator<Item = Flag> {
     let confounded = confounded_orders(&calibration.spec.experiment, &calibration.spec.fit_runs);
     confounded.into_iter().map(|order| Flag {
@@ -141,7 +141,7 @@ fn confounded(calibration: &FinishedCalibration) -> impl Iterator<Item = Flag> {
     })
 }
 
-/// A sampler that did not reach equilibrium.
+/// Returns a flag if the sampler did not reach equilibrium.
 fn unbalanced(calibration: &FinishedCalibration) -> Option<Flag> {
     if calibration.row.equilibrated != Some(false) {
         return None;
@@ -161,7 +161,7 @@ fn unbalanced(calibration: &FinishedCalibration) -> Option<Flag> {
     Some(Flag::plain(FlagKind::NotEquilibrated, text))
 }
 
-/// A sentence on the holdout runs that the model refuses; `None` where it refuses none.
+/// Returns a sentence on the holdout runs that the model refuses; `None` if it refuses none.
 fn refused_holdout(calibration: &FinishedCalibration) -> Option<String> {
     let spec = &calibration.spec;
     let refused: Vec<(&str, Refusal)> = spec

@@ -1,4 +1,4 @@
-//! The effects that the study added to a model, what the searches said of them, and how much they improve it.
+//! The effects that the study added to a model, with the verdicts of the searches and the improvement of the error.
 
 use record::{Discovery, NOT_IN_LIBRARY, NextRun, addition_name, effect_of};
 
@@ -11,23 +11,23 @@ use result::words::number;
 /// An effect that the study added.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
 pub struct AddedEffect {
-    /// Its name, as the search calls it where one judged it.
+    /// Name of the effect, as the search calls it if one judged it.
     pub name: String,
-    /// The probability that a search gave it; null where none named it or left it open.
+    /// Probability that a search gave it; null if no search named it or left it open.
     pub probability: Option<f64>,
-    /// The calibration whose search that was.
+    /// The calibration that was searched.
     pub searched: Option<i64>,
-    /// The explanations that this search could not exclude beside it, by falling probability; empty where it named the effect.
+    /// Other explanations that this search could not exclude, by decreasing probability; empty if it named the effect.
     pub rivals: Vec<Alternative>,
-    /// The run that tells it from its rivals best; null without rivals, and where the search found none.
+    /// The run that best distinguishes it from its rivals; null without rivals, or if the search found no run.
     pub deciding_run: Option<NextRun>,
-    /// Error on held-out runs before and after, in the noise sds of the study; null where no held-out run was measured, or where the
-    /// study has no model that differs in this effect alone.
+    /// Holdout error before and after, in the noise standard deviations of the study; null without a holdout measurement, or if the study
+    /// has no model that differs in this effect only.
     pub held_out_noise_sds: Option<[f64; 2]>,
 }
 
 impl AddedEffect {
-    /// `slip_sinkage was missing (P 0.96) and is added: held-out error from 2.1 to 0.9 times the noise`.
+    /// Describes the effect: `slip_sinkage was missing (P 0.96) and is added: held-out error from 2.1 to 0.9 times the noise`.
     pub(super) fn words(&self) -> String {
         let name = &self.name;
         let mut text = match (self.probability, self.rivals.is_empty()) {
@@ -48,8 +48,8 @@ impl AddedEffect {
         }
     }
 
-    /// `slip_softened_pressure (P 0.32) in place of slip_sinkage cannot be excluded; slip 0.60 under 80.0 N at 20.0 mm/s would tell`;
-    /// `None` without rivals.
+    /// Describes the rivals: `slip_softened_pressure (P 0.32) in place of slip_sinkage cannot be excluded; slip 0.60 under 80.0 N at 20.0
+    /// mm/s would tell`; `None` without rivals.
     pub(crate) fn open_question(&self) -> Option<String> {
         let rivals: Vec<String> = self.rivals.iter().map(Alternative::words).collect();
         let run = self.deciding_run.as_ref();
@@ -72,7 +72,7 @@ pub(crate) fn added(study: &Study, calibration: &FinishedCalibration) -> Vec<Add
     let mut left: Vec<String> = has.iter().filter(|part| !had.contains(part)).cloned().collect();
     let order = left.clone();
     let mut found = Vec::new();
-    // The newest search comes first: further runs may have decided what an earlier one left open.
+    // Take the newest search first, because further runs may have decided what an earlier one left open.
     for round in study.rounds.iter().rev() {
         let Some(before) = study
             .calibrations()
@@ -110,14 +110,14 @@ fn position(order: &[String], parts: &[String]) -> usize {
     place.unwrap_or(order.len())
 }
 
-/// The explanation, among those that a search names or leaves open, whose parts are all among these; the one with the most parts.
+/// Returns the explanation that a search names or leaves open and whose parts are all in `left`; of several, the one with the most parts.
 fn judged(record: &Discovery, left: &[String]) -> Option<Alternative> {
     let named = record.extension.as_ref().map(|extension| {
         let name = addition_name(extension);
         let of_search = record.effects.iter().find(|e| e.name == name);
         let outside = || record.effects.iter().find(|e| e.name == NOT_IN_LIBRARY);
         let probability = of_search.or_else(outside).map_or(0.0, |e| e.probability);
-        // An effect on one wheel of several keeps its wheel; a law outside the library has the name in its file.
+        // The name of an effect on one wheel includes the wheel. The name of a law outside the library is in its file.
         let name = if of_search.is_some() {
             name
         } else {
@@ -175,7 +175,7 @@ fn of_search(
     }
 }
 
-/// The errors without and with the parts of a model, where the study has the model without them.
+/// Returns the holdout errors without and with the given parts of a model; `None` if the study has no model without them.
 fn held_out_errors(
     study: &Study,
     calibration: &FinishedCalibration,
@@ -190,7 +190,7 @@ fn held_out_errors(
     errors(study, alike(study, calibration, &rest)?, &has)
 }
 
-/// The calibration of the same measurements whose model has these parts and no others.
+/// Returns the calibration in the ledger with the same measurements whose model has exactly these parts.
 fn alike<'a>(
     study: &'a Study,
     measured: &FinishedCalibration,
@@ -203,7 +203,7 @@ fn alike<'a>(
     })
 }
 
-/// Errors on held-out runs of a calibration, and of that of the same measurements with these parts.
+/// Returns the holdout errors of a calibration, and of the one with the same measurements and these parts.
 fn errors(study: &Study, before: &FinishedCalibration, parts: &[String]) -> Option<[f64; 2]> {
     let after = alike(study, before, parts)?;
     let sigmas = study.fixed_sigmas();
@@ -213,7 +213,7 @@ fn errors(study: &Study, before: &FinishedCalibration, parts: &[String]) -> Opti
         Some((table.all.unpredicted, table.all.rmse_fixed_sigma?))
     };
     let ((before_lacks, before), (after_lacks, after)) = (error(before)?, error(after)?);
-    // Errors of models that refuse different runs do not compare.
+    // Errors of models that refuse different runs are not comparable.
     (before_lacks == after_lacks).then_some([before, after])
 }
 
@@ -296,7 +296,7 @@ mod tests {
             "{text}"
         );
         assert!(!text.contains("by hand"), "{text}");
-        // Nor is it advised again.
+        // The next steps do not advise to add it again.
         let next = Story::new(&study, &study.lead).next;
         assert!(next.steps.iter().all(|step| step.effect.is_none()), "{next:?}");
     }

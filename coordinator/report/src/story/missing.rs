@@ -1,4 +1,4 @@
-//! The effect that a model misses, and how sure the search is.
+//! The answer to "what is missing?": the effect that the model lacks, and its probability.
 
 use job::effect_name;
 use record::{Discovery, Extension, NONE, NOT_IN_LIBRARY, Verdict, effect_of};
@@ -9,24 +9,24 @@ use result::finished_calibration::FinishedCalibration;
 use result::study::Study;
 use result::words::number;
 
-/// The largest number of alternatives.
+/// Maximum number of alternatives.
 const ALTERNATIVES: usize = 3;
-/// The largest number of names of effects that were not judged.
+/// Maximum number of effects that were not judged and are named.
 const NOT_JUDGED: usize = 3;
 
-/// The answer of the search of a model.
+/// The result of the search of a model.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
 pub struct Missing {
-    /// The verdict; null where the model was not searched.
+    /// The verdict; null if the model was not searched.
     pub verdict: Option<Verdict>,
-    /// What the verdict names: one effect, or the members of a class.
+    /// The effect that the verdict names, or the members of a class.
     pub named: Vec<NamedEffect>,
-    /// Probability of what is named, together; that nothing is missing where nothing is; of the leading explanation where it is
-    /// undecided.
+    /// Sum of the probabilities of the named effects; if nothing was detected, the probability that nothing is missing; if undecided,
+    /// that of the leading explanation.
     pub probability: Option<f64>,
-    /// Other explanations, at most three: what the verdict does not name, where it is undecided what is outside its 95 % set.
+    /// At most three other explanations: those that the verdict does not name, or for an undecided verdict those outside the 95 % set.
     pub alternatives: Vec<Alternative>,
-    /// Effects that need what the experiment does not state, without those that the verdict or the alternatives name.
+    /// Effects that were not tried because the experiment lacks information, without those that the verdict or the alternatives name.
     pub not_tried: Vec<String>,
     /// Effects that the study added to the model.
     pub already_added: Vec<AddedEffect>,
@@ -39,11 +39,11 @@ pub struct Missing {
 pub struct NamedEffect {
     /// Its name.
     pub name: String,
-    /// The wheel that alone has it; null where all have.
+    /// The only wheel with the effect; null if all wheels have it.
     pub wheel: Option<String>,
 }
 
-/// The search of a calibration's model; of several the last.
+/// Returns the last search of a calibration's model.
 pub(super) fn search_of<'a>(study: &'a Study, calibration: &FinishedCalibration) -> Option<&'a Discovery> {
     let mut rounds = study.rounds.iter().rev();
     let search = rounds.find(|round| round.calibration == calibration.row.id)?;
@@ -85,7 +85,7 @@ impl Missing {
     }
 }
 
-/// The probability of the verdict.
+/// Returns the probability of the verdict.
 fn probability(record: &Discovery, named: &[NamedEffect]) -> Option<f64> {
     let effects = record.effects.iter();
     let probability = |name: &str| {
@@ -103,7 +103,7 @@ fn probability(record: &Discovery, named: &[NamedEffect]) -> Option<f64> {
     }
 }
 
-/// The explanations that the verdict does not say itself, by falling probability.
+/// Returns the explanations that the verdict does not name, by decreasing probability.
 fn alternatives(record: &Discovery, named: &[NamedEffect]) -> Vec<Alternative> {
     let leader = record.effects.iter().map(|e| e.probability).fold(0.0, f64::max);
     let is_named = |name: &str| match record.verdict {
@@ -119,7 +119,7 @@ fn alternatives(record: &Discovery, named: &[NamedEffect]) -> Vec<Alternative> {
     further.take(ALTERNATIVES).map(Alternative::from).collect()
 }
 
-/// The alternatives in words; where nothing is missing they are no news.
+/// Lists the alternatives; `None` if nothing is missing, when they do not matter.
 fn less_probable(record: &Discovery, alternatives: &[Alternative]) -> Option<String> {
     if record.verdict == Verdict::NothingDetectable || alternatives.is_empty() {
         return None;
@@ -128,7 +128,7 @@ fn less_probable(record: &Discovery, alternatives: &[Alternative]) -> Option<Str
     Some(format!("less probable: {}", words.join(", ")))
 }
 
-/// The verdict in words.
+/// Returns the verdict in words.
 fn finding(record: &Discovery, probability: Option<f64>, is_extended: bool) -> String {
     match record.verdict {
         Verdict::NothingDetectable => format!(
@@ -205,7 +205,7 @@ fn label(effect: &NamedEffect) -> String {
     }
 }
 
-/// The effects that were not tried, without the wheels, and without those that the verdict speaks of: these were weighed.
+/// Returns the effects that were not tried, without their wheels and without those that the verdict or the alternatives name.
 fn not_tried(record: &Discovery, named: &[NamedEffect], alternatives: &[Alternative]) -> Vec<String> {
     let is_named = |name: &str| {
         let mut of_set = record.effects.iter().filter(|e| e.in_credible_set);
@@ -288,7 +288,7 @@ mod tests {
             "{}",
             missing.text
         );
-        // The effects of the set were judged.
+        // The effects in the 95 % set count as judged.
         assert_eq!(missing.not_tried, ["end_wall"]);
         let class = fixture::of_a_class();
         let class = Missing::new(&class, &class.lead);
@@ -314,7 +314,7 @@ mod tests {
             missing.named.is_empty() && missing.text.contains("that nothing is missing"),
             "{missing:?}"
         );
-        // The first search still speaks of the first model.
+        // The first search still describes the first model.
         assert_eq!(Missing::new(&study, &study.lead).verdict, Some(Verdict::Named));
     }
 }

@@ -1,9 +1,9 @@
 //! The story of a calibration in three sentences: what its model gets wrong, what is missing, what to do next.
 //!
 //! # Layout
-//! - `wrong`: the errors, worst first. `pattern`: where they are.
-//! - `missing`: the searches' answer; `added`: what the study added before. `explanation`: the explanations of a search in words.
-//! - `next`: steps with their commands.
+//! - `wrong`: the errors, worst first. `pattern`: the conditions at which they are largest.
+//! - `missing`: the verdict of the search; `added`: effects that the study added before. `explanation`: explanations in words.
+//! - `next`: the next steps with their commands.
 
 mod added;
 mod explanation;
@@ -28,18 +28,18 @@ pub use wrong::{BesideInterpolation, ChannelFailure, Wrong};
 pub struct Story {
     /// The calibration.
     pub calibration: i64,
-    /// Which of the models that the job compares it is, in a sentence; null where the job has one.
+    /// A sentence on the comparison of the job's models; null if the job has one model.
     pub model: Option<String>,
     /// What its model gets wrong.
     pub wrong: Wrong,
-    /// What is missing, and how sure that is.
+    /// What is missing, with its probability.
     pub missing: Missing,
     /// What to do next.
     pub next: Next,
 }
 
 impl Story {
-    /// The story of a calibration of the study.
+    /// Describes a calibration of the study.
     pub fn new(study: &Study, calibration: &FinishedCalibration) -> Story {
         let wrong = Wrong::new(study, calibration);
         let missing = Missing::new(study, calibration);
@@ -56,7 +56,7 @@ impl Story {
         }
     }
 
-    /// The story of the study's current model; of the submitted job where no calibration has a posterior.
+    /// Describes the study's current model, or the submitted job if no calibration has a posterior.
     pub fn current(study: &Study) -> Story {
         Story::new(study, study.current().unwrap_or(&study.lead))
     }

@@ -1,4 +1,4 @@
-//! The next steps of a study, with the command of each.
+//! The answer to "what next?": the steps of a study in order, with the command of each.
 
 use std::collections::BTreeSet;
 
@@ -12,10 +12,10 @@ use result::finished_calibration::FinishedCalibration;
 use result::study::Study;
 use result::words::number;
 
-/// File of the draws in the command that writes them.
+/// File name in the command that exports the draws.
 const POSTERIOR: &str = "posterior.csv";
 
-/// The steps, the first one first; at least one.
+/// The next steps of a study, in order; at least one.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
 pub struct Next {
     /// The steps.
@@ -24,24 +24,24 @@ pub struct Next {
     pub text: String,
 }
 
-/// A step.
+/// A next step.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
 pub struct NextStep {
     /// Its kind.
     pub kind: StepKind,
     /// What to do, in a sentence.
     pub text: String,
-    /// Verb and arguments of the program `coordinator`, without the place of the study; null of what no command does.
+    /// Verb and arguments of the program `coordinator`, without the location of the study; null if no command does the step.
     pub command: Option<String>,
-    /// The effect to add, or that its runs would tell apart.
+    /// The effect to add.
     pub effect: Option<String>,
-    /// The wheel that alone has it.
+    /// The only wheel with the effect.
     pub wheel: Option<String>,
     /// The effect file to add.
     pub effect_file: Option<EffectFile>,
     /// The runs to make.
     pub runs: Vec<NextRun>,
-    /// The calibration that the runs are added to; null of a step without runs.
+    /// The calibration that the runs are added to; null for a step without runs.
     pub calibration: Option<i64>,
 }
 
@@ -61,7 +61,7 @@ pub enum StepKind {
     MakeRuns,
     /// Make a test without a rolling wheel, or runs in conditions that no run had.
     MeasureOther,
-    /// State in the experiment what it lacks.
+    /// Add missing information to the experiment.
     StateInExperiment,
     /// Use the posterior.
     Predict,
@@ -91,10 +91,10 @@ impl NextStep {
     }
 }
 
-/// The facts that the steps follow from, beside the search.
+/// Facts other than the search that determine the next steps.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Facts<'a> {
-    /// Whether noise alone explains the errors of every channel.
+    /// Whether the noise explains the errors of every channel.
     pub(super) is_within_noise: bool,
     /// The effects that the study added to the model.
     pub(super) added: &'a [AddedEffect],
@@ -152,7 +152,7 @@ fn steps(study: &Study, calibration: &FinishedCalibration, facts: Facts<'_>) -> 
         NextStep::new(StepKind::WidenPrior, text, None)
     });
     let mut steps: Vec<NextStep> = match record.verdict {
-        // Runs decide before a guess is added.
+        // Runs come before an uncertain effect is added.
         Verdict::Undecided => widen
             .into_iter()
             .chain(noise(record))
@@ -166,7 +166,7 @@ fn steps(study: &Study, calibration: &FinishedCalibration, facts: Facts<'_>) -> 
             "predict with the posterior: the model explains the runs to within the noise",
         ));
     }
-    // Which of several effects it is matters more than anything that the model with one of them leaves open.
+    // Distinguishing an added effect from its rivals comes before all other steps.
     steps.splice(0..0, deciding);
     let tests = record.other_tests.iter();
     steps.extend(tests.map(|test| NextStep::new(StepKind::MeasureOther, format!("measure {test}"), None)));
@@ -200,7 +200,7 @@ fn steps(study: &Study, calibration: &FinishedCalibration, facts: Facts<'_>) -> 
     steps
 }
 
-/// Says what makes a claim possible if the noise is inferred from too little; `None` if it is not.
+/// Proposes to state or measure the noise of channels whose inferred noise supports no claim; `None` if there are none.
 fn noise(record: &Discovery) -> Option<NextStep> {
     let channels = record.unsupported_noise.iter();
     let channels: Vec<String> = channels
@@ -215,7 +215,7 @@ fn noise(record: &Discovery) -> Option<NextStep> {
     })
 }
 
-/// Whether the study has a calibration of the same measurements with all that this one has, and these parts.
+/// Returns whether the study already has a calibration of the same measurements whose model includes this one's parts and the added ones.
 fn is_made(study: &Study, calibration: &FinishedCalibration, added: &[String]) -> bool {
     let parts = [study.parts(calibration).as_slice(), added].concat();
     let same = study
@@ -225,8 +225,8 @@ fn is_made(study: &Study, calibration: &FinishedCalibration, added: &[String]) -
     extended.any(|other| parts.iter().all(|part| other.contains(part)))
 }
 
-/// The run that tells an added effect from what the data do not exclude in its place. It is added to the model without the effect,
-/// which is then searched again with it.
+/// Proposes the run that distinguishes an added effect from its rivals. The run is added to the model without the effect, which is then
+/// searched again.
 fn deciding(added: &AddedEffect) -> Option<NextStep> {
     let (run, searched) = (added.deciding_run.clone()?, added.searched?);
     let rivals = added.rivals.iter().map(|rival| rival.name.clone());
@@ -312,7 +312,7 @@ mod tests {
     use super::*;
     use crate::fixture;
 
-    /// Errors beyond the noise, or within it.
+    /// Returns facts about a model whose errors exceed the noise.
     fn open() -> Facts<'static> {
         Facts {
             is_within_noise: false,
@@ -331,7 +331,7 @@ mod tests {
         next.steps.iter().map(|step| step.kind).collect()
     }
 
-    /// A searched study without the extension.
+    /// Returns a searched study without the extension.
     fn searched() -> Study {
         let mut study = fixture::grown();
         study.extensions.clear();
@@ -416,7 +416,7 @@ mod tests {
         study.extensions[0].spec.parameters[0].name = "cohesion_pa".into();
         assert_eq!(study.parts(&study.extensions[0]), ["cohesion_pa"]);
         assert!(!advises(&study));
-        // With runs more it is another question.
+        // With other measurements the extension has to be made again.
         study.lead.row.experiment += 1;
         assert!(advises(&study));
     }

@@ -1,4 +1,4 @@
-//! The conditions at which a channel has its errors, in words.
+//! The pattern of a channel's errors in words: the conditions at which they are largest.
 
 use shared::channel::Channel;
 
@@ -8,13 +8,13 @@ use result::table::level::few_levels;
 use result::table::row::ComparisonRow;
 use result::words::number;
 
-/// A level stands out where its error is so much larger than that of all runs.
+/// Ratio of a level's error to that of all runs above which the level stands out.
 const STANDS_OUT: f64 = 1.3;
 
-/// Reads a condition from a row.
+/// A function that reads a condition from a row.
 type Condition = (&'static str, f64, &'static str, fn(&ComparisonRow) -> f64);
 
-/// Slip, load, speed and slip angle, with factor and unit of what is shown.
+/// Slip, load, speed and slip angle, each with the factor and unit in which it is shown.
 const CONDITIONS: [Condition; 4] = [
     ("slip", 1.0, "", |row| row.slip),
     ("a load of", 1.0, " N", |row| row.wheel_load_n),
@@ -22,7 +22,8 @@ const CONDITIONS: [Condition; 4] = [
     ("a slip angle of", 1.0, " deg", |row| row.slip_angle_deg),
 ];
 
-/// The trend of the fitted residuals that is beyond chance; else one direction in every run; else the level that stands out.
+/// Describes where the errors lie: the significant trend of the fitted residuals, else the common sign in all runs, else the level with
+/// the largest error.
 pub(super) fn place(
     channel: Channel,
     rows: &[&ComparisonRow],
@@ -81,7 +82,7 @@ mod tests {
     use super::*;
     use crate::fixture;
 
-    /// Words on the pull of runs at these slips with these residuals.
+    /// Describes the pull of runs at the given slips with the given residuals.
     fn words(residuals: &[(f64, f64)]) -> Option<String> {
         let calibration = fixture::calibration();
         let comparison = calibration.comparison();

@@ -1,4 +1,4 @@
-//! A validation as text.
+//! A validation as text: each level left out in turn.
 
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -12,10 +12,10 @@ use result::validation::{Judgement, Validation};
 use result::words::data_channel::ShownUnit;
 use result::words::number;
 
-/// Least width of the column of levels.
+/// Minimum width of the column of levels.
 const LEVEL: usize = 24;
 
-/// The levels with the errors of model and interpolation, then all of them together.
+/// Tabulates the levels with the errors of model and interpolation, then all of them together.
 pub fn validation(validation: &Validation) -> String {
     let is_measured = |channel: &Channel| {
         let mut rows = validation.levels.iter().flat_map(|level| &level.rows);
@@ -52,7 +52,7 @@ pub fn validation(validation: &Validation) -> String {
         table.header()
     );
     for level in &validation.levels {
-        // A level without a judgement shows its name and its runs alone.
+        // A level without a judgement shows only its name and its runs.
         let row = Row {
             name: &level.level.name,
             runs: level.level.runs.len(),
@@ -76,7 +76,7 @@ pub fn validation(validation: &Validation) -> String {
     text
 }
 
-/// A row of the printed table.
+/// A row of the table as text.
 #[derive(Clone, Copy)]
 struct Row<'a> {
     name: &'a str,
@@ -85,7 +85,8 @@ struct Row<'a> {
 }
 
 impl Row<'_> {
-    /// A number of the model's errors and of those of interpolation; where nothing is interpolated, the model stands alone.
+    /// Pairs a number of the model's errors with that of interpolation. The model is judged on the rows of both; without interpolation,
+    /// on all its rows.
     fn pair(self, number: impl Fn(&ErrorTable) -> Option<String>) -> String {
         let judgement = self.judgement;
         let interpolation = judgement.interpolation.as_ref().and_then(&number);
@@ -100,7 +101,7 @@ impl Row<'_> {
     }
 }
 
-/// The meaning of the marks, and the measurements that do not count.
+/// Explains the marks, and counts the measurements that do not enter.
 fn notes(validation: &Validation) -> Vec<String> {
     let total = &validation.total;
     let mut notes = Vec::new();
@@ -172,7 +173,7 @@ mod tests {
         assert_eq!(judged.rows.len(), 2);
         assert!(model.all.rmse_fixed_sigma.is_some() && judgement.with_interval == 2);
         let pull = judgement.interpolation.clone().unwrap().drawbar_pull.unwrap();
-        // Between 0.5 N at slip 0.2 and 1.5 N at 0.5; measured are 1.2 N.
+        // Interpolation lies between 0.5 N at slip 0.2 and 1.5 N at slip 0.5; the measurement is 1.2 N.
         assert!(pull.rmse < 0.5 && judgement.extrapolated < 2, "{judgement:?}");
         let levels = vec![
             judged,
@@ -192,7 +193,7 @@ mod tests {
     #[test]
     fn model_and_interpolation_are_compared_on_the_rows_of_both_and_the_rest_is_counted_with_its_reason() {
         let (whole, mut rest) = (fixture::without_holdout(), fixture::with_refused_runs());
-        // h0 is of a wheel that was never fitted.
+        // Run h0 has a wheel that was never fitted.
         let place = |run: &str| {
             rest.spec
                 .experiment
@@ -214,7 +215,7 @@ mod tests {
         let judged = ValidatedLevel::predicted(level, &whole, &rest);
         let judgement = judged.judgement.clone().unwrap();
         let rows = |table: &Option<ErrorTable>| table.as_ref().map(|table| table.drawbar_pull.unwrap().runs);
-        // Predicted are h0 and h3, interpolated h1, h2 and h3.
+        // The model predicts h0 and h3; h1, h2 and h3 are interpolated.
         assert_eq!(
             (
                 rows(&judgement.model),

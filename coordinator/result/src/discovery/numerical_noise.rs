@@ -1,11 +1,11 @@
-//! What a search says of the scatter of the model's predictions.
+//! A sentence on the numerical noise of the model that a search measured.
 
 use record::Discovery;
 use shared::channel::Channel;
 
 use crate::words::data_channel::ShownUnit;
 
-/// The scatter of each channel and what lowers it; `None` where it is negligible.
+/// Returns a sentence on the scatter of each channel and the settings that lower it; `None` if the scatter is negligible.
 pub fn numerical_noise(record: &Discovery) -> Option<String> {
     let size = |channel: &Channel| {
         let sd = *record.numerical_noise.get(channel.column())?;

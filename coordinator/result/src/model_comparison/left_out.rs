@@ -1,4 +1,4 @@
-//! Leaving out one condition at a time, without fitting again: the draws of the posterior, weighted as though it were unknown.
+//! Leave-one-condition-out prediction without refitting, by importance weights of the posterior draws.
 
 use std::collections::BTreeMap;
 
@@ -9,20 +9,20 @@ use statistics::Likelihood;
 use crate::finished_calibration::FinishedCalibration;
 use crate::table::row::ComparisonRow;
 
-/// What a calibration predicts of every condition when the others are fitted.
+/// The predictions of every condition from the others.
 ///
-/// With `l_d = ln p(y_c | the other data, theta_d)` of a condition's data `y_c` at a draw, its weight is `exp(−l_d)`, at most
-/// `sqrt(D)` times the mean weight of the D draws (Ionides 2008, <https://doi.org/10.1198/106186008X320456>), and
-/// `ln p(y_c | the other data) = ln (sum_d w_d exp(l_d) / sum_d w_d)`. Bevameter readings are never left out.
+/// Let `l_d = ln p(y_c | the other data, theta_d)` for the data `y_c` of a condition and draw d. The draw has the importance weight
+/// `exp(−l_d)`, truncated at `sqrt(D)` times the mean weight of the D draws (Ionides 2008, <https://doi.org/10.1198/106186008X320456>).
+/// Then `ln p(y_c | the other data) = ln (sum_d w_d exp(l_d) / sum_d w_d)`. Bevameter readings are never left out.
 #[derive(Debug)]
 pub(super) struct LeftOut {
-    /// Sum over the conditions.
+    /// Sum of the log-densities of all conditions.
     pub(super) log_density: f64,
-    /// Mean prediction by run and channel.
+    /// Mean prediction, keyed by run and channel.
     predicted: BTreeMap<(String, Channel), f64>,
 }
 
-/// A draw that the model accepted, for the fitted runs.
+/// A draw that the model accepted for the fitted runs.
 struct Draw<'a> {
     theta: &'a [f64],
     values: Vec<f64>,
@@ -31,7 +31,7 @@ struct Draw<'a> {
 }
 
 impl LeftOut {
-    /// `None` without draws, or where one condition is all there is.
+    /// Predicts each condition from the others; `None` without draws, or if there is only one condition.
     pub(super) fn new(calibration: &FinishedCalibration) -> Option<Self> {
         let spec = &calibration.spec;
         let likelihood = &spec.likelihood;
@@ -97,7 +97,7 @@ impl LeftOut {
         Some(())
     }
 
-    /// The rows of the fitted runs with these predictions.
+    /// Returns the rows of the fitted runs with these predictions.
     pub(super) fn rows(&self, rows: &[ComparisonRow]) -> Vec<ComparisonRow> {
         let fitted = rows.iter().filter(|row| row.usage == RunUse::Fit);
         let predicted = fitted.map(|row| ComparisonRow {
@@ -113,7 +113,7 @@ fn log_likelihood(likelihood: &Likelihood, values: &[f64], theta: &[f64]) -> Opt
     value.is_finite().then_some(value)
 }
 
-/// The weight of each draw, relative to the greatest before it is limited.
+/// Returns the truncated weight of each draw, relative to the largest weight before truncation.
 fn weights(log_densities: &[f64]) -> Vec<f64> {
     let min = log_densities.iter().fold(f64::INFINITY, |min, l| min.min(*l));
     let raw: Vec<f64> = log_densities.iter().map(|l| libm::exp(min - l)).collect();
@@ -122,7 +122,7 @@ fn weights(log_densities: &[f64]) -> Vec<f64> {
     raw.into_iter().map(|weight| weight.min(limit)).collect()
 }
 
-/// Positions of the runs of each condition, in the order in which conditions appear.
+/// Groups the positions of runs by condition, in the order in which conditions first appear.
 fn conditions<'a>(runs: impl Iterator<Item = &'a TestRun>) -> Vec<Vec<usize>> {
     let key = |run: &TestRun| {
         let set = [run.slip, run.wheel_load_n, run.sled_speed_m_s, run.slip_angle_deg];
@@ -152,7 +152,7 @@ mod tests {
     #[test]
     fn equal_draws_weigh_the_same_and_a_rare_one_is_limited() {
         assert_eq!(weights(&[-3.0, -3.0]), [1.0, 1.0]);
-        // raw 1 and three of e^-20: the limit is sqrt(4) / 4 of their sum
+        // The raw weights are 1 and three times e^-20; the limit is sqrt(4) / 4 of their sum.
         let limited = weights(&[-23.0, -3.0, -3.0, -3.0]);
         assert!((limited[0] - 0.5).abs() < 1e-8, "{limited:?}");
     }

@@ -1,4 +1,4 @@
-//! What all models of a study predict together.
+//! Combination of the predictions of all models of a study, by weights for each channel.
 
 use std::collections::BTreeMap;
 
@@ -11,8 +11,8 @@ use crate::finished_calibration::FinishedCalibration;
 use crate::study::Study;
 
 impl Study {
-    /// The measurements that the current model is compared with, as the ledger's models of the same measurements predict them
-    /// together; of a fit without draws, which stands in no ledger, by that fit alone.
+    /// Returns the measurements of the current model's experiment, with the average of the predictions of all models in the ledger that
+    /// have the same measurements. A fit without draws is in no ledger, so its average is its own prediction.
     pub fn combined(&self) -> &[CombinedRow] {
         self.combined.get_or_init(|| self.combine())
     }
@@ -29,7 +29,7 @@ impl Study {
             .into_iter()
             .map(|channel| (channel, weights(&models, channel)))
             .collect();
-        // The rows of two comparisons of one experiment are those of its runs and channels, in the same order.
+        // Comparisons of the same experiment have the same rows in the same order.
         let rows = current.comparison().rows.iter().enumerate();
         let combined = |(i, row): (usize, &ComparisonRow)| {
             let of_models = models
@@ -41,7 +41,7 @@ impl Study {
     }
 }
 
-/// How much each model counts for a channel, over the one that counts most; 0 without an error.
+/// Returns the weight of each model for a channel, relative to the largest; 0 for a model without an error there.
 fn weights(models: &[&Comparison], channel: Channel) -> Vec<f64> {
     let rmse = |model: &&Comparison| Some(model.corrected_fit.as_ref()?.channel(channel)?.rmse);
     let errors: Vec<Option<f64>> = models.iter().map(rmse).collect();
@@ -65,7 +65,7 @@ mod tests {
     fn a_model_counts_by_its_mean_square_error_in_the_other_conditions() {
         let good = fixture::with_smooth_misfit();
         let mut bad = fixture::with_smooth_misfit();
-        // Alternately too high and too low: nothing that the other conditions would tell.
+        // Errors that alternate in sign cannot be predicted from the other conditions.
         for prediction in &mut bad.predictions {
             let pulls = &mut prediction.fit.as_mut().unwrap().drawbar_pull_n;
             let signs = [4.0, -4.0].into_iter().cycle();
@@ -86,7 +86,8 @@ mod tests {
         assert_eq!(super::weights(&models, Channel::Torque), [0.0, 0.0]);
     }
 
-    /// The base misses by a wave; a second model by that and another number in each channel and run.
+    /// Returns a study of two models: the first misses the pull by a sine of slip; the second differs from it by another amount in each
+    /// channel and run.
     fn grown() -> Study {
         let mut extension = fixture::with_smooth_misfit();
         extension.row.id = 3;

@@ -1,4 +1,4 @@
-//! The comparison of a finished calibration with the measurements.
+//! Computation of the comparison of a calibration with the measurements, row by row.
 
 use std::collections::BTreeSet;
 
@@ -18,13 +18,13 @@ use super::row::{ComparisonRow, rows_of};
 use crate::finished_calibration::FinishedCalibration;
 
 impl FinishedCalibration {
-    /// The held-out measurements as interpolated from the fitted ones.
+    /// Returns the holdout measurements interpolated from the fitted ones.
     pub fn interpolations(&self) -> &Interpolations {
         self.interpolations
             .get_or_init(|| Interpolations::new(&self.spec.experiment))
     }
 
-    /// Model against measurement, run by run.
+    /// Compares the model with the measurements, run by run.
     pub fn comparison(&self) -> &Comparison {
         self.comparison.get_or_init(|| self.compared())
     }
@@ -99,7 +99,7 @@ impl FinishedCalibration {
         }
     }
 
-    /// The final draws at which the model refuses a run; `None` where it refuses none.
+    /// Counts the final draws at which the model refuses a run; `None` if it refuses none.
     ///
     /// # Arguments
     /// - `run`: position in the experiment.
@@ -143,7 +143,7 @@ mod tests {
         for ((channel, noise, all, residual), (_, _, wider, same)) in alone.into_iter().zip(with) {
             match channel {
                 Channel::DrawbarPull => assert!((all - noise).abs() < 1e-12, "declared: {noise} {all}"),
-                // One is the mean over the draws, the other their root mean square.
+                // The noise is the mean over the draws, and the total error their root mean square.
                 _ => assert!(all >= noise, "inferred: {noise} {all}"),
             }
             assert!((wider / all - 10.0_f64.sqrt()).abs() < 1e-12, "{all} {wider}");

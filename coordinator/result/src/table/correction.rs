@@ -1,4 +1,4 @@
-//! Predictions corrected by what the model misses in the fitted conditions.
+//! Correction of predictions by the model's errors in the fitted conditions, with a Gaussian process for each channel.
 
 use std::collections::BTreeMap;
 
@@ -16,7 +16,7 @@ use super::predictive::{Predictive, RunPosition, accepted, soil_scatter};
 use crate::finished_calibration::FinishedCalibration;
 use crate::words::number;
 
-/// The corrections of a calibration by channel: each, or why there is none.
+/// The correction of each channel of a calibration, or the reason why there is none.
 pub(crate) struct Corrections<'a> {
     calibration: &'a FinishedCalibration,
     channels: BTreeMap<Channel, Result<Correction, String>>,
@@ -40,7 +40,8 @@ impl<'a> Corrections<'a> {
         }
     }
 
-    /// The prediction of a run and channel, corrected, or why it is not: in a fitted condition by what the model misses in the others.
+    /// Returns the corrected prediction of a run and channel, or why there is none. In a fitted condition, the correction rests on the
+    /// other conditions.
     ///
     /// # Arguments
     /// - `run`: position in the experiment. `model`: what the model says of it.
@@ -54,17 +55,17 @@ impl<'a> Corrections<'a> {
 struct Correction {
     channel: Channel,
     conditions: Conditions,
-    /// Wheel, soil and pass, as the process numbers them.
+    /// Wheel, soil and pass of each group, in the order of the group numbers in the process.
     groups: Vec<Group>,
-    /// The fitted runs of each misfit, as positions in the experiment.
+    /// The fitted runs behind each misfit, as positions in the experiment.
     members: Vec<Vec<usize>>,
-    /// Of each final draw that the model accepts, its number and the model's mean in each of these conditions.
+    /// Number of each final draw that the model accepts, with its mean prediction in each condition.
     draws: Vec<(usize, Vec<f64>)>,
     process: DiscrepancyProcess,
     noise_sd: f64,
 }
 
-/// A wheel on a soil at a pass.
+/// Wheel, soil and pass, among which the discrepancy may differ by a constant.
 type Group = (String, String, u32);
 
 fn group(run: &TestRun) -> Group {
@@ -146,7 +147,7 @@ impl Correction {
         }
         let discrepancy = match self.members.iter().position(|members| members.contains(&run)) {
             Some(condition) => self.process.without(condition),
-            // A group that was not fitted comes after those that were.
+            // The process treats a number after the fitted groups as a group without data.
             None => self.process.at(
                 &self.conditions.point(predicted),
                 self.groups
@@ -171,9 +172,9 @@ impl Correction {
         })
     }
 
-    /// What each draw of the run says beside the fitted conditions of the same draw: a mean shift, where some draws are refused in the run
-    /// alone, and the standard deviation of the corrected value. Where a draw moves the model in the run and in the fitted conditions
-    /// alike, the correction takes it back.
+    /// Compares each draw's prediction of the run with its predictions of the fitted conditions. Returns a mean shift, which is not 0 if
+    /// the model refuses some draws in this run only, and the standard deviation of the corrected value. A change of the draw that moves
+    /// all predictions alike cancels.
     fn paired(&self, calibration: &FinishedCalibration, run: usize, discrepancy: &Discrepancy) -> (f64, f64) {
         let values = values(calibration, run, self.channel);
         let taken = |means: &[f64]| -> f64 {
@@ -192,7 +193,7 @@ impl Correction {
     }
 }
 
-/// Of each final draw that the model accepts, its number and the mean of a channel over the runs of each condition.
+/// Returns, for each final draw that the model accepts, its number and the channel's mean over the runs of each condition.
 fn means(
     calibration: &FinishedCalibration,
     channel: Channel,
@@ -218,7 +219,7 @@ fn means(
     numbers.filter_map(of_draw).collect()
 }
 
-/// The model's values of a run and channel by number of the final draw.
+/// Returns the model's values of a run and channel, keyed by the number of the final draw.
 fn values(calibration: &FinishedCalibration, run: usize, channel: Channel) -> BTreeMap<usize, f64> {
     let Some(place) = RunPosition::find(&calibration.spec, run) else {
         return BTreeMap::new();
@@ -229,7 +230,7 @@ fn values(calibration: &FinishedCalibration, run: usize, channel: Channel) -> BT
     accepted(calibration, place).filter_map(of_draw).collect()
 }
 
-/// Variance of one measurement of a run: noise, and the scatter of the soil.
+/// Returns the variance of one measurement of a run: noise plus the scatter of the soil.
 fn noise_variance(calibration: &FinishedCalibration, run: usize, channel: Channel, noise_sd: f64) -> f64 {
     let sd = calibration.spec.experiment.runs[run].sd[channel.index()].unwrap_or(noise_sd);
     let place = RunPosition::find(&calibration.spec, run);
@@ -271,7 +272,7 @@ mod tests {
         let comparison = calibration.comparison();
         let [fit, corrected] = [&comparison.fit, &comparison.corrected_fit]
             .map(|table| table.as_ref().unwrap().drawbar_pull.unwrap().rmse);
-        // Of a fitted run by the other runs, those at the ends of the range included.
+        // Each fitted run is predicted from the others, including the extrapolation at the ends of the range.
         assert!(corrected < 0.5 * fit, "{corrected} {fit}");
     }
 
@@ -303,7 +304,7 @@ mod tests {
     fn draws_that_refuse_a_run_do_not_move_what_is_predicted_of_it() {
         let whole = fixture::with_smooth_misfit();
         let mut fewer = fixture::with_smooth_misfit();
-        // Half of the draws that lie 1 N too low everywhere are refused in the held-out runs: the others are 1/3 N too high on average.
+        // The holdout runs reject half of the draws that lie 1 N too low; the remaining draws are 1/3 N too high on average.
         for prediction in fewer.predictions.iter_mut().skip(1).step_by(4) {
             if let Some(held_out) = &mut prediction.holdout {
                 held_out.together = Err(record::RejectionReason("no balance".to_owned()));

@@ -1,4 +1,4 @@
-//! Every run as the models of a study predict it.
+//! Prediction rows: every run and channel with the predictions of the models of a study, also as CSV.
 
 use shared::channel::Channel;
 use shared::experiment::RunUse;
@@ -6,8 +6,8 @@ use shared::experiment::RunUse;
 use super::combined_row::CombinedRow;
 use crate::study::Study;
 
-/// A run and channel: measured, by the current model, by that model corrected, by all models together, and interpolated. Values are in
-/// the channel's SI unit; `None` where there is no prediction.
+/// The measurement of a run and channel with its predictions: by the current model, corrected, by all models combined, and interpolated.
+/// Values are in the channel's SI unit; `None` if there is no prediction.
 #[derive(Debug, Clone, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
 pub struct PredictionRow {
     /// Name of the run.
@@ -29,29 +29,30 @@ pub struct PredictionRow {
     /// Channel without unit.
     #[schema(value_type = String)]
     pub channel: Channel,
-    /// Unit of the next figures.
+    /// Unit of the following values.
     pub unit: String,
-    /// Measured.
+    /// Measured value.
     pub measured: f64,
     /// Posterior mean of the current model.
     pub model: Option<f64>,
     /// 5 % quantile of a new measurement.
     pub model_q05: Option<f64>,
-    /// 95 % quantile.
+    /// 95 % quantile of a new measurement.
     pub model_q95: Option<f64>,
-    /// The same with what the model misses, estimated from the fitted conditions; of a fitted run, from the others.
+    /// Corrected prediction: the model plus its discrepancy, which is estimated from the fitted conditions; for a fitted run from the
+    /// other conditions.
     pub corrected: Option<f64>,
     /// 5 % quantile of a new measurement.
     pub corrected_q05: Option<f64>,
-    /// 95 % quantile.
+    /// 95 % quantile of a new measurement.
     pub corrected_q95: Option<f64>,
     /// Weighted mean of the corrected predictions of the ledger's models.
     pub combined: Option<f64>,
     /// 5 % quantile of a new measurement.
     pub combined_q05: Option<f64>,
-    /// 95 % quantile.
+    /// 95 % quantile of a new measurement.
     pub combined_q95: Option<f64>,
-    /// How many models it averages.
+    /// Number of models in the average.
     pub models: usize,
     /// Interpolation of the fitted measurements, without a model.
     pub interpolated: Option<f64>,
@@ -87,13 +88,13 @@ impl PredictionRow {
 }
 
 impl Study {
-    /// Every measurement that the current model is compared with.
+    /// Returns a row for each measurement that the current model is compared with.
     pub fn predictions(&self) -> Vec<PredictionRow> {
         self.combined().iter().map(PredictionRow::new).collect()
     }
 }
 
-/// The columns of `predictions.csv`, the fields of a row.
+/// The columns of `predictions.csv`, in the order of the fields of a row.
 const COLUMNS: [&str; 21] = [
     "run",
     "use",
@@ -118,7 +119,7 @@ const COLUMNS: [&str; 21] = [
     "interpolated",
 ];
 
-/// The content of `predictions.csv`; without rows, its title line.
+/// Returns the content of `predictions.csv`; without rows, the line of titles only.
 pub fn to_csv(rows: &[PredictionRow]) -> String {
     let mut writer = csv::WriterBuilder::new()
         .has_headers(false)
@@ -156,7 +157,7 @@ mod tests {
             .iter()
             .find(|line| line.starts_with("h1,holdout") && line.contains("pull"));
         let cells: Vec<&str> = h1.unwrap().split(',').collect();
-        // Of one model the combined prediction is the corrected one.
+        // With one model the combined prediction is the corrected one.
         assert_eq!(cells[column("combined")], cells[column("corrected")]);
         assert_eq!(cells[column("models")], "1");
         let fast = lines.iter().find(|line| line.starts_with("fast,")).unwrap();
@@ -166,7 +167,7 @@ mod tests {
     #[test]
     fn the_title_line_names_the_fields_of_a_row() {
         let study = Study::from(fixture::with_smooth_misfit());
-        // Which a writer that knows the fields alone begins with.
+        // A writer with default settings takes the titles from the names of the fields.
         let mut writer = csv::Writer::from_writer(Vec::new());
         writer.serialize(&study.predictions()[0]).unwrap();
         let titled = String::from_utf8(writer.into_inner().unwrap()).unwrap();

@@ -1,4 +1,4 @@
-//! The levels of a factor in an experiment.
+//! The levels of a factor in an experiment, each with the runs to leave out.
 
 use std::collections::BTreeMap;
 
@@ -12,7 +12,7 @@ use super::factor::Factor;
 pub struct LeftOutLevel {
     /// The level: `slip -0.20`, `wheel smooth`.
     pub name: String,
-    /// Least value \[1, N, m/s, deg\]; null of a wheel.
+    /// Smallest value \[1, N, m/s, deg\]; null for the factor wheel.
     pub from: Option<f64>,
     /// Largest value.
     pub to: Option<f64>,
@@ -21,11 +21,11 @@ pub struct LeftOutLevel {
 }
 
 impl LeftOutLevel {
-    /// The levels of the fitted runs, ascending, wheels by name. Values closer than 2 % of their range are one level, as in the
-    /// cross-validation of a search.
+    /// Returns the levels of the fitted runs in ascending order, wheels by name. Values closer than 2 % of their range are one level, as
+    /// in the cross-validation of a search.
     ///
     /// # Errors
-    /// A sentence where there is one level alone.
+    /// Returns a sentence if there are fewer than two levels.
     pub fn all(spec: &Spec, factor: Factor) -> Result<Vec<Self>, String> {
         let runs: Vec<&TestRun> = spec.fit_runs.iter().map(|&i| &spec.experiment.runs[i]).collect();
         let values: Option<Vec<f64>> = runs.iter().map(|run| factor.value(run)).collect();

@@ -1,4 +1,4 @@
-//! The held-out measurements of an experiment as interpolated from the fitted ones.
+//! The holdout measurements of an experiment, interpolated from the fitted ones.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -9,7 +9,7 @@ use super::along_slip::along_slip;
 use super::interpolated::{Interpolated, InterpolatedOver};
 use super::surface::Surfaces;
 
-/// The held-out measurements of an experiment as interpolated from the fitted ones.
+/// The holdout measurements of an experiment, interpolated from the fitted ones.
 #[derive(Debug, Default)]
 pub struct Interpolations {
     values: BTreeMap<(usize, Channel), Interpolated>,
@@ -17,7 +17,7 @@ pub struct Interpolations {
 }
 
 impl Interpolations {
-    /// Of every held-out measurement.
+    /// Interpolates every holdout measurement of an experiment.
     pub fn new(experiment: &Experiment) -> Self {
         let mut values = BTreeMap::new();
         let mut missing = BTreeMap::new();
@@ -39,17 +39,17 @@ impl Interpolations {
         Interpolations { values, missing }
     }
 
-    /// That of a run and channel; `None` where it was fitted or there is none.
+    /// Returns the interpolated value of a run and channel; `None` if it was fitted or cannot be interpolated.
     pub fn at(&self, run: usize, channel: Channel) -> Option<Interpolated> {
         self.values.get(&(run, channel)).copied()
     }
 
-    /// Why that of a run and channel is missing; `None` where it is not.
+    /// Returns why the value of a run and channel cannot be interpolated; `None` if it can.
     pub fn missing_at(&self, run: usize, channel: Channel) -> Option<&str> {
         self.missing.get(&(run, channel)).map(String::as_str)
     }
 
-    /// Why some are missing, each reason once.
+    /// Returns the reasons why values are missing, each once.
     pub fn missing(&self) -> Vec<String> {
         let reasons: BTreeSet<&String> = self.missing.values().collect();
         reasons.into_iter().cloned().collect()
@@ -68,7 +68,7 @@ mod tests {
         10.0 * (1.0 + slip) * libm::sin(angle / 60.0)
     }
 
-    /// Fitted runs over slip and angle, with two repeats each, then held-out ones.
+    /// Returns an experiment with two fitted repeats at each of several slips and angles, and the given holdout runs.
     fn experiment(held_out: &[&str]) -> Experiment {
         let mut runs =
             "run,wheel,soil,slip,wheel_load_n,sled_speed_m_s,slip_angle_deg,lateral_force_n,use\n".to_owned();
@@ -129,7 +129,7 @@ mod tests {
         let force = |slip: f64, angle: f64| 10.0 * (1.0 + slip * slip) * angle / 60.0;
         for (i, slip) in [-0.7, -0.2, 0.0, 0.5, 0.9].into_iter().enumerate() {
             for (k, angle) in [0.0, 60.0].into_iter().enumerate() {
-                // Lower at the angle, and by a fifth without a gap.
+                // The load is lower at the larger angle, and all loads scatter within a fifth without a gap.
                 let load = 25.0 - 1.1 * (i + 2 * k) as f64;
                 let force = force(slip, angle);
                 runs += &format!("r{i}-{k},a,sand,{slip},{load},0.01,{angle},{force},fit\n");

@@ -1,4 +1,4 @@
-//! Interpolation over all conditions that vary, by a Gaussian process.
+//! Surface: interpolation over all conditions that vary, by a Gaussian process.
 
 use std::collections::BTreeMap;
 
@@ -10,10 +10,10 @@ use super::interpolated::{Interpolated, InterpolatedOver};
 use crate::table::conditions::{Conditions, repeated};
 use crate::words::number;
 
-/// What one process is through: wheel, soil, pass, channel.
+/// Wheel, soil, pass and channel of the measurements of one process.
 type Key = (String, String, u32, Channel);
 
-/// The processes of an experiment, made when first asked for.
+/// The processes of an experiment, fitted on demand.
 pub(super) struct Surfaces<'a> {
     experiment: &'a Experiment,
     surfaces: BTreeMap<Key, Result<Surface, String>>,
@@ -27,7 +27,7 @@ impl<'a> Surfaces<'a> {
         }
     }
 
-    /// The value at a run, or why there is none.
+    /// Returns the interpolated value at a run, or why there is none.
     pub(super) fn at(&mut self, run: &TestRun, channel: Channel) -> Result<Interpolated, String> {
         let key = (run.wheel.clone(), run.soil.clone(), run.pass, channel);
         let experiment = self.experiment;
@@ -41,16 +41,16 @@ impl<'a> Surfaces<'a> {
     }
 }
 
-/// A process through the measurements of a channel.
+/// A Gaussian process through the measurements of a channel.
 struct Surface {
-    /// The wheel, soil and pass.
+    /// Wheel, soil and pass in words.
     subject: String,
     conditions: Conditions,
     process: GaussianProcess,
 }
 
 impl Surface {
-    /// Through the fitted runs of a run's wheel, soil and pass.
+    /// Fits a process to the fitted runs of the same wheel, soil and pass as `like`.
     fn through(experiment: &Experiment, like: &TestRun, channel: Channel) -> Result<Self, String> {
         let mut subject = format!("wheel {} on soil {}", like.wheel, like.soil);
         if like.pass > 1 {
@@ -101,7 +101,7 @@ impl Surface {
     }
 }
 
-/// The means of the repeats of each condition.
+/// Averages the repeats of each condition.
 fn observations(runs: &[&TestRun], conditions: &Conditions, channel: Channel) -> Vec<Observation> {
     let observation = |members: Vec<usize>| {
         let repeats: Vec<&TestRun> = members.into_iter().map(|i| runs[i]).collect();
