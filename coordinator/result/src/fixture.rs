@@ -140,6 +140,13 @@ pub fn sampled(calibration: &mut FinishedCalibration) -> &mut SampledPosterior {
     }
 }
 
+/// Returns the position of a run in the experiment of a calibration.
+pub fn position(calibration: &FinishedCalibration, run: &str) -> usize {
+    let mut runs = calibration.spec.experiment.runs.iter();
+    runs.position(|candidate| candidate.name == run)
+        .expect("a run of the fixture")
+}
+
 /// Returns a calibration whose model rejected all final draws, whose sampler drifted, and which has no evidence.
 pub fn all_rejected() -> FinishedCalibration {
     let mut calibration = calibration();

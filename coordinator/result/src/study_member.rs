@@ -49,8 +49,7 @@ impl Rejections {
     /// Counts the rejections by kind with an example: `no_support 1000, such as "the soil carries at most 80 N of the 140 N wheel load"`;
     /// `None` without rejections.
     pub fn words(&self) -> Option<String> {
-        let kinds = self.kinds.iter().map(|(kind, count)| format!("{kind} {count}"));
-        let kinds: Vec<String> = kinds.collect();
+        let kinds = number::counts(&self.kinds);
         let first = self.first.as_ref().map(|first| format!(", such as \"{first}\""));
         (!kinds.is_empty()).then(|| format!("{}{}", number::list(&kinds), first.unwrap_or_default()))
     }

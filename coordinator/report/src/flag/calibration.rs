@@ -5,10 +5,7 @@ use shared::parameters::behind;
 
 use super::finding::findings_that_alarm;
 use super::plates::plates_conflict;
-use crate::flag::worker::disputed;
-use crate::flag::worker::given_up;
-use crate::flag::worker::not_deterministic;
-use crate::flag::worker::quarantined;
+use super::worker::{disputed, given_up, not_deterministic, quarantined};
 use result::diagnostics::calibration::Diagnostics;
 use result::diagnostics::trends::TrendVariable;
 use result::finished_calibration::FinishedCalibration;
@@ -105,14 +102,9 @@ pub(crate) fn flags(calibration: &FinishedCalibration, diagnostics: &Diagnostics
         calibration.row.rejected.unwrap_or(0),
     );
     if rejected as f64 > MANY_REJECTED * evaluations as f64 {
-        let kinds: Vec<String> = calibration
-            .rejections
-            .iter()
-            .map(|(kind, n)| format!("{kind} {n}"))
-            .collect();
         let mut text = format!(
             "the model rejected {rejected} of {evaluations} parameter vectors ({}): much of the prior lies outside its validity",
-            kinds.join(", ")
+            number::counts(&calibration.rejections).join(", ")
         );
         if let Some(words) = diagnostics.rejections.words() {
             text.push_str("; ");

@@ -74,10 +74,8 @@ pub(crate) fn added(study: &Study, calibration: &FinishedCalibration) -> Vec<Add
     let mut found = Vec::new();
     // Take the newest search first, because further runs may have decided what an earlier one left open.
     for round in study.rounds.iter().rev() {
-        let Some(before) = study
-            .calibrations()
-            .find(|searched| searched.row.id == round.calibration)
-        else {
+        let mut calibrations = study.calibrations();
+        let Some(before) = calibrations.find(|c| c.row.id == round.calibration) else {
             continue;
         };
         let is_ancestor = study.parts(before).iter().all(|part| has.contains(part));
@@ -133,13 +131,9 @@ fn judged(record: &Discovery, left: &[String]) -> Option<Alternative> {
         .into_iter()
         .chain(open(record).into_iter().map(Alternative::from));
     let there: Vec<Alternative> = explanations.filter(is_there).collect();
-    let largest = there
-        .iter()
-        .map(|explanation| parts(&explanation.name).len())
-        .max()?;
-    there
-        .into_iter()
-        .find(|explanation| parts(&explanation.name).len() == largest)
+    let size = |explanation: &Alternative| parts(&explanation.name).len();
+    let largest = there.iter().map(size).max()?;
+    there.into_iter().find(|explanation| size(explanation) == largest)
 }
 
 fn of_search(
@@ -176,17 +170,9 @@ fn of_search(
 }
 
 /// Returns the holdout errors without and with the given parts of a model; `None` if the study has no model without them.
-fn held_out_errors(
-    study: &Study,
-    calibration: &FinishedCalibration,
-    effect_parts: &[String],
-) -> Option<[f64; 2]> {
+fn held_out_errors(study: &Study, calibration: &FinishedCalibration, added: &[String]) -> Option<[f64; 2]> {
     let has = study.parts(calibration);
-    let rest: Vec<String> = has
-        .iter()
-        .filter(|part| !effect_parts.contains(part))
-        .cloned()
-        .collect();
+    let rest: Vec<String> = has.iter().filter(|part| !added.contains(part)).cloned().collect();
     errors(study, alike(study, calibration, &rest)?, &has)
 }
 

@@ -327,6 +327,10 @@ mod tests {
         }
     }
 
+    fn next(study: &Study, facts: Facts<'_>) -> Next {
+        Next::new(study, &study.lead, facts)
+    }
+
     fn kinds(next: &Next) -> Vec<StepKind> {
         next.steps.iter().map(|step| step.kind).collect()
     }
@@ -341,19 +345,16 @@ mod tests {
     #[test]
     fn what_was_not_searched_is_searched_next() {
         let study = fixture::study();
-        let next = Next::new(&study, &study.lead, open());
+        let next = next(&study, open());
         assert_eq!(kinds(&next), [StepKind::Discover]);
         assert_eq!(next.steps[0].command.as_deref(), Some("discover 1"));
-        assert_eq!(
-            kinds(&Next::new(&study, &study.lead, closed()))[1],
-            StepKind::Predict
-        );
+        assert_eq!(kinds(&self::next(&study, closed()))[1], StepKind::Predict);
     }
 
     #[test]
     fn a_named_effect_is_added_before_runs_are_made_and_an_open_one_after() {
         let mut study = searched();
-        let next = Next::new(&study, &study.lead, open());
+        let next = next(&study, open());
         assert_eq!(
             kinds(&next),
             [StepKind::AddEffect, StepKind::MakeRuns, StepKind::MeasureOther]
@@ -367,7 +368,7 @@ mod tests {
             "{next:?}"
         );
         study.rounds[0].record.verdict = Verdict::Undecided;
-        let open = Next::new(&study, &study.lead, open());
+        let open = self::next(&study, open());
         assert_eq!(kinds(&open)[..2], [StepKind::MakeRuns, StepKind::AddEffect]);
     }
 
@@ -381,7 +382,7 @@ mod tests {
             name: "n".into(),
             prior_sds: -7.1,
         });
-        let next = Next::new(&study, &study.lead, open());
+        let next = next(&study, open());
         assert_eq!(kinds(&next)[..2], [StepKind::WidenPrior, StepKind::MakeRuns]);
         assert!(next.text.starts_with("widen the prior of n"), "{}", next.text);
     }
@@ -393,7 +394,7 @@ mod tests {
         record.verdict = Verdict::Undecided;
         record.extension = None;
         record.unsupported_noise = vec!["noise.torque_n_m".into(), "noise.sinkage_m".into()];
-        let next = Next::new(&study, &study.lead, open());
+        let next = next(&study, open());
         assert_eq!(
             kinds(&next)[..2],
             [StepKind::StateInExperiment, StepKind::MakeRuns]
@@ -409,8 +410,7 @@ mod tests {
     #[test]
     fn an_extension_that_the_study_has_made_is_not_advised_again() {
         let mut study = fixture::grown();
-        let advises =
-            |study: &Study| kinds(&Next::new(study, &study.lead, open())).contains(&StepKind::AddEffect);
+        let advises = |study: &Study| kinds(&next(study, open())).contains(&StepKind::AddEffect);
         study.rounds[0].record.extension = Some(Extension::Effect("cohesion_pa".into()));
         assert!(advises(&study));
         study.extensions[0].spec.parameters[0].name = "cohesion_pa".into();
@@ -425,7 +425,7 @@ mod tests {
     fn a_superseded_model_sends_to_the_current_one() {
         let mut study = fixture::grown();
         study.extensions[0].row.log_evidence = Some(10.0);
-        let next = Next::new(&study, &study.lead, open());
+        let next = next(&study, open());
         assert_eq!(kinds(&next), [StepKind::Predict]);
         assert_eq!(next.steps[0].command.as_deref(), Some("report 3"));
     }
@@ -437,7 +437,7 @@ mod tests {
             name: "anything.toml".into(),
             text: "name = \"shear_slip_step\"\n".into(),
         });
-        let next = Next::new(&study, &study.lead, open());
+        let next = next(&study, open());
         assert_eq!(next.steps[0].kind, StepKind::AddEffectFile);
         let file = next.steps[0].effect_file.as_ref().unwrap();
         assert_eq!(file.name, "shear_slip_step.toml");
@@ -456,7 +456,7 @@ mod tests {
             why: "the length of the bin is not stated".into(),
             needs: "bin_length_m under [rig]".into(),
         }];
-        let next = Next::new(&study, &study.lead, closed());
+        let next = next(&study, closed());
         assert_eq!(kinds(&next), [StepKind::Predict, StepKind::StateInExperiment]);
         assert!(next.steps[1].text.contains("bin_length_m under [rig]"));
     }
@@ -470,7 +470,7 @@ mod tests {
             why: "it changes nothing at the slips and slip angles of the fitted runs".into(),
             needs: "runs at a slip angle".into(),
         }];
-        let next = Next::new(&study, &study.lead, closed());
+        let next = next(&study, closed());
         let step = next.steps.last().unwrap();
         assert_eq!(
             (step.kind, step.text.as_str()),

@@ -58,10 +58,8 @@ fn standing_out(residuals: &[(&ComparisonRow, f64)]) -> Option<String> {
         for level in levels.iter().filter(|_| levels.len() > 1) {
             let of_level = residuals.iter().filter(|(row, _)| level.holds(value(row)));
             let of_level: Vec<f64> = of_level.map(|(_, r)| *r).collect();
-            let (error, mean) = (
-                rms(&of_level),
-                of_level.iter().sum::<f64>() / of_level.len() as f64,
-            );
+            let mean = of_level.iter().sum::<f64>() / of_level.len() as f64;
+            let error = rms(&of_level);
             if error > worst.as_ref().map_or(threshold, |(largest, _)| *largest) {
                 let middle = 0.5 * (level.from + level.to) * factor;
                 let direction = match mean {

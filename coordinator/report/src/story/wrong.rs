@@ -229,13 +229,7 @@ fn clause(failure: &ChannelFailure, before: Option<&ChannelFailure>) -> String {
     }
     let interpolation = failure.beside_interpolation.filter(|_| failure.is_beaten);
     match (interpolation, failure.noise_sds) {
-        (Some(both), _) => {
-            text += &beaten(
-                failure.channel,
-                both,
-                before.is_some_and(|before| before.is_beaten),
-            )
-        }
+        (Some(both), _) => text += &beaten(failure.channel, both, before.is_some_and(|b| b.is_beaten)),
         (None, Some(sds)) => text += &format!(", {} times the noise", number::significant(sds, 2)),
         (None, None) => {}
     }

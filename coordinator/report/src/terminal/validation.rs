@@ -194,14 +194,7 @@ mod tests {
     fn model_and_interpolation_are_compared_on_the_rows_of_both_and_the_rest_is_counted_with_its_reason() {
         let (whole, mut rest) = (fixture::without_holdout(), fixture::with_refused_runs());
         // Run h0 has a wheel that was never fitted.
-        let place = |run: &str| {
-            rest.spec
-                .experiment
-                .runs
-                .iter()
-                .position(|candidate| candidate.name == run)
-        };
-        let (h0, runs) = (place("h0").unwrap(), ["h0", "h1", "h2", "h3"]);
+        let (h0, runs) = (fixture::position(&rest, "h0"), ["h0", "h1", "h2", "h3"]);
         let mut wheels = rest.spec.experiment.wheels.clone();
         wheels.insert("b".into(), wheels["a"].clone());
         Arc::make_mut(&mut rest.spec.experiment).wheels = wheels;

@@ -275,25 +275,13 @@ mod tests {
             test(Some(1e-5)).words(),
             "the squares of 24 residuals sum to 61.5 noise variances where 21.0 are expected (p = 1e-5): more than the declared errors explain"
         );
-        assert!(
-            test(Some(0.4))
-                .words()
-                .ends_with("(p = 0.40): the declared errors explain the misfit")
-        );
-        assert!(
-            test(Some(0.02))
-                .words()
-                .ends_with("slightly more than the declared errors explain")
-        );
-        assert!(
-            test(Some(0.999))
-                .words()
-                .ends_with("the declared errors may be too large")
-        );
-        assert!(
-            test(None)
-                .words()
-                .ends_with("no degree of freedom is left for a test")
-        );
+        for (p, ending) in [
+            (Some(0.4), "(p = 0.40): the declared errors explain the misfit"),
+            (Some(0.02), "slightly more than the declared errors explain"),
+            (Some(0.999), "the declared errors may be too large"),
+            (None, "no degree of freedom is left for a test"),
+        ] {
+            assert!(test(p).words().ends_with(ending), "{ending}");
+        }
     }
 }

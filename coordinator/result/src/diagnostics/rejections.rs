@@ -202,18 +202,13 @@ impl RejectionDiagnostics {
         let refused: u64 = region.refused.values().sum();
         let percent = |part: u64, whole: u64| number::significant(100.0 * part as f64 / whole as f64, 2);
         let sides: Vec<String> = region.sides.iter().map(RegionSide::words).collect();
-        let reasons: Vec<String> = region
-            .refused
-            .iter()
-            .map(|(kind, n)| format!("{kind} {n}"))
-            .collect();
         Some(format!(
             "{} % of the {} rejections among {} draws from the prior have {}: {}; this region holds {} % of the prior, and {} % of it is rejected ({} by chance)",
             percent(refused, self.prior_refused),
             self.prior_refused,
             self.prior_draws,
             number::list(&sides),
-            reasons.join(", "),
+            number::counts(&region.refused).join(", "),
             percent(region.draws, self.prior_draws),
             percent(refused, region.draws),
             p_words(region.p)

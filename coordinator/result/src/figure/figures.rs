@@ -34,9 +34,7 @@ impl Study {
     /// Returns the figures of one calibration. Only the figures of the submitted model mark the study's point estimates, because extended
     /// models have other parameters.
     pub fn figures_of(&self, calibration: &FinishedCalibration) -> CalibrationFigures {
-        let is_submitted = self
-            .submitted()
-            .any(|submitted| submitted.row.id == calibration.row.id);
+        let is_submitted = self.submitted().any(|c| c.row.id == calibration.row.id);
         let beside = self
             .submitted()
             .filter(|other| is_submitted && other.row.id != calibration.row.id);

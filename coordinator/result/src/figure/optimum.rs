@@ -10,9 +10,7 @@ impl Study {
         &'a self,
         sample: &FinishedCalibration,
     ) -> impl Iterator<Item = (String, &'a FinishedCalibration)> {
-        let is_submitted = self
-            .submitted()
-            .any(|submitted| submitted.row.id == sample.row.id);
+        let is_submitted = self.submitted().any(|c| c.row.id == sample.row.id);
         let fitted = self
             .submitted()
             .filter(move |calibration| is_submitted && calibration.estimate().is_some());

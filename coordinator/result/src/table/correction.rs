@@ -279,13 +279,7 @@ mod tests {
     #[test]
     fn what_a_draw_moves_everywhere_alike_is_taken_back() {
         let calibration = fixture::with_smooth_misfit();
-        let run = calibration
-            .spec
-            .experiment
-            .runs
-            .iter()
-            .position(|run| run.name == "h1")
-            .unwrap();
+        let run = fixture::position(&calibration, "h1");
         let correction = Correction::new(&calibration, Channel::DrawbarPull, 1.0).unwrap();
         let discrepancy = correction.process.at(
             &correction

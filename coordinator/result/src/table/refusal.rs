@@ -73,14 +73,9 @@ mod tests {
         assert_eq!((half.draws, half.of), (10, 19));
         assert!(half.is_at_half_or_more() && row.predicted.is_none() && row.q05.is_none());
         let new_measurements = crate::NewMeasurements::new(&refused);
-        let place = refused
-            .spec
-            .experiment
-            .runs
-            .iter()
-            .position(|run| run.name == "h2");
+        let place = fixture::position(&refused, "h2");
         // Predictions by the remaining draws are still available for export.
-        let measurements = new_measurements.at(place.unwrap(), shared::channel::Channel::DrawbarPull);
+        let measurements = new_measurements.at(place, shared::channel::Channel::DrawbarPull);
         assert_eq!(measurements.len(), 9);
     }
 }

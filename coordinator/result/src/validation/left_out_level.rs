@@ -96,20 +96,12 @@ mod tests {
         assert_eq!(names, [("slip -0.20", 1), ("slip 0.20", 1), ("slip 0.50", 1)]);
         assert_eq!((slips[0].from, slips[2].to), (Some(-0.2), Some(0.5)));
         assert_eq!(slips[2].runs, ["d"]);
-        for (factor, reason) in [
-            (
-                Factor::Wheel,
-                "all 3 fitted runs are at wheel a: nothing is left to predict it from",
-            ),
-            (
-                Factor::Load,
-                "all 3 fitted runs are at load 25.0 N: nothing is left to predict it from",
-            ),
-            (
-                Factor::Angle,
-                "all 3 fitted runs are at slip angle 0.0 deg: nothing is left to predict it from",
-            ),
+        for (factor, level) in [
+            (Factor::Wheel, "wheel a"),
+            (Factor::Load, "load 25.0 N"),
+            (Factor::Angle, "slip angle 0.0 deg"),
         ] {
+            let reason = format!("all 3 fitted runs are at {level}: nothing is left to predict it from");
             assert_eq!(LeftOutLevel::all(&spec, factor).unwrap_err(), reason);
         }
         assert_eq!(LeftOutLevel::all(&spec, Factor::Speed).unwrap().len(), 3);

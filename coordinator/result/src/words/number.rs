@@ -1,5 +1,7 @@
 //! Formats of numbers, counts, lists and durations for people.
 
+use std::collections::BTreeMap;
+
 /// Shown in place of a missing number.
 pub const NONE: &str = "\u{2013}";
 
@@ -107,6 +109,14 @@ pub fn count(n: usize, noun: &str) -> String {
     format!("{n} {noun}{}", if n == 1 { "" } else { "s" })
 }
 
+/// Formats counts by name: `no_support 990`.
+pub fn counts(counts: &BTreeMap<String, u64>) -> Vec<String> {
+    counts
+        .iter()
+        .map(|(name, count)| format!("{name} {count}"))
+        .collect()
+}
+
 /// Joins words as in a sentence: `a, b and c`.
 pub fn list(words: &[String]) -> String {
     match words {
@@ -146,22 +156,17 @@ mod tests {
 
     #[test]
     fn a_number_stops_at_the_second_figure_of_its_spread() {
-        assert_eq!(with_spread(3.816, 0.156), "3.82\u{a0}\u{b1}\u{a0}0.16");
-        assert_eq!(
-            with_spread(0.062_05, 4.647e-4),
-            "0.06205\u{a0}\u{b1}\u{a0}0.00046"
-        );
-        assert_eq!(
-            with_spread(1_234_567.0, 45_678.0),
-            "1235000\u{a0}\u{b1}\u{a0}46000"
-        );
+        for (x, spread, expected) in [
+            (3.816, 0.156, "3.82 ± 0.16"),
+            (0.062_05, 4.647e-4, "0.06205 ± 0.00046"),
+            (1_234_567.0, 45_678.0, "1235000 ± 46000"),
+            (0.976, 0.0996, "0.98 ± 0.10"),
+            (280_063.0, 578_767.0, "280000 ± 580000"),
+        ] {
+            assert_eq!(with_spread(x, spread), expected.replace(' ', "\u{a0}"));
+        }
         assert_eq!(to_spread(26.0, 1.1), "26.0");
-        assert_eq!(with_spread(0.976, 0.0996), "0.98\u{a0}\u{b1}\u{a0}0.10");
         assert_eq!(to_spread(812.3, 150.0), "810");
-        assert_eq!(
-            with_spread(280_063.0, 578_767.0),
-            "280000\u{a0}\u{b1}\u{a0}580000"
-        );
     }
 
     #[test]

@@ -64,14 +64,23 @@ mod tests {
 
     const TOML: &str = "runs = \"runs.csv\"\n[wheel.a]\nradius_m = 0.1\nwidth_m = 0.05\n[wheel.b]\nradius_m = 0.1\nwidth_m = 0.05\n[soil.sand]\n[noise]\nlateral_force_n = 1.0\n";
 
+    /// Returns the experiment with the given rows of runs.
+    fn parsed(rows: &str) -> Experiment {
+        let titles = "run,wheel,soil,slip,wheel_load_n,sled_speed_m_s,slip_angle_deg,lateral_force_n,use";
+        let files = FileSet {
+            toml: TOML.into(),
+            files: [("runs.csv".into(), format!("{titles}\n{rows}"))].into(),
+        };
+        Experiment::parse("experiment.toml", &files).unwrap()
+    }
+
     fn force(slip: f64, angle: f64) -> f64 {
         10.0 * (1.0 + slip) * libm::sin(angle / 60.0)
     }
 
     /// Returns an experiment with two fitted repeats at each of several slips and angles, and the given holdout runs.
     fn experiment(held_out: &[&str]) -> Experiment {
-        let mut runs =
-            "run,wheel,soil,slip,wheel_load_n,sled_speed_m_s,slip_angle_deg,lateral_force_n,use\n".to_owned();
+        let mut runs = String::new();
         for (i, slip) in [-0.3, 0.0, 0.3, 0.6].into_iter().enumerate() {
             for angle in [0.0, 15.0, 30.0, 45.0, 60.0] {
                 for repeat in 0..2 {
@@ -86,11 +95,7 @@ mod tests {
         for (i, row) in held_out.iter().enumerate() {
             runs += &format!("h{i},{row},holdout\n");
         }
-        let files = FileSet {
-            toml: TOML.into(),
-            files: [("runs.csv".into(), runs)].into(),
-        };
-        Experiment::parse("experiment.toml", &files).unwrap()
+        parsed(&runs)
     }
 
     #[test]
@@ -124,8 +129,7 @@ mod tests {
 
     #[test]
     fn between_two_levels_it_is_a_line_however_the_load_scatters() {
-        let mut runs =
-            "run,wheel,soil,slip,wheel_load_n,sled_speed_m_s,slip_angle_deg,lateral_force_n,use\n".to_owned();
+        let mut runs = String::new();
         let force = |slip: f64, angle: f64| 10.0 * (1.0 + slip * slip) * angle / 60.0;
         for (i, slip) in [-0.7, -0.2, 0.0, 0.5, 0.9].into_iter().enumerate() {
             for (k, angle) in [0.0, 60.0].into_iter().enumerate() {
@@ -136,11 +140,7 @@ mod tests {
                 runs += &format!("h{i}-{k},a,sand,{slip},{load},0.01,30,1,holdout\n");
             }
         }
-        let files = FileSet {
-            toml: TOML.into(),
-            files: [("runs.csv".into(), runs)].into(),
-        };
-        let experiment = Experiment::parse("experiment.toml", &files).unwrap();
+        let experiment = parsed(&runs);
         let found = Interpolations::new(&experiment);
         for (i, run) in experiment
             .runs
@@ -161,18 +161,13 @@ mod tests {
 
     #[test]
     fn loads_from_half_to_twice_are_a_condition_though_no_gap_parts_them() {
-        let mut runs =
-            "run,wheel,soil,slip,wheel_load_n,sled_speed_m_s,slip_angle_deg,lateral_force_n,use\n".to_owned();
+        let mut runs = String::new();
         for (i, load) in (0..12).map(|i| (i, 60.0 + 6.0 * f64::from(i))) {
             let (slip, angle) = (0.1 * f64::from(i % 3), 15.0 * f64::from(i % 2));
             runs += &format!("r{i},a,sand,{slip},{load},0.01,{angle},{},fit\n", 0.1 * load);
         }
         runs += "h,a,sand,0.1,93,0.01,8,1,holdout\n";
-        let files = FileSet {
-            toml: TOML.into(),
-            files: [("runs.csv".into(), runs)].into(),
-        };
-        let experiment = Experiment::parse("experiment.toml", &files).unwrap();
+        let experiment = parsed(&runs);
         let interpolated = Interpolations::new(&experiment).at(12, Channel::LateralForce);
         assert!(
             (interpolated.unwrap().value - 9.3).abs() < 0.1,
