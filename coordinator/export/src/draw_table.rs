@@ -1,4 +1,4 @@
-//! The draws of the posterior as a table.
+//! The draws of the posterior as a table, which Arrow and Parquet files contain.
 
 use crate::error::ExportError;
 use crate::inference_data::InferenceData;
@@ -28,7 +28,7 @@ impl DrawTable {
     /// Tabulates the draws of inference data.
     ///
     /// # Errors
-    /// [`ExportError::Group`] where there is no posterior.
+    /// [`ExportError::Group`] if there is no posterior.
     pub fn from_data(data: &InferenceData) -> Result<DrawTable, ExportError> {
         let stats = data.group("sample_stats")?.data_vars.iter();
         let stats =

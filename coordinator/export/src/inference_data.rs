@@ -32,14 +32,14 @@ pub struct VariableGroup {
 }
 
 impl VariableGroup {
-    /// Labels and variables.
+    /// Returns the labels, then the variables.
     pub fn variables(&self) -> impl Iterator<Item = &Variable> {
         self.coords.iter().chain(&self.data_vars)
     }
 }
 
 impl InferenceData {
-    /// The group of a name.
+    /// Returns the group of a name.
     ///
     /// # Errors
     /// [`ExportError::Group`] if it is missing.

@@ -14,7 +14,7 @@ pub struct Variable {
     pub dims: Vec<String>,
     /// Lengths of the dimensions.
     pub shape: Vec<usize>,
-    /// Unit of the values; empty where they have none.
+    /// Unit of the values; empty if they have none.
     pub unit: String,
     /// Meaning in words.
     pub meaning: String,
@@ -22,7 +22,7 @@ pub struct Variable {
     pub values: Values,
 }
 
-/// Values of one kind.
+/// The values of a variable.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Values {
@@ -37,7 +37,7 @@ pub enum Values {
 }
 
 impl Variable {
-    /// A variable over dimensions with their lengths.
+    /// Makes a variable over dimensions with their lengths.
     pub fn new(name: &str, dims: &[(&str, usize)], unit: &str, meaning: &str, values: Values) -> Self {
         Variable {
             name: name.to_owned(),
@@ -49,7 +49,7 @@ impl Variable {
         }
     }
 
-    /// The labels of a dimension.
+    /// Makes the labels of a dimension.
     pub fn labels(dim: &str, values: Values) -> Self {
         let length = values.len();
         Variable::new(dim, &[(dim, length)], "", "", values)
@@ -75,7 +75,7 @@ impl Variable {
 }
 
 impl Values {
-    /// Number of values.
+    /// Returns the number of values.
     pub fn len(&self) -> usize {
         match self {
             Values::Real(values) => values.len(),
@@ -84,13 +84,13 @@ impl Values {
         }
     }
 
-    /// Whether there is no value.
+    /// Returns whether there is no value.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 }
 
-/// Serialises numbers that JSON cannot express as null.
+/// Serialisation of numbers; those that JSON cannot express become null.
 mod nullable {
     use serde::{Deserialize, Deserializer, Serializer};
 

@@ -1,4 +1,4 @@
-//! The embedded files.
+//! Assets: the embedded files of the page, by path, with media type and hash.
 
 use std::borrow::Cow;
 
@@ -39,12 +39,12 @@ pub struct Asset {
     pub tag: String,
 }
 
-/// The document that a browser begins with.
+/// The document that a browser loads first.
 pub const INDEX: &str = "index.html";
 /// The document that describes the interface.
 pub const DOCS: &str = "docs.html";
 
-/// A file by its path below the folder of the page; `None` where there is none.
+/// Returns a file by its path below the folder of the page; `None` if there is none.
 pub fn asset(path: &str) -> Option<Asset> {
     let file = file(path)?;
     let hash = file.metadata.sha256_hash();
@@ -55,13 +55,13 @@ pub fn asset(path: &str) -> Option<Asset> {
     })
 }
 
-/// A text file that must exist.
+/// Returns the content of a text file that must exist.
 pub(crate) fn text(path: &str) -> String {
     let file = file(path).unwrap_or_else(|| panic!("the page has the file {path}"));
     String::from_utf8_lossy(&file.data).into_owned()
 }
 
-/// The paths of all modules, in order.
+/// Returns the paths of all modules, in order.
 pub(crate) fn modules() -> Vec<String> {
     let mut paths: Vec<String> = Modules::iter().map(Cow::into_owned).collect();
     paths.push("vendor/preact.js".into());

@@ -34,7 +34,7 @@ pub struct Report<'a> {
     pub answers: &'a Map<String, Value>,
 }
 
-/// The document.
+/// Builds the document.
 pub fn report(report: &Report) -> String {
     let mut page = String::from("<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n");
     let styles: String = ["base", "layout", "chart"]
@@ -87,14 +87,14 @@ fn opening(id: &str) -> String {
     format!("<script type=\"application/json\" id=\"{id}\">")
 }
 
-/// Numbers and names as JSON that cannot close the element that contains it.
+/// Embeds JSON in a script element, escaped so that it cannot close the element.
 fn data(id: &str, value: &Value) -> String {
     // `<` occurs in texts only, where its escape means the same.
     let json = value.to_string().replace('<', "\\u003c");
     format!("{}{json}</script>", opening(id))
 }
 
-/// The import map, which locates each module in the document.
+/// Returns the import map, which locates each module in the document.
 fn import_map() -> String {
     let entry = |path: String| {
         let source = STANDARD.encode(with_names(&path, &text(&path)));
@@ -108,7 +108,7 @@ fn import_map() -> String {
     json!({ "imports": imports }).to_string()
 }
 
-/// A module whose imports use names in place of relative paths.
+/// Replaces the relative paths of a module's imports by names.
 fn with_names(path: &str, source: &str) -> String {
     let folder = folder_of(path);
     let line = |line: &str| match line.rsplit_once(" from \"") {
@@ -124,7 +124,7 @@ fn folder_of(path: &str) -> &str {
     path.rsplit_once('/').map_or("", |(folder, _)| folder)
 }
 
-/// The path of a relative import below a folder.
+/// Returns the path of a relative import below a folder.
 fn resolved(folder: &str, relative: &str) -> String {
     if let Some(rest) = relative.strip_prefix("../") {
         return resolved(folder_of(folder), rest);

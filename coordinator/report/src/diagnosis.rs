@@ -1,4 +1,4 @@
-//! Diagnostics of a calibration with their findings and flags, computed once for report, terminal, REST and `diagnose`.
+//! Diagnosis: computes the diagnostics of a calibration with their findings and flags, for report, terminal and REST.
 
 use crate::flag::calibration::flags;
 use crate::flag::cause;
@@ -8,10 +8,10 @@ use result::diagnostics::{directions, parameters, posterior_draws, rejections, r
 use result::finished_calibration::FinishedCalibration;
 use result::table::comparison::Comparison;
 
-/// The diagnostics.
+/// Computes the diagnostics of a calibration.
 ///
 /// # Arguments
-/// - `comparison`: [`FinishedCalibration::comparison`], whose intervals are counted.
+/// - `comparison`: [`FinishedCalibration::comparison`], for the coverage of its intervals.
 pub fn diagnostics(calibration: &FinishedCalibration, comparison: &Comparison) -> Diagnostics {
     let posterior = posterior_draws(calibration);
     let residuals = residuals::residuals(calibration, &posterior);

@@ -1,7 +1,7 @@
-//! The report of a study: one document that opens offline, with the pictures of the page and their numbers.
+//! Document: the HTML report of a study, which opens offline and draws the same figures as the page.
 //!
-//! It carries what a service would answer to the page, by the paths of the REST interface: whatever the page shows of a study, the
-//! report shows too. Without scripts it has the text of the terminal.
+//! It contains the answers of the REST interface by path, so that the modules of the page work without a service. Without scripts it
+//! shows the text of the terminal.
 
 use serde_json::{Map, Value};
 
@@ -14,7 +14,7 @@ use crate::provenance::provenance;
 use crate::terminal;
 use result::study::Study;
 
-/// The report, which shows the current model first.
+/// Returns the report, which shows the current model first.
 pub fn document(study: &Study) -> String {
     let shown = study.current().unwrap_or(&study.lead);
     report(&Report {
@@ -26,7 +26,7 @@ pub fn document(study: &Study) -> String {
     })
 }
 
-/// The answers of a service about a study, by path.
+/// Returns the answers of a service about a study, keyed by path.
 pub fn answers(study: &Study) -> Map<String, Value> {
     let overview = overview(study);
     let mut answers = Map::new();
@@ -46,7 +46,7 @@ pub fn answers(study: &Study) -> Map<String, Value> {
         add(path("stages"), json(&calibration.stages()));
     }
     for round in &study.rounds {
-        // One that was cancelled or failed before it has no record.
+        // Searches that were cancelled or failed have no record.
         let search = study
             .members
             .iter()
@@ -85,7 +85,7 @@ mod tests {
         other.row.id = 2;
         let study = Study {
             models: 2,
-            others: vec![other],
+            other_models: vec![other],
             ..Study::from(fixture::calibration())
         };
         let answers = answers(&study);

@@ -1,14 +1,14 @@
-//! The sentences and files of a study, from the numbers of `result`: flags, story, `summary.json`, report, text for a terminal.
+//! Reports: the sentences and files of a study, from the numbers of `result`: flags, story, `summary.json`, HTML report, terminal text.
 //!
 //! Everything here is a pure function of a [`result::FinishedCalibration`], or of the [`result::Study`] that it belongs to.
 //!
 //! # Layout
-//! - [`diagnosis`]: diagnostics with their flags, computed once. [`flag`]: warnings in words.
-//! - [`provenance`]: how a calibration came about, and what it reached in sentences.
+//! - [`diagnosis`]: diagnostics with their findings and flags. [`flag`]: warnings in words.
+//! - [`provenance`]: inputs and versions of a calibration, and its results in sentences.
 //! - [`story`]: what is wrong, what is missing, what to do next.
 //! - [`summary`]: `summary.json`. [`overview`]: a study as the page shows it.
 //! - [`terminal`]: text for a terminal. [`document`]: one HTML document with everything.
-//! - [`study_file`]: the files that a study ends with.
+//! - [`study_file`]: the result files of a study.
 
 pub mod diagnosis;
 pub mod document;

@@ -1,4 +1,4 @@
-//! A study as the page shows it: its members, its error ledger, its flags.
+//! Overview of a study for the page: its members, error ledger and flags, and its entry in a list.
 
 use std::collections::BTreeMap;
 
@@ -8,9 +8,7 @@ use shared::api::{CalibrationState, Progress};
 use crate::flag::study::flags_by_calibration;
 use crate::story::{AddedEffect, Story, added};
 use crate::summary::calibration::CalibrationSummary;
-use crate::summary::study::combined_summary;
-use crate::summary::study::ledger_summaries;
-use crate::summary::study::point_estimate_summaries;
+use crate::summary::study::{combined_summary, ledger_summaries, point_estimate_summaries};
 use result::diagnostics::trends::TrendVariable;
 use result::error_summary::{CombinedSummary, ErrorSummary};
 use result::flag::{Flag, FlagKind};
@@ -23,24 +21,24 @@ use result::table::fixed_sigma::FixedSigma;
 use result::words::campaign::CampaignWords;
 use result::words::data_channel::DataChannel;
 
-/// A study: what is finished of it, and what is still computed.
+/// A study with its finished results and its unfinished members.
 #[derive(Debug, Clone, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
 pub struct StudyOverview {
     /// Its id.
     pub id: i64,
-    /// Its name: that of the submitted calibration.
+    /// Name of the submitted calibration.
     pub name: String,
     /// The experiment of the submitted calibration.
     pub experiment: i64,
-    /// Where its measurements come from; null where the experiment does not say it, and without a finished calibration.
+    /// Source of the measurements; null if the experiment does not state it, and without a finished calibration.
     pub campaign: Option<CampaignWords>,
-    /// `finished` where no further step follows, else the state of its first unfinished member.
+    /// `finished` if no further step follows, else the state of the first unfinished member.
     pub state: CalibrationState,
-    /// Whether it is archived.
+    /// Whether the study is archived.
     pub archived: bool,
-    /// Model of the submitted calibration; null where this version does not understand its job.
+    /// Kind of the submitted model; null if this version cannot read its job.
     pub model_kind: Option<String>,
-    /// The calibration of the current model: the line of the ledger with the most evidence on the newest measurements; null without a line.
+    /// The calibration of the current model, which has the most evidence on the newest measurements; null if the ledger is empty.
     pub current: Option<i64>,
     /// Ids of the members, oldest first.
     pub calibrations: Vec<i64>,
@@ -48,19 +46,19 @@ pub struct StudyOverview {
     pub members: Vec<MemberOverview>,
     /// The error ledger: base first, then each extension.
     pub ledger: Vec<CalibrationSummary>,
-    /// What the ledger's models predict together; null where nothing is corrected.
+    /// Errors of the combined predictions of the models in the ledger; null if no prediction is corrected.
     pub combined: Option<CombinedSummary>,
-    /// The noise sd of each channel that `rmse_fixed_sigma` is in, by name.
+    /// Noise standard deviation of `rmse_fixed_sigma`, by channel.
     pub fixed_sigma: BTreeMap<String, FixedSigma>,
-    /// Deterministic fits.
+    /// Results of fits and searches by generations.
     pub point_estimates: Vec<PointEstimate>,
-    /// The models that the job compares; null where it has one, and until all are finished.
+    /// Comparison of the job's models; null if the job has one model, and until all are finished.
     pub models: Option<ModelComparison>,
     /// The flags.
     pub flags: Vec<StudyFlag>,
-    /// The verdict of the search of the current model, else of the last search; null where none is finished.
+    /// Verdict of the search of the current model, else of the last search; null if no search is finished.
     pub verdict: Option<StudyVerdict>,
-    /// Why the study failed and what to do; null where no member failed.
+    /// Reason of the failure and advice; null if no member failed.
     pub failure: Option<StudyFailure>,
 }
 
@@ -70,27 +68,27 @@ pub struct MemberOverview {
     /// The member.
     #[serde(flatten)]
     pub member: StudyMember,
-    /// What is wrong, what is missing, what to do next; null of a search, and of what is not finished.
+    /// What is wrong, what is missing, what to do next; null for a search and for an unfinished member.
     pub story: Option<Story>,
 }
 
 /// A flag of a study.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
 pub struct StudyFlag {
-    /// The calibration that it is about; null where it compares several.
+    /// Calibration that the flag is about; null if it is about several.
     pub calibration: Option<i64>,
     /// Its kind.
     #[schema(value_type = String)]
     pub kind: FlagKind,
-    /// The channel it is about.
+    /// Channel that the flag is about.
     #[schema(value_type = Option<String>)]
     pub channel: Option<DataChannel>,
-    /// The condition it varies with.
+    /// Condition that the residuals follow.
     #[schema(value_type = Option<String>)]
     pub against: Option<TrendVariable>,
     /// Probability of the observation if nothing were wrong.
     pub p: Option<f64>,
-    /// Its meaning.
+    /// Meaning in words.
     pub text: String,
 }
 
@@ -101,9 +99,9 @@ pub struct StudyVerdict {
     pub calibration: i64,
     /// The verdict.
     pub verdict: Verdict,
-    /// The verdict in a sentence, with what it leaves open.
+    /// The verdict and the open questions in a sentence.
     pub text: String,
-    /// What the data do not exclude in place of the effects that were added, and the run that would tell; null where that is nothing.
+    /// Alternatives to the added effects that the data do not exclude, with the run that would distinguish them; null if there are none.
     pub open: Option<String>,
 }
 
@@ -112,32 +110,32 @@ pub struct StudyVerdict {
 pub struct StudyListItem {
     /// Its id.
     pub id: i64,
-    /// Its name: that of the submitted calibration.
+    /// Name of the submitted calibration.
     pub name: String,
     /// The experiment of the submitted calibration.
     pub experiment: i64,
-    /// `finished` where no further step follows, else the state of its first unfinished member.
+    /// `finished` if no further step follows, else the state of the first unfinished member.
     pub state: CalibrationState,
-    /// Whether it is archived.
+    /// Whether the study is archived.
     pub archived: bool,
     /// Ids of the members, oldest first.
     pub calibrations: Vec<i64>,
-    /// Model of the submitted calibration; null where this version does not understand its job.
+    /// Kind of the submitted model; null if this version cannot read its job.
     pub model_kind: Option<String>,
-    /// Effects and freed parameters of the current model beyond the submitted job's.
+    /// Effects and freed parameters of the current model that the submitted job does not have.
     pub effects: Vec<String>,
-    /// Errors of the current model; null without a line in the ledger, or while they are computed.
+    /// Errors of the current model; null if the ledger is empty, or while they are computed.
     pub error: Option<ErrorSummary>,
-    /// Live figures of the member that is computed; null where none is.
+    /// Progress of the running member; null if none is running.
     pub progress: Option<Progress>,
-    /// The verdict of the search of the current model, else of the last search; null where none is finished.
+    /// Verdict of the search of the current model, else of the last search; null if no search is finished.
     pub verdict: Option<StudyVerdict>,
-    /// Why it failed and what to do; null where no member failed.
+    /// Reason of the failure and advice; null if no member failed.
     pub failure: Option<StudyFailure>,
 }
 
 impl StudyOverview {
-    /// A study without a finished calibration. There is at least one member.
+    /// Describes a study without a finished calibration. It has at least one member.
     pub fn begun(id: i64, experiment: i64, model_kind: Option<String>, members: Vec<StudyMember>) -> Self {
         let unfinished = members.iter().find(|m| m.state != CalibrationState::Finished);
         StudyOverview {
@@ -149,7 +147,7 @@ impl StudyOverview {
             archived: false,
             model_kind,
             current: None,
-            failure: StudyFailure::of(members.iter()),
+            failure: StudyFailure::from_members(members.iter()),
             calibrations: members.iter().map(|m| m.id).collect(),
             members: members
                 .into_iter()
@@ -165,7 +163,7 @@ impl StudyOverview {
         }
     }
 
-    /// Its line in a list, with the live figures of the member that is computed.
+    /// Returns the line of the study in a list, with the progress of the running member.
     pub fn list_item(&self, progress: Option<Progress>) -> StudyListItem {
         let current = self
             .ledger
@@ -193,7 +191,7 @@ impl StudyOverview {
     }
 }
 
-/// The study as the page shows it. Whether it is archived is not known here.
+/// Describes a study as the page shows it. The caller sets `archived`, which is not stored with the results.
 pub fn overview(study: &Study) -> StudyOverview {
     let sigmas = study.fixed_sigmas();
     let current = study.current().map(|calibration| calibration.row.id);
@@ -224,7 +222,8 @@ pub fn overview(study: &Study) -> StudyOverview {
     }
 }
 
-/// The verdict of the last search of the current model, else of the last search, with what was left open before.
+/// Returns the verdict of the last search of the current model, else of the last search, with the questions that earlier searches left
+/// open.
 fn verdict(study: &Study) -> Option<StudyVerdict> {
     let current = study.current();
     let mut rounds = study.rounds.iter().rev();
@@ -247,13 +246,13 @@ fn verdict(study: &Study) -> Option<StudyVerdict> {
     })
 }
 
-/// The members, each finished calibration with its story.
+/// Returns the members with the story of each finished calibration.
 fn members_with_stories(study: &Study) -> Vec<MemberOverview> {
     let with_story = |member: &StudyMember| {
         let calibration = study.calibrations().find(|finished| finished.row.id == member.id);
         MemberOverview {
             member: member.clone(),
-            story: calibration.map(|finished| Story::of(study, finished)),
+            story: calibration.map(|finished| Story::new(study, finished)),
         }
     };
     study.members.iter().map(with_story).collect()

@@ -1,4 +1,4 @@
-//! The files that a study ends with: written into its folder, shown by a service, stored.
+//! The result files of a study: their names and their texts.
 
 use std::collections::BTreeMap;
 
@@ -19,13 +19,13 @@ pub enum StudyFile {
     Summary,
     /// Draws of the current model's posterior.
     Posterior,
-    /// Every run as the models predict it, as CSV.
+    /// Predictions of every run, as CSV.
     Predictions,
-    /// The same as JSON.
+    /// Predictions of every run, as JSON.
     PredictionRows,
     /// Report.
     Report,
-    /// Its tables and flags, as text for a terminal.
+    /// Tables and flags, as text for a terminal.
     Details,
     /// Calibrations, searches and error ledger, as text for a terminal.
     Brief,
@@ -40,7 +40,7 @@ pub enum StudyFile {
 }
 
 impl StudyFile {
-    /// Its name.
+    /// Returns the name of the file.
     pub fn name(self) -> String {
         match self {
             StudyFile::Summary => "summary.json".into(),
@@ -57,25 +57,25 @@ impl StudyFile {
         }
     }
 
-    /// Whether a study always ends with the file. The others are computed when somebody asks for them.
+    /// Returns whether every study ends with the file. The others are computed on request.
     pub fn is_of_every_study(self) -> bool {
         !matches!(self, StudyFile::PredictionRows | StudyFile::Figures(_))
     }
 }
 
-/// A file of a finished calibration that the calibration alone determines, as JSON.
+/// A JSON file of a finished calibration that does not depend on the rest of its study.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum CalibrationFile {
     /// Diagnostics.
     Diagnostics,
-    /// Model against measurement.
+    /// The comparison of a model with the measurements.
     Comparison,
-    /// Histories; `null` for a model that knows no time.
+    /// Histories; `null` for a model without time.
     Histories,
 }
 
 impl CalibrationFile {
-    /// Its name.
+    /// Returns the name of the file of a calibration.
     pub fn name(self, calibration: i64) -> String {
         let kind = match self {
             CalibrationFile::Diagnostics => "diagnostics",
@@ -85,7 +85,7 @@ impl CalibrationFile {
         format!("{kind}-{calibration}.json")
     }
 
-    /// Its text.
+    /// Returns the text of the file.
     pub fn text(self, calibration: &FinishedCalibration) -> String {
         match self {
             CalibrationFile::Diagnostics => compact(&diagnostics(calibration, calibration.comparison())),
@@ -95,7 +95,7 @@ impl CalibrationFile {
     }
 }
 
-/// The files that a study ends with, by name: those of every study, and the diagnostics of its calibrations.
+/// Returns the files that every study ends with, by name, and the diagnostics of its calibrations.
 pub fn files(study: &Study) -> BTreeMap<String, String> {
     use StudyFile::{Brief, Details, Posterior, Predictions, Report, Story, Summary};
     let mut files = overview_files(&overview(study));
@@ -113,7 +113,7 @@ pub fn files(study: &Study) -> BTreeMap<String, String> {
     files
 }
 
-/// An overview and the line that it is in a list of studies, by name.
+/// Returns an overview and its line in a list of studies, by name.
 pub fn overview_files(overview: &StudyOverview) -> BTreeMap<String, String> {
     [
         (StudyFile::Overview.name(), json(overview)),
@@ -122,7 +122,7 @@ pub fn overview_files(overview: &StudyOverview) -> BTreeMap<String, String> {
     .into()
 }
 
-/// The text of a file; `None` for figures of a calibration that is no finished one of the study.
+/// Returns the text of a file; `None` for figures of a calibration that is not a finished one of the study.
 pub fn file(study: &Study, file: StudyFile) -> Option<String> {
     Some(match file {
         StudyFile::Summary => json(&summary(study)) + "\n",

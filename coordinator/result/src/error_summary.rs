@@ -1,4 +1,4 @@
-//! Errors of a model, of its corrected predictions and of interpolation without physics.
+//! Errors for a summary: of a model, of its corrected and combined predictions, and of interpolation without physics.
 
 use shared::experiment::RunUse;
 
@@ -10,17 +10,17 @@ use crate::table::errors::ErrorTable;
 use crate::table::fixed_sigma::FixedSigmas;
 use crate::table::row::rows_of;
 
-/// Errors on both kinds of runs.
+/// Errors of a model on fitted and on holdout runs.
 #[derive(Debug, Clone, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
 pub struct ErrorSummary {
-    /// Fitted runs.
+    /// Value for the fitted runs.
     pub fit: Option<ErrorTable>,
-    /// Runs that were not fitted.
+    /// Value for the holdout runs.
     pub holdout: Option<ErrorTable>,
 }
 
 impl ErrorSummary {
-    /// The same errors in the noise sds of a study.
+    /// Returns the same errors with `rmse_fixed_sigma` in the given noise standard deviations.
     pub fn in_fixed_sigmas(self, sigmas: &FixedSigmas) -> Self {
         let table = |table: Option<ErrorTable>| table.map(|table| table.in_fixed_sigmas(sigmas));
         ErrorSummary {
@@ -30,32 +30,32 @@ impl ErrorSummary {
     }
 }
 
-/// The model with what it misses in the fitted conditions, interpolated by a Gaussian process over the conditions that vary.
+/// Errors of the corrected predictions. The correction is the model's error in the fitted conditions, interpolated by a Gaussian process.
 #[derive(Debug, Clone, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
 pub struct CorrectedSummary {
-    /// Errors of the fitted runs, each corrected by what the model misses in the other conditions.
+    /// Errors of the fitted runs, each corrected from the other conditions.
     pub fit: Option<ErrorTable>,
-    /// Errors of the runs that were not fitted.
+    /// Errors of the holdout runs.
     pub holdout: Option<ErrorTable>,
     /// Share of measurements inside their 90 % interval.
     pub coverage90: CoverageSummary,
-    /// Why some predictions are not corrected; empty where all are.
+    /// Reasons why some predictions are not corrected; empty if all are.
     pub missing: Vec<String>,
 }
 
 impl CorrectedSummary {
-    /// The corrected predictions of a comparison.
-    pub fn of(comparison: &Comparison) -> Self {
+    /// Takes the errors of the corrected predictions from a comparison.
+    pub fn new(comparison: &Comparison) -> Self {
         let coverage = |usage| Coverage::count_corrected(rows_of(&comparison.rows, usage));
         CorrectedSummary {
             fit: comparison.corrected_fit.clone(),
             holdout: comparison.corrected_holdout.clone(),
-            coverage90: CoverageSummary::of(coverage),
+            coverage90: CoverageSummary::from_counts(coverage),
             missing: comparison.not_corrected.clone(),
         }
     }
 
-    /// The same errors in the noise sds of a study.
+    /// Returns the same errors with `rmse_fixed_sigma` in the given noise standard deviations.
     pub fn in_fixed_sigmas(self, sigmas: &FixedSigmas) -> Self {
         let CorrectedSummary { fit, holdout, .. } = self;
         let ErrorSummary { fit, holdout } = ErrorSummary { fit, holdout }.in_fixed_sigmas(sigmas);
@@ -63,56 +63,58 @@ impl CorrectedSummary {
     }
 }
 
-/// The corrected predictions of the ledger's models, averaged.
+/// Errors of the weighted average of the corrected predictions of all models in the ledger.
 #[derive(Debug, Clone, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
 pub struct CombinedSummary {
-    /// Most models that a prediction averages.
+    /// Maximum number of models in an average.
     pub models: usize,
-    /// Errors of the fitted runs, each corrected by the other conditions.
+    /// Errors of the fitted runs, each corrected from the other conditions.
     pub fit: Option<ErrorTable>,
-    /// Errors of the runs that were not fitted.
+    /// Errors of the holdout runs.
     pub holdout: Option<ErrorTable>,
     /// Share of measurements inside their 90 % interval.
     pub coverage90: CoverageSummary,
 }
 
 impl CombinedSummary {
-    /// `None` where nothing is corrected.
-    pub fn of(rows: &[CombinedRow], sigmas: &FixedSigmas) -> Option<Self> {
-        let of = |usage| rows.iter().filter(move |own| own.row.usage == usage);
+    /// Summarises the errors of combined predictions; `None` if no prediction is corrected.
+    pub fn new(rows: &[CombinedRow], sigmas: &FixedSigmas) -> Option<Self> {
+        let used = |usage| rows.iter().filter(move |combined| combined.row.usage == usage);
         let errors = |usage| {
-            let table = ErrorTable::of(of(usage).map(|own| (&own.row, own.mean)))?;
+            let table = ErrorTable::new(used(usage).map(|combined| (&combined.row, combined.mean)))?;
             Some(table.in_fixed_sigmas(sigmas))
         };
         let models = rows
             .iter()
-            .map(|own| own.models)
+            .map(|combined| combined.models)
             .max()
             .filter(|models| *models > 0)?;
         Some(CombinedSummary {
             models,
             fit: errors(RunUse::Fit),
             holdout: errors(RunUse::Holdout),
-            coverage90: CoverageSummary::of(|usage| Coverage::of(of(usage).filter_map(CombinedRow::covered))),
+            coverage90: CoverageSummary::from_counts(|usage| {
+                Coverage::from_outcomes(used(usage).filter_map(CombinedRow::covered))
+            }),
         })
     }
 }
 
-/// Interpolation without physics.
+/// Errors of interpolation without physics.
 #[derive(Debug, Clone, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
 pub struct BaselineSummary {
-    /// `interpolation`: between the fitted measurements of the same wheel, soil and pass, by a monotone cubic where runs differ in slip
-    /// alone, else by a Gaussian process over the conditions that vary.
+    /// `interpolation`: between the fitted measurements of the same wheel, soil and pass, by a monotone cubic if the runs differ in slip
+    /// only, else by a Gaussian process over the conditions that vary.
     pub name: String,
-    /// Its errors.
+    /// Errors on the holdout runs.
     pub holdout: Option<ErrorTable>,
-    /// Why some runs are not interpolated; empty where all are.
+    /// Reasons why some runs are not interpolated; empty if all are.
     pub missing: Vec<String>,
 }
 
 impl BaselineSummary {
-    /// The interpolation of a comparison.
-    pub fn of(comparison: &Comparison) -> Self {
+    /// Takes the errors of interpolation from a comparison.
+    pub fn new(comparison: &Comparison) -> Self {
         BaselineSummary {
             name: "interpolation".into(),
             holdout: comparison.baseline_holdout.clone(),
@@ -120,7 +122,7 @@ impl BaselineSummary {
         }
     }
 
-    /// The same errors in the noise sds of a study.
+    /// Returns the same errors with `rmse_fixed_sigma` in the given noise standard deviations.
     pub fn in_fixed_sigmas(self, sigmas: &FixedSigmas) -> Self {
         BaselineSummary {
             holdout: self.holdout.map(|table| table.in_fixed_sigmas(sigmas)),

@@ -1,4 +1,4 @@
-//! A finished calibration with everything that the store kept of it.
+//! A finished calibration with everything that the store has of it: the input of all results.
 
 use std::collections::BTreeMap;
 use std::sync::OnceLock;
@@ -14,7 +14,7 @@ use statistics::{LogLikelihood, Marginal};
 use crate::table::comparison::Comparison;
 use crate::table::interpolation::Interpolations;
 
-/// What a calibration ends with.
+/// The kind of result that a calibration ends with.
 #[derive(Debug)]
 pub enum Outcome {
     /// A sample of the posterior.
@@ -26,31 +26,31 @@ pub enum Outcome {
         /// The equally weighted draws.
         draws: Vec<Particle>,
     },
-    /// The most probable parameters alone.
+    /// The most probable parameters only.
     Estimated(EstimateRow),
 }
 
-/// A sample of the posterior, and how the sampler came to it.
+/// A sample of the posterior with the history of the sampler.
 #[derive(Debug)]
 pub struct SampledPosterior {
     /// The equally weighted draws.
     pub draws: Vec<Particle>,
-    /// The draws from the prior, then the populations at the end of the stages before the last.
+    /// The draws from the prior, then the populations at the end of each stage but the last.
     pub populations: Vec<Vec<Particle>>,
-    /// The draws from the prior with what the model gave there.
+    /// The draws from the prior with the model's predictions or rejections.
     pub prior_draws: Vec<PriorDraw>,
-    /// Its stages.
+    /// Stages of the sampler.
     pub stages: Vec<StageRow>,
     /// Counts of a metamodel; `None` without one.
     pub subchains: Option<Subchains>,
 }
 
 impl Outcome {
-    /// The outcome by what the store kept.
+    /// Chooses the kind of outcome from the stored parts.
     ///
     /// # Arguments
-    /// - `estimate`: the most probable parameters, of a fit.
-    /// - `sampled`: the draws, of a fit those of its normal approximation; with them, what only a sampler leaves.
+    /// - `estimate`: the most probable parameters of a fit.
+    /// - `sampled`: the draws of a sampler with its stages, or the draws of a normal approximation.
     pub fn new(estimate: Option<EstimateRow>, sampled: SampledPosterior) -> Self {
         match estimate {
             None => Outcome::Sampled(sampled),
@@ -72,29 +72,29 @@ pub struct FinishedCalibration {
     pub spec: Spec,
     /// Name of its experiment.
     pub experiment: String,
-    /// What it ends with.
+    /// Result.
     pub outcome: Outcome,
-    /// The model's values of the fitted measurements at the draw of the highest likelihood.
+    /// Predictions of the fitted measurements at the draw with the highest likelihood.
     pub likeliest_values: Option<Vec<f64>>,
-    /// The final draws, simulated on every run; the first is the most probable particle, of a fit the only one.
+    /// The final draws, simulated on every run. The first is the most probable particle; for a fit it is the only one.
     pub predictions: Vec<Prediction>,
-    /// Simulated history of each fitted run at the likeliest parameters; `None` of a model without time.
+    /// Simulated history of each fitted run at the draw with the highest likelihood; `None` for a model without time.
     pub simulated_histories: Option<Vec<SimulatedHistory>>,
-    /// Number of rejected parameter vectors of the sampler or the fit, by kind.
+    /// Number of parameter vectors that the model rejected, by kind.
     pub rejections: BTreeMap<String, u64>,
     /// Number of failed leases by message.
     pub faults: BTreeMap<String, u64>,
     /// Number of evaluations that were given up after faults.
     pub given_up: u64,
-    /// Evaluations that were answered in two ways.
+    /// Evaluations with two different results.
     pub disputes: Vec<Dispute>,
-    /// How far the results are verified by second workers.
+    /// Numbers of results that second workers verified.
     pub verified: Verified,
-    /// How a model that is not ours answered what it was asked twice.
+    /// Differences between the answers of an external model to repeated questions.
     pub repeats: Repeats,
-    /// The held-out measurements as interpolated from the fitted ones, once somebody asks.
+    /// The holdout measurements interpolated from the fitted ones, computed on demand.
     pub interpolations: OnceLock<Interpolations>,
-    /// Model against measurement, once somebody asks: the intervals of many runs and draws are dear.
+    /// Model against measurement, computed on demand, because the intervals of many runs and draws are expensive.
     pub comparison: OnceLock<Comparison>,
 }
 
@@ -105,7 +105,7 @@ impl FinishedCalibration {
         effects.iter().map(|effect| effect.name.clone()).collect()
     }
 
-    /// The equally weighted draws of the posterior, of a fit those of its normal approximation; empty of a fit without one.
+    /// Returns the equally weighted draws of the posterior or of its normal approximation; empty for a fit without draws.
     pub fn posterior(&self) -> &[Particle] {
         match &self.outcome {
             Outcome::Sampled(sampled) => &sampled.draws,
@@ -114,7 +114,7 @@ impl FinishedCalibration {
         }
     }
 
-    /// The point estimate; `None` where there are draws of the posterior.
+    /// Returns the point estimate; `None` if there are draws of the posterior.
     pub fn estimate(&self) -> Option<&EstimateRow> {
         match &self.outcome {
             Outcome::Estimated(estimate) => Some(estimate),
@@ -122,7 +122,7 @@ impl FinishedCalibration {
         }
     }
 
-    /// The fit about which the draws are those of a normal approximation.
+    /// Returns the fit about which the draws are a normal approximation.
     pub fn approximated(&self) -> Option<&EstimateRow> {
         match &self.outcome {
             Outcome::Approximated { mode, .. } => Some(mode),
@@ -130,7 +130,7 @@ impl FinishedCalibration {
         }
     }
 
-    /// The most probable parameters that a fit found, with draws about them or without.
+    /// Returns the most probable parameters of a fit, with or without draws about them.
     pub fn mode(&self) -> Option<&EstimateRow> {
         self.estimate().or(self.approximated())
     }
@@ -142,17 +142,17 @@ impl FinishedCalibration {
         }
     }
 
-    /// The stages of a sampler.
+    /// Returns the stages of the sampler; empty for a fit.
     pub fn stages(&self) -> &[StageRow] {
         self.sampled().map_or(&[], |sampled| &sampled.stages)
     }
 
-    /// The draws from the prior that a sampler began with, then its populations at the end of the stages before the last.
+    /// Returns the draws from the prior, then the populations at the end of each stage but the last; empty for a fit.
     pub fn populations(&self) -> &[Vec<Particle>] {
         self.sampled().map_or(&[], |sampled| &sampled.populations)
     }
 
-    /// The draws from the prior that a sampler began with.
+    /// Returns the draws from the prior that the sampler began with; empty for a fit.
     pub fn prior_draws(&self) -> &[PriorDraw] {
         self.sampled().map_or(&[], |sampled| &sampled.prior_draws)
     }
@@ -162,20 +162,20 @@ impl FinishedCalibration {
         self.sampled()?.subchains
     }
 
-    /// The draw of the highest likelihood; the first of equals.
+    /// Returns the draw with the highest likelihood; the first of equal ones.
     pub fn likeliest(&self) -> Option<&Particle> {
         likeliest(self.posterior())
     }
 
-    /// The predictions that results are made from: equally weighted draws, without the most probable particle, which is
-    /// no random draw; of a fit, its one point.
+    /// Returns the predictions that results are computed from: the equally weighted draws without the most probable particle, which is
+    /// not a random draw. A fit has its one point.
     pub fn predictive_draws(&self) -> &[Prediction] {
         let first = usize::from(self.estimate().is_none()).min(self.predictions.len());
         &self.predictions[first..]
     }
 
-    /// The most probable parameters: those that a fit with draws found, else those of the particle of the highest likelihood times
-    /// prior, the first of equals.
+    /// Returns the most probable parameters: the mode of a fit with draws, else the particle with the highest product of likelihood and
+    /// prior, the first of equal ones.
     pub fn most_probable(&self) -> Option<Particle> {
         if let Some(mode) = self.approximated() {
             return Some(Particle {
@@ -189,13 +189,13 @@ impl FinishedCalibration {
         self.posterior().iter().reduce(best).cloned()
     }
 
-    /// The draws of one parameter.
+    /// Returns the draws of one parameter.
     pub fn draws(&self, parameter: usize) -> Vec<f64> {
         self.posterior().iter().map(|s| s.theta[parameter]).collect()
     }
 }
 
-/// The population that a sampler begins with.
+/// Returns the draws from the prior as the sampler's first population, with their log-likelihoods.
 pub fn first_population(spec: &Spec, draws: &[PriorDraw]) -> Vec<Particle> {
     let prior = spec.prior();
     let score = |draw: &PriorDraw| {
@@ -210,7 +210,7 @@ pub fn first_population(spec: &Spec, draws: &[PriorDraw]) -> Vec<Particle> {
     draws.iter().map(particle).collect()
 }
 
-/// The draw of the highest likelihood; the first of equals.
+/// Returns the draw with the highest likelihood; the first of equal ones.
 pub fn likeliest(draws: &[Particle]) -> Option<&Particle> {
     let score = |p: &Particle| p.log_likelihood.value();
     let best = draws
@@ -219,7 +219,7 @@ pub fn likeliest(draws: &[Particle]) -> Option<&Particle> {
     best.filter(|p| !p.log_likelihood.is_impossible())
 }
 
-/// The mean of a prior; that of a symmetric one is integrated to zero but for rounding, which is not shown.
+/// Returns the mean of a prior. Numerical integration gives a symmetric prior a mean that differs from 0 by rounding, which is set to 0.
 pub fn prior_mean(marginal: &Marginal) -> f64 {
     let mean = marginal.mean();
     if mean.abs() < 1e-12 * marginal.sd() {
@@ -237,8 +237,8 @@ mod tests {
 
     #[test]
     fn a_prior_about_zero_has_the_mean_zero() {
-        let of = |mean| prior_mean(&Marginal::new(Distribution::Normal { mean, sd: 0.2 }, None).unwrap());
-        assert_eq!(of(0.0).to_bits(), 0.0_f64.to_bits());
-        assert!((of(1e-6) - 1e-6).abs() < 1e-15);
+        let shown = |mean| prior_mean(&Marginal::new(Distribution::Normal { mean, sd: 0.2 }, None).unwrap());
+        assert_eq!(shown(0.0).to_bits(), 0.0_f64.to_bits());
+        assert!((shown(1e-6) - 1e-6).abs() < 1e-15);
     }
 }

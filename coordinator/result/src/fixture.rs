@@ -1,4 +1,4 @@
-//! A small finished calibration with hostile names, for tests.
+//! Small finished calibrations and studies for the tests of `result` and `report`; their names contain markup, which output must escape.
 
 use std::collections::BTreeMap;
 
@@ -56,7 +56,7 @@ d,a,sand,0.5,25,0.01,1.5,,fit
 e,a,sand,0.4,25,0.01,1.2,0.022,LAST
 ";
 
-/// A campaign whose rows were digitised.
+/// Returns a campaign whose rows were digitised.
 pub fn campaign() -> Campaign {
     let toml = "title = \"Wheels in <i>sand</i>\"\nauthors = [\"A. Author\", \"B. Author\"]\ndate = \"2025\"\n\
                 licence = \"CC-BY-4.0\"\ndoi = \"10.1000/182\"\nsource = \"figure 5\"\ndigitised = true\n\
@@ -64,17 +64,17 @@ pub fn campaign() -> Campaign {
     parse_toml("campaign.toml", toml).expect("a campaign")
 }
 
-/// A calibration with a holdout run.
+/// Returns a calibration with a holdout run.
 pub fn calibration() -> FinishedCalibration {
     build(&RUNS.replace("LAST", "holdout"))
 }
 
-/// The same with every run fitted.
+/// Returns the calibration with every run fitted.
 pub fn without_holdout() -> FinishedCalibration {
     build(&RUNS.replace("LAST", "fit"))
 }
 
-/// The same with more holdout runs, whose pull lies on a line through those of the fitted ones; the model is off by this much `[N]`.
+/// Returns a calibration with `count` holdout runs, whose pull lies on a line through the fitted ones; the model errs by `error` `[N]`.
 pub fn with_held_out_runs(count: usize, error: f64) -> FinishedCalibration {
     let mut runs = RUNS.replace("LAST", "fit");
     for k in 0..count {
@@ -98,8 +98,8 @@ pub fn with_held_out_runs(count: usize, error: f64) -> FinishedCalibration {
     calibration
 }
 
-/// Nine fitted runs over slip and two held out between them, and one at another speed; the model misses the pull by `3 sin(3 slip)`
-/// `[N]`, and each draw by 1 N more or less in every run.
+/// Returns a calibration with nine fitted runs over slip, two holdout runs between them and one at another speed. The model misses the
+/// pull by `3 sin(3 slip)` `[N]`; the draws lie alternately 1 N above and below that in every run.
 pub fn with_smooth_misfit() -> FinishedCalibration {
     let mut runs =
         "run,wheel,soil,slip,wheel_load_n,sled_speed_m_s,drawbar_pull_n,sinkage_m,use\n".to_owned();
@@ -114,8 +114,8 @@ pub fn with_smooth_misfit() -> FinishedCalibration {
     }
     let mut calibration = build(&runs);
     let spec = &calibration.spec;
-    let values = |of: &[usize], shift: f64| -> Vec<f64> {
-        let slips = of.iter().map(|&i| spec.experiment.runs[i].slip);
+    let values = |runs: &[usize], shift: f64| -> Vec<f64> {
+        let slips = runs.iter().map(|&i| spec.experiment.runs[i].slip);
         slips
             .map(|slip| 10.0 * slip - 3.0 * libm::sin(3.0 * slip) + shift)
             .collect()
@@ -132,7 +132,7 @@ pub fn with_smooth_misfit() -> FinishedCalibration {
     calibration
 }
 
-/// The sample of a calibration, to be changed.
+/// Returns the sample of a calibration, so that a test can change it.
 pub fn sampled(calibration: &mut FinishedCalibration) -> &mut SampledPosterior {
     match &mut calibration.outcome {
         Outcome::Sampled(sampled) => sampled,
@@ -140,7 +140,14 @@ pub fn sampled(calibration: &mut FinishedCalibration) -> &mut SampledPosterior {
     }
 }
 
-/// The same where the model rejected all final draws, drifted, and has no evidence.
+/// Returns the position of a run in the experiment of a calibration.
+pub fn position(calibration: &FinishedCalibration, run: &str) -> usize {
+    let mut runs = calibration.spec.experiment.runs.iter();
+    runs.position(|candidate| candidate.name == run)
+        .expect("a run of the fixture")
+}
+
+/// Returns a calibration whose model rejected all final draws, whose sampler drifted, and which has no evidence.
 pub fn all_rejected() -> FinishedCalibration {
     let mut calibration = calibration();
     for prediction in &mut calibration.predictions {
@@ -156,7 +163,7 @@ pub fn all_rejected() -> FinishedCalibration {
     calibration
 }
 
-/// The same with four runs held out of which the model refuses one at every draw, one at every second and one at every fourth.
+/// Returns a calibration with four holdout runs; the model refuses one at every draw, one at every second and one at every fourth draw.
 pub fn with_refused_runs() -> FinishedCalibration {
     let mut calibration = with_held_out_runs(4, 0.5);
     let draws = calibration.predictions.iter_mut().skip(1).enumerate();
@@ -164,7 +171,8 @@ pub fn with_refused_runs() -> FinishedCalibration {
         let Some(holdout) = prediction.holdout.as_mut() else {
             continue;
         };
-        let reason = |of: &str| RejectionReason(format!("no_support: condition {of}: z = 0.11 m"));
+        let reason =
+            |condition: &str| RejectionReason(format!("no_support: condition {condition}: z = 0.11 m"));
         let together = std::mem::replace(&mut holdout.together, Err(reason("1")));
         for run in 0..4 {
             let of_run = |all: &Observables| Observables {
@@ -183,7 +191,7 @@ pub fn with_refused_runs() -> FinishedCalibration {
     calibration
 }
 
-/// A fit of the same job, one parameter at a bound.
+/// Returns a fit of the same job with one parameter at a bound.
 pub fn fit() -> FinishedCalibration {
     let mut calibration = calibration();
     calibration.spec.algorithm = AlgorithmSettings::Fit(inference::lm::LmSettings::default());
@@ -208,7 +216,7 @@ pub fn fit() -> FinishedCalibration {
     calibration
 }
 
-/// A search of the same job that its generations cut short.
+/// Returns a search of the same job that ended after its last generation.
 pub fn search() -> FinishedCalibration {
     let mut calibration = fit();
     calibration.spec.algorithm = AlgorithmSettings::Evolve(EvolutionSettings::Ga(GaSettings::default()));
@@ -224,7 +232,7 @@ pub fn search() -> FinishedCalibration {
     calibration
 }
 
-/// A sample with a search beside it.
+/// Returns a study of a sample and a search for the optimum.
 pub fn study() -> Study {
     let mut beside = search();
     beside.row.id = 2;
@@ -234,7 +242,7 @@ pub fn study() -> Study {
     }
 }
 
-/// A sample that was searched and extended.
+/// Returns a study of a sample that was searched for a missing effect and extended.
 pub fn grown() -> Study {
     let mut extension = calibration();
     (extension.row.id, extension.experiment) = (3, "<script>sand+slip_sinkage".into());
@@ -274,8 +282,7 @@ pub fn grown() -> Study {
     }
 }
 
-/// A study whose search found a class of two effects, extended by one of them; the extended model was searched again, and nothing was
-/// found.
+/// Returns a study whose search found a class of two effects. One was added, and a second search found nothing.
 pub fn of_a_class() -> Study {
     let mut study = grown();
     let extension = &mut study.extensions[0];
@@ -314,8 +321,8 @@ pub fn of_a_class() -> Study {
     study
 }
 
-/// A study of the model of a rolling wheel, extended by an effect of the displacement that is kept on the nodes of the soil, as a search
-/// named it.
+/// Returns a study of the model of a rolling wheel, extended by the effect that a search named: displacement stored on the nodes of the
+/// soil.
 pub fn on_the_nodes() -> Study {
     let rolling = |more: &str| {
         let job = JOB.replace("\"quasi_static\"\n", &format!("\"scm\"\n{more}"));
@@ -338,7 +345,7 @@ fn build(runs: &str) -> FinishedCalibration {
     build_with("", runs)
 }
 
-/// - `more`: lines under `[model]`.
+/// Builds the calibration of the job with `more` lines under `[model]`.
 fn build_with(more: &str, runs: &str) -> FinishedCalibration {
     let kind = "kind = \"quasi_static\"\n";
     of_job(&JOB.replace(kind, &format!("{kind}{more}")), runs)
@@ -356,10 +363,10 @@ fn of_job(job: &str, runs: &str) -> FinishedCalibration {
     of_files(job, &files)
 }
 
-/// A calibration of these files; its draws are spread over the prior.
+/// Returns a calibration of the given files with draws spread over the prior.
 pub fn of_files(job: FileSet, files: &FileSet) -> FinishedCalibration {
     let spec = Spec::new("job.toml", &job, "experiment.toml", files).expect("the fixture's files are valid");
-    // The golden ratio's multiples spread evenly.
+    // Multiples of the golden ratio modulo 1 are spread evenly.
     let share = |k: usize, i: usize| (0.5 + 0.618_033_988_75 * (k * (i + 1)) as f64) % 1.0;
     let theta = |k: usize| -> Vec<f64> {
         spec.parameters
@@ -390,7 +397,7 @@ pub fn of_files(job: FileSet, files: &FileSet) -> FinishedCalibration {
             ..Observables::default()
         }
     };
-    // The model rejects two draws, those with the least n.
+    // The model rejects the two draws with the smallest n.
     let prior_draws = (0..40)
         .map(|k| PriorDraw {
             theta: theta(k),

@@ -1,4 +1,4 @@
-//! A flag and its kind.
+//! Flags: warnings about a result, and their kinds.
 
 use crate::diagnostics::trends::TrendVariable;
 use crate::words::data_channel::DataChannel;
@@ -9,15 +9,15 @@ pub struct Flag {
     /// Its kind.
     #[schema(value_type = String)]
     pub kind: FlagKind,
-    /// The channel it is about.
+    /// Channel that the flag is about.
     #[schema(value_type = Option<String>)]
     pub channel: Option<DataChannel>,
-    /// The condition it varies with.
+    /// Condition that the residuals follow.
     #[schema(value_type = Option<String>)]
     pub against: Option<TrendVariable>,
     /// Probability of the observation if nothing were wrong.
     pub p: Option<f64>,
-    /// Its meaning.
+    /// Meaning in words.
     pub text: String,
 }
 
@@ -27,21 +27,21 @@ pub struct Flag {
 pub enum FlagKind {
     /// Residuals follow a condition of the runs.
     Trend,
-    /// Residuals are larger than the declared errors.
+    /// Residuals are larger than the declared errors explain.
     Chi2,
-    /// One residual is beyond chance.
+    /// One residual is larger than chance allows.
     Outlier,
     /// Data and prior contradict each other.
     Conflict,
     /// A parameter lies at a bound of its prior.
     Bound,
-    /// A sampler, a fit or a search did not reach its target.
+    /// A sampler, a fit or a search did not converge.
     NotEquilibrated,
-    /// The data say nothing about a parameter, or a channel says nothing.
+    /// The data are uninformative about a parameter, or a channel is uninformative.
     NoInformation,
     /// The model rejected parameter vectors.
     Rejections,
-    /// The best explanation of the misfit leaves some of it.
+    /// The best explanation of a search leaves a significant misfit.
     Incomplete,
     /// The runs were made in the order of a condition.
     Order,
@@ -49,12 +49,12 @@ pub enum FlagKind {
     Worker,
     /// Interpolation without physics predicts held-out runs better than the model.
     InterpolationBeats,
-    /// The posterior of the wheel's soil contradicts what plates say.
+    /// The posterior of the soil under the wheel contradicts the plate tests.
     PlatesConflict,
 }
 
 impl FlagKind {
-    /// Name in `summary.json`.
+    /// Returns the name in `summary.json`.
     pub fn name(self) -> &'static str {
         match self {
             FlagKind::Trend => "trend",
@@ -75,7 +75,7 @@ impl FlagKind {
 }
 
 impl Flag {
-    /// A flag that is about no channel and no probability.
+    /// Returns a flag without channel, condition and probability.
     pub fn plain(kind: FlagKind, text: String) -> Self {
         Flag {
             kind,

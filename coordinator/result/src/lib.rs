@@ -1,12 +1,13 @@
-//! The numbers of a calibration and of a study, from what the store kept: tables, diagnostics, errors, figures.
+//! Results: the numbers of a calibration and of a study, from the stored facts: tables, diagnostics, errors, figures.
 //!
-//! Everything here is a pure function of a [`FinishedCalibration`], or of the [`Study`] that it belongs to. No decision that it states
-//! reads a holdout row.
+//! Everything here is a pure function of a [`FinishedCalibration`], or of the [`Study`] that it belongs to. No decision reads a
+//! holdout row.
 //!
 //! # Layout
-//! - [`finished_calibration`], [`study`]: the inputs of the results. [`study_member`]: a calibration of a study; [`study_failure`]: why one failed.
+//! - [`finished_calibration`], [`study`]: the inputs of the results. [`study_member`]: a calibration or search of a study.
+//! - [`study_failure`]: the reason of a failure, with advice.
 //! - [`table`]: model against measurement, errors, intervals, the posterior's draws.
-//! - [`parameter_summary`], [`point_estimate`], [`error_summary`], [`coverage_summary`]: what a line of the error ledger states.
+//! - [`parameter_summary`], [`point_estimate`], [`error_summary`], [`coverage_summary`]: entries of summaries.
 //! - [`diagnostics`]: how far the posterior can be trusted. [`flag`]: a warning.
 //! - [`model_comparison`]: the models that a job compares, by evidence and by prediction.
 //! - [`validation`]: the levels of a factor, each predicted from the others.

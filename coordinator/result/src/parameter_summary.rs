@@ -1,10 +1,10 @@
-//! A parameter after and before the data.
+//! Parameter summary: posterior and prior moments of a parameter.
 
 use inference::diagnostics;
 
 use crate::finished_calibration::{FinishedCalibration, prior_mean};
 
-/// A parameter after and before the data.
+/// Posterior and prior of a parameter.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
 pub struct ParameterSummary {
     /// Posterior mean.
@@ -17,18 +17,18 @@ pub struct ParameterSummary {
     pub q50: f64,
     /// 95 % quantile.
     pub q95: f64,
-    /// Value of the most probable particle.
+    /// Value in the most probable parameter vector.
     pub map: f64,
     /// Prior mean.
     pub prior_mean: Option<f64>,
     /// Prior standard deviation.
     pub prior_sd: Option<f64>,
-    /// Whether q05 or q95 lies within 2 % of the range of a bound.
+    /// Whether q05 or q95 lies close to a bound, within 2 % of the range of the prior.
     pub at_bound: bool,
 }
 
 impl FinishedCalibration {
-    /// Every parameter after and before the data, in the order of the job.
+    /// Returns the posterior and prior moments of each parameter, in the order of the job.
     pub fn parameter_summaries(&self) -> Vec<(String, ParameterSummary)> {
         let best = self.most_probable();
         let finite = |x: f64| x.is_finite().then_some(x);

@@ -1,4 +1,4 @@
-//! The result of a fit or a search: the most probable parameters.
+//! The result of a fit or a search: the most probable parameters, for a summary.
 
 use std::collections::BTreeMap;
 
@@ -10,16 +10,16 @@ use crate::error_summary::{BaselineSummary, CorrectedSummary, ErrorSummary};
 use crate::finished_calibration::FinishedCalibration;
 use crate::table::fixed_sigma::FixedSigmas;
 
-/// Deterministic updating.
+/// The result of a fit or a search.
 #[derive(Debug, Clone, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
 pub struct PointEstimate {
-    /// Algorithm.
+    /// Name of the algorithm.
     #[schema(value_type = String)]
     pub algorithm: AlgorithmName,
     /// The most probable parameters by name.
     pub parameters: BTreeMap<String, f64>,
-    /// Their standard deviations after Laplace; null at a bound, and where nothing fixes a parameter. Null for a search
-    /// by generations, which does not know the curvature.
+    /// Standard deviations of the Laplace approximation by name; null at a bound, and for a parameter that neither data nor prior
+    /// determine. Null for a search by generations, which does not estimate the curvature.
     pub sd: Option<BTreeMap<String, Option<f64>>>,
     /// The parameters that lie at a bound of their prior.
     pub at_bound: Vec<String>,
@@ -27,18 +27,18 @@ pub struct PointEstimate {
     pub log_posterior: f64,
     /// Errors of the model at these parameters.
     pub error: ErrorSummary,
-    /// Interpolation without physics.
+    /// Errors of interpolation without physics.
     pub baseline: BaselineSummary,
-    /// The model with what it misses in the fitted conditions.
+    /// Errors of the corrected predictions.
     pub corrected: CorrectedSummary,
-    /// Evaluations spent.
+    /// Number of evaluations.
     pub evaluations: u64,
-    /// Of these, rejected by the model.
+    /// Number of evaluations that the model rejected.
     pub rejected: u64,
     /// Wall time `[s]`.
     pub wall_s: f64,
-    /// Why it stopped: `decrease` (no step improves the posterior), `step` (no tried step does), `budget`; of a search by
-    /// generations `stagnation` (many without improvement), `generations`, `budget`.
+    /// Reason for stopping: `decrease` (no step can improve the posterior by more than the tolerance), `step` (no tried step improves the posterior), `budget`;
+    /// for a search by generations `stagnation` (many generations without improvement), `generations`, `budget`.
     #[schema(value_type = String)]
     pub stop: StopReason,
     /// Convergence of a search by generations; empty for a fit.
@@ -48,7 +48,7 @@ pub struct PointEstimate {
 /// State of a search after a generation.
 #[derive(Debug, Clone, Copy, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
 pub struct GenerationSummary {
-    /// Evaluations so far.
+    /// Number of evaluations so far.
     pub evaluations: u64,
     /// Highest log-posterior so far; null while the model rejected everything.
     pub best: Option<f64>,
@@ -63,13 +63,13 @@ pub struct FittedParameter<'a> {
     pub free: &'a FreeParameter,
     /// Its most probable value, in the unit of the parameter.
     pub value: f64,
-    /// Its standard deviation after Laplace, in the unit of the parameter; `None` where nothing fixes it.
+    /// Its standard deviation by the Laplace approximation, in the unit of the parameter; `None` if nothing determines it.
     pub sd: Option<f64>,
-    /// Whether it lies at a bound of its prior.
+    /// Whether the parameter lies at a bound of its prior.
     pub at_bound: bool,
 }
 
-/// Convergence of a search by generations.
+/// Returns the convergence of a search by generations.
 pub fn generations(history: &[Generation]) -> Vec<GenerationSummary> {
     let generation = |g: &Generation| GenerationSummary {
         evaluations: g.evaluations,
@@ -79,7 +79,7 @@ pub fn generations(history: &[Generation]) -> Vec<GenerationSummary> {
     history.iter().map(generation).collect()
 }
 
-/// The parameters of an estimate, in the order of the job.
+/// Returns the parameters of an estimate, in the order of the job.
 pub fn fitted<'a>(
     estimate: &'a EstimateRow,
     parameters: &'a [FreeParameter],
@@ -93,7 +93,7 @@ pub fn fitted<'a>(
 }
 
 impl PointEstimate {
-    /// The estimate with its errors in the noise sds of its study.
+    /// Returns the estimate with its errors in the noise sds of its study.
     #[must_use]
     pub fn in_fixed_sigmas(self, sigmas: &FixedSigmas) -> Self {
         PointEstimate {
@@ -106,7 +106,7 @@ impl PointEstimate {
 }
 
 impl FinishedCalibration {
-    /// The result of a fit, drawn from or not, or of a search; `None` of a sample.
+    /// Returns the result of a fit, with or without draws, or of a search; `None` for a sample.
     pub fn point_estimate(&self) -> Option<PointEstimate> {
         let estimate = self.mode()?;
         let comparison = self.comparison();
@@ -121,8 +121,8 @@ impl FinishedCalibration {
                 .then(|| fitted().map(|p| (name(p), p.sd)).collect()),
             at_bound: fitted().filter(|p| p.at_bound).map(name).collect(),
             log_posterior: estimate.log_posterior(),
-            baseline: BaselineSummary::of(comparison),
-            corrected: CorrectedSummary::of(comparison),
+            baseline: BaselineSummary::new(comparison),
+            corrected: CorrectedSummary::new(comparison),
             error: ErrorSummary {
                 fit: comparison.fit.clone(),
                 holdout: comparison.holdout.clone(),

@@ -1,4 +1,4 @@
-//! Why a study failed, and what to do about it.
+//! The failure of a study: its reason, and advice on what to do.
 
 use shared::api::CalibrationState;
 
@@ -9,17 +9,17 @@ use crate::study_member::{Rejections, StudyMember};
 pub struct StudyFailure {
     /// Its id.
     pub calibration: i64,
-    /// Why it failed, with what the model rejected.
+    /// Reason, with the counts of rejections.
     pub reason: String,
-    /// What to do.
+    /// Advice.
     pub advice: String,
-    /// Both in a sentence.
+    /// Reason and advice in a sentence.
     pub text: String,
 }
 
 impl StudyFailure {
-    /// Of the first member that failed; `None` where none did.
-    pub fn of<'a>(mut members: impl Iterator<Item = &'a StudyMember>) -> Option<StudyFailure> {
+    /// Describes the failure of the first failed member; `None` if none failed.
+    pub fn from_members<'a>(mut members: impl Iterator<Item = &'a StudyMember>) -> Option<StudyFailure> {
         let failed = members.find(|member| member.state == CalibrationState::Failed)?;
         let message = failed.message.as_deref().unwrap_or("no reason is stored");
         let rejections = failed.rejections.as_ref();
@@ -37,7 +37,7 @@ impl StudyFailure {
     }
 }
 
-/// What to do where the model rejects most of the parameter vectors for this reason.
+/// Returns advice for a study whose model rejected most parameter vectors for the reason `kind`.
 fn advice(kind: Option<&str>) -> &'static str {
     match kind {
         Some("no_support") => {
@@ -91,7 +91,7 @@ mod tests {
             CalibrationState::Failed,
             &[("not_finite", 10), ("no_support", 990)],
         );
-        let failure = StudyFailure::of([&failed].into_iter()).unwrap();
+        let failure = StudyFailure::from_members([&failed].into_iter()).unwrap();
         assert_eq!(
             failure.reason,
             "all 1000 prior draws were rejected by the model (no_support 990 and not_finite 10, such as \"the soil carries at most 80 N of the 140 N wheel load\")"
@@ -110,7 +110,7 @@ mod tests {
             .filter(|s| *s != CalibrationState::Failed)
         {
             assert_eq!(
-                StudyFailure::of([&member(state, &[])].into_iter()),
+                StudyFailure::from_members([&member(state, &[])].into_iter()),
                 None,
                 "{state:?}"
             );
@@ -118,7 +118,7 @@ mod tests {
         let mut failed = member(CalibrationState::Failed, &[]);
         failed.rejections = None;
         failed.message = Some("tempering exponent 0.1 cannot grow".into());
-        let failure = StudyFailure::of([&failed].into_iter()).unwrap();
+        let failure = StudyFailure::from_members([&failed].into_iter()).unwrap();
         assert_eq!(failure.reason, "tempering exponent 0.1 cannot grow");
         assert!(failure.advice.starts_with("correct the job"), "{failure:?}");
     }

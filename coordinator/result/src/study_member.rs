@@ -1,4 +1,4 @@
-//! A member of a study, finished or not.
+//! A member of a study: a calibration or a search, finished or not.
 
 use std::collections::BTreeMap;
 
@@ -16,29 +16,29 @@ pub struct StudyMember {
     pub name: String,
     /// Its state.
     pub state: CalibrationState,
-    /// What it computes.
+    /// Role in the study.
     pub kind: Role,
-    /// The effects (`EFFECT.WHEEL` on one wheel of several) and freed parameters of its model beyond those of the submitted job.
+    /// Effects (`EFFECT.WHEEL` if one wheel of several has it) and freed parameters of its model that the submitted job does not have.
     pub effects: Vec<String>,
-    /// The calibration whose model it searches; null of a sample or a fit.
+    /// The calibration whose model it searches; null for a sample or a fit.
     pub searches: Option<i64>,
-    /// Why it is paused or failed.
+    /// Reason for a pause or a failure.
     pub message: Option<String>,
-    /// What the model rejected; null of what has not failed.
+    /// Rejections by the model; null unless the member failed.
     pub rejections: Option<Rejections>,
 }
 
-/// The parameter vectors that the model rejected.
+/// Counts of the parameter vectors that the model rejected.
 #[derive(Debug, Clone, PartialEq, Eq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
 pub struct Rejections {
-    /// Their number by kind.
+    /// Number by kind.
     pub kinds: BTreeMap<String, u64>,
-    /// The message of the first of them.
+    /// Message of the first rejection.
     pub first: Option<String>,
 }
 
 impl Rejections {
-    /// The most frequent kind; the first of equals.
+    /// Returns the most frequent kind; the first of equal ones.
     pub fn usual(&self) -> Option<&str> {
         let kinds = self.kinds.iter().rev();
         kinds
@@ -46,10 +46,10 @@ impl Rejections {
             .map(|(kind, _)| kind.as_str())
     }
 
-    /// `no_support 1000, such as "the soil carries at most 80 N of the 140 N wheel load"`; `None` without any.
+    /// Counts the rejections by kind with an example: `no_support 1000, such as "the soil carries at most 80 N of the 140 N wheel load"`;
+    /// `None` without rejections.
     pub fn words(&self) -> Option<String> {
-        let kinds = self.kinds.iter().map(|(kind, count)| format!("{kind} {count}"));
-        let kinds: Vec<String> = kinds.collect();
+        let kinds = number::counts(&self.kinds);
         let first = self.first.as_ref().map(|first| format!(", such as \"{first}\""));
         (!kinds.is_empty()).then(|| format!("{}{}", number::list(&kinds), first.unwrap_or_default()))
     }

@@ -144,10 +144,10 @@ pub(super) async fn finished_study(
     let lead = best.or(calibrations.first()).copied().unwrap_or(row);
     let mut experiments = ParsedExperiments::default();
     let lead = finished_with(reader, lead, &mut experiments).await?;
-    let (mut others, mut point_estimates, mut extensions) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut other_models, mut point_estimates, mut extensions) = (Vec::new(), Vec::new(), Vec::new());
     for row in calibrations.into_iter().filter(|row| row.id != lead.row.id) {
         if compared(row) {
-            others.push(finished_with(reader, row, &mut experiments).await?);
+            other_models.push(finished_with(reader, row, &mut experiments).await?);
             continue;
         }
         let group = match lineage.model_of(row.id) == lineage.model_of(lead.row.id) {
@@ -166,7 +166,7 @@ pub(super) async fn finished_study(
         state,
         models,
         lead,
-        others,
+        other_models,
         point_estimates,
         extensions,
         rounds: search_rounds(reader, rows).await?,

@@ -1,4 +1,4 @@
-//! Draws of the parameters, and statistics of the sampler.
+//! Groups of draws: posterior, prior and statistics of the sampler.
 
 use inference::Particle;
 use record::StageRow;
@@ -40,7 +40,7 @@ fn parameters<'a>(
     }
 }
 
-/// The equally weighted draws of the posterior.
+/// Returns the equally weighted draws of the posterior.
 pub(super) fn posterior(calibration: &FinishedCalibration) -> VariableGroup {
     let draws = calibration
         .posterior()
@@ -49,13 +49,13 @@ pub(super) fn posterior(calibration: &FinishedCalibration) -> VariableGroup {
     parameters("posterior", calibration, draws)
 }
 
-/// The draws from the prior with which the sampler began; none for a normal approximation.
+/// Returns the draws from the prior with which the sampler began; none for a normal approximation.
 pub(super) fn prior(calibration: &FinishedCalibration) -> VariableGroup {
     let draws = calibration.prior_draws().iter().map(|draw| draw.theta.as_slice());
     parameters("prior", calibration, draws)
 }
 
-/// The density of each draw, and the stages of the sampler.
+/// Returns the densities of each draw, and the stages of the sampler.
 pub(super) fn sample_stats(calibration: &FinishedCalibration) -> VariableGroup {
     let draws = calibration.posterior();
     let dims = [("chain", CHAINS), ("draw", draws.len())];

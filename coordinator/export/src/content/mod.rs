@@ -15,7 +15,7 @@ use crate::error::ExportError;
 use crate::inference_data::InferenceData;
 use runs::Part;
 
-/// A finished calibration as inference data.
+/// Converts a finished calibration to inference data.
 ///
 /// # Errors
 /// [`ExportError::NoDraws`] for a fit without draws.
@@ -33,7 +33,7 @@ pub fn inference_data(calibration: &FinishedCalibration) -> Result<InferenceData
         fitted.measured("observed_data"),
         fitted.conditions("constant_data"),
     ];
-    // A run that was never fitted is a prediction, with the measurements to judge it.
+    // Predictions of holdout runs are exported with the measurements to judge them.
     if !calibration.spec.holdout_runs.is_empty() {
         let held_out = Part::held_out(calibration);
         groups.push(held_out.predictive("predictions"));

@@ -1,4 +1,4 @@
-//! Runs: conditions, measurements, and predictions at the draws that were simulated on every run.
+//! Groups of runs: conditions, measurements, and predictions at the draws that were simulated on every run.
 
 use record::Prediction;
 use result::{Component, FinishedCalibration, NewMeasurements};
@@ -75,7 +75,7 @@ impl<'a> Part<'a> {
         [("run", self.runs.len()), ("channel", self.channels.len())]
     }
 
-    /// Variables over the simulated draws, runs and channels.
+    /// Makes variables over the simulated draws, runs and channels.
     fn over_draws<const N: usize>(
         &self,
         group: &str,
@@ -84,7 +84,7 @@ impl<'a> Part<'a> {
         self.over(group, &self.dims(), self.labels(), variables)
     }
 
-    /// Variables over the simulated draws and other dimensions, with the labels of those.
+    /// Makes variables over the simulated draws and further dimensions, which have these labels.
     fn over<const N: usize>(
         &self,
         group: &str,
@@ -106,17 +106,17 @@ impl<'a> Part<'a> {
         }
     }
 
-    /// The model's predictions, and new measurements with the errors that the calibration found; NaN where it rejects a draw.
+    /// Returns the model's predictions, and new measurements with the errors that the calibration found; NaN where it rejects a draw.
     pub(super) fn predictive(&self, group: &str) -> VariableGroup {
         let law = self.calibration.spec.likelihood.law();
         let seed = self.calibration.spec.algorithm.seed();
-        let new = NewMeasurements::of(self.calibration);
+        let new_measurements = NewMeasurements::new(self.calibration);
         let size = self.places.len() * self.channels.len();
         let empty = vec![f64::NAN; size * self.calibration.predictive_draws().len()];
         let (mut values, mut measurements) = (empty.clone(), empty);
         for (run, &place) in self.places.iter().enumerate() {
             for (column, &channel) in self.channels.iter().enumerate() {
-                for prediction in new.at(place, channel) {
+                for prediction in new_measurements.at(place, channel) {
                     let mut stream = Stream::new(
                         seed,
                         NEW,
@@ -140,8 +140,8 @@ impl<'a> Part<'a> {
         )
     }
 
-    /// The log-density of each fitted measurement. If a run lacks a channel, measurements have one dimension, because the sums over
-    /// runs and channels of leave-one-out would be NaN.
+    /// Returns the log-density of each fitted measurement. If a run lacks a channel, measurements have one dimension, because the sums
+    /// over runs and channels of leave-one-out would be NaN.
     pub(super) fn log_likelihood(&self) -> VariableGroup {
         let likelihood = &self.calibration.spec.likelihood;
         let cells = self.cells();
@@ -180,7 +180,7 @@ impl<'a> Part<'a> {
         )
     }
 
-    /// The fitted measurements of these runs, by run and channel.
+    /// Returns the fitted measurements of these runs, by run and channel.
     fn cells(&self) -> Vec<Cell> {
         let data = self.calibration.spec.likelihood.data().iter().enumerate();
         let cell = |(datum, measured): (usize, &statistics::Datum)| {
@@ -199,7 +199,7 @@ impl<'a> Part<'a> {
         cells
     }
 
-    /// The measured values; NaN where none was measured.
+    /// Returns the measured values; NaN where none was measured.
     pub(super) fn measured(&self, group: &str) -> VariableGroup {
         let measured = |run: &&TestRun| -> Vec<f64> {
             let value = |channel: &Channel| run.measured[channel.index()].unwrap_or(f64::NAN);
@@ -220,7 +220,7 @@ impl<'a> Part<'a> {
         }
     }
 
-    /// The conditions that were set on the rig.
+    /// Returns the conditions that were set on the rig.
     pub(super) fn conditions(&self, group: &str) -> VariableGroup {
         let [run, channel] = self.dims();
         let real = |name: &str, unit: &str, value: fn(&TestRun) -> f64| {
@@ -247,17 +247,17 @@ impl<'a> Part<'a> {
     }
 }
 
-/// The component that contains a probability.
+/// Returns the component at which the cumulative weight exceeds a probability.
 fn chosen(components: &[Component], mut probability: f64) -> Option<&Component> {
     let component = components.iter().find(|component| {
         probability -= component.weight;
         probability < 0.0
     });
-    // Rounding may leave a remainder behind the last component.
+    // Rounding may leave a remainder after the last component.
     component.or(components.last())
 }
 
-/// A random error of scale 1 from two uniform numbers.
+/// Returns a random error of scale 1 from two uniform numbers.
 ///
 /// # Source
 /// Box & Muller 1958, doi:10.1214/aoms/1177706645; for Student's t, Bailey 1994, Math. Comp. 62:779, doi:10.2307/2153537.
@@ -271,7 +271,7 @@ fn error(law: ErrorLaw, [first, second]: [f64; 2]) -> f64 {
     squared.sqrt() * libm::cos(std::f64::consts::TAU * second)
 }
 
-/// Index in the posterior of each simulated draw; these are equally spaced draws of it.
+/// Returns the index in the posterior of each simulated draw; these are equally spaced draws of it.
 fn places(calibration: &FinishedCalibration) -> Vec<i64> {
     let draws = calibration.predictive_draws();
     let is_same = |a: &[f64], b: &[f64]| a.iter().map(|x| x.to_bits()).eq(b.iter().map(|x| x.to_bits()));

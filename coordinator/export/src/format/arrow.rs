@@ -10,7 +10,7 @@ use arrow_schema::{DataType, Field, Schema};
 use crate::draw_table::DrawTable;
 use crate::error::ExportError;
 
-/// The table as a file; the metadata of each column state its unit.
+/// Writes the table as a file; the metadata of each column state its unit.
 ///
 /// # Errors
 /// [`ExportError::Arrow`] if the library refuses the table.

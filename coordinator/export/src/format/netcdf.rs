@@ -28,7 +28,7 @@ struct Entry {
     values: Vec<u8>,
 }
 
-/// Inference data as one file.
+/// Writes inference data as one file.
 ///
 /// # Errors
 /// [`ExportError::Size`] if a count exceeds the format.
@@ -103,7 +103,7 @@ fn entry(group: &str, variable: &Variable, dimensions: &mut Dimensions) -> Resul
     })
 }
 
-/// Whole numbers of 32 bits: the classic format has no longer type.
+/// Encodes whole numbers with 32 bits, because the classic format has no longer type.
 fn whole(values: &[i64]) -> Result<Vec<u8>, ExportError> {
     let mut bytes = Vec::with_capacity(4 * values.len());
     for &value in values {
@@ -117,7 +117,7 @@ fn whole(values: &[i64]) -> Result<Vec<u8>, ExportError> {
     Ok(bytes)
 }
 
-/// The header, for values that begin at byte `begin`.
+/// Encodes the header, for values that begin at byte `begin`.
 fn header(
     data: &InferenceData,
     dimensions: &Dimensions,
@@ -162,7 +162,7 @@ fn add_attributes<'a>(
     Ok(())
 }
 
-/// The beginning of a list; an empty one has no tag.
+/// Begins a list; an empty list has no tag.
 fn list(bytes: &mut Vec<u8>, kind: u32, count: usize) -> Result<(), ExportError> {
     let kind = if count == 0 { 0 } else { kind };
     bytes.extend(kind.to_be_bytes());
@@ -187,7 +187,7 @@ fn text(bytes: &mut Vec<u8>, text: &str) -> Result<(), ExportError> {
     Ok(())
 }
 
-/// Values and lists begin at multiples of 4 bytes.
+/// Pads to a multiple of 4 bytes, at which values and lists begin.
 fn pad(bytes: &mut Vec<u8>) {
     bytes.resize(bytes.len().next_multiple_of(4), 0);
 }

@@ -12,7 +12,7 @@ use parquet::schema::types::{Type, TypePtr};
 use crate::draw_table::DrawTable;
 use crate::error::ExportError;
 
-/// The table as a file of one row group; the metadata state the unit of each column as `unit.COLUMN`.
+/// Writes the table as a file of one row group; the metadata state the unit of each column as `unit.COLUMN`.
 ///
 /// # Errors
 /// [`ExportError::Parquet`] if the library refuses the table.

@@ -16,7 +16,7 @@ use crate::variable::{Values, Variable};
 /// Name of the file with the metadata of a group or variable.
 const METADATA: &str = "zarr.json";
 
-/// Inference data as files by their paths below the folder of the hierarchy.
+/// Writes inference data as files, keyed by their paths below the folder of the hierarchy.
 ///
 /// # Errors
 /// [`ExportError::Size`] if a text is too long.
@@ -86,7 +86,7 @@ fn little_endian() -> Value {
     json!({"name": "bytes", "configuration": {"endian": "little"}})
 }
 
-/// The values in the form of their codec.
+/// Encodes the values.
 fn chunk(values: &Values) -> Result<Vec<u8>, ExportError> {
     Ok(match values {
         Values::Real(values) => values.iter().flat_map(|value| value.to_le_bytes()).collect(),

@@ -1,14 +1,11 @@
-//! Flags of a calibration.
+//! All flags of one calibration.
 
 use job::{SetCondition, confounded_orders};
 use shared::parameters::behind;
 
 use super::finding::findings_that_alarm;
 use super::plates::plates_conflict;
-use crate::flag::worker::disputed;
-use crate::flag::worker::given_up;
-use crate::flag::worker::not_deterministic;
-use crate::flag::worker::quarantined;
+use super::worker::{disputed, given_up, not_deterministic, quarantined};
 use result::diagnostics::calibration::Diagnostics;
 use result::diagnostics::trends::TrendVariable;
 use result::finished_calibration::FinishedCalibration;
@@ -21,12 +18,12 @@ use result::words::number;
 
 /// Ratio of posterior to prior standard deviation, in the sampler's coordinate, above which the data are called uninformative.
 const NO_CONTRACTION: f64 = 0.95;
-/// More refused runs than this are counted, not named.
+/// Maximum number of refused runs that are named.
 const SHOWN_REFUSED: usize = 3;
 /// Share of rejected parameter vectors above which the prior is questioned.
 const MANY_REJECTED: f64 = 0.5;
 
-/// All flags; a flag that casts doubt on the others comes first.
+/// Returns all flags. Those that cast doubt on the others come first.
 pub(crate) fn flags(calibration: &FinishedCalibration, diagnostics: &Diagnostics) -> Vec<Flag> {
     let mut flags: Vec<Flag> = disputed(calibration)
         .into_iter()
@@ -105,14 +102,9 @@ pub(crate) fn flags(calibration: &FinishedCalibration, diagnostics: &Diagnostics
         calibration.row.rejected.unwrap_or(0),
     );
     if rejected as f64 > MANY_REJECTED * evaluations as f64 {
-        let kinds: Vec<String> = calibration
-            .rejections
-            .iter()
-            .map(|(kind, n)| format!("{kind} {n}"))
-            .collect();
         let mut text = format!(
             "the model rejected {rejected} of {evaluations} parameter vectors ({}): much of the prior lies outside its validity",
-            kinds.join(", ")
+            number::counts(&calibration.rejections).join(", ")
         );
         if let Some(words) = diagnostics.rejections.words() {
             text.push_str("; ");
@@ -128,7 +120,7 @@ pub(crate) fn flags(calibration: &FinishedCalibration, diagnostics: &Diagnostics
     flags
 }
 
-/// Conditions that were set in the order of the runs.
+/// Returns a flag for each condition that was set in the order of the runs.
 fn confounded(calibration: &FinishedCalibration) -> impl Iterator<Item = Flag> {
     let confounded = confounded_orders(&calibration.spec.experiment, &calibration.spec.fit_runs);
     confounded.into_iter().map(|order| Flag {
@@ -141,7 +133,7 @@ fn confounded(calibration: &FinishedCalibration) -> impl Iterator<Item = Flag> {
     })
 }
 
-/// A sampler that did not reach equilibrium.
+/// Returns a flag if the sampler did not reach equilibrium.
 fn unbalanced(calibration: &FinishedCalibration) -> Option<Flag> {
     if calibration.row.equilibrated != Some(false) {
         return None;
@@ -161,7 +153,7 @@ fn unbalanced(calibration: &FinishedCalibration) -> Option<Flag> {
     Some(Flag::plain(FlagKind::NotEquilibrated, text))
 }
 
-/// A sentence on the holdout runs that the model refuses; `None` where it refuses none.
+/// Returns a sentence on the holdout runs that the model refuses; `None` if it refuses none.
 fn refused_holdout(calibration: &FinishedCalibration) -> Option<String> {
     let spec = &calibration.spec;
     let refused: Vec<(&str, Refusal)> = spec
@@ -173,9 +165,9 @@ fn refused_holdout(calibration: &FinishedCalibration) -> Option<String> {
     let mut words: Vec<String> = shown
         .map(|(run, refusal)| format!("{run} at {}", refusal.words()))
         .collect();
-    let others = refused.len().saturating_sub(SHOWN_REFUSED);
-    if others > 0 {
-        words.push(format!("{others} more"));
+    let more = refused.len().saturating_sub(SHOWN_REFUSED);
+    if more > 0 {
+        words.push(format!("{more} more"));
     }
     let whole = refused
         .iter()
@@ -217,7 +209,7 @@ mod tests {
 
     #[test]
     fn a_fit_that_was_to_have_a_posterior_and_has_none_says_so() {
-        let of = |draws: usize| {
+        let is_flagged = |draws: usize| {
             let mut fit = fixture::fit();
             fit.spec.algorithm = job::AlgorithmSettings::Fit(inference::lm::LmSettings {
                 draws,
@@ -228,7 +220,7 @@ mod tests {
                 .iter()
                 .any(|f| f.kind == FlagKind::NotEquilibrated && f.text.contains("tmcmc"))
         };
-        assert!(of(1000));
-        assert!(!of(0));
+        assert!(is_flagged(1000));
+        assert!(!is_flagged(0));
     }
 }

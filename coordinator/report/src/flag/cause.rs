@@ -1,4 +1,4 @@
-//! Trends of the residuals in words, and the effects that may cause them.
+//! Causes: trends of the residuals in words, and the effects that may cause them.
 
 use shared::channel::Channel;
 
@@ -12,19 +12,19 @@ const PULL: Channel = Channel::DrawbarPull;
 const TORQUE: Channel = Channel::Torque;
 const SINKAGE: Channel = Channel::Sinkage;
 
-/// A possible cause of trends in some channels.
+/// A possible cause of trends in one or more channels.
 struct Cause {
     channels: Vec<Channel>,
     words: &'static str,
 }
 
-/// Trends that are beyond chance among all tests, with their corrected probability.
+/// Returns the trends that are significant among all tests, with their corrected probability.
 fn alarming(trends: &[TrendDiagnostics]) -> Vec<(&TrendDiagnostics, f64)> {
     let corrected = trends.iter().map(|trend| (trend, trend.p * trends.len() as f64));
     corrected.filter(|(_, p)| *p < LEVEL).collect()
 }
 
-/// The strongest trend of each channel that has one, in the order of the trends.
+/// Returns the strongest trend of each channel, in the order of the trends.
 fn strongest<'a>(alarming: &[(&'a TrendDiagnostics, f64)]) -> Vec<(&'a TrendDiagnostics, f64)> {
     let mut found: Vec<(&TrendDiagnostics, f64)> = Vec::new();
     for &(trend, p) in alarming {
@@ -42,7 +42,7 @@ fn steepness(trend: &TrendDiagnostics) -> f64 {
     (trend.change / trend.change_sd).abs()
 }
 
-/// A flag for each channel whose residuals follow a condition, about the one that they follow most.
+/// Returns a flag for each channel whose residuals follow a condition; it names the strongest trend.
 pub(crate) fn trend_flags(trends: &[TrendDiagnostics]) -> Vec<Flag> {
     let alarming = alarming(trends);
     let causes = causes(&alarming);
@@ -68,7 +68,7 @@ pub(crate) fn trend_flags(trends: &[TrendDiagnostics]) -> Vec<Flag> {
     strongest(&alarming).into_iter().map(flag).collect()
 }
 
-/// A sentence for each cause that several channels share.
+/// Returns a sentence for each cause that several channels share.
 pub(crate) fn shared_causes(trends: &[TrendDiagnostics]) -> Vec<String> {
     let causes = causes(&alarming(trends));
     let shared = causes.iter().filter(|cause| cause.channels.len() > 1);
@@ -79,9 +79,10 @@ pub(crate) fn shared_causes(trends: &[TrendDiagnostics]) -> Vec<String> {
     shared.map(sentence).collect()
 }
 
-/// `drawbar pull is over-predicted at low slip and under-predicted at high slip, by about 4.1 N from one end to the other`.
+/// Describes a trend: `drawbar pull is over-predicted at low slip and under-predicted at high slip, by about 4.1 N from one end to the
+/// other`.
 fn sentence(trend: &TrendDiagnostics) -> String {
-    let by = ShownUnit::of(trend.channel).size(trend.change.abs());
+    let by = ShownUnit::new(trend.channel).size(trend.change.abs());
     let (channel, pattern) = (trend.channel.words(), pattern(trend));
     match trend.against {
         TrendVariable::Constant => {
@@ -94,11 +95,11 @@ fn sentence(trend: &TrendDiagnostics) -> String {
     }
 }
 
-/// The strongest trend of a channel that is beyond chance: `over-predicted at low slip and under-predicted at high slip`.
+/// Describes the strongest significant trend of a channel: `over-predicted at low slip and under-predicted at high slip`.
 pub(crate) fn pattern_of(trends: &[TrendDiagnostics], channel: Channel) -> Option<String> {
     let strongest = strongest(&alarming(trends));
-    let own = strongest.iter().find(|(trend, _)| trend.channel == channel)?;
-    Some(pattern(own.0))
+    let found = strongest.iter().find(|(trend, _)| trend.channel == channel)?;
+    Some(pattern(found.0))
 }
 
 fn pattern(trend: &TrendDiagnostics) -> String {
@@ -121,18 +122,20 @@ fn pattern(trend: &TrendDiagnostics) -> String {
     format!("{first}-predicted {low} and {then}-predicted {high}")
 }
 
-/// Known causes of the strongest trends; hints, since other effects can leave the same trends.
+/// Returns known causes of the strongest trends. They are hints, because other effects can leave the same trends.
 fn causes(alarming: &[(&TrendDiagnostics, f64)]) -> Vec<Cause> {
     let strongest = strongest(alarming);
     let change = |channel: Channel, against: TrendVariable| {
-        let mut own = strongest.iter().map(|(trend, _)| trend);
-        own.find(|t| t.channel == channel && t.against == against)
+        let mut trends = strongest.iter().map(|(trend, _)| trend);
+        trends
+            .find(|t| t.channel == channel && t.against == against)
             .map(|t| t.change)
     };
-    // One of pull and torque may follow another condition more strongly.
+    // Either pull or torque may follow another condition more strongly than slip.
     let weaker = |channel: Channel| {
-        let mut own = alarming.iter().map(|(trend, _)| trend);
-        own.find(|t| t.channel == channel && t.against == TrendVariable::Slip)
+        let mut trends = alarming.iter().map(|(trend, _)| trend);
+        trends
+            .find(|t| t.channel == channel && t.against == TrendVariable::Slip)
             .map(|t| t.change)
     };
     let mut causes = Vec::new();
@@ -195,7 +198,7 @@ fn causes(alarming: &[(&TrendDiagnostics, f64)]) -> Vec<Cause> {
 mod tests {
     use super::*;
 
-    /// A change of so many standard deviations.
+    /// Returns a trend whose change is `z` standard deviations.
     fn trend(channel: Channel, against: TrendVariable, z: f64) -> TrendDiagnostics {
         TrendDiagnostics {
             channel,
@@ -270,7 +273,7 @@ mod tests {
         let earlier = [trend(PULL, TrendVariable::Slip, -8.0)];
         assert!(texts(&earlier)[0].ends_with("shear may be mobilised earlier than in the model"));
         assert_eq!(shared_causes(&earlier), [""; 0], "one channel says it itself");
-        // Opposite signs are not what shear does.
+        // A change of shear gives both trends the same sign.
         let opposed = [
             trend(PULL, TrendVariable::Slip, 8.0),
             trend(TORQUE, TrendVariable::Slip, -6.0),

@@ -1,5 +1,5 @@
-//! Flags of the diagnostics' tests. Each family is corrected for its number of tests (Bonferroni), so that a family raises a
-//! flag in one of a hundred calibrations where nothing is wrong.
+//! Flags of the tests in the diagnostics. Each family of tests is corrected for its size (Bonferroni): if nothing is wrong, a family
+//! raises a flag in one of a hundred calibrations.
 
 use super::cause::trend_flags;
 use result::diagnostics::calibration::Diagnostics;
@@ -10,7 +10,7 @@ use result::words::data_channel::DataChannel;
 use result::words::number;
 use result::words::probability::{LEVEL, p_words};
 
-/// Flags of channels, misfit, trends, residuals and prior.
+/// Returns the flags of channels, misfit, trends, residuals and prior.
 pub(crate) fn findings_that_alarm(diagnostics: &Diagnostics) -> Vec<Flag> {
     silent_channels(diagnostics)
         .chain(misfits(diagnostics))
@@ -30,7 +30,7 @@ fn flag(kind: FlagKind, channel: Option<DataChannel>, p: Option<f64>, text: Stri
     }
 }
 
-/// A probability times the number of tests, where that is below the level.
+/// Multiplies a probability by the number of tests; `None` if the result is not below the level.
 fn alarming(p: Option<f64>, tests: usize) -> Option<f64> {
     p.map(|p| p * tests as f64).filter(|p| *p < LEVEL)
 }
@@ -42,7 +42,7 @@ fn silent_channels(diagnostics: &Diagnostics) -> impl Iterator<Item = Flag> {
     })
 }
 
-/// All data together, and each channel where there are several.
+/// Returns flags of the misfit of all data together, and of each channel if there are several.
 fn misfits(diagnostics: &Diagnostics) -> impl Iterator<Item = Flag> {
     let judged = diagnostics
         .channels
@@ -64,7 +64,7 @@ fn misfits(diagnostics: &Diagnostics) -> impl Iterator<Item = Flag> {
     all.into_iter().chain(channels)
 }
 
-/// The worst residual of each channel, where it is beyond chance among all residuals.
+/// Returns a flag for the worst residual of each channel if it is significant among all residuals.
 fn outliers(residuals: &[ResidualDiagnostics]) -> Vec<Flag> {
     let tests = residuals.iter().filter(|r| r.p.is_some()).count();
     let mut worst: Vec<(&ResidualDiagnostics, f64, usize)> = Vec::new();
@@ -81,13 +81,13 @@ fn outliers(residuals: &[ResidualDiagnostics]) -> Vec<Flag> {
         }
     }
     let text = |(row, p, count): (&ResidualDiagnostics, f64, usize)| {
-        let others = match count {
+        let further = match count {
             1 => String::new(),
             2 => "; 1 more residual of this channel is beyond chance".to_owned(),
             n => format!("; {} more residuals of this channel are beyond chance", n - 1),
         };
         let text = format!(
-            "{} of run {} lies {} {} the prediction, {} of its standard deviations ({} among {tests} residuals): a measurement error, or a condition outside the model's validity{others}",
+            "{} of run {} lies {} {} the prediction, {} of its standard deviations ({} among {tests} residuals): a measurement error, or a condition outside the model's validity{further}",
             row.channel.words(),
             row.run,
             row.channel.shown().size(row.residual.abs()),

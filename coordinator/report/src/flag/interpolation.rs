@@ -1,4 +1,4 @@
-//! Channels in which interpolation without physics predicts held-out runs better than the model.
+//! Flags of channels in which interpolation without physics predicts holdout runs better than the model.
 
 use inference::diagnostics::chi_square_tail;
 use shared::channel::Channel;
@@ -12,18 +12,19 @@ use result::table::row::rows_of;
 use result::words::data_channel::{DataChannel, ShownUnit};
 use result::words::number;
 
-/// Error of the model over that of interpolation from which it is clearly larger: beyond the scatter of two root mean squares
-/// over a few runs, each known to 1 / sqrt(2n) of itself.
+/// Ratio of the model's error to that of interpolation above which it is significantly larger. Each root mean square over n runs has the
+/// relative standard error 1 / sqrt(2n).
 pub(crate) const RATIO: f64 = 1.5;
-/// Least held-out runs in which both have a value.
+/// Minimum number of holdout runs that both predict.
 pub(crate) const MIN_RUNS: usize = 4;
-/// Probability of so large an error by noise alone below which noise is no excuse.
+/// Significance level: if the probability of an error at least this large under noise only is smaller, noise does not explain it.
 pub(crate) const BY_CHANCE: f64 = 0.01;
 
-/// Flags of the current model, on the held-out runs where interpolation need not extrapolate.
+/// Returns a flag for each channel of the current model that interpolation predicts better, on the holdout runs where it need not
+/// extrapolate.
 ///
-/// A perfect model errs by the noise alone, interpolation by the noise of its own points besides. So a model that errs by more
-/// than the noise explains, and by half as much again as interpolation, misses what the fitted measurements show.
+/// The error of a perfect model is the noise; that of interpolation also includes the noise of the fitted points. A model whose error
+/// exceeds the noise significantly, and that of interpolation by half, misses something that the fitted measurements show.
 pub(crate) fn interpolation_beats(study: &Study) -> Vec<Flag> {
     let Some(current) = study.current() else {
         return Vec::new();
@@ -40,14 +41,14 @@ pub(crate) fn interpolation_beats(study: &Study) -> Vec<Flag> {
         let sigma = sigmas.get(channel)?;
         let (runs, in_sigmas) = (model.runs as f64, model.rmse / sigma.sd);
         let by_noise = chi_square_tail(runs * in_sigmas * in_sigmas, runs)?;
-        // An inferred noise is the model's own error: no excuse, and no news.
+        // A noise that was inferred from the misfit contains the model's error, so it cannot explain that error.
         let noise = Some(sigma).filter(|sigma| sigma.source != SigmaSource::Inferred);
         let is_excused = noise.is_some() && by_noise >= BY_CHANCE;
         if model.runs < MIN_RUNS || model.rmse <= RATIO * baseline.rmse || is_excused {
             return None;
         }
         let noise = noise.map(|sigma| sigma.sd);
-        let unit = ShownUnit::of(channel);
+        let unit = ShownUnit::new(channel);
         let text = format!(
             "interpolation between the fitted measurements predicts {} better than the model: {} against {} on {} of held-out runs{}: the model misses something that the measurements show",
             channel.words(),
@@ -74,7 +75,7 @@ mod tests {
     use crate::fixture;
     use result::finished_calibration::FinishedCalibration;
 
-    /// A calibration with six held-out runs, whose pull the model misses by this much `[N]`.
+    /// Returns a calibration with six holdout runs, whose pull the model misses by `error` `[N]`.
     fn missed_by(error: f64) -> Study {
         let calibration = fixture::with_held_out_runs(6, error);
         Study::from(calibration)

@@ -1,10 +1,10 @@
-//! Flags: warnings with a sentence for a test engineer.
+//! Flags: warnings about a result, each with a sentence for a test engineer.
 //!
 //! # Layout
-//! - `finding`: flags of the diagnostics' tests; `cause`: what a trend may come from.
-//! - `calibration`: all flags of a calibration. `plates`: where a wheel contradicts them. `worker`: of what workers did wrong.
-//! - `study`: all flags of a study. `interpolation`: where no physics predicts better.
-//! - `model_limit`, `unsettled_run`: notes that raise no flag.
+//! - `calibration`: all flags of a calibration. `study`: all flags of a study.
+//! - `finding`: flags of the tests in the diagnostics; `cause`: possible causes of trends. `plates`: conflicts of wheel and plate tests.
+//! - `worker`: wrong or failed workers. `interpolation`: channels that interpolation predicts better than the model.
+//! - `model_limit`, `unsettled_run`: notes that are not flags.
 
 pub mod calibration;
 pub mod cause;

@@ -1,11 +1,11 @@
-//! Limits of the model that a reader of its results should know.
+//! Model limits: sentences on what a model leaves out of an experiment.
 
 use formula::Variable;
 use job::Spec;
 use shared::experiment::TestRun;
 use shared::model::{EffectSet, ExternalModel, ModelKind, RunInput};
 
-/// Sentences that name the parts of this job that the model leaves out.
+/// Returns sentences that name the parts of this job that the model leaves out.
 pub fn model_limits(spec: &Spec) -> Vec<String> {
     let mut limits = Vec::new();
     let lugged: Vec<&str> = spec
@@ -16,7 +16,7 @@ pub fn model_limits(spec: &Spec) -> Vec<String> {
         .map(|(name, _)| name.as_str())
         .collect();
     let lugged = lugged.join(", ");
-    // what was read once is read again
+    // The effects were read without an error when the job was validated.
     let effects = EffectSet::read(&spec.fit_variant.effects).unwrap_or_default();
     let named = |variables: &[Variable]| variables.iter().any(|v| effects.using(*v).is_some());
     let name = spec.fit_variant.kind.name();
@@ -52,12 +52,12 @@ pub fn model_limits(spec: &Spec) -> Vec<String> {
     limits
 }
 
-/// The inputs that vary in the runs and do not reach a model that is not ours.
+/// Returns a sentence for each input that varies between runs and that an external model does not take.
 fn of_external(spec: &Spec, model: &ExternalModel) -> Vec<String> {
     let runs = &spec.experiment.runs;
     let mut unseen = Vec::new();
-    let mut varies = |inputs: &[RunInput], of: fn(&TestRun) -> f64| {
-        let mut values = runs.iter().map(of);
+    let mut varies = |inputs: &[RunInput], value: fn(&TestRun) -> f64| {
+        let mut values = runs.iter().map(value);
         let first = values.next().unwrap_or_default();
         if values.any(|value| value.to_bits() != first.to_bits()) && !inputs.iter().any(|i| model.takes(*i)) {
             unseen.extend(inputs.first().map(|input| input.name()));

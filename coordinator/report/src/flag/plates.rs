@@ -1,4 +1,4 @@
-//! The posterior of a wheel's soil against what plates say of the soil.
+//! Flags of a conflict between the soil parameters of the wheel and those of plate tests.
 
 use std::collections::BTreeSet;
 
@@ -14,12 +14,12 @@ use result::words::probability::{LEVEL, p_words};
 
 /// The parameters that plates determine.
 const OF_PLATES: [&str; 5] = ["log10_p_ref", "kappa", "n", "k_c", "k_phi"];
-/// Sds of what plates ask for within which a prior may allow it.
+/// Number of standard deviations of the plates' estimate within which the prior must have probability.
 const ALLOWED: f64 = 2.0;
-/// The plates' readings are not worth a flag if their own parameters leave more than this of the error.
+/// Ratio of the readings' error with the plates' parameters to the error with common parameters, above which no flag is raised.
 const MUCH: f64 = 0.8;
 
-/// At most one flag for each source: plates that another calibration was fitted to, and plates of this experiment.
+/// Returns at most one flag for each source of plate tests: another calibration's posterior, and the readings of this experiment.
 pub(crate) fn plates_conflict(calibration: &FinishedCalibration) -> Vec<Flag> {
     let has_wheel = !calibration.spec.fit_runs.is_empty();
     let of_prior = has_wheel.then(|| against_posterior(calibration)).flatten();
@@ -27,15 +27,15 @@ pub(crate) fn plates_conflict(calibration: &FinishedCalibration) -> Vec<Flag> {
     of_prior.into_iter().chain(of_readings).collect()
 }
 
-/// Positions in the parameter vector of what plates determine.
+/// Returns the positions in the parameter vector of the parameters that plates determine.
 fn soil_parameters(calibration: &FinishedCalibration) -> Vec<usize> {
     let parameters = calibration.spec.parameters.iter().enumerate();
     let of_plates = parameters.filter(|(_, p)| OF_PLATES.contains(&p.name.as_str()));
     of_plates.map(|(i, _)| i).collect()
 }
 
-/// The wheel against a prior that is the posterior of plates. The model may refuse much of that prior; the posterior is compared with
-/// the whole of it all the same, because what the plates say does not depend on where the model ends.
+/// Compares the wheel with a prior that is the posterior of plates. The whole prior is compared even if the model rejects much of it,
+/// because what the plates say does not depend on the limits of the model.
 fn against_posterior(calibration: &FinishedCalibration) -> Option<Flag> {
     let spec = &calibration.spec;
     let joint = spec.joint_prior.as_ref().filter(|joint| joint.of_plates)?;
@@ -53,14 +53,14 @@ fn against_posterior(calibration: &FinishedCalibration) -> Option<Flag> {
     let draws: Vec<&[f64]> = draws.iter().map(Vec::as_slice).collect();
     let found = conflict(&prior, &draws)?;
     let tests = 1 + found.parameters.iter().flatten().count();
-    let least = found
+    let min = found
         .parameters
         .iter()
         .flatten()
         .copied()
         .chain(found.p)
         .reduce(f64::min)?;
-    let p = (least * tests as f64).min(1.0);
+    let p = (min * tests as f64).min(1.0);
     if p >= LEVEL {
         return None;
     }
@@ -100,7 +100,7 @@ fn against_posterior(calibration: &FinishedCalibration) -> Option<Flag> {
             number::count(calibration.prior_draws().len(), "draw")
         ),
     };
-    // Where the model ends, the wheel has not been asked.
+    // Where the model rejects, the measurements of the wheel have no influence.
     let (who, why) = match 2 * refused > calibration.prior_draws().len() {
         true => (
             "the posterior of the wheel lies far from that",
@@ -124,7 +124,7 @@ fn against_posterior(calibration: &FinishedCalibration) -> Option<Flag> {
     })
 }
 
-/// The prior of some of the jointly normal parameters.
+/// Returns the prior of a subset of the jointly normal parameters.
 fn marginal_prior(calibration: &FinishedCalibration, joint: &JointPrior, places: &[usize]) -> Option<Prior> {
     let parameters = &calibration.spec.parameters;
     let marginals = places.iter().map(|&i| parameters[i].marginal.clone()).collect();
@@ -143,7 +143,8 @@ fn marginal_prior(calibration: &FinishedCalibration, joint: &JointPrior, places:
         .flatten()
 }
 
-/// Wheel and plates fitted together: the plates' readings about what all data say of the soil, against what the plates alone would say.
+/// Compares two misfits of the plates' readings, if wheel and plates are fitted together: that of the common parameters, and that of the
+/// parameters that fit the plates only.
 fn against_readings(calibration: &FinishedCalibration) -> Option<Flag> {
     let spec = &calibration.spec;
     let data = spec.likelihood.data();
@@ -167,26 +168,28 @@ fn against_readings(calibration: &FinishedCalibration) -> Option<Flag> {
     let residuals: Vec<f64> = readings.iter().enumerate().map(residual).collect();
     let plates = &spec.bevameter.plates;
     let tests: BTreeSet<&str> = plates.iter().map(|reading| reading.test.as_str()).collect();
-    let group = |test: &str| tests.iter().position(|own| *own == test);
+    let group = |test: &str| tests.iter().position(|other| *other == test);
     let groups = plates.iter().map(|reading| group(&reading.test));
     let groups: Vec<usize> = groups.collect::<Option<_>>()?;
     let found = subset_shift(&derivatives, &residuals, &groups)?;
     let free: Vec<&FreeParameter> = places.iter().map(|&i| &spec.parameters[i]).collect();
-    let mean = |k: usize| parameters.iter().map(|own| own[k]).sum::<f64>() / parameters.len() as f64;
+    let mean = |k: usize| parameters.iter().map(|draw| draw[k]).sum::<f64>() / parameters.len() as f64;
     let from: Vec<f64> = (0..free.len()).map(mean).collect();
-    flag_of(&found, &free, &from, tests.len())
+    readings_flag(&found, &free, &from, tests.len())
 }
 
-/// Whether a prior excludes a value, and all within [`ALLOWED`] sds of it.
+/// Returns whether a prior excludes a value and everything within [`ALLOWED`] standard deviations of it.
 fn excludes(prior: &Marginal, value: f64, sd: f64) -> bool {
     let ends = [value - ALLOWED * sd, value + ALLOWED * sd].map(|end| prior.cumulative(end));
     let tail = 0.5 * LEVEL;
     ends[1] < tail || ends[0] > 1.0 - tail
 }
 
+/// Words the flag of the readings; `None` if no parameter is pulled significantly.
+///
 /// # Arguments
-/// - `from`: the values that all data ask for.
-fn flag_of(found: &SubsetShift, free: &[&FreeParameter], from: &[f64], tests: usize) -> Option<Flag> {
+/// - `from`: the values that fit all data.
+fn readings_flag(found: &SubsetShift, free: &[&FreeParameter], from: &[f64], tests: usize) -> Option<Flag> {
     let count = found.p.len();
     let p = found.p.iter().copied().reduce(f64::min)? * count as f64;
     if p >= LEVEL || found.rms_after > MUCH * found.rms_before {
@@ -197,13 +200,14 @@ fn flag_of(found: &SubsetShift, free: &[&FreeParameter], from: &[f64], tests: us
         let sds = number::significant((found.shift[k] / found.sd[k]).abs(), 2);
         format!("{} by {sds} of their standard deviations", free[k].name)
     });
-    // What the prior excludes, no wheel need have moved. Derivatives change along the way, so the end of it is rough: that the prior is
-    // the cause is said where it excludes even half of the way.
+    // The prior is the cause if it excludes the plates' estimate. The shift is a linear extrapolation and its end is inaccurate, so the
+    // prior alone is blamed only if it excludes even half of the shift.
     let excluded = |share: f64| -> Vec<String> {
-        let of = |&k: &usize| excludes(&free[k].marginal, from[k] + share * found.shift[k], found.sd[k]);
+        let is_excluded =
+            |&k: &usize| excludes(&free[k].marginal, from[k] + share * found.shift[k], found.sd[k]);
         let names = (0..count)
             .filter(is_pulled)
-            .filter(of)
+            .filter(is_excluded)
             .map(|k| free[k].name.clone());
         names.collect()
     };
@@ -259,13 +263,13 @@ mod tests {
     /// The soil that the plates were pressed into: `log10_p_ref`, `kappa`, `n`.
     const TRUTH: [f64; 3] = [3.9, -0.6, 1.2];
 
-    /// Pressure under a plate, ln Pa.
+    /// Returns the pressure under a plate, ln Pa.
     fn bekker([p_ref, kappa, n]: [f64; 3], radius_m: f64, sinkage_m: f64) -> f64 {
         let stiffness = (1.0 + kappa * 0.03 / radius_m) / (1.0 + kappa);
         p_ref * std::f64::consts::LN_10 + stiffness.ln() + n * (sinkage_m / 0.01).ln()
     }
 
-    /// Radius and sinkage of each reading: six tests of each of three radii.
+    /// Returns test, radius and sinkage of each reading: six tests of each of three radii.
     fn readings() -> Vec<(String, f64, f64)> {
         let tests = (0..18).map(|test| (format!("t{test}"), 0.03 + 0.01 * f64::from(test % 3)));
         tests
@@ -277,7 +281,7 @@ mod tests {
         sds.map(|sd| sd * stream.normal_pair().0)
     }
 
-    /// Draws about a point.
+    /// Returns draws about a point.
     fn about(centre: [f64; 3], sds: [f64; 3], count: usize) -> Vec<[f64; 3]> {
         let mut stream = Stream::new(5, 0, 0, 0);
         let draw = |_| {
@@ -318,12 +322,12 @@ mod tests {
         calibration
     }
 
-    /// Wheel and plates fitted together, with the soil about a point.
+    /// Returns the flags where wheel and plates are fitted together and the draws lie about a point.
     fn together(centre: [f64; 3]) -> Vec<Flag> {
         together_under(FREE, centre)
     }
 
-    /// Returns the parameters under another prior.
+    /// Returns the same flags with the given priors in the job.
     fn together_under(priors: &str, centre: [f64; 3]) -> Vec<Flag> {
         let mut stream = Stream::new(7, 0, 0, 0);
         let mut plates = "test,plate_radius_m,sinkage_m,pressure_pa\n".to_owned();
@@ -350,7 +354,7 @@ mod tests {
     #[test]
     fn plates_that_the_wheel_pulls_away_from_are_flagged_and_others_are_not() {
         assert_eq!(together(TRUTH), []);
-        // Within the plates' own uncertainty.
+        // This point lies within the uncertainty of the plates.
         assert_eq!(together([3.92, -0.57, 1.21]), []);
         let flags = together([3.9, 0.0, 1.2]);
         assert_eq!(flags.len(), 1);
@@ -384,7 +388,7 @@ mod tests {
         assert!(flags[0].text.starts_with(begins), "{}", flags[0].text);
     }
 
-    /// The posterior of plates as the prior of a wheel, whose own posterior lies about a point.
+    /// Returns the flags where the posterior of plates is the prior of a wheel, whose own posterior lies about a point.
     fn after_plates(centre: [f64; 3], sds: [f64; 3], header: &str, refused: usize) -> Vec<Flag> {
         let mut text = format!("{header}\n");
         let noises = ",0.1".repeat(header.split(',').count() - 3);

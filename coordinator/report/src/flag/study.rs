@@ -1,4 +1,4 @@
-//! Flags of a study: those of its calibrations, and calibrations that missed a mode.
+//! All flags of a study: those of its calibrations, and flags that compare them, such as a missed mode.
 
 use crate::diagnosis::diagnostics;
 use crate::flag::interpolation::interpolation_beats;
@@ -8,11 +8,11 @@ use result::study::Study;
 use result::words::number;
 use result::words::probability::p_words;
 
-/// Difference of log-posteriors beyond which a calibration missed a mode `[nats]`: the best of a thousand draws lies a few nats
-/// below the mode, more in many dimensions.
+/// Difference of log-posteriors above which a calibration missed a mode `[nats]`. The best of a thousand draws lies a few nats below the
+/// mode, more in many dimensions.
 const MISSED_NATS: f64 = 15.0;
 
-/// All flags: of a point estimate with the name of its algorithm, of an extension with its own name.
+/// Returns all flags; those of a point estimate begin with the name of its algorithm, those of an extension with its name.
 pub fn flags(study: &Study) -> Vec<Flag> {
     flags_by_calibration(study)
         .into_iter()
@@ -20,12 +20,13 @@ pub fn flags(study: &Study) -> Vec<Flag> {
         .collect()
 }
 
-/// The flags of a study, each with the calibration that it is about; `None` if it is about several.
+/// Returns the flags of a study, each with the calibration that it is about; `None` if it is about several.
 pub(crate) fn flags_by_calibration(study: &Study) -> Vec<(Option<i64>, Flag)> {
-    let of = |calibration: &FinishedCalibration| diagnostics(calibration, calibration.comparison()).flags;
+    let flags_of =
+        |calibration: &FinishedCalibration| diagnostics(calibration, calibration.comparison()).flags;
     let mut flags: Vec<_> = missed_modes(study).into_iter().map(|flag| (None, flag)).collect();
     let lead = Some(study.lead.row.id);
-    flags.extend(of(&study.lead).into_iter().map(|flag| (lead, flag)));
+    flags.extend(flags_of(&study.lead).into_iter().map(|flag| (lead, flag)));
     let beside = study.point_estimates.iter().map(|o| (o.spec.algorithm.name(), o));
     let extensions = study.extensions.iter().map(|o| (o.experiment.as_str(), o));
     for (name, calibration) in beside.chain(extensions) {
@@ -33,8 +34,8 @@ pub(crate) fn flags_by_calibration(study: &Study) -> Vec<(Option<i64>, Flag)> {
             text: format!("{name}: {}", flag.text),
             ..flag
         };
-        let own = of(calibration).into_iter();
-        flags.extend(own.map(|flag| (Some(calibration.row.id), named(flag))));
+        let found = flags_of(calibration).into_iter();
+        flags.extend(found.map(|flag| (Some(calibration.row.id), named(flag))));
     }
     let current = study.current().map(|calibration| calibration.row.id);
     flags.extend(interpolation_beats(study).into_iter().map(|flag| (current, flag)));
@@ -43,7 +44,7 @@ pub(crate) fn flags_by_calibration(study: &Study) -> Vec<(Option<i64>, Flag)> {
     flags
 }
 
-/// The flag of a last search whose best explanation contradicts the data.
+/// Returns a flag if the best explanation of the last search still contradicts the data.
 fn incomplete(study: &Study) -> Option<Flag> {
     let record = &study.rounds.last()?.record;
     let chi2 = record.chi2_best;
@@ -60,7 +61,7 @@ fn incomplete(study: &Study) -> Option<Flag> {
     })
 }
 
-/// Flags of the calibrations whose best parameters are far less probable than those that another one of the study found.
+/// Returns a flag for each calibration whose best parameters are far less probable than those of another calibration of the study.
 pub(crate) fn missed_modes(study: &Study) -> Vec<Flag> {
     let best = |calibration: &FinishedCalibration| match calibration.estimate() {
         Some(estimate) => Some(estimate.log_likelihood + estimate.log_prior),

@@ -1,9 +1,9 @@
-//! Runs that were averaged before they reached a steady state.
+//! Unsettled runs: a note on simulated runs that were averaged before they reached a steady state.
 
 use result::finished_calibration::FinishedCalibration;
 
-/// A sentence on the runs whose averages still changed at the most probable parameters; none where all were steady, or the model
-/// has no transient.
+/// Returns a sentence on the runs whose averages still changed at the most probable parameters; `None` if all were steady, or if the
+/// model has no transient.
 pub(crate) fn unsettled(calibration: &FinishedCalibration) -> Option<String> {
     let tolerance = calibration.spec.model.spatial?.steady_tolerance;
     let draw = calibration.predictions.first()?;

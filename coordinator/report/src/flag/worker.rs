@@ -1,4 +1,4 @@
-//! Flags of what workers did wrong.
+//! Flags of workers that compute wrongly or fail, and of external models that are not deterministic.
 
 use shared::channel::Channel;
 
@@ -6,7 +6,7 @@ use result::finished_calibration::FinishedCalibration;
 use result::flag::{Flag, FlagKind};
 use result::words::number;
 
-/// Evaluations that were answered in two ways: one of the machines computes wrongly.
+/// Returns a flag if an evaluation got two different results.
 pub(super) fn disputed(calibration: &FinishedCalibration) -> Option<Flag> {
     let first = calibration.disputes.first()?;
     let who = if first.first == first.second {
@@ -32,7 +32,7 @@ pub(super) fn disputed(calibration: &FinishedCalibration) -> Option<Flag> {
     Some(Flag::plain(FlagKind::Worker, text))
 }
 
-/// Workers that compute wrongly: whether results of theirs still count, or were computed again.
+/// Returns a flag for each worker that computes wrongly, with what became of its results.
 pub(super) fn quarantined(calibration: &FinishedCalibration) -> Vec<Flag> {
     let results = |n: u64| number::count(usize::try_from(n).unwrap_or(usize::MAX), "result");
     let resting = calibration.verified.resting_on.iter().map(|(worker, &n)| {
@@ -57,7 +57,7 @@ pub(super) fn quarantined(calibration: &FinishedCalibration) -> Vec<Flag> {
         .collect()
 }
 
-/// A model that is not ours and answers the same question in two ways.
+/// Returns a flag if an external model gave different results for the same evaluation.
 pub(super) fn not_deterministic(calibration: &FinishedCalibration) -> Option<Flag> {
     let repeats = &calibration.repeats;
     let sizes: Vec<String> = Channel::ALL
@@ -79,7 +79,7 @@ pub(super) fn not_deterministic(calibration: &FinishedCalibration) -> Option<Fla
     (repeats.differing > 0).then(|| Flag::plain(FlagKind::Worker, text))
 }
 
-/// Evaluations that no worker came back from.
+/// Returns a flag if evaluations failed on every worker.
 pub(super) fn given_up(calibration: &FinishedCalibration) -> Option<Flag> {
     let count = number::count(usize::try_from(calibration.given_up).ok()?, "evaluation");
     let text = format!(

@@ -1,4 +1,4 @@
-//! How a calibration came about: inputs and versions, enough to reproduce it, and what it reached in sentences.
+//! Provenance of a calibration: the inputs and versions to reproduce it, and its results in sentences.
 
 mod sentences;
 
@@ -10,22 +10,22 @@ use result::finished_calibration::FinishedCalibration;
 use result::table::error_model::error_model;
 use result::words::number;
 
-/// How a calibration came about.
+/// The provenance of a calibration.
 #[derive(Debug, Clone, PartialEq, Eq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
 pub struct Provenance {
     /// Its name.
     pub name: String,
-    /// What it reached, in sentences.
+    /// Results in sentences.
     pub sentences: Vec<String>,
-    /// What to keep in mind: limits of the model, departures from the source paper.
+    /// Notes on limits of the model and departures from the source paper.
     pub notes: Vec<String>,
     /// The model in words.
     pub model: String,
     /// Version of the equations, and of the effects.
     pub model_version: Option<String>,
-    /// What was measured, in words.
+    /// The measurements in words.
     pub data: String,
-    /// The errors that are assumed, a sentence each.
+    /// The assumed errors, one sentence each.
     pub errors: Vec<String>,
     /// The algorithm with its settings, in words.
     pub algorithm: String,
@@ -39,7 +39,7 @@ pub struct Provenance {
     pub effects: Vec<NamedText>,
 }
 
-/// How it came about.
+/// Describes how a calibration was computed.
 pub fn provenance(calibration: &FinishedCalibration) -> Provenance {
     let spec = &calibration.spec;
     Provenance {

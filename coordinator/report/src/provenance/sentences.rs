@@ -1,4 +1,4 @@
-//! Sentences about the results of a calibration and about its limits.
+//! Sentences of the provenance: the results of a calibration, and notes on its limits.
 
 use inference::diagnostics::mean_and_sd;
 use job::repeat_scatter;
@@ -20,7 +20,7 @@ use result::words::campaign::CampaignWords;
 use result::words::data_channel::ShownUnit;
 use result::words::number;
 
-/// How the calibration ended, and its errors.
+/// Describes how the calibration ended, and its errors.
 pub(super) fn sentences(calibration: &FinishedCalibration, comparison: &Comparison) -> Vec<String> {
     let mut text = vec![match calibration.estimate() {
         Some(estimate) => format!(
@@ -81,7 +81,7 @@ fn equilibrium(calibration: &FinishedCalibration) -> String {
     }
 }
 
-/// Why a fit stopped, in words.
+/// Says why a fit stopped.
 fn reason(stop: StopReason) -> &'static str {
     match stop {
         StopReason::Decrease => "no step improves the posterior any more",
@@ -94,12 +94,12 @@ fn reason(stop: StopReason) -> &'static str {
     }
 }
 
-/// `2.8 N in drawbar pull and 9.0 mm in sinkage`.
+/// Lists the errors by channel: `2.8 N in drawbar pull and 9.0 mm in sinkage`.
 fn misses(table: &ErrorTable) -> String {
     let miss = |c: Channel| {
         Some(format!(
             "{} in {}",
-            ShownUnit::of(c).size(table.channel(c)?.rmse),
+            ShownUnit::new(c).size(table.channel(c)?.rmse),
             c.words()
         ))
     };
@@ -133,7 +133,7 @@ fn holdout(calibration: &FinishedCalibration, comparison: &Comparison) -> Vec<St
             misses(model)
         ),
     }];
-    // Like with like: the model on the rows where interpolation has a value.
+    // Compare both on the same rows: those where interpolation has a value.
     let both = || {
         rows_of(&comparison.rows, RunUse::Holdout)
             .filter(|r| r.predicted.is_some() && r.interpolated.is_some())
@@ -165,7 +165,7 @@ fn over<'a>(mut rows: impl Iterator<Item = &'a ComparisonRow>) -> &'static str {
     }
 }
 
-/// ` (2 of 48 measurements are extrapolated)`; nothing where none is.
+/// Counts extrapolated rows: ` (2 of 48 measurements are extrapolated)`; empty if there are none.
 fn beyond<'a>(rows: impl Iterator<Item = &'a ComparisonRow>) -> String {
     let is_beyond = rows.map(|row| row.interpolated_over == Some(InterpolatedOver::Extrapolation));
     let is_beyond: Vec<bool> = is_beyond.collect();
@@ -178,7 +178,7 @@ fn beyond<'a>(rows: impl Iterator<Item = &'a ComparisonRow>) -> String {
     }
 }
 
-/// Comparison of the model with interpolation, channel by channel.
+/// Compares the model with interpolation, channel by channel.
 fn against(model: &ErrorTable, baseline: &ErrorTable) -> String {
     let mut groups: [(&str, Vec<String>); 3] = [
         ("does better in", vec![]),
@@ -193,7 +193,7 @@ fn against(model: &ErrorTable, baseline: &ErrorTable) -> String {
         if !ratio.is_finite() || ratio <= 0.0 {
             continue;
         }
-        // Each error is known to 1/sqrt(2n) of itself: their ratio differs from 1 beyond two standard errors or not.
+        // Each error has the relative standard error 1/sqrt(2n). The ratio differs from 1 if it is more than two standard errors away.
         let clear = 2.0 / (m.runs as f64).sqrt();
         let times = |r: f64| {
             format!(
@@ -231,7 +231,7 @@ fn coverage(comparison: &Comparison) -> Option<String> {
             let [low, high] = c.expected();
             Some(format!(
                 "{} of {} {word} measurements ({low} to {high} expected)",
-                c.inside, c.of
+                c.inside, c.total
             ))
         })
         .collect();
@@ -243,7 +243,8 @@ fn coverage(comparison: &Comparison) -> Option<String> {
     })
 }
 
-/// A caution where the noise was inferred from the misfit: then a small error in noise sds is no evidence for the model.
+/// Returns a caution if the noise was inferred from the misfit, because a small error in noise standard deviations is then no evidence
+/// for the model.
 fn inferred_noise(calibration: &FinishedCalibration) -> Option<String> {
     let noise = |channel: Channel| {
         let parameter = calibration
@@ -258,7 +259,7 @@ fn inferred_noise(calibration: &FinishedCalibration) -> Option<String> {
             }
             None => mean_and_sd(&calibration.draws(parameter))?,
         };
-        let unit = ShownUnit::of(channel);
+        let unit = ShownUnit::new(channel);
         let shown = if sd > 0.0 {
             number::with_spread(value * unit.factor, sd * unit.factor)
         } else {
@@ -291,7 +292,7 @@ fn inferred_noise(calibration: &FinishedCalibration) -> Option<String> {
     })
 }
 
-/// `24 fitted runs`, `one fitted run`.
+/// Formats a count, with a word for one: `24 fitted runs`, `one fitted run`.
 fn few(n: usize, noun: &str) -> String {
     if n == 1 {
         format!("one {noun}")
@@ -310,22 +311,22 @@ fn runs(calibration: &FinishedCalibration, usage: RunUse) -> usize {
         .count()
 }
 
-/// The limits of the model, and what is not as in the source paper.
+/// Lists the limits of the model and the departures from the source paper.
 pub(super) fn notes(calibration: &FinishedCalibration) -> Vec<String> {
     let mut notes = Vec::new();
     if let Some(campaign) = &calibration.spec.experiment.campaign {
         let words = CampaignWords::from(campaign);
-        let said = |what: &str, text: &str| format!("{what}{}.", text.trim_end_matches('.'));
-        notes.push(said("Measurements: ", &words.citation));
-        notes.extend(words.digitised.iter().map(|text| said("They are ", text)));
-        notes.extend(words.method.iter().map(|text| said("Method, ", text)));
-        notes.extend(words.doubts.iter().map(|text| said("Doubt: ", text)));
+        let note = |what: &str, text: &str| format!("{what}{}.", text.trim_end_matches('.'));
+        notes.push(note("Measurements: ", &words.citation));
+        notes.extend(words.digitised.iter().map(|text| note("They are ", text)));
+        notes.extend(words.method.iter().map(|text| note("Method, ", text)));
+        notes.extend(words.doubts.iter().map(|text| note("Doubt: ", text)));
     }
     let accepted = calibration.spec.accepted.join(", ");
     if !accepted.is_empty() {
         notes.push(format!("What looks odd was accepted as meant: {accepted}."));
     }
-    // where grousers are declared, the notes of the job name their wheels
+    // If grousers are declared, the limits of the model name their wheels.
     if calibration.spec.model.kind.is_smooth()
         && !calibration
             .spec

@@ -1,4 +1,4 @@
-//! The effects that the study added to a model, what the searches said of them, and how much they improve it.
+//! The effects that the study added to a model, with the verdicts of the searches and the improvement of the error.
 
 use record::{Discovery, NOT_IN_LIBRARY, NextRun, addition_name, effect_of};
 
@@ -11,23 +11,23 @@ use result::words::number;
 /// An effect that the study added.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
 pub struct AddedEffect {
-    /// Its name, as the search calls it where one judged it.
+    /// Name of the effect, as the search calls it if one judged it.
     pub name: String,
-    /// The probability that a search gave it; null where none named it or left it open.
+    /// Probability that a search gave it; null if no search named it or left it open.
     pub probability: Option<f64>,
-    /// The calibration whose search that was.
+    /// The calibration that was searched.
     pub searched: Option<i64>,
-    /// The explanations that this search could not exclude beside it, by falling probability; empty where it named the effect.
+    /// Other explanations that this search could not exclude, by decreasing probability; empty if it named the effect.
     pub rivals: Vec<Alternative>,
-    /// The run that tells it from its rivals best; null without rivals, and where the search found none.
+    /// The run that best distinguishes it from its rivals; null without rivals, or if the search found no run.
     pub deciding_run: Option<NextRun>,
-    /// Error on held-out runs before and after, in the noise sds of the study; null where no held-out run was measured, or where the
-    /// study has no model that differs in this effect alone.
+    /// Holdout error before and after, in the noise standard deviations of the study; null without a holdout measurement, or if the study
+    /// has no model that differs in this effect only.
     pub held_out_noise_sds: Option<[f64; 2]>,
 }
 
 impl AddedEffect {
-    /// `slip_sinkage was missing (P 0.96) and is added: held-out error from 2.1 to 0.9 times the noise`.
+    /// Describes the effect: `slip_sinkage was missing (P 0.96) and is added: held-out error from 2.1 to 0.9 times the noise`.
     pub(super) fn words(&self) -> String {
         let name = &self.name;
         let mut text = match (self.probability, self.rivals.is_empty()) {
@@ -48,8 +48,8 @@ impl AddedEffect {
         }
     }
 
-    /// `slip_softened_pressure (P 0.32) in place of slip_sinkage cannot be excluded; slip 0.60 under 80.0 N at 20.0 mm/s would tell`;
-    /// `None` without rivals.
+    /// Describes the rivals: `slip_softened_pressure (P 0.32) in place of slip_sinkage cannot be excluded; slip 0.60 under 80.0 N at 20.0
+    /// mm/s would tell`; `None` without rivals.
     pub(crate) fn open_question(&self) -> Option<String> {
         let rivals: Vec<String> = self.rivals.iter().map(Alternative::words).collect();
         let run = self.deciding_run.as_ref();
@@ -72,30 +72,31 @@ pub(crate) fn added(study: &Study, calibration: &FinishedCalibration) -> Vec<Add
     let mut left: Vec<String> = has.iter().filter(|part| !had.contains(part)).cloned().collect();
     let order = left.clone();
     let mut found = Vec::new();
-    // The newest search comes first: further runs may have decided what an earlier one left open.
+    // Take the newest search first, because further runs may have decided what an earlier one left open.
     for round in study.rounds.iter().rev() {
-        let Some(before) = study.calibrations().find(|own| own.row.id == round.calibration) else {
+        let mut calibrations = study.calibrations();
+        let Some(before) = calibrations.find(|c| c.row.id == round.calibration) else {
             continue;
         };
         let is_ancestor = study.parts(before).iter().all(|part| has.contains(part));
         while let Some(judged) = judged(&round.record, &left).filter(|_| is_ancestor) {
-            let own = parts(&judged.name);
-            left.retain(|part| !own.contains(part));
+            let effect_parts = parts(&judged.name);
+            left.retain(|part| !effect_parts.contains(part));
             let effect = of_search(study, round, before, &judged, &has);
-            found.push((position(&order, &own), effect));
+            found.push((position(&order, &effect_parts), effect));
         }
     }
     let by_hand = left.into_iter().map(|name| {
-        let own = [name.clone()];
+        let effect_parts = [name.clone()];
         let effect = AddedEffect {
-            held_out_noise_sds: bought(study, calibration, &own),
+            held_out_noise_sds: held_out_errors(study, calibration, &effect_parts),
             name,
             probability: None,
             searched: None,
             rivals: Vec::new(),
             deciding_run: None,
         };
-        (position(&order, &own), effect)
+        (position(&order, &effect_parts), effect)
     });
     found.extend(by_hand);
     found.sort_by_key(|(position, _)| *position);
@@ -107,14 +108,14 @@ fn position(order: &[String], parts: &[String]) -> usize {
     place.unwrap_or(order.len())
 }
 
-/// The explanation, among those that a search names or leaves open, whose parts are all among these; the one with the most parts.
+/// Returns the explanation that a search names or leaves open and whose parts are all in `left`; of several, the one with the most parts.
 fn judged(record: &Discovery, left: &[String]) -> Option<Alternative> {
     let named = record.extension.as_ref().map(|extension| {
         let name = addition_name(extension);
         let of_search = record.effects.iter().find(|e| e.name == name);
         let outside = || record.effects.iter().find(|e| e.name == NOT_IN_LIBRARY);
         let probability = of_search.or_else(outside).map_or(0.0, |e| e.probability);
-        // An effect on one wheel of several keeps its wheel; a law outside the library has the name in its file.
+        // The name of an effect on one wheel includes the wheel. The name of a law outside the library is in its file.
         let name = if of_search.is_some() {
             name
         } else {
@@ -122,16 +123,17 @@ fn judged(record: &Discovery, left: &[String]) -> Option<Alternative> {
         };
         Alternative { name, probability }
     });
-    let is_there = |own: &Alternative| {
-        let parts = parts(&own.name);
+    let is_there = |explanation: &Alternative| {
+        let parts = parts(&explanation.name);
         !parts.is_empty() && parts.iter().all(|part| left.contains(part))
     };
     let explanations = named
         .into_iter()
         .chain(open(record).into_iter().map(Alternative::from));
     let there: Vec<Alternative> = explanations.filter(is_there).collect();
-    let largest = there.iter().map(|own| parts(&own.name).len()).max()?;
-    there.into_iter().find(|own| parts(&own.name).len() == largest)
+    let size = |explanation: &Alternative| parts(&explanation.name).len();
+    let largest = there.iter().map(size).max()?;
+    there.into_iter().find(|explanation| size(explanation) == largest)
 }
 
 fn of_search(
@@ -141,17 +143,17 @@ fn of_search(
     judged: &Alternative,
     has: &[String],
 ) -> AddedEffect {
-    let own = parts(&judged.name);
+    let effect_parts = parts(&judged.name);
     let is_rival = |rival: &Alternative| {
         let parts = parts(&rival.name);
-        parts != own && !parts.iter().all(|part| has.contains(part))
+        parts != effect_parts && !parts.iter().all(|part| has.contains(part))
     };
     let rivals: Vec<Alternative> = open(&round.record)
         .into_iter()
         .map(Alternative::from)
         .filter(is_rival)
         .collect();
-    let extended = [study.parts(before), own].concat();
+    let extended = [study.parts(before), effect_parts].concat();
     AddedEffect {
         name: judged.name.clone(),
         probability: Some(judged.probability),
@@ -167,14 +169,14 @@ fn of_search(
     }
 }
 
-/// The errors without and with the parts of a model, where the study has the model without them.
-fn bought(study: &Study, calibration: &FinishedCalibration, own: &[String]) -> Option<[f64; 2]> {
+/// Returns the holdout errors without and with the given parts of a model; `None` if the study has no model without them.
+fn held_out_errors(study: &Study, calibration: &FinishedCalibration, added: &[String]) -> Option<[f64; 2]> {
     let has = study.parts(calibration);
-    let rest: Vec<String> = has.iter().filter(|part| !own.contains(part)).cloned().collect();
+    let rest: Vec<String> = has.iter().filter(|part| !added.contains(part)).cloned().collect();
     errors(study, alike(study, calibration, &rest)?, &has)
 }
 
-/// The calibration of the same measurements whose model has these parts and no others.
+/// Returns the calibration in the ledger with the same measurements whose model has exactly these parts.
 fn alike<'a>(
     study: &'a Study,
     measured: &FinishedCalibration,
@@ -187,7 +189,7 @@ fn alike<'a>(
     })
 }
 
-/// Errors on held-out runs of a calibration, and of that of the same measurements with these parts.
+/// Returns the holdout errors of a calibration, and of the one with the same measurements and these parts.
 fn errors(study: &Study, before: &FinishedCalibration, parts: &[String]) -> Option<[f64; 2]> {
     let after = alike(study, before, parts)?;
     let sigmas = study.fixed_sigmas();
@@ -197,7 +199,7 @@ fn errors(study: &Study, before: &FinishedCalibration, parts: &[String]) -> Opti
         Some((table.all.unpredicted, table.all.rmse_fixed_sigma?))
     };
     let ((before_lacks, before), (after_lacks, after)) = (error(before)?, error(after)?);
-    // Errors of models that refuse different runs do not compare.
+    // Errors of models that refuse different runs are not comparable.
     (before_lacks == after_lacks).then_some([before, after])
 }
 
@@ -274,14 +276,14 @@ mod tests {
             (added[0].name.as_str(), added[0].probability),
             ("janosi_hanamoto_node", Some(0.96))
         );
-        let text = Story::of(&study, extension).missing.text;
+        let text = Story::new(&study, extension).missing.text;
         assert!(
             text.starts_with("janosi_hanamoto_node was missing (P 0.96) and is added"),
             "{text}"
         );
         assert!(!text.contains("by hand"), "{text}");
-        // Nor is it advised again.
-        let next = Story::of(&study, &study.lead).next;
+        // The next steps do not advise to add it again.
+        let next = Story::new(&study, &study.lead).next;
         assert!(next.steps.iter().all(|step| step.effect.is_none()), "{next:?}");
     }
 
@@ -289,7 +291,7 @@ mod tests {
     fn what_an_effect_bought_on_held_out_runs_stands_beside_it() {
         let mut study = fixture::of_a_class();
         for prediction in &mut study.lead.predictions {
-            if let Some(Ok(held)) = prediction.holdout.as_mut().map(|own| &mut own.together) {
+            if let Some(Ok(held)) = prediction.holdout.as_mut().map(|holdout| &mut holdout.together) {
                 held.drawbar_pull_n.iter_mut().for_each(|pull| *pull += 5.0);
             }
         }

@@ -1,16 +1,16 @@
-//! The explanations of a search and its runs in words, and what a model has by an explanation.
+//! Explanations of a search and their probabilities in words, and the parts of a model that an explanation stands for.
 
 use record::{Discovery, JudgedEffect, NONE, NOT_IN_LIBRARY, NextRun, Verdict, parts_of_effect};
 
 use result::words::number;
 
-/// Least probability of an explanation that is worth its name.
+/// Minimum probability of an explanation that is named.
 pub(super) const LEAST: f64 = 0.01;
 
 /// An explanation of a search.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
 pub struct Alternative {
-    /// The effect, `EFFECT.WHEEL` on one wheel of several; or `none`, or `not_in_library`.
+    /// The effect (`EFFECT.WHEEL` if one wheel of several has it), `none` or `not_in_library`.
     pub name: String,
     /// Its probability.
     pub probability: f64,
@@ -26,7 +26,7 @@ impl From<&JudgedEffect> for Alternative {
 }
 
 impl Alternative {
-    /// `slip_sinkage (P 0.68)`.
+    /// Returns, for example, `slip_sinkage (P 0.68)`.
     pub(super) fn words(&self) -> String {
         let name = match self.name.as_str() {
             NONE => "nothing",
@@ -37,7 +37,7 @@ impl Alternative {
     }
 }
 
-/// `P 0.96`; never a certainty.
+/// Formats a probability such as `P 0.96`, which is never 0 or 1.
 pub(super) fn p(probability: f64) -> String {
     match probability {
         p if p > 0.999 => "P > 0.999".into(),
@@ -47,7 +47,7 @@ pub(super) fn p(probability: f64) -> String {
     }
 }
 
-/// The effect and the wheel of `EFFECT.WHEEL`.
+/// Splits `EFFECT.WHEEL` into effect and wheel.
 pub(super) fn split(name: &str) -> (&str, Option<&str>) {
     match name.split_once('.') {
         Some((effect, wheel)) => (effect, Some(wheel)),
@@ -60,7 +60,7 @@ pub(super) fn parts(explanation: &str) -> Vec<String> {
     parts_of_effect(split(explanation).0)
 }
 
-/// The members of the class that a search names; empty with another verdict.
+/// Returns the members of the class that a search names; empty for another verdict.
 pub(super) fn class(record: &Discovery) -> impl Iterator<Item = &JudgedEffect> {
     let class = record.effects.iter().find(|e| e.class != 0).map(|e| e.class);
     let is_class = record.verdict == Verdict::Class;
@@ -80,7 +80,7 @@ pub(super) fn open(record: &Discovery) -> Vec<&JudgedEffect> {
     }
 }
 
-/// `slip 0.60 under 80.0 N at 20.0 mm/s`.
+/// Describes a run: `slip 0.60 under 80.0 N at 20.0 mm/s`.
 pub(super) fn run_words(run: &NextRun) -> String {
     format!(
         "slip {:.2} under {} N at {} mm/s",

@@ -1,4 +1,4 @@
-//! The effect that a model misses, and how sure the search is.
+//! The answer to "what is missing?": the effect that the model lacks, and its probability.
 
 use job::effect_name;
 use record::{Discovery, Extension, NONE, NOT_IN_LIBRARY, Verdict, effect_of};
@@ -9,24 +9,24 @@ use result::finished_calibration::FinishedCalibration;
 use result::study::Study;
 use result::words::number;
 
-/// The largest number of alternatives.
+/// Maximum number of alternatives.
 const ALTERNATIVES: usize = 3;
-/// The largest number of names of effects that were not judged.
+/// Maximum number of effects that were not judged and are named.
 const NOT_JUDGED: usize = 3;
 
-/// The answer of the search of a model.
+/// The result of the search of a model.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
 pub struct Missing {
-    /// The verdict; null where the model was not searched.
+    /// The verdict; null if the model was not searched.
     pub verdict: Option<Verdict>,
-    /// What the verdict names: one effect, or the members of a class.
+    /// The effect that the verdict names, or the members of a class.
     pub named: Vec<NamedEffect>,
-    /// Probability of what is named, together; that nothing is missing where nothing is; of the leading explanation where it is
-    /// undecided.
+    /// Sum of the probabilities of the named effects; if nothing was detected, the probability that nothing is missing; if undecided,
+    /// that of the leading explanation.
     pub probability: Option<f64>,
-    /// Other explanations, at most three: what the verdict does not name, where it is undecided what is outside its 95 % set.
+    /// At most three other explanations: those that the verdict does not name, or for an undecided verdict those outside the 95 % set.
     pub alternatives: Vec<Alternative>,
-    /// Effects that need what the experiment does not state, without those that the verdict or the alternatives name.
+    /// Effects that were not tried because the experiment lacks information, without those that the verdict or the alternatives name.
     pub not_tried: Vec<String>,
     /// Effects that the study added to the model.
     pub already_added: Vec<AddedEffect>,
@@ -39,19 +39,19 @@ pub struct Missing {
 pub struct NamedEffect {
     /// Its name.
     pub name: String,
-    /// The wheel that alone has it; null where all have.
+    /// The only wheel with the effect; null if all wheels have it.
     pub wheel: Option<String>,
 }
 
-/// The search of a calibration's model; of several the last.
+/// Returns the last search of a calibration's model.
 pub(super) fn search_of<'a>(study: &'a Study, calibration: &FinishedCalibration) -> Option<&'a Discovery> {
     let mut rounds = study.rounds.iter().rev();
-    let of_it = rounds.find(|round| round.calibration == calibration.row.id)?;
-    Some(&of_it.record)
+    let search = rounds.find(|round| round.calibration == calibration.row.id)?;
+    Some(&search.record)
 }
 
 impl Missing {
-    pub(super) fn of(study: &Study, calibration: &FinishedCalibration) -> Missing {
+    pub(super) fn new(study: &Study, calibration: &FinishedCalibration) -> Missing {
         let already_added = added(study, calibration);
         let mut text: Vec<String> = already_added.iter().map(AddedEffect::words).collect();
         let Some(record) = search_of(study, calibration) else {
@@ -85,41 +85,41 @@ impl Missing {
     }
 }
 
-/// The probability of the verdict.
+/// Returns the probability of the verdict.
 fn probability(record: &Discovery, named: &[NamedEffect]) -> Option<f64> {
     let effects = record.effects.iter();
-    let of = |name: &str| {
+    let probability = |name: &str| {
         let mut effects = record.effects.iter();
         effects.find(|e| e.name == name).map(|e| e.probability)
     };
     match record.verdict {
-        Verdict::NothingDetectable => of(NONE),
-        Verdict::NotInLibrary => of(NOT_IN_LIBRARY),
-        Verdict::Undecided => Some(effects.fold(0.0, |most, e| f64::max(most, e.probability))),
+        Verdict::NothingDetectable => probability(NONE),
+        Verdict::NotInLibrary => probability(NOT_IN_LIBRARY),
+        Verdict::Undecided => Some(effects.fold(0.0, |max, e| f64::max(max, e.probability))),
         Verdict::Named | Verdict::Class => {
-            let of_named = effects.filter(|e| named.iter().any(|own| label(own) == e.name));
+            let of_named = effects.filter(|e| named.iter().any(|named| label(named) == e.name));
             Some(of_named.map(|e| e.probability).sum())
         }
     }
 }
 
-/// The explanations that the verdict does not say itself, by falling probability.
+/// Returns the explanations that the verdict does not name, by decreasing probability.
 fn alternatives(record: &Discovery, named: &[NamedEffect]) -> Vec<Alternative> {
     let leader = record.effects.iter().map(|e| e.probability).fold(0.0, f64::max);
-    let is_said = |name: &str| match record.verdict {
+    let is_named = |name: &str| match record.verdict {
         Verdict::NothingDetectable => name == NONE,
         Verdict::NotInLibrary => name == NOT_IN_LIBRARY,
-        Verdict::Named | Verdict::Class => named.iter().any(|own| label(own) == name),
+        Verdict::Named | Verdict::Class => named.iter().any(|named| label(named) == name),
         Verdict::Undecided => false,
     };
-    let others = record.effects.iter().filter(|effect| {
+    let further = record.effects.iter().filter(|effect| {
         let is_open = record.verdict == Verdict::Undecided && effect.in_credible_set;
-        effect.probability > LEAST && effect.probability < leader && !is_open && !is_said(&effect.name)
+        effect.probability > LEAST && effect.probability < leader && !is_open && !is_named(&effect.name)
     });
-    others.take(ALTERNATIVES).map(Alternative::from).collect()
+    further.take(ALTERNATIVES).map(Alternative::from).collect()
 }
 
-/// The alternatives in words; where nothing is missing they are no news.
+/// Lists the alternatives; `None` if nothing is missing, when they do not matter.
 fn less_probable(record: &Discovery, alternatives: &[Alternative]) -> Option<String> {
     if record.verdict == Verdict::NothingDetectable || alternatives.is_empty() {
         return None;
@@ -128,7 +128,7 @@ fn less_probable(record: &Discovery, alternatives: &[Alternative]) -> Option<Str
     Some(format!("less probable: {}", words.join(", ")))
 }
 
-/// The verdict in words.
+/// Returns the verdict in words.
 fn finding(record: &Discovery, probability: Option<f64>, is_extended: bool) -> String {
     match record.verdict {
         Verdict::NothingDetectable => format!(
@@ -205,23 +205,23 @@ fn label(effect: &NamedEffect) -> String {
     }
 }
 
-/// The effects that were not tried, without the wheels, and without those that the verdict speaks of: these were weighed.
+/// Returns the effects that were not tried, without their wheels and without those that the verdict or the alternatives name.
 fn not_tried(record: &Discovery, named: &[NamedEffect], alternatives: &[Alternative]) -> Vec<String> {
-    let is_said = |name: &str| {
+    let is_named = |name: &str| {
         let mut of_set = record.effects.iter().filter(|e| e.in_credible_set);
         match record.verdict {
             Verdict::NothingDetectable => false,
             Verdict::Undecided if of_set.any(|e| split(&e.name).0 == name) => true,
             _ => {
-                let mut others = alternatives.iter().map(|own| split(&own.name).0);
-                named.iter().any(|own| own.name == name) || others.any(|own| own == name)
+                let mut less_probable = alternatives.iter().map(|alternative| split(&alternative.name).0);
+                named.iter().any(|effect| effect.name == name) || less_probable.any(|effect| effect == name)
             }
         }
     };
     let mut names: Vec<String> = Vec::new();
     for effect in record.not_tried.iter().filter(|effect| effect.lacks_data()) {
         let (name, _) = split(&effect.name);
-        if !names.iter().any(|own| own == name) && !is_said(name) {
+        if !names.iter().any(|listed| listed == name) && !is_named(name) {
             names.push(name.to_owned());
         }
     }
@@ -237,7 +237,7 @@ mod tests {
     #[test]
     fn a_model_without_a_search_says_so() {
         let study = fixture::study();
-        let missing = Missing::of(&study, &study.lead);
+        let missing = Missing::new(&study, &study.lead);
         assert_eq!((missing.verdict, missing.probability), (None, None));
         assert_eq!(missing.text, "this model was not searched");
     }
@@ -245,7 +245,7 @@ mod tests {
     #[test]
     fn a_named_effect_has_its_probability_and_its_alternatives() {
         let study = fixture::grown();
-        let missing = Missing::of(&study, &study.lead);
+        let missing = Missing::new(&study, &study.lead);
         assert_eq!(missing.verdict, Some(Verdict::Named));
         assert_eq!(missing.named[0].name, "slip_sinkage");
         assert_eq!(missing.probability, Some(0.96));
@@ -278,7 +278,7 @@ mod tests {
                 needs: "density_kg_m3".into(),
             })
             .into();
-        let missing = Missing::of(&study, &study.lead);
+        let missing = Missing::new(&study, &study.lead);
         let names: Vec<&str> = missing.alternatives.iter().map(|a| a.name.as_str()).collect();
         assert_eq!(names, [NOT_IN_LIBRARY], "{missing:?}");
         assert!(
@@ -288,10 +288,10 @@ mod tests {
             "{}",
             missing.text
         );
-        // The effects of the set were judged.
+        // The effects in the 95 % set count as judged.
         assert_eq!(missing.not_tried, ["end_wall"]);
         let class = fixture::of_a_class();
-        let class = Missing::of(&class, &class.lead);
+        let class = Missing::new(&class, &class.lead);
         let names: Vec<&str> = class.alternatives.iter().map(|a| a.name.as_str()).collect();
         assert_eq!(names, ["bulldozing"]);
     }
@@ -308,13 +308,13 @@ mod tests {
             calibration: 3,
             record,
         });
-        let missing = Missing::of(&study, &study.extensions[0]);
+        let missing = Missing::new(&study, &study.extensions[0]);
         assert_eq!(missing.verdict, Some(Verdict::NothingDetectable));
         assert!(
             missing.named.is_empty() && missing.text.contains("that nothing is missing"),
             "{missing:?}"
         );
-        // The first search still speaks of the first model.
-        assert_eq!(Missing::of(&study, &study.lead).verdict, Some(Verdict::Named));
+        // The first search still describes the first model.
+        assert_eq!(Missing::new(&study, &study.lead).verdict, Some(Verdict::Named));
     }
 }

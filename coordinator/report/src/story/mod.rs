@@ -1,9 +1,9 @@
 //! The story of a calibration in three sentences: what its model gets wrong, what is missing, what to do next.
 //!
 //! # Layout
-//! - `wrong`: the errors, worst first. `pattern`: where they are.
-//! - `missing`: the searches' answer; `added`: what the study added before. `explanation`: the explanations of a search in words.
-//! - `next`: steps with their commands.
+//! - `wrong`: the errors, worst first. `pattern`: the conditions at which they are largest.
+//! - `missing`: the verdict of the search; `added`: effects that the study added before. `explanation`: explanations in words.
+//! - `next`: the next steps with their commands.
 
 mod added;
 mod explanation;
@@ -12,7 +12,7 @@ mod next;
 mod pattern;
 mod wrong;
 
-use next::Known;
+use next::Facts;
 use result::finished_calibration::FinishedCalibration;
 use result::study::Study;
 
@@ -28,36 +28,36 @@ pub use wrong::{BesideInterpolation, ChannelFailure, Wrong};
 pub struct Story {
     /// The calibration.
     pub calibration: i64,
-    /// Which of the models that the job compares it is, in a sentence; null where the job has one.
+    /// A sentence on the comparison of the job's models; null if the job has one model.
     pub model: Option<String>,
     /// What its model gets wrong.
     pub wrong: Wrong,
-    /// What is missing, and how sure that is.
+    /// What is missing, with its probability.
     pub missing: Missing,
     /// What to do next.
     pub next: Next,
 }
 
 impl Story {
-    /// The story of a calibration of the study.
-    pub fn of(study: &Study, calibration: &FinishedCalibration) -> Story {
-        let wrong = Wrong::of(study, calibration);
-        let missing = Missing::of(study, calibration);
-        let known = Known {
+    /// Describes a calibration of the study.
+    pub fn new(study: &Study, calibration: &FinishedCalibration) -> Story {
+        let wrong = Wrong::new(study, calibration);
+        let missing = Missing::new(study, calibration);
+        let facts = Facts {
             is_within_noise: wrong.is_within_noise(),
             added: &missing.already_added,
         };
         Story {
             calibration: calibration.row.id,
             model: study.model_comparison().map(|comparison| comparison.text),
-            next: Next::of(study, calibration, known),
+            next: Next::new(study, calibration, facts),
             missing,
             wrong,
         }
     }
 
-    /// The story of the study's current model; of the submitted job where no calibration has a posterior.
+    /// Describes the study's current model, or the submitted job if no calibration has a posterior.
     pub fn current(study: &Study) -> Story {
-        Story::of(study, study.current().unwrap_or(&study.lead))
+        Story::new(study, study.current().unwrap_or(&study.lead))
     }
 }

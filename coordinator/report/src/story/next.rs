@@ -1,4 +1,4 @@
-//! The next steps of a study, with the command of each.
+//! The answer to "what next?": the steps of a study in order, with the command of each.
 
 use std::collections::BTreeSet;
 
@@ -12,10 +12,10 @@ use result::finished_calibration::FinishedCalibration;
 use result::study::Study;
 use result::words::number;
 
-/// File of the draws in the command that writes them.
+/// File name in the command that exports the draws.
 const POSTERIOR: &str = "posterior.csv";
 
-/// The steps, the first one first; at least one.
+/// The next steps of a study, in order; at least one.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
 pub struct Next {
     /// The steps.
@@ -24,24 +24,24 @@ pub struct Next {
     pub text: String,
 }
 
-/// A step.
+/// A next step.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
 pub struct NextStep {
     /// Its kind.
     pub kind: StepKind,
     /// What to do, in a sentence.
     pub text: String,
-    /// Verb and arguments of the program `coordinator`, without the place of the study; null of what no command does.
+    /// Verb and arguments of the program `coordinator`, without the location of the study; null if no command does the step.
     pub command: Option<String>,
-    /// The effect to add, or that its runs would tell apart.
+    /// The effect to add.
     pub effect: Option<String>,
-    /// The wheel that alone has it.
+    /// The only wheel with the effect.
     pub wheel: Option<String>,
     /// The effect file to add.
     pub effect_file: Option<EffectFile>,
     /// The runs to make.
     pub runs: Vec<NextRun>,
-    /// The calibration that the runs are added to; null of a step without runs.
+    /// The calibration that the runs are added to; null for a step without runs.
     pub calibration: Option<i64>,
 }
 
@@ -61,7 +61,7 @@ pub enum StepKind {
     MakeRuns,
     /// Make a test without a rolling wheel, or runs in conditions that no run had.
     MeasureOther,
-    /// State in the experiment what it lacks.
+    /// Add missing information to the experiment.
     StateInExperiment,
     /// Use the posterior.
     Predict,
@@ -91,24 +91,24 @@ impl NextStep {
     }
 }
 
-/// The facts that the steps follow from, beside the search.
+/// Facts other than the search that determine the next steps.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Known<'a> {
-    /// Whether noise alone explains the errors of every channel.
+pub(super) struct Facts<'a> {
+    /// Whether the noise explains the errors of every channel.
     pub(super) is_within_noise: bool,
     /// The effects that the study added to the model.
     pub(super) added: &'a [AddedEffect],
 }
 
 impl Next {
-    pub(super) fn of(study: &Study, calibration: &FinishedCalibration, known: Known<'_>) -> Next {
-        let steps = steps(study, calibration, known);
+    pub(super) fn new(study: &Study, calibration: &FinishedCalibration, facts: Facts<'_>) -> Next {
+        let steps = steps(study, calibration, facts);
         let text = steps.first().map_or_else(String::new, |step| step.text.clone());
         Next { steps, text }
     }
 }
 
-fn steps(study: &Study, calibration: &FinishedCalibration, known: Known<'_>) -> Vec<NextStep> {
+fn steps(study: &Study, calibration: &FinishedCalibration, facts: Facts<'_>) -> Vec<NextStep> {
     let id = calibration.row.id;
     if let Some(current) = study.current().filter(|current| current.row.id != id) {
         let text = format!(
@@ -122,7 +122,7 @@ fn steps(study: &Study, calibration: &FinishedCalibration, known: Known<'_>) -> 
         let command = format!("export {id} --output {POSTERIOR}");
         NextStep::new(StepKind::Predict, text, Some(command))
     };
-    let deciding = known.added.iter().filter_map(deciding);
+    let deciding = facts.added.iter().filter_map(deciding);
     let Some(record) = search_of(study, calibration) else {
         let text = "search the library for the effect that the model is missing";
         let mut steps = vec![NextStep::new(
@@ -130,7 +130,7 @@ fn steps(study: &Study, calibration: &FinishedCalibration, known: Known<'_>) -> 
             text,
             Some(format!("discover {id}")),
         )];
-        if known.is_within_noise {
+        if facts.is_within_noise {
             steps.push(predict(
                 "predict with the posterior: its errors are within the noise",
             ));
@@ -144,15 +144,15 @@ fn steps(study: &Study, calibration: &FinishedCalibration, known: Known<'_>) -> 
         .filter(|extension| !is_made(study, calibration, &parts_of(extension)))
         .map(|extension| addition(id, record, extension));
     let runs = (!record.next_runs.is_empty()).then(|| runs(id, &record.next_runs));
-    let widen = record.implausible.as_ref().map(|own| {
+    let widen = record.implausible.as_ref().map(|parameter| {
         let text = format!(
             "widen the prior of {} in the job (one from a posterior by a larger transfer), and calibrate and search again",
-            own.name
+            parameter.name
         );
         NextStep::new(StepKind::WidenPrior, text, None)
     });
     let mut steps: Vec<NextStep> = match record.verdict {
-        // Runs decide before a guess is added.
+        // Runs come before an uncertain effect is added.
         Verdict::Undecided => widen
             .into_iter()
             .chain(noise(record))
@@ -161,12 +161,12 @@ fn steps(study: &Study, calibration: &FinishedCalibration, known: Known<'_>) -> 
             .collect(),
         _ => add.into_iter().chain(runs).collect(),
     };
-    if steps.is_empty() && known.is_within_noise {
+    if steps.is_empty() && facts.is_within_noise {
         steps.push(predict(
             "predict with the posterior: the model explains the runs to within the noise",
         ));
     }
-    // Which of several effects it is matters more than anything that the model with one of them leaves open.
+    // Distinguishing an added effect from its rivals comes before all other steps.
     steps.splice(0..0, deciding);
     let tests = record.other_tests.iter();
     steps.extend(tests.map(|test| NextStep::new(StepKind::MeasureOther, format!("measure {test}"), None)));
@@ -175,8 +175,8 @@ fn steps(study: &Study, calibration: &FinishedCalibration, known: Known<'_>) -> 
         .map(|effect| (effect.needs.as_str(), effect.lacks_runs()))
         .collect();
     steps.extend(needs.into_iter().map(|(needs, are_runs)| {
-        let own = record.not_tried.iter().filter(|effect| effect.needs == needs);
-        let mut names: Vec<String> = own.map(|effect| effect.name.clone()).collect();
+        let lacking = record.not_tried.iter().filter(|effect| effect.needs == needs);
+        let mut names: Vec<String> = lacking.map(|effect| effect.name.clone()).collect();
         names.dedup();
         let names = number::list(&names);
         match are_runs {
@@ -200,7 +200,7 @@ fn steps(study: &Study, calibration: &FinishedCalibration, known: Known<'_>) -> 
     steps
 }
 
-/// Says what makes a claim possible if the noise is inferred from too little; `None` if it is not.
+/// Proposes to state or measure the noise of channels whose inferred noise supports no claim; `None` if there are none.
 fn noise(record: &Discovery) -> Option<NextStep> {
     let channels = record.unsupported_noise.iter();
     let channels: Vec<String> = channels
@@ -215,18 +215,18 @@ fn noise(record: &Discovery) -> Option<NextStep> {
     })
 }
 
-/// Whether the study has a calibration of the same measurements with all that this one has, and these parts.
+/// Returns whether the study already has a calibration of the same measurements whose model includes this one's parts and the added ones.
 fn is_made(study: &Study, calibration: &FinishedCalibration, added: &[String]) -> bool {
     let parts = [study.parts(calibration).as_slice(), added].concat();
     let same = study
         .line()
         .filter(|other| other.row.experiment == calibration.row.experiment);
-    let mut others = same.map(|other| study.parts(other));
-    others.any(|other| parts.iter().all(|part| other.contains(part)))
+    let mut extended = same.map(|other| study.parts(other));
+    extended.any(|other| parts.iter().all(|part| other.contains(part)))
 }
 
-/// The run that tells an added effect from what the data do not exclude in its place. It is added to the model without the effect,
-/// which is then searched again with it.
+/// Proposes the run that distinguishes an added effect from its rivals. The run is added to the model without the effect, which is then
+/// searched again.
 fn deciding(added: &AddedEffect) -> Option<NextStep> {
     let (run, searched) = (added.deciding_run.clone()?, added.searched?);
     let rivals = added.rivals.iter().map(|rival| rival.name.clone());
@@ -312,26 +312,30 @@ mod tests {
     use super::*;
     use crate::fixture;
 
-    /// Errors beyond the noise, or within it.
-    fn open() -> Known<'static> {
-        Known {
+    /// Returns facts about a model whose errors exceed the noise.
+    fn open() -> Facts<'static> {
+        Facts {
             is_within_noise: false,
             added: &[],
         }
     }
 
-    fn closed() -> Known<'static> {
-        Known {
+    fn closed() -> Facts<'static> {
+        Facts {
             is_within_noise: true,
             ..open()
         }
+    }
+
+    fn next(study: &Study, facts: Facts<'_>) -> Next {
+        Next::new(study, &study.lead, facts)
     }
 
     fn kinds(next: &Next) -> Vec<StepKind> {
         next.steps.iter().map(|step| step.kind).collect()
     }
 
-    /// A searched study without the extension.
+    /// Returns a searched study without the extension.
     fn searched() -> Study {
         let mut study = fixture::grown();
         study.extensions.clear();
@@ -341,19 +345,16 @@ mod tests {
     #[test]
     fn what_was_not_searched_is_searched_next() {
         let study = fixture::study();
-        let next = Next::of(&study, &study.lead, open());
+        let next = next(&study, open());
         assert_eq!(kinds(&next), [StepKind::Discover]);
         assert_eq!(next.steps[0].command.as_deref(), Some("discover 1"));
-        assert_eq!(
-            kinds(&Next::of(&study, &study.lead, closed()))[1],
-            StepKind::Predict
-        );
+        assert_eq!(kinds(&self::next(&study, closed()))[1], StepKind::Predict);
     }
 
     #[test]
     fn a_named_effect_is_added_before_runs_are_made_and_an_open_one_after() {
         let mut study = searched();
-        let next = Next::of(&study, &study.lead, open());
+        let next = next(&study, open());
         assert_eq!(
             kinds(&next),
             [StepKind::AddEffect, StepKind::MakeRuns, StepKind::MeasureOther]
@@ -367,7 +368,7 @@ mod tests {
             "{next:?}"
         );
         study.rounds[0].record.verdict = Verdict::Undecided;
-        let open = Next::of(&study, &study.lead, open());
+        let open = self::next(&study, open());
         assert_eq!(kinds(&open)[..2], [StepKind::MakeRuns, StepKind::AddEffect]);
     }
 
@@ -381,7 +382,7 @@ mod tests {
             name: "n".into(),
             prior_sds: -7.1,
         });
-        let next = Next::of(&study, &study.lead, open());
+        let next = next(&study, open());
         assert_eq!(kinds(&next)[..2], [StepKind::WidenPrior, StepKind::MakeRuns]);
         assert!(next.text.starts_with("widen the prior of n"), "{}", next.text);
     }
@@ -393,7 +394,7 @@ mod tests {
         record.verdict = Verdict::Undecided;
         record.extension = None;
         record.unsupported_noise = vec!["noise.torque_n_m".into(), "noise.sinkage_m".into()];
-        let next = Next::of(&study, &study.lead, open());
+        let next = next(&study, open());
         assert_eq!(
             kinds(&next)[..2],
             [StepKind::StateInExperiment, StepKind::MakeRuns]
@@ -409,14 +410,13 @@ mod tests {
     #[test]
     fn an_extension_that_the_study_has_made_is_not_advised_again() {
         let mut study = fixture::grown();
-        let advises =
-            |study: &Study| kinds(&Next::of(study, &study.lead, open())).contains(&StepKind::AddEffect);
+        let advises = |study: &Study| kinds(&next(study, open())).contains(&StepKind::AddEffect);
         study.rounds[0].record.extension = Some(Extension::Effect("cohesion_pa".into()));
         assert!(advises(&study));
         study.extensions[0].spec.parameters[0].name = "cohesion_pa".into();
         assert_eq!(study.parts(&study.extensions[0]), ["cohesion_pa"]);
         assert!(!advises(&study));
-        // With runs more it is another question.
+        // With other measurements the extension has to be made again.
         study.lead.row.experiment += 1;
         assert!(advises(&study));
     }
@@ -425,7 +425,7 @@ mod tests {
     fn a_superseded_model_sends_to_the_current_one() {
         let mut study = fixture::grown();
         study.extensions[0].row.log_evidence = Some(10.0);
-        let next = Next::of(&study, &study.lead, open());
+        let next = next(&study, open());
         assert_eq!(kinds(&next), [StepKind::Predict]);
         assert_eq!(next.steps[0].command.as_deref(), Some("report 3"));
     }
@@ -437,7 +437,7 @@ mod tests {
             name: "anything.toml".into(),
             text: "name = \"shear_slip_step\"\n".into(),
         });
-        let next = Next::of(&study, &study.lead, open());
+        let next = next(&study, open());
         assert_eq!(next.steps[0].kind, StepKind::AddEffectFile);
         let file = next.steps[0].effect_file.as_ref().unwrap();
         assert_eq!(file.name, "shear_slip_step.toml");
@@ -456,7 +456,7 @@ mod tests {
             why: "the length of the bin is not stated".into(),
             needs: "bin_length_m under [rig]".into(),
         }];
-        let next = Next::of(&study, &study.lead, closed());
+        let next = next(&study, closed());
         assert_eq!(kinds(&next), [StepKind::Predict, StepKind::StateInExperiment]);
         assert!(next.steps[1].text.contains("bin_length_m under [rig]"));
     }
@@ -470,7 +470,7 @@ mod tests {
             why: "it changes nothing at the slips and slip angles of the fitted runs".into(),
             needs: "runs at a slip angle".into(),
         }];
-        let next = Next::of(&study, &study.lead, closed());
+        let next = next(&study, closed());
         let step = next.steps.last().unwrap();
         assert_eq!(
             (step.kind, step.text.as_str()),

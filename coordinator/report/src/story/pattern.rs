@@ -1,4 +1,4 @@
-//! The conditions at which a channel has its errors, in words.
+//! The pattern of a channel's errors in words: the conditions at which they are largest.
 
 use shared::channel::Channel;
 
@@ -8,13 +8,13 @@ use result::table::level::few_levels;
 use result::table::row::ComparisonRow;
 use result::words::number;
 
-/// A level stands out where its error is so much larger than that of all runs.
+/// Ratio of a level's error to that of all runs above which the level stands out.
 const STANDS_OUT: f64 = 1.3;
 
-/// Reads a condition from a row.
+/// A function that reads a condition from a row.
 type Condition = (&'static str, f64, &'static str, fn(&ComparisonRow) -> f64);
 
-/// Slip, load, speed and slip angle, with factor and unit of what is shown.
+/// Slip, load, speed and slip angle, each with the factor and unit in which it is shown.
 const CONDITIONS: [Condition; 4] = [
     ("slip", 1.0, "", |row| row.slip),
     ("a load of", 1.0, " N", |row| row.wheel_load_n),
@@ -22,8 +22,13 @@ const CONDITIONS: [Condition; 4] = [
     ("a slip angle of", 1.0, " deg", |row| row.slip_angle_deg),
 ];
 
-/// The trend of the fitted residuals that is beyond chance; else one direction in every run; else the level that stands out.
-pub(super) fn of(channel: Channel, rows: &[&ComparisonRow], trends: &[TrendDiagnostics]) -> Option<String> {
+/// Describes where the errors lie: the significant trend of the fitted residuals, else the common sign in all runs, else the level with
+/// the largest error.
+pub(super) fn place(
+    channel: Channel,
+    rows: &[&ComparisonRow],
+    trends: &[TrendDiagnostics],
+) -> Option<String> {
     let residuals = rows
         .iter()
         .filter_map(|row| Some((*row, row.measured - row.predicted?)));
@@ -44,17 +49,18 @@ fn one_direction(residuals: &[(&ComparisonRow, f64)]) -> Option<String> {
 }
 
 fn standing_out(residuals: &[(&ComparisonRow, f64)]) -> Option<String> {
-    let rms = |own: &[f64]| (own.iter().map(|r| r * r).sum::<f64>() / own.len() as f64).sqrt();
+    let rms = |values: &[f64]| (values.iter().map(|r| r * r).sum::<f64>() / values.len() as f64).sqrt();
     let all: Vec<f64> = residuals.iter().map(|(_, r)| *r).collect();
-    let least = STANDS_OUT * rms(&all);
+    let threshold = STANDS_OUT * rms(&all);
     let mut worst: Option<(f64, String)> = None;
     for (name, factor, unit, value) in CONDITIONS {
         let levels = few_levels(residuals.iter().map(|(row, _)| value(row)));
         for level in levels.iter().filter(|_| levels.len() > 1) {
-            let own = residuals.iter().filter(|(row, _)| level.holds(value(row)));
-            let own: Vec<f64> = own.map(|(_, r)| *r).collect();
-            let (error, mean) = (rms(&own), own.iter().sum::<f64>() / own.len() as f64);
-            if error > worst.as_ref().map_or(least, |(largest, _)| *largest) {
+            let of_level = residuals.iter().filter(|(row, _)| level.holds(value(row)));
+            let of_level: Vec<f64> = of_level.map(|(_, r)| *r).collect();
+            let mean = of_level.iter().sum::<f64>() / of_level.len() as f64;
+            let error = rms(&of_level);
+            if error > worst.as_ref().map_or(threshold, |(largest, _)| *largest) {
                 let middle = 0.5 * (level.from + level.to) * factor;
                 let direction = match mean {
                     m if m > 0.5 * error => ", under-predicted there",
@@ -74,7 +80,7 @@ mod tests {
     use super::*;
     use crate::fixture;
 
-    /// Words on the pull of runs at these slips with these residuals.
+    /// Describes the pull of runs at the given slips with the given residuals.
     fn words(residuals: &[(f64, f64)]) -> Option<String> {
         let calibration = fixture::calibration();
         let comparison = calibration.comparison();
@@ -87,7 +93,7 @@ mod tests {
                 ..comparison.rows[0].clone()
             })
             .collect();
-        of(Channel::DrawbarPull, &rows.iter().collect::<Vec<_>>(), &[])
+        place(Channel::DrawbarPull, &rows.iter().collect::<Vec<_>>(), &[])
     }
 
     #[test]

@@ -1,4 +1,4 @@
-//! The errors of a model, channel by channel.
+//! The answer to "what is wrong?": the errors of a model, channel by channel.
 
 use inference::diagnostics::chi_square_tail;
 use shared::channel::Channel;
@@ -19,13 +19,13 @@ use result::words::number;
 /// The errors of a model.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
 pub struct Wrong {
-    /// The measured channels: first those that interpolation predicts better, then by error in noise sds, the worst first.
+    /// The measured channels: first those that interpolation predicts better, then by decreasing error in noise standard deviations.
     pub channels: Vec<ChannelFailure>,
     /// The same in a sentence.
     pub text: String,
 }
 
-/// The error of a channel: on held-out runs where it is measured there, else on fitted runs.
+/// The error of a channel: on the holdout runs if they measured it, else on the fitted runs.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
 pub struct ChannelFailure {
     /// Channel without unit.
@@ -39,17 +39,18 @@ pub struct ChannelFailure {
     pub rmse: f64,
     /// SI unit.
     pub unit: String,
-    /// The error in the noise sd that all calibrations of the study are measured by; null where none is known.
+    /// The error in the noise standard deviation of the study; null if it is unknown.
     pub noise_sds: Option<f64>,
-    /// The model beside interpolation between the fitted runs; null where that reaches no held-out run without extrapolating.
+    /// Errors of model and interpolation on the same runs; null if every holdout run needs extrapolation.
     pub beside_interpolation: Option<BesideInterpolation>,
     /// Whether the model is clearly worse than interpolation on the same runs.
     pub is_beaten: bool,
-    /// Where it fails and in which direction; null where no pattern stands out.
+    /// Conditions and direction of the errors; null without a pattern.
     pub place: Option<String>,
-    /// Whether noise alone explains the error; false where it cannot be judged.
+    /// Whether noise alone explains the error; false if it cannot be judged.
     pub is_within_noise: bool,
-    /// Whether the error can be judged; not where the noise is inferred together with the misfit, unless interpolation predicts better.
+    /// Whether the error can be judged. It cannot if the noise is inferred together with the misfit, unless interpolation predicts
+    /// better.
     pub is_judged: bool,
 }
 
@@ -66,14 +67,14 @@ pub struct BesideInterpolation {
     pub interpolation_rmse: f64,
 }
 
-/// The data that the channels of a calibration are judged by.
+/// The inputs for judging the channels of a calibration.
 struct Judge<'a> {
     rows: &'a [ComparisonRow],
     trends: Vec<TrendDiagnostics>,
     sigmas: FixedSigmas,
-    /// Errors on held-out runs, then on fitted ones.
+    /// Errors on the holdout runs, then on the fitted runs.
     errors: [(RunUse, Option<ErrorTable>); 2],
-    /// Errors of the model, and of interpolation, where both predict and none extrapolates.
+    /// Errors of the model, then of interpolation, on the rows that both predict without extrapolation.
     beside: [Option<ErrorTable>; 2],
 }
 
@@ -90,7 +91,7 @@ impl<'a> Judge<'a> {
         }
     }
 
-    /// The error of a channel; `None` where it is not measured.
+    /// Returns the error of a channel; `None` if the channel is not measured or not predicted.
     fn failure(&self, channel: Channel) -> Option<ChannelFailure> {
         let measured =
             |(usage, table): &(RunUse, Option<ErrorTable>)| Some((*usage, table.as_ref()?.channel(channel)?));
@@ -101,18 +102,19 @@ impl<'a> Judge<'a> {
             let runs = error.runs as f64;
             chi_square_tail(runs * sds * sds, runs)
         });
-        // An inferred noise is the model's own error: neither an excuse, nor a failure.
+        // A noise that was inferred from the misfit contains the model's error, so it can neither explain nor show a failure.
         let is_known = sigma.is_none_or(|sigma| sigma.source != SigmaSource::Inferred);
         let is_noise = is_known && by_noise.is_some_and(|p| p >= BY_CHANCE);
         let beside_interpolation = self.beside_interpolation(channel, error.runs);
         let is_beaten = !is_noise
-            && beside_interpolation
-                .is_some_and(|own| own.runs >= MIN_RUNS && own.model_rmse > RATIO * own.interpolation_rmse);
+            && beside_interpolation.is_some_and(|both| {
+                both.runs >= MIN_RUNS && both.model_rmse > RATIO * both.interpolation_rmse
+            });
         let is_judged = is_known || is_beaten;
         let rows: Vec<_> = rows_of(self.rows, usage)
             .filter(|row| row.channel == channel)
             .collect();
-        let place = || pattern::of(channel, &rows, &self.trends);
+        let place = || pattern::place(channel, &rows, &self.trends);
         Some(ChannelFailure {
             channel,
             usage,
@@ -127,13 +129,13 @@ impl<'a> Judge<'a> {
         })
     }
 
-    fn beside_interpolation(&self, channel: Channel, of: usize) -> Option<BesideInterpolation> {
+    fn beside_interpolation(&self, channel: Channel, predicted_runs: usize) -> Option<BesideInterpolation> {
         let [model, interpolation] = &self.beside;
         let model = model.as_ref()?.channel(channel)?;
         let interpolation = interpolation.as_ref()?.channel(channel)?;
         Some(BesideInterpolation {
             runs: model.runs,
-            of,
+            of: predicted_runs,
             model_rmse: model.rmse,
             interpolation_rmse: interpolation.rmse,
         })
@@ -141,11 +143,12 @@ impl<'a> Judge<'a> {
 }
 
 impl Wrong {
-    pub(super) fn of(study: &Study, calibration: &FinishedCalibration) -> Wrong {
+    pub(super) fn new(study: &Study, calibration: &FinishedCalibration) -> Wrong {
         let rows = &calibration.comparison().rows;
         let judge = Judge::new(study, calibration, rows);
         let failures = Channel::ALL.into_iter();
-        let mut channels: Vec<ChannelFailure> = failures.filter_map(|own| judge.failure(own)).collect();
+        let mut channels: Vec<ChannelFailure> =
+            failures.filter_map(|channel| judge.failure(channel)).collect();
         let rank = |c: &ChannelFailure| {
             let sds = c.noise_sds.unwrap_or(f64::INFINITY);
             (c.is_beaten, c.is_judged, sds)
@@ -163,7 +166,7 @@ impl Wrong {
         Wrong { channels, text }
     }
 
-    /// Whether noise alone explains the errors of every channel; not where one cannot be judged.
+    /// Returns whether noise alone explains the errors of every channel; false if one cannot be judged.
     pub(super) fn is_within_noise(&self) -> bool {
         !self.channels.is_empty() && self.channels.iter().all(|channel| channel.is_within_noise)
     }
@@ -205,7 +208,7 @@ fn text(channels: &[ChannelFailure]) -> String {
     clauses.join("; ")
 }
 
-/// `sinkage 0.31 mm`.
+/// Returns, for example, `sinkage 0.31 mm`.
 fn named(failure: &ChannelFailure) -> String {
     format!(
         "{} {}",
@@ -214,7 +217,7 @@ fn named(failure: &ChannelFailure) -> String {
     )
 }
 
-/// The error of a channel in words, without what the clause before has said.
+/// Describes the error of a channel, without what the previous clause already says.
 fn clause(failure: &ChannelFailure, before: Option<&ChannelFailure>) -> String {
     let mut text = format!(
         "{} is off by {}",
@@ -226,19 +229,20 @@ fn clause(failure: &ChannelFailure, before: Option<&ChannelFailure>) -> String {
     }
     let interpolation = failure.beside_interpolation.filter(|_| failure.is_beaten);
     match (interpolation, failure.noise_sds) {
-        (Some(both), _) => text += &beaten(failure.channel, both, before.is_some_and(|own| own.is_beaten)),
+        (Some(both), _) => text += &beaten(failure.channel, both, before.is_some_and(|b| b.is_beaten)),
         (None, Some(sds)) => text += &format!(", {} times the noise", number::significant(sds, 2)),
         (None, None) => {}
     }
     match (&failure.place, before.and_then(|before| before.place.as_ref())) {
-        (Some(place), Some(said)) if place == said => text += ", likewise",
+        (Some(place), Some(earlier)) if place == earlier => text += ", likewise",
         (Some(place), _) => text += &format!(": {place}"),
         (None, _) => {}
     }
     text
 }
 
-/// `, where interpolation between the fitted runs has 0.31 N m`; the model's error is said again where interpolation reaches fewer runs.
+/// Describes the error of interpolation: `, where interpolation between the fitted runs has 0.31 N m`. The model's error on the same runs
+/// follows if interpolation reaches fewer runs.
 fn beaten(channel: Channel, both: BesideInterpolation, is_repeated: bool) -> String {
     let interpolation = size(channel, both.interpolation_rmse);
     if both.runs == both.of {
@@ -252,9 +256,9 @@ fn beaten(channel: Channel, both: BesideInterpolation, is_repeated: bool) -> Str
     format!(", and {between} by {model} where interpolation has {interpolation}")
 }
 
-/// `11.7 N`.
+/// Formats an error, for example `11.7 N`.
 fn size(channel: Channel, si: f64) -> String {
-    let unit = ShownUnit::of(channel);
+    let unit = ShownUnit::new(channel);
     let decimals = if unit.factor * si < 1.0 { 2 } else { 3 };
     format!(
         "{} {}",
@@ -279,7 +283,7 @@ mod tests {
 
     fn wrong(calibration: FinishedCalibration) -> Wrong {
         let study = Study::from(calibration);
-        Wrong::of(&study, &study.lead)
+        Wrong::new(&study, &study.lead)
     }
 
     #[test]
@@ -300,14 +304,14 @@ mod tests {
     #[test]
     fn errors_that_stand_beside_interpolation_are_on_the_runs_that_it_reaches() {
         let mut calibration = fixture::with_held_out_runs(8, 8.0);
-        // Four of the runs move beyond the fitted slips, where the model is worse.
+        // Four of the runs lie beyond the fitted slips, where the model is worse.
         for &run in &calibration.spec.holdout_runs[4..] {
             Arc::make_mut(&mut calibration.spec.experiment).runs[run].slip = 0.9;
         }
         for holdout in calibration
             .predictions
             .iter_mut()
-            .flat_map(|own| &mut own.holdout)
+            .flat_map(|prediction| &mut prediction.holdout)
         {
             let observables = holdout.together.as_mut().unwrap();
             observables.drawbar_pull_n[4..]
@@ -315,14 +319,14 @@ mod tests {
                 .for_each(|pull| *pull += 72.0);
         }
         let study = Study::from(calibration);
-        let wrong = Wrong::of(&study, &study.lead);
+        let wrong = Wrong::new(&study, &study.lead);
         let first = &wrong.channels[0];
         let both = first.beside_interpolation.unwrap();
         assert_eq!((both.runs, both.of), (4, 8));
         assert!((both.model_rmse - 8.0).abs() < 1e-9, "{both:?}");
         let words = "drawbar pull is off by 56.9 N on held-out runs, and on the 4 of 8 that lie between fitted runs by 8.00 N where interpolation has 0";
         assert!(wrong.text.starts_with(words), "{}", wrong.text);
-        // The first number is that of the ledger.
+        // The first number in the sentence is the one in the ledger.
         let lines = study.ledger_lines();
         let row = lines[0].rows.iter().find(|row| row.usage == RunUse::Holdout);
         let in_ledger = row.and_then(|row| row.errors.channel(Channel::DrawbarPull));

@@ -1,4 +1,4 @@
-//! A line of the error ledger in `summary.json`.
+//! A calibration in `summary.json`: a line of the error ledger.
 
 use std::collections::BTreeMap;
 
@@ -15,45 +15,45 @@ use result::table::coverage::Coverage;
 use result::table::fixed_sigma::FixedSigmas;
 use result::table::row::rows_of;
 
-/// A calibration of the ledger.
+/// A line of the error ledger.
 #[derive(Debug, Clone, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
 pub struct CalibrationSummary {
     /// Id of the calibration.
     pub calibration: i64,
-    /// Number of its set of runs in the study, from 1: errors and evidence of lines over different sets do not compare.
+    /// Number of its set of runs in the study, from 1. Errors and evidence of lines with different sets are not comparable.
     pub data_set: usize,
-    /// Runs that were fitted.
+    /// Number of fitted runs.
     pub fitted_runs: usize,
-    /// Runs that were held out.
+    /// Number of holdout runs.
     pub held_out_runs: usize,
-    /// Effects switched on.
+    /// Effects of the model.
     pub effects: Vec<String>,
-    /// Algorithm.
+    /// Name of the algorithm.
     #[schema(value_type = String)]
     pub algorithm: AlgorithmName,
     /// Whether draws, intervals and evidence are those of a normal approximation about a fit.
     pub normal_approximation: bool,
-    /// Log-evidence.
+    /// Log-evidence `[nats]`.
     pub log_evidence: Option<f64>,
-    /// Its standard error; null of a normal approximation.
+    /// Its standard error; null for a normal approximation.
     pub log_evidence_se: Option<f64>,
     /// Whether every stage reached equilibrium.
     pub equilibrated: Option<bool>,
-    /// Evaluations of the sampler.
+    /// Number of evaluations.
     pub evaluations: Option<u64>,
-    /// Of these, rejected by the model.
+    /// Number of evaluations that the model rejected.
     pub rejected: Option<u64>,
     /// Wall time `[s]`.
     pub wall_s: f64,
     /// Counts of a metamodel; null without one.
     pub metamodel: Option<MetamodelSummary>,
-    /// Stages.
+    /// Stages of the sampler; empty for a fit.
     pub stages: Vec<StageSummary>,
     /// Parameters by name.
     pub parameters: BTreeMap<String, ParameterSummary>,
-    /// Interpolation without physics.
+    /// Errors of interpolation without physics.
     pub baseline: BaselineSummary,
-    /// The model with what it misses in the fitted conditions.
+    /// Errors of the corrected predictions.
     pub corrected: CorrectedSummary,
     /// Errors of the posterior-mean prediction.
     pub error: ErrorSummary,
@@ -66,29 +66,29 @@ pub struct CalibrationSummary {
 /// Counts of a metamodel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
 pub struct MetamodelSummary {
-    /// Moves that it proposed, each an evaluation of `quasi_static` in place of one of `scm`.
+    /// Number of moves that the metamodel proposed; each is an evaluation of `quasi_static` in place of `scm`.
     pub moves: u64,
-    /// Subchains of such moves.
+    /// Number of subchains of such moves.
     pub subchains: u64,
-    /// Of these, the ones that moved, so that `scm` was evaluated at their end.
+    /// Number of subchains that moved, so that `scm` was evaluated at their end.
     pub moved: u64,
 }
 
-/// A stage.
+/// A stage of the sampler.
 #[derive(Debug, Clone, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
 pub struct StageSummary {
     /// Tempering exponent.
     pub tempering_exponent: f64,
     /// Acceptance rate.
     pub acceptance: f64,
-    /// Drift as a z-score.
+    /// Drift of the log-likelihood during the moves, as a z-score.
     pub drift_z: f64,
     /// Moves per particle.
     pub steps: u32,
 }
 
 impl CalibrationSummary {
-    /// The line with its errors in the noise sds of its study.
+    /// Returns the line with its errors in the given noise standard deviations.
     #[must_use]
     pub fn in_fixed_sigmas(self, sigmas: &FixedSigmas) -> Self {
         CalibrationSummary {
@@ -100,7 +100,7 @@ impl CalibrationSummary {
     }
 }
 
-/// The calibration's line of the ledger; `None` without draws: point estimates stand apart.
+/// Summarises a calibration for the ledger; `None` without draws, because point estimates are listed separately.
 pub fn calibration_summary(calibration: &FinishedCalibration) -> Option<CalibrationSummary> {
     if calibration.estimate().is_some() {
         return None;
@@ -147,10 +147,10 @@ pub fn calibration_summary(calibration: &FinishedCalibration) -> Option<Calibrat
             })
             .collect(),
         parameters: calibration.parameter_summaries().into_iter().collect(),
-        baseline: BaselineSummary::of(comparison),
-        corrected: CorrectedSummary::of(comparison),
+        baseline: BaselineSummary::new(comparison),
+        corrected: CorrectedSummary::new(comparison),
         noise_sd,
-        coverage90: CoverageSummary::of(|usage| Coverage::count(rows_of(&comparison.rows, usage))),
+        coverage90: CoverageSummary::from_counts(|usage| Coverage::count(rows_of(&comparison.rows, usage))),
         error: ErrorSummary {
             fit: comparison.fit.clone(),
             holdout: comparison.holdout.clone(),

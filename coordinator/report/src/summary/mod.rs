@@ -1,4 +1,4 @@
-//! `summary.json`.
+//! `summary.json`, the summary of a study for programs.
 //!
 //! # Layout
 //! - `study`: the whole file. `calibration`: a line of the error ledger.

@@ -1,4 +1,4 @@
-//! `summary.json`: the contract's summary of a study.
+//! The whole of `summary.json`.
 
 use std::collections::BTreeMap;
 
@@ -16,38 +16,38 @@ use result::point_estimate::PointEstimate;
 use result::study::Study;
 use result::table::fixed_sigma::{FixedSigma, FixedSigmas};
 
-/// The summary of a study; what does not apply is null.
+/// The summary of a study; fields that do not apply are null.
 #[derive(Debug, Clone, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
 pub struct StudySummary {
     /// Name of the experiment.
     pub experiment: String,
-    /// Where the measurements come from; null where the experiment does not say it.
+    /// Source of the measurements; null if the experiment does not state it.
     pub campaign: Option<Campaign>,
     /// Seed of the job.
     pub seed: u64,
     /// Version of the equations and the effects.
     pub model_version: String,
-    /// Kind of the model; of several that are compared, the most probable.
+    /// Kind of the model; if several are compared, that of the most probable one.
     pub model_kind: String,
     /// State of the study.
     pub status: String,
     /// The error ledger: base first, then each extension. Empty for a search by generations, and for a fit without draws.
     pub calibrations: Vec<CalibrationSummary>,
-    /// What the ledger's models predict together; null where nothing is corrected.
+    /// Errors of the combined predictions of the models in the ledger; null if no prediction is corrected.
     pub combined: Option<CombinedSummary>,
-    /// The noise sd of each channel that `rmse_fixed_sigma` is in, by name.
+    /// Noise standard deviation of `rmse_fixed_sigma`, by channel.
     pub fixed_sigma: BTreeMap<String, FixedSigma>,
-    /// Deterministic fits.
+    /// Results of fits and searches by generations.
     pub point_estimates: Vec<PointEstimate>,
-    /// The models that the job compares; null where it has one, and until all are finished.
+    /// Comparison of the job's models; null if the job has one model, and until all are finished.
     pub models: Option<ModelComparison>,
     /// The flags.
     pub flags: Vec<Flag>,
-    /// Missing effects; null where no search is finished.
+    /// Results of the searches for missing effects; null if none is finished.
     pub discovery: Option<DiscoverySummary>,
 }
 
-/// Effects that the first calibration did not have, of the line of the ledger with the most evidence on the newest data.
+/// Returns the effects of the current model that the submitted job does not have.
 fn added(study: &Study) -> Vec<String> {
     let had = study.lead.effects();
     study
@@ -59,7 +59,7 @@ fn added(study: &Study) -> Vec<String> {
         .collect()
 }
 
-/// The lines of the error ledger.
+/// Returns the lines of the error ledger.
 pub(crate) fn ledger_summaries(study: &Study, sigmas: &FixedSigmas) -> Vec<CalibrationSummary> {
     let mut experiments: Vec<i64> = Vec::new();
     for line in study.ledger() {
@@ -80,7 +80,7 @@ pub(crate) fn ledger_summaries(study: &Study, sigmas: &FixedSigmas) -> Vec<Calib
     study.ledger().filter_map(line).collect()
 }
 
-/// The point estimates of every model.
+/// Returns the point estimates of every model.
 pub(crate) fn point_estimate_summaries(study: &Study, sigmas: &FixedSigmas) -> Vec<PointEstimate> {
     study
         .line()
@@ -90,10 +90,10 @@ pub(crate) fn point_estimate_summaries(study: &Study, sigmas: &FixedSigmas) -> V
 
 /// Summarises what the models of the ledger predict together; `None` if nothing is corrected.
 pub(crate) fn combined_summary(study: &Study, sigmas: &FixedSigmas) -> Option<CombinedSummary> {
-    CombinedSummary::of(study.combined(), sigmas)
+    CombinedSummary::new(study.combined(), sigmas)
 }
 
-/// `summary.json`.
+/// Summarises a study for `summary.json`.
 pub fn summary(study: &Study) -> StudySummary {
     let lead = &study.lead;
     let sigmas = study.fixed_sigmas();
@@ -110,7 +110,7 @@ pub fn summary(study: &Study) -> StudySummary {
         fixed_sigma: sigmas.by_name(),
         models: study.model_comparison(),
         flags: flags(study),
-        discovery: DiscoverySummary::of(&study.rounds, added(study)),
+        discovery: DiscoverySummary::new(&study.rounds, added(study)),
     }
 }
 
@@ -153,7 +153,7 @@ mod tests {
         (other.row.id, other.row.log_evidence) = (2, Some(-12.0));
         let study = Study {
             models: 2,
-            others: vec![other],
+            other_models: vec![other],
             ..fixture::calibration().into()
         };
         assert!(crate::study_file::file(&study, crate::StudyFile::Figures(2)).is_some());

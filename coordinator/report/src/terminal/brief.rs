@@ -1,4 +1,4 @@
-//! A study in a few lines: what casts doubt on it, the models that it compares, its error ledger.
+//! A study in a few lines: cautions, compared models, error ledger.
 
 use super::calibration::headline;
 use super::campaign::digitised;
@@ -9,7 +9,7 @@ use crate::flag::study::missed_modes;
 use result::flag::FlagKind;
 use result::study::Study;
 
-/// Cautions, the models that the job compares, the error ledger, and a line for each calibration that has none in it.
+/// Returns the cautions, the compared models, the error ledger, and a line for each calibration that is not in the ledger.
 pub fn brief(study: &Study) -> String {
     let is_in_ledger = |id: i64| study.ledger().any(|line| line.row.id == id);
     let beside = study

@@ -1,4 +1,4 @@
-//! Tables for a terminal.
+//! The results of one calibration as text.
 
 use std::fmt::Write;
 
@@ -18,7 +18,7 @@ use result::table::error_model::error_model;
 use result::table::readings::reading_errors;
 use result::words::number;
 
-/// `hidden-effect: 14 stages, 16658 evaluations (3 rejected by the model), 1.5 s, log-evidence -1347.66`.
+/// Returns, for example, `hidden-effect: 14 stages, 16658 evaluations (3 rejected by the model), 1.5 s, log-evidence -1347.66`.
 pub(super) fn headline(calibration: &FinishedCalibration) -> String {
     let row = &calibration.row;
     let how = match calibration.mode() {
@@ -43,7 +43,7 @@ pub(super) fn headline(calibration: &FinishedCalibration) -> String {
     )
 }
 
-/// The result of a calibration: model against measurement, errors, parameters, findings, flags.
+/// Returns the results of a calibration: model against measurement, errors, parameters, findings, flags.
 pub(super) fn summary(calibration: &FinishedCalibration) -> String {
     let compared = calibration.comparison();
     let mut text = headline(calibration) + "\n";
@@ -102,7 +102,7 @@ pub(super) fn summary(calibration: &FinishedCalibration) -> String {
     text
 }
 
-/// The most probable parameters, with their standard deviations after Laplace where they are known.
+/// Tabulates the most probable parameters, with the standard deviations of the Laplace approximation if they are known.
 fn point(calibration: &FinishedCalibration, estimate: &EstimateRow) -> String {
     let parameters = &calibration.spec.parameters;
     let value = |p: &FittedParameter| match p.sd {
@@ -121,7 +121,7 @@ fn point(calibration: &FinishedCalibration, estimate: &EstimateRow) -> String {
     format!("\n{}", table.text(&fitted))
 }
 
-/// The prior of a parameter, and whether the parameter lies at its bound.
+/// Describes the prior of a parameter, and says whether the parameter lies at its bound.
 fn prior(free: &FreeParameter, at_bound: bool) -> String {
     let sd = free.marginal.sd();
     format!(
@@ -132,7 +132,7 @@ fn prior(free: &FreeParameter, at_bound: bool) -> String {
     )
 }
 
-/// The parameters after and before the data.
+/// Tabulates the posterior and the prior of each parameter.
 fn parameters(calibration: &FinishedCalibration) -> String {
     let width = width(calibration.spec.parameters.iter().map(|p| &p.name));
     let summaries = calibration.parameter_summaries();

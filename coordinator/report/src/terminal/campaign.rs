@@ -5,7 +5,7 @@ use shared::experiment::Campaign;
 use super::column::labelled;
 use result::words::campaign::CampaignWords;
 
-/// Citation, whether the rows were digitised, how they were measured, doubts.
+/// Lists the citation, whether the rows were digitised, the methods and the doubts.
 pub(super) fn campaign(campaign: &Campaign) -> String {
     let words = CampaignWords::from(campaign);
     let mut text = labelled("data:", &words.citation);

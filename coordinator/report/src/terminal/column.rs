@@ -1,28 +1,28 @@
-//! Widths and cells of columns, and sentences broken into lines.
+//! Helpers for columns of text: widths, cells that may be empty, sentences broken into lines.
 
 use std::fmt::Write;
 
-/// Columns of a line.
+/// Maximum number of characters in a line.
 const WIDTH: usize = 80;
-/// Columns of a label before a sentence.
+/// Width of the label before a sentence.
 pub(super) const LABEL: usize = 9;
 
-/// The width of a column of names.
+/// Returns the width of a column of names.
 pub(super) fn width<'a>(names: impl Iterator<Item = &'a String>) -> usize {
     names.map(String::len).fold(28, usize::max)
 }
 
-/// A value that may be missing.
+/// Formats a value, or returns a dash if it is missing.
 pub(super) fn cell<T>(value: Option<T>, words: impl FnOnce(T) -> String) -> String {
     value.map_or_else(|| "-".into(), words)
 }
 
-/// The remark on a parameter at its bound.
+/// Returns the remark on a parameter at its bound.
 pub(super) fn at_bound_words(at_bound: bool) -> &'static str {
     if at_bound { "  AT BOUND" } else { "" }
 }
 
-/// A sentence behind its label, broken between words and indented; a compound unit stays whole.
+/// Breaks a sentence between words, with a label before the first line and the other lines indented; the unit `N m` stays whole.
 pub(super) fn labelled(label: &str, sentence: &str) -> String {
     let mut text = format!("{label:<LABEL$}");
     let mut column = LABEL;

@@ -1,4 +1,4 @@
-//! Model against measurement as text.
+//! The comparison of a model with the measurements as text.
 
 use std::fmt::Write;
 
@@ -15,14 +15,14 @@ use result::table::row::{ComparisonRow, rows_of};
 use result::words::data_channel::{ShownUnit, short_name};
 use result::words::number;
 
-/// Model against measurement, run by run, with errors by channel.
+/// Tabulates the model against the measurements, run by run, with errors by channel.
 pub fn comparison(comparison: &Comparison) -> String {
     let measured = match comparison.digitised {
         true => "digitised",
         false => "measured",
     };
     let value = |row: &ComparisonRow, v: Option<f64>| {
-        cell(v, |v| format!("{:.2}", v * ShownUnit::of(row.channel).factor))
+        cell(v, |v| format!("{:.2}", v * ShownUnit::new(row.channel).factor))
     };
     let interval = |row: &ComparisonRow, q05: Option<f64>, q95: Option<f64>| match q05 {
         Some(_) => format!("{} to {}", value(row, q05), value(row, q95)),
@@ -49,7 +49,7 @@ pub fn comparison(comparison: &Comparison) -> String {
     text
 }
 
-/// A line for each run that the model refuses at some draw.
+/// Returns a line for each run that the model refuses at some draw.
 fn refused(comparison: &Comparison) -> String {
     let mut lines: Vec<String> = Vec::new();
     for row in &comparison.rows {
@@ -71,13 +71,13 @@ fn refused(comparison: &Comparison) -> String {
     lines.concat()
 }
 
-/// Errors by channel, and how many measurements lie within their intervals.
+/// Tabulates the errors by channel, and counts the measurements within their intervals.
 fn errors(comparison: &Comparison) -> String {
     let mut table = Table::<(&str, &ErrorTable)>::new().left(28, "root mean square error", |(name, _)| name);
     for channel in Channel::ALL {
         let width = if channel == Channel::LateralForce { 14 } else { 16 };
         table = table.right(width, &channel_title(channel), move |(_, errors)| {
-            let scale = ShownUnit::of(channel).factor;
+            let scale = ShownUnit::new(channel).factor;
             cell(errors.channel(channel), |e| {
                 format!("{:.2} ({})", e.rmse * scale, e.runs)
             })
@@ -104,7 +104,7 @@ fn errors(comparison: &Comparison) -> String {
     for (usage, unpredicted) in [RunUse::Fit, RunUse::Holdout].into_iter().zip(unpredicted) {
         if unpredicted > 0 {
             let measurements = number::count(unpredicted, "measurement");
-            // A fitted run is judged by whatever draws are left.
+            // A fitted run is judged by the accepted draws, however few.
             let which = match usage {
                 RunUse::Fit => "that have no prediction",
                 RunUse::Holdout => "that the model refuses at half of the draws or more",
@@ -135,7 +135,7 @@ fn errors(comparison: &Comparison) -> String {
     text
 }
 
-/// Errors by level of each condition, in noise sds.
+/// Tabulates the errors by level of each condition, in noise standard deviations.
 pub fn groups(comparison: &Comparison) -> String {
     if comparison.groups.is_empty() {
         return String::new();

@@ -1,4 +1,4 @@
-//! Diagnostics as text for a terminal.
+//! The diagnostics of a calibration as text.
 
 use std::fmt::Write;
 
@@ -18,7 +18,7 @@ use result::words::data_channel::ShownUnit;
 use result::words::number;
 use result::words::probability::probability;
 
-/// The full text report.
+/// Returns all diagnostics.
 pub fn diagnostics(diagnostics: &Diagnostics) -> String {
     let mut parts = Vec::new();
     parts.extend(diagnostics.sampler.as_ref().map(sampler));
@@ -41,14 +41,14 @@ pub fn diagnostics(diagnostics: &Diagnostics) -> String {
     parts.join("\n")
 }
 
-/// The findings that no flag repeats, a line each.
+/// Returns the findings that no flag repeats, one line each.
 pub(crate) fn findings(diagnostics: &Diagnostics) -> String {
     let is_flag = |words: &&String| diagnostics.flags.iter().any(|flag| flag.text.ends_with(*words));
     let lines = diagnostics.findings.iter().filter(|words| !is_flag(words));
     lines.map(|words| format!("{words}\n")).collect()
 }
 
-/// The flags, a line each.
+/// Returns the flags, one line each.
 pub(crate) fn flags(diagnostics: &Diagnostics) -> String {
     let lines = diagnostics.flags.iter();
     lines
@@ -142,11 +142,11 @@ fn residuals(all: &[ResidualDiagnostics]) -> String {
 }
 
 fn trends(all: &[TrendDiagnostics]) -> String {
-    let shown = |t: &TrendDiagnostics, x: f64| number::four_digits(ShownUnit::of(t.channel).factor * x);
+    let shown = |t: &TrendDiagnostics, x: f64| number::four_digits(ShownUnit::new(t.channel).factor * x);
     Table::<&TrendDiagnostics>::new()
         .left(14, "trend of", |t| t.channel.name())
         .left(18, "against", |t| t.against.name())
-        .left(4, "unit", |t| ShownUnit::of(t.channel).name)
+        .left(4, "unit", |t| ShownUnit::new(t.channel).name)
         .right(10, "change", |t| shown(t, t.change))
         .right(10, "sd", |t| shown(t, t.change_sd))
         .right(10, "share left", |t| format!("{:.2}", t.share_left))
@@ -187,7 +187,7 @@ fn directions(all: &[DirectionDiagnostics]) -> String {
     text
 }
 
-/// Rejections in each fifth of each prior; empty where nothing was rejected and nothing failed.
+/// Tabulates the rejections in each fifth of each prior; empty if nothing was rejected and nothing failed.
 fn rejections(rejections: &RejectionDiagnostics) -> String {
     let mut text = String::new();
     for (message, count) in &rejections.faults {

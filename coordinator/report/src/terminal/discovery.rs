@@ -11,15 +11,15 @@ use super::table::Table;
 use result::discovery::{arguments, effect_file, numerical_noise, word};
 use result::words::probability::p_words;
 
-/// The largest number of explanations that are shown.
+/// Maximum number of explanations that are shown.
 const SHOWN: usize = 8;
-/// The largest number of names in a list of effects.
+/// Maximum number of names in a list of effects.
 const LISTED: usize = 20;
 
-/// The result of a search, and the command that adds it to the model.
+/// Describes the result of a search, with the command that adds it to the model.
 ///
 /// # Arguments
-/// - `calibration`: the searched one. `place`: the argument that locates it. `folder`: of effect files.
+/// - `calibration`: the searched calibration. `place`: the argument that locates it. `folder`: the folder of effect files.
 pub fn text(record: &Discovery, calibration: i64, place: &str, folder: &Path) -> String {
     let mut text = format!("discovery: {}\n{}\n\n", word(record.verdict), record.text);
     let width = width(record.effects.iter().map(|e| &e.name));
@@ -122,7 +122,7 @@ pub fn text(record: &Discovery, calibration: i64, place: &str, folder: &Path) ->
     text
 }
 
-/// The sets behind the probabilities, where several effects act together or left-out levels were predicted.
+/// Tabulates the sets behind the probabilities, if a set has several effects or left-out levels were predicted.
 fn sets(record: &Discovery) -> String {
     let is_shown = |set: &JudgedSet| set.members.len() > 1 || set.predictive.is_some();
     if !record.sets.iter().any(is_shown) {
@@ -142,7 +142,7 @@ fn sets(record: &Discovery) -> String {
     format!("\n{}", table.text(names.iter().zip(shown())))
 }
 
-/// Names without `EFFECT.WHEEL` where `EFFECT` is in the list.
+/// Removes each `EFFECT.WHEEL` from a list that contains `EFFECT`.
 fn folded(names: &[String]) -> Vec<&str> {
     let is_own = |name: &&String| match name.split_once('.') {
         Some((effect, _)) => !names.iter().any(|other| other == effect),
@@ -151,7 +151,7 @@ fn folded(names: &[String]) -> Vec<&str> {
     names.iter().filter(is_own).map(String::as_str).collect()
 }
 
-/// `210.0 with 68 degrees of freedom (p 1e-9)`.
+/// Returns, for example, `210.0 with 68 degrees of freedom (p 1e-9)`.
 fn chi_square(chi2: ChiSquare) -> String {
     let value = chi2.value.map_or("unknown".into(), |value| format!("{value:.1}"));
     let p = chi2.p.map_or(String::new(), |p| format!(" ({})", p_words(p)));

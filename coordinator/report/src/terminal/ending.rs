@@ -1,16 +1,16 @@
-//! The last lines of a run: where its files are, and how to see the study in a browser.
+//! The last lines of a command: where the files are, and how to open the study in a browser.
 
 use std::path::Path;
 
 use super::column::labelled;
 
-/// Characters that a shell takes as they are.
+/// Characters that need no quotes in a shell, in addition to letters and digits.
 const PLAIN: &str = "/._-+=:,@%";
 
-/// The files of a folder, and the command that shows its study in a browser.
+/// Names the files in a folder, and the command that shows the study in a browser.
 ///
 /// # Arguments
-/// - `is_brief`: whether the tables were left out.
+/// - `is_brief`: whether the text before it left out the tables.
 pub fn ending(folder: &Path, is_brief: bool) -> String {
     let out = folder.display();
     let more = if is_brief { "; more with --verbose" } else { "" };
@@ -23,7 +23,7 @@ pub fn ending(folder: &Path, is_brief: bool) -> String {
     )
 }
 
-/// A word as a shell of Unix reads it.
+/// Quotes a word for a Unix shell.
 pub(super) fn quoted(word: &str) -> String {
     let is_plain = |c: char| c.is_alphanumeric() || PLAIN.contains(c);
     match word.chars().all(is_plain) {

@@ -1,4 +1,4 @@
-//! The error ledger as text.
+//! The error ledger as text: a table with a line for each model.
 
 use std::fmt::Write;
 
@@ -16,17 +16,17 @@ use result::table::ledger::LedgerRow;
 use result::words::data_channel::ShownUnit;
 use result::words::number;
 
-/// Least width of the column of models.
+/// Minimum width of the column of models.
 const MODEL: usize = 20;
-/// The line of the current model with what it misses in the fitted conditions.
+/// Name of the line of the current model's corrected predictions.
 const CORRECTED: &str = "current, corrected";
-/// The line of what all models predict together.
+/// Name of the line of the combined predictions.
 const COMBINED: &str = "all, combined";
-/// The line of what no model predicts.
+/// Name of the line of interpolation without a model.
 const INTERPOLATION: &str = "interpolation";
 
-/// The ledger of a study, with what all models predict together and the noise that errors are measured by; nothing without a
-/// calibration in it.
+/// Returns the ledger of a study, with the combined predictions of all models and the noise that errors are measured in; empty if no
+/// calibration is in the ledger.
 pub(super) fn ledger(study: &Study) -> String {
     let combined = combined_summary(study, &study.fixed_sigmas());
     let combined = combined
@@ -41,12 +41,12 @@ pub(super) fn ledger(study: &Study) -> String {
     }
 }
 
-/// The ledger of a study: its models, and interpolation.
+/// Returns the ledger of a study with its models and interpolation only.
 pub(super) fn brief_ledger(study: &Study) -> String {
     table(study, &[])
 }
 
-/// - `predictions`: others of the held-out runs, with their names.
+/// Tabulates the ledger, with further `predictions` of the holdout runs by their names.
 fn table(study: &Study, predictions: &[(&str, Option<&ErrorTable>)]) -> String {
     let lines = study.ledger_lines();
     let measured = |channel: &Channel| {
@@ -68,7 +68,7 @@ fn table(study: &Study, predictions: &[(&str, Option<&ErrorTable>)]) -> String {
         table = table.right(10, &channel_title(channel), move |row| {
             cell(row.errors.channel(channel), |error| {
                 let mark = if row.worse.contains(&channel) { "*" } else { "" };
-                format!("{mark}{:.2}", error.rmse * ShownUnit::of(channel).factor)
+                format!("{mark}{:.2}", error.rmse * ShownUnit::new(channel).factor)
             })
         });
     }
@@ -77,7 +77,7 @@ fn table(study: &Study, predictions: &[(&str, Option<&ErrorTable>)]) -> String {
             cell(row.errors.all.rmse_fixed_sigma, |s| format!("{s:.2}"))
         })
         .right(9, "inside", |row| {
-            cell(row.coverage, |c| format!("{} of {}", c.inside, c.of))
+            cell(row.coverage, |c| format!("{} of {}", c.inside, c.total))
         });
     let mut text = table.header();
     for line in &lines {
@@ -106,7 +106,7 @@ fn table(study: &Study, predictions: &[(&str, Option<&ErrorTable>)]) -> String {
     text
 }
 
-/// A row of the printed ledger.
+/// A row of the ledger as text.
 #[derive(Clone, Copy)]
 struct Row<'a> {
     model: &'a str,
@@ -117,7 +117,7 @@ struct Row<'a> {
 }
 
 impl<'a> Row<'a> {
-    /// The row of a calibration.
+    /// Returns the row of a calibration.
     fn fitted(model: &'a str, row: &'a LedgerRow) -> Self {
         Row {
             model,
@@ -128,7 +128,7 @@ impl<'a> Row<'a> {
         }
     }
 
-    /// The row of another prediction of the held-out runs.
+    /// Returns the row of another prediction of the holdout runs.
     fn held_out(model: &'a str, errors: &'a ErrorTable) -> Self {
         Row {
             model,

@@ -1,12 +1,12 @@
 //! Text for a terminal.
 //!
 //! # Layout
-//! - `specification`: a job before it runs. `campaign`: where its measurements come from. `status`: states of calibrations.
-//! - `brief`: a study in a few lines; `story`: its three answers; `ending`: where the rest is. `ledger`: the errors of its calibrations.
-//! - `study`: everything of a study; `calibration`: of one calibration; `comparison`: its errors.
-//! - `diagnostics`: how far a result can be trusted. [`discovery`]: a search for a missing effect.
-//! - `validation`: the levels of a factor, each left out in turn.
-//! - `table`: tables of columns; `column`: the width of names, cells that may be empty, sentences behind a label.
+//! - `specification`: a job before it runs. `campaign`: the source of its measurements. `status`: states of calibrations.
+//! - `brief`: a study in a few lines; `story`: what is wrong, what is missing, what next; `ending`: where the files are.
+//! - `study`: the complete text of a study; `models`: its compared models; `ledger`: the errors of its calibrations.
+//! - `calibration`: one calibration; `comparison`: its rows and errors; `diagnostics`: its diagnostics.
+//! - [`discovery`]: a search for a missing effect. `validation`: the levels of a factor, each left out in turn.
+//! - `table`: tables of columns; `column`: widths, cells that may be empty, sentences with a label.
 
 mod brief;
 mod calibration;

@@ -1,4 +1,4 @@
-//! The models that a job compares, as text.
+//! The comparison of a job's models as text.
 
 use std::fmt::Write;
 
@@ -11,7 +11,7 @@ use result::study::Study;
 use result::words::data_channel::ShownUnit;
 use result::words::probability::probability;
 
-/// The models with their evidence, probability and errors on data left out; nothing of a job with one.
+/// Tabulates the compared models with their evidence, probability and errors on left-out data; empty for a job with one model.
 pub(super) fn models(study: &Study) -> String {
     let Some(comparison) = study.model_comparison() else {
         return String::new();
@@ -40,7 +40,7 @@ pub(super) fn models(study: &Study) -> String {
         table = table.right(10, &channel_title(channel), move |model| {
             let error = model.left_out.as_ref().and_then(|errors| errors.channel(channel));
             cell(error, |e| {
-                format!("{:.2}", e.rmse * ShownUnit::of(channel).factor)
+                format!("{:.2}", e.rmse * ShownUnit::new(channel).factor)
             })
         });
     }

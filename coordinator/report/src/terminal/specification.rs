@@ -11,7 +11,7 @@ use super::table::Table;
 use result::finished_calibration::prior_mean;
 use result::words::number;
 
-/// Data, model, algorithm and priors of a job.
+/// Describes the data, model, algorithm and priors of a job.
 pub fn specification(spec: &Spec) -> String {
     let mut text = spec
         .experiment
@@ -77,7 +77,7 @@ pub fn specification(spec: &Spec) -> String {
     text
 }
 
-/// The part of a run's recording that is averaged: samples, periods.
+/// Describes the part of a run's recording that is averaged: samples, periods.
 fn averaging(run: &str, history: &MeasuredHistory, protocol: &AveragingProtocol) -> String {
     let filter = match protocol.lowpass_hz {
         0.0 => "not filtered".to_owned(),

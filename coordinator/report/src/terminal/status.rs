@@ -6,7 +6,7 @@ use shared::sentence::one_line;
 use super::column::cell;
 use super::table::Table;
 
-/// The states of calibrations, a line each.
+/// Tabulates the states of calibrations, one line each.
 pub fn status_table(statuses: &[CalibrationStatus]) -> String {
     let progress = |s: &CalibrationStatus, words: fn(&Progress) -> String| cell(s.progress.as_ref(), words);
     let table = Table::<&CalibrationStatus>::new()
@@ -35,7 +35,7 @@ pub fn status_table(statuses: &[CalibrationStatus]) -> String {
     text
 }
 
-/// Stages, steps, generations or rounds so far.
+/// Returns the number of stages, steps, generations or rounds so far.
 fn count(position: Position) -> u32 {
     match position {
         Position::Sampler { stage, .. } => stage,

@@ -1,4 +1,4 @@
-//! The three last lines of a study: what is wrong, what is missing, what to do next.
+//! The story of a study as the last lines of its text: what is wrong, what is missing, what to do next.
 
 use std::fmt::Write;
 use std::path::Path;
@@ -7,13 +7,14 @@ use super::column::{LABEL, labelled};
 use super::ending::quoted;
 use crate::story::{NextStep, Story};
 
-/// The largest number of steps of a brief story.
+/// Maximum number of steps in a brief story.
 const MAX_STEPS: usize = 2;
 
-/// The story, with the commands of its steps.
+/// Returns the story, with the commands of its steps.
 ///
 /// # Arguments
-/// - `folder`: of the study, and of effect files. `is_brief`: the first step alone, and with it the next that a command takes.
+/// - `folder`: the folder of the study, which also contains effect files.
+/// - `is_brief`: whether to show only the first step and the next one that has a command.
 pub fn story(story: &Story, folder: &Path, is_brief: bool) -> String {
     let place = format!("--out {}", quoted(&folder.display().to_string()));
     let model = story.model.as_ref();
@@ -32,7 +33,7 @@ pub fn story(story: &Story, folder: &Path, is_brief: bool) -> String {
     text
 }
 
-/// The command of a step, its effect file in the folder.
+/// Returns the command of a step, with the path of its effect file in the folder.
 fn command(step: &NextStep, folder: &Path) -> Option<String> {
     let command = step.command.clone()?;
     Some(match &step.effect_file {
@@ -52,7 +53,7 @@ mod tests {
     use crate::fixture;
     use result::study::Study;
 
-    /// A searched study that was not extended.
+    /// Returns a searched study that was not extended.
     fn searched() -> Study {
         let mut study = fixture::grown();
         study.extensions.clear();

@@ -1,4 +1,4 @@
-//! The results of a study as text.
+//! The complete text of a study: all calibrations, searches, and the ledger.
 
 use std::fmt::Write;
 
@@ -28,7 +28,7 @@ pub fn study(study: &Study) -> String {
     text + &calibrations(study) + &cautions(study) + &models(study) + "\n" + &ledger(study)
 }
 
-/// The calibrations with their searches, a line each.
+/// Returns a line for each calibration and each of its searches.
 fn calibrations(study: &Study) -> String {
     let mut text = String::new();
     for calibration in study.calibrations() {

@@ -11,7 +11,7 @@ pub(super) struct Table<'a, R> {
 }
 
 struct Column<'a, R> {
-    /// Blanks between the column before and this one.
+    /// Number of blanks before the column.
     gap: usize,
     width: usize,
     is_right: bool,
@@ -30,7 +30,7 @@ impl<R> Column<'_, R> {
 }
 
 impl<'a, R: Copy> Table<'a, R> {
-    /// A table without columns.
+    /// Makes a table without columns.
     pub(super) fn new() -> Self {
         Table { columns: Vec::new() }
     }
@@ -73,33 +73,33 @@ impl<'a, R: Copy> Table<'a, R> {
         self
     }
 
-    /// The line of titles.
+    /// Returns the line of titles.
     pub(super) fn header(&self) -> String {
         let titles = self.columns.iter().map(|column| column.padded(&column.title));
         titles.collect::<String>() + "\n"
     }
 
-    /// The first cells of a row, without an end of the line.
+    /// Returns the first cells of a row without a line break.
     pub(super) fn start(&self, count: usize, row: R) -> String {
         let columns = self.columns.iter().take(count);
         columns.map(|column| column.padded(&(column.cell)(row))).collect()
     }
 
-    /// The line of a row.
+    /// Returns the line of a row.
     pub(super) fn line(&self, row: R) -> String {
         self.start(self.columns.len(), row) + "\n"
     }
 
-    /// The titles and all rows.
+    /// Returns the titles and all rows.
     pub(super) fn text(&self, rows: impl IntoIterator<Item = R>) -> String {
         let lines = rows.into_iter().map(|row| self.line(row));
         self.header() + &lines.collect::<String>()
     }
 }
 
-/// The title of a channel's column: `sinkage mm`.
+/// Returns the title of a channel's column: `sinkage mm`.
 pub(super) fn channel_title(channel: Channel) -> String {
-    format!("{} {}", short_name(channel), ShownUnit::of(channel).name)
+    format!("{} {}", short_name(channel), ShownUnit::new(channel).name)
 }
 
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! A validation as text.
+//! A validation as text: each level left out in turn.
 
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -12,10 +12,10 @@ use result::validation::{Judgement, Validation};
 use result::words::data_channel::ShownUnit;
 use result::words::number;
 
-/// Least width of the column of levels.
+/// Minimum width of the column of levels.
 const LEVEL: usize = 24;
 
-/// The levels with the errors of model and interpolation, then all of them together.
+/// Tabulates the levels with the errors of model and interpolation, then all of them together.
 pub fn validation(validation: &Validation) -> String {
     let is_measured = |channel: &Channel| {
         let mut rows = validation.levels.iter().flat_map(|level| &level.rows);
@@ -31,7 +31,7 @@ pub fn validation(validation: &Validation) -> String {
         .left(width, "left out", |row| row.name)
         .right(4, "runs", |row| row.runs);
     for &channel in &channels {
-        let scale = ShownUnit::of(channel).factor;
+        let scale = ShownUnit::new(channel).factor;
         table = table.right(17, &channel_title(channel), move |row| {
             row.pair(|errors| Some(format!("{:.2}", errors.channel(channel)?.rmse * scale)))
         });
@@ -52,7 +52,7 @@ pub fn validation(validation: &Validation) -> String {
         table.header()
     );
     for level in &validation.levels {
-        // A level without a judgement shows its name and its runs alone.
+        // A level without a judgement shows only its name and its runs.
         let row = Row {
             name: &level.level.name,
             runs: level.level.runs.len(),
@@ -76,7 +76,7 @@ pub fn validation(validation: &Validation) -> String {
     text
 }
 
-/// A row of the printed table.
+/// A row of the table as text.
 #[derive(Clone, Copy)]
 struct Row<'a> {
     name: &'a str,
@@ -85,7 +85,8 @@ struct Row<'a> {
 }
 
 impl Row<'_> {
-    /// A number of the model's errors and of those of interpolation; where nothing is interpolated, the model stands alone.
+    /// Pairs a number of the model's errors with that of interpolation. The model is judged on the rows of both; without interpolation,
+    /// on all its rows.
     fn pair(self, number: impl Fn(&ErrorTable) -> Option<String>) -> String {
         let judgement = self.judgement;
         let interpolation = judgement.interpolation.as_ref().and_then(&number);
@@ -100,7 +101,7 @@ impl Row<'_> {
     }
 }
 
-/// The meaning of the marks, and the measurements that do not count.
+/// Explains the marks, and counts the measurements that do not enter.
 fn notes(validation: &Validation) -> Vec<String> {
     let total = &validation.total;
     let mut notes = Vec::new();
@@ -155,14 +156,14 @@ mod tests {
 
     #[test]
     fn a_level_is_judged_by_its_own_rows_and_the_total_by_all() {
-        let (of, others) = (fixture::without_holdout(), fixture::calibration());
+        let (whole, rest) = (fixture::without_holdout(), fixture::calibration());
         let level = |run: &str| LeftOutLevel {
             name: format!("slip of {run}"),
             from: Some(0.4),
             to: Some(0.4),
             runs: vec![run.to_owned()],
         };
-        let judged = ValidatedLevel::predicted(level("e"), &of, &others);
+        let judged = ValidatedLevel::predicted(level("e"), &whole, &rest);
         let judgement = judged.judgement.clone().unwrap();
         let model = judgement.model.clone().unwrap();
         assert_eq!(
@@ -172,13 +173,13 @@ mod tests {
         assert_eq!(judged.rows.len(), 2);
         assert!(model.all.rmse_fixed_sigma.is_some() && judgement.with_interval == 2);
         let pull = judgement.interpolation.clone().unwrap().drawbar_pull.unwrap();
-        // Between 0.5 N at slip 0.2 and 1.5 N at 0.5; measured are 1.2 N.
+        // Interpolation lies between 0.5 N at slip 0.2 and 1.5 N at slip 0.5; the measurement is 1.2 N.
         assert!(pull.rmse < 0.5 && judgement.extrapolated < 2, "{judgement:?}");
         let levels = vec![
             judged,
             ValidatedLevel::refused(level("d"), "too few repeats".into()),
         ];
-        let judged = Validation::new(&of, Factor::Slip, AlgorithmName::Lm, levels);
+        let judged = Validation::new(&whole, Factor::Slip, AlgorithmName::Lm, levels);
         assert_eq!(judged.total, judgement);
         let text = validation(&judged);
         for words in ["slip of e", "slip of d", "too few repeats", "all", "2 of 2"] {
@@ -191,31 +192,23 @@ mod tests {
 
     #[test]
     fn model_and_interpolation_are_compared_on_the_rows_of_both_and_the_rest_is_counted_with_its_reason() {
-        let (of, mut others) = (fixture::without_holdout(), fixture::with_refused_runs());
-        // h0 is of a wheel that was never fitted.
-        let place = |run: &str| {
-            others
-                .spec
-                .experiment
-                .runs
-                .iter()
-                .position(|candidate| candidate.name == run)
-        };
-        let (h0, runs) = (place("h0").unwrap(), ["h0", "h1", "h2", "h3"]);
-        let mut wheels = others.spec.experiment.wheels.clone();
+        let (whole, mut rest) = (fixture::without_holdout(), fixture::with_refused_runs());
+        // Run h0 has a wheel that was never fitted.
+        let (h0, runs) = (fixture::position(&rest, "h0"), ["h0", "h1", "h2", "h3"]);
+        let mut wheels = rest.spec.experiment.wheels.clone();
         wheels.insert("b".into(), wheels["a"].clone());
-        Arc::make_mut(&mut others.spec.experiment).wheels = wheels;
-        Arc::make_mut(&mut others.spec.experiment).runs[h0].wheel = "b".into();
+        Arc::make_mut(&mut rest.spec.experiment).wheels = wheels;
+        Arc::make_mut(&mut rest.spec.experiment).runs[h0].wheel = "b".into();
         let level = LeftOutLevel {
             name: "load 25.0 N".into(),
             from: Some(25.0),
             to: Some(25.0),
             runs: runs.map(str::to_owned).into(),
         };
-        let judged = ValidatedLevel::predicted(level, &of, &others);
+        let judged = ValidatedLevel::predicted(level, &whole, &rest);
         let judgement = judged.judgement.clone().unwrap();
         let rows = |table: &Option<ErrorTable>| table.as_ref().map(|table| table.drawbar_pull.unwrap().runs);
-        // Predicted are h0 and h3, interpolated h1, h2 and h3.
+        // The model predicts h0 and h3; h1, h2 and h3 are interpolated.
         assert_eq!(
             (
                 rows(&judgement.model),
@@ -229,7 +222,7 @@ mod tests {
             [("wheel b on soil sand has no fitted drawbar pull".to_owned(), 1)].into()
         );
         let text = validation(&Validation::new(
-            &of,
+            &whole,
             Factor::Load,
             AlgorithmName::Lm,
             vec![judged],

@@ -1,4 +1,4 @@
-//! All diagnostics of a calibration.
+//! `Diagnostics`, the answer of the REST interface about one calibration: all diagnostics with their findings and flags.
 
 use super::channels::{ChannelDiagnostics, ChiSquareTest};
 use super::directions::DirectionDiagnostics;
@@ -10,30 +10,31 @@ use super::trends::TrendDiagnostics;
 use super::verification::VerificationDiagnostics;
 use crate::flag::Flag;
 
-/// How far a calibration can be trusted, and where its model fails. What a fit or a search cannot determine is null or empty.
+/// The diagnostics of a calibration: how far it can be trusted, and where its model fails. Entries that a fit or a search cannot
+/// determine are null or empty.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
 pub struct Diagnostics {
-    /// The sampler; null of a fit.
+    /// The sampler; null for a fit.
     pub sampler: Option<SamplerDiagnostics>,
-    /// Information and misfit of each channel, in the order of all tables.
+    /// Information and misfit of each channel, in the same order as in all tables.
     pub channels: Vec<ChannelDiagnostics>,
-    /// The misfit of all fitted data together; null where the noise of all is inferred.
+    /// The misfit of all fitted data together; null if all noise is inferred.
     pub chi_square: Option<ChiSquareTest>,
-    /// Every fitted measurement beside its prediction.
+    /// Residuals: every fitted measurement compared with its prediction.
     pub residuals: Vec<ResidualDiagnostics>,
     /// The residuals of each channel against each condition that its runs vary.
     pub trends: Vec<TrendDiagnostics>,
     /// Contraction, bounds and prior conflict of each parameter, in the order of the job.
     pub parameters: Vec<ParameterDiagnostics>,
-    /// The prior of all parameters together against the data.
+    /// The conflict of the whole prior with the data.
     pub conflict: Option<PriorConflict>,
-    /// Combinations of parameters, the worst known first.
+    /// Combinations of parameters, the worst-known first.
     pub directions: Vec<DirectionDiagnostics>,
-    /// Refusals and faults by region of the prior.
+    /// Rejections: where in the prior the model rejects parameters and leases fail.
     pub rejections: RejectionDiagnostics,
-    /// How many results a second worker has computed as well.
+    /// How many results a second worker computed again.
     pub verification: VerificationDiagnostics,
-    /// The findings in plain words.
+    /// The findings, one sentence each.
     pub findings: Vec<String>,
     /// The flags.
     pub flags: Vec<Flag>,

@@ -1,4 +1,4 @@
-//! Information, misfit and coverage of each channel.
+//! Channel diagnostics: information, misfit and coverage of each channel.
 
 use std::collections::BTreeMap;
 
@@ -16,49 +16,49 @@ use crate::words::data_channel::DataChannel;
 use crate::words::number;
 use crate::words::probability::{LEVEL, p_words};
 
-/// A channel of the fitted data.
+/// The diagnostics of a channel with fitted data.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
 pub struct ChannelDiagnostics {
     /// Channel without unit; `plates` and `rings` for readings of the bevameter.
     #[schema(value_type = String)]
     pub channel: DataChannel,
-    /// Unit of the next figures; plates and rings count by their natural logarithm.
+    /// Unit of the standard deviations; for plates and rings they are those of the natural logarithm.
     pub unit: String,
-    /// Fitted data.
+    /// Number of fitted data.
     pub data: usize,
     /// Root mean square of the total error standard deviations: noise, discrepancy and shared errors.
     pub error_sd: Option<f64>,
     /// Root mean square of the prior predictive standard deviations: the spread that the prior allows.
     pub prior_predictive_sd: Option<f64>,
-    /// Root mean square of the latter over the former; below 1 a datum is less informative than the prior.
+    /// Root mean square of the ratio of prior predictive to error standard deviation; below 1 a datum is less informative than the prior.
     pub information: Option<f64>,
-    /// Parameters that the fit spends on the channel: the sum of its leverages.
+    /// Effective number of parameters that the channel determines: the sum of its leverages.
     pub effective_parameters: Option<f64>,
-    /// The misfit of the channel; null where its noise is inferred.
+    /// The misfit of the channel; null if its noise is inferred.
     pub chi_square: Option<ChiSquareTest>,
-    /// Fitted measurements in their 90 % intervals.
+    /// Coverage of the 90 % intervals of fitted measurements.
     pub coverage90_fit: Option<CoverageCount>,
-    /// Measurements that were not fitted in theirs.
+    /// Coverage of the 90 % intervals of holdout measurements.
     pub coverage90_holdout: Option<CoverageCount>,
-    /// A sentence where the channel is uninformative, or nearly so.
+    /// A sentence if the channel is uninformative or nearly so.
     pub silence: Option<String>,
 }
 
-/// Squares of residuals against what chance allows.
+/// A chi-square test of residuals.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
 pub struct ChiSquareTest {
-    /// The sum of squares, made independent and of unit variance.
+    /// The sum of squares of the residuals, transformed to be independent with unit variance.
     pub chi_square: f64,
-    /// Data of known noise that count.
+    /// Number of data, which are those with known noise.
     pub data: usize,
-    /// Data less the parameters that the fit spends on them.
+    /// Number of data minus the effective number of parameters that they determine.
     pub degrees_of_freedom: f64,
-    /// Probability of so large a sum; null where the fit spends as many parameters as there are data.
+    /// Probability of a sum at least this large; null if no degree of freedom is left.
     pub p: Option<f64>,
 }
 
 impl ChiSquareTest {
-    /// `the squares of 24 residuals sum to ...`.
+    /// Says how large the sum is and what it means, for example `the squares of 24 residuals sum to ...`.
     pub fn words(&self) -> String {
         let size = format!(
             "the squares of {} residuals sum to {} noise variances where {} are expected",
@@ -73,9 +73,9 @@ impl ChiSquareTest {
     }
 }
 
-/// A total error within this factor of the declared one is called that.
+/// Ratio of total to declared error up to which the sentence calls the total error the declared one.
 const SAME_ERROR: f64 = 1.01;
-/// From here on a sum is larger than expected, though not beyond chance.
+/// Probability below which a sum is called larger than expected although it raises no flag.
 const SUSPECT: f64 = 0.05;
 
 fn judgement(p: f64) -> &'static str {
@@ -90,16 +90,16 @@ fn judgement(p: f64) -> &'static str {
     }
 }
 
-/// Measurements inside their intervals.
+/// A count of measurements inside their intervals.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
 pub struct CoverageCount {
-    /// Inside.
+    /// Number of measurements inside their interval.
     pub inside: usize,
-    /// With an interval.
+    /// Number of measurements with an interval.
     pub of: usize,
-    /// Least count that right intervals would give 95 % of the time.
+    /// Lower end of the range of counts that correct intervals give 95 % of the time.
     pub expected_from: usize,
-    /// Largest such count.
+    /// Upper end of that range.
     pub expected_to: usize,
 }
 
@@ -108,14 +108,14 @@ impl CoverageCount {
         let [expected_from, expected_to] = coverage.expected();
         CoverageCount {
             inside: coverage.inside,
-            of: coverage.of,
+            of: coverage.total,
             expected_from,
             expected_to,
         }
     }
 }
 
-/// The channels that have fitted data.
+/// Returns the diagnostics of every channel that has fitted data.
 pub fn channels(
     calibration: &FinishedCalibration,
     comparison: &Comparison,
@@ -125,8 +125,8 @@ pub fn channels(
     let data = calibration.spec.likelihood.data();
     let signals = signals(calibration, residuals);
     let declared = |index: usize| {
-        let own = data.iter().filter(|d| d.channel == index);
-        let sds: Option<Vec<f64>> = own
+        let of_channel = data.iter().filter(|d| d.channel == index);
+        let sds: Option<Vec<f64>> = of_channel
             .map(|d| match d.sd {
                 ErrorSd::Known(sd) => Some(sd),
                 ErrorSd::Inferred { .. } => None,
@@ -136,22 +136,23 @@ pub fn channels(
         diagnostics::mean(&squares).map(f64::sqrt)
     };
     let channel = |(index, channel): (usize, DataChannel)| {
-        let own = || residuals.iter().filter(|r| r.channel == channel);
+        let rows = || residuals.iter().filter(|r| r.channel == channel);
         let count = |usage| {
-            let rows = rows_of(&comparison.rows, usage).filter(|r| DataChannel::Wheel(r.channel) == channel);
-            Coverage::count(rows).map(CoverageCount::new)
+            let compared =
+                rows_of(&comparison.rows, usage).filter(|r| DataChannel::Wheel(r.channel) == channel);
+            Coverage::count(compared).map(CoverageCount::new)
         };
         let signal = signals.get(&index);
-        let rows = own().count();
-        let squares: f64 = own().map(|r| r.error_sd * r.error_sd).sum();
+        let row_count = rows().count();
+        let squares: f64 = rows().map(|r| r.error_sd * r.error_sd).sum();
         ChannelDiagnostics {
             channel,
             unit: channel.si_unit().into(),
             data: data.iter().filter(|d| d.channel == index).count(),
-            error_sd: (rows > 0).then(|| (squares / rows as f64).sqrt()),
+            error_sd: (row_count > 0).then(|| (squares / row_count as f64).sqrt()),
             prior_predictive_sd: signal.map(|s| s.prior_sd),
             information: signal.map(|s| s.ratio),
-            effective_parameters: (rows > 0).then(|| own().map(|r| r.leverage).sum()),
+            effective_parameters: (row_count > 0).then(|| rows().map(|r| r.leverage).sum()),
             chi_square: chi_square(calibration, posterior, |i| data[i].channel == index),
             coverage90_fit: count(RunUse::Fit),
             coverage90_holdout: count(RunUse::Holdout),
@@ -164,13 +165,13 @@ pub fn channels(
         .collect()
 }
 
-/// The chi-square of some of the data.
+/// Returns the chi-square test of the data that `keep` selects by their index.
 pub fn chi_square(
     calibration: &FinishedCalibration,
     posterior: &[PredictedDraw],
     keep: impl Fn(usize) -> bool,
 ) -> Option<ChiSquareTest> {
-    // These values were already scored by the sampler.
+    // The sampler already evaluated the likelihood of these values, so an error cannot occur here.
     let found = diagnostics::chi_square(&calibration.spec.likelihood, posterior, keep).ok()??;
     Some(ChiSquareTest {
         chi_square: found.value,
@@ -180,7 +181,7 @@ pub fn chi_square(
     })
 }
 
-/// The spread that the prior allows each channel; none of a fit, which has no draws from the prior.
+/// Returns the prior predictive spread of each channel; empty for a fit, which has no draws from the prior.
 fn signals(
     calibration: &FinishedCalibration,
     residuals: &[ResidualDiagnostics],
@@ -199,10 +200,10 @@ fn signals(
     )
 }
 
-/// A sentence on a channel that says less than the prior.
+/// Returns a sentence on a channel whose error exceeds the spread that the prior allows; `None` for any other channel.
 ///
 /// # Arguments
-/// - `declared`: root mean square of its noise sds where all are stated.
+/// - `declared`: root mean square of the channel's declared noise; `None` if one is inferred.
 fn silence(channel: DataChannel, signal: &ChannelSignal, declared: Option<f64>) -> Option<String> {
     if signal.ratio >= 1.0 {
         return None;
@@ -274,25 +275,13 @@ mod tests {
             test(Some(1e-5)).words(),
             "the squares of 24 residuals sum to 61.5 noise variances where 21.0 are expected (p = 1e-5): more than the declared errors explain"
         );
-        assert!(
-            test(Some(0.4))
-                .words()
-                .ends_with("(p = 0.40): the declared errors explain the misfit")
-        );
-        assert!(
-            test(Some(0.02))
-                .words()
-                .ends_with("slightly more than the declared errors explain")
-        );
-        assert!(
-            test(Some(0.999))
-                .words()
-                .ends_with("the declared errors may be too large")
-        );
-        assert!(
-            test(None)
-                .words()
-                .ends_with("no degree of freedom is left for a test")
-        );
+        for (p, ending) in [
+            (Some(0.4), "(p = 0.40): the declared errors explain the misfit"),
+            (Some(0.02), "slightly more than the declared errors explain"),
+            (Some(0.999), "the declared errors may be too large"),
+            (None, "no degree of freedom is left for a test"),
+        ] {
+            assert!(test(p).words().ends_with(ending), "{ending}");
+        }
     }
 }

@@ -5,38 +5,38 @@ use inference::diagnostics::{self, Direction};
 use crate::finished_calibration::FinishedCalibration;
 use crate::words::number;
 
-/// A parameter with a smaller share of a direction's squared length is not named.
+/// Share of a direction's squared length below which a parameter is not named in the sentence.
 const MIN_SHARE: f64 = 0.1;
 /// Ratio of the best to the worst combination's standard deviation below which parameters are known only in combination.
 const NARROW: f64 = 0.5;
-/// A direction with more of the prior's standard deviation is unknown.
+/// Ratio of posterior to prior standard deviation above which the data say almost nothing about a direction.
 const UNKNOWN: f64 = 0.95;
 
-/// Most directions in a list of the worst known.
+/// Maximum number of directions in a list of the worst-known ones.
 pub const WORST_KNOWN: usize = 3;
-/// Components below are left out of a list.
+/// Absolute value below which a component is left out of the list.
 const MIN_LOADING: f64 = 0.2;
 
 /// A principal direction of the posterior, in units of the prior's standard deviations.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
 pub struct DirectionDiagnostics {
-    /// Standard deviation along it over that of the prior; 1 where the data say nothing.
+    /// Ratio of posterior to prior standard deviation along the direction; 1 if the data are uninformative.
     pub sd_ratio: f64,
-    /// Where it points: of length 1, in prior standard deviations of the sampler's coordinates.
+    /// Components of the unit vector, in prior standard deviations of the sampler's coordinates.
     pub loadings: Vec<Loading>,
 }
 
 /// A component of a direction.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
 pub struct Loading {
-    /// Parameter.
+    /// Name of the parameter.
     pub parameter: String,
-    /// Its component.
+    /// Component along the parameter.
     pub loading: f64,
 }
 
 impl DirectionDiagnostics {
-    /// `n +0.80, kappa -0.60`: the components that matter.
+    /// Lists the large components, for example `n +0.80, kappa -0.60`.
     pub fn words(&self) -> String {
         let mut named: Vec<_> = self
             .loadings
@@ -52,8 +52,8 @@ impl DirectionDiagnostics {
     }
 }
 
-/// The principal directions, the worst known first; none of a fit, and none where the prior itself is correlated, since
-/// the data need not cause its correlations.
+/// Returns the principal directions, the worst-known first. They are empty for a fit, and for a correlated prior, because the data need
+/// not be the cause of its correlations.
 pub fn directions(calibration: &FinishedCalibration) -> Vec<DirectionDiagnostics> {
     if calibration.spec.prior().is_correlated() {
         return Vec::new();
@@ -78,7 +78,7 @@ pub fn directions(calibration: &FinishedCalibration) -> Vec<DirectionDiagnostics
         .collect()
 }
 
-/// The draws of some parameters, in prior standard deviations of the sampler's coordinates.
+/// Returns the draws of some parameters, in prior standard deviations of the sampler's coordinates.
 fn whitened(calibration: &FinishedCalibration, parameters: &[usize]) -> Vec<Vec<f64>> {
     let scales: Vec<(usize, f64, f64)> = parameters
         .iter()
@@ -96,7 +96,7 @@ fn whitened(calibration: &FinishedCalibration, parameters: &[usize]) -> Vec<Vec<
     calibration.posterior().iter().map(|s| draw(&s.theta)).collect()
 }
 
-/// A sentence on the worst-known direction.
+/// Returns a sentence on the worst-known direction; `None` without directions.
 pub fn worst_known(calibration: &FinishedCalibration, directions: &[DirectionDiagnostics]) -> Option<String> {
     let worst = directions.first()?;
     let mut named: Vec<usize> = (0..worst.loadings.len())
@@ -106,8 +106,8 @@ pub fn worst_known(calibration: &FinishedCalibration, directions: &[DirectionDia
         let size = |i: usize| worst.loadings[i].loading.abs();
         size(b).total_cmp(&size(a))
     });
-    let own = diagnostics::principal_directions(&whitened(calibration, &named));
-    let (wide, narrow) = (own.first()?, own.last()?);
+    let among_named = diagnostics::principal_directions(&whitened(calibration, &named));
+    let (wide, narrow) = (among_named.first()?, among_named.last()?);
     let names: Vec<String> = named
         .iter()
         .map(|&i| worst.loadings[i].parameter.clone())
@@ -190,7 +190,7 @@ mod tests {
             .iter()
             .map(|p| p.marginal.clone())
             .collect();
-        // n wanders over half its prior and the friction angle with it; everything else stands still.
+        // n varies over half of its prior and the friction angle with it; all other parameters are constant.
         for (k, sample) in fixture::sampled(&mut calibration).draws.iter_mut().enumerate() {
             let share = 0.25 + 0.5 * (k as f64 + 0.5) / 40.0;
             sample.theta = priors

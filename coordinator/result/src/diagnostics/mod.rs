@@ -1,17 +1,17 @@
-//! Diagnostics of a calibration.
+//! Diagnostics: statistics that show how far a calibration can be trusted, and where its model fails.
 //!
 //! # Layout
-//! - `calibration`: all of them.
+//! - `calibration`: all diagnostics of a calibration, as one value.
 //! - `sampler`: stages, equilibrium, effective sample size.
 //! - `channels`: information of each channel, its misfit, coverage of its intervals.
-//! - `residuals`: every fitted measurement beside its prediction. `trends`: whether they follow a condition of the runs.
+//! - `residuals`: fitted measurements minus predictions. `trends`: tests whether residuals follow a condition of the runs.
 //! - `parameters`: contraction, bounds, conflict with the prior. `directions`: combinations of parameters.
 //! - `rejections`: rejections and faults by region of the prior.
-//! - `verification`: how many results a second worker has computed as well.
-//! - `data_channel`: channels and runs of the fitted data.
+//! - `verification`: how many results a second worker confirmed.
+//! - `data_channel`: the channel and run of each datum of the likelihood.
 //!
-//! The statistics are [`inference::diagnostics`]'s. Nothing here but the coverage of holdout rows, which decides nothing,
-//! reads a holdout row.
+//! The statistics come from [`inference::diagnostics`]. Only the coverage of holdout rows reads holdout rows, and no decision depends
+//! on it.
 
 pub mod calibration;
 pub mod channels;
@@ -38,7 +38,7 @@ use inference::diagnostics::PredictedDraw;
 
 use crate::finished_calibration::FinishedCalibration;
 
-/// The final draws with the values that the likelihood takes.
+/// Returns the final draws, each with its predictions of the fitted data.
 pub fn posterior_draws(calibration: &FinishedCalibration) -> Vec<PredictedDraw> {
     let draws = calibration.predictive_draws().iter();
     let predicted = draws.filter_map(|draw| {

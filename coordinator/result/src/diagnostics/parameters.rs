@@ -1,41 +1,41 @@
-//! Contraction, bounds and prior conflict of each parameter.
+//! Parameter diagnostics: contraction, bounds and prior conflict of each parameter.
 
 use inference::diagnostics::{self, Conflict};
 use job::FreeParameter;
 
 use crate::finished_calibration::FinishedCalibration;
 
-/// A parameter after the data, beside its prior.
+/// The posterior of a parameter compared with its prior.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
 pub struct ParameterDiagnostics {
     /// Name.
     pub name: String,
     /// Unit.
     pub unit: String,
-    /// 1 - sd after / sd before, in the sampler's coordinate (the logarithm of lognormal and log-uniform parameters):
-    /// 0 where the data are uninformative, 1 where they determine it. Null of a fit.
+    /// One minus the ratio of posterior to prior standard deviation, in the sampler's coordinate (the logarithm of lognormal and
+    /// log-uniform parameters): 0 if the data are uninformative, 1 if they determine the parameter. Null for a fit.
     pub contraction: Option<f64>,
-    /// Whether it lies at a bound of its prior.
+    /// Whether the parameter lies at a bound of its prior.
     pub at_bound: bool,
-    /// Probability of a posterior so far out if the prior is right; null where the data are uninformative.
+    /// Probability, if the prior is correct, of a posterior at least this far in the prior's tail; null if the data are uninformative.
     pub conflict_p: Option<f64>,
 }
 
-/// The prior of all parameters together against the data.
+/// The conflict of the whole prior with the data.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
 pub struct PriorConflict {
-    /// Squared distance of posterior and prior, in the directions that the data inform.
+    /// Squared distance between posterior and prior, in the directions that the data inform.
     pub statistic: f64,
-    /// As many directions.
+    /// Number of directions that the data inform.
     pub degrees_of_freedom: usize,
-    /// Probability of so large a distance where the prior is right; null where the data inform no direction.
+    /// Probability, if the prior is correct, of a distance at least this large; null if the data inform no direction.
     pub p: Option<f64>,
 }
 
 /// Share of rejected prior draws above which the accepted draws replace the declared prior.
 const CUT: f64 = 0.05;
 
-/// Every parameter, in the order of the job, and all of them together.
+/// Returns the diagnostics of each parameter in the order of the job, and the conflict of the whole prior with the data.
 pub fn parameters(calibration: &FinishedCalibration) -> (Vec<ParameterDiagnostics>, Option<PriorConflict>) {
     let draws: Vec<&[f64]> = calibration
         .posterior()
@@ -50,7 +50,7 @@ pub fn parameters(calibration: &FinishedCalibration) -> (Vec<ParameterDiagnostic
         .collect();
     let refused = calibration.prior_draws().len() - accepted.len();
     let is_cut = refused as f64 > CUT * calibration.prior_draws().len() as f64;
-    // The data never act where the model rejects: the effective prior differs from the declared one.
+    // Where the model rejects, the likelihood is zero. If it rejects much, the effective prior differs from the declared one.
     let conflict = if is_cut {
         None
     } else {
@@ -58,7 +58,7 @@ pub fn parameters(calibration: &FinishedCalibration) -> (Vec<ParameterDiagnostic
     };
     let parameter = |(i, free): (usize, &FreeParameter)| {
         let draws = calibration.draws(i);
-        let of = |c: &Conflict| c.parameters[i];
+        let p_value = |c: &Conflict| c.parameters[i];
         ParameterDiagnostics {
             name: free.name.clone(),
             unit: free.unit.clone(),
@@ -71,7 +71,7 @@ pub fn parameters(calibration: &FinishedCalibration) -> (Vec<ParameterDiagnostic
                 Some(estimate) => estimate.at_bound[i],
                 None => diagnostics::summary(&draws).is_some_and(|s| free.marginal.at_bound(s.q05, s.q95)),
             },
-            conflict_p: conflict.as_ref().and_then(of),
+            conflict_p: conflict.as_ref().and_then(p_value),
         }
     };
     let together = conflict.as_ref().map(|c| PriorConflict {
@@ -83,13 +83,13 @@ pub fn parameters(calibration: &FinishedCalibration) -> (Vec<ParameterDiagnostic
     (parameters.collect(), together)
 }
 
-/// One minus the posterior's standard deviation over the prior's.
+/// Returns one minus the ratio of the posterior's standard deviation to the prior's, `before`.
 fn contraction(free: &FreeParameter, draws: &[f64], before: f64) -> Option<f64> {
     let after = spread(free, draws.iter().copied())?;
     (before > 0.0).then(|| 1.0 - after / before)
 }
 
-/// Standard deviation in the sampler's coordinate; `None` with fewer than two values.
+/// Returns the standard deviation in the sampler's coordinate; `None` for fewer than two values.
 fn spread(free: &FreeParameter, values: impl Iterator<Item = f64>) -> Option<f64> {
     let coordinates: Vec<f64> = values.map(|x| free.marginal.coordinate(x)).collect();
     let (_, sd) = diagnostics::mean_and_sd(&coordinates).filter(|_| coordinates.len() > 1)?;
@@ -123,7 +123,7 @@ mod tests {
         let before = uniform.marginal.coordinate_moments().1;
         assert!((contraction(&uniform, &draws, before).unwrap() - 0.9).abs() < 1e-3);
         assert_eq!(contraction(&uniform, &[3.0], before), None);
-        // exp(+-a) with a = sqrt(1/2) ln 2 has the sd ln 2 of its logarithm, factor 4 in the prior: one half is left.
+        // With a = sqrt(1/2) ln 2, the logarithm of exp(a) and exp(-a) has half of the prior's standard deviation ln 4.
         let lognormal = free(Distribution::Lognormal {
             median: 1.0,
             factor: 4.0,
@@ -139,7 +139,7 @@ mod tests {
         let mut calibration = fixture::calibration();
         let (whole, conflict) = parameters(&calibration);
         assert!(conflict.is_some());
-        // Of the draws from the prior the model now takes only those in the lower half of the first parameter.
+        // The model now accepts only the prior draws in the lower half of the first parameter.
         let mut first: Vec<f64> = calibration
             .prior_draws()
             .iter()

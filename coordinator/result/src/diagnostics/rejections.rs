@@ -1,4 +1,4 @@
-//! Rejections and faults by region of the prior.
+//! Rejections: where in the prior the model rejects parameters and leases fail.
 
 use std::collections::BTreeMap;
 
@@ -14,44 +14,44 @@ use crate::words::probability::{LEVEL, p_words};
 /// Rejected parameter vectors and failed leases.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
 pub struct RejectionDiagnostics {
-    /// How many parameter vectors of the sampler or the fit the model rejected, by reason.
+    /// Number of parameter vectors that the model rejected, by reason.
     pub refused: BTreeMap<String, u64>,
-    /// How often a lease failed in the whole calibration, by message. Each was retried: a failed lease is independent of the
+    /// Number of failed leases in the whole calibration, by message. Each was retried, because a failure does not depend on the
     /// parameters.
     pub faults: BTreeMap<String, u64>,
-    /// Draws from the prior, which the regions are made of.
+    /// Number of draws from the prior, which define the regions.
     pub prior_draws: u64,
-    /// Of these, rejected.
+    /// Number of these draws that the model rejected.
     pub prior_refused: u64,
-    /// Each parameter's prior in parts of equal probability.
+    /// The prior of each parameter, divided into bins of equal probability.
     pub parameters: Vec<BinnedParameter>,
-    /// Where rejections concentrate beyond chance.
+    /// The region with significantly many rejections; null if there is none.
     pub region: Option<PriorRegion>,
 }
 
-/// A parameter's prior in parts of equal probability.
+/// The prior of a parameter, divided into bins of equal probability.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
 pub struct BinnedParameter {
     /// Name.
     pub name: String,
     /// Unit.
     pub unit: String,
-    /// The parts, from below.
+    /// The bins in ascending order.
     pub bins: Vec<PriorBin>,
 }
 
-/// A part of a prior.
+/// A bin of a prior.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
 pub struct PriorBin {
-    /// Lower end; null where the prior has none.
+    /// Lower end; null if it is infinite.
     pub from: Option<f64>,
-    /// Upper end.
+    /// Upper end; null if it is infinite.
     pub to: Option<f64>,
-    /// Draws from the prior.
+    /// Number of draws from the prior.
     pub draws: u64,
-    /// How often the model rejected, by reason.
+    /// Number of rejected draws, by reason.
     pub refused: BTreeMap<String, u64>,
-    /// Leases of these draws that failed.
+    /// Number of failed leases of these draws.
     pub faults: u64,
 }
 
@@ -60,31 +60,31 @@ pub struct PriorBin {
 pub struct PriorRegion {
     /// Bounds of one parameter, or of two that must both hold.
     pub sides: Vec<RegionSide>,
-    /// Draws from the prior.
+    /// Number of draws from the prior.
     pub draws: u64,
-    /// How often the model rejected, by reason.
+    /// Number of rejected draws, by reason.
     pub refused: BTreeMap<String, u64>,
-    /// Probability of so many there by chance, corrected for the number of regions tested.
+    /// Probability of at least as many rejections in one region by chance, corrected for the number of regions tested.
     pub p: f64,
 }
 
 /// A bound of one parameter.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
 pub struct RegionSide {
-    /// Parameter.
+    /// Name of the parameter.
     pub parameter: String,
     /// Unit.
     pub unit: String,
-    /// Above this value.
+    /// Lower bound; null without one.
     pub above: Option<f64>,
-    /// Below this value.
+    /// Upper bound; null without one.
     pub below: Option<f64>,
 }
 
 /// Counts of the draws from the prior.
 pub fn rejections(calibration: &FinishedCalibration) -> RejectionDiagnostics {
     let draws = calibration.prior_draws();
-    // Noise standard deviations do not enter the model that rejects.
+    // Noise standard deviations are not inputs of the model, so rejections do not depend on them.
     let free = &calibration.spec.parameters[..calibration.spec.fit_variant.parameters.len()];
     let bin_of = |draw: &PriorDraw| -> Vec<usize> {
         let parameters = free.iter().zip(&draw.theta);
@@ -126,23 +126,23 @@ fn finite(x: f64) -> Option<f64> {
     x.is_finite().then_some(x)
 }
 
-/// Lower end of a bin of a parameter; the upper end of the bin below.
+/// Returns the lower end of a bin of a parameter, which is the upper end of the bin below.
 fn edge(free: &FreeParameter, bin: usize) -> f64 {
     free.marginal.quantile(bin as f64 / BINS as f64)
 }
 
 fn bin<'a>(free: &FreeParameter, number: usize, draws: impl Iterator<Item = &'a PriorDraw>) -> PriorBin {
-    let own: Vec<&PriorDraw> = draws.collect();
+    let draws: Vec<&PriorDraw> = draws.collect();
     PriorBin {
         from: finite(edge(free, number)),
         to: finite(edge(free, number + 1)),
-        draws: own.len() as u64,
-        refused: reasons(own.iter().copied()),
-        faults: own.iter().map(|d| d.faults).sum(),
+        draws: draws.len() as u64,
+        refused: reasons(draws.iter().copied()),
+        faults: draws.iter().map(|d| d.faults).sum(),
     }
 }
 
-/// Rejections by reason, the part before the colon.
+/// Counts the rejections by reason, which is the part of a message before the colon.
 fn reasons<'a>(draws: impl Iterator<Item = &'a PriorDraw>) -> BTreeMap<String, u64> {
     let mut reasons = BTreeMap::new();
     for reason in draws.filter_map(|d| d.result.as_ref().err()) {
@@ -163,7 +163,7 @@ fn prior_region(
             .iter()
             .all(|s| (s.from..s.to).contains(&bins[s.parameter]))
     };
-    let own = draws.iter().zip(binned).filter(|(_, (bins, _))| inside(bins));
+    let drawn = draws.iter().zip(binned).filter(|(_, (bins, _))| inside(bins));
     let side = |side: &Side| {
         let free = &spec.parameters[side.parameter];
         RegionSide {
@@ -176,13 +176,13 @@ fn prior_region(
     PriorRegion {
         sides: region.sides.iter().map(side).collect(),
         draws: region.drawn as u64,
-        refused: reasons(own.map(|(draw, _)| draw)),
+        refused: reasons(drawn.map(|(draw, _)| draw)),
         p: region.p,
     }
 }
 
 impl RegionSide {
-    /// `k_c below -2.0e8 N/m^2.1`.
+    /// States the bounds of the parameter, for example `k_c below -2.0e8 N/m^2.1`.
     fn words(&self) -> String {
         let unit = behind(&self.unit);
         let bound =
@@ -196,24 +196,19 @@ impl RegionSide {
 }
 
 impl RejectionDiagnostics {
-    /// A sentence on where rejections concentrate; none where they do not.
+    /// Returns a sentence on the region where rejections concentrate; `None` if there is no such region.
     pub fn words(&self) -> Option<String> {
         let region = self.region.as_ref()?;
         let refused: u64 = region.refused.values().sum();
         let percent = |part: u64, whole: u64| number::significant(100.0 * part as f64 / whole as f64, 2);
         let sides: Vec<String> = region.sides.iter().map(RegionSide::words).collect();
-        let reasons: Vec<String> = region
-            .refused
-            .iter()
-            .map(|(kind, n)| format!("{kind} {n}"))
-            .collect();
         Some(format!(
             "{} % of the {} rejections among {} draws from the prior have {}: {}; this region holds {} % of the prior, and {} % of it is rejected ({} by chance)",
             percent(refused, self.prior_refused),
             self.prior_refused,
             self.prior_draws,
             number::list(&sides),
-            reasons.join(", "),
+            number::counts(&region.refused).join(", "),
             percent(region.draws, self.prior_draws),
             percent(refused, region.draws),
             p_words(region.p)
@@ -228,7 +223,7 @@ mod tests {
     use super::*;
     use crate::fixture;
 
-    /// 200 draws spread evenly over the prior, of which those with n in its lowest part are rejected.
+    /// Returns 200 draws spread evenly over the prior; the model rejects those with n in its lowest fifth.
     fn with_low_n_rejected() -> FinishedCalibration {
         let mut calibration = fixture::calibration();
         let priors: Vec<_> = calibration

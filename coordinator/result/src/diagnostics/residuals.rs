@@ -1,4 +1,4 @@
-//! Every fitted measurement beside its prediction.
+//! Residuals: every fitted measurement compared with its prediction.
 
 use inference::diagnostics::{self, PredictedDraw};
 
@@ -6,40 +6,41 @@ use super::data_channel::run_name;
 use crate::finished_calibration::FinishedCalibration;
 use crate::words::data_channel::DataChannel;
 
-/// Most residuals in a list of the largest.
+/// Maximum number of residuals in a list of the largest ones.
 const LARGEST: usize = 5;
 
-/// A fitted measurement beside the posterior's mean prediction.
+/// The residual of a fitted measurement from the posterior mean prediction.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
 pub struct ResidualDiagnostics {
-    /// Run, or test of plates or rings.
+    /// Name of the run, or of the plate or ring test.
     pub run: String,
     /// Channel without unit.
     #[schema(value_type = String)]
     pub channel: DataChannel,
-    /// Unit of the next two; plates and rings count by their natural logarithm.
+    /// Unit of residual and error; for plates and rings they are those of the natural logarithm.
     pub unit: String,
     /// Measured minus predicted.
     pub residual: f64,
     /// Standard deviation of the total error: noise, discrepancy and shared errors.
     pub error_sd: f64,
-    /// Share of the error's variance that the fit absorbs.
+    /// Leverage: share of the error's variance that the fit absorbs.
     pub leverage: f64,
-    /// Residual over its own standard deviation, which the leverage makes smaller; null where nothing is left of it.
+    /// Studentised residual: the residual over its standard deviation, which is the error's reduced by the leverage; null if the leverage
+    /// is 1.
     pub studentised: Option<f64>,
-    /// Two-sided probability of so large a residual.
+    /// Two-sided probability of a residual at least this large.
     pub p: Option<f64>,
 }
 
-/// In the order of the likelihood's data; empty of a fit.
+/// Returns the residual of each datum in the order of the likelihood; empty for a fit.
 pub fn residuals(calibration: &FinishedCalibration, posterior: &[PredictedDraw]) -> Vec<ResidualDiagnostics> {
     let likelihood = &calibration.spec.likelihood;
-    // These values were already scored by the sampler; a draw that cannot be scored is no final draw.
+    // The sampler already evaluated the likelihood of these values, so an error cannot occur here.
     let rows = diagnostics::residuals(likelihood, posterior).unwrap_or_default();
     rows.iter()
         .zip(likelihood.data())
         .map(|(row, datum)| {
-            let channel = DataChannel::of(datum.channel);
+            let channel = DataChannel::from_index(datum.channel);
             ResidualDiagnostics {
                 run: run_name(&calibration.spec, datum).to_owned(),
                 channel,
@@ -54,7 +55,7 @@ pub fn residuals(calibration: &FinishedCalibration, posterior: &[PredictedDraw])
         .collect()
 }
 
-/// The most improbable residuals; those that cannot be judged are left out.
+/// Returns the most improbable residuals, without those that have no probability.
 pub fn largest(all: &[ResidualDiagnostics]) -> Vec<&ResidualDiagnostics> {
     let mut judged: Vec<(f64, &ResidualDiagnostics)> = all.iter().filter_map(|r| Some((r.p?, r))).collect();
     judged.sort_by(|a, b| a.0.total_cmp(&b.0));

@@ -1,4 +1,4 @@
-//! Equilibrium and effective sample size of the sampler.
+//! Sampler diagnostics: equilibrium and effective sample size.
 
 use std::collections::BTreeSet;
 
@@ -6,22 +6,22 @@ use record::StageRow;
 
 use crate::finished_calibration::FinishedCalibration;
 
-/// Whether the draws represent the posterior, and how many independent draws they are worth.
+/// The diagnostics of the sampler: equilibrium and effective sample size.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
 pub struct SamplerDiagnostics {
     /// Whether every stage reached equilibrium.
     pub equilibrated: Option<bool>,
-    /// Draws of the posterior.
+    /// Number of draws of the posterior.
     pub draws: usize,
-    /// Of these, distinct ones.
+    /// Number of distinct draws.
     pub distinct_draws: usize,
-    /// Effective sample size of the weights at the last stage, before its moves; at most `draws`, which were taken by them.
+    /// Effective sample size of the weights that resampled the last stage, before its moves; at most `draws`.
     pub effective_sample_size: Option<f64>,
-    /// The stages, the draws from the prior first.
+    /// The stages in order.
     pub stages: Vec<StageRow>,
 }
 
-/// None of a fit.
+/// Returns the diagnostics of the sampler; `None` for a fit.
 pub fn sampler(calibration: &FinishedCalibration) -> Option<SamplerDiagnostics> {
     let bits = |theta: &[f64]| theta.iter().map(|x| x.to_bits()).collect::<Vec<u64>>();
     let distinct: BTreeSet<Vec<u64>> = calibration.posterior().iter().map(|s| bits(&s.theta)).collect();

@@ -1,4 +1,4 @@
-//! Trends of the residuals with the conditions of the runs.
+//! Trends: tests whether the residuals follow a condition of the runs.
 
 use inference::diagnostics::{PredictedDraw, TrendTest};
 use shared::channel::Channel;
@@ -11,7 +11,7 @@ use crate::table::level::levels;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum TrendVariable {
-    /// The same everywhere.
+    /// A constant: the same error in all runs.
     Constant,
     /// Slip.
     Slip,
@@ -21,7 +21,7 @@ pub enum TrendVariable {
     SledSpeed,
     /// The product of slip and sled speed.
     SlipXSledSpeed,
-    /// The number of the run in time.
+    /// The position of the run in the order of measurement.
     Order,
 }
 
@@ -35,7 +35,7 @@ impl TrendVariable {
         TrendVariable::Order,
     ];
 
-    /// Name in tables: `slip_x_sled_speed`.
+    /// Returns the name in tables: `slip_x_sled_speed`.
     pub fn name(self) -> &'static str {
         match self {
             TrendVariable::Constant => "constant",
@@ -58,9 +58,9 @@ impl TrendVariable {
         }
     }
 
-    /// Whether these runs vary it on enough levels: two, of slip three.
+    /// Returns whether the runs have enough levels of the condition: two, or three for slip and order.
     fn is_varied(self, runs: &[&TestRun]) -> bool {
-        let count = |of: TrendVariable| levels(runs.iter().map(|run| of.value(run))).len();
+        let count = |variable: TrendVariable| levels(runs.iter().map(|run| variable.value(run))).len();
         match self {
             TrendVariable::Constant => true,
             TrendVariable::Slip | TrendVariable::Order => count(self) >= 3,
@@ -71,20 +71,20 @@ impl TrendVariable {
         }
     }
 
-    /// Its values at these runs about their mean, in units of their range; of the constant, 1.
+    /// Returns the condition of each run minus its mean, divided by its range; the constant is 1 for each run.
     fn regressor(self, runs: &[&TestRun]) -> Vec<f64> {
         let values: Vec<f64> = runs.iter().map(|run| self.value(run)).collect();
         if self == TrendVariable::Constant {
             return values;
         }
         let mean = values.iter().sum::<f64>() / values.len() as f64;
-        let least = values.iter().copied().fold(f64::INFINITY, f64::min);
-        let largest = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        values.iter().map(|v| (v - mean) / (largest - least)).collect()
+        let min = values.iter().copied().fold(f64::INFINITY, f64::min);
+        let max = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        values.iter().map(|v| (v - mean) / (max - min)).collect()
     }
 }
 
-/// The residuals of a channel against a condition.
+/// The trend of a channel's residuals with a condition.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
 pub struct TrendDiagnostics {
     /// Channel without unit.
@@ -92,42 +92,42 @@ pub struct TrendDiagnostics {
     pub channel: Channel,
     /// The condition.
     pub against: TrendVariable,
-    /// Unit of the next two.
+    /// Unit of the change and its standard deviation.
     pub unit: String,
-    /// By how much the measurements rise above the model from the condition's least to its largest value, or lie above it in
-    /// all, before the fit compensates.
+    /// Change of measured minus predicted from the smallest to the largest value of the condition, or its mean for the constant. It is
+    /// the change before the fit absorbs a part.
     pub change: f64,
-    /// Standard deviation of the change where there is no trend.
+    /// Standard deviation of the change if there is no trend.
     pub change_sd: f64,
     /// Share of the condition's pattern that the fit cannot absorb.
     pub share_left: f64,
-    /// Two-sided probability of so large a change, before correction for the number of tests.
+    /// Two-sided probability of a change at least this large, before correction for the number of tests.
     pub p: f64,
 }
 
-/// Every channel against every condition that its fitted runs vary and that the fit does not absorb; empty of a fit.
+/// Tests each channel against each condition that its fitted runs vary and that the fit does not absorb; empty for a fit.
 pub fn trends(calibration: &FinishedCalibration, posterior: &[PredictedDraw]) -> Vec<TrendDiagnostics> {
     let spec = &calibration.spec;
-    // These values were already scored by the sampler.
+    // The sampler already evaluated the likelihood of these values, so an error cannot occur here.
     let Ok(Some(test)) = TrendTest::new(&spec.likelihood, &spec.prior(), posterior) else {
         return Vec::new();
     };
     let data = spec.likelihood.data();
     let mut found = Vec::new();
     for channel in Channel::ALL {
-        let own: Vec<usize> = (0..data.len())
+        let indices: Vec<usize> = (0..data.len())
             .filter(|&i| data[i].channel == channel.index())
             .collect();
-        let runs: Vec<&TestRun> = own
+        let runs: Vec<&TestRun> = indices
             .iter()
             .map(|&i| &spec.experiment.runs[spec.fit_runs[data[i].run]])
             .collect();
         for against in TrendVariable::ALL {
-            if own.is_empty() || !against.is_varied(&runs) {
+            if indices.is_empty() || !against.is_varied(&runs) {
                 continue;
             }
             let mut regressor = vec![0.0; data.len()];
-            for (&i, value) in own.iter().zip(against.regressor(&runs)) {
+            for (&i, value) in indices.iter().zip(against.regressor(&runs)) {
                 regressor[i] = value;
             }
             found.extend(test.against(&regressor).map(|trend| TrendDiagnostics {
@@ -149,7 +149,7 @@ mod tests {
     use super::*;
     use crate::fixture;
 
-    /// Runs with these slips, loads and speeds.
+    /// Returns runs with the given slips, loads and speeds.
     fn runs(conditions: &[[f64; 3]]) -> Vec<TestRun> {
         let first = fixture::calibration().spec.experiment.runs[0].clone();
         let run = |&[slip, wheel_load_n, sled_speed_m_s]: &[f64; 3]| TestRun {

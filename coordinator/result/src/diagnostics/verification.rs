@@ -1,17 +1,17 @@
-//! How many results a second worker has computed as well.
+//! Verification: how many results a second worker confirmed.
 
 use record::Verified;
 
 use crate::words::number;
 
-/// How many results a second worker has computed as well, with the same bits.
+/// How many results a second worker confirmed by computing them again with the same bits.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
 pub struct VerificationDiagnostics {
-    /// Results.
+    /// Number of results.
     pub results: u64,
-    /// Of these, confirmed by a second worker.
+    /// Number of results that a second worker confirmed.
     pub confirmed: u64,
-    /// Workers that computed the results.
+    /// Number of workers that computed the results.
     pub workers: u64,
 }
 
@@ -26,7 +26,7 @@ impl From<&Verified> for VerificationDiagnostics {
 }
 
 impl VerificationDiagnostics {
-    /// In words.
+    /// Says how many results were verified.
     pub fn words(&self) -> String {
         match (self.confirmed, self.workers) {
             (0, 0 | 1) => "no result was verified: there was one worker".into(),

@@ -1,8 +1,8 @@
-//! The results of a study's searches for a missing effect.
+//! Results of a study's searches for missing effects.
 //!
 //! # Layout
-//! - `numerical_noise`: what a search says of the scatter of the model.
-//! - `round`: a finished search, its words and its command.
+//! - `numerical_noise`: the scatter of the model that a search measured.
+//! - `round`: a finished search, its effect file and its command.
 //! - `summary`: the block `discovery` of `summary.json`.
 
 mod numerical_noise;

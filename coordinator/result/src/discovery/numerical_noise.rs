@@ -1,21 +1,21 @@
-//! What a search says of the scatter of the model's predictions.
+//! A sentence on the numerical noise of the model that a search measured.
 
 use record::Discovery;
 use shared::channel::Channel;
 
 use crate::words::data_channel::ShownUnit;
 
-/// The scatter of each channel and what lowers it; `None` where it is negligible.
+/// Returns a sentence on the scatter of each channel and the settings that lower it; `None` if the scatter is negligible.
 pub fn numerical_noise(record: &Discovery) -> Option<String> {
-    let of = |channel: &Channel| {
+    let size = |channel: &Channel| {
         let sd = *record.numerical_noise.get(channel.column())?;
         Some(format!(
             "{} {}",
             channel.words(),
-            ShownUnit::of(*channel).size(sd)
+            ShownUnit::new(*channel).size(sd)
         ))
     };
-    let sizes: Vec<String> = Channel::ALL.iter().filter_map(of).collect();
+    let sizes: Vec<String> = Channel::ALL.iter().filter_map(size).collect();
     (!sizes.is_empty()).then(|| {
         format!(
             "the model itself scatters with its parameters, which counts as noise here: {}; smaller dem_spacing_m and travel_step_m lower it",
@@ -38,7 +38,10 @@ mod tests {
             ("sinkage_m".to_owned(), 1.2e-4),
         ]
         .into();
-        let said = numerical_noise(&record).unwrap();
-        assert!(said.contains("drawbar pull 1.5 N, sinkage 0.12 mm;"), "{said}");
+        let sentence = numerical_noise(&record).unwrap();
+        assert!(
+            sentence.contains("drawbar pull 1.5 N, sinkage 0.12 mm;"),
+            "{sentence}"
+        );
     }
 }

@@ -1,4 +1,4 @@
-//! A finished search of a study, its words and its command.
+//! A finished search of a study: its verdict's name, its effect file, and the arguments of its command.
 
 use job::effect_name;
 use record::{Discovery, Extension, Verdict};
@@ -8,11 +8,11 @@ use record::{Discovery, Extension, Verdict};
 pub struct DiscoveryRound {
     /// The calibration whose model was searched.
     pub calibration: i64,
-    /// Its result.
+    /// Record of its result.
     pub record: Discovery,
 }
 
-/// A verdict as `summary.json` has it.
+/// Returns the name of a verdict in `summary.json`.
 pub fn word(verdict: Verdict) -> &'static str {
     match verdict {
         Verdict::NothingDetectable => "nothing_detectable",
@@ -23,7 +23,7 @@ pub fn word(verdict: Verdict) -> &'static str {
     }
 }
 
-/// Name and text of a search's effect file, if it has one.
+/// Returns the name and the text of a search's effect file, if it has one.
 pub fn effect_file(record: &Discovery) -> Option<(String, String)> {
     let text = match (&record.extension, &record.outside) {
         (Some(Extension::File { text, .. }), _) => text,
@@ -33,7 +33,7 @@ pub fn effect_file(record: &Discovery) -> Option<(String, String)> {
     Some((format!("{}.toml", effect_name(text)?), text.clone()))
 }
 
-/// The arguments of the command that adds the named effect; `folder` is that of its effect file.
+/// Returns the arguments of the command that adds the named effect; `folder` contains its effect file.
 pub fn arguments(record: &Discovery, folder: &std::path::Path) -> Option<String> {
     Some(match record.extension.as_ref()? {
         Extension::Effect(effect) => format!("--effect {effect}"),

@@ -1,4 +1,4 @@
-//! The block `discovery` of `summary.json`.
+//! The block `discovery` of `summary.json`: all searches of a study in one summary.
 
 use record::{
     ChiSquare, Discovery, JudgedEffect, JudgedSet, NextRun, NotTried, Outside, RemainingMisfit, Verdict,
@@ -10,17 +10,17 @@ use super::round::DiscoveryRound;
 /// The effects that a study's model misses.
 #[derive(Debug, Clone, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
 pub struct DiscoverySummary {
-    /// Of the search that named an added effect; without one, of the last search with a detection, else of the first.
+    /// Verdict of the search that named an added effect; without one, of the last search with a detection, else of the first search.
     pub verdict: Verdict,
-    /// The added effects; without any, the one that a search would add.
+    /// The added effects; if none was added, the one that a search proposes.
     pub chosen: Vec<String>,
     /// Every explanation of the first search.
     pub effects: Vec<JudgedEffect>,
     /// Every model that the first search compared.
     pub sets: Vec<JudgedSet>,
-    /// Whether the last search's best explanation leaves nothing to explain; null where the noise is not known.
+    /// Whether the best explanation of the last search leaves no significant misfit; null if the noise is unknown.
     pub complete: Option<bool>,
-    /// The share of the first searched model's excess chi-square that the last search's best explanation takes away, 0 to 1.
+    /// Share of the excess chi-square of the first searched model that the last search's best explanation removes, 0 to 1.
     pub explained: Option<f64>,
     /// The channels that the last search's best explanation leaves unexplained, the worst first.
     pub remaining: Vec<RemainingMisfit>,
@@ -28,28 +28,28 @@ pub struct DiscoverySummary {
     pub outside: Option<Outside>,
     /// Effects that the last search could not detect.
     pub cannot_exclude: Vec<String>,
-    /// Effects that the last search could not try as the experiment is, with what it would have to state.
+    /// Effects that the last search could not try, with the information that the experiment lacks.
     pub not_tried: Vec<NotTried>,
     /// Test runs that would distinguish the open explanations of the last search.
     pub next_runs: Vec<NextRun>,
-    /// Tests without a rolling wheel that would distinguish them.
+    /// Tests without a rolling wheel that would distinguish the open explanations.
     pub other_tests: Vec<String>,
-    /// Evaluations of all searches.
+    /// Number of evaluations in all searches.
     pub evaluations: u64,
-    /// Every search.
+    /// The records of all searches, without their curves.
     pub rounds: Vec<Discovery>,
 }
 
 impl DiscoverySummary {
-    /// The block of a study; `added` are the effects of its best calibration that the first one did not have.
-    /// `None` where nothing was searched.
-    pub fn of(rounds: &[DiscoveryRound], added: Vec<String>) -> Option<DiscoverySummary> {
+    /// Summarises the searches of a study; `None` without a search. `added` are the effects of its best calibration that the submitted
+    /// job does not have.
+    pub fn new(rounds: &[DiscoveryRound], added: Vec<String>) -> Option<DiscoverySummary> {
         let records: Vec<Discovery> = rounds
             .iter()
             .map(|round| round.record.clone().without_curves())
             .collect();
         let (first, last) = (records.first()?, records.last()?);
-        // The last search with a detection rather than the first: further runs may have added information.
+        // Take the last search with a detection, because further runs may have added information since the first.
         let named = records.iter().find(|record| {
             record
                 .extension
@@ -105,7 +105,7 @@ mod tests {
     }
 
     fn rounds() -> Vec<DiscoveryRound> {
-        let of = |calibration, record| DiscoveryRound { calibration, record };
+        let round = |calibration, record| DiscoveryRound { calibration, record };
         let last = Discovery {
             given: vec!["slip_sinkage".into()],
             verdict: Verdict::NothingDetectable,
@@ -114,31 +114,34 @@ mod tests {
             next_runs: Vec::new(),
             ..record()
         };
-        vec![of(1, record()), of(3, last)]
+        vec![round(1, record()), round(3, last)]
     }
 
     #[test]
     fn a_study_without_searches_says_nothing() {
-        assert!(DiscoverySummary::of(&[], vec!["slip_sinkage".into()]).is_none());
+        assert!(DiscoverySummary::new(&[], vec!["slip_sinkage".into()]).is_none());
     }
 
     #[test]
     fn what_was_added_is_the_verdict_of_the_study() {
-        let of = |added: &[&str]| {
+        let verdict = |added: &[&str]| {
             let added = added.iter().map(|&e| e.to_owned()).collect();
-            let summary = DiscoverySummary::of(&rounds(), added).unwrap();
+            let summary = DiscoverySummary::new(&rounds(), added).unwrap();
             (summary.verdict, summary.chosen)
         };
-        assert_eq!(of(&[]), (Verdict::Named, vec!["slip_sinkage".to_owned()]));
-        assert_eq!(of(&["adhesion"]), (Verdict::Named, vec!["adhesion".to_owned()]));
-        // A file of the user's own is no finding.
+        assert_eq!(verdict(&[]), (Verdict::Named, vec!["slip_sinkage".to_owned()]));
+        assert_eq!(
+            verdict(&["adhesion"]),
+            (Verdict::Named, vec!["adhesion".to_owned()])
+        );
+        // An effect file that the user added does not change the verdict of a search.
         let file = ["shear_slip_step"];
-        assert_eq!(of(&file), (Verdict::Named, file.map(String::from).to_vec()));
+        assert_eq!(verdict(&file), (Verdict::Named, file.map(String::from).to_vec()));
     }
 
     #[test]
     fn explanations_are_the_first_search_s_and_open_questions_the_last_one_s() {
-        let summary = DiscoverySummary::of(&rounds(), vec!["slip_sinkage".into()]).unwrap();
+        let summary = DiscoverySummary::new(&rounds(), vec!["slip_sinkage".into()]).unwrap();
         assert_eq!(summary.effects, record().effects);
         assert_eq!(summary.cannot_exclude, ["adhesion"]);
         assert!(summary.next_runs.is_empty());

@@ -1,8 +1,8 @@
-//! A parameter on an axis.
+//! Name and unit of a parameter, to label an axis of a figure.
 
 use job::FreeParameter;
 
-/// A parameter on an axis.
+/// Name and unit of a parameter, to label an axis of a figure.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, utoipa::ToSchema)]
 pub struct AxisParameter {
     /// Its name.

@@ -1,4 +1,4 @@
-//! Convergence of searches and sampler: the source paper's Fig. 5.
+//! Figure of the convergence of searches and sampler (the source paper's Fig. 5).
 
 use inference::Particle;
 use inference::diagnostics;
@@ -8,15 +8,15 @@ use super::axis_parameter::AxisParameter;
 use crate::finished_calibration::FinishedCalibration;
 use crate::point_estimate::{GenerationSummary, generations};
 
-/// More points than this only make a picture heavy.
+/// Maximum number of points of a population in the figure.
 const POINTS: usize = 400;
-/// The parameters that the source paper shows its samples in.
+/// The two parameters in which the source paper shows its samples.
 const PAPER: [&str; 2] = ["n", "friction_angle_deg"];
 
 /// Convergence of a search by generations.
 #[derive(Debug, Clone, serde::Serialize, utoipa::ToSchema)]
 pub struct SearchConvergence {
-    /// Algorithm.
+    /// Name of the algorithm.
     #[schema(value_type = String)]
     pub algorithm: AlgorithmName,
     /// Best and mean log-posterior after every generation, by evaluations.
@@ -26,17 +26,17 @@ pub struct SearchConvergence {
 /// A stage of the sampler.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, utoipa::ToSchema)]
 pub struct StageConvergence {
-    /// Position, counted from 0 = the prior.
+    /// Number of the stage; 0 is the prior.
     pub stage: u32,
     /// Tempering exponent.
     pub tempering_exponent: f64,
-    /// Evaluations spent up to its end.
+    /// Number of evaluations up to the end of the stage.
     pub evaluations: u64,
-    /// Log-likelihoods of its population; null where the model rejected all of it.
+    /// Log-likelihoods of its population; null if the model rejected all of it.
     pub log_likelihood: Option<LogLikelihoodRange>,
 }
 
-/// Log-likelihoods of a population `[nats]`.
+/// Quantiles of the log-likelihoods of a population `[nats]`.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, utoipa::ToSchema)]
 pub struct LogLikelihoodRange {
     /// 5 % quantile.
@@ -45,23 +45,23 @@ pub struct LogLikelihoodRange {
     pub q50: f64,
     /// 95 % quantile.
     pub q95: f64,
-    /// Highest.
+    /// Maximum.
     pub highest: f64,
 }
 
-/// The populations of some stages, in two parameters.
+/// The populations of selected stages, in two parameters.
 #[derive(Debug, Clone, serde::Serialize, utoipa::ToSchema)]
 pub struct Populations {
     /// The two parameters.
     pub parameters: [AxisParameter; 2],
-    /// The first, a middle and the last stage; at most 400 points of each, evenly thinned.
+    /// The first, a middle and the last stage; at most 400 evenly selected points of each.
     pub stages: Vec<StagePopulation>,
 }
 
 /// The population of a stage.
 #[derive(Debug, Clone, serde::Serialize, utoipa::ToSchema)]
 pub struct StagePopulation {
-    /// Position, counted from 0 = the prior.
+    /// Number of the stage; 0 is the prior.
     pub stage: u32,
     /// Tempering exponent.
     pub tempering_exponent: f64,
@@ -69,7 +69,7 @@ pub struct StagePopulation {
     pub points: Vec<[f64; 2]>,
 }
 
-/// Convergence of a search; `None` of a sample, and of a fit by steps, which keeps no history.
+/// Returns the convergence of a search; `None` for a sample, and for a fit by steps, which keeps no history.
 pub(super) fn search(calibration: &FinishedCalibration) -> Option<SearchConvergence> {
     let history = generations(&calibration.estimate()?.history);
     (!history.is_empty()).then(|| SearchConvergence {
@@ -86,7 +86,7 @@ struct Population<'a> {
     samples: &'a [Particle],
 }
 
-/// The populations from the prior, which is stage 0, to the posterior.
+/// Returns the populations in order, from the prior (stage 0) to the posterior.
 fn all(calibration: &FinishedCalibration) -> Vec<Population<'_>> {
     let Some((prior, later)) = calibration.populations().split_first() else {
         return Vec::new();
@@ -111,7 +111,7 @@ fn all(calibration: &FinishedCalibration) -> Vec<Population<'_>> {
     populations
 }
 
-/// The stages of a sampler.
+/// Returns the convergence of each stage of a sampler.
 pub(super) fn stages(calibration: &FinishedCalibration) -> Vec<StageConvergence> {
     let stage = |population: &Population| StageConvergence {
         stage: population.stage,
@@ -137,7 +137,7 @@ fn range(population: &[Particle]) -> Option<LogLikelihoodRange> {
     })
 }
 
-/// The populations of the first, a middle and the last stage; in the source paper's parameters where the job has them.
+/// Returns the populations of the first, a middle and the last stage, in the source paper's parameters if the job has both.
 pub(super) fn populations(calibration: &FinishedCalibration) -> Option<Populations> {
     let free = &calibration.spec.parameters;
     let place = |name: &str| free.iter().position(|p| p.name == name);

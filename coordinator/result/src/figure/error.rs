@@ -1,4 +1,4 @@
-//! Prediction errors over the posterior: the source paper's Fig. 8.
+//! Figure of the prediction errors over the posterior (the source paper's Fig. 8).
 
 use inference::diagnostics;
 use job::Spec;
@@ -8,13 +8,13 @@ use super::mark::{Mark, MarkKind};
 use crate::finished_calibration::FinishedCalibration;
 use crate::study::Study;
 
-/// Points of the grid.
+/// Number of grid points.
 const GRID: usize = 160;
 
 /// The density of the prediction error of a channel over the posterior.
 ///
-/// The error of a draw is |measured - model| of the fitted runs: of one run its absolute value, of several their root mean
-/// square. The density is that of a Gaussian kernel reflected at 0, its bandwidth optimal for a normal density.
+/// The error of a draw is the root mean square of measured minus predicted over the fitted runs. The density is estimated by a Gaussian
+/// kernel that is reflected at 0, with the bandwidth that is optimal for a normal density.
 #[derive(Debug, Clone, serde::Serialize, utoipa::ToSchema)]
 pub struct ErrorDensity {
     /// Channel without unit.
@@ -22,19 +22,19 @@ pub struct ErrorDensity {
     pub channel: Channel,
     /// Unit of the errors.
     pub unit: String,
-    /// Fitted runs that measured it.
+    /// Number of fitted runs that measured the channel.
     pub runs: usize,
-    /// Final draws that the model took.
+    /// Number of final draws that the model accepted.
     pub draws: usize,
-    /// Errors at which the density is given, from 0 on.
+    /// Errors at which the density is given, from 0 upwards.
     pub grid: Vec<f64>,
-    /// Density in 1 over the unit; empty where all draws are off by the same.
+    /// Density, in 1 over the unit; empty if all draws have the same error.
     pub density: Vec<f64>,
-    /// Mean over the posterior, draw of the highest likelihood, point estimates.
+    /// Errors of the posterior mean, of the draw with the highest likelihood, and of the point estimates.
     pub marks: Vec<Mark<f64>>,
 }
 
-/// The densities of every channel that was fitted.
+/// Returns the density of each fitted channel.
 pub(super) fn all(study: &Study, sample: &FinishedCalibration) -> Vec<ErrorDensity> {
     Channel::ALL
         .into_iter()
@@ -42,7 +42,7 @@ pub(super) fn all(study: &Study, sample: &FinishedCalibration) -> Vec<ErrorDensi
         .collect()
 }
 
-/// The error of predicted values in a channel; `None` where it was not fitted.
+/// Returns the root mean square error of predicted values in a channel; `None` if the channel was not fitted.
 fn error(spec: &Spec, values: &[f64], channel: Channel) -> Option<f64> {
     let data = spec.likelihood.data().iter().zip(values);
     let of_channel = data.filter(|(datum, _)| datum.channel == channel.index());
@@ -72,8 +72,8 @@ fn density(study: &Study, sample: &FinishedCalibration, channel: Channel) -> Opt
         let at = errors(calibration).first().copied();
         marks.extend(at.map(|at| Mark::new(MarkKind::PointEstimate, label, at)));
     }
-    let most = over_draws.iter().chain(marks.iter().map(|m| &m.at)).copied();
-    let reach = most.fold(0.0, f64::max) + 3.0 * diagnostics::bandwidth(&over_draws).unwrap_or(0.0);
+    let shown = over_draws.iter().chain(marks.iter().map(|m| &m.at)).copied();
+    let reach = shown.fold(0.0, f64::max) + 3.0 * diagnostics::bandwidth(&over_draws).unwrap_or(0.0);
     let grid: Vec<f64> = (0..GRID).map(|k| reach * k as f64 / (GRID - 1) as f64).collect();
     let data = sample.spec.likelihood.data();
     Some(ErrorDensity {
@@ -118,7 +118,7 @@ mod tests {
     fn the_error_of_several_runs_is_their_root_mean_square() {
         let study = fixture::study();
         let spec = &study.lead.spec;
-        // all runs of the channel off by 3 or -4: sqrt((9 + 16) / 2) of each pair
+        // The errors of the runs alternate between 3 and -4, with root mean square sqrt((9 + 16) / 2).
         let mut sign = 0;
         let values: Vec<f64> = spec
             .likelihood

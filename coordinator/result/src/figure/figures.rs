@@ -1,10 +1,10 @@
-//! All figures of a calibration.
+//! All figures of one calibration, collected from the other files of this folder.
 
 use super::convergence::{self, Populations, SearchConvergence, StageConvergence};
 use super::error::{self, ErrorDensity};
 use super::history::{self, ChannelHistory};
+use super::joint_posterior::{self, JointPosterior};
 use super::marginal::{self, MarginalDensity};
-use super::posterior::{self, JointPosterior};
 use crate::finished_calibration::FinishedCalibration;
 use crate::study::Study;
 
@@ -13,30 +13,31 @@ use crate::study::Study;
 pub struct CalibrationFigures {
     /// Id of the calibration.
     pub calibration: i64,
-    /// Convergence of the searches by generations: its own, and those beside the submitted calibration.
+    /// Convergence of searches by generations: the calibration's own, and for the submitted calibration also those of its point
+    /// estimates.
     pub searches: Vec<SearchConvergence>,
-    /// The stages of the sampler, from the prior on; empty without a sample.
+    /// The stages of the sampler, beginning with the prior; empty without a sample.
     pub stages: Vec<StageConvergence>,
-    /// The populations of some stages in two parameters; null without a sample, or of one parameter.
+    /// The populations of selected stages in two parameters; null without a sample or for a single parameter.
     pub populations: Option<Populations>,
-    /// Every parameter after and before the data, in the order of the job; empty without draws.
+    /// Posterior and prior density of each parameter, in the order of the job; empty without draws.
     pub marginals: Vec<MarginalDensity>,
-    /// Joint posterior densities of all pairs of parameters, of more than ten parameters the 45 most correlated pairs.
+    /// Joint posterior densities of all pairs of parameters, or of the 45 most correlated pairs if there are more.
     pub posteriors: Vec<JointPosterior>,
-    /// Measurement and model over time; null of a model without time.
+    /// Measured and simulated histories; null for a model without time.
     pub histories: Option<Vec<ChannelHistory>>,
     /// Prediction errors over the posterior, by channel.
     pub errors: Vec<ErrorDensity>,
 }
 
 impl Study {
-    /// The figures of one calibration of the study. The point estimates of the study are marks on those of the submitted model alone:
-    /// another model has other parameters.
+    /// Returns the figures of one calibration. Only the figures of the submitted model mark the study's point estimates, because extended
+    /// models have other parameters.
     pub fn figures_of(&self, calibration: &FinishedCalibration) -> CalibrationFigures {
-        let is_submitted = self.submitted().any(|own| own.row.id == calibration.row.id);
+        let is_submitted = self.submitted().any(|c| c.row.id == calibration.row.id);
         let beside = self
             .submitted()
-            .filter(|own| is_submitted && own.row.id != calibration.row.id);
+            .filter(|other| is_submitted && other.row.id != calibration.row.id);
         let sample = Some(calibration).filter(|calibration| calibration.estimate().is_none());
         CalibrationFigures {
             calibration: calibration.row.id,
@@ -47,7 +48,7 @@ impl Study {
             stages: sample.map(convergence::stages).unwrap_or_default(),
             populations: sample.and_then(convergence::populations),
             marginals: sample.map(marginal::all).unwrap_or_default(),
-            posteriors: sample.map(|s| posterior::all(self, s)).unwrap_or_default(),
+            posteriors: sample.map(|s| joint_posterior::all(self, s)).unwrap_or_default(),
             histories: match is_submitted {
                 true => history::all(self),
                 false => calibration.histories(),
@@ -101,10 +102,10 @@ mod tests {
             Study::from(fixture::fit()),
         ] {
             let json = serde_json::to_value(study.figures_of(&study.lead)).unwrap();
-            // serde_json writes null where a number is none: only these may be null.
+            // serde_json writes a number that is not finite as null. Only these fields may be null.
             let mut nulls = Vec::new();
             find_nulls("", &json, &mut nulls);
-            let known = [
+            let nullable = [
                 "/histories",
                 "/populations",
                 "/mean",
@@ -114,7 +115,7 @@ mod tests {
                 "/at/x",
                 "/at/y",
             ];
-            nulls.retain(|path| !known.iter().any(|k| path.ends_with(k)));
+            nulls.retain(|path| !nullable.iter().any(|end| path.ends_with(end)));
             assert_eq!(nulls, Vec::<String>::new());
         }
     }

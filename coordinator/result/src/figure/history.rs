@@ -1,4 +1,4 @@
-//! Measured and simulated histories, filtered.
+//! Figure of measured and simulated histories after the same filter (the source paper's Fig. 7).
 
 use serde::Serialize;
 use shared::channel::Channel;
@@ -10,7 +10,7 @@ use utoipa::ToSchema;
 use crate::finished_calibration::FinishedCalibration;
 use crate::study::Study;
 
-/// One channel of one fitted run over time.
+/// The history of one channel of one fitted run.
 #[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
 pub struct ChannelHistory {
     /// Name of the channel without its unit.
@@ -20,7 +20,7 @@ pub struct ChannelHistory {
     pub unit: &'static str,
     /// Name of the run.
     pub run: String,
-    /// Recording of the rig; null where the run has averages alone.
+    /// Recording of the rig; null if the run has only averages.
     pub measured: Option<MeasuredSeries>,
     /// Simulated histories, including the transients.
     pub model: Vec<ModelSeries>,
@@ -31,37 +31,38 @@ pub struct ChannelHistory {
 pub struct MeasuredSeries {
     /// Ends of the intervals, from the beginning of the recording `[s]`.
     pub t_s: Vec<f64>,
-    /// After the protocol's low-pass [channel's unit].
+    /// Values after the protocol's low-pass filter [channel's unit].
     pub value: Vec<f64>,
-    /// Before it [channel's unit].
+    /// Values before the filter [channel's unit].
     pub raw: Vec<f64>,
-    /// The part that the protocol averages `[s]`.
+    /// Begin and end of the part that the protocol averages `[s]`.
     pub window_s: [f64; 2],
 }
 
 /// The simulated history at one parameter vector.
 #[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
 pub struct ModelSeries {
-    /// Which parameter vector: `maximum likelihood`, that particle; `GA optimum`, what the algorithm found.
+    /// Name of the parameter vector: `maximum likelihood` for the particle of highest likelihood, `GA optimum` for the result of a
+    /// search.
     pub label: String,
     /// Ends of the intervals `[s]`.
     pub t_s: Vec<f64>,
-    /// After the protocol's low-pass [channel's unit].
+    /// Values after the protocol's low-pass filter [channel's unit].
     pub value: Vec<f64>,
-    /// Before it [channel's unit].
+    /// Values before the filter [channel's unit].
     pub raw: Vec<f64>,
 }
 
 impl FinishedCalibration {
-    /// Measured and simulated histories of every channel that a fitted run measured, by channel, then by run; `None` of a
-    /// model without time. Both have gone through the same filter.
+    /// Returns the measured and simulated histories by channel, then by run, of every channel that a fitted run measured; `None` for a
+    /// model without time. Both have passed the same filter.
     pub fn histories(&self) -> Option<Vec<ChannelHistory>> {
         let simulated = self.simulated_histories.as_ref()?;
         let label = match self.estimate() {
             None => "maximum likelihood".to_owned(),
             Some(_) => format!("{} optimum", self.spec.algorithm.name().to_uppercase()),
         };
-        // A cut-off beyond what 10 Hz can represent filters nothing; the averaging protocol rejects it.
+        // A cut-off above the Nyquist frequency of 10 Hz data has no filter; the averaging protocol rejects it.
         let lowpass_hz = self.spec.experiment.protocol.lowpass_hz;
         let filter = LowPass::unless_zero(lowpass_hz, 1.0 / INTERVAL_S).ok().flatten();
         let mut histories = Vec::new();
@@ -84,20 +85,20 @@ impl FinishedCalibration {
     }
 }
 
-/// The histories of a study's calibrations in the same pictures; `None` where none has any.
+/// Puts the histories of all submitted calibrations of a study into the same figures; `None` if there is none.
 pub(super) fn all(study: &Study) -> Option<Vec<ChannelHistory>> {
     let mut each = study.submitted().filter_map(FinishedCalibration::histories);
     let mut histories = each.next()?;
-    for others in each {
+    for further in each {
         // The calibrations of a study fit the same runs.
-        for (own, other) in histories.iter_mut().zip(others) {
-            own.model.extend(other.model);
+        for (history, other) in histories.iter_mut().zip(further) {
+            history.model.extend(other.model);
         }
     }
     Some(histories)
 }
 
-/// The ends of so many intervals `[s]`.
+/// Returns the ends of consecutive intervals of equal length `[s]`.
 fn ends(intervals: usize, interval_s: f64) -> Vec<f64> {
     (1..=intervals).map(|k| k as f64 * interval_s).collect()
 }

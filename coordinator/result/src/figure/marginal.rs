@@ -1,4 +1,4 @@
-//! The density of each parameter after and before the data.
+//! Figure of the posterior and prior density of each parameter.
 
 use inference::diagnostics;
 use job::FreeParameter;
@@ -9,33 +9,33 @@ use super::thinned::{five_digits, thinned_draws};
 use crate::finished_calibration::FinishedCalibration;
 use crate::parameter_summary::ParameterSummary;
 
-/// Points of the grid.
+/// Number of grid points.
 const GRID: usize = 96;
-/// How far the grid follows the prior beyond the posterior, in widths of the posterior's 90 % interval.
+/// Maximum extent of the grid beyond the posterior's 90 % interval, in widths of that interval.
 const REACH: f64 = 2.0;
-/// Share of the prior on each side that the grid need not cover.
+/// Tail probability of the prior on each side that the grid may omit.
 const TAIL: f64 = 0.01;
-/// Draws over more than this factor are shown on a logarithmic axis, where the prior is made of ratios too.
+/// Ratio of largest to smallest draw above which the axis is logarithmic, if the prior is defined in the logarithm.
 const WIDE: f64 = 10.0;
 
-/// A parameter after and before the data.
+/// Posterior and prior of a parameter.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, utoipa::ToSchema)]
 pub struct MarginalDensity {
     /// The parameter.
     pub parameter: AxisParameter,
-    /// Whether the grid has equal ratios; the densities are then those of the natural logarithm.
+    /// Whether the grid is logarithmic; the densities are then those of the natural logarithm.
     pub logarithmic: bool,
     /// Values at which the densities are given.
     pub grid: Vec<f64>,
     /// Density of the prior, in 1 over the parameter's unit.
     pub prior: Vec<f64>,
-    /// Density of the posterior, by a Gaussian kernel reflected at the bounds of the prior; empty where all draws are equal.
+    /// Density of the posterior, by a Gaussian kernel reflected at the bounds of the prior; empty if all draws are equal.
     pub posterior: Vec<f64>,
-    /// Ends of the prior's support; null where there is none.
+    /// Bounds of the prior's support; null if infinite.
     pub bounds: [Option<f64>; 2],
     /// Value of the most probable parameter vector.
     pub mode: f64,
-    /// Value that an independent test gives, from the job or from plates and rings; null without one.
+    /// Value from an independent test, stated in the job or estimated from plates and rings; null without one.
     pub reference: Option<f64>,
     /// Posterior mean.
     pub mean: f64,
@@ -49,7 +49,7 @@ pub struct MarginalDensity {
     pub q95: f64,
 }
 
-/// Every parameter, in the order of the job.
+/// Returns the densities of each parameter, in the order of the job.
 pub(super) fn all(sample: &FinishedCalibration) -> Vec<MarginalDensity> {
     let reference = reference::values(&sample.spec);
     let summaries = sample.parameter_summaries();
@@ -73,20 +73,20 @@ fn density(
 ) -> MarginalDensity {
     let prior = &parameter.marginal;
     let (lower, upper) = prior.support();
-    let least = draws.iter().copied().fold(f64::INFINITY, f64::min);
-    let most = draws.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    // Only priors in ln x have a coordinate of their own.
+    let min = draws.iter().copied().fold(f64::INFINITY, f64::min);
+    let max = draws.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    // The coordinate of a prior differs from x only if the prior is defined in ln x.
     let in_ratios = prior.coordinate(2.0) < 1.0;
-    let logarithmic = in_ratios && least > 0.0 && most > WIDE * least;
+    let logarithmic = in_ratios && min > 0.0 && max > WIDE * min;
     let forward = |x: f64| if logarithmic { libm::log(x) } else { x };
     let backward = |u: f64| if logarithmic { libm::exp(u) } else { u };
     let reach = REACH * (forward(summary.q95) - forward(summary.q05));
     let low = forward(prior.quantile(TAIL))
         .max(forward(summary.q05) - reach)
-        .min(forward(least));
+        .min(forward(min));
     let high = forward(prior.quantile(1.0 - TAIL))
         .min(forward(summary.q95) + reach)
-        .max(forward(most));
+        .max(forward(max));
     let step = (high - low) / (GRID - 1) as f64;
     let coordinates: Vec<f64> = (0..GRID).map(|k| low + step * k as f64).collect();
     let before = |&u: &f64| {

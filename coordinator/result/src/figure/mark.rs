@@ -1,12 +1,12 @@
-//! Single points in pictures of distributions.
+//! Marks: single labelled points in the figures of distributions.
 
-/// Kind of a point.
+/// Kind of a mark.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, utoipa::ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum MarkKind {
-    /// Mean over the posterior.
+    /// Posterior mean.
     Mean,
-    /// The draw of the highest likelihood.
+    /// Draw with the highest likelihood.
     MaximumLikelihood,
     /// Result of a fit or a search.
     PointEstimate,
@@ -14,23 +14,23 @@ pub enum MarkKind {
     Reference,
 }
 
-/// A point with its name.
+/// A labelled point.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, utoipa::ToSchema)]
 pub struct Mark<T> {
     /// Its kind.
     pub kind: MarkKind,
-    /// Its name for people.
+    /// Label in the figure.
     pub label: String,
-    /// Its coordinates.
+    /// Coordinates.
     pub at: T,
 }
 
-/// A place in a plane; a coordinate is null where only the other is known.
+/// A point in the plane of two parameters; a coordinate is null if only the other is known.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, utoipa::ToSchema)]
 pub struct PlanePoint {
-    /// Horizontal.
+    /// Horizontal coordinate.
     pub x: Option<f64>,
-    /// Vertical.
+    /// Vertical coordinate.
     pub y: Option<f64>,
 }
 

@@ -1,26 +1,27 @@
-//! The numbers of the figures: the source paper's Fig. 5 to 8 of a study.
+//! Figures: the numbers behind the source paper's Fig. 5 to 8, for any calibration.
 //!
-//! Everything is in SI and carries its unit; the page draws it, and so can any other program.
+//! All values are in SI and have units, so that the page or any other program can draw them.
 //!
 //! # Layout
-//! - `figures`: all of them, of a study or of a calibration. `marginal`: densities of single parameters.
+//! - `figures`: all figures of a calibration. `marginal`: densities of single parameters.
 //! - `convergence`: convergence of the searches and the sampler (Fig. 5).
-//! - `posterior`: joint densities of two parameters, with point estimates and reference values (Fig. 6).
+//! - `joint_posterior`: joint densities of two parameters (Fig. 6). `stiffness_line`: the bevameter's line in that of the moduli.
 //! - `history`: measurement and model over time (Fig. 7).
 //! - `error`: prediction errors over the posterior (Fig. 8).
-//! - `thinned`: a part of many draws. `axis_parameter`: a parameter on an axis. `mark`: single points; `optimum`: point estimates as such points,
-//!   `reference`: independent tests.
+//! - `mark`: labelled points. `optimum`: point estimates, and `reference`: values of independent tests, which are shown as marks.
+//! - `axis_parameter`: name and unit for an axis. `thinned`: fewer draws and digits.
 
 mod axis_parameter;
 mod convergence;
 mod error;
 mod figures;
 mod history;
+mod joint_posterior;
 mod marginal;
 mod mark;
 mod optimum;
-mod posterior;
 mod reference;
+mod stiffness_line;
 mod thinned;
 
 pub use axis_parameter::AxisParameter;
@@ -28,6 +29,7 @@ pub use convergence::{Populations, SearchConvergence, StageConvergence};
 pub use error::ErrorDensity;
 pub use figures::CalibrationFigures;
 pub use history::{ChannelHistory, MeasuredSeries, ModelSeries};
+pub use joint_posterior::JointPosterior;
 pub use marginal::MarginalDensity;
 pub use mark::{Mark, MarkKind, PlanePoint};
-pub use posterior::{JointPosterior, LabelledLine};
+pub use stiffness_line::LabelledLine;

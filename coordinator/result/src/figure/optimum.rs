@@ -1,16 +1,16 @@
-//! Point estimates beside a sample, with their names for people.
+//! The point estimates of a study that mark the figures of a sample.
 
 use crate::finished_calibration::FinishedCalibration;
 use crate::study::Study;
 
 impl Study {
-    /// The point estimates beside a sample, with their names for people: `GA optimum`. None of an extended model: they are those of the
-    /// submitted one.
+    /// Returns the study's point estimates with labels such as `GA optimum`. There are none beside an extended model, because they belong
+    /// to the submitted one.
     pub(super) fn optima_beside<'a>(
         &'a self,
         sample: &FinishedCalibration,
     ) -> impl Iterator<Item = (String, &'a FinishedCalibration)> {
-        let is_submitted = self.submitted().any(|own| own.row.id == sample.row.id);
+        let is_submitted = self.submitted().any(|c| c.row.id == sample.row.id);
         let fitted = self
             .submitted()
             .filter(move |calibration| is_submitted && calibration.estimate().is_some());

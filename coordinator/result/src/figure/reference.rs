@@ -1,11 +1,11 @@
-//! Reference values of the soil: stated in the job, or else from the experiment's plates and rings.
+//! Reference values of soil parameters for the figures: stated in the job, else estimated from plate and ring tests.
 
 use std::collections::BTreeMap;
 
 use inference::diagnostics::mean;
 use job::{BevameterReadings, Spec};
 
-/// Values of parameters by name: those that the job states, then what the readings of plates and rings say.
+/// Returns values of parameters by name: those that the job states, else those that the plate and ring tests give.
 pub(super) fn values(spec: &Spec) -> BTreeMap<String, f64> {
     let mut values = BTreeMap::new();
     values.extend(sinkage_exponent(&spec.bevameter).map(|n| ("n".to_owned(), n)));
@@ -14,7 +14,7 @@ pub(super) fn values(spec: &Spec) -> BTreeMap<String, f64> {
     values
 }
 
-/// Sinkage exponent of plates: slope of ln p over ln z, each test with a level of its own (least squares).
+/// Fits the sinkage exponent to plate tests: the common slope of ln p over ln z by least squares, with one intercept for each test.
 fn sinkage_exponent(bevameter: &BevameterReadings) -> Option<f64> {
     let mut tests: BTreeMap<&str, Vec<[f64; 2]>> = BTreeMap::new();
     for reading in &bevameter.plates {
@@ -36,8 +36,9 @@ fn sinkage_exponent(bevameter: &BevameterReadings) -> Option<f64> {
     (squares > 0.0).then(|| cross / squares)
 }
 
-/// Friction angle of rings in soil without cohesion `[deg]`: of each test the reading after the longest way, where the
-/// strength is mobilised; tan(phi) = shear stress over normal stress, averaged in its logarithm as the likelihood does.
+/// Estimates the friction angle from ring tests in cohesionless soil `[deg]`. The strength of a test is its reading at the largest
+/// displacement, where shear is fully mobilised; tan(phi) is shear stress over normal stress. The logarithms are averaged, as the
+/// likelihood has lognormal errors.
 fn friction_angle_deg(bevameter: &BevameterReadings) -> Option<f64> {
     let mut last: BTreeMap<&str, [f64; 2]> = BTreeMap::new();
     for reading in &bevameter.rings {

@@ -1,11 +1,11 @@
-//! A part of many draws, and numbers of few digits: what a picture needs.
+//! Reduction of draws and digits to what a figure needs.
 
 use crate::finished_calibration::FinishedCalibration;
 
-/// Most draws that a density is estimated from.
+/// Maximum number of draws that a density is estimated from.
 const DRAWS: usize = 2000;
 
-/// The draws of every parameter; of more than [`DRAWS`] as many equally spaced ones.
+/// Returns the draws of every parameter; if there are more than [`DRAWS`], that many equally spaced ones.
 pub(super) fn thinned_draws(sample: &FinishedCalibration) -> Vec<Vec<f64>> {
     let count = sample.posterior().len();
     let kept: Vec<usize> = (0..count.min(DRAWS))
@@ -15,7 +15,7 @@ pub(super) fn thinned_draws(sample: &FinishedCalibration) -> Vec<Vec<f64>> {
     (0..sample.spec.parameters.len()).map(draws).collect()
 }
 
-/// A number to five significant digits; zero has no sign.
+/// Rounds a number to five significant digits; zero has no sign.
 pub(super) fn five_digits(x: f64) -> f64 {
     format!("{x:.4e}").parse().unwrap_or(x) + 0.0
 }

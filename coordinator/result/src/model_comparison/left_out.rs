@@ -1,4 +1,4 @@
-//! Leaving out one condition at a time, without fitting again: the draws of the posterior, weighted as though it were unknown.
+//! Leave-one-condition-out prediction without refitting, by importance weights of the posterior draws.
 
 use std::collections::BTreeMap;
 
@@ -9,20 +9,20 @@ use statistics::Likelihood;
 use crate::finished_calibration::FinishedCalibration;
 use crate::table::row::ComparisonRow;
 
-/// What a calibration predicts of every condition when the others are fitted.
+/// The predictions of every condition from the others.
 ///
-/// With `l_d = ln p(y_c | the other data, theta_d)` of a condition's data `y_c` at a draw, its weight is `exp(−l_d)`, at most
-/// `sqrt(D)` times the mean weight of the D draws (Ionides 2008, <https://doi.org/10.1198/106186008X320456>), and
-/// `ln p(y_c | the other data) = ln (sum_d w_d exp(l_d) / sum_d w_d)`. Bevameter readings are never left out.
+/// Let `l_d = ln p(y_c | the other data, theta_d)` for the data `y_c` of a condition and draw d. The draw has the importance weight
+/// `exp(−l_d)`, truncated at `sqrt(D)` times the mean weight of the D draws (Ionides 2008, <https://doi.org/10.1198/106186008X320456>).
+/// Then `ln p(y_c | the other data) = ln (sum_d w_d exp(l_d) / sum_d w_d)`. Bevameter readings are never left out.
 #[derive(Debug)]
 pub(super) struct LeftOut {
-    /// Sum over the conditions.
+    /// Sum of the log-densities of all conditions.
     pub(super) log_density: f64,
-    /// Mean prediction by run and channel.
+    /// Mean prediction, keyed by run and channel.
     predicted: BTreeMap<(String, Channel), f64>,
 }
 
-/// A draw that the model accepted, for the fitted runs.
+/// A draw that the model accepted for the fitted runs.
 struct Draw<'a> {
     theta: &'a [f64],
     values: Vec<f64>,
@@ -31,8 +31,8 @@ struct Draw<'a> {
 }
 
 impl LeftOut {
-    /// `None` without draws, or where one condition is all there is.
-    pub(super) fn of(calibration: &FinishedCalibration) -> Option<Self> {
+    /// Predicts each condition from the others; `None` without draws, or if there is only one condition.
+    pub(super) fn new(calibration: &FinishedCalibration) -> Option<Self> {
         let spec = &calibration.spec;
         let likelihood = &spec.likelihood;
         let draws = calibration.predictive_draws().iter();
@@ -72,24 +72,22 @@ impl LeftOut {
             return Some(());
         }
         let (rest, places) = spec.likelihood.subset(&kept).ok()?;
-        let own = |draw: &Draw| {
+        let log_density = |draw: &Draw| {
             let values: Vec<f64> = places.iter().map(|&i| draw.values[i]).collect();
             Some(draw.log_likelihood - log_likelihood(&rest, &values, draw.theta)?)
         };
-        let log_densities: Vec<f64> = draws.iter().map(own).collect::<Option<_>>()?;
+        let log_densities: Vec<f64> = draws.iter().map(log_density).collect::<Option<_>>()?;
         let weights = weights(&log_densities);
         let total: f64 = weights.iter().sum();
-        let most = log_densities
-            .iter()
-            .fold(f64::NEG_INFINITY, |most, l| most.max(*l));
+        let max = log_densities.iter().fold(f64::NEG_INFINITY, |max, l| max.max(*l));
         let terms = weights.iter().zip(&log_densities);
-        let mean: f64 = terms.map(|(w, l)| w * libm::exp(l - most)).sum::<f64>() / total;
-        self.log_density += most + libm::log(mean);
+        let mean: f64 = terms.map(|(w, l)| w * libm::exp(l - max)).sum::<f64>() / total;
+        self.log_density += max + libm::log(mean);
         for &run in runs {
             let name = &spec.experiment.runs[spec.fit_runs[run]].name;
             for channel in Channel::ALL {
-                let of = |draw: &Draw| draw.observables.channel(channel).get(run).copied();
-                let values: Option<Vec<f64>> = draws.iter().map(of).collect();
+                let value = |draw: &Draw| draw.observables.channel(channel).get(run).copied();
+                let values: Option<Vec<f64>> = draws.iter().map(value).collect();
                 if let Some(values) = values {
                     let sum: f64 = values.iter().zip(&weights).map(|(value, w)| value * w).sum();
                     self.predicted.insert((name.clone(), channel), sum / total);
@@ -99,7 +97,7 @@ impl LeftOut {
         Some(())
     }
 
-    /// The rows of the fitted runs with these predictions.
+    /// Returns the rows of the fitted runs with these predictions.
     pub(super) fn rows(&self, rows: &[ComparisonRow]) -> Vec<ComparisonRow> {
         let fitted = rows.iter().filter(|row| row.usage == RunUse::Fit);
         let predicted = fitted.map(|row| ComparisonRow {
@@ -115,16 +113,16 @@ fn log_likelihood(likelihood: &Likelihood, values: &[f64], theta: &[f64]) -> Opt
     value.is_finite().then_some(value)
 }
 
-/// The weight of each draw, relative to the greatest before it is limited.
+/// Returns the truncated weight of each draw, relative to the largest weight before truncation.
 fn weights(log_densities: &[f64]) -> Vec<f64> {
-    let least = log_densities.iter().fold(f64::INFINITY, |least, l| least.min(*l));
-    let raw: Vec<f64> = log_densities.iter().map(|l| libm::exp(least - l)).collect();
+    let min = log_densities.iter().fold(f64::INFINITY, |min, l| min.min(*l));
+    let raw: Vec<f64> = log_densities.iter().map(|l| libm::exp(min - l)).collect();
     let count = raw.len() as f64;
     let limit = raw.iter().sum::<f64>() / count * count.sqrt();
     raw.into_iter().map(|weight| weight.min(limit)).collect()
 }
 
-/// Positions of the runs of each condition, in the order in which conditions appear.
+/// Groups the positions of runs by condition, in the order in which conditions first appear.
 fn conditions<'a>(runs: impl Iterator<Item = &'a TestRun>) -> Vec<Vec<usize>> {
     let key = |run: &TestRun| {
         let set = [run.slip, run.wheel_load_n, run.sled_speed_m_s, run.slip_angle_deg];
@@ -138,7 +136,7 @@ fn conditions<'a>(runs: impl Iterator<Item = &'a TestRun>) -> Vec<Vec<usize>> {
     let mut found: Vec<(_, Vec<usize>)> = Vec::new();
     for (position, run) in runs.enumerate() {
         let key = key(run);
-        match found.iter_mut().find(|(known, _)| *known == key) {
+        match found.iter_mut().find(|(other, _)| *other == key) {
             Some((_, positions)) => positions.push(position),
             None => found.push((key, vec![position])),
         }
@@ -154,7 +152,7 @@ mod tests {
     #[test]
     fn equal_draws_weigh_the_same_and_a_rare_one_is_limited() {
         assert_eq!(weights(&[-3.0, -3.0]), [1.0, 1.0]);
-        // raw 1 and three of e^-20: the limit is sqrt(4) / 4 of their sum
+        // The raw weights are 1 and three times e^-20; the limit is sqrt(4) / 4 of their sum.
         let limited = weights(&[-23.0, -3.0, -3.0, -3.0]);
         assert!((limited[0] - 0.5).abs() < 1e-8, "{limited:?}");
     }
@@ -162,7 +160,7 @@ mod tests {
     #[test]
     fn every_measured_row_is_predicted_from_the_others() {
         let calibration = fixture::without_holdout();
-        let left_out = LeftOut::of(&calibration).unwrap();
+        let left_out = LeftOut::new(&calibration).unwrap();
         assert!(left_out.log_density.is_finite());
         let comparison = calibration.comparison();
         let rows = left_out.rows(&comparison.rows);

@@ -1,8 +1,8 @@
-//! The models that a job compares: which is the most probable, which predicts best, and whether any of them explains the data.
+//! Comparison of the models of a job: which is the most probable, which predicts best, and whether any of them explains the data.
 //!
 //! # Layout
 //! - here: the comparison and its sentence.
-//! - `left_out`: what a calibration predicts of a condition when the others are fitted.
+//! - `left_out`: predictions of each condition from the others.
 
 mod left_out;
 
@@ -20,78 +20,78 @@ use crate::words::probability::{LEVEL, p_words, probability};
 use left_out::LeftOut;
 use shared::experiment::RunUse;
 
-/// The models that a job compares, with equal prior odds.
+/// The comparison of the models of a job, with equal prior odds.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct ModelComparison {
     /// The models, in the order of the job.
     pub models: Vec<ComparedModel>,
-    /// Prior probability of each: equal.
+    /// Prior probability of each model.
     pub prior: f64,
-    /// The calibration of the most probable model, with which the study goes on.
+    /// The calibration of the most probable model, with which the study continues.
     pub best: i64,
-    /// The calibration of the model that predicts left-out data best; null where none predicts any, or one more of
-    /// them than another.
+    /// The calibration of the model that predicts left-out data best; null if no model predicts any, or if the models predict different
+    /// numbers of them.
     pub best_predicting: Option<i64>,
-    /// Whether even the most probable model leaves residuals that its noise does not explain (chi-square, p < 0.01); null where no noise
-    /// is known that is not inferred from the misfit.
+    /// Whether even the most probable model leaves residuals that its noise does not explain (chi-square, p < 0.01); null if all noise is
+    /// inferred from the misfit.
     pub none_of_these: Option<bool>,
     /// The same in a sentence.
     pub text: String,
 }
 
-/// One of the models.
+/// A model of the comparison.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct ComparedModel {
     /// Its calibration.
     pub calibration: i64,
-    /// Its kind, with a number where another has the same.
+    /// Its kind, with a number if another model has the same kind.
     pub name: String,
     /// Its kind.
     pub kind: String,
     /// Its effects.
     pub effects: Vec<String>,
-    /// Log-evidence.
+    /// Log-evidence `[nats]`.
     pub log_evidence: Option<f64>,
     /// Its standard error.
     pub log_evidence_se: Option<f64>,
-    /// Posterior probability among these models, from equal prior ones.
+    /// Posterior probability among these models, from equal prior probabilities.
     pub probability: f64,
-    /// Probability of so large a sum of squared residuals of the fitted data; null where no noise is known.
+    /// Probability of a chi-square of the fitted data at least this large; null if no noise is known.
     pub chi_square_p: Option<f64>,
-    /// Which data the next figures leave out.
+    /// Which data are left out for the predictive errors.
     pub left_out_by: LeftOutBy,
-    /// Errors of the prediction of data left out of the fit, by channel.
+    /// Errors of the prediction of left-out data, by channel.
     pub left_out: Option<ErrorTable>,
-    /// Log-density of each condition's data when the others are fitted, summed; null where the draws do not tell.
+    /// Sum of the log-densities of each condition's data given the others; null if the draws cannot give it.
     pub log_predictive: Option<f64>,
 }
 
-/// Which data are left out where a model's prediction is judged.
+/// Which data are left out to judge a model's predictions.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum LeftOutBy {
-    /// The runs that the experiment holds out.
+    /// The holdout runs of the experiment.
     Holdout,
     /// One condition at a time, by weighting the draws.
     Condition,
 }
 
 impl Study {
-    /// The comparison of the models of the job; `None` where it has one, or where one is not finished.
+    /// Compares the models of the job; `None` if it has only one model, or if one is not finished.
     pub fn model_comparison(&self) -> Option<ModelComparison> {
-        let mut compared: Vec<&FinishedCalibration> = self.others.iter().chain([&self.lead]).collect();
+        let mut compared: Vec<&FinishedCalibration> = self.other_models.iter().chain([&self.lead]).collect();
         if self.models == 1 || compared.len() != self.models {
             return None;
         }
         compared.sort_by_key(|calibration| calibration.row.id);
         let sigmas = self.fixed_sigmas();
-        let probabilities = probabilities(compared.iter().map(|own| own.row.log_evidence));
+        let probabilities = probabilities(compared.iter().map(|calibration| calibration.row.log_evidence));
         let models = compared
             .iter()
             .zip(probabilities)
             .map(|(calibration, probability)| {
                 let comparison = calibration.comparison();
-                let left_out = LeftOut::of(calibration);
+                let left_out = LeftOut::new(calibration);
                 let (by, errors) = match comparison.holdout {
                     Some(_) => (
                         LeftOutBy::Holdout,
@@ -136,10 +136,10 @@ impl Study {
     }
 }
 
-/// Posterior probabilities from equal prior ones; a model without evidence has none.
+/// Returns posterior probabilities from equal prior ones; a model without evidence has probability 0.
 fn probabilities(log_evidences: impl Iterator<Item = Option<f64>> + Clone) -> Vec<f64> {
-    let most = log_evidences.clone().flatten().fold(f64::NEG_INFINITY, f64::max);
-    let weight = |log: Option<f64>| log.map_or(0.0, |log| libm::exp(log - most));
+    let max = log_evidences.clone().flatten().fold(f64::NEG_INFINITY, f64::max);
+    let weight = |log: Option<f64>| log.map_or(0.0, |log| libm::exp(log - max));
     let total: f64 = log_evidences.clone().map(weight).sum();
     log_evidences
         .map(|log| if total > 0.0 { weight(log) / total } else { 0.0 })
@@ -156,8 +156,8 @@ fn name(calibration: &FinishedCalibration, compared: &[&FinishedCalibration]) ->
     }
 }
 
-/// The model of the least error in noise sds; `None` where one predicts more of the measurements than another: those that a model
-/// refuses are the hard ones.
+/// Returns the model with the least error in noise standard deviations; `None` if the models predict different numbers of measurements,
+/// because those that a model refuses are the hard ones.
 fn best_predicting(models: &[ComparedModel]) -> Option<&ComparedModel> {
     let error = |model: &ComparedModel| model.left_out.as_ref()?.all.rmse_fixed_sigma;
     let mut unpredicted = models
@@ -167,8 +167,8 @@ fn best_predicting(models: &[ComparedModel]) -> Option<&ComparedModel> {
     if unpredicted.any(|other| other != first) {
         return None;
     }
-    let known = models.iter().filter_map(|model| Some((model, error(model)?)));
-    let best = known.reduce(|best, own| if own.1 < best.1 { own } else { best })?;
+    let judged = models.iter().filter_map(|model| Some((model, error(model)?)));
+    let best = judged.reduce(|best, model| if model.1 < best.1 { model } else { best })?;
     Some(best.0)
 }
 
@@ -179,12 +179,12 @@ fn text(models: &[ComparedModel], best: &ComparedModel, none_of_these: Option<bo
             None => number::fixed(log, 1),
         })
     };
-    let mut others: Vec<&ComparedModel> = models
+    let mut further: Vec<&ComparedModel> = models
         .iter()
         .filter(|m| m.calibration != best.calibration)
         .collect();
-    others.sort_by(|a, b| b.probability.total_cmp(&a.probability));
-    let others: Vec<String> = others
+    further.sort_by(|a, b| b.probability.total_cmp(&a.probability));
+    let further: Vec<String> = further
         .iter()
         .map(|model| format!("{} {}", model.name, log(model)))
         .collect();
@@ -197,7 +197,7 @@ fn text(models: &[ComparedModel], best: &ComparedModel, none_of_these: Option<bo
             p => probability(p),
         },
         log(best),
-        others.join(", ")
+        further.join(", ")
     );
     let error = |model: &ComparedModel| {
         let sds = model
@@ -211,7 +211,7 @@ fn text(models: &[ComparedModel], best: &ComparedModel, none_of_these: Option<bo
         LeftOutBy::Condition => "each condition from the others",
     };
     match best_predicting(models) {
-        Some(own) if own.calibration == best.calibration => {
+        Some(model) if model.calibration == best.calibration => {
             text += &format!("; it also predicts {data} best, {} times the noise", error(best));
         }
         Some(other) => {
@@ -240,14 +240,14 @@ mod tests {
     use super::*;
     use crate::fixture;
 
-    /// The fixture's calibration and the same with less evidence, as two models.
+    /// Returns a study of two models, which differ in their evidence only.
     fn study(evidences: [f64; 2]) -> Study {
         let [mut lead, mut other] = [fixture::calibration(), fixture::calibration()];
         (lead.row.id, lead.row.log_evidence) = (2, Some(evidences[0]));
         (other.row.id, other.row.log_evidence) = (1, Some(evidences[1]));
         Study {
             models: 2,
-            others: vec![other],
+            other_models: vec![other],
             ..Study::from(lead)
         }
     }
@@ -255,7 +255,7 @@ mod tests {
     #[test]
     fn probabilities_follow_from_the_evidences_and_sum_to_one() {
         let comparison = study([-10.0, -12.0]).model_comparison().unwrap();
-        // 1 / (1 + e^-2)
+        // The odds are e^2, so the probability is 1 / (1 + e^-2).
         let [first, second] = &comparison.models[..] else {
             panic!("two models")
         };
@@ -276,7 +276,7 @@ mod tests {
     #[test]
     fn the_line_goes_on_with_the_most_probable() {
         let study = study([-10.0, -12.0]);
-        assert_eq!(study.ledger().map(|own| own.row.id).collect::<Vec<_>>(), [2]);
+        assert_eq!(study.ledger().map(|line| line.row.id).collect::<Vec<_>>(), [2]);
     }
 
     #[test]

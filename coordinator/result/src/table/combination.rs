@@ -1,4 +1,4 @@
-//! What all models of a study predict together.
+//! Combination of the predictions of all models of a study, by weights for each channel.
 
 use std::collections::BTreeMap;
 
@@ -11,8 +11,8 @@ use crate::finished_calibration::FinishedCalibration;
 use crate::study::Study;
 
 impl Study {
-    /// The measurements that the current model is compared with, as the ledger's models of the same measurements predict them
-    /// together; of a fit without draws, which stands in no ledger, by that fit alone.
+    /// Returns the measurements of the current model's experiment, with the average of the predictions of all models in the ledger that
+    /// have the same measurements. A fit without draws is in no ledger, so its average is its own prediction.
     pub fn combined(&self) -> &[CombinedRow] {
         self.combined.get_or_init(|| self.combine())
     }
@@ -20,7 +20,7 @@ impl Study {
     fn combine(&self) -> Vec<CombinedRow> {
         let current = self.current().unwrap_or(&self.lead);
         let mut models: Vec<&FinishedCalibration> = self.ledger().collect();
-        models.retain(|own| own.row.experiment == current.row.experiment);
+        models.retain(|model| model.row.experiment == current.row.experiment);
         if models.is_empty() {
             models.push(current);
         }
@@ -29,26 +29,26 @@ impl Study {
             .into_iter()
             .map(|channel| (channel, weights(&models, channel)))
             .collect();
-        // The rows of two comparisons of one experiment are those of its runs and channels, in the same order.
+        // Comparisons of the same experiment have the same rows in the same order.
         let rows = current.comparison().rows.iter().enumerate();
         let combined = |(i, row): (usize, &ComparisonRow)| {
             let of_models = models
                 .iter()
-                .map(|own| own.rows.get(i).and_then(ComparisonRow::corrected_prediction));
-            CombinedRow::of(row, of_models.zip(weights[&row.channel].iter().copied()))
+                .map(|model| model.rows.get(i).and_then(ComparisonRow::corrected_prediction));
+            CombinedRow::new(row, of_models.zip(weights[&row.channel].iter().copied()))
         };
         rows.map(combined).collect()
     }
 }
 
-/// How much each model counts for a channel, over the one that counts most; 0 without an error.
+/// Returns the weight of each model for a channel, relative to the largest; 0 for a model without an error there.
 fn weights(models: &[&Comparison], channel: Channel) -> Vec<f64> {
-    let rmse = |own: &&Comparison| Some(own.corrected_fit.as_ref()?.channel(channel)?.rmse);
+    let rmse = |model: &&Comparison| Some(model.corrected_fit.as_ref()?.channel(channel)?.rmse);
     let errors: Vec<Option<f64>> = models.iter().map(rmse).collect();
-    let least = errors.iter().flatten().copied().fold(f64::INFINITY, f64::min);
+    let min = errors.iter().flatten().copied().fold(f64::INFINITY, f64::min);
     let weight = |error: &Option<f64>| match *error {
         None => 0.0,
-        Some(error) if error > 0.0 => (least / error) * (least / error),
+        Some(error) if error > 0.0 => (min / error) * (min / error),
         Some(_) => 1.0,
     };
     errors.iter().map(weight).collect()
@@ -65,28 +65,29 @@ mod tests {
     fn a_model_counts_by_its_mean_square_error_in_the_other_conditions() {
         let good = fixture::with_smooth_misfit();
         let mut bad = fixture::with_smooth_misfit();
-        // Alternately too high and too low: nothing that the other conditions would tell.
+        // Errors that alternate in sign cannot be predicted from the other conditions.
         for prediction in &mut bad.predictions {
             let pulls = &mut prediction.fit.as_mut().unwrap().drawbar_pull_n;
             let signs = [4.0, -4.0].into_iter().cycle();
             pulls.iter_mut().zip(signs).for_each(|(pull, by)| *pull += by);
         }
-        let error = |own: &Comparison| {
-            let table = own.corrected_fit.as_ref().unwrap();
+        let error = |comparison: &Comparison| {
+            let table = comparison.corrected_fit.as_ref().unwrap();
             table.drawbar_pull.unwrap().rmse
         };
         let models = [good.comparison(), bad.comparison()];
-        let own = weights(&models, Channel::DrawbarPull);
+        let weights = weights(&models, Channel::DrawbarPull);
         let ratio = error(models[0]) / error(models[1]);
         assert!(ratio < 0.5, "{ratio}");
         assert!(
-            (own[0] - 1.0).abs() < 1e-12 && (own[1] - ratio * ratio).abs() < 1e-12,
-            "{own:?}"
+            (weights[0] - 1.0).abs() < 1e-12 && (weights[1] - ratio * ratio).abs() < 1e-12,
+            "{weights:?}"
         );
-        assert_eq!(weights(&models, Channel::Torque), [0.0, 0.0]);
+        assert_eq!(super::weights(&models, Channel::Torque), [0.0, 0.0]);
     }
 
-    /// The base misses by a wave; a second model by that and another number in each channel and run.
+    /// Returns a study of two models: the first misses the pull by a sine of slip; the second differs from it by another amount in each
+    /// channel and run.
     fn grown() -> Study {
         let mut extension = fixture::with_smooth_misfit();
         extension.row.id = 3;
@@ -94,7 +95,7 @@ mod tests {
             let held_out = prediction
                 .holdout
                 .as_mut()
-                .map(|own| own.together.as_mut().unwrap());
+                .map(|holdout| holdout.together.as_mut().unwrap());
             for observables in held_out.into_iter().chain(prediction.fit.as_mut().ok()) {
                 let pulls = observables.drawbar_pull_n.iter_mut().enumerate();
                 pulls.for_each(|(i, pull)| *pull += 0.1 * (i % 3) as f64);
@@ -114,23 +115,23 @@ mod tests {
         let rows = study.combined();
         assert_eq!(rows.len(), models[0].rows.len());
         let mut averaged = 0;
-        for own in rows {
-            let of = |model: &&Comparison| {
+        for combined in rows {
+            let corrected = |model: &&Comparison| {
                 let mut rows = model.rows.iter();
-                let row = rows.find(|row| row.run == own.row.run && row.channel == own.row.channel);
+                let row = rows.find(|row| row.run == combined.row.run && row.channel == combined.row.channel);
                 row.and_then(|row| row.corrected)
             };
-            let [Some(a), Some(b)] = [of(&models[0]), of(&models[1])] else {
+            let [Some(a), Some(b)] = [corrected(&models[0]), corrected(&models[1])] else {
                 continue;
             };
-            let [v, w] = weights(&models, own.row.channel)[..] else {
+            let [v, w] = weights(&models, combined.row.channel)[..] else {
                 panic!("two models");
             };
             let expected = (v * a + w * b) / (v + w);
             assert!(
-                (own.mean.unwrap() - expected).abs() < 1e-12,
+                (combined.mean.unwrap() - expected).abs() < 1e-12,
                 "{} {expected}",
-                own.row.run
+                combined.row.run
             );
             averaged += 1;
         }
@@ -141,10 +142,10 @@ mod tests {
     fn no_prediction_reads_what_was_measured_in_a_held_out_run() {
         let predicted = |by: f64| -> Vec<Option<f64>> {
             let mut study = grown();
-            for own in [&mut study.lead, &mut study.extensions[0]] {
-                let held_out = own.spec.holdout_runs.clone();
+            for calibration in [&mut study.lead, &mut study.extensions[0]] {
+                let held_out = calibration.spec.holdout_runs.clone();
                 for run in held_out {
-                    for measured in Arc::make_mut(&mut own.spec.experiment).runs[run]
+                    for measured in Arc::make_mut(&mut calibration.spec.experiment).runs[run]
                         .measured
                         .iter_mut()
                         .flatten()
@@ -155,7 +156,7 @@ mod tests {
             }
             let rows = study.combined();
             rows.iter()
-                .flat_map(|own| [own.row.corrected, own.mean])
+                .flat_map(|combined| [combined.row.corrected, combined.mean])
                 .collect()
         };
         assert_eq!(predicted(0.0), predicted(7.0));

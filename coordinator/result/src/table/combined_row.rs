@@ -1,4 +1,4 @@
-//! What models predict of a run and channel together.
+//! A combined row: the average prediction of several models for a run and channel.
 
 use statistics::ErrorLaw;
 
@@ -9,38 +9,44 @@ use super::row::ComparisonRow;
 /// Standard deviations from the mean of a normal law to its 95 % quantile.
 const TO_Q95: f64 = 1.644_853_626_951_472_7;
 
-/// The corrected predictions of the models of a ledger, on average.
+/// The weighted average of the corrected predictions of the models in a ledger.
 ///
-/// `p(y) = sum_k w_k N(y; m_k, s_k)`: `m_k` the corrected prediction of model k, `s_k` from its 90 % interval, `w_k` as 1 over the
-/// mean square error of the channel's fitted runs, each corrected by the other conditions. Sharper weights, which the best model would
-/// take, rest on differences that so few conditions as a rig has do not bear out.
+/// `p(y) = sum_k w_k N(y; m_k, s_k)` with the corrected prediction `m_k` of model k, and `s_k` from its 90 % interval. The weight `w_k`
+/// is proportional to 1 over the mean square error of the channel's fitted runs, each corrected from the other conditions. A rig has too
+/// few conditions to support sharper weights, which would select the best model.
 ///
 /// # Source
 /// Bates & Granger 1969, doi:10.1057/jors.1969.103. Checked by `models_that_err_to_both_sides_are_better_together` and others below.
 #[derive(Debug, Clone)]
 pub struct CombinedRow {
-    /// The run and channel, with the prediction of the current model.
+    /// Run and channel, with the prediction of the current model.
     pub row: ComparisonRow,
-    /// Weighted mean of the corrected predictions [channel's unit]; `None` where no model has one.
+    /// Weighted mean of the corrected predictions [channel's unit]; `None` if no model has one.
     pub mean: Option<f64>,
-    /// 5 % and 95 % quantile of a new measurement; `None` without intervals of all.
+    /// 5 % and 95 % quantile of a new measurement; `None` unless all models have an interval.
     pub interval: Option<[f64; 2]>,
-    /// How many models it averages.
+    /// Number of models in the average.
     pub models: usize,
 }
 
 impl CombinedRow {
-    /// Of what each model predicts, with its weight.
-    pub(super) fn of(row: &ComparisonRow, of_models: impl Iterator<Item = (Option<Corrected>, f64)>) -> Self {
+    /// Averages the corrected predictions of the models, which come with their weights.
+    pub(super) fn new(
+        row: &ComparisonRow,
+        of_models: impl Iterator<Item = (Option<Corrected>, f64)>,
+    ) -> Self {
         let counted = of_models.filter(|(_, weight)| *weight > 0.0);
-        let counted: Vec<(Corrected, f64)> =
-            counted.filter_map(|(own, weight)| Some((own?, weight))).collect();
+        let counted: Vec<(Corrected, f64)> = counted
+            .filter_map(|(corrected, weight)| Some((corrected?, weight)))
+            .collect();
         let total: f64 = counted.iter().map(|(_, weight)| weight).sum();
-        let shares = counted.iter().map(|(own, weight)| own.mean * weight / total);
-        let component = |&(own, weight): &(Corrected, f64)| {
-            let [q05, q95] = own.interval?;
+        let shares = counted
+            .iter()
+            .map(|(corrected, weight)| corrected.mean * weight / total);
+        let component = |&(corrected, weight): &(Corrected, f64)| {
+            let [q05, q95] = corrected.interval?;
             Some(Component {
-                mean: own.mean,
+                mean: corrected.mean,
                 scale: Some((q95 - q05) / (2.0 * TO_Q95)),
                 weight,
             })
@@ -55,7 +61,7 @@ impl CombinedRow {
         }
     }
 
-    /// Whether the measurement lies in its 90 % interval.
+    /// Returns whether the 90 % interval contains the measurement; `None` without an interval.
     pub fn covered(&self) -> Option<bool> {
         let [q05, q95] = self.interval?;
         Some((q05..=q95).contains(&self.row.measured))
@@ -67,7 +73,7 @@ mod tests {
     use super::*;
     use crate::fixture;
 
-    /// A row of the pull, measured as 0 N, that models of these weights correct to these values with a sd of 1 N.
+    /// Returns a row with a measured pull of 0 N; each model has a corrected value, a standard deviation of 1 N and a weight.
     fn weighted(corrected: &[(Option<f64>, f64)]) -> CombinedRow {
         let rows = fixture::calibration().comparison().rows.clone();
         let row = ComparisonRow {
@@ -75,42 +81,42 @@ mod tests {
             ..rows[0].clone()
         };
         let of_model = |&(corrected, weight): &(Option<f64>, f64)| {
-            let own = corrected.map(|mean| Corrected {
+            let prediction = corrected.map(|mean| Corrected {
                 mean,
                 interval: Some([mean - TO_Q95, mean + TO_Q95]),
             });
-            (own, weight)
+            (prediction, weight)
         };
-        CombinedRow::of(&row, corrected.iter().map(of_model))
+        CombinedRow::new(&row, corrected.iter().map(of_model))
     }
 
-    /// The same of models that count alike.
+    /// Returns the same row for models of equal weight.
     fn combined(corrected: &[Option<f64>]) -> CombinedRow {
-        weighted(&corrected.iter().map(|own| (*own, 1.0)).collect::<Vec<_>>())
+        weighted(&corrected.iter().map(|mean| (*mean, 1.0)).collect::<Vec<_>>())
     }
 
     #[test]
     fn the_mean_is_weighted() {
-        let own = weighted(&[(Some(1.0), 1.0), (Some(5.0), 0.25), (Some(1e6), 0.0)]);
+        let row = weighted(&[(Some(1.0), 1.0), (Some(5.0), 0.25), (Some(1e6), 0.0)]);
         assert!(
-            (own.mean.unwrap() - 1.8).abs() < 1e-12 && own.models == 2,
-            "{own:?}"
+            (row.mean.unwrap() - 1.8).abs() < 1e-12 && row.models == 2,
+            "{row:?}"
         );
     }
 
     #[test]
     fn models_that_err_to_both_sides_are_better_together() {
-        let own = combined(&[Some(2.0), None, Some(-2.0)]);
-        assert_eq!((own.mean, own.models), (Some(0.0), 2));
+        let row = combined(&[Some(2.0), None, Some(-2.0)]);
+        assert_eq!((row.mean, row.models), (Some(0.0), 2));
         assert_eq!(combined(&[Some(2.0)]).covered(), Some(false));
-        assert_eq!(own.covered(), Some(true));
+        assert_eq!(row.covered(), Some(true));
     }
 
     #[test]
     fn an_interval_holds_the_models_spread_too() {
         let [q05, q95] = combined(&[Some(0.3)]).interval.unwrap();
         assert!((q05 - 0.3 + TO_Q95).abs() < 1e-9 && (q95 - 0.3 - TO_Q95).abs() < 1e-9);
-        // Half of the mixture lies below 0: a tenth of a half of each component lies beyond the outer quantile.
+        // Each component has half of the weight, so 10 % of it must lie beyond the outer quantile.
         let [q05, q95] = combined(&[Some(10.0), Some(-10.0)]).interval.unwrap();
         let outer = 10.0 + 1.281_551_565_544_600_5;
         assert!(
@@ -121,7 +127,7 @@ mod tests {
 
     #[test]
     fn without_a_correction_there_is_nothing_to_combine() {
-        let own = combined(&[None]);
-        assert_eq!((own.mean, own.interval, own.models), (None, None, 0));
+        let row = combined(&[None]);
+        assert_eq!((row.mean, row.interval, row.models), (None, None, 0));
     }
 }

@@ -1,4 +1,4 @@
-//! The comparison of a finished calibration with the measurements.
+//! Computation of the comparison of a calibration with the measurements, row by row.
 
 use std::collections::BTreeSet;
 
@@ -18,21 +18,21 @@ use super::row::{ComparisonRow, rows_of};
 use crate::finished_calibration::FinishedCalibration;
 
 impl FinishedCalibration {
-    /// The held-out measurements as interpolated from the fitted ones.
+    /// Returns the holdout measurements interpolated from the fitted ones.
     pub fn interpolations(&self) -> &Interpolations {
         self.interpolations
-            .get_or_init(|| Interpolations::of(&self.spec.experiment))
+            .get_or_init(|| Interpolations::new(&self.spec.experiment))
     }
 
-    /// Model against measurement, run by run.
+    /// Compares the model with the measurements, run by run.
     pub fn comparison(&self) -> &Comparison {
         self.comparison.get_or_init(|| self.compared())
     }
 
     fn compared(&self) -> Comparison {
         let interpolations = self.interpolations();
-        let levels = Levels::of(self);
-        let corrections = Corrections::of(self);
+        let levels = Levels::new(self);
+        let corrections = Corrections::new(self);
         let mut not_corrected = BTreeSet::new();
         let mut rows = Vec::new();
         for (i, run) in self.spec.experiment.runs.iter().enumerate() {
@@ -48,7 +48,7 @@ impl FinishedCalibration {
                     not_corrected.extend(reason);
                     found.ok()
                 });
-                let corrected_interval = corrected.and_then(|own| own.interval);
+                let corrected_interval = corrected.and_then(|prediction| prediction.interval);
                 rows.push(ComparisonRow {
                     run: run.name.clone(),
                     usage: run.usage,
@@ -66,7 +66,7 @@ impl FinishedCalibration {
                     noise_sd: p.and_then(|p| p.noise_sd),
                     residual_sigma: p.and_then(|p| p.noise_sd.map(|sd| (measured - p.mean) / sd)),
                     error_sd: p.and_then(|p| p.error_sd),
-                    corrected: corrected.map(|own| own.mean),
+                    corrected: corrected.map(|prediction| prediction.mean),
                     corrected_q05: corrected_interval.map(|[q05, _]| q05),
                     corrected_q95: corrected_interval.map(|[_, q95]| q95),
                     refused: refused.clone(),
@@ -75,7 +75,7 @@ impl FinishedCalibration {
                 });
             }
         }
-        let sigmas = FixedSigmas::of(self);
+        let sigmas = FixedSigmas::new(self);
         let errors = |usage| Some(ErrorTable::of_model(rows_of(&rows, usage))?.in_fixed_sigmas(&sigmas));
         let corrected =
             |usage| Some(ErrorTable::of_corrected(rows_of(&rows, usage))?.in_fixed_sigmas(&sigmas));
@@ -85,7 +85,7 @@ impl FinishedCalibration {
                 .experiment
                 .campaign
                 .as_ref()
-                .is_some_and(|own| own.digitised),
+                .is_some_and(|campaign| campaign.digitised),
             fit: errors(RunUse::Fit),
             holdout: errors(RunUse::Holdout),
             baseline_holdout: ErrorTable::of_baseline(rows_of(&rows, RunUse::Holdout))
@@ -99,7 +99,7 @@ impl FinishedCalibration {
         }
     }
 
-    /// The final draws at which the model refuses a run; `None` where it refuses none.
+    /// Counts the final draws at which the model refuses a run; `None` if it refuses none.
     ///
     /// # Arguments
     /// - `run`: position in the experiment.
@@ -133,17 +133,17 @@ mod tests {
         let plain = fixture::calibration();
         let mut inadequate = fixture::calibration();
         inadequate.spec.likelihood_settings.discrepancies = [Discrepancy::Known(3.0); 4];
-        let of = |calibration: &FinishedCalibration| -> Vec<(Channel, f64, f64, f64)> {
+        let errors = |calibration: &FinishedCalibration| -> Vec<(Channel, f64, f64, f64)> {
             let rows = calibration.comparison().rows.iter();
             rows.filter_map(|row| Some((row.channel, row.noise_sd?, row.error_sd?, row.residual_sigma?)))
                 .collect()
         };
-        let (alone, with) = (of(&plain), of(&inadequate));
+        let (alone, with) = (errors(&plain), errors(&inadequate));
         assert!(!alone.is_empty() && alone.len() == with.len());
         for ((channel, noise, all, residual), (_, _, wider, same)) in alone.into_iter().zip(with) {
             match channel {
                 Channel::DrawbarPull => assert!((all - noise).abs() < 1e-12, "declared: {noise} {all}"),
-                // One is the mean over the draws, the other their root mean square.
+                // The noise is the mean over the draws, and the total error their root mean square.
                 _ => assert!(all >= noise, "inferred: {noise} {all}"),
             }
             assert!((wider / all - 10.0_f64.sqrt()).abs() < 1e-12, "{all} {wider}");

@@ -1,10 +1,10 @@
-//! Model against measurement, run by run.
+//! The comparison of a model with the measurements: rows, errors and groups.
 
 use super::errors::ErrorTable;
 use super::group::ErrorGroup;
 use super::row::ComparisonRow;
 
-/// Model against measurement.
+/// The comparison of a model with the measurements.
 #[derive(Debug, Clone, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
 pub struct Comparison {
     /// Whether the measured values were read off figures.
@@ -13,18 +13,18 @@ pub struct Comparison {
     pub rows: Vec<ComparisonRow>,
     /// Errors of the fitted runs.
     pub fit: Option<ErrorTable>,
-    /// Errors of the runs that were not fitted.
+    /// Errors of the holdout runs.
     pub holdout: Option<ErrorTable>,
-    /// Errors of interpolating the fitted measurements, without physics, on the holdout measurements that the model predicts.
+    /// Errors of interpolation without physics on the holdout measurements that the model predicts.
     pub baseline_holdout: Option<ErrorTable>,
-    /// Why some holdout runs are not interpolated; empty where all are.
+    /// Reasons why some holdout runs are not interpolated; empty if all are.
     pub not_interpolated: Vec<String>,
-    /// Errors of the corrected predictions of the fitted runs, each by what the model misses in the other conditions.
+    /// Errors of the corrected predictions of the fitted runs, each corrected from the other conditions.
     pub corrected_fit: Option<ErrorTable>,
-    /// Errors of the corrected predictions of the runs that were not fitted.
+    /// Errors of the corrected predictions of the holdout runs.
     pub corrected_holdout: Option<ErrorTable>,
-    /// Why some predictions are not corrected; empty where all are.
+    /// Reasons why some predictions are not corrected; empty if all are.
     pub not_corrected: Vec<String>,
-    /// Errors by level of slip, load, speed and slip angle, and by wheel, of fitted runs and of the others.
+    /// Errors by level of slip, load, speed and slip angle, and by wheel, for fitted and for holdout runs.
     pub groups: Vec<ErrorGroup>,
 }

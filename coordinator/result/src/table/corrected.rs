@@ -1,10 +1,10 @@
-//! A prediction corrected by what the model misses.
+//! A corrected prediction: the model's value plus its discrepancy.
 
-/// A prediction with the discrepancy that the fitted conditions show.
+/// A prediction plus the discrepancy that is interpolated from the fitted conditions.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Corrected {
-    /// Mean of the model, and of the discrepancy [channel's unit].
+    /// Mean of model plus discrepancy [channel's unit].
     pub mean: f64,
-    /// 5 % and 95 % quantile of a new measurement; `None` of a fit, which has no distribution.
+    /// 5 % and 95 % quantile of a new measurement; `None` for a fit, which has no distribution.
     pub interval: Option<[f64; 2]>,
 }

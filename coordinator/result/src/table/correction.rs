@@ -1,4 +1,4 @@
-//! Predictions corrected by what the model misses in the fitted conditions.
+//! Correction of predictions by the model's errors in the fitted conditions, with a Gaussian process for each channel.
 
 use std::collections::BTreeMap;
 
@@ -16,20 +16,20 @@ use super::predictive::{Predictive, RunPosition, accepted, soil_scatter};
 use crate::finished_calibration::FinishedCalibration;
 use crate::words::number;
 
-/// The corrections of a calibration by channel: each, or why there is none.
+/// The correction of each channel of a calibration, or the reason why there is none.
 pub(crate) struct Corrections<'a> {
     calibration: &'a FinishedCalibration,
     channels: BTreeMap<Channel, Result<Correction, String>>,
 }
 
 impl<'a> Corrections<'a> {
-    pub(crate) fn of(calibration: &'a FinishedCalibration) -> Self {
-        let sigmas = FixedSigmas::of(calibration);
+    pub(crate) fn new(calibration: &'a FinishedCalibration) -> Self {
+        let sigmas = FixedSigmas::new(calibration);
         let correction = |channel: Channel| {
             let sigma = sigmas
                 .get(channel)
                 .ok_or(format!("{} has no noise", channel.words()))?;
-            Correction::of(calibration, channel, sigma.sd)
+            Correction::new(calibration, channel, sigma.sd)
         };
         Corrections {
             calibration,
@@ -40,7 +40,8 @@ impl<'a> Corrections<'a> {
         }
     }
 
-    /// The prediction of a run and channel, corrected, or why it is not: in a fitted condition by what the model misses in the others.
+    /// Returns the corrected prediction of a run and channel, or why there is none. In a fitted condition, the correction rests on the
+    /// other conditions.
     ///
     /// # Arguments
     /// - `run`: position in the experiment. `model`: what the model says of it.
@@ -54,17 +55,17 @@ impl<'a> Corrections<'a> {
 struct Correction {
     channel: Channel,
     conditions: Conditions,
-    /// Wheel, soil and pass, as the process numbers them.
+    /// Wheel, soil and pass of each group, in the order of the group numbers in the process.
     groups: Vec<Group>,
-    /// The fitted runs of each misfit, as positions in the experiment.
+    /// The fitted runs behind each misfit, as positions in the experiment.
     members: Vec<Vec<usize>>,
-    /// Of each final draw that the model accepts, its number and the model's mean in each of these conditions.
+    /// Number of each final draw that the model accepts, with its mean prediction in each condition.
     draws: Vec<(usize, Vec<f64>)>,
     process: DiscrepancyProcess,
     noise_sd: f64,
 }
 
-/// A wheel on a soil at a pass.
+/// Wheel, soil and pass, among which the discrepancy may differ by a constant.
 type Group = (String, String, u32);
 
 fn group(run: &TestRun) -> Group {
@@ -72,53 +73,53 @@ fn group(run: &TestRun) -> Group {
 }
 
 impl Correction {
-    fn of(calibration: &FinishedCalibration, channel: Channel, noise_sd: f64) -> Result<Self, String> {
+    fn new(calibration: &FinishedCalibration, channel: Channel, noise_sd: f64) -> Result<Self, String> {
         let spec = &calibration.spec;
         let all = &spec.experiment.runs;
         let measured = |run: usize| all[run].measured[channel.index()];
         let fitted = spec.fit_runs.iter().filter(|&&run| measured(run).is_some());
         let fitted: Vec<usize> = fitted.copied().collect();
         let runs: Vec<&TestRun> = fitted.iter().map(|&run| &all[run]).collect();
-        let conditions = Conditions::of(&runs);
-        let least = DiscrepancyProcess::min_misfits(conditions.axes.len());
+        let conditions = Conditions::new(&runs);
+        let min = DiscrepancyProcess::min_misfits(conditions.axes.len());
         let members = repeated(&runs);
         let name = channel.words();
-        let most = DiscrepancyProcess::MAX_MISFITS;
-        if members.len() > most {
+        let max = DiscrepancyProcess::MAX_MISFITS;
+        if members.len() > max {
             let count = members.len();
             return Err(format!(
-                "{name} has {count} fitted conditions, and a discrepancy is computed for at most {most}"
+                "{name} has {count} fitted conditions, and a discrepancy is computed for at most {max}"
             ));
         }
-        if conditions.axes.is_empty() || members.len() < least {
+        if conditions.axes.is_empty() || members.len() < min {
             return Err(match runs.len() {
                 0 => format!("{name} has no fitted measurement"),
                 _ if conditions.axes.is_empty() => format!("{name} was fitted in one condition"),
                 _ => format!(
-                    "{name} has {}, and a discrepancy over {} needs {least}",
+                    "{name} has {}, and a discrepancy over {} needs {min}",
                     number::count(members.len(), "fitted condition"),
                     conditions.names()
                 ),
             });
         }
-        let of_condition = |own: Vec<usize>| own.into_iter().map(|i| fitted[i]).collect();
-        let members: Vec<Vec<usize>> = members.into_iter().map(of_condition).collect();
+        let positions = |repeats: Vec<usize>| repeats.into_iter().map(|i| fitted[i]).collect();
+        let members: Vec<Vec<usize>> = members.into_iter().map(positions).collect();
         let mut groups: Vec<Group> = runs.iter().map(|&run| group(run)).collect();
         groups.sort();
         groups.dedup();
         let draws = means(calibration, channel, &members);
-        let misfit = |(condition, own): (usize, &Vec<usize>)| {
-            let repeats: Vec<&TestRun> = own.iter().map(|&run| &all[run]).collect();
-            let values: Vec<f64> = own.iter().filter_map(|&run| measured(run)).collect();
-            let of_draws: Vec<f64> = draws.iter().map(|(_, means)| means[condition]).collect();
-            let variances = own
+        let misfit = |(condition, repeated): (usize, &Vec<usize>)| {
+            let repeats: Vec<&TestRun> = repeated.iter().map(|&run| &all[run]).collect();
+            let values: Vec<f64> = repeated.iter().filter_map(|&run| measured(run)).collect();
+            let modelled: Vec<f64> = draws.iter().map(|(_, means)| means[condition]).collect();
+            let variances = repeated
                 .iter()
                 .map(|&run| noise_variance(calibration, run, channel, noise_sd));
             Some(Misfit {
                 point: conditions.mean_point(&repeats),
                 group: groups.binary_search(&group(repeats[0])).ok()?,
-                value: mean(&values)? - mean(&of_draws)?,
-                noise_variance: variances.sum::<f64>() / (own.len() * own.len()) as f64,
+                value: mean(&values)? - mean(&modelled)?,
+                noise_variance: variances.sum::<f64>() / (repeated.len() * repeated.len()) as f64,
             })
         };
         let misfits: Option<Vec<Misfit>> = members.iter().enumerate().map(misfit).collect();
@@ -140,26 +141,26 @@ impl Correction {
         run: usize,
         model: Predictive,
     ) -> Result<Corrected, String> {
-        let own = &calibration.spec.experiment.runs[run];
-        if let Some(reason) = self.conditions.beside(self.channel.words(), own) {
+        let predicted = &calibration.spec.experiment.runs[run];
+        if let Some(reason) = self.conditions.reason_beside(self.channel.words(), predicted) {
             return Err(reason);
         }
         let discrepancy = match self.members.iter().position(|members| members.contains(&run)) {
             Some(condition) => self.process.without(condition),
-            // A group that was not fitted comes after those that were.
+            // The process treats a number after the fitted groups as a group without data.
             None => self.process.at(
-                &self.conditions.point(own),
+                &self.conditions.point(predicted),
                 self.groups
-                    .binary_search(&group(own))
+                    .binary_search(&group(predicted))
                     .unwrap_or(self.groups.len()),
             ),
         };
         let (shift, spread) = self.paired(calibration, run, &discrepancy);
         let noise = noise_variance(calibration, run, self.channel, self.noise_sd);
-        let component = |own: &DiscrepancyComponent| Component {
-            mean: model.mean + own.mean + shift,
-            scale: Some((own.variance + spread * spread + noise).sqrt()),
-            weight: own.probability,
+        let component = |part: &DiscrepancyComponent| Component {
+            mean: model.mean + part.mean + shift,
+            scale: Some((part.variance + spread * spread + noise).sqrt()),
+            weight: part.probability,
         };
         let components: Vec<Component> = discrepancy.components.iter().map(component).collect();
         let law = calibration.spec.likelihood.law();
@@ -171,20 +172,20 @@ impl Correction {
         })
     }
 
-    /// What each draw of the run says beside the fitted conditions of the same draw: a mean shift, where some draws are refused in the run
-    /// alone, and the standard deviation of the corrected value. Where a draw moves the model in the run and in the fitted conditions
-    /// alike, the correction takes it back.
+    /// Compares each draw's prediction of the run with its predictions of the fitted conditions. Returns a mean shift, which is not 0 if
+    /// the model refuses some draws in this run only, and the standard deviation of the corrected value. A change of the draw that moves
+    /// all predictions alike cancels.
     fn paired(&self, calibration: &FinishedCalibration, run: usize, discrepancy: &Discrepancy) -> (f64, f64) {
-        let own = values(calibration, run, self.channel);
+        let values = values(calibration, run, self.channel);
         let taken = |means: &[f64]| -> f64 {
             let weighted = means.iter().zip(&discrepancy.weights);
             weighted.map(|(mean, weight)| mean * weight).sum()
         };
         let all: Vec<f64> = self.draws.iter().map(|(_, means)| taken(means)).collect();
         let pairs = self.draws.iter().zip(&all);
-        let pairs = pairs.filter_map(|((number, _), taken)| Some((own.get(number)?, *taken)));
+        let pairs = pairs.filter_map(|((number, _), taken)| Some((values.get(number)?, *taken)));
         let (corrected, paired): (Vec<f64>, Vec<f64>) =
-            pairs.map(|(own, taken)| (own - taken, taken)).unzip();
+            pairs.map(|(value, taken)| (value - taken, taken)).unzip();
         let shift = mean(&all)
             .zip(mean(&paired))
             .map_or(0.0, |(all, paired)| all - paired);
@@ -192,7 +193,7 @@ impl Correction {
     }
 }
 
-/// Of each final draw that the model accepts, its number and the mean of a channel over the runs of each condition.
+/// Returns, for each final draw that the model accepts, its number and the channel's mean over the runs of each condition.
 fn means(
     calibration: &FinishedCalibration,
     channel: Channel,
@@ -200,12 +201,16 @@ fn means(
 ) -> Vec<(usize, Vec<f64>)> {
     let of_runs: Vec<Vec<BTreeMap<usize, f64>>> = members
         .iter()
-        .map(|own| own.iter().map(|&run| values(calibration, run, channel)).collect())
+        .map(|runs| {
+            runs.iter()
+                .map(|&run| values(calibration, run, channel))
+                .collect()
+        })
         .collect();
     let numbers = of_runs[0][0].keys();
     let of_draw = |number: &usize| {
-        let of_condition = |own: &Vec<BTreeMap<usize, f64>>| {
-            let values: Option<Vec<f64>> = own.iter().map(|values| values.get(number).copied()).collect();
+        let of_condition = |runs: &Vec<BTreeMap<usize, f64>>| {
+            let values: Option<Vec<f64>> = runs.iter().map(|values| values.get(number).copied()).collect();
             mean(&values?)
         };
         let means: Option<Vec<f64>> = of_runs.iter().map(of_condition).collect();
@@ -214,9 +219,9 @@ fn means(
     numbers.filter_map(of_draw).collect()
 }
 
-/// The model's values of a run and channel by number of the final draw.
+/// Returns the model's values of a run and channel, keyed by the number of the final draw.
 fn values(calibration: &FinishedCalibration, run: usize, channel: Channel) -> BTreeMap<usize, f64> {
-    let Some(place) = RunPosition::of(&calibration.spec, run) else {
+    let Some(place) = RunPosition::find(&calibration.spec, run) else {
         return BTreeMap::new();
     };
     let of_draw = |(number, _, observables, position): (usize, _, &Observables, usize)| {
@@ -225,10 +230,10 @@ fn values(calibration: &FinishedCalibration, run: usize, channel: Channel) -> BT
     accepted(calibration, place).filter_map(of_draw).collect()
 }
 
-/// Variance of one measurement of a run: noise, and the scatter of the soil.
+/// Returns the variance of one measurement of a run: noise plus the scatter of the soil.
 fn noise_variance(calibration: &FinishedCalibration, run: usize, channel: Channel, noise_sd: f64) -> f64 {
     let sd = calibration.spec.experiment.runs[run].sd[channel.index()].unwrap_or(noise_sd);
-    let place = RunPosition::of(&calibration.spec, run);
+    let place = RunPosition::find(&calibration.spec, run);
     let draws = place.into_iter().flat_map(|place| accepted(calibration, place));
     let squares: Vec<f64> = draws
         .map(|(_, theta, observables, position)| {
@@ -267,21 +272,15 @@ mod tests {
         let comparison = calibration.comparison();
         let [fit, corrected] = [&comparison.fit, &comparison.corrected_fit]
             .map(|table| table.as_ref().unwrap().drawbar_pull.unwrap().rmse);
-        // Of a fitted run by the other runs, those at the ends of the range included.
+        // Each fitted run is predicted from the others, including the extrapolation at the ends of the range.
         assert!(corrected < 0.5 * fit, "{corrected} {fit}");
     }
 
     #[test]
     fn what_a_draw_moves_everywhere_alike_is_taken_back() {
         let calibration = fixture::with_smooth_misfit();
-        let run = calibration
-            .spec
-            .experiment
-            .runs
-            .iter()
-            .position(|run| run.name == "h1")
-            .unwrap();
-        let correction = Correction::of(&calibration, Channel::DrawbarPull, 1.0).unwrap();
+        let run = fixture::position(&calibration, "h1");
+        let correction = Correction::new(&calibration, Channel::DrawbarPull, 1.0).unwrap();
         let discrepancy = correction.process.at(
             &correction
                 .conditions
@@ -299,18 +298,18 @@ mod tests {
     fn draws_that_refuse_a_run_do_not_move_what_is_predicted_of_it() {
         let whole = fixture::with_smooth_misfit();
         let mut fewer = fixture::with_smooth_misfit();
-        // Half of the draws that lie 1 N too low everywhere are refused in the held-out runs: the others are 1/3 N too high on average.
+        // The holdout runs reject half of the draws that lie 1 N too low; the remaining draws are 1/3 N too high on average.
         for prediction in fewer.predictions.iter_mut().skip(1).step_by(4) {
             if let Some(held_out) = &mut prediction.holdout {
                 held_out.together = Err(record::RejectionReason("no balance".to_owned()));
             }
         }
-        let of = |own: &FinishedCalibration| {
-            let row = row(own, "h1");
+        let predictions = |calibration: &FinishedCalibration| {
+            let row = row(calibration, "h1");
             (row.predicted.unwrap(), row.corrected.unwrap())
         };
-        let (predicted, corrected) = of(&whole);
-        let (moved, paired) = of(&fewer);
+        let (predicted, corrected) = predictions(&whole);
+        let (moved, paired) = predictions(&fewer);
         assert!(
             (moved - predicted - 1.0 / 3.0).abs() < 0.05,
             "{moved} {predicted}"

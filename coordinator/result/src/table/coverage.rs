@@ -1,57 +1,57 @@
-//! Coverage of the 90 % intervals, and the expected one.
+//! Coverage: counts of measurements inside their 90 % intervals, and the counts to expect.
 
 use super::row::ComparisonRow;
 
 /// Nominal probability of the predictive intervals.
 const NOMINAL: f64 = 0.9;
-/// Probability of the range of counts that is called expected.
+/// Probability of the expected range of counts.
 const EXPECTED: f64 = 0.95;
 
-/// Measurements inside their interval, of those that have one.
+/// A count of measurements inside their interval.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Coverage {
-    /// Inside.
+    /// Number of measurements inside their interval.
     pub inside: usize,
-    /// With an interval.
-    pub of: usize,
+    /// Number of measurements with an interval.
+    pub total: usize,
 }
 
 impl Coverage {
-    /// Counts rows; `None` where no row has an interval.
+    /// Counts rows; `None` if no row has an interval.
     pub fn count<'a>(rows: impl Iterator<Item = &'a ComparisonRow>) -> Option<Self> {
-        Self::of(rows.filter_map(ComparisonRow::covered))
+        Self::from_outcomes(rows.filter_map(ComparisonRow::covered))
     }
 
-    /// The same by the intervals of the corrected predictions.
+    /// Counts rows by the intervals of the corrected predictions; `None` if no row has one.
     pub fn count_corrected<'a>(rows: impl Iterator<Item = &'a ComparisonRow>) -> Option<Self> {
-        Self::of(rows.filter_map(ComparisonRow::covered_corrected))
+        Self::from_outcomes(rows.filter_map(ComparisonRow::covered_corrected))
     }
 
-    /// Counts which of them are inside; `None` of none.
-    pub fn of(covered: impl Iterator<Item = bool>) -> Option<Self> {
+    /// Counts the measurements that are inside, given as `true`; `None` for an empty iterator.
+    pub fn from_outcomes(covered: impl Iterator<Item = bool>) -> Option<Self> {
         let covered: Vec<bool> = covered.collect();
         let inside = covered.iter().filter(|c| **c).count();
         (!covered.is_empty()).then_some(Coverage {
             inside,
-            of: covered.len(),
+            total: covered.len(),
         })
     }
 
-    /// The counts that right intervals would give 95 % of the time, if the rows were independent: the central
-    /// range of the binomial distribution.
+    /// Returns the range of counts that correct intervals give 95 % of the time if the rows are independent: the central range of the
+    /// binomial distribution.
     pub fn expected(self) -> [usize; 2] {
         let tail = 0.5 * (1.0 - EXPECTED);
-        [quantile(self.of, tail), quantile(self.of, 1.0 - tail)]
+        [quantile(self.total, tail), quantile(self.total, 1.0 - tail)]
     }
 
-    /// `42 of 48 (44 to 47 expected)`.
+    /// Returns, for example, `42 of 48 (44 to 47 expected)`.
     pub fn words(self) -> String {
         let [low, high] = self.expected();
-        format!("{} of {} ({low} to {high} expected)", self.inside, self.of)
+        format!("{} of {} ({low} to {high} expected)", self.inside, self.total)
     }
 }
 
-/// Smallest count whose cumulative binomial probability reaches `p`.
+/// Returns the smallest count whose cumulative binomial probability reaches `p`.
 fn quantile(n: usize, p: f64) -> usize {
     let log_factorial = |k: usize| libm::lgamma(k as f64 + 1.0);
     let mut sum = 0.0;
@@ -72,9 +72,9 @@ mod tests {
 
     #[test]
     fn the_expected_range_is_the_binomial_s() {
-        // P(0 of 1) = 0.1 and P(1 of 1) = 0.9: either may happen.
-        assert_eq!(Coverage { inside: 1, of: 1 }.expected(), [0, 1]);
-        // Of ten: P(<= 6) = 0.0128, P(<= 7) = 0.0702, P(10) = 0.349.
-        assert_eq!(Coverage { inside: 9, of: 10 }.expected(), [7, 10]);
+        // P(0 of 1) = 0.1 and P(1 of 1) = 0.9, so both counts are in the range.
+        assert_eq!(Coverage { inside: 1, total: 1 }.expected(), [0, 1]);
+        // For ten rows P(<= 6) = 0.0128, P(<= 7) = 0.0702 and P(10) = 0.349.
+        assert_eq!(Coverage { inside: 9, total: 10 }.expected(), [7, 10]);
     }
 }

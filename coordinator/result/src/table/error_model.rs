@@ -1,12 +1,12 @@
-//! The error model in words, with the discrepancy that the data chose.
+//! Sentences on the error model of a calibration, with the posterior of an unknown discrepancy.
 
 use super::predictive::discrepancy_posterior;
 use crate::finished_calibration::FinishedCalibration;
 
-/// A value of m with less probability is not listed.
+/// Posterior probability below which a value of m is not listed.
 const MIN_SHOWN: f64 = 0.0005;
 
-/// Sentences on the error model, with the posterior of an unknown discrepancy.
+/// Returns sentences on the error model, with the posterior of an unknown discrepancy.
 pub fn error_model(calibration: &FinishedCalibration) -> Vec<String> {
     let mut words = calibration.spec.likelihood_settings.words();
     for (channel, after) in discrepancy_posterior(calibration) {

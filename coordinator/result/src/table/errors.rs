@@ -1,4 +1,4 @@
-//! Root mean square errors by channel.
+//! Error table: root mean square errors by channel and over all channels.
 
 use std::collections::BTreeMap;
 
@@ -6,7 +6,7 @@ use shared::channel::Channel;
 
 use super::row::ComparisonRow;
 
-/// Errors by channel, and over all channels in units of the noise.
+/// Root mean square errors by channel, and over all channels in units of the noise.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
 pub struct ErrorTable {
     /// Drawbar pull.
@@ -17,7 +17,7 @@ pub struct ErrorTable {
     pub sinkage: Option<ChannelError>,
     /// Lateral force.
     pub lateral_force: Option<ChannelError>,
-    /// Every channel together.
+    /// All channels together.
     pub all: AllError,
 }
 
@@ -26,44 +26,45 @@ pub struct ErrorTable {
 pub struct ChannelError {
     /// Root mean square of measured minus predicted [channel's unit].
     pub rmse: f64,
-    /// The same in units of each row's noise sd; a perfect model scores about 1.
+    /// Root mean square in units of each row's noise standard deviation; about 1 for a perfect model.
     pub rmse_sigma: Option<f64>,
-    /// The same in units of one noise sd, equal for all calibrations of the study: declared, from repeats, or inferred by the first.
+    /// Root mean square in units of one noise standard deviation for all calibrations of the study: declared, from repeats, or inferred
+    /// by the first calibration.
     pub rmse_fixed_sigma: Option<f64>,
-    /// Rows that count.
+    /// Number of rows.
     pub runs: usize,
 }
 
 /// The error over all channels.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
 pub struct AllError {
-    /// Root mean square in units of each row's noise sd.
+    /// Root mean square in units of each row's noise standard deviation.
     pub rmse_sigma: Option<f64>,
-    /// The same in units of the study's noise sds.
+    /// Root mean square in units of the study's noise standard deviations.
     pub rmse_fixed_sigma: Option<f64>,
-    /// Measurements without a prediction, which do not count: of runs that the model refuses at half of the final draws or more, or that
-    /// interpolation, or a correction, does not reach.
+    /// Number of measurements without a prediction, which do not enter: the model refuses the run at half of the final draws or more, or
+    /// interpolation or correction is not possible.
     pub unpredicted: usize,
 }
 
 impl ErrorTable {
-    /// Errors of the posterior-mean prediction; `None` without rows.
+    /// Returns the errors of the posterior-mean prediction; `None` without a prediction.
     pub fn of_model<'a>(rows: impl Iterator<Item = &'a ComparisonRow>) -> Option<ErrorTable> {
-        Self::of(rows.map(|r| (r, r.predicted)))
+        Self::new(rows.map(|r| (r, r.predicted)))
     }
 
-    /// Errors of interpolation without physics where the model has a prediction too; `None` where there is no such row.
+    /// Returns the errors of interpolation on the rows that the model predicts too; `None` if there is no such row.
     pub fn of_baseline<'a>(rows: impl Iterator<Item = &'a ComparisonRow>) -> Option<ErrorTable> {
-        Self::of(rows.map(|r| (r, r.interpolated.filter(|_| r.predicted.is_some()))))
+        Self::new(rows.map(|r| (r, r.interpolated.filter(|_| r.predicted.is_some()))))
     }
 
-    /// Errors of the corrected prediction; `None` where there is none.
+    /// Returns the errors of the corrected prediction; `None` without one.
     pub fn of_corrected<'a>(rows: impl Iterator<Item = &'a ComparisonRow>) -> Option<ErrorTable> {
-        Self::of(rows.map(|r| (r, r.corrected)))
+        Self::new(rows.map(|r| (r, r.corrected)))
     }
 
-    /// Errors of any predictions; `None` where there is none.
-    pub fn of<'a>(rows: impl Iterator<Item = (&'a ComparisonRow, Option<f64>)>) -> Option<ErrorTable> {
+    /// Returns the errors of the predictions that stand beside the rows; `None` without a prediction.
+    pub fn new<'a>(rows: impl Iterator<Item = (&'a ComparisonRow, Option<f64>)>) -> Option<ErrorTable> {
         let mut squares: BTreeMap<Channel, Squares> = BTreeMap::new();
         let mut all = Squares::default();
         let mut unpredicted = 0;
@@ -108,7 +109,7 @@ impl ErrorTable {
         })
     }
 
-    /// The error of a channel.
+    /// Returns the error of a channel.
     pub fn channel(&self, channel: Channel) -> Option<ChannelError> {
         match channel {
             Channel::DrawbarPull => self.drawbar_pull,
@@ -120,7 +121,7 @@ impl ErrorTable {
 }
 
 impl ErrorTable {
-    /// The error of a channel, to change.
+    /// Returns the error of a channel for modification.
     pub(super) fn channel_mut(&mut self, channel: Channel) -> Option<&mut ChannelError> {
         match channel {
             Channel::DrawbarPull => self.drawbar_pull.as_mut(),
@@ -131,7 +132,7 @@ impl ErrorTable {
     }
 }
 
-/// Squares by channel: (sum, sum in sigma^2, rows, rows with a noise sd).
+/// Sums of squared errors, in SI units and in noise variances, with their numbers of rows.
 #[derive(Default, Clone, Copy)]
 struct Squares {
     sum: f64,

@@ -1,4 +1,4 @@
-//! One noise sd of each channel for a whole study, so that the lines of its error ledger compare.
+//! Fixed sigmas: one noise standard deviation for each channel of a study, in which all its errors are comparable.
 
 use std::collections::BTreeMap;
 
@@ -11,24 +11,24 @@ use crate::finished_calibration::FinishedCalibration;
 use crate::words::data_channel::{ShownUnit, short_name};
 use crate::words::number;
 
-/// The noise sd of a channel that every line of a ledger is measured by.
+/// The noise standard deviation of a channel for a whole study.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
 pub struct FixedSigma {
-    /// The sd [channel's unit].
+    /// Standard deviation [channel's unit].
     pub sd: f64,
-    /// Where it comes from.
+    /// Source of the value.
     pub source: SigmaSource,
 }
 
-/// Where a noise sd comes from.
+/// Source of a noise standard deviation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum SigmaSource {
     /// The experiment, or its runs, declare it.
     Declared,
-    /// The fitted repeats of a condition scatter so.
+    /// Scatter of fitted repeats of a condition.
     Repeats,
-    /// The first calibration inferred it from its own misfit.
+    /// Inferred by the first calibration from its misfit.
     Inferred,
 }
 
@@ -42,24 +42,24 @@ impl SigmaSource {
     }
 }
 
-/// The noise sds of a study.
+/// The noise standard deviations of a study.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FixedSigmas(BTreeMap<Channel, FixedSigma>);
 
 impl FixedSigmas {
-    /// Of a study whose first calibration this is: declared; else the scatter of fitted repeats; else the noise that the
-    /// calibration inferred.
-    pub fn of(first: &FinishedCalibration) -> Self {
-        let own = |channel| Some((channel, fixed_sigma(first, channel)?));
-        FixedSigmas(Channel::ALL.into_iter().filter_map(own).collect())
+    /// Chooses the noise of each channel for a study whose first calibration is given: declared, else from the scatter of fitted repeats,
+    /// else inferred by that calibration.
+    pub fn new(first: &FinishedCalibration) -> Self {
+        let sigma = |channel| Some((channel, fixed_sigma(first, channel)?));
+        FixedSigmas(Channel::ALL.into_iter().filter_map(sigma).collect())
     }
 
-    /// That of a channel.
+    /// Returns the noise of a channel.
     pub fn get(&self, channel: Channel) -> Option<FixedSigma> {
         self.0.get(&channel).copied()
     }
 
-    /// By name of the channel.
+    /// Returns the noise of each channel by the channel's name.
     pub fn by_name(&self) -> BTreeMap<String, FixedSigma> {
         let named = self
             .0
@@ -68,10 +68,10 @@ impl FixedSigmas {
         named.collect()
     }
 
-    /// `pull 1.2 N (declared), sinkage 0.58 mm (from repeats of a condition)`.
+    /// Lists the noise by channel: `pull 1.2 N (declared), sinkage 0.58 mm (from repeats of a condition)`.
     pub fn words(&self) -> String {
         let words = self.0.iter().map(|(&channel, sigma)| {
-            let unit = ShownUnit::of(channel);
+            let unit = ShownUnit::new(channel);
             let sd = number::significant(sigma.sd * unit.factor, 2);
             format!(
                 "{} {sd} {} ({})",
@@ -116,7 +116,7 @@ fn fixed_sigma(first: &FinishedCalibration, channel: Channel) -> Option<FixedSig
 }
 
 impl ErrorTable {
-    /// The table with its errors also in these noise sds, whatever they were in before.
+    /// Returns the table with `rmse_fixed_sigma` computed for the given noise standard deviations.
     #[must_use]
     pub fn in_fixed_sigmas(mut self, sigmas: &FixedSigmas) -> ErrorTable {
         let (mut squares, mut rows) = (0.0, 0);
@@ -143,10 +143,10 @@ mod tests {
     #[test]
     fn a_declared_noise_comes_first_and_an_inferred_one_last() {
         let calibration = fixture::calibration();
-        let sigmas = FixedSigmas::of(&calibration);
+        let sigmas = FixedSigmas::new(&calibration);
         let pull = sigmas.get(Channel::DrawbarPull).unwrap();
         assert_eq!((pull.sd, pull.source), (1.0, SigmaSource::Declared));
-        // Three fitted measurements at three conditions: no repeats.
+        // The three fitted measurements have three conditions, so there are no repeats.
         let sinkage = sigmas.get(Channel::Sinkage).unwrap();
         assert_eq!(sinkage.source, SigmaSource::Inferred);
         assert_eq!(sigmas.get(Channel::Torque), None);
@@ -159,7 +159,7 @@ mod tests {
 
     #[test]
     fn errors_of_different_calibrations_are_in_the_same_noise() {
-        let sigmas = FixedSigmas::of(&fixture::calibration());
+        let sigmas = FixedSigmas::new(&fixture::calibration());
         let table = fixture::calibration()
             .comparison()
             .fit

@@ -1,4 +1,4 @@
-//! Errors by level of a condition, and by wheel.
+//! Error groups: errors by level of a condition, and by wheel.
 
 use std::collections::BTreeMap;
 
@@ -8,7 +8,7 @@ use super::level::{Level, few_levels};
 use super::row::{ComparisonRow, rows_of};
 use crate::words::number;
 
-/// Reads a condition from a row.
+/// A function that reads a condition from a row.
 type Condition = fn(&ComparisonRow) -> f64;
 
 /// The errors of the rows at one level of a condition, or of one wheel.
@@ -21,9 +21,9 @@ pub struct ErrorGroup {
     /// Criterion of the group.
     #[schema(value_type = String)]
     pub by: GroupBy,
-    /// The wheel, of a group by wheel.
+    /// The wheel; null for a group by a condition.
     pub wheel: Option<String>,
-    /// Least value of the condition `[N, m/s, deg, of slip 1]`; null of a wheel.
+    /// Smallest value of the condition `[N, m/s, deg; 1 for slip]`; null for a group by wheel.
     pub from: Option<f64>,
     /// Largest value of the condition.
     pub to: Option<f64>,
@@ -52,14 +52,14 @@ pub enum GroupBy {
 pub struct GroupError {
     /// Root mean square of (measured - predicted) / noise sd.
     pub rmse_sigma: f64,
-    /// Mean of the same: above 0 the model predicts too little.
+    /// Mean of (measured - predicted) / noise sd; positive if the model predicts too little.
     pub mean_sigma: f64,
-    /// Rows that count.
+    /// Number of rows.
     pub runs: usize,
 }
 
 impl ErrorGroup {
-    /// `slip 0.050`, `load 60.0 to 61.2 N`, `wheel w`.
+    /// Names the group: `slip 0.050`, `load 60.0 to 61.2 N`, `wheel w`.
     pub fn words(&self) -> String {
         let (what, scale, decimals, unit) = match self.by {
             GroupBy::WheelLoad => ("load", 1.0, 1, " N"),
@@ -77,13 +77,14 @@ impl ErrorGroup {
 }
 
 impl GroupError {
-    /// `1.23 (+0.41) 6`: root mean square, mean, rows.
+    /// Returns root mean square, mean and number of rows: `1.23 (+0.41) 6`.
     pub fn words(&self) -> String {
         format!("{:.2} ({:+.2}) {}", self.rmse_sigma, self.mean_sigma, self.runs)
     }
 }
 
-/// Fitted rows, then the others, each by slip, load, speed, slip angle and wheel; conditions on one level only are left out.
+/// Groups the fitted rows, then the holdout rows, by slip, load, speed, slip angle and wheel; conditions with a single level are left
+/// out.
 pub fn error_groups(rows: &[ComparisonRow]) -> Vec<ErrorGroup> {
     let conditions: [(GroupBy, Condition); 4] = [
         (GroupBy::Slip, |r| r.slip),
@@ -93,13 +94,13 @@ pub fn error_groups(rows: &[ComparisonRow]) -> Vec<ErrorGroup> {
     ];
     let mut groups = Vec::new();
     for usage in [RunUse::Fit, RunUse::Holdout] {
-        let own = || rows_of(rows, usage);
+        let selected = || rows_of(rows, usage);
         for (by, value) in conditions {
-            // The same levels for both uses, so that they can be compared.
+            // Fitted and holdout rows have the same levels, so that they can be compared.
             let levels = few_levels(rows.iter().map(value));
             for level in levels.iter().filter(|_| levels.len() > 1) {
                 let Level { from, to } = *level;
-                let channels = errors(own().filter(|r| level.holds(value(r))));
+                let channels = errors(selected().filter(|r| level.holds(value(r))));
                 groups.push(ErrorGroup {
                     usage,
                     by,
@@ -120,7 +121,7 @@ pub fn error_groups(rows: &[ComparisonRow]) -> Vec<ErrorGroup> {
                 wheel: Some((*wheel).to_owned()),
                 from: None,
                 to: None,
-                channels: errors(own().filter(|r| r.wheel == *wheel)),
+                channels: errors(selected().filter(|r| r.wheel == *wheel)),
             });
         }
     }
@@ -138,17 +139,17 @@ fn errors<'a>(rows: impl Iterator<Item = &'a ComparisonRow>) -> BTreeMap<String,
                 .push(residual);
         }
     }
-    let error = |own: &Vec<f64>| {
-        let count = own.len() as f64;
+    let error = |residuals: &Vec<f64>| {
+        let count = residuals.len() as f64;
         GroupError {
-            rmse_sigma: (own.iter().map(|r| r * r).sum::<f64>() / count).sqrt(),
-            mean_sigma: own.iter().sum::<f64>() / count,
-            runs: own.len(),
+            rmse_sigma: (residuals.iter().map(|r| r * r).sum::<f64>() / count).sqrt(),
+            mean_sigma: residuals.iter().sum::<f64>() / count,
+            runs: residuals.len(),
         }
     };
     residuals
         .iter()
-        .map(|(channel, own)| (channel.clone(), error(own)))
+        .map(|(channel, residuals)| (channel.clone(), error(residuals)))
         .collect()
 }
 
@@ -159,7 +160,7 @@ mod tests {
     use super::*;
     use crate::fixture;
 
-    /// (use, words, pull) of every group that has pull.
+    /// Returns use, words and figures of every group that has pull.
     fn pulls(rows: &[ComparisonRow]) -> Vec<(String, String, [f64; 3])> {
         let groups = error_groups(rows);
         let pull = |g: &ErrorGroup| {

@@ -1,4 +1,4 @@
-//! The error ledger: errors of the calibrations of a study, each beside the one before.
+//! The error ledger: the errors of the calibrations of a study, each compared with the previous one.
 
 use shared::channel::Channel;
 use shared::experiment::RunUse;
@@ -11,38 +11,38 @@ use crate::finished_calibration::FinishedCalibration;
 use crate::study::Study;
 use crate::words::number;
 
-/// Growth of an error that counts as worse: below it, draws and runs scatter.
+/// Ratio of an error to the previous one above which it counts as worse; smaller changes may be scatter.
 const WORSE: f64 = 1.05;
 
-/// A calibration of the ledger.
+/// A line of the error ledger.
 pub struct LedgerLine<'a> {
     /// The calibration that the line is about.
     pub calibration: &'a FinishedCalibration,
-    /// `base`, or what it has, and its runs where there are more.
+    /// `base`, or the added effects and freed parameters; with the number of runs if runs were added.
     pub model: String,
-    /// Fitted runs, then those held out.
+    /// Errors on the fitted runs, then on the holdout runs.
     pub rows: Vec<LedgerRow>,
 }
 
-/// The errors of a calibration on fitted runs, or on others.
+/// The errors of a calibration on the fitted or the holdout runs.
 pub struct LedgerRow {
     /// Whether the runs were fitted or held out.
     pub usage: RunUse,
-    /// In SI units, and in the noise sds of the study.
+    /// Errors in SI units, and in the noise standard deviations of the study.
     pub errors: ErrorTable,
-    /// Channels whose error is more than 5 % above that of the line before, on the same measurements.
+    /// Channels whose error is more than 5 % larger than in the previous line, on the same measurements.
     pub worse: Vec<Channel>,
-    /// How many 90 % intervals contain their measurement.
+    /// Coverage of the 90 % intervals.
     pub coverage: Option<Coverage>,
 }
 
 impl Study {
-    /// The noise sds that all lines of the ledger are measured by.
+    /// Returns the noise standard deviations that all lines of the ledger are measured in.
     pub fn fixed_sigmas(&self) -> FixedSigmas {
-        FixedSigmas::of(&self.lead)
+        FixedSigmas::new(&self.lead)
     }
 
-    /// The ledger, line by line.
+    /// Returns the lines of the ledger.
     pub fn ledger_lines(&self) -> Vec<LedgerLine<'_>> {
         let sigmas = self.fixed_sigmas();
         let mut lines: Vec<LedgerLine> = Vec::new();
@@ -50,12 +50,12 @@ impl Study {
             let comparison = calibration.comparison();
             let row = |(usage, errors): (RunUse, &Option<ErrorTable>)| {
                 let errors = errors.clone()?.in_fixed_sigmas(&sigmas);
-                // Errors on other measurements say nothing.
+                // Errors on other measurements are not comparable.
                 let last = lines
                     .last()
                     .filter(|line| line.calibration.row.experiment == calibration.row.experiment)
                     .and_then(|line| line.rows.iter().find(|r| r.usage == usage));
-                // Nor do those of a model that refuses more or fewer of them.
+                // Errors are not comparable either if the models refuse different numbers of measurements.
                 let last = last.filter(|row| row.errors.all.unpredicted == errors.all.unpredicted);
                 let is_worse = |channel: &Channel| {
                     let before = last.and_then(|last| last.errors.channel(*channel));
@@ -124,17 +124,20 @@ mod tests {
         };
         assert_eq!(marked(0.0, &|_| ()), []);
         assert_eq!(marked(0.05, &|_| ()), [Channel::Sinkage]);
-        assert_eq!(marked(0.05, &|own| own.row.experiment += 1), []);
+        assert_eq!(marked(0.05, &|extension| extension.row.experiment += 1), []);
     }
 
     #[test]
     fn errors_are_not_compared_where_a_model_refuses_runs_that_the_one_before_predicts() {
-        // The runs that both predict got worse.
+        // The second model is worse on the runs that both models predict.
         let after = || {
             let mut refused = fixture::with_refused_runs();
             refused.row.id += 1;
-            let holdouts = refused.predictions.iter_mut().flat_map(|own| &mut own.holdout);
-            for observables in holdouts.flat_map(|own| own.alone.values_mut().flatten()) {
+            let holdouts = refused
+                .predictions
+                .iter_mut()
+                .flat_map(|prediction| &mut prediction.holdout);
+            for observables in holdouts.flat_map(|holdout| holdout.alone.values_mut().flatten()) {
                 observables.drawbar_pull_n.iter_mut().for_each(|f| *f += 500.0);
             }
             refused

@@ -1,36 +1,37 @@
-//! Levels of a condition: values that differ too little to be different on purpose are one.
+//! Levels of a condition: groups of values that differ too little to be set on purpose.
 
-/// Values within so much of the range are one level.
+/// Width of a level as a share of the range of all values.
 const TOLERANCE: f64 = 0.02;
-/// Values whose whole range is less than this share of the largest are one level: a condition that a rig holds so well does not vary.
+/// Ratio of the range to the largest absolute value below which all values are one level, because the rig holds the condition constant.
 const HELD: f64 = 0.01;
-/// More levels than a table can show.
+/// Maximum number of levels in a table.
 const MAX_LEVELS: usize = 12;
 
-/// Values of a condition that count as one, from the least to the largest.
+/// A range of values of a condition that count as one level.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Level {
-    /// Least value.
+    /// Smallest value.
     pub from: f64,
     /// Largest value.
     pub to: f64,
 }
 
 impl Level {
-    /// Whether a value belongs to it.
+    /// Returns whether a value belongs to the level.
     pub fn holds(self, value: f64) -> bool {
         (self.from..=self.to).contains(&value)
     }
 }
 
-/// The levels of some values, the least first: a level spans less than 2 % of the range, or all values where they differ by less than 1 %.
+/// Groups values into levels, the smallest first. A level spans less than 2 % of the range; values that differ by less than 1 % are one
+/// level.
 pub fn levels(values: impl IntoIterator<Item = f64>) -> Vec<Level> {
     let mut sorted: Vec<f64> = values.into_iter().collect();
     sorted.sort_by(f64::total_cmp);
     within(&sorted, TOLERANCE)
 }
 
-/// The same for a table: where conditions scatter so much that there are more than twelve, wider ones.
+/// Groups values into at most twelve levels for a table, by doubling the tolerance as often as necessary.
 pub fn few_levels(values: impl IntoIterator<Item = f64>) -> Vec<Level> {
     let mut sorted: Vec<f64> = values.into_iter().collect();
     sorted.sort_by(f64::total_cmp);
@@ -81,7 +82,7 @@ mod tests {
         assert_eq!(bounds(&levels(loads)), [[59.9, 60.4], [120.0, 121.0]]);
         assert_eq!(bounds(&levels([25.0, 25.0])), [[25.0, 25.0]]);
         assert_eq!(bounds(&levels([])), [[0.0; 2]; 0]);
-        // 2 % of the range is the next level.
+        // A value 2 % of the range above the first belongs to the next level.
         assert_eq!(bounds(&levels([0.0, 0.02, 1.0])).len(), 3);
         let one = levels(loads)[0];
         assert!(one.holds(60.0) && !one.holds(120.0));

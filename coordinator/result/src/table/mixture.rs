@@ -1,24 +1,24 @@
-//! The mixture that a new measurement is distributed by: each draw of the posterior with each value of the discrepancy.
+//! Mixture distribution of a new measurement, with a component for each draw and each value of the discrepancy.
 
 use statistics::ErrorLaw;
 
-/// One draw of the posterior with one value of the discrepancy.
+/// A component of the mixture: one draw of the posterior with one value of the discrepancy.
 #[derive(Debug, Clone, Copy)]
 pub struct Component {
     /// The model's value [channel's unit].
     pub mean: f64,
-    /// Noise, scatter and discrepancy together [channel's unit]; `None` where no noise is known.
+    /// Scale of noise, scatter and discrepancy together [channel's unit]; `None` if the noise is unknown.
     pub scale: Option<f64>,
     /// Probability of this value of the discrepancy.
     pub weight: f64,
 }
 
-/// A component with a smaller share of the weight moves no quantile visibly.
+/// Share of the average weight below which a component is ignored.
 const MIN_SHARE: f64 = 1e-12;
 /// Width of the bracket that ends a search for a quantile, as a share of the first bracket.
 const CLOSE: f64 = 1e-13;
 
-/// The y below which a share p of the mixture lies; without noise, of the values themselves.
+/// Returns the quantile y of the mixture at probability p; without noise, the quantile of the means.
 pub(super) fn quantile(components: &[Component], law: ErrorLaw, p: f64) -> f64 {
     let total: f64 = components.iter().map(|c| c.weight).sum();
     let counted: Vec<Component> = components
@@ -43,7 +43,7 @@ pub(super) fn quantile(components: &[Component], law: ErrorLaw, p: f64) -> f64 {
             false => ends.fold(f64::NEG_INFINITY, f64::max),
         }
     };
-    // Ten scales hold the quantile of normal errors; heavy tails may reach further.
+    // For normal errors, ten scales on each side contain the quantile. Heavy tails may need more.
     let mut reach = 10.0;
     while law != ErrorLaw::Gaussian
         && reach < 1e6
@@ -54,8 +54,8 @@ pub(super) fn quantile(components: &[Component], law: ErrorLaw, p: f64) -> f64 {
     crossing(|y| share_below(y) - p, end(-reach), end(reach))
 }
 
-/// Where a rising function crosses zero, by inverse quadratic interpolation where that is safe and bisection elsewhere; an end where
-/// it does not.
+/// Finds where a rising function crosses zero by inverse quadratic interpolation, with bisection where that is unsafe; returns an end of
+/// the interval if there is no crossing.
 ///
 /// # Source
 /// Chandrupatla 1997, Adv. Eng. Softw. 28(3):145, doi:10.1016/S0965-9978(96)00051-8. Checked by
@@ -73,7 +73,7 @@ fn crossing(rising: impl Fn(f64) -> f64, low: f64, high: f64) -> f64 {
     loop {
         let y = a.0 + share * (b.0 - a.0);
         let new = (y, rising(y));
-        // The bracket is between `a`, the newest, and `b`; `c` is the end that was left.
+        // The bracket lies between `a`, the newest point, and `b`; `c` is the previous end.
         let c = if (new.1 < 0.0) == (a.1 < 0.0) {
             a
         } else {
@@ -113,9 +113,9 @@ mod tests {
     #[test]
     fn quantiles_of_one_normal_are_the_normal_s() {
         let draws = [component(3.0, 2.0, 1.0); 5];
-        let of = |p| quantile(&draws, ErrorLaw::Gaussian, p);
-        assert!((of(0.95) - (3.0 + 2.0 * 1.644_853_627)).abs() < 1e-6);
-        assert!((of(0.05) - (3.0 - 2.0 * 1.644_853_627)).abs() < 1e-6);
+        let at = |p| quantile(&draws, ErrorLaw::Gaussian, p);
+        assert!((at(0.95) - (3.0 + 2.0 * 1.644_853_627)).abs() < 1e-6);
+        assert!((at(0.05) - (3.0 - 2.0 * 1.644_853_627)).abs() < 1e-6);
     }
 
     #[test]
@@ -132,7 +132,7 @@ mod tests {
         let draws = [component(-5.0, 1.0, 1.0), component(5.0, 1.0, 1.0)];
         assert!(quantile(&draws, ErrorLaw::Gaussian, 0.95) > 5.0);
         assert!(quantile(&draws, ErrorLaw::Gaussian, 0.05) < -5.0);
-        // With one part as good as sure, the other hardly counts.
+        // A component of negligible weight does not change the quantile.
         let draws = [component(-5.0, 1.0, 1e-9), component(5.0, 1.0, 1.0)];
         assert!((quantile(&draws, ErrorLaw::Gaussian, 0.05) - (5.0 - 1.644_853_627)).abs() < 1e-6);
     }

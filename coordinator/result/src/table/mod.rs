@@ -1,15 +1,14 @@
-//! Model against measurement: tables of a calibration.
+//! Tables that compare models with measurements: rows, errors, intervals, the error ledger.
 //!
 //! # Layout
-//! - `row`: a measured channel of a run beside its prediction. `comparison`: all rows with their errors; `compared`:
-//!   that of a calibration.
-//! - `ledger`: errors of the calibrations of a study; `fixed_sigma`: the noise that they are measured by.
-//! - `errors`: root mean square errors by channel. `group`: by level of a condition; `level`: those levels.
-//! - `interpolation`: interpolation without physics. `predictive`: the posterior predictive distribution; `mixture`: its
-//!   quantiles. `correction`: predictions corrected by what the model misses (`corrected`); `combination`: those of
-//!   all models together (`combined_row`); `prediction`: all of them, run by run. `conditions`: those of the rig as coordinates.
+//! - `row`: a measured channel of a run with its predictions. `comparison`: all rows with their errors; `compared` computes it.
+//! - `ledger`: errors of the calibrations of a study; `fixed_sigma`: the noise standard deviations in which they compare.
+//! - `errors`: root mean square errors by channel. `group`: errors by level of a condition; `level`: these levels.
+//! - `predictive`: the posterior predictive distribution; `mixture`: its quantiles. `interpolation`: interpolation without physics.
+//! - `correction`: predictions corrected by the model's errors in other conditions (`corrected`); `conditions`: coordinates of the rig.
+//! - `combination`: the average over the models of a study (`combined_row`); `prediction`: all predictions, run by run.
 //! - `coverage`: measurements inside their intervals. `readings`: errors of plates and rings.
-//! - `refusal`: draws at which the model refuses a run. `error_model`: the error model in words. `posterior`: the draws.
+//! - `refusal`: draws at which the model refuses a run. `error_model`: the error model in words. `posterior`: draws as a table.
 
 mod combination;
 pub mod combined_row;

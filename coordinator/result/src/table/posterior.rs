@@ -1,4 +1,4 @@
-//! The posterior as a table.
+//! The posterior draws as a table with names of columns, and as CSV.
 
 use crate::finished_calibration::FinishedCalibration;
 
@@ -7,12 +7,12 @@ use crate::finished_calibration::FinishedCalibration;
 pub struct PosteriorTable {
     /// `log_likelihood`, `log_prior`, then the parameters.
     pub columns: Vec<String>,
-    /// One row for each draw; none of a fit, whose point is no draw.
+    /// One row for each draw; empty for a fit.
     pub rows: Vec<Vec<f64>>,
 }
 
 impl FinishedCalibration {
-    /// The equally weighted draws.
+    /// Returns the equally weighted draws as a table.
     pub fn posterior_table(&self) -> PosteriorTable {
         let parameters = self.spec.parameters.iter().map(|p| p.name.clone());
         let columns = ["log_likelihood".to_owned(), "log_prior".to_owned()]
@@ -32,7 +32,7 @@ impl FinishedCalibration {
 }
 
 impl PosteriorTable {
-    /// The table as CSV; every number comes back to the bit.
+    /// Returns the table as CSV, in which every number keeps all its bits.
     pub fn to_csv(&self) -> String {
         let mut text = self.columns.join(",");
         text.push('\n');

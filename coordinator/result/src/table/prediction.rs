@@ -1,4 +1,4 @@
-//! Every run as the models of a study predict it.
+//! Prediction rows: every run and channel with the predictions of the models of a study, also as CSV.
 
 use shared::channel::Channel;
 use shared::experiment::RunUse;
@@ -6,8 +6,8 @@ use shared::experiment::RunUse;
 use super::combined_row::CombinedRow;
 use crate::study::Study;
 
-/// A run and channel: measured, by the current model, by that model corrected, by all models together, and interpolated. Values are in
-/// the channel's SI unit; `None` where there is no prediction.
+/// The measurement of a run and channel with its predictions: by the current model, corrected, by all models combined, and interpolated.
+/// Values are in the channel's SI unit; `None` if there is no prediction.
 #[derive(Debug, Clone, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
 pub struct PredictionRow {
     /// Name of the run.
@@ -29,37 +29,38 @@ pub struct PredictionRow {
     /// Channel without unit.
     #[schema(value_type = String)]
     pub channel: Channel,
-    /// Unit of the next figures.
+    /// Unit of the following values.
     pub unit: String,
-    /// Measured.
+    /// Measured value.
     pub measured: f64,
     /// Posterior mean of the current model.
     pub model: Option<f64>,
     /// 5 % quantile of a new measurement.
     pub model_q05: Option<f64>,
-    /// 95 % quantile.
+    /// 95 % quantile of a new measurement.
     pub model_q95: Option<f64>,
-    /// The same with what the model misses, estimated from the fitted conditions; of a fitted run, from the others.
+    /// Corrected prediction: the model plus its discrepancy, which is estimated from the fitted conditions; for a fitted run from the
+    /// other conditions.
     pub corrected: Option<f64>,
     /// 5 % quantile of a new measurement.
     pub corrected_q05: Option<f64>,
-    /// 95 % quantile.
+    /// 95 % quantile of a new measurement.
     pub corrected_q95: Option<f64>,
     /// Weighted mean of the corrected predictions of the ledger's models.
     pub combined: Option<f64>,
     /// 5 % quantile of a new measurement.
     pub combined_q05: Option<f64>,
-    /// 95 % quantile.
+    /// 95 % quantile of a new measurement.
     pub combined_q95: Option<f64>,
-    /// How many models it averages.
+    /// Number of models in the average.
     pub models: usize,
     /// Interpolation of the fitted measurements, without a model.
     pub interpolated: Option<f64>,
 }
 
 impl PredictionRow {
-    fn of(own: &CombinedRow) -> Self {
-        let row = own.row.clone();
+    fn new(combined: &CombinedRow) -> Self {
+        let row = combined.row.clone();
         PredictionRow {
             run: row.run,
             usage: row.usage,
@@ -77,53 +78,30 @@ impl PredictionRow {
             corrected: row.corrected,
             corrected_q05: row.corrected_q05,
             corrected_q95: row.corrected_q95,
-            combined: own.mean,
-            combined_q05: own.interval.map(|[q05, _]| q05),
-            combined_q95: own.interval.map(|[_, q95]| q95),
-            models: own.models,
+            combined: combined.mean,
+            combined_q05: combined.interval.map(|[q05, _]| q05),
+            combined_q95: combined.interval.map(|[_, q95]| q95),
+            models: combined.models,
             interpolated: row.interpolated,
         }
     }
 }
 
 impl Study {
-    /// Every measurement that the current model is compared with.
+    /// Returns a row for each measurement that the current model is compared with.
     pub fn predictions(&self) -> Vec<PredictionRow> {
-        self.combined().iter().map(PredictionRow::of).collect()
+        self.combined().iter().map(PredictionRow::new).collect()
     }
 }
 
-/// The columns of `predictions.csv`, the fields of a row.
-const COLUMNS: [&str; 21] = [
-    "run",
-    "use",
-    "wheel",
-    "slip",
-    "slip_angle_deg",
-    "wheel_load_n",
-    "sled_speed_m_s",
-    "channel",
-    "unit",
-    "measured",
-    "model",
-    "model_q05",
-    "model_q95",
-    "corrected",
-    "corrected_q05",
-    "corrected_q95",
-    "combined",
-    "combined_q05",
-    "combined_q95",
-    "models",
-    "interpolated",
-];
+/// The line of titles of `predictions.csv`, in the order of the fields of a row.
+const TITLES: &str = "run,use,wheel,slip,slip_angle_deg,wheel_load_n,sled_speed_m_s,channel,unit,measured,model,model_q05,model_q95,corrected,corrected_q05,corrected_q95,combined,combined_q05,combined_q95,models,interpolated\n";
 
-/// The content of `predictions.csv`; without rows, its title line.
+/// Returns the content of `predictions.csv`; without rows, the line of titles only.
 pub fn to_csv(rows: &[PredictionRow]) -> String {
     let mut writer = csv::WriterBuilder::new()
         .has_headers(false)
-        .from_writer(Vec::new());
-    writer.write_record(COLUMNS).expect("names have a CSV form");
+        .from_writer(TITLES.as_bytes().to_vec());
     for row in rows {
         writer.serialize(row).expect("a row has a CSV form");
     }
@@ -140,7 +118,7 @@ mod tests {
     fn a_fit_without_draws_has_its_own_predictions() {
         let study = Study::from(fixture::search());
         let rows = study.combined();
-        assert!(rows.iter().any(|own| own.row.predicted.is_some()));
+        assert!(rows.iter().any(|row| row.row.predicted.is_some()));
         let csv = to_csv(&study.predictions());
         assert_eq!(csv.lines().count(), 1 + rows.len());
     }
@@ -151,12 +129,12 @@ mod tests {
         let csv = to_csv(&study.predictions());
         let lines: Vec<&str> = csv.lines().collect();
         assert_eq!(lines.len(), 1 + study.lead.comparison().rows.len());
-        let column = |name: &str| lines[0].split(',').position(|own| own == name).unwrap();
+        let column = |name: &str| lines[0].split(',').position(|title| title == name).unwrap();
         let h1 = lines
             .iter()
             .find(|line| line.starts_with("h1,holdout") && line.contains("pull"));
         let cells: Vec<&str> = h1.unwrap().split(',').collect();
-        // Of one model the combined prediction is the corrected one.
+        // With one model the combined prediction is the corrected one.
         assert_eq!(cells[column("combined")], cells[column("corrected")]);
         assert_eq!(cells[column("models")], "1");
         let fast = lines.iter().find(|line| line.starts_with("fast,")).unwrap();
@@ -166,7 +144,7 @@ mod tests {
     #[test]
     fn the_title_line_names_the_fields_of_a_row() {
         let study = Study::from(fixture::with_smooth_misfit());
-        // Which a writer that knows the fields alone begins with.
+        // A writer with default settings takes the titles from the names of the fields.
         let mut writer = csv::Writer::from_writer(Vec::new());
         writer.serialize(&study.predictions()[0]).unwrap();
         let titled = String::from_utf8(writer.into_inner().unwrap()).unwrap();

@@ -1,4 +1,4 @@
-//! The posterior predictive distribution of every run and channel.
+//! The posterior predictive distribution of a run and channel, and its components for each draw.
 
 use job::Spec;
 use record::Prediction;
@@ -17,17 +17,17 @@ use crate::finished_calibration::FinishedCalibration;
 pub struct Predictive {
     /// Mean of the model over the posterior, or its value at the point that a fit found [channel's unit].
     pub mean: f64,
-    /// 5 % and 95 % quantile of a new measurement on a new soil bed, in a condition not seen before: model, noise, scatter
-    /// of the soil and discrepancy. `None` of a fit, which has no distribution.
+    /// 5 % and 95 % quantile of a new measurement on a new soil bed in a new condition, with noise, scatter of the soil and discrepancy.
+    /// `None` for a fit, which has no distribution.
     pub interval: Option<[f64; 2]>,
     /// Noise standard deviation: declared, its posterior mean, or fitted.
     pub noise_sd: Option<f64>,
-    /// Scale of all errors about the model's value, its root mean square over the draws: noise, scatter of the soil and
-    /// discrepancy. Of normal errors it is their standard deviation.
+    /// Scale of the total error (noise, scatter of the soil, discrepancy): the root mean square over the draws. For normal errors it is
+    /// the standard deviation.
     pub error_sd: Option<f64>,
 }
 
-/// Source of the noise sd of a channel of a run.
+/// Returns the source of the noise of a channel in a run.
 fn noise_source(calibration: &FinishedCalibration, run: usize, channel: Channel) -> Option<ErrorSd> {
     let spec = &calibration.spec;
     let c = channel.index();
@@ -40,7 +40,7 @@ fn noise_source(calibration: &FinishedCalibration, run: usize, channel: Channel)
                 .position(|p| p.name == name)
                 .map(|parameter| ErrorSd::Inferred { parameter })
         }
-        // Pooled from the fitted repeats: every fitted datum of the channel without an sd of its own has it.
+        // The noise is pooled from fitted repeats. Each fitted datum of the channel without its own standard deviation has it.
         (None, Some(NoiseSd::Replicates)) => {
             let shares = |d: &&statistics::Datum| {
                 d.channel == c && spec.experiment.runs[spec.fit_runs[d.run]].sd[c].is_none()
@@ -51,8 +51,8 @@ fn noise_source(calibration: &FinishedCalibration, run: usize, channel: Channel)
     }
 }
 
-/// The predictive distribution of a run and channel; `None` where every draw was rejected, of a held-out run half of them
-/// or more.
+/// Returns the predictive distribution of a run and channel; `None` if the model rejects every draw, or half of the draws or more in a
+/// holdout run.
 pub fn predictive(
     calibration: &FinishedCalibration,
     levels: &Levels,
@@ -60,7 +60,9 @@ pub fn predictive(
     channel: Channel,
 ) -> Option<Predictive> {
     let refusal = || calibration.refusal(run);
-    if calibration.spec.holdout_runs.contains(&run) && refusal().is_some_and(|own| own.is_at_half_or_more()) {
+    if calibration.spec.holdout_runs.contains(&run)
+        && refusal().is_some_and(|refusal| refusal.is_at_half_or_more())
+    {
         return None;
     }
     let draws = new_measurements(calibration, levels, run, channel)?;
@@ -80,7 +82,7 @@ pub fn predictive(
     })
 }
 
-/// The root mean square of the scales; `None` where one of them is not known.
+/// Returns the root mean square of the scales; `None` if one of them is unknown.
 fn error_sd(components: &[Component]) -> Option<f64> {
     let squares: Option<Vec<(f64, f64)>> = components
         .iter()
@@ -89,18 +91,18 @@ fn error_sd(components: &[Component]) -> Option<f64> {
     weighted_mean(&squares?).map(f64::sqrt)
 }
 
-/// What a final draw says of a new measurement.
+/// The prediction of a new measurement by one final draw.
 #[derive(Debug, Clone)]
 pub struct NewMeasurement {
     /// Number of the draw.
     pub draw: usize,
-    /// Standard deviation of the noise alone [channel's unit]; `None` where none is known.
+    /// Standard deviation of the noise only [channel's unit]; `None` if it is unknown.
     pub noise_sd: Option<f64>,
-    /// The model's value with the scale of the error about it, for each value of the discrepancy.
+    /// The model's value and the scale of the error, for each value of the discrepancy.
     pub components: Vec<Component>,
 }
 
-/// What the final draws say of new measurements.
+/// Predictions of new measurements by the final draws of a calibration.
 #[derive(Debug)]
 pub struct NewMeasurements<'a> {
     calibration: &'a FinishedCalibration,
@@ -108,13 +110,13 @@ pub struct NewMeasurements<'a> {
 }
 
 impl<'a> NewMeasurements<'a> {
-    /// Of a calibration.
-    pub fn of(calibration: &'a FinishedCalibration) -> Self {
-        let levels = Levels::of(calibration);
+    /// Prepares predictions of new measurements from a calibration.
+    pub fn new(calibration: &'a FinishedCalibration) -> Self {
+        let levels = Levels::new(calibration);
         NewMeasurements { calibration, levels }
     }
 
-    /// Of a run and channel, from the draws that the model accepts.
+    /// Predicts a run and channel at each draw that the model accepts.
     ///
     /// # Arguments
     /// - `run`: position in the experiment.
@@ -123,7 +125,7 @@ impl<'a> NewMeasurements<'a> {
     }
 }
 
-/// New measurements of a run and channel; `None` of a run that is neither fitted nor held out.
+/// Predicts new measurements of a run and channel at each accepted draw; `None` for a run that is neither fitted nor held out.
 fn new_measurements(
     calibration: &FinishedCalibration,
     levels: &Levels,
@@ -132,13 +134,13 @@ fn new_measurements(
 ) -> Option<Vec<NewMeasurement>> {
     let spec = &calibration.spec;
     let source = noise_source(calibration, run, channel);
-    let place = RunPosition::of(spec, run)?;
+    let place = RunPosition::find(spec, run)?;
     let of_draw = |(draw, theta, observables, position): (usize, &[f64], &Observables, usize)| {
         let noise_sd = source.map(|s| match s {
             ErrorSd::Known(sd) => sd,
             ErrorSd::Inferred { parameter } => theta[parameter],
         });
-        // A model that is not ours may lack the channel.
+        // An external model may not predict the channel.
         let mean = *observables.channel(channel).get(position)?;
         let soil = soil_scatter(calibration, run, channel, (theta, observables, position));
         let component = |&(m, weight): &(f64, f64)| {
@@ -154,7 +156,7 @@ fn new_measurements(
     Some(accepted(calibration, place).filter_map(of_draw).collect())
 }
 
-/// What the scatter of the soil does to a channel of a run, as an sd [channel's unit].
+/// Returns the standard deviation of a channel of a run that the scatter of the soil causes [channel's unit].
 ///
 /// # Arguments
 /// - `draw`: parameters, observables, position of the run in them.
@@ -173,13 +175,13 @@ pub(super) fn soil_scatter(
     shifts.map(|shift| shift * shift).sum::<f64>().sqrt()
 }
 
-/// Of each final draw and channel, the values of the discrepancy with their posterior probabilities; m = 0 without one.
+/// Values of the discrepancy with their posterior probabilities, for each final draw and channel; m = 0 without a discrepancy.
 #[derive(Debug)]
 pub struct Levels(Vec<[Vec<(f64, f64)>; 4]>);
 
 impl Levels {
-    /// The values of every final draw of a calibration.
-    pub fn of(calibration: &FinishedCalibration) -> Self {
+    /// Computes the values of every final draw of a calibration.
+    pub fn new(calibration: &FinishedCalibration) -> Self {
         let draws = calibration.predictive_draws().iter();
         Levels(draws.map(|draw| Self::at(&calibration.spec, draw)).collect())
     }
@@ -195,7 +197,7 @@ impl Levels {
         Channel::ALL.map(|channel| match discrepancies[channel.index()] {
             Discrepancy::None => vec![(0.0, 1.0)],
             Discrepancy::Known(m) => vec![(m, 1.0)],
-            // A draw without predictions, or a channel without fitted data, knows the prior alone.
+            // Without predictions or fitted data, the posterior of the discrepancy is its prior.
             Discrepancy::Unknown => weights.get(channel.index()).cloned().unwrap_or_else(|| {
                 let levels = discrepancy_levels();
                 let share = 1.0 / levels.len() as f64;
@@ -205,13 +207,14 @@ impl Levels {
     }
 }
 
-/// A sd widened by others; itself, to the bit, where these are 0.
-fn widened(sd: f64, others: [f64; 2]) -> f64 {
-    let more: f64 = others.iter().map(|o| o * o).sum();
+/// Adds independent errors to a standard deviation; exactly the same value if they are 0.
+fn widened(sd: f64, further: [f64; 2]) -> f64 {
+    let more: f64 = further.iter().map(|o| o * o).sum();
     if more > 0.0 { (sd * sd + more).sqrt() } else { sd }
 }
 
-/// Of each fitted channel with an unknown discrepancy the posterior probabilities of its values, averaged over the final draws.
+/// Returns the posterior probabilities of the discrepancy's values for each fitted channel with an unknown discrepancy, averaged over the
+/// final draws.
 pub fn discrepancy_posterior(calibration: &FinishedCalibration) -> Vec<(Channel, Vec<(f64, f64)>)> {
     let spec = &calibration.spec;
     let is_fitted = |channel: &Channel| {
@@ -221,7 +224,7 @@ pub fn discrepancy_posterior(calibration: &FinishedCalibration) -> Vec<(Channel,
     let is_unknown =
         |channel: &Channel| spec.likelihood_settings.discrepancies[channel.index()] == Discrepancy::Unknown;
     let unknown = Channel::ALL.into_iter().filter(|c| is_unknown(c) && is_fitted(c));
-    let draws = Levels::of(calibration).0;
+    let draws = Levels::new(calibration).0;
     let posterior = |channel: Channel| {
         let mut sum: Vec<(f64, f64)> = discrepancy_levels().into_iter().map(|m| (m, 0.0)).collect();
         for levels in &draws {
@@ -234,7 +237,7 @@ pub fn discrepancy_posterior(calibration: &FinishedCalibration) -> Vec<(Channel,
     unknown.map(posterior).collect()
 }
 
-/// The mean; the plain one, to the bit, where all weights are 1.
+/// Returns the weighted mean; if all weights are 1, bit for bit the plain mean.
 fn weighted_mean(values: &[(f64, f64)]) -> Option<f64> {
     let plain = values.iter().all(|(_, weight)| (weight - 1.0).abs() <= 0.0);
     if plain {
@@ -253,8 +256,8 @@ pub(super) enum RunPosition {
 }
 
 impl RunPosition {
-    /// `None` of a run that is neither fitted nor held out.
-    pub(super) fn of(spec: &Spec, run: usize) -> Option<Self> {
+    /// Finds the position of a run; `None` if it is neither fitted nor held out.
+    pub(super) fn find(spec: &Spec, run: usize) -> Option<Self> {
         let position = |runs: &[usize]| runs.iter().position(|&r| r == run);
         match position(&spec.fit_runs) {
             Some(position) => Some(RunPosition::Fit(position)),
@@ -263,7 +266,7 @@ impl RunPosition {
     }
 }
 
-/// The final draws that the model accepted: number, parameters, observables, position of the run in them.
+/// Returns the final draws that the model accepts: number, parameters, observables, position of the run in the observables.
 pub(super) fn accepted(
     calibration: &FinishedCalibration,
     place: RunPosition,

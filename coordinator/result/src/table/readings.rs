@@ -1,4 +1,4 @@
-//! Model against plates and rings.
+//! Errors of the model against the readings of plates and rings.
 
 use std::collections::BTreeSet;
 
@@ -11,20 +11,20 @@ use crate::words::number;
 /// Errors of the model against the readings of plates, or of rings.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ReadingError {
-    /// What was measured.
+    /// Kind of test.
     pub test: BevameterTest,
-    /// Tests.
+    /// Number of tests.
     pub tests: usize,
-    /// Readings.
+    /// Number of readings.
     pub readings: usize,
-    /// Root mean square of ln(measured / predicted), predicted being the posterior's mean logarithm.
+    /// Root mean square of ln(measured / predicted); the prediction is the posterior mean of the logarithm.
     pub rms_ln: f64,
-    /// The same after each test's own mean is taken off.
+    /// Root mean square after the mean of each test is subtracted.
     pub rms_ln_within: f64,
 }
 
 impl ReadingError {
-    /// `60 readings in 6 tests of plates: ...`.
+    /// Returns, for example, `60 readings in 6 tests of plates: ...`.
     pub fn words(&self) -> String {
         format!(
             "{} in {} of {}: root mean square error {:.1} %, {:.1} % within tests",
@@ -37,7 +37,7 @@ impl ReadingError {
     }
 }
 
-/// The errors of plates and of rings, where there are any.
+/// Returns the errors of plates and of rings, if the experiment has them.
 pub fn reading_errors(calibration: &FinishedCalibration) -> Vec<ReadingError> {
     let bevameter = &calibration.spec.bevameter;
     let plates = bevameter.plates.iter().map(|r| &*r.test).collect();
@@ -77,12 +77,12 @@ fn error(
     let names: BTreeSet<&str> = tests.iter().copied().collect();
     let mut within = Vec::with_capacity(residuals.len());
     for name in &names {
-        let own: Vec<f64> = (0..tests.len())
+        let of_test: Vec<f64> = (0..tests.len())
             .filter(|&i| tests[i] == *name)
             .map(|i| residuals[i])
             .collect();
-        let mean = own.iter().sum::<f64>() / own.len() as f64;
-        within.extend(own.iter().map(|r| r - mean));
+        let mean = of_test.iter().sum::<f64>() / of_test.len() as f64;
+        within.extend(of_test.iter().map(|r| r - mean));
     }
     Some(ReadingError {
         test,

@@ -1,26 +1,26 @@
-//! Final draws at which the model refuses a run.
+//! Refusal: the final draws at which the model refuses a run.
 
 /// Final draws at which the model refuses a run.
 ///
-/// The prediction of a held-out run rests on the others; where these are half of all or fewer, they speak for parameters that are hardly
-/// probable, and there is no prediction.
+/// The prediction of a holdout run rests on the other draws. If these are at most half of all draws, they represent improbable
+/// parameters only, and there is no prediction.
 #[derive(Debug, Clone, PartialEq, Eq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
 pub struct Refusal {
-    /// Draws that it refuses.
+    /// Number of draws at which the model refuses the run.
     pub draws: usize,
-    /// Of so many.
+    /// Number of final draws.
     pub of: usize,
-    /// Reason of the first of them.
+    /// Reason of the first refusal.
     pub reason: String,
 }
 
 impl Refusal {
-    /// Whether too little is left to predict from: at least half of the draws are refused.
+    /// Returns whether the model refuses at least half of the draws, so that the rest does not suffice for a prediction.
     pub fn is_at_half_or_more(&self) -> bool {
         2 * self.draws >= self.of
     }
 
-    /// `20 of 20 final draws (no_support: ...)`.
+    /// Returns, for example, `20 of 20 final draws (no_support: ...)`.
     pub fn words(&self) -> String {
         format!("{} of {} final draws ({})", self.draws, self.of, self.reason)
     }
@@ -43,7 +43,7 @@ mod tests {
             "5 of 19 final draws (no_support: condition 0: z = 0.11 m)"
         );
         assert!(!some.is_at_half_or_more() && row("h3").predicted.is_some());
-        // The others are as they would be without the refusals, to the bit.
+        // The predictions of the other runs do not change by a bit.
         let before = whole.comparison();
         let unrefused = before.rows.iter().find(|r| r.run == "h0").unwrap();
         assert_eq!(
@@ -57,7 +57,7 @@ mod tests {
             (2, 2)
         );
         assert_eq!(before.holdout.as_ref().unwrap().all.unpredicted, 0);
-        // Interpolation stands beside the model, on the same rows.
+        // Interpolation is judged on the same rows as the model.
         let interpolated = comparison.baseline_holdout.as_ref().unwrap();
         assert_eq!(interpolated.drawbar_pull.unwrap().runs, 2);
         let of_whole = before.baseline_holdout.as_ref().unwrap();
@@ -72,15 +72,10 @@ mod tests {
         let half = row.refused.clone().unwrap();
         assert_eq!((half.draws, half.of), (10, 19));
         assert!(half.is_at_half_or_more() && row.predicted.is_none() && row.q05.is_none());
-        let new = crate::NewMeasurements::of(&refused);
-        let place = refused
-            .spec
-            .experiment
-            .runs
-            .iter()
-            .position(|run| run.name == "h2");
-        // What the other draws say is told all the same: it judges nothing.
-        let told = new.at(place.unwrap(), shared::channel::Channel::DrawbarPull);
-        assert_eq!(told.len(), 9);
+        let new_measurements = crate::NewMeasurements::new(&refused);
+        let place = fixture::position(&refused, "h2");
+        // Predictions by the remaining draws are still available for export.
+        let measurements = new_measurements.at(place, shared::channel::Channel::DrawbarPull);
+        assert_eq!(measurements.len(), 9);
     }
 }

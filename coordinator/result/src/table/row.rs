@@ -1,4 +1,4 @@
-//! A measured channel of a run beside its prediction.
+//! A row of a comparison: a measured channel of a run with its predictions.
 
 use shared::channel::Channel;
 use shared::experiment::RunUse;
@@ -7,7 +7,7 @@ use super::corrected::Corrected;
 use super::interpolation::InterpolatedOver;
 use super::refusal::Refusal;
 
-/// A run and channel.
+/// The measurement of a run and channel with its predictions.
 #[derive(Debug, Clone, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
 pub struct ComparisonRow {
     /// Name of the run.
@@ -29,14 +29,14 @@ pub struct ComparisonRow {
     /// Channel without unit.
     #[schema(value_type = String)]
     pub channel: Channel,
-    /// Unit of the next figures.
+    /// Unit of the following values.
     pub unit: String,
-    /// Measured.
+    /// Measured value.
     pub measured: f64,
-    /// Posterior mean of the model, or its value at the point that a fit found; `None` where every draw was rejected, of a held-out run
-    /// half of them.
+    /// Posterior mean of the model, or its value at the point of a fit; `None` if every draw was rejected, or half of them for a holdout
+    /// run.
     pub predicted: Option<f64>,
-    /// 5 % quantile of a new measurement; `None` of a fit, which has no distribution.
+    /// 5 % quantile of a new measurement; `None` for a fit, which has no distribution.
     pub q05: Option<f64>,
     /// 95 % quantile of a new measurement.
     pub q95: Option<f64>,
@@ -44,32 +44,32 @@ pub struct ComparisonRow {
     pub noise_sd: Option<f64>,
     /// (measured - predicted) / noise sd.
     pub residual_sigma: Option<f64>,
-    /// Standard deviation of all errors that the calibration assumes or infers: noise, scatter of the soil and discrepancy (of Student's
-    /// t the scale); what the diagnosis judges residuals by. Null where no noise is known.
+    /// Standard deviation of the total error that the calibration assumes or infers: noise, scatter of the soil and discrepancy (for
+    /// Student's t the scale). The diagnostics judge residuals by it. Null if the noise is unknown.
     pub error_sd: Option<f64>,
-    /// The prediction with the discrepancy of the model that the fitted conditions show, of a fitted run the other conditions; `None`
-    /// where they show none.
+    /// The prediction plus the discrepancy, which is estimated from the fitted conditions, for a fitted run from the other conditions;
+    /// `None` if it cannot be estimated.
     pub corrected: Option<f64>,
-    /// 5 % quantile of a new measurement by the corrected prediction; `None` of a fit, which has no distribution.
+    /// 5 % quantile of a new measurement by the corrected prediction; `None` for a fit, which has no distribution.
     pub corrected_q05: Option<f64>,
-    /// 95 % quantile.
+    /// 95 % quantile of a new measurement.
     pub corrected_q95: Option<f64>,
-    /// The final draws at which the model refuses the run; `None` where it refuses none.
+    /// The final draws at which the model refuses the run; `None` if it refuses none.
     pub refused: Option<Refusal>,
-    /// Interpolation of the fitted measurements, without physics; `None` inside the fit, and where there is none.
+    /// Interpolation of the fitted measurements without physics; `None` for a fitted run, and if interpolation is not possible.
     pub interpolated: Option<f64>,
-    /// What it interpolates over.
+    /// Conditions of the interpolation.
     #[schema(value_type = Option<String>)]
     pub interpolated_over: Option<InterpolatedOver>,
 }
 
 impl ComparisonRow {
-    /// Whether the measurement lies in its 90 % interval.
+    /// Returns whether the 90 % interval contains the measurement; `None` without an interval.
     pub fn covered(&self) -> Option<bool> {
         Some((self.q05?..=self.q95?).contains(&self.measured))
     }
 
-    /// The corrected prediction.
+    /// Returns the corrected prediction; `None` without one.
     pub fn corrected_prediction(&self) -> Option<Corrected> {
         Some(Corrected {
             mean: self.corrected?,
@@ -80,12 +80,12 @@ impl ComparisonRow {
         })
     }
 
-    /// Whether the measurement lies in the 90 % interval of the corrected prediction.
+    /// Returns whether the 90 % interval of the corrected prediction contains the measurement; `None` without an interval.
     pub fn covered_corrected(&self) -> Option<bool> {
         Some((self.corrected_q05?..=self.corrected_q95?).contains(&self.measured))
     }
 
-    /// Whether the model and interpolation both predict it, so that their errors compare; interpolation without extrapolating.
+    /// Returns whether the model and interpolation both predict the row, the latter without extrapolation, so that their errors compare.
     pub fn is_interpolated(&self) -> bool {
         let is_within = self
             .interpolated_over
@@ -94,7 +94,7 @@ impl ComparisonRow {
     }
 }
 
-/// The rows of the fitted runs, or of the holdout runs.
+/// Returns the fitted rows or the holdout rows.
 pub fn rows_of(rows: &[ComparisonRow], usage: RunUse) -> impl Iterator<Item = &ComparisonRow> + Clone {
     rows.iter().filter(move |row| row.usage == usage)
 }

@@ -1,10 +1,10 @@
-//! A condition of which one level after the other is left out.
+//! A factor: the condition whose levels are left out in turn.
 
 use shared::experiment::{TestRun, rim_speed_m_s};
 
 use crate::words::number;
 
-/// A condition of which one level after the other is left out.
+/// A factor: the condition whose levels are left out in turn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Factor {
@@ -21,7 +21,7 @@ pub enum Factor {
 }
 
 impl Factor {
-    /// Name on the command line, and of files.
+    /// Returns the name on the command line and in the names of files.
     pub fn name(self) -> &'static str {
         match self {
             Factor::Slip => "slip",
@@ -32,7 +32,7 @@ impl Factor {
         }
     }
 
-    /// The value of a run \[1, N, m/s, deg\]; `None` of a wheel.
+    /// Returns the value of a run \[1, N, m/s, deg\]; `None` for the factor wheel.
     pub(super) fn value(self, run: &TestRun) -> Option<f64> {
         match self {
             Factor::Slip => Some(run.slip),
@@ -43,7 +43,7 @@ impl Factor {
         }
     }
 
-    /// `slip -0.20`, `load 21.3 to 22.7 N`, `rim speed 10.0 mm/s`, `slip angle 15.0 deg`.
+    /// Names a level: `slip -0.20`, `load 21.3 to 22.7 N`, `rim speed 10.0 mm/s`, `slip angle 15.0 deg`.
     pub(super) fn words(self, from: f64, to: f64) -> String {
         let (what, scale, decimals, unit) = match self {
             Factor::Slip => ("slip", 1.0, 2, ""),

@@ -1,4 +1,4 @@
-//! Errors and coverage of a prediction.
+//! Judgement: errors and coverage of the predictions of left-out measurements.
 
 use crate::table::coverage::Coverage;
 use crate::table::errors::ErrorTable;
@@ -6,26 +6,26 @@ use crate::table::fixed_sigma::FixedSigmas;
 use crate::table::interpolation::InterpolatedOver;
 use crate::table::row::ComparisonRow;
 
-/// How well some measurements are predicted that were left out.
+/// Errors and coverage of the predictions of left-out measurements.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Judgement {
-    /// Errors of the model; null where it refuses every run.
+    /// Errors of the model; null if it refuses every run.
     pub model: Option<ErrorTable>,
-    /// Errors of interpolating the other measurements, without physics, where the model predicts too; null where there is none.
+    /// Errors of interpolation without physics on the measurements that the model predicts too; null if there are none.
     pub interpolation: Option<ErrorTable>,
     /// Errors of the model on the same measurements as those of interpolation, so that both compare.
     pub model_beside: Option<ErrorTable>,
-    /// Measurements whose interpolation extrapolates.
+    /// Number of measurements whose interpolation extrapolates.
     pub extrapolated: usize,
-    /// Measurements in their 90 % intervals.
+    /// Number of measurements in their 90 % intervals.
     pub inside: usize,
-    /// Measurements with an interval; none where the calibration has no posterior.
+    /// Number of measurements with an interval; 0 if the calibration has no posterior.
     pub with_interval: usize,
 }
 
 impl Judgement {
-    /// Of rows, in the noise of a study.
-    pub(super) fn of(rows: &[ComparisonRow], sigmas: &FixedSigmas) -> Self {
+    /// Judges the predictions of the rows in the noise of a study.
+    pub(super) fn new(rows: &[ComparisonRow], sigmas: &FixedSigmas) -> Self {
         let table = |table: Option<ErrorTable>| table.map(|table| table.in_fixed_sigmas(sigmas));
         let coverage = Coverage::count(rows.iter());
         let is_beyond = |row: &&ComparisonRow| row.interpolated_over == Some(InterpolatedOver::Extrapolation);
@@ -39,7 +39,7 @@ impl Judgement {
             model_beside: table(ErrorTable::of_model(both())),
             extrapolated: rows.iter().filter(is_beyond).count(),
             inside: coverage.map_or(0, |c| c.inside),
-            with_interval: coverage.map_or(0, |c| c.of),
+            with_interval: coverage.map_or(0, |c| c.total),
         }
     }
 }

@@ -1,4 +1,4 @@
-//! The levels of a factor in an experiment.
+//! The levels of a factor in an experiment, each with the runs to leave out.
 
 use std::collections::BTreeMap;
 
@@ -12,7 +12,7 @@ use super::factor::Factor;
 pub struct LeftOutLevel {
     /// The level: `slip -0.20`, `wheel smooth`.
     pub name: String,
-    /// Least value \[1, N, m/s, deg\]; null of a wheel.
+    /// Smallest value \[1, N, m/s, deg\]; null for the factor wheel.
     pub from: Option<f64>,
     /// Largest value.
     pub to: Option<f64>,
@@ -21,11 +21,11 @@ pub struct LeftOutLevel {
 }
 
 impl LeftOutLevel {
-    /// The levels of the fitted runs, ascending, wheels by name. Values closer than 2 % of their range are one level, as in the
-    /// cross-validation of a search.
+    /// Returns the levels of the fitted runs in ascending order, wheels by name. Values closer than 2 % of their range are one level, as
+    /// in the cross-validation of a search.
     ///
     /// # Errors
-    /// A sentence where there is one level alone.
+    /// Returns a sentence if there are fewer than two levels.
     pub fn all(spec: &Spec, factor: Factor) -> Result<Vec<Self>, String> {
         let runs: Vec<&TestRun> = spec.fit_runs.iter().map(|&i| &spec.experiment.runs[i]).collect();
         let values: Option<Vec<f64>> = runs.iter().map(|run| factor.value(run)).collect();
@@ -64,9 +64,12 @@ fn by_value(factor: Factor, runs: &[&TestRun], values: &[f64]) -> Vec<LeftOutLev
     for ((level, &value), run) in levels_of(values).into_iter().zip(values).zip(runs) {
         levels.entry(level).or_default().push((value, run.name.clone()));
     }
-    let level = |own: Vec<(f64, String)>| {
-        let from = own.iter().map(|(value, _)| *value).fold(f64::INFINITY, f64::min);
-        let to = own
+    let level = |members: Vec<(f64, String)>| {
+        let from = members
+            .iter()
+            .map(|(value, _)| *value)
+            .fold(f64::INFINITY, f64::min);
+        let to = members
             .iter()
             .map(|(value, _)| *value)
             .fold(f64::NEG_INFINITY, f64::max);
@@ -74,7 +77,7 @@ fn by_value(factor: Factor, runs: &[&TestRun], values: &[f64]) -> Vec<LeftOutLev
             name: factor.words(from, to),
             from: Some(from),
             to: Some(to),
-            runs: own.into_iter().map(|(_, run)| run).collect(),
+            runs: members.into_iter().map(|(_, run)| run).collect(),
         }
     };
     levels.into_values().map(level).collect()
@@ -93,20 +96,12 @@ mod tests {
         assert_eq!(names, [("slip -0.20", 1), ("slip 0.20", 1), ("slip 0.50", 1)]);
         assert_eq!((slips[0].from, slips[2].to), (Some(-0.2), Some(0.5)));
         assert_eq!(slips[2].runs, ["d"]);
-        for (factor, reason) in [
-            (
-                Factor::Wheel,
-                "all 3 fitted runs are at wheel a: nothing is left to predict it from",
-            ),
-            (
-                Factor::Load,
-                "all 3 fitted runs are at load 25.0 N: nothing is left to predict it from",
-            ),
-            (
-                Factor::Angle,
-                "all 3 fitted runs are at slip angle 0.0 deg: nothing is left to predict it from",
-            ),
+        for (factor, level) in [
+            (Factor::Wheel, "wheel a"),
+            (Factor::Load, "load 25.0 N"),
+            (Factor::Angle, "slip angle 0.0 deg"),
         ] {
+            let reason = format!("all 3 fitted runs are at {level}: nothing is left to predict it from");
             assert_eq!(LeftOutLevel::all(&spec, factor).unwrap_err(), reason);
         }
         assert_eq!(LeftOutLevel::all(&spec, Factor::Speed).unwrap().len(), 3);

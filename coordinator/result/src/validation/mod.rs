@@ -1,6 +1,6 @@
-//! Leaving one level of a factor out in turn: what a model predicts of each level from the others.
+//! Validation: each level of a factor, predicted by a calibration on the other levels.
 //!
-//! - `factor`: what is left out. `left_out_level`: the levels of an experiment. `judgement`: errors and coverage of a prediction.
+//! - `factor`: the condition whose levels are left out. `left_out_level`: its levels. `judgement`: errors and coverage of predictions.
 //! - `table`: all levels, with their total.
 
 mod factor;

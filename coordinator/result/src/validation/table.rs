@@ -1,4 +1,4 @@
-//! What is predicted of every level from the others.
+//! The table of a validation: the prediction of every level, and the total.
 
 use std::collections::BTreeMap;
 
@@ -12,7 +12,7 @@ use crate::finished_calibration::FinishedCalibration;
 use crate::table::fixed_sigma::{FixedSigma, FixedSigmas};
 use crate::table::row::ComparisonRow;
 
-/// The levels of a factor, each predicted from the others.
+/// The levels of a factor, each predicted by a calibration on the other levels.
 #[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
 pub struct Validation {
     /// The calibration whose model predicts.
@@ -21,11 +21,11 @@ pub struct Validation {
     pub name: String,
     /// The effects of its model.
     pub effects: Vec<String>,
-    /// What is left out.
+    /// Factor whose levels are left out.
     pub leave_out: Factor,
-    /// What calibrates on the rest.
+    /// Algorithm that calibrates on the other levels.
     pub algorithm: AlgorithmName,
-    /// By channel the noise sd that `rmse_fixed_sigma` is in, of the calibration on all fitted runs.
+    /// Noise standard deviation of `rmse_fixed_sigma` by channel, from the calibration on all fitted runs.
     pub fixed_sigma: BTreeMap<String, FixedSigma>,
     /// The levels, ascending.
     pub levels: Vec<ValidatedLevel>,
@@ -33,50 +33,50 @@ pub struct Validation {
     pub total: Judgement,
 }
 
-/// A level, predicted from the others.
+/// A level with its prediction by a calibration on the other levels.
 #[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
 pub struct ValidatedLevel {
     /// The level.
     pub level: LeftOutLevel,
     /// The calibration on the other levels, in the folder of the validation.
     pub calibration: Option<i64>,
-    /// How well it predicts this level; null where there is no calibration.
+    /// Errors and coverage on this level; null without a calibration.
     pub judgement: Option<Judgement>,
-    /// Why there is none.
+    /// Reason why there is no calibration.
     pub refused: Option<String>,
-    /// Why some of its measurements are not interpolated, with their number.
+    /// Reasons why measurements are not interpolated, with their numbers.
     pub not_interpolated: BTreeMap<String, usize>,
-    /// Model and interpolation against the measurements of this level.
+    /// Comparison of model and interpolation with the measurements of this level.
     pub rows: Vec<ComparisonRow>,
 }
 
 impl ValidatedLevel {
-    /// By a calibration on the other levels.
+    /// Judges the prediction of a level by a calibration on the other levels.
     ///
     /// # Arguments
-    /// - `of`: the calibration on all fitted runs.
-    pub fn predicted(level: LeftOutLevel, of: &FinishedCalibration, others: &FinishedCalibration) -> Self {
-        let mut rows = others.comparison().rows.clone();
+    /// - `whole`: the calibration on all fitted runs. `rest`: the one on the other levels.
+    pub fn predicted(level: LeftOutLevel, whole: &FinishedCalibration, rest: &FinishedCalibration) -> Self {
+        let mut rows = rest.comparison().rows.clone();
         rows.retain(|row| level.runs.contains(&row.run));
         let mut not_interpolated = BTreeMap::new();
-        let runs = others.spec.experiment.runs.iter().enumerate();
+        let runs = rest.spec.experiment.runs.iter().enumerate();
         for (i, _) in runs.filter(|(_, run)| level.runs.contains(&run.name)) {
-            let missing = |channel: Channel| others.interpolations().missing_at(i, channel);
+            let missing = |channel: Channel| rest.interpolations().missing_at(i, channel);
             for reason in Channel::ALL.into_iter().filter_map(missing) {
                 *not_interpolated.entry(reason.to_owned()).or_default() += 1;
             }
         }
         ValidatedLevel {
             level,
-            calibration: Some(others.row.id),
-            judgement: Some(Judgement::of(&rows, &FixedSigmas::of(of))),
+            calibration: Some(rest.row.id),
+            judgement: Some(Judgement::new(&rows, &FixedSigmas::new(whole))),
             refused: None,
             not_interpolated,
             rows,
         }
     }
 
-    /// Without a calibration on the other levels.
+    /// Makes a level for which there is no calibration on the other levels.
     pub fn refused(level: LeftOutLevel, reason: String) -> Self {
         ValidatedLevel {
             level,
@@ -90,26 +90,26 @@ impl ValidatedLevel {
 }
 
 impl Validation {
-    /// Of a calibration on all fitted runs.
+    /// Collects the levels of a calibration and judges all of them together.
     pub fn new(
-        of: &FinishedCalibration,
+        whole: &FinishedCalibration,
         leave_out: Factor,
         algorithm: AlgorithmName,
         levels: Vec<ValidatedLevel>,
     ) -> Self {
-        let sigmas = FixedSigmas::of(of);
+        let sigmas = FixedSigmas::new(whole);
         let rows: Vec<ComparisonRow> = levels
             .iter()
             .flat_map(|level| level.rows.iter().cloned())
             .collect();
         Validation {
-            calibration: of.row.id,
-            name: of.row.name.clone(),
-            effects: of.effects(),
+            calibration: whole.row.id,
+            name: whole.row.name.clone(),
+            effects: whole.effects(),
             leave_out,
             algorithm,
             fixed_sigma: sigmas.by_name(),
-            total: Judgement::of(&rows, &sigmas),
+            total: Judgement::new(&rows, &sigmas),
             levels,
         }
     }

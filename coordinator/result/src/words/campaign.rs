@@ -1,17 +1,17 @@
-//! Where measurements come from, in words.
+//! The source of measurements (campaign) in words: citation, method, doubts.
 
 use shared::experiment::Campaign;
 
-/// A campaign as it is shown beside its numbers.
+/// A campaign in words, as it is shown beside its numbers.
 #[derive(Debug, Clone, PartialEq, Eq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
 pub struct CampaignWords {
-    /// Title, who, where, when, DOI and licence.
+    /// Title, authors, institution, date, DOI and licence.
     pub citation: String,
-    /// That the rows were read off figures, and which; null where the rig recorded them.
+    /// A note that the rows were read off figures, and which; null if the rig recorded them.
     pub digitised: Option<String>,
-    /// How it was measured, a sentence each.
+    /// Methods of measurement, one sentence each.
     pub method: Vec<String>,
-    /// What is uncertain about it.
+    /// Doubts about the measurements.
     pub doubts: Vec<String>,
 }
 

@@ -1,4 +1,4 @@
-//! Channels of the likelihood as people read them: name, unit, factor over SI.
+//! Data channel: a channel of the likelihood with its name and the unit in which it is shown.
 
 use job::{PLATE, RING};
 use shared::channel::Channel;
@@ -9,9 +9,9 @@ use super::number;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[serde(untagged)]
 pub enum DataChannel {
-    /// Of the rolling wheel.
+    /// A channel of the rolling wheel.
     Wheel(Channel),
-    /// Of the bevameter; readings count by their natural logarithm.
+    /// The readings of a bevameter test, which enter by their natural logarithm.
     Bevameter(BevameterTest),
 }
 
@@ -35,7 +35,7 @@ pub struct ShownUnit {
 }
 
 impl BevameterTest {
-    /// Name in tables.
+    /// Returns the name in tables.
     pub fn name(self) -> &'static str {
         match self {
             BevameterTest::Plates => "plates",
@@ -45,8 +45,8 @@ impl BevameterTest {
 }
 
 impl DataChannel {
-    /// The channel of an index of the likelihood.
-    pub fn of(index: usize) -> Self {
+    /// Returns the channel of an index of the likelihood.
+    pub fn from_index(index: usize) -> Self {
         match index {
             PLATE => DataChannel::Bevameter(BevameterTest::Plates),
             RING => DataChannel::Bevameter(BevameterTest::Rings),
@@ -54,7 +54,7 @@ impl DataChannel {
         }
     }
 
-    /// Name in tables: `drawbar_pull`, `plates`.
+    /// Returns the name in tables: `drawbar_pull`, `plates`.
     pub fn name(self) -> &'static str {
         match self {
             DataChannel::Wheel(channel) => channel.name(),
@@ -62,7 +62,7 @@ impl DataChannel {
         }
     }
 
-    /// Words in sentences: `drawbar pull`, `plates`.
+    /// Returns the name for sentences: `drawbar pull`, `plates`.
     pub fn words(self) -> &'static str {
         match self {
             DataChannel::Wheel(channel) => channel.words(),
@@ -70,7 +70,7 @@ impl DataChannel {
         }
     }
 
-    /// SI unit.
+    /// Returns the SI unit.
     pub fn si_unit(self) -> &'static str {
         match self {
             DataChannel::Wheel(channel) => channel.unit(),
@@ -78,10 +78,10 @@ impl DataChannel {
         }
     }
 
-    /// The unit in which it is shown: percent of a stress.
+    /// Returns the unit in which values are shown; stresses are shown in percent.
     pub fn shown(self) -> ShownUnit {
         match self {
-            DataChannel::Wheel(channel) => ShownUnit::of(channel),
+            DataChannel::Wheel(channel) => ShownUnit::new(channel),
             DataChannel::Bevameter(_) => ShownUnit {
                 factor: 100.0,
                 name: "%",
@@ -91,8 +91,8 @@ impl DataChannel {
 }
 
 impl ShownUnit {
-    /// The unit in which a channel of the wheel is shown: sinkage in millimetres, everything else in SI.
-    pub fn of(channel: Channel) -> Self {
+    /// Returns the unit in which a channel of the wheel is shown: sinkage in millimetres, all other channels in SI.
+    pub fn new(channel: Channel) -> Self {
         let (factor, name) = match channel {
             Channel::Sinkage => (1000.0, "mm"),
             other => (1.0, other.unit()),
@@ -100,13 +100,13 @@ impl ShownUnit {
         ShownUnit { factor, name }
     }
 
-    /// A size to two digits: `20 N m`, `0.58 mm`, `12 %`.
+    /// Formats a size with two digits: `20 N m`, `0.58 mm`, `12 %`.
     pub fn size(self, si: f64) -> String {
         format!("{} {}", number::significant(self.factor * si, 2), self.name)
     }
 }
 
-/// A word for a narrow column: `pull`.
+/// Returns a short name for a narrow column: `pull`.
 pub fn short_name(channel: Channel) -> &'static str {
     match channel {
         Channel::DrawbarPull => "pull",

@@ -1,4 +1,7 @@
-//! Numbers, units and probabilities as people read them.
+//! Words: numbers, units, probabilities and citations as people read them.
+//!
+//! - `number`: formats of numbers. `probability`: formats of probabilities. `data_channel`: names and units of channels.
+//! - `campaign`: the source of measurements.
 
 pub mod campaign;
 pub mod data_channel;

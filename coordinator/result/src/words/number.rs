@@ -1,13 +1,15 @@
-//! Numbers in words, with as many digits as are significant.
+//! Formats of numbers, counts, lists and durations for people.
 
-/// Stands where there is no number.
+use std::collections::BTreeMap;
+
+/// Shown in place of a missing number.
 pub const NONE: &str = "\u{2013}";
 
-/// Beyond these sizes a number is written with an exponent.
+/// From this absolute value on, a number is written with an exponent.
 const LARGE: f64 = 1e7;
 const DECIMALS: i32 = 7;
 
-/// A number to so many significant digits.
+/// Formats a number with the given number of significant digits.
 pub fn significant(x: f64, digits: i32) -> String {
     if !x.is_finite() {
         return NONE.into();
@@ -23,7 +25,7 @@ pub fn significant(x: f64, digits: i32) -> String {
     fixed(x, decimals)
 }
 
-/// A number to the digit in which its spread has its second figure.
+/// Formats a number to the decimal place of the second significant digit of its spread.
 pub fn to_spread(x: f64, spread: f64) -> String {
     if !x.is_finite() {
         return NONE.into();
@@ -40,12 +42,12 @@ pub fn to_spread(x: f64, spread: f64) -> String {
     fixed(x, decimals)
 }
 
-/// A number that may be missing, in words of the page.
+/// Formats a number, or returns a dash if it is missing.
 pub fn or_none<T>(value: Option<T>, words: impl FnOnce(T) -> String) -> String {
     value.map_or_else(|| NONE.into(), words)
 }
 
-/// A number as its author may have written it: at most six decimals, none of them a closing zero.
+/// Formats a number with at most six decimals and without trailing zeros.
 pub fn plain(x: f64) -> String {
     if x.abs() < f64::MIN_POSITIVE || (1e-3..1e6).contains(&x.abs()) {
         let rounded = format!("{x:.6}");
@@ -55,7 +57,7 @@ pub fn plain(x: f64) -> String {
     }
 }
 
-/// Four significant digits, for a column.
+/// Formats a number with four significant digits, for a column.
 pub fn four_digits(x: f64) -> String {
     if x.abs() < f64::MIN_POSITIVE {
         "0".into()
@@ -67,7 +69,7 @@ pub fn four_digits(x: f64) -> String {
     }
 }
 
-/// A number with its spread: `2.76 ± 0.40`.
+/// Formats a number with its spread: `2.76 ± 0.40`.
 pub fn with_spread(x: f64, spread: f64) -> String {
     format!(
         "{}\u{a0}\u{b1}\u{a0}{}",
@@ -76,7 +78,7 @@ pub fn with_spread(x: f64, spread: f64) -> String {
     )
 }
 
-/// So many decimals (negative: whole tens, hundreds), and no negative zero.
+/// Formats a number with a fixed number of decimals (negative: whole tens, hundreds), without a negative zero.
 pub fn fixed(x: f64, decimals: i32) -> String {
     let x = match decimals {
         0.. => x,
@@ -90,7 +92,7 @@ pub fn fixed(x: f64, decimals: i32) -> String {
     }
 }
 
-/// A number as its author wrote it, as far as that can be known.
+/// Formats a number in the shortest form that reads back as the same number.
 pub fn as_written(x: f64) -> String {
     let size = x.abs();
     if size < f64::MIN_POSITIVE {
@@ -102,12 +104,20 @@ pub fn as_written(x: f64) -> String {
     }
 }
 
-/// A count with its noun: `1 run`, `2 runs`.
+/// Formats a count with its noun: `1 run`, `2 runs`.
 pub fn count(n: usize, noun: &str) -> String {
     format!("{n} {noun}{}", if n == 1 { "" } else { "s" })
 }
 
-/// Words joined as in a sentence: `a, b and c`.
+/// Formats counts by name: `no_support 990`.
+pub fn counts(counts: &BTreeMap<String, u64>) -> Vec<String> {
+    counts
+        .iter()
+        .map(|(name, count)| format!("{name} {count}"))
+        .collect()
+}
+
+/// Joins words as in a sentence: `a, b and c`.
 pub fn list(words: &[String]) -> String {
     match words {
         [] => String::new(),
@@ -116,7 +126,7 @@ pub fn list(words: &[String]) -> String {
     }
 }
 
-/// Seconds, minutes or hours.
+/// Formats a duration in seconds, minutes or hours.
 pub fn duration(seconds: f64) -> String {
     if seconds < 120.0 {
         format!("{seconds:.1} s")
@@ -127,12 +137,12 @@ pub fn duration(seconds: f64) -> String {
     }
 }
 
-/// Power of ten of the first digit.
+/// Returns the power of ten of the first digit.
 pub fn magnitude(x: f64) -> i32 {
     x.abs().log10().floor() as i32
 }
 
-/// The same after rounding to two figures: 0.0996 becomes 0.10.
+/// Returns the magnitude after rounding to two digits: 0.0996 becomes 0.10.
 fn rounded_magnitude(x: f64) -> i32 {
     format!("{x:.1e}")
         .split_once('e')
@@ -146,22 +156,17 @@ mod tests {
 
     #[test]
     fn a_number_stops_at_the_second_figure_of_its_spread() {
-        assert_eq!(with_spread(3.816, 0.156), "3.82\u{a0}\u{b1}\u{a0}0.16");
-        assert_eq!(
-            with_spread(0.062_05, 4.647e-4),
-            "0.06205\u{a0}\u{b1}\u{a0}0.00046"
-        );
-        assert_eq!(
-            with_spread(1_234_567.0, 45_678.0),
-            "1235000\u{a0}\u{b1}\u{a0}46000"
-        );
+        for (x, spread, expected) in [
+            (3.816, 0.156, "3.82 ± 0.16"),
+            (0.062_05, 4.647e-4, "0.06205 ± 0.00046"),
+            (1_234_567.0, 45_678.0, "1235000 ± 46000"),
+            (0.976, 0.0996, "0.98 ± 0.10"),
+            (280_063.0, 578_767.0, "280000 ± 580000"),
+        ] {
+            assert_eq!(with_spread(x, spread), expected.replace(' ', "\u{a0}"));
+        }
         assert_eq!(to_spread(26.0, 1.1), "26.0");
-        assert_eq!(with_spread(0.976, 0.0996), "0.98\u{a0}\u{b1}\u{a0}0.10");
         assert_eq!(to_spread(812.3, 150.0), "810");
-        assert_eq!(
-            with_spread(280_063.0, 578_767.0),
-            "280000\u{a0}\u{b1}\u{a0}580000"
-        );
     }
 
     #[test]

@@ -2,10 +2,10 @@
 
 use super::number;
 
-/// A test with a smaller probability raises a flag.
+/// Probability of a test below which it raises a flag.
 pub const LEVEL: f64 = 0.01;
 
-/// A probability: `0.012`, `3e-7`, `< 1e-12`.
+/// Formats a probability: `0.012`, `3e-7`, `< 1e-12`.
 pub fn probability(p: f64) -> String {
     if p < 1e-12 {
         "< 1e-12".into()
@@ -16,7 +16,7 @@ pub fn probability(p: f64) -> String {
     }
 }
 
-/// The same in a sentence: `p = 0.012`, `p < 1e-12`.
+/// Formats a probability for a sentence: `p = 0.012`, `p < 1e-12`.
 pub fn p_words(p: f64) -> String {
     let value = probability(p);
     let relation = if value.starts_with('<') { "p" } else { "p =" };

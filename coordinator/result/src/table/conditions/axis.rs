@@ -1,12 +1,12 @@
-//! The conditions of the rig as coordinates.
+//! Axis: one condition of the rig as a coordinate, and whether runs vary it.
 
 use job::repeats;
 use shared::experiment::{TestRun, rim_speed_m_s};
 
-/// Loads within this factor are alike where a rig does not hold its load.
+/// Ratio of loads up to which they count as one condition if the rig cannot hold its load.
 pub(crate) const ALIKE_LOADS: f64 = 1.5;
 
-/// A condition that may vary.
+/// A condition of the rig that may vary.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Axis {
     Slip,
@@ -17,7 +17,7 @@ pub(crate) enum Axis {
 }
 
 impl Axis {
-    /// Name in sentences.
+    /// Returns the name for sentences.
     pub(crate) fn words(self) -> &'static str {
         match self {
             Axis::Slip => "slip",
@@ -38,7 +38,7 @@ impl Axis {
         }
     }
 
-    /// Whether two runs that differed in this condition alone would be repeats.
+    /// Returns whether two runs would be repeats if they differed in this condition only.
     pub(crate) fn is_same(self, a: &TestRun, b: &TestRun) -> bool {
         let with = |run: &TestRun| {
             let (value, mut only) = (self.value(run), a.clone());
@@ -53,7 +53,7 @@ impl Axis {
         repeats(&with(a), &with(b))
     }
 
-    /// Number of different values.
+    /// Counts the different values of the condition.
     pub(crate) fn count(self, runs: &[&TestRun]) -> usize {
         let mut different: Vec<&TestRun> = Vec::new();
         for run in runs {
@@ -64,8 +64,9 @@ impl Axis {
         different.len()
     }
 
-    /// Those that tell runs apart: slip, angle, load, and the speed that was set: that of sled or rim, of which there are fewer values.
-    pub(super) fn of(runs: &[&TestRun]) -> [Axis; 4] {
+    /// Returns the conditions that tell runs apart: slip, slip angle, load, and the speed that was set, which is that of sled or rim,
+    /// whichever has fewer values.
+    pub(super) fn distinguishing(runs: &[&TestRun]) -> [Axis; 4] {
         let speed = match Axis::RimSpeed.count(runs) < Axis::SledSpeed.count(runs) {
             true => Axis::RimSpeed,
             false => Axis::SledSpeed,
@@ -73,8 +74,8 @@ impl Axis {
         [Axis::Slip, Axis::SlipAngle, Axis::WheelLoad, speed]
     }
 
-    /// Whether the condition was varied. Loads that were set lie apart or span more than [`ALIKE_LOADS`]; those of a rig that does
-    /// not hold its load scatter within that without a gap.
+    /// Returns whether the condition was varied. Loads that were set deliberately have gaps or span more than [`ALIKE_LOADS`]; loads that
+    /// a rig cannot hold scatter within that range without a gap.
     pub(crate) fn varies(self, runs: &[&TestRun]) -> bool {
         if self != Axis::WheelLoad {
             return self.count(runs) > 1;

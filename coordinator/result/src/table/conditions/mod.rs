@@ -1,6 +1,6 @@
 //! The conditions of the rig in which runs differ.
 //!
-//! - `axis`: one of them as a coordinate. `varied`: those of some runs.
+//! - `axis`: a condition as a coordinate. `varied`: the conditions that a set of runs varies.
 
 mod axis;
 mod varied;

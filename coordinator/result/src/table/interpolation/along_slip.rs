@@ -1,15 +1,15 @@
-//! Interpolation in slip between runs that differ in slip alone.
+//! Interpolation in slip between runs that differ in slip only, by a monotone cubic.
 
 use shared::channel::Channel;
 use shared::experiment::{Experiment, RunUse, TestRun};
 
 use crate::table::conditions::ALIKE_LOADS;
 
-/// Slips closer than this repeat one condition.
+/// Difference of slips below which runs repeat one condition.
 const SAME_SLIP: f64 = 0.02;
 
-/// Monotone cubic interpolation at a run's slip between the fitted runs of the same wheel, soil, slip angle, speed and pass, within a
-/// factor of 1.5 in load; `None` where it would have to extrapolate.
+/// Interpolates at the slip of a run by a monotone cubic between the fitted runs of the same wheel, soil, slip angle, speed and pass,
+/// whose loads are within a factor of 1.5; `None` outside their range.
 pub(super) fn along_slip(experiment: &Experiment, run: &TestRun, channel: Channel) -> Option<f64> {
     let near = |a: f64, b: f64, factor: f64| a / b < factor && b / a < factor;
     let alike = |other: &&TestRun| {
@@ -48,13 +48,13 @@ fn averaged(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
         .collect()
 }
 
-/// Cubic Hermite interpolation whose slopes keep it monotone between points.
+/// Interpolates by a cubic Hermite polynomial whose slopes keep it monotone between points.
 ///
 /// Fritsch and Butland 1984, SIAM J. Sci. Stat. Comput. 5:300: harmonic means of the neighbouring slopes.
 fn monotone_cubic(points: &[(f64, f64)], x: f64) -> Option<f64> {
     let right = points.iter().position(|p| p.0 >= x)?;
     if right == 0 {
-        // At the first point itself there is a value; before it there is none.
+        // A value at the first point is not extrapolated; a value before it would be.
         return (points[0].0 - x < SAME_SLIP).then_some(points[0].1);
     }
     let secant = |i: usize| (points[i + 1].1 - points[i].1) / (points[i + 1].0 - points[i].0);

@@ -1,4 +1,4 @@
-//! The held-out measurements of an experiment as interpolated from the fitted ones.
+//! The holdout measurements of an experiment, interpolated from the fitted ones.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -9,7 +9,7 @@ use super::along_slip::along_slip;
 use super::interpolated::{Interpolated, InterpolatedOver};
 use super::surface::Surfaces;
 
-/// The held-out measurements of an experiment as interpolated from the fitted ones.
+/// The holdout measurements of an experiment, interpolated from the fitted ones.
 #[derive(Debug, Default)]
 pub struct Interpolations {
     values: BTreeMap<(usize, Channel), Interpolated>,
@@ -17,8 +17,8 @@ pub struct Interpolations {
 }
 
 impl Interpolations {
-    /// Of every held-out measurement.
-    pub fn of(experiment: &Experiment) -> Self {
+    /// Interpolates every holdout measurement of an experiment.
+    pub fn new(experiment: &Experiment) -> Self {
         let mut values = BTreeMap::new();
         let mut missing = BTreeMap::new();
         let mut surfaces = Surfaces::new(experiment);
@@ -39,17 +39,17 @@ impl Interpolations {
         Interpolations { values, missing }
     }
 
-    /// That of a run and channel; `None` where it was fitted or there is none.
+    /// Returns the interpolated value of a run and channel; `None` if it was fitted or cannot be interpolated.
     pub fn at(&self, run: usize, channel: Channel) -> Option<Interpolated> {
         self.values.get(&(run, channel)).copied()
     }
 
-    /// Why that of a run and channel is missing; `None` where it is not.
+    /// Returns why the value of a run and channel cannot be interpolated; `None` if it can.
     pub fn missing_at(&self, run: usize, channel: Channel) -> Option<&str> {
         self.missing.get(&(run, channel)).map(String::as_str)
     }
 
-    /// Why some are missing, each reason once.
+    /// Returns the reasons why values are missing, each once.
     pub fn missing(&self) -> Vec<String> {
         let reasons: BTreeSet<&String> = self.missing.values().collect();
         reasons.into_iter().cloned().collect()
@@ -64,14 +64,23 @@ mod tests {
 
     const TOML: &str = "runs = \"runs.csv\"\n[wheel.a]\nradius_m = 0.1\nwidth_m = 0.05\n[wheel.b]\nradius_m = 0.1\nwidth_m = 0.05\n[soil.sand]\n[noise]\nlateral_force_n = 1.0\n";
 
+    /// Returns the experiment with the given rows of runs.
+    fn parsed(rows: &str) -> Experiment {
+        let titles = "run,wheel,soil,slip,wheel_load_n,sled_speed_m_s,slip_angle_deg,lateral_force_n,use";
+        let files = FileSet {
+            toml: TOML.into(),
+            files: [("runs.csv".into(), format!("{titles}\n{rows}"))].into(),
+        };
+        Experiment::parse("experiment.toml", &files).unwrap()
+    }
+
     fn force(slip: f64, angle: f64) -> f64 {
         10.0 * (1.0 + slip) * libm::sin(angle / 60.0)
     }
 
-    /// Fitted runs over slip and angle, with two repeats each, then held-out ones.
+    /// Returns an experiment with two fitted repeats at each of several slips and angles, and the given holdout runs.
     fn experiment(held_out: &[&str]) -> Experiment {
-        let mut runs =
-            "run,wheel,soil,slip,wheel_load_n,sled_speed_m_s,slip_angle_deg,lateral_force_n,use\n".to_owned();
+        let mut runs = String::new();
         for (i, slip) in [-0.3, 0.0, 0.3, 0.6].into_iter().enumerate() {
             for angle in [0.0, 15.0, 30.0, 45.0, 60.0] {
                 for repeat in 0..2 {
@@ -86,16 +95,12 @@ mod tests {
         for (i, row) in held_out.iter().enumerate() {
             runs += &format!("h{i},{row},holdout\n");
         }
-        let files = FileSet {
-            toml: TOML.into(),
-            files: [("runs.csv".into(), runs)].into(),
-        };
-        Experiment::parse("experiment.toml", &files).unwrap()
+        parsed(&runs)
     }
 
     #[test]
     fn an_angle_and_a_slip_that_were_not_fitted_are_interpolated() {
-        let found = Interpolations::of(&experiment(&[
+        let found = Interpolations::new(&experiment(&[
             "a,sand,0.15,100,0.01,22,1",
             "a,sand,0.3,100,0.01,75,1",
             "a,sand,0.2,100,0.01,30,1",
@@ -106,12 +111,12 @@ mod tests {
             (1, 0.3, 75.0, InterpolatedOver::Extrapolation, 2.0),
             (2, 0.2, 30.0, InterpolatedOver::Slip, 0.2),
         ] {
-            let own = at(run);
-            assert_eq!(own.over, over, "run {run}");
+            let interpolated = at(run);
+            assert_eq!(interpolated.over, over, "run {run}");
             assert!(
-                (own.value - force(slip, angle)).abs() < within,
+                (interpolated.value - force(slip, angle)).abs() < within,
                 "run {run}: {}",
-                own.value
+                interpolated.value
             );
         }
         assert!(found.missing().is_empty());
@@ -124,62 +129,55 @@ mod tests {
 
     #[test]
     fn between_two_levels_it_is_a_line_however_the_load_scatters() {
-        let mut runs =
-            "run,wheel,soil,slip,wheel_load_n,sled_speed_m_s,slip_angle_deg,lateral_force_n,use\n".to_owned();
+        let mut runs = String::new();
         let force = |slip: f64, angle: f64| 10.0 * (1.0 + slip * slip) * angle / 60.0;
         for (i, slip) in [-0.7, -0.2, 0.0, 0.5, 0.9].into_iter().enumerate() {
             for (k, angle) in [0.0, 60.0].into_iter().enumerate() {
-                // Lower at the angle, and by a fifth without a gap.
+                // The load is lower at the larger angle, and all loads scatter within a fifth without a gap.
                 let load = 25.0 - 1.1 * (i + 2 * k) as f64;
                 let force = force(slip, angle);
                 runs += &format!("r{i}-{k},a,sand,{slip},{load},0.01,{angle},{force},fit\n");
                 runs += &format!("h{i}-{k},a,sand,{slip},{load},0.01,30,1,holdout\n");
             }
         }
-        let files = FileSet {
-            toml: TOML.into(),
-            files: [("runs.csv".into(), runs)].into(),
-        };
-        let experiment = Experiment::parse("experiment.toml", &files).unwrap();
-        let found = Interpolations::of(&experiment);
+        let experiment = parsed(&runs);
+        let found = Interpolations::new(&experiment);
         for (i, run) in experiment
             .runs
             .iter()
             .enumerate()
             .filter(|(_, run)| run.usage == RunUse::Holdout)
         {
-            let own = found.at(i, Channel::LateralForce).unwrap();
-            assert_eq!(own.over, InterpolatedOver::Conditions);
+            let interpolated = found.at(i, Channel::LateralForce).unwrap();
+            assert_eq!(interpolated.over, InterpolatedOver::Conditions);
             assert!(
-                (own.value - force(run.slip, 30.0)).abs() < 0.5,
+                (interpolated.value - force(run.slip, 30.0)).abs() < 0.5,
                 "{}: {}",
                 run.slip,
-                own.value
+                interpolated.value
             );
         }
     }
 
     #[test]
     fn loads_from_half_to_twice_are_a_condition_though_no_gap_parts_them() {
-        let mut runs =
-            "run,wheel,soil,slip,wheel_load_n,sled_speed_m_s,slip_angle_deg,lateral_force_n,use\n".to_owned();
+        let mut runs = String::new();
         for (i, load) in (0..12).map(|i| (i, 60.0 + 6.0 * f64::from(i))) {
             let (slip, angle) = (0.1 * f64::from(i % 3), 15.0 * f64::from(i % 2));
             runs += &format!("r{i},a,sand,{slip},{load},0.01,{angle},{},fit\n", 0.1 * load);
         }
         runs += "h,a,sand,0.1,93,0.01,8,1,holdout\n";
-        let files = FileSet {
-            toml: TOML.into(),
-            files: [("runs.csv".into(), runs)].into(),
-        };
-        let experiment = Experiment::parse("experiment.toml", &files).unwrap();
-        let own = Interpolations::of(&experiment).at(12, Channel::LateralForce);
-        assert!((own.unwrap().value - 9.3).abs() < 0.1, "{own:?}");
+        let experiment = parsed(&runs);
+        let interpolated = Interpolations::new(&experiment).at(12, Channel::LateralForce);
+        assert!(
+            (interpolated.unwrap().value - 9.3).abs() < 0.1,
+            "{interpolated:?}"
+        );
     }
 
     #[test]
     fn what_cannot_be_interpolated_says_why() {
-        let found = Interpolations::of(&experiment(&[
+        let found = Interpolations::new(&experiment(&[
             "a,sand,0.15,200,0.01,22,1",
             "b,sand,0.15,100,0.01,22,1",
             "a,sand,0.15,100,0.02,22,1",
@@ -198,7 +196,7 @@ mod tests {
             run.wheel_load_n = 100.0 + i as f64;
         }
         assert_eq!(
-            Interpolations::of(&scattered).missing(),
+            Interpolations::new(&scattered).missing(),
             ["wheel a on soil sand was fitted at loads of 100 to 139 N alone"]
         );
         let mut few = experiment(&["a,sand,0.15,100,0.01,22,1"]);
@@ -210,7 +208,7 @@ mod tests {
                     && (run.slip < 0.0 || run.slip_angle_deg > 1.0))
         });
         assert_eq!(
-            Interpolations::of(&few).missing(),
+            Interpolations::new(&few).missing(),
             [
                 "wheel a on soil sand has 3 fitted conditions of lateral force, and a Gaussian process over slip and slip angle needs 4"
             ]

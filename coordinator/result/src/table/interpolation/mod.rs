@@ -1,7 +1,7 @@
-//! Interpolation of the fitted measurements, without physics: what a model should beat.
+//! Interpolation of the fitted measurements without physics: the baseline that a model should beat.
 //!
-//! - `interpolations`: of an experiment. `interpolated`: of one measurement.
-//! - `along_slip`: between runs that differ in slip alone. `surface`: over all conditions that vary, by a Gaussian process.
+//! - `interpolations`: all values of an experiment. `interpolated`: one value.
+//! - `along_slip`: a cubic between runs that differ in slip only. `surface`: a Gaussian process over all conditions that vary.
 
 mod along_slip;
 mod interpolated;

@@ -1,4 +1,4 @@
-//! Interpolation over all conditions that vary, by a Gaussian process.
+//! Surface: interpolation over all conditions that vary, by a Gaussian process.
 
 use std::collections::BTreeMap;
 
@@ -10,29 +10,29 @@ use super::interpolated::{Interpolated, InterpolatedOver};
 use crate::table::conditions::{Conditions, repeated};
 use crate::words::number;
 
-/// What one process is through: wheel, soil, pass, channel.
+/// Wheel, soil, pass and channel of the measurements of one process.
 type Key = (String, String, u32, Channel);
 
-/// The processes of an experiment, made when first asked for.
+/// The processes of an experiment, fitted on demand.
 pub(super) struct Surfaces<'a> {
     experiment: &'a Experiment,
-    known: BTreeMap<Key, Result<Surface, String>>,
+    surfaces: BTreeMap<Key, Result<Surface, String>>,
 }
 
 impl<'a> Surfaces<'a> {
     pub(super) fn new(experiment: &'a Experiment) -> Self {
         Surfaces {
             experiment,
-            known: BTreeMap::new(),
+            surfaces: BTreeMap::new(),
         }
     }
 
-    /// The value at a run, or why there is none.
+    /// Returns the interpolated value at a run, or why there is none.
     pub(super) fn at(&mut self, run: &TestRun, channel: Channel) -> Result<Interpolated, String> {
         let key = (run.wheel.clone(), run.soil.clone(), run.pass, channel);
         let experiment = self.experiment;
         let make = || Surface::through(experiment, run, channel);
-        self.known
+        self.surfaces
             .entry(key)
             .or_insert_with(make)
             .as_ref()
@@ -41,20 +41,20 @@ impl<'a> Surfaces<'a> {
     }
 }
 
-/// A process through the measurements of a channel.
+/// A Gaussian process through the measurements of a channel.
 struct Surface {
-    /// The wheel, soil and pass.
-    of: String,
+    /// Wheel, soil and pass in words.
+    subject: String,
     conditions: Conditions,
     process: GaussianProcess,
 }
 
 impl Surface {
-    /// Through the fitted runs of a run's wheel, soil and pass.
+    /// Fits a process to the fitted runs of the same wheel, soil and pass as `like`.
     fn through(experiment: &Experiment, like: &TestRun, channel: Channel) -> Result<Self, String> {
-        let mut of = format!("wheel {} on soil {}", like.wheel, like.soil);
+        let mut subject = format!("wheel {} on soil {}", like.wheel, like.soil);
         if like.pass > 1 {
-            of += &format!(" at pass {}", like.pass);
+            subject += &format!(" at pass {}", like.pass);
         }
         let alike = |run: &&TestRun| {
             run.usage == RunUse::Fit
@@ -63,16 +63,16 @@ impl Surface {
         };
         let runs: Vec<&TestRun> = experiment.runs.iter().filter(alike).collect();
         if runs.is_empty() {
-            return Err(format!("{of} has no fitted {}", channel.words()));
+            return Err(format!("{subject} has no fitted {}", channel.words()));
         }
-        let conditions = Conditions::of(&runs);
+        let conditions = Conditions::new(&runs);
         let axes = conditions.axes.len();
         let observations = observations(&runs, &conditions, channel);
         let process = GaussianProcess::through(&observations).filter(|_| axes > 0);
         let process = process.ok_or_else(|| match axes {
-            0 => format!("{of} was fitted in one condition"),
+            0 => format!("{subject} was fitted in one condition"),
             axes => format!(
-                "{of} has {} of {}, and a Gaussian process over {} needs {}",
+                "{subject} has {} of {}, and a Gaussian process over {} needs {}",
                 number::count(observations.len(), "fitted condition"),
                 channel.words(),
                 conditions.names(),
@@ -80,14 +80,14 @@ impl Surface {
             ),
         })?;
         Ok(Surface {
-            of,
+            subject,
             conditions,
             process,
         })
     }
 
     fn at(&self, run: &TestRun) -> Result<Interpolated, String> {
-        if let Some(reason) = self.conditions.beside(&self.of, run) {
+        if let Some(reason) = self.conditions.reason_beside(&self.subject, run) {
             return Err(reason);
         }
         let point = self.conditions.point(run);
@@ -101,15 +101,15 @@ impl Surface {
     }
 }
 
-/// The means of the repeats of each condition.
+/// Averages the repeats of each condition.
 fn observations(runs: &[&TestRun], conditions: &Conditions, channel: Channel) -> Vec<Observation> {
-    let observation = |own: Vec<usize>| {
-        let own: Vec<&TestRun> = own.into_iter().map(|i| runs[i]).collect();
-        let values = own.iter().filter_map(|run| run.measured[channel.index()]);
+    let observation = |members: Vec<usize>| {
+        let repeats: Vec<&TestRun> = members.into_iter().map(|i| runs[i]).collect();
+        let values = repeats.iter().filter_map(|run| run.measured[channel.index()]);
         Observation {
-            point: conditions.mean_point(&own),
-            value: values.sum::<f64>() / own.len() as f64,
-            repeats: own.len(),
+            point: conditions.mean_point(&repeats),
+            value: values.sum::<f64>() / repeats.len() as f64,
+            repeats: repeats.len(),
         }
     };
     repeated(runs).into_iter().map(observation).collect()
