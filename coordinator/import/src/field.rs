@@ -19,8 +19,21 @@ pub(crate) enum Kind {
 }
 
 /// The use of a row, by a word of one of its columns.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, utoipa::ToSchema)]
+#[derive(
+    Debug,
+    Clone,
+    Copy,
+    PartialEq,
+    Eq,
+    PartialOrd,
+    Ord,
+    Serialize,
+    utoipa::ToSchema,
+    strum::EnumString,
+    strum::IntoStaticStr,
+)]
 #[serde(rename_all = "snake_case")]
+#[strum(serialize_all = "snake_case")]
 pub enum RowUse {
     /// The run is fitted.
     Fit,
@@ -31,15 +44,9 @@ pub enum RowUse {
 }
 
 impl RowUse {
-    pub(crate) const ALL: [RowUse; 3] = [RowUse::Fit, RowUse::Holdout, RowUse::Skip];
-
-    /// Its word in a map; the first two are also those of runs.csv.
+    /// Returns the word in a map; `fit` and `holdout` are also words of runs.csv.
     pub(crate) fn name(self) -> &'static str {
-        match self {
-            RowUse::Fit => "fit",
-            RowUse::Holdout => "holdout",
-            RowUse::Skip => "skip",
-        }
+        self.into()
     }
 }
 

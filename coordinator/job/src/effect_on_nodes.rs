@@ -28,17 +28,17 @@ impl EffectOnNodes {
         uses_displacement.then_some(Self { effect, setting })
     }
 
-    /// The candidate of a name, such as `janosi_hanamoto_node`.
+    /// Returns the candidate of a name, such as `janosi_hanamoto_node`.
     pub fn find(name: &str) -> Option<Self> {
         Self::new(find(name.strip_suffix(ON_NODES)?)?)
     }
 
-    /// Its name as a candidate.
+    /// Returns the name of the candidate.
     pub fn name(&self) -> String {
         format!("{}{ON_NODES}", self.effect.name)
     }
 
-    /// The candidates of a model that rolls and has no effect of the displacement yet; none of other models.
+    /// Returns the candidates for a model that rolls and has no effect of the displacement; other models have none.
     pub fn all_of(spec: &Spec) -> impl Iterator<Item = Self> {
         let spatial = spec.model.spatial.as_ref();
         let is_on_rim = spatial.is_some_and(|spatial| spatial.displacement == DisplacementFrame::Rim);

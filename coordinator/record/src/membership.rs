@@ -1,13 +1,15 @@
 //! The place of a calibration in its study.
 
 use serde::{Deserialize, Serialize};
+use strum::{EnumString, IntoStaticStr};
 use utoipa::ToSchema;
 
 use crate::discovery::Extension;
 
 /// The result that a calibration computes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema, EnumString, IntoStaticStr)]
 #[serde(rename_all = "snake_case")]
+#[strum(serialize_all = "snake_case")]
 pub enum Role {
     /// A sample of the posterior.
     Sample,
@@ -18,21 +20,14 @@ pub enum Role {
 }
 
 impl Role {
-    /// All roles.
-    pub const ALL: [Role; 3] = [Role::Sample, Role::Fit, Role::Search];
-
-    /// The word in the store.
+    /// Returns the word in the store.
     pub fn name(self) -> &'static str {
-        match self {
-            Role::Sample => "sample",
-            Role::Fit => "fit",
-            Role::Search => "search",
-        }
+        self.into()
     }
 
-    /// The role of a word.
+    /// Returns the role of a word.
     pub fn from_name(name: &str) -> Option<Role> {
-        Role::ALL.into_iter().find(|role| role.name() == name)
+        name.parse().ok()
     }
 }
 

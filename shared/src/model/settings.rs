@@ -152,12 +152,14 @@ pub fn unknown_effect(name: &str) -> String {
 
 /// Reads the value of `kind`.
 fn kind_of(table: &toml::Table) -> Result<ModelKind, ModelError> {
-    let names = ModelKind::ALL.map(ModelKind::name);
-    let list = names.map(|name| format!("\"{name}\"")).join(", ");
+    let names = || ModelKind::ALL.iter().map(|kind| kind.name());
+    let list = names()
+        .map(|name| format!("\"{name}\""))
+        .collect::<Vec<_>>()
+        .join(", ");
     match table.get("kind") {
         Some(toml::Value::String(name)) => {
-            let kind = ModelKind::ALL.into_iter().find(|kind| kind.name() == name);
-            kind.ok_or_else(|| ModelError::Unknown(unknown_word("kind", name, names)))
+            ModelKind::find(name).ok_or_else(|| ModelError::Unknown(unknown_word("kind", name, names())))
         }
         Some(other) => Err(ModelError::Invalid(format!(
             "kind = {other} must be one of {list}"

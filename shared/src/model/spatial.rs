@@ -1,5 +1,6 @@
 //! Settings of the three-dimensional model: grid spacing, variants of the laws, end of a steady run.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
@@ -14,12 +15,14 @@ pub const PAPER_DURATION_S: f64 = 50.0;
 const SAMPLES_HZ: f64 = 10.0;
 
 /// Settings of `kind = "scm"`: keys of the table `[model]`.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, ToSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, ToSchema, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct SpatialSettings {
     /// Spacing of the terrain's nodes `[m]`; finer along travel if the contact is shorter than eight nodes.
+    #[schemars(extend("exclusiveMinimum" = 0))]
     pub dem_spacing_m: f64,
     /// Travel of one step `[m]`.
+    #[schemars(extend("exclusiveMinimum" = 0))]
     pub travel_step_m: f64,
     /// The frame in which the displacement of `janosi_hanamoto` is stored.
     pub displacement: DisplacementFrame,
@@ -30,15 +33,18 @@ pub struct SpatialSettings {
     /// The motion of the hub in height.
     pub vertical: HubMotion,
     /// Damping of a freely moving hub \[N s/m\].
+    #[schemars(range(min = 0))]
     pub damping_n_s_m: f64,
     /// Remaining relative change of a steady run's averages towards their limit at which the run ends `[–]`.
+    #[schemars(extend("exclusiveMinimum" = 0))]
     pub steady_tolerance: f64,
     /// Travel at which a steady run ends in any case `[m]`.
+    #[schemars(extend("exclusiveMinimum" = 0))]
     pub steady_travel_m: f64,
 }
 
 /// The frame in which the shear displacement is stored.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum DisplacementFrame {
     /// On the wheel's rim, as in the published values of K.
@@ -48,7 +54,7 @@ pub enum DisplacementFrame {
 }
 
 /// The normal along which the pressure acts.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum PressureAxis {
     /// The normal of the wheel's surface.
@@ -58,7 +64,7 @@ pub enum PressureAxis {
 }
 
 /// The effective width `b_eff` that applies to the nodes of a footprint.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum FootprintWidth {
     /// The width of the whole footprint, by its hull.
@@ -68,7 +74,7 @@ pub enum FootprintWidth {
 }
 
 /// The motion of the hub in height.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum HubMotion {
     /// The hub is in balance with the load at every step.

@@ -39,13 +39,10 @@ pub(super) fn words<'a>(rows: impl Iterator<Item = &'a Row>, column: usize) -> V
     }
     // If one word marks held-out runs, the others mark fitted ones.
     let is_marked = counts.keys().any(|word| is_held_out(word));
-    let means = |word: &str| {
-        let stated = RowUse::ALL.iter().find(|row_use| row_use.name() == word);
-        match stated {
-            Some(stated) => Some(*stated),
-            None if is_held_out(word) => Some(RowUse::Holdout),
-            None => is_marked.then_some(RowUse::Fit),
-        }
+    let means = |word: &str| match word.parse() {
+        Ok(stated) => Some(stated),
+        Err(_) if is_held_out(word) => Some(RowUse::Holdout),
+        Err(_) => is_marked.then_some(RowUse::Fit),
     };
     let card = |(word, count): (&String, &usize)| WordCard {
         word: word.clone(),

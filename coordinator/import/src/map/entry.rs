@@ -167,8 +167,8 @@ impl<'a> Keys<'a> {
         };
         for (word, item) in table.iter() {
             let stated = item.as_str().unwrap_or_default();
-            if let Some(row_use) = RowUse::ALL.iter().find(|row_use| row_use.name() == stated) {
-                words.insert(spaced(word), *row_use);
+            if let Ok(row_use) = stated.parse() {
+                words.insert(spaced(word), row_use);
                 continue;
             }
             let is_open = stated == QUESTION;

@@ -1,4 +1,4 @@
-//! The parameters of a calibration: which are fixed and which are free, with their priors.
+//! The fixed and the free parameters of a calibration, with their priors.
 
 use std::collections::BTreeSet;
 
@@ -14,7 +14,7 @@ use crate::job::Job;
 use crate::table::posterior_prior::JointPrior;
 use crate::table::prior_entry::{FreeParameter, ParsedPrior};
 
-/// The model with everything that is fixed, and what is free.
+/// The model with its fixed parameters, and the free parameters.
 pub(super) struct Parameters {
     pub(super) model: ModelSettings,
     pub(super) effects: EffectSet,
@@ -70,7 +70,7 @@ impl Parameters {
     }
 }
 
-/// The effects that the job lists, and those whose parameters it names.
+/// Returns the effects that the job lists, and those whose parameters it names.
 fn effects(name: &str, job: &Job) -> Result<EffectSet, FileError> {
     let named = job.priors.iter().map(|entry| entry.name.as_str());
     let named = named.filter(|name| !name.starts_with(NOISE_PREFIX));
@@ -83,7 +83,7 @@ fn effects(name: &str, job: &Job) -> Result<EffectSet, FileError> {
     )
 }
 
-/// The parameters that have the posterior of another calibration as their prior.
+/// Returns the parameters that have the posterior of another calibration as their prior.
 fn of_posterior(
     name: &str,
     job: &Job,
@@ -106,7 +106,7 @@ fn of_posterior(
     Ok((Some(joint), covered))
 }
 
-/// Adds what the job states under `[priors]`.
+/// Adds the entries of the job under `[priors]`.
 fn add_stated(
     name: &str,
     job: &Job,
@@ -141,7 +141,7 @@ fn check_reference(job: &Job, scope: &ParameterScope) -> Result<(), String> {
     Ok(())
 }
 
-/// Adds what a job does not say of its effects: the number or the prior that the effect's file has.
+/// Adds parameters of effects that the job does not state, with the number or the prior of the effect's file.
 fn add_unstated(
     name: &str,
     effects: &EffectSet,
@@ -170,7 +170,7 @@ fn add_unstated(
     Ok(())
 }
 
-/// The prior of parameters, of which the first may be jointly normal.
+/// Returns the prior of the parameters, the first of which may be jointly normal.
 pub(super) fn joint(joint: &Option<JointPrior>, parameters: &[FreeParameter]) -> Result<Prior, PriorError> {
     let prior = Prior::new(parameters.iter().map(|p| p.marginal.clone()).collect());
     match joint {

@@ -10,7 +10,7 @@ use shared::parameters::of_models;
 use super::prior_entry::PriorEntry;
 
 /// The numbers of models that a job can compare.
-const COMPARED: std::ops::RangeInclusive<usize> = 2..=8;
+pub(crate) const COMPARED: std::ops::RangeInclusive<usize> = 2..=8;
 
 /// The values of a table with their places in the text.
 type Spanned = BTreeMap<String, toml::Spanned<toml::Value>>;

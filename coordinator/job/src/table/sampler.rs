@@ -15,6 +15,7 @@ use toml::de::DeValue;
 use super::algorithm_settings::{AlgorithmName, AlgorithmSettings};
 use super::error::TableError;
 use super::keys::keys_of;
+use crate::schema;
 
 /// Least and most steps of a stage whose steps are subchains of a metamodel: a step of many moves forgets more than one move.
 const METAMODEL_STEPS: [usize; 2] = [3, 30];
@@ -361,7 +362,7 @@ pub(crate) struct StatedAlgorithm {
     /// The keys that it takes, in the order of its struct.
     pub(crate) keys: fn() -> &'static [&'static str],
     /// The schema of its keys.
-    pub(crate) schema: fn() -> schemars::Schema,
+    pub(crate) schema: fn() -> serde_json::Value,
     read: fn(&TomlFile, toml::Spanned<DeValue>) -> Result<SamplerTable, FileError>,
 }
 
@@ -370,11 +371,7 @@ impl StatedAlgorithm {
         StatedAlgorithm {
             name: K::NAME,
             keys: keys_of::<K>,
-            schema: || {
-                schemars::generate::SchemaSettings::draft07()
-                    .into_generator()
-                    .into_root_schema_for::<K>()
-            },
+            schema: schema::from_type::<K>,
             read: |file, table| {
                 let keys: K = file.read(table)?;
                 SamplerTable::new(keys).map_err(|e| file.error(format!("[sampler] {e}")))
