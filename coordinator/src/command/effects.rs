@@ -46,7 +46,7 @@ pub(super) async fn effects(config: &EffectsArguments) -> anyhow::Result<()> {
 
 /// Every effect of the catalogue, by the part of the model that it concerns.
 fn list() -> String {
-    let cards: Vec<EffectCard> = catalogue().iter().map(EffectCard::of).collect();
+    let cards: Vec<EffectCard> = catalogue().iter().map(EffectCard::new).collect();
     let mut text = wrapped(
         &format!(
             "{} effects that a wheel-soil model may miss. A job takes one by [model] effects = [\"NAME\"], by a prior for \

@@ -89,7 +89,7 @@ impl Group {
         }
     }
 
-    fn of(effect: &Effect) -> Group {
+    fn new(effect: &Effect) -> Group {
         if let Some(mechanism) = effect.mechanism {
             return match mechanism {
                 Mechanism::FlatPatch => Group::Wheel,
@@ -113,17 +113,17 @@ impl Group {
 
 impl EffectCard {
     /// The card of an effect of the library.
-    pub fn of(effect: &Effect) -> Self {
+    pub fn new(effect: &Effect) -> Self {
         EffectCard {
             name: effect.name.clone(),
             origin: Origin::Library,
             version: None,
             summary: effect.summary.clone(),
             source: effect.source.clone(),
-            group: Group::of(effect),
+            group: Group::new(effect),
             hooks: effect.hooks().map(|hook| hook.name().to_owned()).collect(),
             mechanism: effect.mechanism.map(|m| m.name().to_owned()),
-            parameters: effect.parameters.iter().map(ParameterCard::of).collect(),
+            parameters: effect.parameters.iter().map(ParameterCard::new).collect(),
         }
     }
 
@@ -132,7 +132,7 @@ impl EffectCard {
         EffectCard {
             origin: Origin::Own,
             version: Some(version),
-            ..EffectCard::of(effect)
+            ..EffectCard::new(effect)
         }
     }
 
@@ -148,7 +148,7 @@ impl EffectCard {
 }
 
 impl ParameterCard {
-    fn of(parameter: &Parameter) -> Self {
+    fn new(parameter: &Parameter) -> Self {
         ParameterCard {
             name: parameter.name.clone(),
             unit: parameter.unit.clone(),
@@ -168,7 +168,7 @@ fn shown_at(parameter: &Parameter) -> Option<f64> {
         };
         Some([number(a)?, number(b)?])
     };
-    let of_prior = || {
+    let prior_centre = || {
         let uniform = || pair("uniform").map(|[a, b]| f64::midpoint(a, b));
         let loguniform = || pair("loguniform").map(|[a, b]| (a * b).sqrt());
         let normal = || pair("normal").map(|[mean, sd]| mean + sd);
@@ -177,7 +177,7 @@ fn shown_at(parameter: &Parameter) -> Option<f64> {
         let table = uniform().or_else(loguniform).or_else(normal);
         table.or_else(lognormal).or_else(half)
     };
-    parameter.typical.or_else(|| number(prior)).or_else(of_prior)
+    parameter.typical.or_else(|| number(prior)).or_else(prior_centre)
 }
 
 #[cfg(test)]
@@ -203,7 +203,7 @@ mod tests {
 
     #[test]
     fn every_group_has_effects() {
-        let cards: Vec<EffectCard> = catalogue().iter().map(EffectCard::of).collect();
+        let cards: Vec<EffectCard> = catalogue().iter().map(EffectCard::new).collect();
         for group in Group::ALL {
             assert!(cards.iter().any(|card| card.group == group), "{group:?}");
         }

@@ -41,7 +41,7 @@ impl Parameters {
             effects: &effects,
             external: job.model.external.as_ref(),
         };
-        let (joint_prior, mut free) = of_posterior(name, job, &scope)?;
+        let (joint_prior, mut free) = posterior_parameters(name, job, &scope)?;
         let mut model = job.model.clone();
         add_stated(name, job, &scope, &mut model, &mut free)?;
         for parameter in model.kind.parameters() {
@@ -84,7 +84,7 @@ fn effects(name: &str, job: &Job) -> Result<EffectSet, FileError> {
 }
 
 /// Returns the parameters that have the posterior of another calibration as their prior.
-fn of_posterior(
+fn posterior_parameters(
     name: &str,
     job: &Job,
     scope: &ParameterScope,
@@ -154,7 +154,7 @@ fn add_unstated(
     let stated = stated.iter().map(String::as_str).collect();
     for unstated in effects.unstated_parameters(&stated, wheels) {
         let parsed =
-            ParsedPrior::of_effect(&unstated.name, unstated.parameter).map_err(|e| {
+            ParsedPrior::from_effect(&unstated.name, unstated.parameter).map_err(|e| {
                 match &unstated.chosen.file {
                     Some(file) => FileError::at(file, unstated.parameter.line, e.to_string()),
                     None => FileError::whole(name, format!("effect {}: {e}", unstated.chosen.effect.name)),

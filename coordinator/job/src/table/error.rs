@@ -1,9 +1,9 @@
-//! Why a table of a job is refused.
+//! The error of a table of a job.
 
-/// Why a table of a job is refused; the caller names the table.
+/// A reason why a table of a job is refused; the caller names the table.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub(crate) enum TableError {
-    /// A word that is not known, with the nearest known.
+    /// An unknown word, with the nearest known word.
     #[error("{0}")]
     Unknown(String),
     /// A value breaks its rule.

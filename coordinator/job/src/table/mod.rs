@@ -1,4 +1,4 @@
-//! The tables of `job.toml`: as written, and what they mean.
+//! The tables of `job.toml`: their keys, and the settings that they state.
 
 pub(crate) mod algorithm_settings;
 pub(crate) mod candidate_priors;
