@@ -199,12 +199,12 @@ const CHANNEL_TITLES: [&[&str]; 4] = [
     ],
 ];
 
-/// Name and description of each column of runs.csv that a map may fill, in the order of the file.
+/// Returns the name and description of each column of runs.csv that a map may fill, in the order of the file.
 pub fn columns() -> impl Iterator<Item = (String, String)> {
     fields().into_iter().map(|field| (field.name, field.words))
 }
 
-/// The columns of runs.csv that a map may fill, in the order of the file.
+/// Returns the columns of runs.csv that a map may fill, in the order of the file.
 pub(crate) fn fields() -> Vec<Field> {
     let entry = |&(name, words, kind, is_needed, titles): &Entry| Field {
         name: name.into(),

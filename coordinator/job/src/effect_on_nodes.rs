@@ -59,7 +59,7 @@ mod tests {
     const RUNS: &str =
         "run,wheel,soil,slip,wheel_load_n,sled_speed_m_s,drawbar_pull_n\na,w,s,0.2,100,0.008,30\n";
 
-    /// The candidates of a job with an effect of the user.
+    /// Returns the candidates of a job with an effect of the user.
     fn candidates(formula: &str) -> Vec<String> {
         let effect = format!(
             "name = \"mine\"\nsummary = \"mine\"\nsource = \"a guess\"\n{formula}\n[parameters.a]\nunit = \"1\"\nneutral = 0.0\nprior = {{ normal = [0.0, 0.2] }}\n"

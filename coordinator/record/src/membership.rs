@@ -60,7 +60,7 @@ pub struct Membership {
 }
 
 impl Membership {
-    /// The calibration that a job was submitted for.
+    /// Returns the calibration that a job was submitted for.
     pub fn submitted(role: Role) -> Self {
         Membership {
             role,
@@ -69,7 +69,7 @@ impl Membership {
         }
     }
 
-    /// A calibration that follows from another one.
+    /// Returns a calibration that follows from another one.
     pub fn changed(role: Role, parent: i64, change: Change) -> Self {
         Membership {
             role,
@@ -78,7 +78,7 @@ impl Membership {
         }
     }
 
-    /// The search of a calibration's model.
+    /// Returns the search of a calibration's model.
     pub fn search_of(calibration: i64) -> Self {
         Membership {
             role: Role::Search,
@@ -87,7 +87,7 @@ impl Membership {
         }
     }
 
-    /// Whether this is a search for missing effects.
+    /// Returns whether this is a search for missing effects.
     pub fn is_search(&self) -> bool {
         self.role == Role::Search
     }

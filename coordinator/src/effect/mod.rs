@@ -17,31 +17,31 @@ use utoipa::ToSchema;
 pub struct EffectCard {
     /// Name in jobs and results.
     pub name: String,
-    /// Where its file is.
+    /// Location of the file.
     pub origin: Origin,
     /// Version of the file, from 1; null of the library's, which come with the program.
     pub version: Option<i64>,
-    /// What it is, in a line.
+    /// The effect in a line.
     pub summary: String,
-    /// Where it comes from.
+    /// Publication or data that the effect comes from.
     pub source: String,
-    /// What of the model it concerns: `pressure`, `shear`, `wheel` or `rig`.
+    /// The part of the model that it concerns: `pressure`, `shear`, `wheel` or `rig`.
     pub group: Group,
     /// Quantities that its formulas replace, in the order of evaluation.
     pub hooks: Vec<String>,
-    /// What a model may have of it in code, in place of the formulas.
+    /// The mechanism that a model may have in code, in place of the formulas.
     pub mechanism: Option<String>,
-    /// Its parameters, in the order of the file.
+    /// Parameters, in the order of the file.
     pub parameters: Vec<ParameterCard>,
 }
 
-/// Where the file of an effect is.
+/// The location of an effect's file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Origin {
-    /// In the library that comes with the program.
+    /// The library that comes with the program.
     Library,
-    /// In the store of a service: a user has added it.
+    /// The store of a service, to which a user has added it.
     Own,
 }
 
@@ -61,25 +61,25 @@ pub struct ParameterCard {
     pub prior: serde_json::Value,
 }
 
-/// What of the model an effect concerns.
+/// The part of the model that an effect concerns.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Group {
-    /// How the soil carries the wheel.
+    /// The pressure under the wheel.
     Pressure,
-    /// How it resists the wheel's sliding.
+    /// The resistance of the soil to sliding.
     Shear,
     /// Shape, motion and load of the wheel.
     Wheel,
-    /// What is added to what the rig measures.
+    /// Forces beside the contact, and errors of the instruments.
     Rig,
 }
 
 impl Group {
-    /// Every group.
+    /// All groups, in the order of lists.
     pub const ALL: [Group; 4] = [Group::Pressure, Group::Shear, Group::Wheel, Group::Rig];
 
-    /// Title in lists.
+    /// Returns the title in lists.
     pub fn title(self) -> &'static str {
         match self {
             Group::Pressure => "How the soil carries the wheel",
@@ -112,7 +112,7 @@ impl Group {
 }
 
 impl EffectCard {
-    /// The card of an effect of the library.
+    /// Returns the card of an effect of the library.
     pub fn new(effect: &Effect) -> Self {
         EffectCard {
             name: effect.name.clone(),
@@ -127,7 +127,7 @@ impl EffectCard {
         }
     }
 
-    /// The card of a version of an effect that a user has added.
+    /// Returns the card of a version of an effect that a user has added.
     pub fn user(effect: &Effect, version: i64) -> Self {
         EffectCard {
             origin: Origin::Own,
@@ -136,7 +136,7 @@ impl EffectCard {
         }
     }
 
-    /// Where it enters, in words.
+    /// Returns the hooks or the mechanism by which it enters the model.
     pub fn enters(&self) -> String {
         let hooks = self.hooks.join(", ");
         match (&self.mechanism, hooks.as_str()) {
@@ -159,7 +159,7 @@ impl ParameterCard {
     }
 }
 
-/// The value at which a strength is shown: the file's, or else one scale of its prior.
+/// Returns the value at which a strength is shown: the file's, or else one scale of its prior.
 fn shown_at(parameter: &Parameter) -> Option<f64> {
     let prior = &parameter.prior;
     let pair = |key: &str| -> Option<[f64; 2]> {

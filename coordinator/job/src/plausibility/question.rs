@@ -14,7 +14,7 @@ pub(super) const NEUTRAL: &str = "neutral";
 /// The question of slip angles.
 pub(super) const SLIP_ANGLE: &str = "slip_angle_deg";
 
-/// The name of the question about the sign of a channel.
+/// Returns the name of the question about the sign of a channel.
 pub(super) fn sign_name(channel: Channel) -> String {
     format!("{}_sign", channel.name())
 }

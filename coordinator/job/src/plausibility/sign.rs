@@ -175,7 +175,7 @@ mod tests {
 
     use super::*;
 
-    /// The names of the questions about runs of slip, wheel load, slip angle, pull, torque, sinkage and lateral force.
+    /// Returns the names of the questions about runs of slip, wheel load, slip angle, pull, torque, sinkage and lateral force.
     fn asked(rows: &[[f64; 7]]) -> Vec<String> {
         let mut runs = "run,wheel,soil,slip,wheel_load_n,sled_speed_m_s,slip_angle_deg,drawbar_pull_n,torque_n_m,sinkage_m,lateral_force_n,use\n".to_owned();
         for (i, [slip, load, angle, channels @ ..]) in rows.iter().enumerate() {

@@ -76,7 +76,7 @@ fn fixed_radius_question(spec: &Spec, name: &str, value: f64) -> Option<Question
     Some(Question::new(WHEEL_RADIUS, words))
 }
 
-/// The first wheel, with its `radius_m`, to which radii of a parameter do not belong: they lie beside its rim and, where the model
+/// Returns the first wheel, with its `radius_m`, that a parameter's radii do not fit: they differ from its rim and, if the model
 /// rolls a smooth wheel in place of its grousers, beside their tips and what is between.
 fn elsewhere<'a>(spec: &'a Spec, parameter: &str, [low, high]: [f64; 2]) -> Option<(&'a str, f64)> {
     let (name, own) = match parameter.split_once('.') {
@@ -99,7 +99,7 @@ fn elsewhere<'a>(spec: &'a Spec, parameter: &str, [low, high]: [f64; 2]) -> Opti
     Some((wheel, geometry.radius_m))
 }
 
-/// A prior of which hardly anything lies in the usual range.
+/// Returns the question about a prior with hardly any probability in the usual range.
 fn prior_question(parameter: &FreeParameter) -> Option<Question> {
     let limit = limit::find(base(&parameter.name))?;
     let end = 0.5 * (1.0 - CENTRAL);
@@ -116,12 +116,12 @@ fn prior_question(parameter: &FreeParameter) -> Option<Question> {
     Some(Question::new(limit.name, words))
 }
 
-/// The name of a parameter without that of a wheel.
+/// Returns the name of a parameter without that of a wheel.
 fn base(name: &str) -> &str {
     name.split_once('.').map_or(name, |(base, _)| base)
 }
 
-/// The values that the files state for a quantity, each with its place.
+/// Returns the values that the files state for a quantity, each with its place.
 fn values(spec: &Spec, limit: &Limit) -> Vec<(String, f64)> {
     let experiment = &spec.experiment;
     let runs = |value: fn(&TestRun) -> f64| {
@@ -195,7 +195,7 @@ mod tests {
     const RUNS: &str =
         "run,wheel,soil,slip,wheel_load_n,sled_speed_m_s,drawbar_pull_n\na,w,s,0.2,100,0.008,30\n";
 
-    /// The questions on the radius of a wheel with its rim at 0.125 m and its tips at 0.145 m.
+    /// Returns the questions on the radius of a wheel with its rim at 0.125 m and its tips at 0.145 m.
     fn asked(model: &str, radius: &str) -> Vec<String> {
         let priors = match model.contains("rft") {
             true => "",

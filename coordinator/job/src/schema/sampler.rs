@@ -89,7 +89,7 @@ fn description(variants: &[(&str, Value)], with_default: bool) -> String {
 mod tests {
     use super::*;
 
-    /// The rows of the tables of a section of docs/job.md, each as its cells.
+    /// Returns the rows of the tables of a section of docs/job.md, each as its cells.
     fn rows(section: &str) -> Vec<Vec<String>> {
         let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/job.md");
         let text = std::fs::read_to_string(path).unwrap();
@@ -105,7 +105,7 @@ mod tests {
         rows.map(cells).collect()
     }
 
-    /// A number as the documents write it: `10,000`, but `1000`.
+    /// Returns a number as the documents write it: `10,000`, but `1000`.
     fn written(number: &Value) -> String {
         let text = number.to_string();
         match text.len() {

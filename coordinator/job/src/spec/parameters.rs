@@ -25,8 +25,8 @@ pub(super) struct Parameters {
 }
 
 impl Parameters {
-    /// The parameters in their order: those of a posterior, those that the job states, those that the model, its effects, the rings and
-    /// the noise add.
+    /// Returns the parameters in their order: those of a posterior, those that the job states, then those that the model, its effects,
+    /// the rings and the noise add.
     pub(super) fn new(
         name: &str,
         job: &Job,

@@ -64,7 +64,7 @@ impl Default for RawDiscovery {
 }
 
 impl RawDiscovery {
-    /// The settings of a job with this algorithm.
+    /// Returns the settings of a job with this algorithm.
     pub(crate) fn settings(&self, algorithm: &AlgorithmSettings) -> Result<DiscoverySettings, TableError> {
         let max_effects = self.max_effects;
         if !(1..=MAX_EFFECTS).contains(&max_effects) {

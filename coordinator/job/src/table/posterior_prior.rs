@@ -209,8 +209,8 @@ impl PosteriorPrior {
     }
 }
 
-/// Whether a column of a posterior is of what a wheel shows and plates and rings do not: its radius, the noise of its channels, and
-/// effects, of which a ring feels the one of its shear modulus alone.
+/// Returns whether only wheels determine a column of a posterior: a radius, the noise of a channel, or an effect other than the
+/// shear modulus, which also acts under rings.
 fn is_of_wheel(column: &str) -> bool {
     let of_channel = |channel: Channel| column == noise_parameter(channel);
     match column.starts_with(NOISE_PREFIX) {

@@ -143,7 +143,7 @@ fn alone(toml: &str) -> FileSet {
     }
 }
 
-/// The text of a job with a change of its model.
+/// Returns the text of a job with a change of its model.
 fn changed(toml: &str, change: ModelChange) -> Result<String, String> {
     let addition = Addition {
         changes: vec![change],
@@ -153,7 +153,7 @@ fn changed(toml: &str, change: ModelChange) -> Result<String, String> {
     job.map(|job| job.toml).map_err(|e| e.to_string())
 }
 
-/// An effect of the catalogue, one in a file, and lines under `[priors]`.
+/// Returns an effect of the catalogue, one in a file, and lines under `[priors]`.
 fn addition(priors: &[(&str, &str)]) -> Addition {
     let read = |(name, value): &(&str, &str)| ((*name).to_owned(), value.parse().unwrap());
     Addition {
