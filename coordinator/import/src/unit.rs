@@ -16,6 +16,7 @@ pub(crate) enum Quantity {
 }
 
 impl Quantity {
+    /// Returns the name with its article, for sentences.
     pub(crate) fn words(self) -> &'static str {
         match self {
             Quantity::Ratio => "a ratio",
@@ -31,16 +32,7 @@ impl Quantity {
 
     /// Returns the SI unit in formulas.
     pub(crate) fn si(self) -> &'static str {
-        match self {
-            Quantity::Ratio => "1",
-            Quantity::Angle => "rad",
-            Quantity::AngularSpeed => "1/s",
-            Quantity::Length => "m",
-            Quantity::Time => "s",
-            Quantity::Speed => "m/s",
-            Quantity::Force => "N",
-            Quantity::Torque => "N m",
-        }
+        ["1", "rad", "1/s", "m", "s", "m/s", "N", "N m"][self as usize]
     }
 
     /// Returns the units that the quantity can be given in, the usual ones first.

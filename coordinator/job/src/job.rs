@@ -231,8 +231,12 @@ impl Job {
     /// Returns the files that the job names beside its experiment.
     pub fn named_files(&self) -> Vec<String> {
         let posterior = self.posterior.as_ref().map(|p| p.file.clone());
-        let own = self.model.effect_files.iter();
-        let mut named: Vec<String> = own.chain(&self.also_named).cloned().chain(posterior).collect();
+        let effect_files = self.model.effect_files.iter();
+        let mut named: Vec<String> = effect_files
+            .chain(&self.also_named)
+            .cloned()
+            .chain(posterior)
+            .collect();
         named.sort();
         named.dedup();
         named

@@ -14,7 +14,7 @@ use super::output::say;
 use crate::config::{EffectsArguments, ModelChoice};
 use crate::effect::signature::{ChannelSignature, Signature, signature};
 use crate::effect::{EffectCard, Group};
-use job::check_own;
+use job::check_effect;
 use result::number;
 
 /// Longest line `[columns]`.
@@ -32,7 +32,7 @@ pub(super) async fn effects(config: &EffectsArguments) -> anyhow::Result<()> {
             // The checks are those of a job.
             let file = path.display().to_string();
             let effect = read_user_effect(&file, &read_text(path)?)?;
-            check_own(&file, &effect)?;
+            check_effect(&file, &effect)?;
             effect
         }
         (None, Some(name)) => find(name).with_context(|| unknown_effect(name))?.clone(),

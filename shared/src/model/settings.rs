@@ -49,7 +49,7 @@ impl ModelSettings {
                 key if kind.is_external() && external_table::KEYS.contains(&key) => {
                     external_keys.insert(key.to_owned(), value.clone());
                 }
-                key if SpatialSettings::KEYS.contains(&key) => {
+                key if SpatialSettings::keys().contains(&key) => {
                     spatial.insert(key.to_owned(), value.clone());
                 }
                 grouser_key::KEY if !kind.is_external() => {
@@ -93,7 +93,7 @@ impl ModelSettings {
     pub fn keys_of(kind: ModelKind) -> &'static [&'static str] {
         match kind {
             ModelKind::QuasiStatic => &[grouser_key::KEY],
-            ModelKind::Scm => &SpatialSettings::KEYS,
+            ModelKind::Scm => SpatialSettings::keys(),
             ModelKind::WongReece | ModelKind::Rft => &[],
             ModelKind::Command | ModelKind::Umbridge => &external_table::KEYS,
         }

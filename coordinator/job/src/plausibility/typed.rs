@@ -79,7 +79,7 @@ fn fixed_radius_question(spec: &Spec, name: &str, value: f64) -> Option<Question
 /// Returns the first wheel, with its `radius_m`, that a parameter's radii do not fit: they differ from its rim and, if the model
 /// rolls a smooth wheel in place of its grousers, beside their tips and what is between.
 fn elsewhere<'a>(spec: &'a Spec, parameter: &str, [low, high]: [f64; 2]) -> Option<(&'a str, f64)> {
-    let (name, own) = match parameter.split_once('.') {
+    let (name, stated_wheel) = match parameter.split_once('.') {
         Some((name, wheel)) => (name, Some(wheel)),
         None => (parameter, None),
     };
@@ -93,7 +93,7 @@ fn elsewhere<'a>(spec: &'a Spec, parameter: &str, [low, high]: [f64; 2]) -> Opti
             true => rim + geometry.grouser_height_m,
             false => rim,
         };
-        let is_meant = own.is_none_or(|stated| stated == wheel.as_str());
+        let is_meant = stated_wheel.is_none_or(|stated| stated == wheel.as_str());
         is_meant && (high < rim * (1.0 - ABOUT) || low > largest * (1.0 + ABOUT))
     })?;
     Some((wheel, geometry.radius_m))

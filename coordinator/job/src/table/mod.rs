@@ -4,7 +4,6 @@ pub(crate) mod algorithm_settings;
 pub(crate) mod candidate_priors;
 pub(crate) mod discovery_settings;
 mod error;
-mod keys;
 pub(crate) mod likelihood_settings;
 pub(crate) mod model_entry;
 pub(crate) mod posterior_prior;

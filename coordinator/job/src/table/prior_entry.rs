@@ -147,7 +147,7 @@ impl ParsedPrior {
 ///
 /// # Errors
 /// [`FileError`] with the line of the parameter.
-pub fn check_own(file: &str, effect: &Effect) -> Result<(), FileError> {
+pub fn check_effect(file: &str, effect: &Effect) -> Result<(), FileError> {
     for parameter in &effect.parameters {
         ParsedPrior::from_effect(&parameter.name, parameter)
             .map_err(|e| FileError::at(file, parameter.line, e.to_string()))?;

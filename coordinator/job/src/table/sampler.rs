@@ -10,11 +10,11 @@ use schemars::JsonSchema;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use shared::file::{FileError, TomlFile, unknown_word};
+use shared::keys::keys_of;
 use toml::de::DeValue;
 
 use super::algorithm_settings::{AlgorithmName, AlgorithmSettings};
 use super::error::TableError;
-use super::keys::keys_of;
 use crate::schema;
 
 /// Minimum and maximum number of steps of a stage whose steps are subchains of a metamodel, which decorrelate more than one move.

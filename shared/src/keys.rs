@@ -7,7 +7,7 @@ use serde::de::{DeserializeOwned, Error, Visitor};
 use serde::forward_to_deserialize_any;
 
 /// Returns the keys of the struct that a table is read into, in the order of its fields; none for other types.
-pub(crate) fn keys_of<T: DeserializeOwned>() -> &'static [&'static str] {
+pub fn keys_of<T: DeserializeOwned>() -> &'static [&'static str] {
     T::deserialize(Question).err().map_or(&[], |asked| asked.0)
 }
 
