@@ -2,7 +2,7 @@
 //!
 //! # Layout
 //! - `job`: [`Job`], a job as users write it, as a value. `addition`: what changes it. `named_files`: the files that it names.
-//! - `table`: the tables of a job, as written and what they mean. [`schema`]: their JSON schemas.
+//! - `table`: the tables of a job, as written and what they mean. [`schema`]: their JSON schemas; `derived_schema`: schemas of types.
 //! - `data`: the fitted measurements: noise, likelihood, predicted values; whether their order follows a condition.
 //! - `spec`: [`Spec`], a calibration as its files determine it.
 //! - `plain_parameter`: [`PlainParameter`], what a search may free. `model_switch`: [`ModelSwitch`], what it may turn.
@@ -14,6 +14,7 @@
 mod addition;
 mod assumed_experiment;
 mod data;
+mod derived_schema;
 mod effect_on_nodes;
 mod facts;
 mod job;

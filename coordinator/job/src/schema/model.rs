@@ -5,6 +5,8 @@ use serde_json::{Value, json};
 use shared::channel::Channel;
 use shared::model::{ModelKind, RunInput, SpatialSettings, grouser_key};
 
+use crate::derived_schema::from_type;
+
 use super::prior::{DOTTED, JobParameter, names_of};
 
 /// Returns the schema of `[model]`: the keys of all kinds of models in one table, and parameters with fixed values.
@@ -39,7 +41,7 @@ pub fn model() -> Value {
             "description": "command: address space of the program [MB].", "type": "integer", "minimum": 1, "default": 4096,
         },
     });
-    let spatial = super::from_type::<SpatialSettings>();
+    let spatial = from_type::<SpatialSettings>();
     for (key, shape) in spatial["properties"].as_object().into_iter().flatten() {
         properties[key] = shape.clone();
         properties[key]["description"] =

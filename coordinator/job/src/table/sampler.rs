@@ -15,7 +15,7 @@ use toml::de::DeValue;
 
 use super::algorithm_settings::{AlgorithmName, AlgorithmSettings};
 use super::error::TableError;
-use crate::schema;
+use crate::derived_schema::from_type;
 
 /// Minimum and maximum number of steps of a stage whose steps are subchains of a metamodel, which decorrelate more than one move.
 const METAMODEL_STEPS: [usize; 2] = [3, 30];
@@ -371,7 +371,7 @@ impl StatedAlgorithm {
         StatedAlgorithm {
             name: K::NAME,
             keys: keys_of::<K>,
-            schema: schema::from_type::<K>,
+            schema: from_type::<K>,
             read: |file, table| {
                 let keys: K = file.read(table)?;
                 SamplerTable::new(keys).map_err(|e| file.error(format!("[sampler] {e}")))
