@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
+use strum::{EnumString, IntoStaticStr, VariantArray};
 use utoipa::ToSchema;
 
 /// `POST /v1/experiments`.
@@ -141,8 +142,21 @@ pub struct StudyDeleted {
 }
 
 /// The state of a calibration.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[derive(
+    Debug,
+    Clone,
+    Copy,
+    PartialEq,
+    Eq,
+    Serialize,
+    Deserialize,
+    ToSchema,
+    EnumString,
+    IntoStaticStr,
+    VariantArray,
+)]
 #[serde(rename_all = "snake_case")]
+#[strum(serialize_all = "snake_case")]
 pub enum CalibrationState {
     /// No evaluation has been leased yet.
     Queued,
@@ -162,32 +176,16 @@ pub enum CalibrationState {
 
 impl CalibrationState {
     /// Every state.
-    pub const ALL: [CalibrationState; 7] = [
-        CalibrationState::Queued,
-        CalibrationState::Running,
-        CalibrationState::Paused,
-        CalibrationState::Waiting,
-        CalibrationState::Finished,
-        CalibrationState::Failed,
-        CalibrationState::Cancelled,
-    ];
+    pub const ALL: &'static [Self] = Self::VARIANTS;
 
     /// Word in JSON and in the store.
     pub fn name(self) -> &'static str {
-        match self {
-            CalibrationState::Queued => "queued",
-            CalibrationState::Running => "running",
-            CalibrationState::Paused => "paused",
-            CalibrationState::Waiting => "waiting",
-            CalibrationState::Finished => "finished",
-            CalibrationState::Failed => "failed",
-            CalibrationState::Cancelled => "cancelled",
-        }
+        self.into()
     }
 
     /// The state of a word.
     pub fn from_name(name: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|s| s.name() == name)
+        name.parse().ok()
     }
 
     /// Whether the state is final.

@@ -16,7 +16,7 @@
 //! - [`sentence`]: joins an error and its causes into one sentence.
 //! - [`mod@file`]: files by name, and errors that name file, line and the nearest known word; `toml_message`: messages of
 //!   TOML mistakes.
-//! - [`text_file`]: text files on disk.
+//! - [`text_file`]: text files on disk. [`keys`]: the keys of a table, as the struct that reads it states them.
 //!
 //! The crate only parses and validates: no clock, no network, no database.
 
@@ -26,6 +26,7 @@ pub mod channel;
 pub mod exchange;
 pub mod experiment;
 pub mod file;
+pub mod keys;
 pub mod limit;
 pub mod model;
 pub mod outcome;

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use farm::calibration::{Calibration, CalibrationIdentity};
-use job::{Spec, check_own, foreign_effects};
+use job::{Spec, check_effect, foreign_effects};
 use shared::bearer::BearerToken;
 use shared::exchange::ExchangeRequest;
 use shared::experiment::{Experiment, WheelMesh};
@@ -142,7 +142,7 @@ impl Input {
                 .map(drop),
             Input::Effect(text) => {
                 let effect = read_user_effect(EFFECT, text).map_err(|e| said(&e))?;
-                check_own(EFFECT, &effect).map_err(|e| said(&e))
+                check_effect(EFFECT, &effect).map_err(|e| said(&e))
             }
             Input::Mesh(name, text) => WheelMesh::parse(name, text).map_err(|e| said(&e)).map(drop),
             Input::Message(form, bytes) => ExchangeRequest::from_bytes(bytes, *form)

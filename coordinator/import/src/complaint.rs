@@ -99,21 +99,21 @@ impl Complaints {
         }
     }
 
-    /// The complaints about the fields of the map that are known to be wrong.
+    /// Returns the complaints about the fields of the map that are known to be wrong.
     pub(crate) fn concerns(&self, field: &str) -> bool {
         self.all
             .iter()
             .any(|complaint| complaint.field.as_deref() == Some(field))
     }
 
-    /// Whether the last complaints concern a row's cell of a column.
+    /// Returns whether the last complaints concern a row's cell of a column.
     pub(crate) fn is_said(&self, line: usize, field: &str) -> bool {
         self.last_cells
             .iter()
             .any(|(at, name)| *at == line && name.as_deref() == Some(field))
     }
 
-    /// All complaints, with the number that is left out for each column.
+    /// Returns all complaints, with the number that is left out for each column.
     pub(crate) fn into_all(mut self) -> Vec<Complaint> {
         for (_, count, first) in self.by_field {
             if count > MAX_OF_A_COLUMN {

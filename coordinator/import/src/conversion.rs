@@ -153,7 +153,7 @@ fn keep_notes(titled: &Titled, map: &Map, binding: &Binding, runs: &[Run], conve
     });
 }
 
-/// The rows of runs or samples: not skipped, no comments.
+/// Returns the rows of runs or samples: not skipped, no comments.
 fn chosen<'a>(
     titled: &'a Titled,
     (map_file, map): (&str, &Map),
@@ -196,7 +196,7 @@ fn chosen<'a>(
     kept
 }
 
-/// The numbers of lines in a sentence.
+/// Returns the numbers of lines in a sentence.
 fn lines(numbers: impl Iterator<Item = usize>) -> String {
     numbers
         .map(|line| line.to_string())

@@ -19,8 +19,21 @@ pub(crate) enum Kind {
 }
 
 /// The use of a row, by a word of one of its columns.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, utoipa::ToSchema)]
+#[derive(
+    Debug,
+    Clone,
+    Copy,
+    PartialEq,
+    Eq,
+    PartialOrd,
+    Ord,
+    Serialize,
+    utoipa::ToSchema,
+    strum::EnumString,
+    strum::IntoStaticStr,
+)]
 #[serde(rename_all = "snake_case")]
+#[strum(serialize_all = "snake_case")]
 pub enum RowUse {
     /// The run is fitted.
     Fit,
@@ -31,15 +44,9 @@ pub enum RowUse {
 }
 
 impl RowUse {
-    pub(crate) const ALL: [RowUse; 3] = [RowUse::Fit, RowUse::Holdout, RowUse::Skip];
-
-    /// Its word in a map; the first two are also those of runs.csv.
+    /// Returns the word in a map; `fit` and `holdout` are also words of runs.csv.
     pub(crate) fn name(self) -> &'static str {
-        match self {
-            RowUse::Fit => "fit",
-            RowUse::Holdout => "holdout",
-            RowUse::Skip => "skip",
-        }
+        self.into()
     }
 }
 
@@ -192,12 +199,12 @@ const CHANNEL_TITLES: [&[&str]; 4] = [
     ],
 ];
 
-/// Name and description of each column of runs.csv that a map may fill, in the order of the file.
+/// Returns the name and description of each column of runs.csv that a map may fill, in the order of the file.
 pub fn columns() -> impl Iterator<Item = (String, String)> {
     fields().into_iter().map(|field| (field.name, field.words))
 }
 
-/// The columns of runs.csv that a map may fill, in the order of the file.
+/// Returns the columns of runs.csv that a map may fill, in the order of the file.
 pub(crate) fn fields() -> Vec<Field> {
     let entry = |&(name, words, kind, is_needed, titles): &Entry| Field {
         name: name.into(),

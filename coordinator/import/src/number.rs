@@ -15,7 +15,7 @@ impl Decimal {
         }
     }
 
-    /// The mark that separates thousands, which is the decimal mark of the other convention.
+    /// Returns the mark that separates thousands, which is the decimal mark of the other convention.
     fn thousands_mark(self) -> char {
         match self {
             Decimal::Point => ',',
@@ -59,7 +59,7 @@ struct Parts {
     exponent: Option<i32>,
 }
 
-/// Whether a text is written like a number.
+/// Returns whether a text is written like a number.
 pub(crate) fn is_number(text: &str) -> bool {
     parts(text).is_some()
 }
@@ -95,7 +95,7 @@ fn parts(text: &str) -> Option<Parts> {
     })
 }
 
-/// The number, or the expectation and the nearest fix in words.
+/// Returns the number, or the expectation and the nearest fix in words.
 pub(crate) fn read(text: &str, writing: Writing) -> Result<f64, String> {
     let Writing {
         decimal,
@@ -193,7 +193,7 @@ pub(crate) enum Evidence {
     Found(Decimal),
 }
 
-/// The decimal mark of texts.
+/// Returns the decimal mark of texts.
 pub(crate) fn decimal_of<'a>(texts: impl Iterator<Item = &'a str>) -> Evidence {
     let (mut points, mut commas, mut unclear) = (0, 0, 0);
     for text in texts {

@@ -72,7 +72,7 @@ impl Knife<'_> {
         });
     }
 
-    /// The columns of time and marker, and the time's unit in seconds.
+    /// Returns the columns of time and marker, and the time's unit in seconds.
     fn columns(&self, complaints: &mut Complaints) -> Option<(usize, f64, usize)> {
         let time = self.titled.column(&self.recording.time);
         let marker = self.titled.column(&self.recording.marker);
@@ -156,7 +156,7 @@ impl Knife<'_> {
         segments
     }
 
-    /// The samples of a segment whose time lies in the window.
+    /// Returns the samples of a segment whose time lies in the window.
     fn window<'a, 'b>(&self, segment: &'b Segment<'a>, complaints: &mut Complaints) -> &'b [Sample<'a>] {
         let samples = segment.samples.as_slice();
         let (Some((from, to)), [first, .., last]) = (self.recording.window_s, samples) else {
@@ -250,7 +250,7 @@ impl Knife<'_> {
         }
     }
 
-    /// The text of a run's cell, or a message; `None` if it is blank.
+    /// Returns the text of a run's cell, or a message; `None` if it is blank.
     fn cell(
         &self,
         output: &Output,
@@ -270,7 +270,7 @@ impl Knife<'_> {
         value.map(|value| rule::check_number(&output.field, value).map(|()| shown(value)))
     }
 
-    /// The text if it is equal in all samples.
+    /// Returns the text if it is equal in all samples.
     fn constant(
         &self,
         output: &Output,
@@ -305,7 +305,7 @@ impl Knife<'_> {
         (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
     }
 
-    /// The history of a run: each time is the end of its interval, counted from the run's beginning.
+    /// Returns the history of a run: each time is the end of its interval, counted from the run's beginning.
     fn history(
         &self,
         segment: &Segment<'_>,

@@ -77,7 +77,7 @@ struct Blanks<'a> {
 }
 
 impl Blanks<'_> {
-    /// The complaint about a missing value of a row; `None` if the reason is a cell that cannot be read.
+    /// Returns the complaint about a missing value of a row; `None` if the reason is a cell that cannot be read.
     fn complaint(&mut self, output: &Output, row: &Row) -> Option<Complaint> {
         let field = &output.field;
         let (name, column) = self.binding.blank(output, row)?;
@@ -111,7 +111,7 @@ impl Blanks<'_> {
         })
     }
 
-    /// Whether a blank cell may repeat the cell above. A column that states its values once for a block of rows has at least a
+    /// Returns whether a blank cell may repeat the cell above. A column that states its values once for a block of rows has at least a
     /// third of its cells blank, and the first one filled.
     fn is_of_a_block(&mut self, column: usize, row: &Row) -> bool {
         let rows = self.rows;

@@ -37,7 +37,7 @@ pub(crate) fn check_number(field: &Field, value: f64) -> Result<(), String> {
     }
 }
 
-/// The text of a column without unit as runs.csv has it, or a message.
+/// Returns the text of a column without unit as runs.csv has it, or a message.
 pub(crate) fn check_text(field: &Field, text: &str) -> Result<String, String> {
     match field.kind {
         Kind::Whole(min) => match text.parse::<f64>() {

@@ -26,7 +26,7 @@ pub(crate) fn shown(value: f64) -> String {
     rounded.to_string()
 }
 
-/// The columns of the file that runs.csv does not have and that are not blank.
+/// Returns the columns of the file that runs.csv does not have and that are not blank.
 pub(crate) fn noted(titled: &Titled, mapped: &BTreeSet<usize>) -> Vec<usize> {
     let is_filled = |column: &usize| titled.data().any(|row| !row.cell(*column).is_blank());
     (0..titled.titles.len())
@@ -39,7 +39,7 @@ pub(crate) fn notes_of(row: &Row, columns: &[usize]) -> Vec<String> {
     columns.iter().map(|&column| row.cell(column).shown()).collect()
 }
 
-/// Complaints about runs of the same name.
+/// Returns complaints about runs of the same name.
 pub(crate) fn repeated(titled: &Titled, runs: &[Run]) -> Vec<Complaint> {
     let mut first: BTreeMap<&str, usize> = BTreeMap::new();
     let mut complaints = Vec::new();
@@ -62,7 +62,7 @@ pub(crate) fn repeated(titled: &Titled, runs: &[Run]) -> Vec<Complaint> {
     complaints
 }
 
-/// A field of CSV; a field that would look like a comment is quoted.
+/// Returns a field of CSV; a field that would look like a comment is quoted.
 fn field(text: &str) -> String {
     if text.contains([',', '"', '\n', '\r', '#']) {
         format!("\"{}\"", text.replace('"', "\"\""))
@@ -76,7 +76,7 @@ pub(crate) fn csv(rows: impl Iterator<Item = Vec<String>>) -> String {
     rows.map(line).collect()
 }
 
-/// The text of runs.csv, with the columns of `order` that any run has.
+/// Returns the text of runs.csv, with the columns of `order` that any run has.
 pub(crate) fn runs_csv(runs: &[Run], order: impl Iterator<Item = String>) -> String {
     let columns: Vec<String> = order
         .filter(|name| name == "run" || runs.iter().any(|run| run.cells.contains_key(name)))
@@ -94,7 +94,7 @@ pub(crate) fn runs_csv(runs: &[Run], order: impl Iterator<Item = String>) -> Str
     csv(std::iter::once(columns.clone()).chain(rows))
 }
 
-/// The text of the notes: the name of each run, and the columns of its row that runs.csv does not have.
+/// Returns the text of the notes: the name of each run, and the columns of its row that runs.csv does not have.
 pub(crate) fn notes_csv(runs: &[Run], titles: Vec<String>) -> String {
     let header = std::iter::once("run".to_owned()).chain(titles).collect();
     let rows = runs.iter().map(|run| {

@@ -44,7 +44,7 @@ const WHOLE: [&str; 8] = [
     "std. dev.",
 ];
 
-/// The text that marks a row of means or totals: the first text in it.
+/// Returns the text that marks a row of means or totals: the first text in it.
 fn label(row: &Row) -> Option<&str> {
     let text = row.cells.iter().find_map(|cell| match cell {
         Cell::Text(text) if !crate::number::is_number(text) => Some(text.as_str()),
@@ -58,7 +58,7 @@ fn label(row: &Row) -> Option<&str> {
     is_label.then_some(text)
 }
 
-/// The rows that can be runs. A row marked as means or totals is a mistake if it lacks a value that every run needs; otherwise it
+/// Returns the rows that can be runs. A row marked as means or totals is a mistake if it lacks a value that every run needs; otherwise it
 /// counts as a run, with a remark.
 pub(crate) fn without<'a>(
     titled: &Titled,

@@ -7,14 +7,14 @@ pub(crate) const MAX_COLUMNS: usize = 20_000;
 /// Number of cells of a row that are shown to identify it.
 const SHOWN_CELLS: usize = 12;
 
-/// The message that refuses a table with this many columns.
+/// Returns the message that refuses a table with this many columns.
 pub(crate) fn too_wide(columns: usize) -> String {
     format!(
         "{columns} columns must be at most {MAX_COLUMNS}: a table has a column for each quantity, and a row for each run"
     )
 }
 
-/// A text with every run of spaces and line breaks reduced to one space.
+/// Returns a text with every run of spaces and line breaks reduced to one space.
 pub(crate) fn spaced(text: &str) -> String {
     text.split_whitespace().collect::<Vec<_>>().join(" ")
 }
@@ -30,7 +30,7 @@ pub(crate) enum Cell {
 }
 
 impl Cell {
-    /// A cell of a text without the spaces around it.
+    /// Returns a cell of a text without the spaces around it.
     pub(crate) fn from_text(text: &str) -> Cell {
         match text.trim() {
             "" => Cell::Blank,
@@ -42,7 +42,7 @@ impl Cell {
         *self == Cell::Blank
     }
 
-    /// The text that users read in it.
+    /// Returns the text that users read in it.
     pub(crate) fn shown(&self) -> String {
         match self {
             Cell::Blank => String::new(),
@@ -81,7 +81,7 @@ impl Row {
         self.cells.iter().all(Cell::is_blank)
     }
 
-    /// The first cells, as users read them.
+    /// Returns the first cells, as users read them.
     pub(crate) fn beginning(&self) -> Vec<String> {
         self.cells.iter().take(SHOWN_CELLS).map(Cell::shown).collect()
     }
@@ -101,7 +101,7 @@ pub(crate) struct Table {
 }
 
 impl Table {
-    /// A complaint about the whole table.
+    /// Returns a complaint about the whole table.
     pub(crate) fn complaint(&self, message: impl Into<String>) -> Complaint {
         Complaint {
             file: self.file.clone(),
@@ -111,7 +111,7 @@ impl Table {
         }
     }
 
-    /// A complaint that refuses the whole table.
+    /// Returns a complaint that refuses the whole table.
     pub(crate) fn refusal(&self, message: impl Into<String>) -> Box<Complaint> {
         Box::new(self.complaint(message))
     }
@@ -125,7 +125,7 @@ impl Table {
         }
     }
 
-    /// The place of a row, in words.
+    /// Returns the place of a row, in words.
     pub(crate) fn place(&self, line: usize) -> String {
         match self.form {
             Form::Lines => format!("line {line}"),
@@ -134,7 +134,7 @@ impl Table {
     }
 }
 
-/// The letters of a column in a spreadsheet: `A`, `Z`, `AA`.
+/// Returns the letters of a column in a spreadsheet: `A`, `Z`, `AA`.
 pub(crate) fn letter(column: usize) -> String {
     let (rest, last) = (column / 26, (column % 26) as u8);
     let before = if rest == 0 {
@@ -145,7 +145,7 @@ pub(crate) fn letter(column: usize) -> String {
     format!("{before}{}", char::from(b'A' + last))
 }
 
-/// The column with these letters; `None` if they are no letters of a column.
+/// Returns the column with these letters; `None` if they are no letters of a column.
 pub(crate) fn column_of(letters: &str) -> Option<usize> {
     if letters.is_empty() || letters.len() > 3 || !letters.bytes().all(|b| b.is_ascii_uppercase()) {
         return None;

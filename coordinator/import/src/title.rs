@@ -46,12 +46,12 @@ pub(crate) struct Titled {
 }
 
 impl Titled {
-    /// The rows below the titles, blank ones left out.
+    /// Returns the rows below the titles, blank ones left out.
     pub(crate) fn data(&self) -> impl Iterator<Item = &Row> {
         self.data.iter().map(|&position| &self.table.rows[position])
     }
 
-    /// The column that a map names, by its title or else by its letters.
+    /// Returns the column that a map names, by its title or else by its letters.
     pub(crate) fn column(&self, meant: &str) -> Result<usize, String> {
         let columns = self.by_text.get(&spaced(meant)).map_or(&[][..], Vec::as_slice);
         match columns[..] {
@@ -103,7 +103,7 @@ impl Titled {
     }
 }
 
-/// Names in a sentence; only the first of many.
+/// Returns names in a sentence; only the first of many.
 fn listed(names: impl ExactSizeIterator<Item = String>, between: &str) -> String {
     let omitted = names.len().saturating_sub(LISTED);
     let shown = names.take(LISTED).collect::<Vec<_>>().join(between);
@@ -207,14 +207,14 @@ fn is_number(cell: &Cell) -> bool {
     }
 }
 
-/// Whether the row below the titles has their units.
+/// Returns whether the row below the titles has their units.
 fn is_units(row: &Row) -> bool {
     let mut cells = row.cells.iter().filter(|cell| !cell.is_blank());
     let is_like = |cell: &Cell| matches!(cell, Cell::Text(text) if unit::is_like_a_unit(text));
     cells.clone().any(is_like) && cells.all(is_like)
 }
 
-/// The index of the titles: the last row with words above the first row with about as many numbers as any row has.
+/// Returns the index of the titles: the last row with words above the first row with about as many numbers as any row has.
 fn guessed(table: &Table) -> Result<Option<usize>, Box<Complaint>> {
     let numbers = |row: &Row| row.cells.iter().filter(|cell| is_number(cell)).count();
     let max_numbers = table.rows.iter().map(numbers).max().unwrap_or(0);
@@ -284,7 +284,7 @@ const BARE: [&str; 26] = [
     "m/s", "km/h", "m/h", "rad/s", "deg/s", "U/min", "1/min", "mm/min", "kp", "daN",
 ];
 
-/// The name and the unit of a title: `load [kN]`, `load (kN)`, `load / kN`, `load in kN`, `load_kN`, `load kN`.
+/// Returns the name and the unit of a title: `load [kN]`, `load (kN)`, `load / kN`, `load in kN`, `load_kN`, `load kN`.
 fn apart(text: &str) -> (String, Option<String>) {
     for (open, close) in [('[', ']'), ('(', ')')] {
         if let Some((name, rest)) = text.rsplit_once(open)

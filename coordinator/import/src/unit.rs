@@ -16,6 +16,7 @@ pub(crate) enum Quantity {
 }
 
 impl Quantity {
+    /// Returns the name with its article, for sentences.
     pub(crate) fn words(self) -> &'static str {
         match self {
             Quantity::Ratio => "a ratio",
@@ -29,21 +30,12 @@ impl Quantity {
         }
     }
 
-    /// The SI unit in formulas.
+    /// Returns the SI unit in formulas.
     pub(crate) fn si(self) -> &'static str {
-        match self {
-            Quantity::Ratio => "1",
-            Quantity::Angle => "rad",
-            Quantity::AngularSpeed => "1/s",
-            Quantity::Length => "m",
-            Quantity::Time => "s",
-            Quantity::Speed => "m/s",
-            Quantity::Force => "N",
-            Quantity::Torque => "N m",
-        }
+        ["1", "rad", "1/s", "m", "s", "m/s", "N", "N m"][self as usize]
     }
 
-    /// The units that the quantity can be given in, the usual ones first.
+    /// Returns the units that the quantity can be given in, the usual ones first.
     pub(crate) fn units(self) -> impl Iterator<Item = &'static str> {
         UNITS
             .iter()
@@ -191,18 +183,18 @@ const NOT_UNITS: [(&str, &str); 10] = [
     ("digit", "a raw reading has no unit; give the calibrated quantity"),
 ];
 
-/// The significant characters of a unit's name.
+/// Returns the significant characters of a unit's name.
 fn plain_chars(text: &str) -> impl Iterator<Item = char> + '_ {
     text.chars()
         .filter(|c| !c.is_whitespace() && !"·⋅*.[]()".contains(*c))
 }
 
-/// A unit's name reduced to its significant characters.
+/// Returns a unit's name reduced to its significant characters.
 fn plain(text: &str) -> String {
     plain_chars(text).collect()
 }
 
-/// The unit that a text names; `None` if it names none.
+/// Returns the unit that a text names; `None` if it names none.
 pub(crate) fn find(text: &str) -> Option<&'static Unit> {
     // Every title and every cell below the titles is tested, so nothing is allocated.
     let is_meant = |name: &str| plain_chars(name).eq(plain_chars(text));
@@ -210,12 +202,12 @@ pub(crate) fn find(text: &str) -> Option<&'static Unit> {
     UNITS.iter().find(is_named)
 }
 
-/// Whether a text is a unit, or a word used in place of one.
+/// Returns whether a text is a unit, or a word used in place of one.
 pub(crate) fn is_like_a_unit(text: &str) -> bool {
     find(text).is_some() || NOT_UNITS.iter().any(|(word, _)| *word == plain(text))
 }
 
-/// The unit of a quantity that a text names.
+/// Returns the unit of a quantity that a text names.
 ///
 /// # Errors
 /// A message if the text is no unit, or a unit of another quantity, with the nearest fix.

@@ -1,4 +1,4 @@
-//! Changes of a job as a value: no text is read for them.
+//! Additions to a job, and removals from it, as changes of its value: no text is parsed.
 
 use std::sync::Arc;
 
@@ -16,7 +16,7 @@ use crate::table::prior_entry::PriorEntry;
 pub struct Addition {
     /// Changes of the model itself, in the order in which they are made, before everything else.
     pub changes: Vec<ModelChange>,
-    /// Names of effects of the catalogue.
+    /// Names of effects of the catalogue to add.
     pub effects: Vec<String>,
     /// Effect files by name.
     pub files: Vec<(String, Arc<NamedFile>)>,
@@ -27,14 +27,14 @@ pub struct Addition {
 /// A change of the model itself.
 #[derive(Debug, Clone)]
 pub enum ModelChange {
-    /// A parameter gets a prior that the job holds fixed: under `[model]`, under `[priors]`, or by saying nothing.
+    /// A parameter gets a prior that the job holds fixed under `[model]`, under `[priors]`, or at its default.
     Free(String, toml::Value),
     /// A setting gets another value.
     Turn(&'static ModelSwitch),
 }
 
 impl Addition {
-    /// Whether it adds nothing.
+    /// Returns whether it adds nothing.
     pub fn is_empty(&self) -> bool {
         let Addition {
             changes,
@@ -46,7 +46,7 @@ impl Addition {
     }
 }
 
-/// The keys that a model loses where it becomes one of another kind: those that only its own kind has.
+/// Returns the keys that a model loses if its kind changes: those that no other kind has.
 pub(crate) fn keys_of_kinds() -> impl Iterator<Item = &'static str> {
     let keys = [ModelKind::QuasiStatic, ModelKind::Scm]
         .into_iter()
@@ -55,7 +55,7 @@ pub(crate) fn keys_of_kinds() -> impl Iterator<Item = &'static str> {
 }
 
 impl Job {
-    /// The job with an addition.
+    /// Returns the job with an addition.
     ///
     /// # Errors
     /// [`FileError`]: a line of `[priors]` or a file exists already, or the model is not valid with it.
@@ -85,10 +85,10 @@ impl Job {
         Ok(job)
     }
 
-    /// The job without some of its effects: their names, their files and every line about their parameters go.
+    /// Returns the job without some of its effects: their names, their files and every line about their parameters are removed.
     ///
     /// # Errors
-    /// [`FileError`] where the model is not valid without them.
+    /// [`FileError`] if the model is not valid without them.
     pub fn without(&self, name: &str, effects: &[String]) -> Result<Job, FileError> {
         let mut job = self.clone();
         let is_named = |effect: &str| effects.iter().any(|dropped| dropped == effect);
@@ -149,7 +149,7 @@ impl Job {
         }
     }
 
-    /// Adds a line under `[priors]`, where TOML has it: before the entries that are tables with a header of their own.
+    /// Adds a line under `[priors]`, before the entries that are tables with headers, as TOML requires.
     fn add_prior(&mut self, parameter: &str, prior: &toml::Value) -> Result<(), String> {
         if self.priors.iter().any(|entry| entry.name == parameter) {
             return Err(format!("{parameter} is already under [priors]"));

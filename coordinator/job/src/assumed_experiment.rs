@@ -1,4 +1,4 @@
-//! An experiment in which typical values stand for what it leaves unstated.
+//! An experiment in which typical values replace properties that its files leave unstated.
 
 use shared::experiment::Experiment;
 use shared::file::{FileError, FileSet};
@@ -11,7 +11,7 @@ const BIN_LENGTH_M: f64 = 1.5;
 /// Grousers of rover wheels: 12 of 0.07 R to 24 of 0.09 R.
 const GROUSERS: i64 = 16;
 const GROUSER_HEIGHT: f64 = 0.08;
-/// Their thickness; no effect of `quasi_static` depends on it.
+/// Thickness of the grousers; no effect of `quasi_static` depends on it.
 const GROUSER_THICKNESS: f64 = 0.016;
 
 /// A property of the test site that an experiment may leave unstated and effects may need.
@@ -30,23 +30,23 @@ pub enum SiteProperty {
 pub struct UnstatedProperty {
     /// The property.
     pub property: SiteProperty,
-    /// A sentence that says what is not stated, and which value stands for it.
+    /// A sentence that names the unstated property and its assumed value.
     pub why: String,
-    /// The line that states it.
+    /// The line of the experiment that would state the property.
     pub needs: String,
 }
 
-/// An experiment in which typical values stand for what it leaves unstated.
+/// An experiment in which typical values replace properties that its files leave unstated.
 #[derive(Debug, Clone)]
 pub struct AssumedExperiment {
     /// The experiment with those values.
     pub experiment: Experiment,
-    /// The properties that they stand for.
+    /// The properties that have typical values.
     pub unstated: Vec<UnstatedProperty>,
 }
 
 impl AssumedExperiment {
-    /// States the density of the runs' soil, the grousers of every wheel and the length of the bin where the experiment does not.
+    /// States the density of the runs' soil, the grousers of every wheel and the length of the bin if the experiment does not.
     ///
     /// A wheel with `grouser_count = 0` is smooth and stays so, as does a surface mesh. A model that rolls grousers rolls those that are
     /// declared: for it, they are never assumed.
@@ -56,7 +56,7 @@ impl AssumedExperiment {
     /// - `is_smooth`: whether the model rolls smooth rims, whatever grousers are declared.
     ///
     /// # Errors
-    /// [`FileError`] where the files are no experiment.
+    /// [`FileError`] if the files are not an experiment.
     pub fn new(
         name: &str,
         files: &FileSet,

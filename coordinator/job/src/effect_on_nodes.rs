@@ -28,17 +28,17 @@ impl EffectOnNodes {
         uses_displacement.then_some(Self { effect, setting })
     }
 
-    /// The candidate of a name, such as `janosi_hanamoto_node`.
+    /// Returns the candidate of a name, such as `janosi_hanamoto_node`.
     pub fn find(name: &str) -> Option<Self> {
         Self::new(find(name.strip_suffix(ON_NODES)?)?)
     }
 
-    /// Its name as a candidate.
+    /// Returns the name of the candidate.
     pub fn name(&self) -> String {
         format!("{}{ON_NODES}", self.effect.name)
     }
 
-    /// The candidates of a model that rolls and has no effect of the displacement yet; none of other models.
+    /// Returns the candidates for a model that rolls and has no effect of the displacement; other models have none.
     pub fn all_of(spec: &Spec) -> impl Iterator<Item = Self> {
         let spatial = spec.model.spatial.as_ref();
         let is_on_rim = spatial.is_some_and(|spatial| spatial.displacement == DisplacementFrame::Rim);
@@ -59,7 +59,7 @@ mod tests {
     const RUNS: &str =
         "run,wheel,soil,slip,wheel_load_n,sled_speed_m_s,drawbar_pull_n\na,w,s,0.2,100,0.008,30\n";
 
-    /// The candidates of a job with an effect of the user.
+    /// Returns the candidates of a job with an effect of the user.
     fn candidates(formula: &str) -> Vec<String> {
         let effect = format!(
             "name = \"mine\"\nsummary = \"mine\"\nsource = \"a guess\"\n{formula}\n[parameters.a]\nunit = \"1\"\nneutral = 0.0\nprior = {{ normal = [0.0, 0.2] }}\n"

@@ -1,4 +1,4 @@
-//! Single facts that a text states, where it need not be a valid job or effect: lists and migrations ask for them.
+//! Single facts that texts state, for lists and migrations: the texts need not be valid jobs or effects.
 
 use std::collections::BTreeSet;
 
@@ -7,7 +7,7 @@ use shared::model::ModelKind;
 
 use crate::table::algorithm_settings::AlgorithmName;
 
-/// The model of a job, of several the first; `None` where this version does not know it.
+/// Returns the kind of a job's first model; `None` if this version has no such kind.
 pub fn model_kind(toml: &str) -> Option<ModelKind> {
     let job: toml::Table = toml.parse().ok()?;
     let first = || job.get("models")?.as_array()?.first();
@@ -15,13 +15,13 @@ pub fn model_kind(toml: &str) -> Option<ModelKind> {
     model.get("kind")?.clone().try_into().ok()
 }
 
-/// The name that an effect file gives its effect.
+/// Returns the name that an effect file gives its effect.
 pub fn effect_name(text: &str) -> Option<String> {
     let file: toml::Table = text.parse().ok()?;
     Some(file.get("name")?.as_str()?.to_owned())
 }
 
-/// Whether a job is a search as versions before migration 20 stored it, with `algorithm = "discovery"`. Only the store reads these, to
+/// Returns whether a job is a search as versions before migration 20 stored it, with `algorithm = "discovery"`. Only the store reads these, to
 /// learn which calibration was searched.
 pub fn is_earlier_search(toml: &str) -> bool {
     let job: Option<toml::Table> = toml.parse().ok();
@@ -30,7 +30,7 @@ pub fn is_earlier_search(toml: &str) -> bool {
     algorithm == Some(AlgorithmName::Discovery.name())
 }
 
-/// The effects that a job lists and the program's catalogue lacks. A text that is no job lists none: its reader says what is wrong
+/// Returns the effects that a job lists and the program's catalogue lacks. A text that is no job lists none: its reader says what is wrong
 /// with it.
 pub fn foreign_effects(toml: &str) -> BTreeSet<String> {
     let names = |toml: &str| -> Option<BTreeSet<String>> {

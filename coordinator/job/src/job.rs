@@ -2,8 +2,10 @@
 
 use std::collections::BTreeMap;
 
+use schemars::JsonSchema;
 use serde::Deserialize;
 use serde::de::IgnoredAny;
+use serde_json::Value;
 use shared::file::{FileError, FileSet, TomlFile, unknown_word};
 use shared::model::{ModelError, ModelSettings};
 
@@ -13,25 +15,25 @@ use crate::table::algorithm_settings::AlgorithmSettings;
 use crate::table::candidate_priors;
 use crate::table::discovery_settings::{Apply, DiscoverySettings, RawDiscovery};
 use crate::table::likelihood_settings::{LikelihoodSettings, RawLikelihood};
-use crate::table::model_entry::{ModelEntry, model_entries};
+use crate::table::model_entry::{COMPARED, ModelEntry, model_entries};
 use crate::table::posterior_prior::PosteriorPrior;
 use crate::table::prior_entry::PriorEntry;
 use crate::table::sampler::SamplerTable;
 
-/// A job as users write it, before it meets its experiment. What follows from a job is made of this value ([`Job::with`]).
+/// A job as users write it, without its experiment. Candidates of a search are changes of this value ([`Job::with`]).
 #[derive(Debug, Clone)]
 pub struct Job {
-    /// Name of the experiment's file, relative to the job's; absent where a service holds the experiment.
+    /// Name of the experiment's file, relative to the job's; absent if a service holds the experiment.
     pub experiment: Option<String>,
-    /// Names of the questions that are answered: what looks odd, and is meant.
+    /// Names of the plausibility questions whose odd values are intended.
     pub accepted: Vec<String>,
-    /// Which forward model, with its fixed parameters; of several that are compared, this one.
+    /// The forward model with its fixed parameters; of several that are compared, this one.
     pub model: ModelSettings,
     /// The table that the model was read from.
     pub(crate) table: toml::Table,
-    /// How many models the job compares; 1 where it has a table `[model]`.
+    /// Number of models that the job compares; 1 if it has a table `[model]`.
     pub models: usize,
-    /// Line of its `[[models]]`; `None` of a table `[model]`.
+    /// Line of its `[[models]]`; `None` for a table `[model]`.
     pub line: Option<usize>,
     /// The priors in the order of the file.
     pub priors: Vec<PriorEntry>,
@@ -41,11 +43,11 @@ pub struct Job {
     pub algorithm: AlgorithmSettings,
     /// The fits and searches that stand beside the sample in its study.
     pub point_estimates: Vec<AlgorithmSettings>,
-    /// Values that an independent test gives for parameters, by name. The figures alone show them.
+    /// Values of parameters by independent tests, by name. The figures alone show them.
     pub reference: BTreeMap<String, f64>,
-    /// How measurements scatter around the model.
+    /// The scatter of measurements around the model.
     pub likelihood: LikelihoodSettings,
-    /// Whether its study looks for missing effects.
+    /// The search of its study for missing effects.
     pub discovery: DiscoverySettings,
     /// Priors of candidates of a search, by the full names of their parameters: `[discovery.priors]`.
     pub candidate_priors: BTreeMap<String, toml::Value>,
@@ -64,19 +66,29 @@ pub struct JobModels {
     pub others: Vec<Job>,
 }
 
-#[derive(Deserialize)]
+/// A calibration.
+#[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-struct RawJob {
+#[schemars(extend("oneOf" = [{ "required": ["model"] }, { "required": ["models"] }]))]
+pub(crate) struct RawJob {
+    /// File of the experiment, beside the job.
     experiment: Option<String>,
+    /// Names of the plausibility questions whose odd values are intended.
     #[serde(default)]
+    #[schemars(extend("uniqueItems" = true, "items" = { "type": "string", "enum": Question::names() }))]
     accept: Vec<String>,
+    #[schemars(with = "Option<Value>")]
     model: Option<toml::Table>,
+    /// Several models to compare, in place of `[model]`.
     #[serde(default)]
+    #[schemars(with = "Vec<Value>", length(min = *COMPARED.start(), max = *COMPARED.end()))]
     models: Vec<toml::Table>,
     #[serde(default)]
+    #[schemars(with = "Value")]
     priors: BTreeMap<String, toml::Spanned<toml::Value>>,
     // It is read by the struct of its algorithm.
     #[serde(default, rename = "sampler")]
+    #[schemars(with = "Value")]
     _sampler: IgnoredAny,
     #[serde(default)]
     discovery: RawDiscovery,
@@ -86,17 +98,19 @@ struct RawJob {
     figures: RawFigures,
 }
 
-#[derive(Default, Deserialize)]
+/// The figures of a report.
+#[derive(Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 struct RawFigures {
+    /// Values of parameters by independent tests.
     reference: BTreeMap<String, f64>,
 }
 
 impl JobModels {
-    /// Answers a question, for every model.
+    /// Accepts the odd values of a question, for every model.
     ///
     /// # Errors
-    /// No question has this name; the sentence has the nearest.
+    /// The sentence names the nearest question if none has this name.
     pub fn accept(&mut self, name: &str) -> Result<(), String> {
         Question::check_name(name)?;
         for job in std::iter::once(&mut self.first).chain(&mut self.others) {
@@ -107,7 +121,7 @@ impl JobModels {
 }
 
 impl Job {
-    /// Parses a job; `name` is how messages call it.
+    /// Parses a job; messages call it `name`.
     ///
     /// # Errors
     /// [`FileError`] with the line, or with the table and key.
@@ -118,7 +132,7 @@ impl Job {
     /// Parses a job together with the files that it names.
     ///
     /// # Errors
-    /// As those of [`Job::parse`].
+    /// The errors of [`Job::parse`].
     pub fn read(name: &str, files: &FileSet) -> Result<Job, FileError> {
         Ok(Job::parse(name, &files.toml)?.beside(NamedFiles::from(&files.files)))
     }
@@ -126,7 +140,7 @@ impl Job {
     /// Parses a job with every model that it compares.
     ///
     /// # Errors
-    /// As those of [`Job::parse`]; of a model with its line.
+    /// The errors of [`Job::parse`]; an error of a model has its line.
     pub fn parse_models(name: &str, toml: &str) -> Result<JobModels, FileError> {
         let file = TomlFile::parse(name, toml)?;
         let sampler = SamplerTable::read(&file)?;
@@ -176,7 +190,7 @@ impl Job {
         Ok(JobModels { first, others })
     }
 
-    /// The job with the files that it names.
+    /// Returns the job with the files that it names.
     pub fn beside(self, files: NamedFiles) -> Job {
         Job { files, ..self }
     }
@@ -199,7 +213,7 @@ impl Job {
         Ok(())
     }
 
-    /// The search for missing effects of this job's model: it draws with the job's seed, and asks for nothing besides.
+    /// Returns the search for missing effects of this job's model, with the job's seed and without point estimates.
     pub fn into_search(self) -> Job {
         Job {
             algorithm: AlgorithmSettings::Discover {
@@ -214,17 +228,21 @@ impl Job {
         }
     }
 
-    /// The files that the job names beside its experiment.
+    /// Returns the files that the job names beside its experiment.
     pub fn named_files(&self) -> Vec<String> {
         let posterior = self.posterior.as_ref().map(|p| p.file.clone());
-        let own = self.model.effect_files.iter();
-        let mut named: Vec<String> = own.chain(&self.also_named).cloned().chain(posterior).collect();
+        let effect_files = self.model.effect_files.iter();
+        let mut named: Vec<String> = effect_files
+            .chain(&self.also_named)
+            .cloned()
+            .chain(posterior)
+            .collect();
         named.sort();
         named.dedup();
         named
     }
 
-    /// Checks that no file came along that the job does not name; `name` is how messages call it.
+    /// Checks that the job names every file that was sent; messages call it `name`.
     ///
     /// # Errors
     /// [`FileError`] with the file that is not named, and the nearest that is.
@@ -240,7 +258,7 @@ impl Job {
     }
 }
 
-/// What a comparison of models asks of the rest of the job; the sentence says what is missing.
+/// Checks the rest of a job that compares models; the sentence says what is missing.
 fn check_comparison(sampler: &SamplerTable, has_posterior_prior: bool) -> Result<(), String> {
     if !sampler.algorithm.has_posterior() {
         return Err(format!(

@@ -2,7 +2,7 @@
 //!
 //! # Layout
 //! - `job`: [`Job`], a job as users write it, as a value. `addition`: what changes it. `named_files`: the files that it names.
-//! - `table`: the tables of a job, as written and what they mean. `schema`: their JSON schemas.
+//! - `table`: the tables of a job, as written and what they mean. [`schema`]: their JSON schemas; `derived_schema`: schemas of types.
 //! - `data`: the fitted measurements: noise, likelihood, predicted values; whether their order follows a condition.
 //! - `spec`: [`Spec`], a calibration as its files determine it.
 //! - `plain_parameter`: [`PlainParameter`], what a search may free. `model_switch`: [`ModelSwitch`], what it may turn.
@@ -14,6 +14,7 @@
 mod addition;
 mod assumed_experiment;
 mod data;
+mod derived_schema;
 mod effect_on_nodes;
 mod facts;
 mod job;
@@ -21,7 +22,7 @@ mod model_switch;
 mod named_files;
 mod plain_parameter;
 mod plausibility;
-mod schema;
+pub mod schema;
 mod service_effect;
 mod spec;
 mod table;
@@ -41,7 +42,6 @@ pub use model_switch::{MODEL_SWITCHES, ModelSwitch};
 pub use named_files::{NamedFile, NamedFiles};
 pub use plain_parameter::{PLAIN_PARAMETERS, PlainParameter};
 pub use plausibility::{Question, Unanswered, check_accepted, questions};
-pub use schema::sampler_schema;
 pub use service_effect::ServiceEffect;
 pub use spec::{EffectsChanged, PREDICTION_DRAWS, Spec};
 pub use table::algorithm_settings::{AlgorithmName, AlgorithmSettings, AlgorithmSettingsError};
@@ -49,7 +49,7 @@ pub use table::candidate_priors::candidate_priors;
 pub use table::discovery_settings::{Apply, DiscoverySettings};
 pub use table::likelihood_settings::LikelihoodSettings;
 pub use table::posterior_prior::{ImpliedModuli, JointPrior, PosteriorPrior};
-pub use table::prior_entry::{FreeParameter, PriorEntry, check_own, free_parameters};
+pub use table::prior_entry::{FreeParameter, PriorEntry, check_effect, free_parameters};
 pub use table::prior_entry_error::PriorEntryError;
 pub use text::{
     accepting_job, continued_job, earlier_search, extended_job, model_job, point_job, searched_job,

@@ -1,24 +1,24 @@
-//! Settings of the model itself that a job may have otherwise: candidates of a search, as effects are.
+//! Settings of the model that are candidates of a search, as effects are.
 
 use shared::model::ModelKind;
 use shared::model::spatial::{DisplacementFrame, PressureAxis};
 
 use crate::spec::Spec;
 
-/// A setting of the model that a search may turn.
+/// A setting of the model that a search may change.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ModelSwitch {
-    /// Its name as a candidate.
+    /// Name of the candidate.
     pub name: &'static str,
-    /// Its key under `[model]`.
+    /// Key under `[model]`.
     pub key: &'static str,
     /// The value of the key.
     pub value: &'static str,
-    /// A line that says what the model with it assumes.
+    /// A sentence that states the assumption of the model with this setting.
     pub summary: &'static str,
 }
 
-/// Every such setting.
+/// The settings that a search may change.
 pub const MODEL_SWITCHES: [ModelSwitch; 6] = [
     ModelSwitch {
         name: "pressure_direction_vertical",
@@ -59,22 +59,22 @@ pub const MODEL_SWITCHES: [ModelSwitch; 6] = [
 ];
 
 impl ModelSwitch {
-    /// The setting of a candidate's name.
+    /// Returns the setting of a candidate's name.
     pub fn find(name: &str) -> Option<&'static Self> {
         MODEL_SWITCHES.iter().find(|switch| switch.name == name)
     }
 
-    /// Whether it exchanges the forward model for another.
+    /// Returns whether it replaces the forward model.
     pub fn is_kind(&self) -> bool {
         self.key == "kind"
     }
 
-    /// Whether a job of `scm` has it without a word.
+    /// Returns whether it is the default of `scm`.
     pub fn is_usual(&self) -> bool {
         matches!(self.name, "pressure_direction_wheel_normal" | "displacement_rim")
     }
 
-    /// Whether a job has it.
+    /// Returns whether a job has it.
     pub fn is_on(&self, spec: &Spec) -> bool {
         let spatial = spec.model.spatial.as_ref();
         let displacement = spatial.map(|s| s.displacement);

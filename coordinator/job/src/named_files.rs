@@ -7,11 +7,11 @@ use formula::Effect;
 use shared::file::FileError;
 use shared::model::effects::read_user_effect;
 
-/// The files that a job names, by name. Copies share the texts, and an effect file is read once, whoever asks first.
+/// The files that a job names, by name. Copies share the texts, and an effect file is parsed once.
 #[derive(Debug, Clone, Default)]
 pub struct NamedFiles(BTreeMap<String, Arc<NamedFile>>);
 
-/// A file by its text.
+/// A file with its text.
 #[derive(Debug)]
 pub struct NamedFile {
     /// The text.
@@ -20,7 +20,7 @@ pub struct NamedFile {
 }
 
 impl NamedFile {
-    /// A file with this text.
+    /// Returns a file with this text.
     pub fn new(text: String) -> Arc<NamedFile> {
         let effect = OnceLock::new();
         Arc::new(NamedFile { text, effect })
@@ -28,17 +28,17 @@ impl NamedFile {
 }
 
 impl NamedFiles {
-    /// A file, if it is there.
+    /// Returns a file, if it is in the set.
     pub fn get(&self, name: &str) -> Option<&Arc<NamedFile>> {
         self.0.get(name)
     }
 
-    /// The text of a file, if it is there.
+    /// Returns the text of a file, if it is in the set.
     pub fn text(&self, name: &str) -> Option<&str> {
         self.get(name).map(|file| file.text.as_str())
     }
 
-    /// The effect in a file; `None` where there is no such file.
+    /// Returns the effect in a file; `None` if there is no such file.
     pub fn effect(&self, name: &str) -> Option<Result<Effect, FileError>> {
         let file = self.get(name)?;
         Some(
@@ -48,7 +48,7 @@ impl NamedFiles {
         )
     }
 
-    /// Adds a file; whether its name was free.
+    /// Adds a file; returns whether its name was free.
     pub fn insert(&mut self, name: &str, file: Arc<NamedFile>) -> bool {
         self.0.insert(name.to_owned(), file).is_none()
     }

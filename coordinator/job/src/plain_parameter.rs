@@ -1,4 +1,4 @@
-//! Parameters of the model itself that a job may hold fixed though they are not: candidates of a search, as effects are.
+//! Parameters of the model that a job holds fixed and a search may free: candidates, as effects are.
 
 use std::collections::BTreeMap;
 use std::sync::LazyLock;
@@ -13,13 +13,13 @@ use crate::table::prior_entry::marginal;
 /// A parameter of the model that a search may free.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PlainParameter {
-    /// Its name in jobs.
+    /// Name in jobs.
     pub name: &'static str,
-    /// A line that says what holds if its value is another.
+    /// A sentence that states the assumption if the parameter has another value.
     pub summary: &'static str,
-    /// Its prior where it is freed, as in a job.
+    /// Prior of the freed parameter, as in a job.
     pub prior: &'static str,
-    /// The effect that is this very parameter in another unit, and is the candidate in its place.
+    /// The effect that is the same parameter in another unit, and is the candidate in its place.
     pub covered_by: Option<&'static str>,
 }
 
@@ -32,7 +32,7 @@ const fn plain(name: &'static str, prior: &'static str, summary: &'static str) -
     }
 }
 
-/// Every such parameter.
+/// The parameters that a search may free.
 ///
 /// Priors: cohesion of dry and slightly moist sand; exponents from an even to a triangular distribution of the pressure; a factor of e
 /// and of 3 about the model's velocity and stiffness; shares anywhere.
@@ -72,19 +72,19 @@ pub const PLAIN_PARAMETERS: [PlainParameter; 6] = [
     ),
 ];
 
-/// Their priors by name, read once.
+/// The priors of these parameters by name, parsed once.
 static PRIORS: LazyLock<BTreeMap<&'static str, (toml::Value, Marginal)>> = LazyLock::new(|| {
     let prior = |plain: &PlainParameter| Some((plain.name, plain.read_prior()?));
     PLAIN_PARAMETERS.iter().filter_map(prior).collect()
 });
 
 impl PlainParameter {
-    /// The parameter of a name, if a search may free it.
+    /// Returns the parameter of a name, if a search may free it.
     pub fn find(name: &str) -> Option<&'static Self> {
         PLAIN_PARAMETERS.iter().find(|plain| plain.name == name)
     }
 
-    /// Its prior as a value of TOML, and as a density.
+    /// Returns the prior as a value of TOML, and as a density.
     pub fn prior(&self) -> Option<&'static (toml::Value, Marginal)> {
         PRIORS.get(self.name)
     }
@@ -96,8 +96,8 @@ impl PlainParameter {
         Some((value, density))
     }
 
-    /// The value at which a job holds it, with the density of its prior; `None` where it is free, where the model does not have it,
-    /// where its value lies outside its prior, or where an effect is the candidate in its place.
+    /// Returns the value at which a job holds it, with the density of its prior; `None` if it is free, if the model does not have it,
+    /// if its value lies outside its prior, or if an effect is the candidate in its place.
     pub fn held_by(&self, spec: &Spec) -> Option<(f64, Marginal)> {
         let is_free = spec.parameters.iter().any(|p| p.name == self.name);
         let known = match &spec.model.external {
@@ -116,11 +116,11 @@ impl PlainParameter {
 }
 
 impl Spec {
-    /// The names of the plain parameters that are free, and of the settings of the model that a search may turn.
+    /// Returns the names of the plain parameters that are free, and of the settings of the model that a search may change.
     pub fn freed(&self) -> Vec<String> {
         let free = |plain: &&PlainParameter| self.parameters.iter().any(|p| p.name == plain.name);
         let freed = PLAIN_PARAMETERS.iter().filter(free).map(|plain| plain.name);
-        // The usual settings go without saying; the kind is said.
+        // Default settings are left out; the kind is stated.
         let turned = MODEL_SWITCHES.iter();
         let turned = turned.filter(|switch| switch.is_on(self) && !switch.is_usual());
         freed

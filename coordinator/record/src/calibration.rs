@@ -60,7 +60,7 @@ pub struct CalibrationRow {
 }
 
 impl CalibrationRow {
-    /// A finished calibration with an empty job: a fixture of tests.
+    /// Returns a finished calibration with an empty job: a fixture of tests.
     #[doc(hidden)]
     pub fn finished(id: i64, membership: Membership) -> Self {
         CalibrationRow {

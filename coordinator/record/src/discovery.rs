@@ -217,7 +217,7 @@ impl RemainingMisfit {
     }
 }
 
-/// The misfit of an explanation that fits.
+/// Returns the misfit of an explanation that fits.
 fn fits() -> f64 {
     1.0
 }
@@ -240,12 +240,12 @@ impl NotTried {
     /// Prefix of `needs` if runs are missing instead of a line.
     pub const RUNS: &str = "runs ";
 
-    /// Whether a line of the experiment would state, or runs would show, the missing quantity.
+    /// Returns whether a line of the experiment would state, or runs would show, the missing quantity.
     pub fn lacks_data(&self) -> bool {
         self.needs != Self::OUR_MODEL
     }
 
-    /// Whether runs would show the missing quantity.
+    /// Returns whether runs would show the missing quantity.
     pub fn lacks_runs(&self) -> bool {
         self.needs.starts_with(Self::RUNS)
     }
@@ -343,7 +343,7 @@ pub struct ChiSquare {
     pub p: Option<f64>,
 }
 
-/// The name of an extension as a candidate; `EFFECT.WHEEL` for an effect on one wheel of several.
+/// Returns the name of an extension as a candidate; `EFFECT.WHEEL` for an effect on one wheel of several.
 pub fn addition_name(extension: &Extension) -> String {
     match extension {
         Extension::OnWheel { effect, wheel } => format!("{effect}.{wheel}"),
@@ -351,7 +351,7 @@ pub fn addition_name(extension: &Extension) -> String {
     }
 }
 
-/// The name of the effect that an extension adds.
+/// Returns the name of the effect that an extension adds.
 pub fn effect_of(extension: &Extension) -> String {
     match extension {
         Extension::Effect(effect) | Extension::OnWheel { effect, .. } => effect.clone(),
@@ -359,12 +359,12 @@ pub fn effect_of(extension: &Extension) -> String {
     }
 }
 
-/// The parts of a model that an extension adds: its effect and, if the effect keeps its displacement on the nodes, that setting.
+/// Returns the parts of a model that an extension adds: its effect and, if the effect keeps its displacement on the nodes, that setting.
 pub fn parts_of(extension: &Extension) -> Vec<String> {
     parts_of_effect(&effect_of(extension))
 }
 
-/// The parts that an effect of this name adds.
+/// Returns the parts that an effect of this name adds.
 pub fn parts_of_effect(effect: &str) -> Vec<String> {
     match EffectOnNodes::find(effect) {
         Some(on_nodes) => vec![on_nodes.effect.name.clone(), on_nodes.setting.name.to_owned()],

@@ -45,7 +45,7 @@ pub enum EvaluationKey {
 }
 
 impl EvaluationKey {
-    /// The number of this evaluation in a calibration with rounds of this width.
+    /// Returns the number of this evaluation in a calibration with rounds of this width.
     pub fn number(self, width: usize) -> u64 {
         match self {
             EvaluationKey::Sampling { round, particle } => round * width as u64 + particle as u64,
@@ -59,7 +59,7 @@ impl EvaluationKey {
         }
     }
 
-    /// The evaluation that has a number.
+    /// Returns the evaluation that has a number.
     pub fn from_number(number: u64, width: usize) -> Self {
         match number.checked_sub(PREDICTIONS_FROM) {
             Some(_) if number >= HOLDOUT_RUNS_FROM => EvaluationKey::HoldoutRun {
@@ -78,7 +78,7 @@ impl EvaluationKey {
         }
     }
 
-    /// Whether only holdout runs are evaluated, of parameters whose fitted runs are another evaluation.
+    /// Returns whether only holdout runs are evaluated, of parameters whose fitted runs are another evaluation.
     pub fn is_of_holdout(self) -> bool {
         matches!(
             self,
@@ -86,7 +86,7 @@ impl EvaluationKey {
         )
     }
 
-    /// The first number that a result of this evaluation may influence: the one after its round.
+    /// Returns the first number that a result of this evaluation may influence: the one after its round.
     pub fn round_end(number: u64, width: usize) -> u64 {
         match EvaluationKey::from_number(number, width) {
             EvaluationKey::Sampling { round, .. } => (round + 1) * width as u64,

@@ -173,12 +173,12 @@ pub enum Kept {
 }
 
 impl Kept {
-    /// Whether the model rejected.
+    /// Returns whether the model rejected.
     pub fn is_rejected(&self) -> bool {
         matches!(self, Kept::Rejected(_))
     }
 
-    /// The kept predicted values.
+    /// Returns the kept predicted values.
     pub fn fitted(&self) -> Option<&[f64]> {
         match self {
             Kept::Fitted(values) => Some(values),

@@ -1,13 +1,15 @@
 //! The place of a calibration in its study.
 
 use serde::{Deserialize, Serialize};
+use strum::{EnumString, IntoStaticStr};
 use utoipa::ToSchema;
 
 use crate::discovery::Extension;
 
 /// The result that a calibration computes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema, EnumString, IntoStaticStr)]
 #[serde(rename_all = "snake_case")]
+#[strum(serialize_all = "snake_case")]
 pub enum Role {
     /// A sample of the posterior.
     Sample,
@@ -18,21 +20,14 @@ pub enum Role {
 }
 
 impl Role {
-    /// All roles.
-    pub const ALL: [Role; 3] = [Role::Sample, Role::Fit, Role::Search];
-
-    /// The word in the store.
+    /// Returns the word in the store.
     pub fn name(self) -> &'static str {
-        match self {
-            Role::Sample => "sample",
-            Role::Fit => "fit",
-            Role::Search => "search",
-        }
+        self.into()
     }
 
-    /// The role of a word.
+    /// Returns the role of a word.
     pub fn from_name(name: &str) -> Option<Role> {
-        Role::ALL.into_iter().find(|role| role.name() == name)
+        name.parse().ok()
     }
 }
 
@@ -65,7 +60,7 @@ pub struct Membership {
 }
 
 impl Membership {
-    /// The calibration that a job was submitted for.
+    /// Returns the calibration that a job was submitted for.
     pub fn submitted(role: Role) -> Self {
         Membership {
             role,
@@ -74,7 +69,7 @@ impl Membership {
         }
     }
 
-    /// A calibration that follows from another one.
+    /// Returns a calibration that follows from another one.
     pub fn changed(role: Role, parent: i64, change: Change) -> Self {
         Membership {
             role,
@@ -83,7 +78,7 @@ impl Membership {
         }
     }
 
-    /// The search of a calibration's model.
+    /// Returns the search of a calibration's model.
     pub fn search_of(calibration: i64) -> Self {
         Membership {
             role: Role::Search,
@@ -92,7 +87,7 @@ impl Membership {
         }
     }
 
-    /// Whether this is a search for missing effects.
+    /// Returns whether this is a search for missing effects.
     pub fn is_search(&self) -> bool {
         self.role == Role::Search
     }

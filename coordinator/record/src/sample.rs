@@ -39,7 +39,7 @@ pub struct StageRow {
 pub struct RejectionReason(pub String);
 
 impl RejectionReason {
-    /// The part before the colon.
+    /// Returns the part before the colon.
     pub fn kind(&self) -> &str {
         self.0.split_once(':').map_or(&self.0, |(kind, _)| kind)
     }
@@ -77,7 +77,7 @@ pub struct HoldoutPrediction {
 }
 
 impl HoldoutPrediction {
-    /// The observables that contain a run with its index in them, or the rejection of the run.
+    /// Returns the observables that contain a run with its index in them, or the rejection of the run.
     ///
     /// # Arguments
     /// - `position`: index of the run among the holdout runs.

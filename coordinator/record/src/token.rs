@@ -1,8 +1,8 @@
-//! Bearer tokens: what is told to their holder, what is kept of them, and what each role includes.
+//! Bearer tokens: their secrets, the records that the store keeps of them, and the rights of each role.
 
 use sha2::{Digest, Sha256};
 
-/// What the holder of a token may do.
+/// The rights of the holder of a token.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum TokenRole {
     /// Look at everything: every GET of a user.
@@ -14,20 +14,20 @@ pub enum TokenRole {
 }
 
 impl TokenRole {
-    /// Every role.
+    /// Every role, in the order of the enumeration.
     pub const ALL: [TokenRole; 3] = [TokenRole::Read, TokenRole::Submit, TokenRole::Work];
 
-    /// The word for it, on the command line and in the store.
+    /// Returns the word on the command line and in the store.
     pub fn name(self) -> &'static str {
         ["read", "submit", "work"][self as usize]
     }
 
-    /// The role of a word.
+    /// Returns the role of a word.
     pub fn from_name(name: &str) -> Option<TokenRole> {
         Self::ALL.into_iter().find(|role| role.name() == name)
     }
 
-    /// Whether its holder may do what `needed` is for.
+    /// Returns whether its rights include those of `needed`.
     pub fn includes(self, needed: TokenRole) -> bool {
         self == needed || (self, needed) == (TokenRole::Submit, TokenRole::Read)
     }
@@ -38,30 +38,30 @@ impl TokenRole {
 pub struct TokenHash(pub [u8; 32]);
 
 impl TokenHash {
-    /// The hash of a token.
-    pub fn of(token: &str) -> TokenHash {
+    /// Returns the hash of a token.
+    pub fn new(token: &str) -> TokenHash {
         TokenHash(Sha256::digest(token.as_bytes()).into())
     }
 
-    /// Whether both are the same; the time that this takes does not depend on where they differ.
+    /// Returns whether both are equal, in a time that does not depend on where they differ.
     pub fn is(&self, other: &TokenHash) -> bool {
         let differing = self.0.iter().zip(&other.0).fold(0, |bits, (a, b)| bits | (a ^ b));
         std::hint::black_box(differing) == 0
     }
 }
 
-/// What the store keeps of a token.
+/// The record of a token in the store.
 #[derive(Debug, Clone)]
 pub struct Token {
-    /// Its name, unique among those in use.
+    /// Name, unique among the tokens in use.
     pub name: String,
-    /// What its holder may do.
+    /// The rights of its holder.
     pub role: TokenRole,
-    /// Its hash.
+    /// Hash of the token.
     pub hash: TokenHash,
     /// When it was made, in time since 1970 `[ms]`.
     pub created_at_ms: i64,
-    /// Whether it is no longer accepted.
+    /// Whether it was revoked.
     pub is_revoked: bool,
 }
 
@@ -71,10 +71,10 @@ mod tests {
 
     #[test]
     fn a_hash_is_that_of_its_token_alone() {
-        assert!(TokenHash::of("abc").is(&TokenHash::of("abc")));
-        assert!(!TokenHash::of("abc").is(&TokenHash::of("abd")));
+        assert!(TokenHash::new("abc").is(&TokenHash::new("abc")));
+        assert!(!TokenHash::new("abc").is(&TokenHash::new("abd")));
         let known = "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad";
-        let hex: String = TokenHash::of("abc")
+        let hex: String = TokenHash::new("abc")
             .0
             .iter()
             .map(|b| format!("{b:02x}"))

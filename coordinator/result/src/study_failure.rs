@@ -105,9 +105,9 @@ mod tests {
 
     #[test]
     fn what_has_not_failed_has_no_failure_and_what_failed_otherwise_has_its_message() {
-        for state in CalibrationState::ALL
-            .into_iter()
-            .filter(|s| *s != CalibrationState::Failed)
+        for &state in CalibrationState::ALL
+            .iter()
+            .filter(|state| **state != CalibrationState::Failed)
         {
             assert_eq!(
                 StudyFailure::from_members([&member(state, &[])].into_iter()),

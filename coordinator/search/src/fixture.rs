@@ -4,7 +4,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use formula::Effect;
-use job::{Job, Spec, check_own};
+use job::{Job, Spec, check_effect};
 use record::Extension;
 use shared::experiment::Experiment;
 use shared::file::{FileError, FileSet};
@@ -53,7 +53,7 @@ pub(super) fn text(candidate: &CandidateEffect) -> (&str, Effect) {
         panic!("{candidate:?}")
     };
     let effect = read_user_effect(name, text).unwrap_or_else(|e| panic!("{e}\n{text}"));
-    check_own(name, &effect).unwrap_or_else(|e| panic!("{e}\n{text}"));
+    check_effect(name, &effect).unwrap_or_else(|e| panic!("{e}\n{text}"));
     assert_eq!(format!("{}.toml", effect.name), *name);
     (text, effect)
 }

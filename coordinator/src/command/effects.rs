@@ -14,7 +14,7 @@ use super::output::say;
 use crate::config::{EffectsArguments, ModelChoice};
 use crate::effect::signature::{ChannelSignature, Signature, signature};
 use crate::effect::{EffectCard, Group};
-use job::check_own;
+use job::check_effect;
 use result::number;
 
 /// Longest line `[columns]`.
@@ -32,7 +32,7 @@ pub(super) async fn effects(config: &EffectsArguments) -> anyhow::Result<()> {
             // The checks are those of a job.
             let file = path.display().to_string();
             let effect = read_user_effect(&file, &read_text(path)?)?;
-            check_own(&file, &effect)?;
+            check_effect(&file, &effect)?;
             effect
         }
         (None, Some(name)) => find(name).with_context(|| unknown_effect(name))?.clone(),
@@ -46,7 +46,7 @@ pub(super) async fn effects(config: &EffectsArguments) -> anyhow::Result<()> {
 
 /// Every effect of the catalogue, by the part of the model that it concerns.
 fn list() -> String {
-    let cards: Vec<EffectCard> = catalogue().iter().map(EffectCard::of).collect();
+    let cards: Vec<EffectCard> = catalogue().iter().map(EffectCard::new).collect();
     let mut text = wrapped(
         &format!(
             "{} effects that a wheel-soil model may miss. A job takes one by [model] effects = [\"NAME\"], by a prior for \

@@ -23,7 +23,7 @@ fn write(folder: &Path) -> anyhow::Result<()> {
     let mut rules = String::from(
         "# Which schema a file has, for Taplo and the editors that use it. Another file names its own in its first line:\n# #:schema job.schema.json\n",
     );
-    for kind in FileKind::ALL {
+    for kind in FileKind::all() {
         let file = folder.join(kind.file_name());
         std::fs::write(&file, kind.text()?).with_context(|| file.display().to_string())?;
         let include: Vec<String> = kind
@@ -42,6 +42,6 @@ fn write(folder: &Path) -> anyhow::Result<()> {
     Ok(say(&format!(
         "{}: {} schemas, and .taplo.toml with the files that have them\n",
         name(),
-        FileKind::ALL.len()
+        FileKind::all().len()
     ))?)
 }

@@ -47,7 +47,7 @@ async fn add(name: &str, role: TokenRole, from: Option<&Path>, store: &StoreArgu
     let token = Token {
         name: name.to_owned(),
         role,
-        hash: TokenHash::of(&secret),
+        hash: TokenHash::new(&secret),
         created_at_ms: now_ms(),
         is_revoked: false,
     };

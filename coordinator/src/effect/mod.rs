@@ -17,31 +17,31 @@ use utoipa::ToSchema;
 pub struct EffectCard {
     /// Name in jobs and results.
     pub name: String,
-    /// Where its file is.
+    /// Location of the file.
     pub origin: Origin,
     /// Version of the file, from 1; null of the library's, which come with the program.
     pub version: Option<i64>,
-    /// What it is, in a line.
+    /// The effect in a line.
     pub summary: String,
-    /// Where it comes from.
+    /// Publication or data that the effect comes from.
     pub source: String,
-    /// What of the model it concerns: `pressure`, `shear`, `wheel` or `rig`.
+    /// The part of the model that it concerns: `pressure`, `shear`, `wheel` or `rig`.
     pub group: Group,
     /// Quantities that its formulas replace, in the order of evaluation.
     pub hooks: Vec<String>,
-    /// What a model may have of it in code, in place of the formulas.
+    /// The mechanism that a model may have in code, in place of the formulas.
     pub mechanism: Option<String>,
-    /// Its parameters, in the order of the file.
+    /// Parameters, in the order of the file.
     pub parameters: Vec<ParameterCard>,
 }
 
-/// Where the file of an effect is.
+/// The location of an effect's file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Origin {
-    /// In the library that comes with the program.
+    /// The library that comes with the program.
     Library,
-    /// In the store of a service: a user has added it.
+    /// The store of a service, to which a user has added it.
     Own,
 }
 
@@ -61,25 +61,25 @@ pub struct ParameterCard {
     pub prior: serde_json::Value,
 }
 
-/// What of the model an effect concerns.
+/// The part of the model that an effect concerns.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Group {
-    /// How the soil carries the wheel.
+    /// The pressure under the wheel.
     Pressure,
-    /// How it resists the wheel's sliding.
+    /// The resistance of the soil to sliding.
     Shear,
     /// Shape, motion and load of the wheel.
     Wheel,
-    /// What is added to what the rig measures.
+    /// Forces beside the contact, and errors of the instruments.
     Rig,
 }
 
 impl Group {
-    /// Every group.
+    /// All groups, in the order of lists.
     pub const ALL: [Group; 4] = [Group::Pressure, Group::Shear, Group::Wheel, Group::Rig];
 
-    /// Title in lists.
+    /// Returns the title in lists.
     pub fn title(self) -> &'static str {
         match self {
             Group::Pressure => "How the soil carries the wheel",
@@ -89,7 +89,7 @@ impl Group {
         }
     }
 
-    fn of(effect: &Effect) -> Group {
+    fn new(effect: &Effect) -> Group {
         if let Some(mechanism) = effect.mechanism {
             return match mechanism {
                 Mechanism::FlatPatch => Group::Wheel,
@@ -112,31 +112,31 @@ impl Group {
 }
 
 impl EffectCard {
-    /// The card of an effect of the library.
-    pub fn of(effect: &Effect) -> Self {
+    /// Returns the card of an effect of the library.
+    pub fn new(effect: &Effect) -> Self {
         EffectCard {
             name: effect.name.clone(),
             origin: Origin::Library,
             version: None,
             summary: effect.summary.clone(),
             source: effect.source.clone(),
-            group: Group::of(effect),
+            group: Group::new(effect),
             hooks: effect.hooks().map(|hook| hook.name().to_owned()).collect(),
             mechanism: effect.mechanism.map(|m| m.name().to_owned()),
-            parameters: effect.parameters.iter().map(ParameterCard::of).collect(),
+            parameters: effect.parameters.iter().map(ParameterCard::new).collect(),
         }
     }
 
-    /// The card of a version of an effect that a user has added.
+    /// Returns the card of a version of an effect that a user has added.
     pub fn user(effect: &Effect, version: i64) -> Self {
         EffectCard {
             origin: Origin::Own,
             version: Some(version),
-            ..EffectCard::of(effect)
+            ..EffectCard::new(effect)
         }
     }
 
-    /// Where it enters, in words.
+    /// Returns the hooks or the mechanism by which it enters the model.
     pub fn enters(&self) -> String {
         let hooks = self.hooks.join(", ");
         match (&self.mechanism, hooks.as_str()) {
@@ -148,7 +148,7 @@ impl EffectCard {
 }
 
 impl ParameterCard {
-    fn of(parameter: &Parameter) -> Self {
+    fn new(parameter: &Parameter) -> Self {
         ParameterCard {
             name: parameter.name.clone(),
             unit: parameter.unit.clone(),
@@ -159,7 +159,7 @@ impl ParameterCard {
     }
 }
 
-/// The value at which a strength is shown: the file's, or else one scale of its prior.
+/// Returns the value at which a strength is shown: the file's, or else one scale of its prior.
 fn shown_at(parameter: &Parameter) -> Option<f64> {
     let prior = &parameter.prior;
     let pair = |key: &str| -> Option<[f64; 2]> {
@@ -168,7 +168,7 @@ fn shown_at(parameter: &Parameter) -> Option<f64> {
         };
         Some([number(a)?, number(b)?])
     };
-    let of_prior = || {
+    let prior_centre = || {
         let uniform = || pair("uniform").map(|[a, b]| f64::midpoint(a, b));
         let loguniform = || pair("loguniform").map(|[a, b]| (a * b).sqrt());
         let normal = || pair("normal").map(|[mean, sd]| mean + sd);
@@ -177,7 +177,7 @@ fn shown_at(parameter: &Parameter) -> Option<f64> {
         let table = uniform().or_else(loguniform).or_else(normal);
         table.or_else(lognormal).or_else(half)
     };
-    parameter.typical.or_else(|| number(prior)).or_else(of_prior)
+    parameter.typical.or_else(|| number(prior)).or_else(prior_centre)
 }
 
 #[cfg(test)]
@@ -203,7 +203,7 @@ mod tests {
 
     #[test]
     fn every_group_has_effects() {
-        let cards: Vec<EffectCard> = catalogue().iter().map(EffectCard::of).collect();
+        let cards: Vec<EffectCard> = catalogue().iter().map(EffectCard::new).collect();
         for group in Group::ALL {
             assert!(cards.iter().any(|card| card.group == group), "{group:?}");
         }

@@ -1,4 +1,4 @@
-//! What an effect changes in drawbar pull, torque and sinkage, on one wheel in one sand.
+//! The change of drawbar pull, torque and sinkage by an effect, for one wheel in one sand.
 
 use formula::slip::variables;
 use formula::{Effect, Variable};
@@ -13,7 +13,7 @@ use utoipa::ToSchema;
 use super::shown_at;
 use crate::embedded::Evaluate;
 
-/// What is shown, in the units of [`CHANNELS`].
+/// The shown channels with their units.
 pub const CHANNELS: [(&str, &str); 3] = [("drawbar_pull", "N"), ("torque", "N m"), ("sinkage", "mm")];
 /// Factors from SI units to those of [`CHANNELS`].
 const FACTORS: [f64; 3] = [1.0, 1.0, 1000.0];
@@ -35,44 +35,44 @@ const COLUMNS: [(&str, f64, f64, f64); 6] = [
 
 /// Slip angle at which effects are shown that are absent straight ahead `[deg]`.
 const SIDEWAYS_DEG: f64 = 30.0;
-/// Numbers of the first and the last run of a series; what is shown are last runs.
+/// Numbers of the first and the last run of a series; the signature shows last runs.
 const FIRST: i32 = 0;
 const LAST: i32 = 1;
 /// Points of the curves over slip: from −0.4 in steps of 0.05 to 0.8.
 const POINTS: usize = 25;
 
-/// What each strength of an effect does.
+/// The changes by each strength of an effect.
 #[derive(Debug, Clone, Serialize, Deserialize, ToSchema)]
 pub struct Signature {
     /// The model.
     pub model_kind: String,
-    /// Which pass over the track is shown.
+    /// Number of the shown pass over the track.
     pub pass: u32,
-    /// From the wheel's heading to the travel `[deg]`: 0 but for effects that are absent straight ahead.
+    /// Angle from the wheel's heading to the travel `[deg]`: 0 unless the effect is absent straight ahead.
     pub slip_angle_deg: f64,
-    /// Names of the conditions in the tables; slip 0.2, 100 N and 10 mm/s of rim speed where nothing else is said.
+    /// Names of the conditions in the tables; slip 0.2, 100 N and 10 mm/s of rim speed unless the name states others.
     pub conditions: Vec<String>,
     /// The other parameters, which only shape the effect.
     pub shapes: Vec<HeldParameter>,
     /// Slips of the curves.
     pub slips: Vec<f64>,
-    /// Each strength alone, at its typical value.
+    /// Changes by each strength alone, at its typical value.
     pub strengths: Vec<StrengthSignature>,
 }
 
 /// A parameter that is held at a value.
 #[derive(Debug, Clone, Serialize, Deserialize, ToSchema)]
 pub struct HeldParameter {
-    /// Its name.
+    /// Name.
     pub name: String,
-    /// Where it is held.
+    /// Value at which it is held.
     pub value: f64,
     /// Unit of the value.
     pub unit: String,
 }
 
 impl HeldParameter {
-    /// A parameter at the value at which it is shown; `None` where there is none.
+    /// Returns a parameter at the value at which it is shown; `None` if it has none.
     fn shown(parameter: &formula::Parameter) -> Option<Self> {
         Some(HeldParameter {
             name: parameter.name.clone(),
@@ -82,33 +82,33 @@ impl HeldParameter {
     }
 }
 
-/// What one strength does.
+/// The changes by one strength.
 #[derive(Debug, Clone, Serialize, Deserialize, ToSchema)]
 pub struct StrengthSignature {
     /// The parameter; empty for an effect without parameters.
     pub parameter: String,
-    /// Its value; null for an effect without parameters.
+    /// Value; null for an effect without parameters.
     pub value: Option<f64>,
-    /// Its unit.
+    /// Unit.
     pub unit: String,
     /// Pull \[N\], torque \[N m\] and sinkage \[mm\].
     pub channels: Vec<ChannelSignature>,
-    /// Why the model refuses, where it does.
+    /// Reason of the model's refusal, if it refuses.
     pub refusal: Option<String>,
 }
 
-/// What changes in one channel; null where the model refuses.
+/// The change of one channel; null where the model refuses.
 #[derive(Debug, Clone, Serialize, Deserialize, ToSchema)]
 pub struct ChannelSignature {
     /// The channel.
     pub channel: String,
-    /// Its unit.
+    /// Unit.
     pub unit: String,
-    /// Without the effect, by condition.
+    /// Values without the effect, by condition.
     pub base: Vec<Option<f64>>,
-    /// With it less without it, by condition.
+    /// Differences with and without the effect, by condition.
     pub change: Vec<Option<f64>>,
-    /// The same over slip, at 100 N and 10 mm/s.
+    /// Differences over slip, at 100 N and 10 mm/s.
     pub curve: Vec<Option<f64>>,
 }
 
@@ -169,7 +169,7 @@ pub fn signature(effect: &Effect, kind: ModelKind) -> Result<Signature, String> 
     })
 }
 
-/// The runs of the table and of the curves over slip, and the first run of the series.
+/// Returns the runs of the table and of the curves over slip, and the first run of the series.
 fn runs(slips: &[f64], slip_angle_deg: f64, pass: u32) -> Vec<TestRun> {
     let run = |column| TestRun {
         slip_angle_deg,
@@ -194,12 +194,12 @@ fn compare(
     unit: &str,
 ) -> StrengthSignature {
     let channel = |c: usize| {
-        let of = |averages: &Result<[f64; 3], String>| averages.as_ref().ok().map(|a| a[c] * FACTORS[c]);
-        let change = |i: usize| Some(of(&with[i])? - of(&base[i])?);
+        let value = |averages: &Result<[f64; 3], String>| averages.as_ref().ok().map(|a| a[c] * FACTORS[c]);
+        let change = |i: usize| Some(value(&with[i])? - value(&base[i])?);
         ChannelSignature {
             channel: CHANNELS[c].0.to_owned(),
             unit: CHANNELS[c].1.to_owned(),
-            base: base[..COLUMNS.len()].iter().map(of).collect(),
+            base: base[..COLUMNS.len()].iter().map(value).collect(),
             change: (0..COLUMNS.len()).map(change).collect(),
             curve: (COLUMNS.len()..base.len()).map(change).collect(),
         }
@@ -275,7 +275,7 @@ impl<'a> Reference<'a> {
         })
     }
 
-    /// Every run, with one strength that is not neutral, or none.
+    /// Simulates every run with at most one strength away from its neutral value.
     fn simulate(&self, strength: Option<(&str, f64)>) -> Result<Averages, String> {
         let mut settings = self.settings.clone();
         for parameter in self.effect.iter().flat_map(|e| &e.parameters) {

@@ -148,7 +148,7 @@ impl Access {
         let stated = headers.get(AUTHORIZATION).and_then(|value| value.to_str().ok());
         let stated = stated.and_then(|text| text.split_once(' '));
         let stated = stated.filter(|(scheme, _)| scheme.eq_ignore_ascii_case("bearer"));
-        let hash = stated.map(|(_, token)| TokenHash::of(token.trim()));
+        let hash = stated.map(|(_, token)| TokenHash::new(token.trim()));
         let Some(needed) = needed(method, path).filter(|_| is_asked_for) else {
             // A token that is stated before one is asked for keeps its polls and streams when the first one is.
             return Ok(caller(None, hash));

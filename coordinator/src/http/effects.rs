@@ -58,7 +58,7 @@ struct EffectAdded {
 async fn list(State(service): State<Service>) -> Result<Json<Vec<EffectCard>>, HttpError> {
     let added = service.store().reader().own_effects().await?;
     let cards = tokio::task::spawn_blocking(move || {
-        let library = catalogue().iter().map(|effect| Ok(EffectCard::of(effect)));
+        let library = catalogue().iter().map(|effect| Ok(EffectCard::new(effect)));
         let added = added
             .iter()
             .map(|stored| Ok(EffectCard::user(&read(stored)?, stored.version.version)));
@@ -75,7 +75,7 @@ async fn list(State(service): State<Service>) -> Result<Json<Vec<EffectCard>>, H
     responses((status = 200, description = "the effect", body = EffectPage), (status = 404, body = ErrorBody)))]
 async fn show(State(service): State<Service>, Name(name): Name) -> Result<Json<EffectPage>, HttpError> {
     let (effect, card, versions) = match find(&name) {
-        Some(effect) => (effect.clone(), EffectCard::of(effect), Vec::new()),
+        Some(effect) => (effect.clone(), EffectCard::new(effect), Vec::new()),
         None => {
             let stored = service.own_effect(&name).await?;
             let (versions, meant) =

@@ -125,7 +125,7 @@ impl Figures {
     /// Calibrations of the store by state; 0 for a state without any.
     fn states(&mut self, counts: &[(String, i64)]) {
         let family = Family::<InState, Gauge>::default();
-        for state in CalibrationState::ALL.map(CalibrationState::name) {
+        for state in CalibrationState::ALL.iter().map(|state| state.name()) {
             let count = counts.iter().find(|(name, _)| name == state);
             let count = count.map_or(0, |&(_, count)| count);
             family.get_or_create(&InState { state }).set(count);

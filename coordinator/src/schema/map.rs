@@ -1,111 +1,87 @@
-//! The map of an import.
+//! The schema of the map of an import.
 
-use serde_json::{Value, json};
+use serde_json::{Map, Value, json};
 
-use super::shape::{either, flag, list, named, needing, one_of, said, table, text, whole};
-
-/// The whole file.
+/// Returns the schema of the whole file.
 pub(super) fn map() -> Value {
-    let columns = import::columns();
-    let columns = columns.map(|(name, words)| (name, said(origin(), &words)));
+    let number_or_text = json!([{ "type": "number" }, { "type": "string" }]);
     let marks = [",", "."];
-    table(
-        "where each column of runs.csv comes from",
-        [
-            (
-                "sheet",
-                number_or_text(
-                    "sheet of a spreadsheet, or struct of a MATLAB file: its name, or its number from 1",
-                ),
-            ),
-            (
-                "encoding",
-                text("encoding of a text, as \"windows-1252\"; found where nothing is said"),
-            ),
-            (
-                "separator",
-                one_of("between the fields of a text", [",", ";", "|", "tab", "space"]),
-            ),
-            (
-                "titles",
-                whole("line of the titles; 0 where there are none", 0, None),
-            ),
-            (
-                "units",
-                whole("line of the units; 0 where there is none", 0, None),
-            ),
-            (
-                "decimal",
-                one_of("mark before the decimals of numbers that are texts", marks),
-            ),
-            ("thousands", one_of("mark between thousands", marks)),
-            (
-                "skip",
-                list("lines that are no runs, as means", whole("a line", 1, None)),
-            ),
-            (
-                "missing",
-                list(
-                    "what stands for a value that was not measured",
-                    number_or_text("a word"),
-                ),
-            ),
-            ("columns", table("the columns of runs.csv", columns)),
-            ("quantities", named("names for formulas", origin())),
-            ("recording", recording()),
-        ],
-    )
-}
-
-/// A table of `[columns]` or `[quantities]`.
-fn origin() -> Value {
-    let mut origin = table(
-        "one of column, value and formula",
-        [
-            ("column", text("title of the column, or its letters")),
-            ("value", number_or_text("the same in all rows")),
-            (
-                "formula",
-                text("SI units, angles in rad; names are quantities and other columns"),
-            ),
-            ("unit", text("unit of the column or value")),
-            ("decimal", one_of("mark of this column", [",", "."])),
-            (
-                "fill_down",
-                flag("whether a blank cell has the value of the cell above"),
-            ),
-        ],
-    );
-    let one = ["column", "value", "formula"].map(|key| json!({ "required": [key] }));
-    origin["oneOf"] = json!(one);
-    origin
-}
-
-fn recording() -> Value {
-    let mut window = list(
-        "part of each run that counts, from its start [s]",
-        json!({ "type": "number", "minimum": 0 }),
-    );
-    window["minItems"] = json!(2);
-    window["maxItems"] = json!(2);
-    let recording = table(
-        "cuts runs from one recording",
-        [
-            ("time", text("column of the time")),
-            ("time_unit", text("unit of the time")),
-            ("marker", text("column that changes from run to run")),
-            (
-                "between",
-                list("values of the marker between the runs", number_or_text("a value")),
-            ),
-            ("window_s", window),
-            ("histories", flag("whether a history is written for each run")),
-        ],
-    );
-    needing(recording, &["time", "time_unit", "marker"])
-}
-
-fn number_or_text(words: &str) -> Value {
-    let types = ["number", "string"].map(|kind| json!({ "type": kind }));
-    either(words, types.into())
+    let kinds = ["column", "value", "formula"].map(|key| json!({ "required": [key] }));
+    let origin = |words: &str| {
+        json!({
+            "description": words,
+            "type": "object",
+            "properties": {
+                "column": { "description": "Title of the column, or its letters.", "type": "string" },
+                "value": { "description": "Value of all rows.", "anyOf": number_or_text },
+                "formula": {
+                    "description": "Formula in SI units, angles in rad; its names are quantities and other columns.", "type": "string",
+                },
+                "unit": { "description": "Unit of the column or value.", "type": "string" },
+                "decimal": { "description": "Decimal mark of this column.", "type": "string", "enum": marks },
+                "fill_down": { "description": "Whether a blank cell has the value of the cell above.", "type": "boolean" },
+            },
+            "additionalProperties": false,
+            "oneOf": kinds,
+        })
+    };
+    let columns: Map<String, Value> = import::columns()
+        .map(|(name, words)| (name.to_owned(), origin(&words)))
+        .collect();
+    json!({
+        "description": "The origin of each column of runs.csv: one of column, value and formula.",
+        "type": "object",
+        "properties": {
+            "sheet": {
+                "description": "Sheet of a spreadsheet, or struct of a MATLAB file: its name, or its number from 1.",
+                "anyOf": number_or_text,
+            },
+            "encoding": {
+                "description": "Encoding of a text, as \"windows-1252\"; detected if it is not stated.", "type": "string",
+            },
+            "separator": {
+                "description": "Separator of the fields of a text.", "type": "string", "enum": [",", ";", "|", "tab", "space"],
+            },
+            "titles": { "description": "Line of the titles; 0 if there are none.", "type": "integer", "minimum": 0 },
+            "units": { "description": "Line of the units; 0 if there is none.", "type": "integer", "minimum": 0 },
+            "decimal": { "description": "Decimal mark of numbers that are texts.", "type": "string", "enum": marks },
+            "thousands": { "description": "Mark between thousands.", "type": "string", "enum": marks },
+            "skip": {
+                "description": "Lines that are no runs, as means.",
+                "type": "array", "items": { "type": "integer", "minimum": 1 }, "uniqueItems": true,
+            },
+            "missing": {
+                "description": "Entries that stand for a value that was not measured.",
+                "type": "array", "items": { "anyOf": number_or_text }, "uniqueItems": true,
+            },
+            "columns": {
+                "description": "The columns of runs.csv.", "type": "object", "properties": columns, "additionalProperties": false,
+            },
+            "quantities": {
+                "description": "Names for formulas.", "type": "object",
+                "additionalProperties": origin("One of column, value and formula."),
+            },
+            "recording": {
+                "description": "Cuts runs from one recording.",
+                "type": "object",
+                "properties": {
+                    "time": { "description": "Column of the time.", "type": "string" },
+                    "time_unit": { "description": "Unit of the time.", "type": "string" },
+                    "marker": { "description": "Column that changes from run to run.", "type": "string" },
+                    "between": {
+                        "description": "Values of the marker between the runs.",
+                        "type": "array", "items": { "anyOf": number_or_text }, "uniqueItems": true,
+                    },
+                    "window_s": {
+                        "description": "Interval of each run that is averaged, from its start [s].",
+                        "type": "array", "items": { "type": "number", "minimum": 0 }, "minItems": 2, "maxItems": 2, "uniqueItems": true,
+                    },
+                    "histories": { "description": "Whether a history is written for each run.", "type": "boolean" },
+                },
+                "required": ["time", "time_unit", "marker"],
+                "additionalProperties": false,
+            },
+        },
+        "additionalProperties": false,
+    })
 }

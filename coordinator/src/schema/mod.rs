@@ -1,28 +1,24 @@
 //! JSON schemas of the files that people write, so that editors complete and check them.
 //!
-//! They say what a table alone can say: keys, types, words, bounds. What needs two files, or arithmetic, is the reader's. Names, words
-//! and defaults come from the code that reads; the tests ask that code for the rest.
+//! The schemas state keys, types, words and bounds of single values. The readers check rules between values and between files.
+//! Names, words and defaults come from the code that reads; the tests compare the keys and words with its messages.
 //!
 //! # Layout
-//! - `shape`: numbers, words, lists, tables.
-//! - `prior`: parameters with their values and priors.
-//! - `model`: the table `[model]`.
-//! - `job`, `experiment`, `effect`, `map`: the files.
+//! - `effect`, `map`: the schemas of an effect and of a map. Jobs and experiments derive theirs from the types that read them.
 
 mod effect;
-mod experiment;
-mod job;
 mod map;
-mod model;
-mod prior;
-mod shape;
 #[cfg(test)]
 mod tests;
 
+use clap::ValueEnum;
+use job::schema::{from_type, job, model, parameters};
 use serde_json::{Value, json};
+use shared::experiment::ExperimentKeys;
 
 /// A kind of file.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum, strum::IntoStaticStr)]
+#[strum(serialize_all = "lowercase")]
 pub enum FileKind {
     /// A calibration: `job.toml`.
     Job,
@@ -39,34 +35,22 @@ pub enum FileKind {
 }
 
 impl FileKind {
-    /// Every kind.
-    pub const ALL: [FileKind; 6] = [
-        FileKind::Job,
-        FileKind::Experiment,
-        FileKind::Effect,
-        FileKind::Map,
-        FileKind::Model,
-        FileKind::Parameters,
-    ];
-
-    /// Its name.
-    pub fn name(self) -> &'static str {
-        match self {
-            FileKind::Job => "job",
-            FileKind::Experiment => "experiment",
-            FileKind::Effect => "effect",
-            FileKind::Map => "map",
-            FileKind::Model => "model",
-            FileKind::Parameters => "parameters",
-        }
+    /// Returns every kind.
+    pub fn all() -> &'static [Self] {
+        Self::value_variants()
     }
 
-    /// Name of the file of its schema.
+    /// Returns the name on the command line.
+    pub fn name(self) -> &'static str {
+        self.into()
+    }
+
+    /// Returns the name of the schema's file.
     pub fn file_name(self) -> String {
         format!("{}.schema.json", self.name())
     }
 
-    /// Files that have it by their names, wherever they lie.
+    /// Returns the patterns of the names of its files, in any folder.
     pub fn usual_files(self) -> &'static [&'static str] {
         match self {
             FileKind::Job => &["**/job.toml", "**/*-job.toml"],
@@ -78,25 +62,25 @@ impl FileKind {
         }
     }
 
-    /// Its schema, in draft 7 of JSON Schema: the one that editors of TOML read.
+    /// Returns the schema, in draft 7 of JSON Schema: the one that editors of TOML read.
     pub fn schema(self) -> Value {
         let mut schema = match self {
-            FileKind::Job => job::job(),
-            FileKind::Experiment => experiment::experiment(),
+            FileKind::Job => job(),
+            FileKind::Experiment => from_type::<ExperimentKeys>(),
             FileKind::Effect => effect::effect(),
             FileKind::Map => map::map(),
-            FileKind::Model => model::model(),
-            FileKind::Parameters => prior::file_of_values(),
+            FileKind::Model => model(),
+            FileKind::Parameters => parameters(),
         };
         schema["$schema"] = json!("http://json-schema.org/draft-07/schema#");
         schema["title"] = json!(format!("grouser: {}", self.name()));
         schema
     }
 
-    /// The text of its file.
+    /// Returns the text of the schema's file.
     ///
     /// # Errors
-    /// None that is known: a schema has neither maps with other keys than texts nor numbers that JSON lacks.
+    /// [`serde_json::Error`] if a value is not representable in JSON; no schema has such a value.
     pub fn text(self) -> serde_json::Result<String> {
         Ok(serde_json::to_string_pretty(&self.schema())? + "\n")
     }

@@ -1,4 +1,4 @@
-//! Each reader is asked for the keys and words that it knows, in the message about one that it does not: the schema has the same.
+//! Schemas have the keys and words of the readers, which list them in the message about an unknown key or word.
 
 use std::collections::BTreeSet;
 
@@ -10,10 +10,10 @@ use shared::model::ModelSettings;
 
 use super::FileKind;
 
-/// Nearer to no known word than half of its length.
+/// A word without a near known word.
 const UNKNOWN: &str = "xqjxqjxqjxqjxqjxqjxqjxqjxqjxqjxqjxqjxqjxqjxqjxqj";
 
-/// The message about a file.
+/// Returns the message about a file.
 fn message(kind: FileKind, text: &str) -> String {
     let error = match kind {
         FileKind::Job => Job::parse("job.toml", text)
@@ -50,8 +50,8 @@ fn message(kind: FileKind, text: &str) -> String {
     error.expect_err(text)
 }
 
-/// The words that a message says are known.
-fn known(message: &str) -> BTreeSet<String> {
+/// Returns the known words that a message lists.
+fn known_words(message: &str) -> BTreeSet<String> {
     let (_, list) = message
         .split_once("known are ")
         .unwrap_or_else(|| panic!("{message}"));
@@ -144,8 +144,8 @@ fn a_table_has_the_keys_that_its_reader_knows() {
         let schema = kind.schema();
         let table = schema.pointer(pointer).unwrap_or_else(|| panic!("{pointer}"));
         let keys: BTreeSet<String> = table["properties"].as_object().unwrap().keys().cloned().collect();
-        let told = known(&message(kind, &format!("{head}{UNKNOWN} = 1\n")));
-        assert_eq!(told, keys, "{} {pointer}", kind.name());
+        let keys_of_reader = known_words(&message(kind, &format!("{head}{UNKNOWN} = 1\n")));
+        assert_eq!(keys_of_reader, keys, "{} {pointer}", kind.name());
         assert_eq!(table["additionalProperties"], Value::Bool(false), "{pointer}");
     }
 }
@@ -156,18 +156,18 @@ fn a_model_has_the_keys_of_ours_and_of_others() {
     let other = format!(
         "kind = \"command\"\nprogram = \"a\"\nversion = \"1\"\ninputs = [\"slip\"]\nparameters = [\"n\"]\noutputs = [\"torque_n_m\"]\n{UNKNOWN} = 1\n"
     );
-    let mut told = known(&ours);
-    told.extend(known(&message(FileKind::Model, &other)));
+    let mut keys_of_reader = known_words(&ours);
+    keys_of_reader.extend(known_words(&message(FileKind::Model, &other)));
     let schema = FileKind::Model.schema();
     let keys = schema["properties"]
         .as_object()
         .unwrap()
         .keys()
         .filter(|key| !key.contains('.'));
-    assert_eq!(told, keys.cloned().collect());
+    assert_eq!(keys_of_reader, keys.cloned().collect());
 }
 
-/// The words that a shape takes, and a wrong one in the notation of TOML.
+/// Returns the words that a shape takes, and a wrong one in the notation of TOML.
 fn words<'a>(shape: &'a Value) -> Option<(Vec<&'a str>, String)> {
     let strings = |words: &'a Value| {
         words
@@ -191,7 +191,7 @@ fn words<'a>(shape: &'a Value) -> Option<(Vec<&'a str>, String)> {
 
 #[test]
 fn a_word_of_a_schema_is_one_of_those_that_its_reader_names() {
-    let mut asked = 0;
+    let mut checked = 0;
     let model = place(FileKind::Model, "", "");
     for Place { kind, head, pointer } in PLACES.into_iter().chain([model]) {
         let schema = kind.schema();
@@ -211,16 +211,16 @@ fn a_word_of_a_schema_is_one_of_those_that_its_reader_names() {
                 (FileKind::Model, _) => "kind = \"scm\"\n",
                 _ => head,
             };
-            let told = message(kind, &format!("{head}{key} = {wrong}\n"));
+            let error = message(kind, &format!("{head}{key} = {wrong}\n"));
             for word in &words {
                 assert!(
-                    told.contains(word),
-                    "{} {key}: {word} is not in: {told}",
+                    error.contains(word),
+                    "{} {key}: {word} is not in: {error}",
                     kind.name()
                 );
             }
-            asked += words.len();
+            checked += words.len();
         }
     }
-    assert!(asked > 100, "{asked}");
+    assert!(checked > 100, "{checked}");
 }

@@ -10,7 +10,7 @@ use super::clock::now_ms;
 use super::error::ServiceError;
 use super::handle::Service;
 use farm::dispatch::Stopped;
-use job::{EffectOnNodes, ModelSwitch, PlainParameter, ServiceEffect, check_own, foreign_effects};
+use job::{EffectOnNodes, ModelSwitch, PlainParameter, ServiceEffect, check_effect, foreign_effects};
 use record::Extension;
 use store::{AddedEffect, NewEffect, StoredEffect};
 
@@ -31,7 +31,7 @@ impl Service {
                 return Err(ServiceError::OfLibrary(effect.name));
             }
             let effect = read_user_effect(EFFECT, &text)?;
-            check_own(EFFECT, &effect)?;
+            check_effect(EFFECT, &effect)?;
             Ok(effect)
         });
         let effect = read.await.map_err(|_| Stopped)??;

@@ -185,7 +185,7 @@ mod tests {
 
     #[test]
     fn a_member_that_is_not_finished_is_waited_for_and_one_that_failed_ends_the_growth() {
-        for state in CalibrationState::ALL {
+        for &state in CalibrationState::ALL {
             let rows = [base(1), CalibrationRow { state, ..fit(2) }];
             let expected = (state == CalibrationState::Finished).then_some(StudyStep::Search(1));
             assert_eq!(step(Apply::Auto, &rows, &[]), expected, "{state:?}");

@@ -1,12 +1,13 @@
 //! The origin of an experiment's measurements: `[campaign]`. It is stored and shown; nothing is computed from it.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
 use super::check::ValueError;
 
 /// A measuring campaign as its publication describes it.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Campaign {
     /// Title: the subject of the measurements.

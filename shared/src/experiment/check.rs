@@ -1,15 +1,28 @@
 //! Checks of single values, and their errors.
 
+use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::mesh::MeshError;
 use crate::limit;
 
-/// A standard deviation as the file states it.
-#[derive(Deserialize)]
+/// A standard deviation of a channel: a number, pooled from the repeats of a condition, or inferred.
+#[derive(Deserialize, JsonSchema)]
 #[serde(untagged)]
 pub(super) enum RawSd {
+    #[schemars(extend("exclusiveMinimum" = 0))]
     Number(f64),
+    #[schemars(extend("enum" = ["replicates", "unknown"]))]
+    Word(String),
+}
+
+/// A relative standard deviation: a number, or inferred.
+#[derive(Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub(super) enum RawScatter {
+    #[schemars(extend("minimum" = 0, "maximum" = 1))]
+    Number(f64),
+    #[schemars(extend("enum" = ["unknown"]))]
     Word(String),
 }
 

@@ -33,7 +33,7 @@ pub use history::{MeasuredHistory, Recorded};
 pub use mesh::{MAX_BYTES, MAX_TRIANGLES, MeshError, WheelMesh};
 pub use runs::{CONDITION_COLUMNS, RunUse, TestRun};
 pub use scatter::{Scatter, ScatterSd};
-pub use settings::{AveragingProtocol, Noise, NoiseSd, ProtocolKind, Rig, SoilProperties};
+pub use settings::{AveragingProtocol, ExperimentKeys, Noise, NoiseSd, ProtocolKind, Rig, SoilProperties};
 pub use tread::Tread;
 pub use wheel::{WheelGeometry, rim_speed_m_s};
 

@@ -44,8 +44,9 @@ pub struct TestRun {
 }
 
 /// The use of a run.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize, strum::IntoStaticStr)]
 #[serde(rename_all = "snake_case")]
+#[strum(serialize_all = "snake_case")]
 pub enum RunUse {
     /// Enters the likelihood.
     Fit,
@@ -56,10 +57,7 @@ pub enum RunUse {
 impl RunUse {
     /// Word in the column `use` and in results.
     pub fn name(self) -> &'static str {
-        match self {
-            RunUse::Fit => "fit",
-            RunUse::Holdout => "holdout",
-        }
+        self.into()
     }
 }
 

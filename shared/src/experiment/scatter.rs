@@ -1,6 +1,6 @@
 //! Relative scatter: of the soil from run to run, of bevameter tests and readings.
 
-use super::check::{RawSd, ValueError};
+use super::check::{RawScatter, ValueError};
 
 /// A source of relative scatter.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -84,14 +84,16 @@ impl Scatter {
     }
 
     /// Reads a value; readings have noise, tests may have no scatter.
-    pub(super) fn read(self, raw: Option<RawSd>) -> Result<ScatterSd, ValueError> {
+    pub(super) fn read(self, raw: Option<RawScatter>) -> Result<ScatterSd, ValueError> {
         let key = self.key();
         let rule = |message: String| Err(ValueError::Rule(message));
         match raw {
             None => Ok(self.usual()),
-            Some(RawSd::Word(word)) if word == "unknown" => Ok(ScatterSd::Unknown),
-            Some(RawSd::Word(word)) => rule(format!("{key} = \"{word}\" must be a number or \"unknown\"")),
-            Some(RawSd::Number(x)) => {
+            Some(RawScatter::Word(word)) if word == "unknown" => Ok(ScatterSd::Unknown),
+            Some(RawScatter::Word(word)) => {
+                rule(format!("{key} = \"{word}\" must be a number or \"unknown\""))
+            }
+            Some(RawScatter::Number(x)) => {
                 let reading = matches!(self, Scatter::PlateReading | Scatter::RingReading);
                 match (0.0..=1.0).contains(&x) && (x > 0.0 || !reading) {
                     true => Ok(ScatterSd::Known(x)),

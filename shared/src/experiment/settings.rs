@@ -2,32 +2,37 @@
 
 use std::collections::BTreeMap;
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::campaign::Campaign;
-use super::check::{RawSd, ValueError, not_negative, positive, require};
+use super::check::{RawScatter, RawSd, ValueError, not_negative, positive, require};
 use super::scatter::{Scatter, ScatterSd};
 use super::wheel::{RawWheel, WheelGeometry};
 use crate::channel::Channel;
 use crate::file::{FileError, parse_toml};
 
 /// Properties of a soil besides the calibrated parameters.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SoilProperties {
     /// Bulk density `[kg/m^3]`.
+    #[schemars(extend("exclusiveMinimum" = 0))]
     pub density_kg_m3: Option<f64>,
-    /// Angle of repose `[deg]`.
+    /// Angle of repose `[deg]`; `scm` takes 32 if it is not stated.
+    #[schemars(extend("exclusiveMinimum" = 0, "exclusiveMaximum" = 90))]
     pub repose_angle_deg: Option<f64>,
 }
 
 /// The test rig.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Rig {
     /// Acceleration of gravity `[m/s^2]`.
+    #[schemars(extend("exclusiveMinimum" = 0))]
     pub gravity_m_s2: f64,
     /// Length of the soil bin along travel `[m]`.
+    #[schemars(extend("exclusiveMinimum" = 0))]
     pub bin_length_m: Option<f64>,
 }
 
@@ -77,23 +82,27 @@ impl Noise {
 }
 
 /// The protocol that turns a time history into the averages of a run.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct AveragingProtocol {
     /// The end of a simulated run.
     pub kind: ProtocolKind,
     /// Time cut from the start of a measured history `[s]`.
+    #[schemars(range(min = 0))]
     pub measured_transient_s: f64,
     /// Time cut from simulated drawbar pull and torque `[s]`.
+    #[schemars(range(min = 0))]
     pub simulated_transient_force_s: f64,
     /// Time cut from simulated sinkage `[s]`.
+    #[schemars(range(min = 0))]
     pub simulated_transient_sinkage_s: f64,
-    /// Cut-off of the zero-phase low-pass filter \[Hz\].
+    /// Cut-off of the zero-phase low-pass filter \[Hz\]; 0 is no filter.
+    #[schemars(range(min = 0))]
     pub lowpass_hz: f64,
 }
 
 /// The end of a simulated run.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum ProtocolKind {
     /// Once the averages have settled.
@@ -129,16 +138,25 @@ pub(super) struct ExperimentFile {
     pub(super) protocol: AveragingProtocol,
 }
 
-#[derive(Deserialize)]
+/// The wheels, soils, rig, noise and protocol of a campaign: the keys of `experiment.toml`.
+#[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-struct RawExperiment {
+#[schemars(extend("required" = ["soil"]))]
+#[schemars(extend("anyOf" = [{ "required": ["runs", "wheel"] }, { "required": ["plates"] }, { "required": ["shear"] }]))]
+pub struct ExperimentKeys {
     campaign: Option<Campaign>,
+    /// File of the test runs, beside the experiment.
     runs: Option<String>,
+    /// File of the plate-sinkage readings.
     plates: Option<String>,
+    /// File of the ring-shear readings.
     shear: Option<String>,
+    /// The wheels, each as `[wheel.NAME]`.
     #[serde(default)]
     wheel: BTreeMap<String, RawWheel>,
+    /// The soils, each as `[soil.NAME]`.
     #[serde(default)]
+    #[schemars(extend("minProperties" = 1))]
     soil: BTreeMap<String, SoilProperties>,
     #[serde(default)]
     rig: Rig,
@@ -148,25 +166,30 @@ struct RawExperiment {
     protocol: AveragingProtocol,
 }
 
-#[derive(Default, Deserialize)]
+/// The scatter of the measurements.
+#[derive(Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct RawNoise {
+    /// Standard deviation of the drawbar pull `[N]`.
     drawbar_pull_n: Option<RawSd>,
+    /// Standard deviation of the torque \[N m\].
     torque_n_m: Option<RawSd>,
+    /// Standard deviation of the sinkage `[m]`.
     sinkage_m: Option<RawSd>,
+    /// Standard deviation of the lateral force `[N]`.
     lateral_force_n: Option<RawSd>,
-    run_scatter: Option<RawSd>,
-    preparation_scatter: Option<RawSd>,
-    preparation_strength_scatter: Option<RawSd>,
-    plate_scatter: Option<RawSd>,
-    plate_noise: Option<RawSd>,
-    ring_scatter: Option<RawSd>,
-    ring_noise: Option<RawSd>,
+    run_scatter: Option<RawScatter>,
+    preparation_scatter: Option<RawScatter>,
+    preparation_strength_scatter: Option<RawScatter>,
+    plate_scatter: Option<RawScatter>,
+    plate_noise: Option<RawScatter>,
+    ring_scatter: Option<RawScatter>,
+    ring_noise: Option<RawScatter>,
 }
 
 /// Parses and validates `experiment.toml` alone.
 pub(super) fn parse(name: &str, toml: &str) -> Result<ExperimentFile, FileError> {
-    let raw: RawExperiment = parse_toml(name, toml)?;
+    let raw: ExperimentKeys = parse_toml(name, toml)?;
     let fail = |message: String| FileError::whole(name, message);
     let bevameter = raw.plates.is_some() || raw.shear.is_some();
     if raw.wheel.is_empty() && (raw.runs.is_some() || !bevameter) {
@@ -233,18 +256,14 @@ fn check_numbers(
             require(angle < 90.0, "repose_angle_deg", angle, "deg", "< 90").map_err(in_soil)?;
         }
     }
+    let (force, sinkage) = (
+        protocol.simulated_transient_force_s,
+        protocol.simulated_transient_sinkage_s,
+    );
     for (key, value, unit) in [
         ("measured_transient_s", protocol.measured_transient_s, "s"),
-        (
-            "simulated_transient_force_s",
-            protocol.simulated_transient_force_s,
-            "s",
-        ),
-        (
-            "simulated_transient_sinkage_s",
-            protocol.simulated_transient_sinkage_s,
-            "s",
-        ),
+        ("simulated_transient_force_s", force, "s"),
+        ("simulated_transient_sinkage_s", sinkage, "s"),
         ("lowpass_hz", protocol.lowpass_hz, "Hz"),
     ] {
         not_negative(key, value, unit).map_err(|e| within("protocol", e))?;

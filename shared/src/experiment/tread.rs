@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::check::{ValueError, positive, possible, require};
 
 /// The maximum number of rows of grousers.
-const MAX_ROWS: u32 = 100;
+pub(super) const MAX_ROWS: u32 = 100;
 /// Relative difference that rounding can cause.
 const ROUNDING: f64 = 1e-9;
 

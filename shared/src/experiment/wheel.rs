@@ -1,10 +1,11 @@
 //! A wheel as `[wheel.NAME]` describes it.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::check::{ValueError, not_negative, positive};
 use super::mesh::{self, WheelMesh};
-use super::tread::{RawTread, Tread};
+use super::tread::{MAX_ROWS, RawTread, Tread};
 
 /// Speed of the rim `[m/s]` with the rig's radius: `v / (1 - s)` for s ≥ 0 and `v (1 + s)` for s < 0, v the sled speed
 /// `[m/s]`; 0 for a locked wheel.
@@ -71,22 +72,47 @@ impl WheelGeometry {
     }
 }
 
-/// The keys of `[wheel.NAME]`.
-#[derive(Deserialize)]
+/// A rigid wheel: the keys of `[wheel.NAME]`.
+#[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct RawWheel {
+    /// Surface in place of rim and grousers, STL or OBJ; for `scm`.
     mesh: Option<String>,
+    /// Radius of the rim `[m]`; with a mesh, the radius that slip and sinkage refer to.
+    #[schemars(extend("exclusiveMinimum" = 0))]
     radius_m: f64,
+    /// Width of the rim `[m]`; with a mesh, the width of the lane.
+    #[schemars(extend("exclusiveMinimum" = 0))]
     width_m: f64,
+    /// Number of grousers, in each row.
+    #[schemars(range(max = u32::MAX), extend("default" = 0))]
     grouser_count: Option<u32>,
+    /// Height of a grouser above the rim `[m]`.
+    #[schemars(range(min = 0), extend("default" = 0.0))]
     grouser_height_m: Option<f64>,
+    /// Thickness of a grouser along the rim `[m]`.
+    #[schemars(range(min = 0), extend("default" = 0.0))]
     grouser_thickness_m: Option<f64>,
+    /// Number of rows of grousers side by side, each with `grouser_count`; for `scm`.
+    #[schemars(range(min = 1, max = MAX_ROWS), extend("default" = 1))]
     grouser_rows: Option<u32>,
+    /// Shift of a row against the one to its right, relative to the distance of its grousers.
+    #[schemars(range(min = 0), extend("exclusiveMaximum" = 1, "default" = 0.0))]
     grouser_stagger: Option<f64>,
+    /// Width of the grousers of a row `[m]`; `width_m / grouser_rows` if it is not stated.
+    #[schemars(extend("exclusiveMinimum" = 0))]
     grouser_width_m: Option<f64>,
+    /// Angle of the grousers against the axle `[deg]`; positive: the left end is further forward.
+    #[schemars(range(min = -89, max = 89), extend("default" = 0.0))]
     grouser_angle_deg: Option<f64>,
+    /// Angle of either half of a V `[deg]`; positive: its middle enters the soil first.
+    #[schemars(range(min = -89, max = 89), extend("default" = 0.0))]
     grouser_chevron_deg: Option<f64>,
+    /// Distance by which the grousers' ends lie ahead of their middle, on a parabola `[m]`.
+    #[schemars(range(min = -1, max = 1), extend("default" = 0.0))]
     grouser_bow_m: Option<f64>,
+    /// Radius with which the rig converts slip to rim speed `[m]`; `radius_m` if it is not stated.
+    #[schemars(extend("exclusiveMinimum" = 0))]
     rig_radius_m: Option<f64>,
 }
 

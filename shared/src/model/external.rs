@@ -1,6 +1,7 @@
 //! An external model: a program or a UM-Bridge server, with its inputs and outputs.
 
 use serde::{Deserialize, Serialize};
+use strum::{EnumString, IntoStaticStr, VariantArray};
 use utoipa::ToSchema;
 
 use crate::channel::Channel;
@@ -101,14 +102,30 @@ fn base_parameter(name: &str) -> Option<&'static BaseParameter> {
 }
 
 /// A property of a run that an external model can take.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, ToSchema)]
+#[derive(
+    Debug,
+    Clone,
+    Copy,
+    PartialEq,
+    Eq,
+    PartialOrd,
+    Ord,
+    Serialize,
+    Deserialize,
+    ToSchema,
+    EnumString,
+    IntoStaticStr,
+    VariantArray,
+)]
 #[serde(rename_all = "snake_case")]
+#[strum(serialize_all = "snake_case")]
 pub enum RunInput {
     /// Slip by the rig's radius, in [-1, 1).
     Slip,
     /// Vertical load `[N]`.
     WheelLoadN,
     /// Sled speed along travel `[m/s]`.
+    #[strum(serialize = "sled_speed_m_s")]
     SledSpeedMS,
     /// Speed of the motor by the rig's radius `[rad/s]`.
     AngularVelocityRadS,
@@ -127,42 +144,17 @@ pub enum RunInput {
     /// Thickness of the grousers `[m]`.
     GrouserThicknessM,
     /// Acceleration of gravity `[m/s^2]`.
+    #[strum(serialize = "gravity_m_s2")]
     GravityMS2,
 }
 
 impl RunInput {
     /// Every property, in the order of the enumeration.
-    pub const ALL: [RunInput; 12] = [
-        RunInput::Slip,
-        RunInput::WheelLoadN,
-        RunInput::SledSpeedMS,
-        RunInput::AngularVelocityRadS,
-        RunInput::SlipAngleDeg,
-        RunInput::Pass,
-        RunInput::RadiusM,
-        RunInput::WidthM,
-        RunInput::GrouserCount,
-        RunInput::GrouserHeightM,
-        RunInput::GrouserThicknessM,
-        RunInput::GravityMS2,
-    ];
+    pub const ALL: &'static [Self] = Self::VARIANTS;
 
     /// Name in jobs and in the input of a program.
     pub fn name(self) -> &'static str {
-        [
-            "slip",
-            "wheel_load_n",
-            "sled_speed_m_s",
-            "angular_velocity_rad_s",
-            "slip_angle_deg",
-            "pass",
-            "radius_m",
-            "width_m",
-            "grouser_count",
-            "grouser_height_m",
-            "grouser_thickness_m",
-            "gravity_m_s2",
-        ][self as usize]
+        self.into()
     }
 }
 

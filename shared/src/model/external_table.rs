@@ -80,11 +80,15 @@ pub(super) fn external(kind: ModelKind, table: &toml::Table) -> Result<ExternalM
         })
     };
     let (inputs, parameters, outputs) = (names("inputs"), names("parameters"), names("outputs"));
-    let mut read_inputs = Vec::new();
+    let mut read_inputs: Vec<RunInput> = Vec::new();
     for name in &inputs {
-        match RunInput::ALL.into_iter().find(|input| input.name() == name) {
-            Some(input) => read_inputs.push(input),
-            None => wrong.push(unknown_word("input", name, RunInput::ALL.map(RunInput::name))),
+        match name.parse() {
+            Ok(input) => read_inputs.push(input),
+            Err(_) => wrong.push(unknown_word(
+                "input",
+                name,
+                RunInput::ALL.iter().map(|input| input.name()),
+            )),
         }
     }
     let mut read_outputs = Vec::new();
@@ -181,7 +185,7 @@ fn is_own_name(name: &str) -> Result<(), String> {
             "bevameter",
         ]
         .contains(&name)
-        || RunInput::ALL.iter().any(|input| input.name() == name)
+        || name.parse::<RunInput>().is_ok()
         || parameters::SPATIAL.iter().any(|spatial| spatial.name == name)
         || formula::catalogue::find(name).is_some();
     match taken {

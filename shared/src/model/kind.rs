@@ -1,13 +1,27 @@
 //! The forward models by name.
 
 use serde::{Deserialize, Serialize};
+use strum::{EnumString, IntoStaticStr, VariantArray};
 use utoipa::ToSchema;
 
 use crate::parameters::{BASE, BaseParameter, RFT, SPATIAL, WHEEL_RADIUS, WONG_REECE};
 
 /// A forward model.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[derive(
+    Debug,
+    Clone,
+    Copy,
+    PartialEq,
+    Eq,
+    Serialize,
+    Deserialize,
+    ToSchema,
+    EnumString,
+    IntoStaticStr,
+    VariantArray,
+)]
 #[serde(rename_all = "snake_case")]
+#[strum(serialize_all = "snake_case")]
 pub enum ModelKind {
     /// The smooth-wheel quasi-static Soil Contact Model.
     QuasiStatic,
@@ -25,25 +39,11 @@ pub enum ModelKind {
 
 impl ModelKind {
     /// Every kind.
-    pub const ALL: [ModelKind; 6] = [
-        ModelKind::QuasiStatic,
-        ModelKind::Scm,
-        ModelKind::WongReece,
-        ModelKind::Rft,
-        ModelKind::Command,
-        ModelKind::Umbridge,
-    ];
+    pub const ALL: &'static [Self] = Self::VARIANTS;
 
     /// Name in files and results.
     pub fn name(self) -> &'static str {
-        match self {
-            ModelKind::QuasiStatic => "quasi_static",
-            ModelKind::Scm => "scm",
-            ModelKind::WongReece => "wong_reece",
-            ModelKind::Rft => "rft",
-            ModelKind::Command => "command",
-            ModelKind::Umbridge => "umbridge",
-        }
+        self.into()
     }
 
     /// Returns whether the model is external: its parameters are stated in the job.
@@ -53,7 +53,7 @@ impl ModelKind {
 
     /// Finds the model of a name.
     pub fn find(name: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|kind| kind.name() == name)
+        name.parse().ok()
     }
 
     /// The base parameters of a model of this kind; an external model's are stated in its job.
@@ -91,7 +91,7 @@ mod tests {
 
     #[test]
     fn a_model_has_each_of_its_parameters_once() {
-        for kind in ModelKind::ALL {
+        for &kind in ModelKind::ALL {
             assert_eq!(ModelKind::find(kind.name()), Some(kind));
             let names: Vec<&str> = kind.parameters().map(|p| p.name).collect();
             let set: BTreeSet<&str> = names.iter().copied().collect();

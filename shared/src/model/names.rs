@@ -141,9 +141,10 @@ fn check_kind(kind: ModelKind, name: &str) -> Result<(), ModelError> {
     if !is_base || kind.parameters().any(|p| p.name == stem) {
         return Ok(());
     }
-    let having = ModelKind::ALL.into_iter();
-    let having = having.filter(|kind| kind.parameters().any(|p| p.name == stem));
-    let having: Vec<&str> = having.map(ModelKind::name).collect();
+    let having = ModelKind::ALL
+        .iter()
+        .filter(|kind| kind.parameters().any(|p| p.name == stem));
+    let having: Vec<&str> = having.map(|kind| kind.name()).collect();
     let names: Vec<&str> = kind.parameters().map(|p| p.name).collect();
     Err(ModelError::Inexpressible(format!(
         "{name} is a parameter of {}, not of {}, which has {}",

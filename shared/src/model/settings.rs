@@ -49,7 +49,7 @@ impl ModelSettings {
                 key if kind.is_external() && external_table::KEYS.contains(&key) => {
                     external_keys.insert(key.to_owned(), value.clone());
                 }
-                key if SpatialSettings::KEYS.contains(&key) => {
+                key if SpatialSettings::keys().contains(&key) => {
                     spatial.insert(key.to_owned(), value.clone());
                 }
                 grouser_key::KEY if !kind.is_external() => {
@@ -93,7 +93,7 @@ impl ModelSettings {
     pub fn keys_of(kind: ModelKind) -> &'static [&'static str] {
         match kind {
             ModelKind::QuasiStatic => &[grouser_key::KEY],
-            ModelKind::Scm => &SpatialSettings::KEYS,
+            ModelKind::Scm => SpatialSettings::keys(),
             ModelKind::WongReece | ModelKind::Rft => &[],
             ModelKind::Command | ModelKind::Umbridge => &external_table::KEYS,
         }
@@ -152,12 +152,14 @@ pub fn unknown_effect(name: &str) -> String {
 
 /// Reads the value of `kind`.
 fn kind_of(table: &toml::Table) -> Result<ModelKind, ModelError> {
-    let names = ModelKind::ALL.map(ModelKind::name);
-    let list = names.map(|name| format!("\"{name}\"")).join(", ");
+    let names = || ModelKind::ALL.iter().map(|kind| kind.name());
+    let list = names()
+        .map(|name| format!("\"{name}\""))
+        .collect::<Vec<_>>()
+        .join(", ");
     match table.get("kind") {
         Some(toml::Value::String(name)) => {
-            let kind = ModelKind::ALL.into_iter().find(|kind| kind.name() == name);
-            kind.ok_or_else(|| ModelError::Unknown(unknown_word("kind", name, names)))
+            ModelKind::find(name).ok_or_else(|| ModelError::Unknown(unknown_word("kind", name, names())))
         }
         Some(other) => Err(ModelError::Invalid(format!(
             "kind = {other} must be one of {list}"

@@ -105,7 +105,7 @@ impl Binding {
         binding
     }
 
-    /// The names of the quantities in formulas, with their dimensions.
+    /// Returns the names of the quantities in formulas, with their dimensions.
     fn bind_quantities(&mut self, map: &Map, maker: &mut Maker) -> Vec<(String, Dimension)> {
         let mut names = Vec::new();
         for entry in &map.quantities {
@@ -130,7 +130,7 @@ impl Binding {
         });
     }
 
-    /// The numbers of a row in SI units, in the order of the names of formulas; `None` where the cell is blank.
+    /// Returns the numbers of a row in SI units, in the order of the names of formulas; `None` if the cell is blank.
     pub(crate) fn numbers(
         &self,
         titled: &Titled,
@@ -166,7 +166,7 @@ impl Binding {
         self.inputs.iter().map(read).collect()
     }
 
-    /// The text of a row for a column of names; `None` where the cell is blank.
+    /// Returns the text of a row for a column of names; `None` if the cell is blank.
     pub(crate) fn text(&self, output: &Output, row: &Row, above: &mut Above) -> Option<String> {
         let Source::Text(from) = &output.source else {
             return None;
@@ -186,7 +186,7 @@ impl Binding {
         }
     }
 
-    /// The rows of runs, and the lines that a word marks as no runs.
+    /// Returns the rows of runs, and the lines that a word marks as no runs.
     pub(crate) fn chosen<'a>(&self, rows: Vec<&'a Row>) -> (Vec<&'a Row>, Vec<usize>) {
         let leaves_out = |output: &&Output| output.words.values().any(|word| *word == RowUse::Skip);
         let Some(output) = self.outputs.iter().find(leaves_out) else {
@@ -199,7 +199,7 @@ impl Binding {
         (kept, left_out.iter().map(|row| row.line).collect())
     }
 
-    /// Whether a row lacks a value that every run needs: its cell is blank, or has no number where one is needed.
+    /// Returns whether a row lacks a value that every run needs: its cell is blank, or has no number where one is needed.
     pub(crate) fn lacks(&self, row: &Row) -> bool {
         let needed = self.outputs.iter().filter(|output| output.field.is_needed);
         let lacks_input = |input: &usize| {
@@ -225,7 +225,7 @@ impl Binding {
         }
     }
 
-    /// The name in the map and the column of the first blank cell that a column of runs.csv needs.
+    /// Returns the name in the map and the column of the first blank cell that a column of runs.csv needs.
     pub(crate) fn blank<'a>(&'a self, output: &'a Output, row: &Row) -> Option<(&'a str, usize)> {
         let blank_input = |input: &usize| {
             let input = self.inputs.get(*input)?;
@@ -239,7 +239,7 @@ impl Binding {
         }
     }
 
-    /// The value of a column of runs.csv in its unit, from the numbers of a row; `None` if a needed one is blank.
+    /// Returns the value of a column of runs.csv in its unit, from the numbers of a row; `None` if a needed one is blank.
     pub(crate) fn value(&self, output: &Output, numbers: &[Option<f64>]) -> Option<f64> {
         let si = match &output.source {
             Source::Input(input) => numbers.get(*input).copied().flatten()?,
@@ -256,7 +256,7 @@ impl Binding {
         Some(si / output.field.si_per_unit())
     }
 
-    /// A complaint about a row's value for a column of runs.csv, at the cell that gives it.
+    /// Returns a complaint about a row's value for a column of runs.csv, at the cell that gives it.
     pub(crate) fn complaint(
         &self,
         titled: &Titled,

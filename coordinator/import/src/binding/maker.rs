@@ -29,7 +29,7 @@ fn column_name(entry: &Entry) -> &str {
     }
 }
 
-/// The dimension that formulas have for a quantity.
+/// Returns the dimension that formulas have for a quantity.
 pub(super) fn dimension(quantity: Quantity) -> Dimension {
     Dimension::parse(quantity.si()).unwrap_or(Dimension::ONE)
 }
@@ -57,7 +57,7 @@ impl<'a> Maker<'a> {
         });
     }
 
-    /// The description of a column of runs.csv for users.
+    /// Returns the description of a column of runs.csv for users.
     fn words(&self, entry: &Entry) -> Option<&'a str> {
         let field = self.fields.iter().find(|field| field.name == entry.name);
         field.map(|field| field.words.as_str())
@@ -68,7 +68,7 @@ impl<'a> Maker<'a> {
         result.map_err(|message| self.complain(entry, message)).ok()
     }
 
-    /// The unit that the map states, otherwise that of the title.
+    /// Returns the unit that the map states, otherwise that of the title.
     fn unit(
         &mut self,
         entry: &Entry,
@@ -139,7 +139,7 @@ impl<'a> Maker<'a> {
         );
     }
 
-    /// The column or value of a number, and its unit.
+    /// Returns the column or value of a number, and its unit.
     pub(super) fn input(
         &mut self,
         entry: &Entry,
@@ -188,7 +188,7 @@ impl<'a> Maker<'a> {
         }
     }
 
-    /// A value for all rows, and its unit.
+    /// Returns a value for all rows, and its unit.
     fn fixed(
         &mut self,
         entry: &Entry,
@@ -371,7 +371,7 @@ impl<'a> Maker<'a> {
     }
 }
 
-/// The units of a quantity in a sentence.
+/// Returns the units of a quantity in a sentence.
 fn choices(quantity: Option<Quantity>) -> String {
     quantity.map_or_else(
         || "a unit".to_owned(),

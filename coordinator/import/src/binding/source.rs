@@ -26,7 +26,7 @@ impl<T> From<T> {
         }
     }
 
-    /// The text if it is equal in all rows.
+    /// Returns the text if it is equal in all rows.
     pub(super) fn fixed(&self) -> Option<String> {
         match self {
             From::Column { .. } => None,
@@ -75,7 +75,7 @@ pub(crate) struct Output {
     pub(super) words: BTreeMap<String, RowUse>,
 }
 
-/// Whether a column holds a name or a number without unit.
+/// Returns whether a column holds a name or a number without unit.
 pub(crate) fn is_text(output: &Output) -> bool {
     !matches!(output.field.kind, Kind::Measured(_))
 }

@@ -122,7 +122,7 @@ fn cards(titled: &Titled) -> Vec<ColumnCard> {
     titled.titles.iter().enumerate().map(card).collect()
 }
 
-/// A title in lower case, without umlauts, as separate words.
+/// Returns a title in lower case, without umlauts, as separate words.
 fn plain(text: &str) -> String {
     let text = text
         .to_lowercase()
@@ -139,7 +139,7 @@ fn plain(text: &str) -> String {
         .join(" ")
 }
 
-/// The quality of a title's fit: 3 for the same name, 2 for the same words first or last, 1 for a part of a compound.
+/// Returns the quality of a title's fit: 3 for the same name, 2 for the same words first or last, 1 for a part of a compound.
 fn fit(field: &Field, name: &str) -> usize {
     let is_certain = matches!(field.kind, Kind::Measured(_));
     let fit = |title: &String| {
@@ -162,7 +162,7 @@ fn fit(field: &Field, name: &str) -> usize {
     field.titles.iter().map(fit).max().unwrap_or(0)
 }
 
-/// The column whose title fits a field best; a column whose unit measures another quantity does not fit.
+/// Returns the column whose title fits a field best; a column whose unit measures another quantity does not fit.
 fn column_for(
     field: &Field,
     (titles, names): (&[Title], &[String]),

@@ -5,7 +5,7 @@ use super::word;
 use crate::field::RowUse;
 use crate::table::Form;
 
-/// A text in quotes, as a TOML string.
+/// Returns a text in quotes, as a TOML string.
 fn quoted(text: &str) -> String {
     let escaped = text.chars().map(|c| match c {
         '"' | '\\' => format!("\\{c}"),
@@ -59,7 +59,7 @@ fn header(file: &str, guess: &Guess, form: Form) -> String {
     text
 }
 
-/// The table of a column; `None` if the file lacks it and no run needs it.
+/// Returns the table of a column; `None` if the file lacks it and no run needs it.
 fn column_table(field: &FieldGuess) -> Option<String> {
     let origin = match (&field.column, &field.formula) {
         (Some(column), _) => format!("column = {}\n", quoted(column)),
@@ -83,7 +83,7 @@ fn column_table(field: &FieldGuess) -> Option<String> {
     Some(text)
 }
 
-/// The columns that the map does not use, the first that could mark held-out runs with an example.
+/// Returns the columns that the map does not use, the first that could mark held-out runs with an example.
 fn unmapped(guess: &Guess, rows: usize) -> String {
     let is_mapped = |column: &&ColumnCard| {
         let name = Some(&column.name);
@@ -116,7 +116,7 @@ fn unmapped(guess: &Guess, rows: usize) -> String {
     text
 }
 
-/// The table of words; missing meanings become questions.
+/// Returns the table of words; missing meanings become questions.
 fn meanings(words: &[WordCard]) -> String {
     let entry = |card: &WordCard| {
         let means = card.means.map_or("?", RowUse::name);

@@ -27,7 +27,7 @@ const HELD_OUT: [&str; 13] = [
     "gegenprobe",
 ];
 
-/// The different words of a column in alphabetical order; none if they are too many or too long.
+/// Returns the different words of a column in alphabetical order; none if they are too many or too long.
 pub(super) fn words<'a>(rows: impl Iterator<Item = &'a Row>, column: usize) -> Vec<WordCard> {
     let mut counts: BTreeMap<String, usize> = BTreeMap::new();
     for row in rows.filter(|row| !row.cell(column).is_blank()) {
@@ -39,13 +39,10 @@ pub(super) fn words<'a>(rows: impl Iterator<Item = &'a Row>, column: usize) -> V
     }
     // If one word marks held-out runs, the others mark fitted ones.
     let is_marked = counts.keys().any(|word| is_held_out(word));
-    let means = |word: &str| {
-        let stated = RowUse::ALL.iter().find(|row_use| row_use.name() == word);
-        match stated {
-            Some(stated) => Some(*stated),
-            None if is_held_out(word) => Some(RowUse::Holdout),
-            None => is_marked.then_some(RowUse::Fit),
-        }
+    let means = |word: &str| match word.parse() {
+        Ok(stated) => Some(stated),
+        Err(_) if is_held_out(word) => Some(RowUse::Holdout),
+        Err(_) => is_marked.then_some(RowUse::Fit),
     };
     let card = |(word, count): (&String, &usize)| WordCard {
         word: word.clone(),
@@ -64,12 +61,12 @@ fn is_held_out(word: &str) -> bool {
     HELD_OUT.contains(&first)
 }
 
-/// Whether the words of a column mark runs that are held out.
+/// Returns whether the words of a column mark runs that are held out.
 pub(super) fn marks_held_out(column: &ColumnCard) -> bool {
     column.words.iter().any(|card| is_held_out(&card.word))
 }
 
-/// The question of a map about the words of a column for `use`; none if they are those of runs.csv.
+/// Returns the question of a map about the words of a column for `use`; none if they are those of runs.csv.
 pub(super) fn meanings(column: &ColumnCard) -> Vec<WordCard> {
     let is_of_runs_csv = |card: &WordCard| {
         [RowUse::Fit, RowUse::Holdout]
@@ -83,7 +80,7 @@ pub(super) fn meanings(column: &ColumnCard) -> Vec<WordCard> {
     }
 }
 
-/// Whether the words of a column could mark runs: some occur in several rows, or some rows have none.
+/// Returns whether the words of a column could mark runs: some occur in several rows, or some rows have none.
 pub(super) fn could_mark(column: &ColumnCard, rows: usize) -> bool {
     let filled: usize = column.words.iter().map(|card| card.count).sum();
     let is_word = |card: &WordCard| !crate::number::is_number(&card.word);

@@ -68,7 +68,7 @@ pub(crate) struct Map {
     pub(crate) recording: Option<Recording>,
 }
 
-/// The admissible units of a quantity for formulas.
+/// Returns the admissible units of a quantity for formulas.
 pub(crate) fn quantity_of(unit: &str) -> Option<Quantity> {
     crate::unit::find(unit).map(|unit| unit.quantity)
 }

@@ -97,7 +97,7 @@ impl<'a> Keys<'a> {
         value.map(str::to_owned)
     }
 
-    /// A text, a number or a whole number, as a text.
+    /// Returns a text, a number or a whole number, as a text.
     pub(super) fn scalar(&mut self, complaints: &mut Complaints, key: &'static str) -> Option<String> {
         let item = self.item(key)?;
         let value = scalar(item);
@@ -135,7 +135,7 @@ impl<'a> Keys<'a> {
         value
     }
 
-    /// A list of numbers or texts, as texts.
+    /// Returns a list of numbers or texts, as texts.
     pub(super) fn list(&mut self, complaints: &mut Complaints, key: &'static str) -> Vec<String> {
         let Some(item) = self.item(key) else {
             return Vec::new();
@@ -155,7 +155,7 @@ impl<'a> Keys<'a> {
         value.unwrap_or_default()
     }
 
-    /// A table of words and their meanings, each a [`RowUse`].
+    /// Returns a table of words and their meanings, each a [`RowUse`].
     pub(super) fn words(
         &mut self,
         complaints: &mut Complaints,
@@ -167,8 +167,8 @@ impl<'a> Keys<'a> {
         };
         for (word, item) in table.iter() {
             let stated = item.as_str().unwrap_or_default();
-            if let Some(row_use) = RowUse::ALL.iter().find(|row_use| row_use.name() == stated) {
-                words.insert(spaced(word), *row_use);
+            if let Ok(row_use) = stated.parse() {
+                words.insert(spaced(word), row_use);
                 continue;
             }
             let is_open = stated == QUESTION;
@@ -193,7 +193,7 @@ impl<'a> Keys<'a> {
         words
     }
 
-    /// A table within this one, with the byte at which it begins.
+    /// Returns a table within this one, with the byte at which it begins.
     pub(super) fn table(
         &mut self,
         complaints: &mut Complaints,
@@ -239,7 +239,7 @@ impl<'a> Keys<'a> {
     }
 }
 
-/// A number or a text as a text.
+/// Returns a number or a text as a text.
 fn scalar(item: &Item) -> Option<String> {
     let number = || item.as_float().map(|value| value.to_string());
     item.as_str()

@@ -104,7 +104,7 @@ fn thousands(keys: &mut Keys<'_>, complaints: &mut Complaints, decimal: Option<D
     mark == expected
 }
 
-/// The tables of `[columns]` or `[quantities]`.
+/// Returns the tables of `[columns]` or `[quantities]`.
 fn entries(
     source: &Source<'_>,
     tables: &dyn TableLike,
@@ -146,7 +146,7 @@ fn entries(
     entries
 }
 
-/// An entry at a byte of the map; `None` if it has a mistake.
+/// Returns an entry at a byte of the map; `None` if it has a mistake.
 fn entry(
     source: &Source<'_>,
     (name, byte): (&str, Option<usize>),

@@ -2,7 +2,7 @@
 
 use encoding_rs::{Encoding, UTF_8, UTF_16BE, UTF_16LE, WINDOWS_1252};
 
-/// The text, and a remark on the detected encoding if it is not UTF-8.
+/// Returns the text, and a remark on the detected encoding if it is not UTF-8.
 pub(super) fn decode(bytes: &[u8], stated: Option<&str>) -> Result<(String, Option<String>), String> {
     if let Some(label) = stated {
         let encoding = Encoding::for_label(label.as_bytes()).ok_or_else(|| {
@@ -31,7 +31,7 @@ pub(super) fn decode(bytes: &[u8], stated: Option<&str>) -> Result<(String, Opti
     Ok((text.into_owned(), remark))
 }
 
-/// The encoding: stated by its first bytes; UTF-16 where every second byte is 0; UTF-8 where it fits; else that of Western Windows.
+/// Returns the encoding: stated by its first bytes; UTF-16 where every second byte is 0; UTF-8 where it fits; else that of Western Windows.
 fn detect(bytes: &[u8]) -> &'static Encoding {
     if let Some((encoding, _)) = Encoding::for_bom(bytes) {
         return encoding;

@@ -49,7 +49,7 @@ impl<'a> Elements<'a> {
         Ok(data)
     }
 
-    /// The next element; a short one has its data in its tag.
+    /// Returns the next element; a short one has its data in its tag.
     fn next(&mut self) -> Result<Element<'a>, Damaged> {
         let tag = self.take(8)?;
         let kind = self.word(tag);
@@ -67,7 +67,7 @@ impl<'a> Elements<'a> {
         Ok((kind, data))
     }
 
-    /// The numbers of an element of any type.
+    /// Returns the numbers of an element of any type.
     fn numbers(&self, (kind, data): Element<'_>) -> Result<Vec<f64>, Damaged> {
         fn each<const N: usize>(data: &[u8], is_big: bool, read: impl Fn([u8; N]) -> f64) -> Vec<f64> {
             let chunks = data
@@ -144,7 +144,7 @@ fn text(data: &[u8]) -> String {
     String::from_utf8_lossy(data).trim_end_matches('\0').to_owned()
 }
 
-/// A variable, or a part of one, with its name.
+/// Returns a variable, or a part of one, with its name.
 fn matrix(data: &[u8], is_big: bool, depth: usize) -> Result<(String, Value), Damaged> {
     if depth > DEEPEST {
         return Err(format!("structs are nested more than {DEEPEST} deep"));
@@ -219,7 +219,7 @@ fn numbers(parts: &mut Elements, count: f64, rows: usize, columns: usize) -> Res
     })
 }
 
-/// A cell array of texts, or of single numbers.
+/// Returns a cell array of texts, or of single numbers.
 fn list(values: Vec<Value>) -> Value {
     let shown = |value: Value| match value {
         Value::Texts(texts) if texts.len() <= 1 => Some(texts.into_iter().next().unwrap_or_default()),
@@ -260,7 +260,7 @@ fn fields(parts: &mut Elements<'_>, elements: f64, depth: usize) -> Result<Value
     Ok(Value::Fields(fields))
 }
 
-/// The characters of a char matrix in column order.
+/// Returns the characters of a char matrix in column order.
 fn characters(parts: &Elements<'_>, element: Element<'_>) -> Result<Vec<char>, Damaged> {
     if element.0 == 16 {
         return Ok(String::from_utf8_lossy(element.1).chars().collect());
@@ -272,7 +272,7 @@ fn characters(parts: &Elements<'_>, element: Element<'_>) -> Result<Vec<char>, D
         .collect())
 }
 
-/// The rows of a char matrix, without padding.
+/// Returns the rows of a char matrix, without padding.
 pub(super) fn lines(characters: &[char], rows: usize, columns: usize) -> Vec<String> {
     if rows == 0 || columns == 0 {
         return vec![String::new()];

@@ -52,12 +52,12 @@ pub(super) fn read(bytes: &[u8]) -> Result<Variables, Damaged> {
     Ok(variables)
 }
 
-/// A name without its groups.
+/// Returns a name without its groups.
 fn base(name: &str) -> &str {
     name.rsplit('/').next().unwrap_or(name)
 }
 
-/// A struct; in a struct array each field has a list of references.
+/// Returns a struct; in a struct array each field has a list of references.
 fn fields(group: &Group, parts: &Parts) -> Result<Value, Damaged> {
     let mut fields = Vec::new();
     for dataset in group.datasets().map_err(damaged)? {
@@ -82,7 +82,7 @@ fn class(dataset: &Dataset) -> Option<String> {
     dataset.attribute("MATLAB_class").ok()?.read_string().ok()
 }
 
-/// The values to which a dataset of references refers.
+/// Returns the values to which a dataset of references refers.
 fn referred(dataset: &Dataset, parts: &Parts) -> Result<Vec<Value>, Damaged> {
     let addresses = dataset.read_native_bytes().map_err(damaged)?;
     let addresses = addresses
@@ -159,7 +159,7 @@ fn value(dataset: &Dataset, parts: &Parts) -> Result<Value, Damaged> {
     })
 }
 
-/// The numbers of a dataset in MATLAB's column order; none for an empty one.
+/// Returns the numbers of a dataset in MATLAB's column order; none for an empty one.
 fn numbers(dataset: &Dataset) -> Result<Option<Vec<f64>>, Damaged> {
     let read = || dataset.read_native_bytes().map_err(damaged);
     fn each<const N: usize>(bytes: &[u8], read: impl Fn([u8; N]) -> f64) -> Option<Vec<f64>> {

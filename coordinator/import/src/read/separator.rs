@@ -38,7 +38,7 @@ impl Separator {
             .ok_or_else(|| format!("unknown separator \"{name}\"; known are {names}"))
     }
 
-    /// The separator of a text: the one by which the most lines have as many fields, and the most fields are numbers.
+    /// Returns the separator of a text: the one by which the most lines have as many fields, and the most fields are numbers.
     pub(super) fn detect(text: &str) -> Option<Self> {
         let (mut sample, mut lines) = (String::new(), 0);
         for line in text.lines().filter(|line| !line.trim().is_empty()) {
@@ -56,7 +56,7 @@ impl Separator {
         best.map(|(separator, _)| separator)
     }
 
-    /// The rows of a text, none wider than a table may be.
+    /// Returns the rows of a text, none wider than a table may be.
     pub(super) fn rows(self, text: &str) -> Result<Vec<Row>, (usize, String)> {
         let mut rows = Vec::new();
         self.each(text, |line, fields| {
@@ -117,7 +117,7 @@ impl Separator {
     }
 }
 
-/// The quality of a separator: the share of lines with the usual number of fields, and the share of numbers among their fields.
+/// Returns the quality of a separator: the share of lines with the usual number of fields, and the share of numbers among their fields.
 fn score(sample: &str, separator: Separator) -> Option<f64> {
     let (mut rows, mut counts) = (Vec::new(), BTreeMap::<usize, usize>::new());
     let judged = separator.each(sample, |_, fields| {

@@ -65,7 +65,7 @@ fn empty(source: &SourceFile<'_>) -> Table {
     }
 }
 
-/// The stated sheet; otherwise the only one with cells, or on request the one with the most.
+/// Returns the stated sheet; otherwise the only one with cells, or on request the one with the most.
 fn choose(
     mut table: Table,
     names: Vec<String>,
@@ -149,7 +149,7 @@ fn put(cells: &mut Cells, count: &mut usize, (row, column): (u32, u32), cell: Ce
     Ok(())
 }
 
-/// The cells of an .xlsx sheet in sequence: a single cell far away costs nothing.
+/// Returns the cells of an .xlsx sheet in sequence: a single cell far away costs nothing.
 fn cells_of_xlsx(book: &mut Xlsx<Bytes<'_>>, name: &str) -> Result<Cells, String> {
     let damaged = |e: calamine::XlsxError| format!("the sheet cannot be read: {e}");
     let (mut cells, mut count) = (Cells::new(), 0);
@@ -166,7 +166,7 @@ fn cells_of_xlsx(book: &mut Xlsx<Bytes<'_>>, name: &str) -> Result<Cells, String
     Ok(cells)
 }
 
-/// The cells of a sheet of another format.
+/// Returns the cells of a sheet of another format.
 fn cells_of<'a, B: Reader<Bytes<'a>>>(book: &mut B, name: &str) -> Result<Cells, String>
 where
     B::Error: std::fmt::Display,

@@ -55,7 +55,7 @@ fn columns(name: &str, value: &Value) -> Result<Vec<Column>, String> {
     }
 }
 
-/// The columns of a struct array: an element is a row.
+/// Returns the columns of a struct array: an element is a row.
 fn columns_of_elements(field: &str, values: &[Value]) -> Result<Column, String> {
     let cell = |value: &Value| match value {
         Value::Numbers { values, .. } if values.is_empty() => Ok(Cell::Blank),
@@ -126,7 +126,7 @@ fn groups(variables: &Variables) -> Vec<Group> {
     all
 }
 
-/// The index of the group that is read.
+/// Returns the index of the group that is read.
 fn chosen(groups: &[Group], table: &Table, hints: &Hints) -> Result<usize, Box<Complaint>> {
     if let Some(stated) = &hints.sheet {
         let position = groups.iter().position(|group| group.name == *stated);
@@ -150,7 +150,7 @@ fn chosen(groups: &[Group], table: &Table, hints: &Hints) -> Result<usize, Box<C
     largest.ok_or_else(|| table.refusal("the file has no variable with numbers or texts: save the columns as vectors, or a struct of vectors (a MATLAB table as table2struct(t, 'ToScalar', true))"))
 }
 
-/// A row of the table; a scalar is repeated.
+/// Returns a row of the table; a scalar is repeated.
 fn row(columns: &[Column], index: usize) -> Row {
     let cell = |(_, cells): &Column| {
         cells
@@ -165,7 +165,7 @@ fn row(columns: &[Column], index: usize) -> Row {
     }
 }
 
-/// The table of variables of equal length; a scalar counts for every row.
+/// Returns the table of variables of equal length; a scalar counts for every row.
 pub(super) fn table(
     file: &str,
     variables: Result<Variables, String>,

@@ -1,4 +1,4 @@
-//! Readings of plates and rings as data: logarithms of stresses, with a shift that each test has of its own.
+//! Readings of plates and rings as data: logarithms of stresses, with a common shift of the readings of each test.
 
 use shared::experiment::{Experiment, Scatter};
 use shared::model::{ModelVariant, PlateCondition, RingCondition};
@@ -19,7 +19,7 @@ const TRANSFER_SD: f64 = 0.1;
 /// One measured reading.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Reading<C> {
-    /// The test that it belongs to.
+    /// The test that the reading belongs to.
     pub test: String,
     /// Plate or ring.
     pub condition: C,
@@ -47,10 +47,10 @@ pub(crate) struct ReadingTable<'a> {
 }
 
 impl BevameterReadings {
-    /// The readings that were measured.
+    /// Returns the measured readings of an experiment.
     ///
     /// # Errors
-    /// A stress or a way of zero, which has no logarithm.
+    /// A stress or a displacement is zero and has no logarithm.
     pub(crate) fn new(experiment: &Experiment) -> Result<Self, DataError> {
         let loaded = |test: &str, stress: (&'static str, f64), way: (&'static str, f64)| {
             if stress.1 > 0.0 && way.1 > 0.0 {
@@ -101,16 +101,16 @@ impl BevameterReadings {
         Ok(readings)
     }
 
-    /// Asks a variant to predict the readings too.
+    /// Adds the conditions of the readings to a variant, so that it predicts them.
     pub(crate) fn ask(&self, variant: &mut ModelVariant) {
         variant.plates = self.plates.iter().map(|r| r.condition.clone()).collect();
         variant.rings = self.rings.iter().map(|r| r.condition.clone()).collect();
     }
 
-    /// Adds the transfer of tan(phi) from ring to wheel, where a ring was measured and the job does not say of it.
+    /// Adds the transfer of tan(phi) from ring to wheel if a ring was measured and the job does not state the transfer.
     ///
     /// # Errors
-    /// The job says of it without a ring, or a ring has no single shear modulus.
+    /// The job states it without a ring, or a ring has no single shear modulus.
     pub(crate) fn add_transfer(
         &self,
         fixed: &std::collections::BTreeMap<String, f64>,
@@ -123,9 +123,9 @@ impl BevameterReadings {
                 false => Ok(()),
             };
         }
-        let of_one_wheel = "janosi_hanamoto.shear_modulus_m.";
+        let wheel_modulus = "janosi_hanamoto.shear_modulus_m.";
         let free = parameters.iter().map(|p| &p.name);
-        if let Some(name) = free.chain(fixed.keys()).find(|n| n.starts_with(of_one_wheel)) {
+        if let Some(name) = free.chain(fixed.keys()).find(|n| n.starts_with(wheel_modulus)) {
             return Err(DataError::ModulusOfOneWheel(name.clone()));
         }
         if !is_stated(RING_TRANSFER) {
@@ -139,7 +139,7 @@ impl BevameterReadings {
         Ok(())
     }
 
-    /// Plates and rings, where there are any.
+    /// Returns the kinds of readings that the experiment has.
     pub(crate) fn tables(&self) -> Vec<ReadingTable<'_>> {
         let plates = ReadingTable {
             channel: PLATE,
@@ -159,7 +159,7 @@ impl BevameterReadings {
             .collect()
     }
 
-    /// Whether something of this kind was measured.
+    /// Returns whether the experiment has readings of this kind.
     pub(crate) fn scatters(&self, scatter: Scatter) -> bool {
         let tables = self.tables();
         tables
@@ -169,7 +169,7 @@ impl BevameterReadings {
 }
 
 impl ReadingTable<'_> {
-    /// The readings as data: logarithms of stresses `[ln Pa]`, so that their sd is relative.
+    /// Returns the readings as data: logarithms of stresses `[ln Pa]`, so that their sd is relative.
     pub(crate) fn data(&self, sd: ErrorSd) -> impl Iterator<Item = Datum> {
         let readings = self.readings.iter().enumerate();
         readings.map(move |(run, (_, stress))| Datum {
@@ -180,7 +180,7 @@ impl ReadingTable<'_> {
         })
     }
 
-    /// The readings of each test, tests in the order of the file.
+    /// Returns the readings of each test, in the order of the file.
     pub(crate) fn tests(&self) -> Vec<Vec<usize>> {
         let mut tests: Vec<(&str, Vec<usize>)> = Vec::new();
         for (i, (name, _)) in self.readings.iter().enumerate() {

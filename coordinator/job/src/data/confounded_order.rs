@@ -1,10 +1,10 @@
-//! Conditions that were set in the order of the runs, so that their effects cannot be told from a drift.
+//! Conditions that follow the order of the runs, so that their effects are confounded with a drift.
 
 use shared::experiment::{Experiment, TestRun};
 
 /// Values closer than this share of their range are one level `[1]`.
 const SAME_LEVEL: f64 = 0.02;
-/// A rank correlation beyond this, of either sign, leaves one pair of runs in ten to tell an effect from a drift.
+/// Absolute rank correlation beyond which at most one pair of runs in ten separates an effect from a drift.
 const CONFOUNDED: f64 = 0.8;
 
 /// A condition of the rig that may follow the order of the runs.
@@ -35,7 +35,7 @@ impl SetCondition {
         SetCondition::SledSpeed,
     ];
 
-    /// Name in sentences.
+    /// Returns the name in sentences.
     pub fn words(self) -> &'static str {
         match self {
             SetCondition::Slip => "slip",
@@ -54,7 +54,7 @@ impl SetCondition {
 }
 
 impl ConfoundedOrder {
-    /// A sentence that says what follows from it.
+    /// Returns a sentence that states the consequence.
     pub fn words(self) -> String {
         let condition = self.condition.words();
         format!(
@@ -64,11 +64,11 @@ impl ConfoundedOrder {
     }
 }
 
-/// The conditions that follow the order of the fitted runs; none where the experiment states no order.
+/// Returns the conditions that follow the order of the fitted runs; none if the experiment states no order.
 ///
 /// # Equation
-/// Goodman and Kruskal's gamma: of the pairs of runs that differ in order and condition, the share in which both grow less
-/// the share in which one falls. Runs of one level count for nothing, so two levels, one after the other, have gamma 1.
+/// Goodman and Kruskal's gamma: the share of concordant pairs of runs minus the share of discordant pairs, among the pairs that
+/// differ in order and condition. Pairs of one level are not counted, so two levels, one after the other, have gamma 1.
 ///
 /// # Source
 /// Goodman & Kruskal 1954, doi:10.1080/01621459.1954.10501231. Checked by
@@ -93,7 +93,7 @@ pub fn confounded_orders(experiment: &Experiment, fit_runs: &[usize]) -> Vec<Con
     SetCondition::ALL.into_iter().filter_map(confounded).collect()
 }
 
-/// Gamma; `None` where no pair differs.
+/// Returns gamma; `None` if no pair differs.
 fn gamma(values: &[(i32, f64)]) -> Option<f64> {
     let least = values.iter().map(|v| v.1).fold(f64::INFINITY, f64::min);
     let greatest = values.iter().map(|v| v.1).fold(f64::NEG_INFINITY, f64::max);
@@ -121,12 +121,12 @@ mod tests {
 
     #[test]
     fn runs_in_the_order_of_a_condition_are_confounded_with_it() {
-        let of = |values: &[f64]| gamma(&(1..).zip(values.iter().copied()).collect::<Vec<_>>());
-        assert_eq!(of(&[0.1, 0.1, 0.4, 0.4]), Some(1.0));
-        assert_eq!(of(&[150.0, 150.1, 60.0, 59.9]), Some(-1.0));
-        assert_eq!(of(&[0.1, 0.4, 0.4, 0.1]), Some(0.0));
-        assert_eq!(of(&[0.1, 0.1]), None);
+        let gamma_of = |values: &[f64]| gamma(&(1..).zip(values.iter().copied()).collect::<Vec<_>>());
+        assert_eq!(gamma_of(&[0.1, 0.1, 0.4, 0.4]), Some(1.0));
+        assert_eq!(gamma_of(&[150.0, 150.1, 60.0, 59.9]), Some(-1.0));
+        assert_eq!(gamma_of(&[0.1, 0.4, 0.4, 0.1]), Some(0.0));
+        assert_eq!(gamma_of(&[0.1, 0.1]), None);
         // Nine of twelve pairs grow, three fall.
-        assert_eq!(of(&[0.1, 0.2, 0.3, 0.1, 0.2, 0.3]), Some(6.0 / 12.0));
+        assert_eq!(gamma_of(&[0.1, 0.2, 0.3, 0.1, 0.2, 0.3]), Some(6.0 / 12.0));
     }
 }

@@ -1,11 +1,11 @@
-//! Why measurements cannot be fitted as the job and the experiment say.
+//! The error of measurements that cannot be fitted as the job and the experiment state.
 
 use statistics::{LikelihoodError, PriorError};
 
-/// Fewest repeats that a scatter is estimated from.
+/// Minimum number of repeats that a scatter is estimated from.
 pub(crate) const MIN_FREEDOM: usize = 3;
 
-/// Why measurements cannot be fitted as the job and the experiment say.
+/// A reason why measurements cannot be fitted as the job and the experiment state.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub(crate) enum DataError {
     /// An inferred standard deviation has no parameter.

@@ -1,9 +1,9 @@
-//! Levels of a condition: values that differ too little to be different on purpose are one.
+//! Levels of a condition: values that differ by less than the accuracy of a setting are one level.
 
 /// Values closer than this share of their range are one level `[1]`.
 const SAME_LEVEL: f64 = 0.02;
 
-/// The level of each value, ascending from 0: a gap of more than 2 % of the range begins another one.
+/// Returns the level of each value, ascending from 0: a gap of more than 2 % of the range begins another level.
 pub fn levels_of(values: &[f64]) -> Vec<usize> {
     let mut order: Vec<usize> = (0..values.len()).collect();
     order.sort_by(|&a, &b| values[a].total_cmp(&values[b]));

@@ -10,7 +10,7 @@ use super::soil_scatter::SoilScatter;
 use crate::table::likelihood_settings::LikelihoodSettings;
 use crate::table::prior_entry::FreeParameter;
 
-/// The likelihood of the fitted measurements: their noise, and what they have in common.
+/// Returns the likelihood of the fitted measurements: their noise, and the errors that they have in common.
 pub(crate) fn likelihood(
     experiment: &Experiment,
     fit_runs: &[usize],

@@ -1,4 +1,4 @@
-//! The measurements that a calibration fits: their noise, their likelihood, what is predicted of them.
+//! The measurements that a calibration fits: their noise, their likelihood, their predicted values.
 
 pub(crate) mod bevameter_readings;
 pub(crate) mod confounded_order;

@@ -1,4 +1,4 @@
-//! Where each measurement's noise standard deviation comes from.
+//! The noise standard deviation of each measurement: stated, pooled from repeats, or inferred.
 
 use shared::channel::Channel;
 use shared::experiment::{Experiment, NoiseSd, RunUse, Scatter, ScatterSd, TestRun};
@@ -9,8 +9,7 @@ use super::bevameter_readings::BevameterReadings;
 use super::error::{DataError, MIN_FREEDOM};
 use crate::table::prior_entry::FreeParameter;
 
-/// Prior scale of an unknown noise sd where the job states none: the run-to-run scatter that is usual
-/// on single-wheel rigs, 2 N, 0.2 N m, 1 mm, 2 N.
+/// Default prior scale of an unknown noise sd: the typical run-to-run scatter of single-wheel rigs, 2 N, 0.2 N m, 1 mm, 2 N.
 const USUAL_SD: [f64; 4] = [2.0, 0.2, 0.001, 2.0];
 
 /// Adds a half-normal prior for every unknown noise sd and scatter that the job does not mention, and moves all noise
@@ -91,7 +90,7 @@ pub(crate) fn check_names(
     Ok(())
 }
 
-/// Whether anything that is fitted scatters so.
+/// Returns whether any fitted measurement has this scatter.
 fn needs_scatter(experiment: &Experiment, bevameter: &BevameterReadings, scatter: Scatter) -> bool {
     let fitted = || Channel::ALL.iter().any(|&c| experiment.measures(c, RunUse::Fit));
     match scatter {
@@ -108,8 +107,8 @@ fn needs_scatter(experiment: &Experiment, bevameter: &BevameterReadings, scatter
     }
 }
 
-/// The fitted runs by preparation, as positions among them; none where no run names one. A run without an id has a preparation
-/// of its own.
+/// Returns the fitted runs by preparation, as positions among them; none if no run names one. A run without an id is a
+/// preparation with one run.
 pub(crate) fn preparations(experiment: &Experiment, fit_runs: &[usize]) -> Vec<Vec<usize>> {
     let mut preparations: Vec<(Option<&str>, Vec<usize>)> = Vec::new();
     for (position, &i) in fit_runs.iter().enumerate() {
@@ -128,7 +127,7 @@ pub(crate) fn preparations(experiment: &Experiment, fit_runs: &[usize]) -> Vec<V
     }
 }
 
-/// Whether any fitted measurement of the channel lacks a standard deviation of its own.
+/// Returns whether any fitted measurement of the channel has no stated standard deviation.
 fn needs_experiment_sd(experiment: &Experiment, channel: Channel) -> bool {
     let c = channel.index();
     experiment
@@ -137,7 +136,7 @@ fn needs_experiment_sd(experiment: &Experiment, channel: Channel) -> bool {
         .any(|r| r.usage == RunUse::Fit && r.measured[c].is_some() && r.sd[c].is_none())
 }
 
-/// The relative sd of something that scatters; `None` where it does not.
+/// Returns the relative sd of a scatter; `None` if it is 0.
 pub(crate) fn scatter_sd(
     experiment: &Experiment,
     parameters: &[FreeParameter],
@@ -154,7 +153,7 @@ pub(crate) fn scatter_sd(
     }
 }
 
-/// The fitted measurements with their standard deviations.
+/// Returns the fitted measurements with their standard deviations.
 pub(crate) fn data(
     experiment: &Experiment,
     fit_runs: &[usize],
@@ -203,7 +202,7 @@ pub(crate) fn data(
     Ok(data)
 }
 
-/// The scatter of fitted repeats with its degrees of freedom; `None` with fewer than three.
+/// Returns the scatter of fitted repeats with its degrees of freedom; `None` with fewer than three.
 pub fn repeat_scatter(experiment: &Experiment, fit_runs: &[usize], channel: Channel) -> Option<(f64, usize)> {
     let (sd, freedom) = pooled(experiment, fit_runs, channel);
     (freedom >= MIN_FREEDOM).then_some((sd, freedom))
@@ -218,8 +217,8 @@ fn pooled_sd(experiment: &Experiment, fit_runs: &[usize], channel: Channel) -> R
     }
 }
 
-/// `sqrt(sum (y - mean of its repeats)^2 / freedom)` over the groups of repeated conditions, with
-/// freedom = values - groups; not a number where that is 0.
+/// Returns `sqrt(sum (y - mean of its repeats)^2 / freedom)` over the groups of repeated conditions, with
+/// freedom = values - groups; not a number if freedom is 0.
 fn pooled(experiment: &Experiment, fit_runs: &[usize], channel: Channel) -> (f64, usize) {
     let c = channel.index();
     let mut groups: Vec<(&TestRun, Vec<f64>)> = Vec::new();
@@ -243,7 +242,7 @@ fn pooled(experiment: &Experiment, fit_runs: &[usize], channel: Channel) -> (f64
     ((sum / freedom as f64).sqrt(), freedom)
 }
 
-/// The fitted runs by condition, as positions among them; a run joins the first condition that it repeats.
+/// Returns the fitted runs by condition, as positions among them; a run joins the first condition that it repeats.
 pub fn conditions(experiment: &Experiment, fit_runs: &[usize]) -> Vec<Vec<usize>> {
     let mut conditions: Vec<(&TestRun, Vec<usize>)> = Vec::new();
     for (position, &i) in fit_runs.iter().enumerate() {
@@ -256,7 +255,7 @@ pub fn conditions(experiment: &Experiment, fit_runs: &[usize]) -> Vec<Vec<usize>
     conditions.into_iter().map(|(_, positions)| positions).collect()
 }
 
-/// Whether two runs repeat one condition, within what a rig can hold: slip to 0.02, slip angle to 0.5 degrees, load to 15 %, speed
+/// Returns whether two runs repeat one condition, within the accuracy of a rig: slip to 0.02, slip angle to 0.5 degrees, load to 15 %, speed
 /// to 5 %.
 pub fn repeats(a: &TestRun, b: &TestRun) -> bool {
     let close = |x: f64, y: f64, share: f64| (x - y).abs() <= share * x.abs().max(y.abs());

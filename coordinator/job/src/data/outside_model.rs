@@ -1,4 +1,4 @@
-//! What a model that is not ours cannot be asked about an experiment.
+//! The check that an external model can predict an experiment.
 
 use shared::channel::Channel;
 use shared::experiment::Experiment;
@@ -7,10 +7,10 @@ use statistics::Likelihood;
 
 use super::soil_scatter::BY_STIFFNESS;
 
-/// Checks that the model gives what is measured, and that nothing else is asked of it.
+/// Checks that the model predicts the measured channels, and that nothing needs a property that only built-in models have.
 ///
 /// # Errors
-/// A sentence with everything that is missing.
+/// A sentence with everything that the model lacks.
 pub(crate) fn check(
     model: &ExternalModel,
     experiment: &Experiment,

@@ -1,4 +1,4 @@
-//! Which of the observables a likelihood takes, and in which order.
+//! The order of the observables that a likelihood takes.
 
 use shared::channel::Channel;
 use shared::predicted::PredictedValue;
@@ -7,7 +7,7 @@ use statistics::{Datum, Likelihood};
 use super::bevameter_readings::{PLATE, RING};
 use super::soil_scatter::BY_STRENGTH;
 
-/// The predicted values of a likelihood: one for each datum, then the derivatives.
+/// Returns the predicted values of a likelihood: one for each datum, then the derivatives.
 ///
 /// # Arguments
 /// - `radii_m`: radius of the wheel of each fitted run `[m]`.

@@ -1,4 +1,4 @@
-//! How much the soil under a run may differ from that of the others.
+//! The scatter of the soil from run to run and from preparation to preparation.
 
 use shared::channel::Channel;
 use shared::experiment::{Experiment, Scatter};
@@ -18,16 +18,16 @@ pub(crate) const BY_STRENGTH: usize = 1;
 /// A scatter of the soil, from run to run or from preparation to preparation.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SoilScatter {
-    /// Its relative sd.
+    /// Relative standard deviation.
     pub(crate) sd: ErrorSd,
     /// The derivative along which it shifts the measurements.
     pub(crate) derivative: usize,
-    /// Positions among the fitted runs of those that share an error.
+    /// Groups of runs that share an error, as positions among the fitted runs.
     pub(crate) groups: Vec<Vec<usize>>,
 }
 
 impl SoilScatter {
-    /// The scatters of an experiment.
+    /// Returns the scatters of an experiment.
     ///
     /// # Errors
     /// [`DataError::NoPrior`].
@@ -36,17 +36,17 @@ impl SoilScatter {
         fit_runs: &[usize],
         parameters: &[FreeParameter],
     ) -> Result<Vec<SoilScatter>, DataError> {
-        let of_runs = (0..fit_runs.len()).map(|run| vec![run]).collect();
-        // The error of a single preparation is that of the parameters.
-        let mut of_preparations = preparations(experiment, fit_runs);
-        if of_preparations.len() < 2 {
-            of_preparations.clear();
+        let by_run = (0..fit_runs.len()).map(|run| vec![run]).collect();
+        // The error of a single preparation is part of the parameters.
+        let mut by_preparation = preparations(experiment, fit_runs);
+        if by_preparation.len() < 2 {
+            by_preparation.clear();
         }
         let mut scatters = Vec::new();
         for (scatter, derivative, groups) in [
-            (Scatter::Run, BY_STIFFNESS, of_runs),
-            (Scatter::Preparation, BY_STIFFNESS, of_preparations.clone()),
-            (Scatter::PreparationStrength, BY_STRENGTH, of_preparations),
+            (Scatter::Run, BY_STIFFNESS, by_run),
+            (Scatter::Preparation, BY_STIFFNESS, by_preparation.clone()),
+            (Scatter::PreparationStrength, BY_STRENGTH, by_preparation),
         ] {
             if !groups.is_empty()
                 && let Some(sd) = scatter_sd(experiment, parameters, scatter)?
@@ -61,9 +61,9 @@ impl SoilScatter {
         Ok(scatters)
     }
 
-    /// The errors of data that it makes, one for each group.
+    /// Returns the errors of the data, one for each group.
     pub(crate) fn errors(&self, data: &[Datum]) -> Vec<CommonError> {
-        // The strength of the soil does not carry the wheel: its sinkage stays.
+        // The strength of the soil does not carry the wheel and leaves its sinkage unchanged.
         let feels = |d: &Datum| self.derivative == BY_STIFFNESS || d.channel != Channel::Sinkage.index();
         let error = |runs: &Vec<usize>| CommonError {
             data: (0..data.len())
@@ -77,7 +77,7 @@ impl SoilScatter {
         self.groups.iter().map(error).collect()
     }
 
-    /// One sd of what it does to the measurement of a channel in a run [channel's unit].
+    /// Returns one standard deviation of its contribution to a channel of a run [channel's unit].
     ///
     /// # Arguments
     /// - `theta`: the parameters. `observables`: of the runs, with their derivatives by the stiffness where they scatter.

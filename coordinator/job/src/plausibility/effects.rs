@@ -1,11 +1,11 @@
-//! Effects that act where they should not.
+//! The question about effects that change the model at their neutral values.
 
 use shared::model::EffectSet;
 
 use super::question::{NEUTRAL, Question};
 use crate::Spec;
 
-/// The first effect of the model that changes something at its neutral value.
+/// Returns the question about the first effect that changes the model at its neutral value.
 pub(super) fn questions(spec: &Spec) -> Option<Question> {
     // The texts were read when the specification was made, so they can be read again.
     let effects = EffectSet::read(&spec.fit_variant.effects).unwrap_or_default();

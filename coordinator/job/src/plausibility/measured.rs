@@ -1,4 +1,4 @@
-//! Measurements and noise against each other, and against load and wheel.
+//! Questions about measurements and noise, compared with each other and with load and wheel.
 
 use shared::channel::Channel;
 use shared::experiment::{Experiment, NoiseSd, TestRun};
@@ -8,15 +8,15 @@ use shared::parameters::noise_parameter;
 use super::question::{DATA_FEW, Question, SLIP_ANGLE};
 use crate::Spec;
 
-/// No soil gives a pull beyond this share of the load, no rig measures only one below.
+/// The bounds of the largest pull, in shares of the load.
 const PULL: [f64; 2] = [1e-3, 2.0];
 /// The bounds of the torque, in shares of load times radius.
 const TORQUE: [f64; 2] = [1e-4, 3.0];
-/// A wheel that sinks deeper than this share of its radius has its axle near the ground.
+/// Sinkage beyond which the axle is near the ground, in shares of the radius.
 const SINKAGE: f64 = 0.9;
-/// The radius that a rig computes with is that of the rim, or of the tips of its grousers.
+/// The bounds of the rig's radius, in shares of the wheel's: it is the radius of the rim or of the tips of the grousers.
 const RIG_RADIUS: [f64; 2] = [0.7, 1.5];
-/// A noise sd beyond this many times the largest measurement makes the channel say nothing; below it, no sensor is so good.
+/// The bounds of a noise sd, in shares of the largest measurement: the lower is beyond any sensor, the upper makes data useless.
 const NOISE: [f64; 2] = [1e-6, 10.0];
 
 pub(super) fn questions(spec: &Spec) -> Vec<Question> {
@@ -52,7 +52,7 @@ pub(super) fn questions(spec: &Spec) -> Vec<Question> {
     questions
 }
 
-/// The largest size of a channel over a scale that it should be of the order of.
+/// Returns the question about the largest absolute value of a channel, relative to its scale.
 fn share(
     experiment: &Experiment,
     channel: Channel,
@@ -60,7 +60,7 @@ fn share(
     scale_words: &str,
     scale: impl Fn(&TestRun) -> f64,
 ) -> Option<Question> {
-    // An odd load is no measure of other values.
+    // A load that is odd itself is no scale for other values.
     let has_odd_load = |run: &TestRun| limit::find("wheel_load_n")?.unusual(run.wheel_load_n);
     let judged = experiment.runs.iter().filter(|run| has_odd_load(run).is_none());
     let sizes = judged.filter_map(|run| {
@@ -76,7 +76,7 @@ fn share(
                 _ => "another unit",
             },
         ),
-        // All readings of a channel may be zero, as those of a free-rolling wheel.
+        // All readings of a channel may be zero, as for a free-rolling wheel.
         size if size < least && size > 0.0 => (
             "is the largest, and only",
             match channel {
@@ -97,7 +97,7 @@ fn share(
     Some(Question::new(channel.column(), words))
 }
 
-/// A wheel that has nearly disappeared.
+/// Returns the question about a wheel that has sunk nearly completely.
 fn sinkage(experiment: &Experiment) -> Option<Question> {
     let sizes = experiment.runs.iter().filter_map(|run| {
         let sinkage_m = run.measured[Channel::Sinkage.index()]?;
@@ -117,7 +117,7 @@ fn sinkage(experiment: &Experiment) -> Option<Question> {
     (size > SINKAGE).then(|| Question::new(Channel::Sinkage.column(), words))
 }
 
-/// A radius of the rig that is hardly that of its wheel.
+/// Returns the question about a rig radius that differs from the radius of its wheel.
 fn rig_radius(experiment: &Experiment) -> Option<Question> {
     let [least, most] = RIG_RADIUS;
     experiment.wheels.iter().find_map(|(name, wheel)| {
@@ -132,7 +132,7 @@ fn rig_radius(experiment: &Experiment) -> Option<Question> {
     })
 }
 
-/// Slip angles that would all be right angles or less in radians.
+/// Returns the question about slip angles that would all be at most right angles if they were in radians.
 fn slip_angle(experiment: &Experiment) -> Option<Question> {
     let angles = experiment.runs.iter().map(|run| run.slip_angle_deg.abs());
     let largest = angles.reduce(f64::max)?;
@@ -145,7 +145,7 @@ fn slip_angle(experiment: &Experiment) -> Option<Question> {
     in_radians.then(|| Question::new(SLIP_ANGLE, words))
 }
 
-/// A noise sd against the largest measurement of its channel.
+/// Returns the question about a noise sd, compared with the largest measurement of its channel.
 fn noise(experiment: &Experiment, channel: Channel) -> Option<Question> {
     let Some(NoiseSd::Known(sd)) = experiment.noise.sd[channel.index()] else {
         return None;

@@ -1,12 +1,12 @@
-//! Questions about what a job and its experiment say: what is possible, but was probably not meant.
+//! Questions about values of a job and its experiment that are possible but probably unintended.
 //!
 //! # Layout
 //! - `question`: [`Question`], and [`Unanswered`], the questions that a user must answer before anything is calibrated.
 //! - `typed`: numbers outside the usual range of their quantity. `measured`: measurements and noise against each other, and against
-//!   load and wheel. `sign`: channels with the opposite sign. `effects`: effects that act where they should not.
+//!   load and wheel. `sign`: channels with the opposite sign. `effects`: effects that change the model at their neutral values.
 //!
-//! The usual ranges stand in [`shared::limit`], which also refuses what no rig has. A question is answered by a correction, or by its
-//! name under `accept` in the job.
+//! [`shared::limit`] states the usual ranges, and the physical limits beyond which a value is refused. A user answers a question by
+//! correcting the value, or by listing the question's name under `accept` in the job.
 
 mod effects;
 mod measured;
@@ -18,7 +18,7 @@ pub use question::{Question, Unanswered};
 
 use crate::Spec;
 
-/// Every question about a calibration, in the order of their names; answered or not.
+/// Returns every question about a calibration, answered or not, in the order of their names.
 ///
 /// Checked by `farm-tests mistakes::no_mistake_is_silent` and, for no question where none is due, by
 /// `farm-tests mistakes::the_examples_raise_no_question`.

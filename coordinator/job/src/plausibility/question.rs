@@ -1,4 +1,4 @@
-//! A question, and how it is answered.
+//! A plausibility question, its name, and the check of its answer.
 
 use std::collections::BTreeSet;
 
@@ -14,17 +14,17 @@ pub(super) const NEUTRAL: &str = "neutral";
 /// The question of slip angles.
 pub(super) const SLIP_ANGLE: &str = "slip_angle_deg";
 
-/// The name of the question about the sign of a channel.
+/// Returns the name of the question about the sign of a channel.
 pub(super) fn sign_name(channel: Channel) -> String {
     format!("{}_sign", channel.name())
 }
 
-/// Something that is possible, but was probably not meant.
+/// A value that is possible but probably unintended.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Question {
-    /// The name by which it is accepted; it says what the question is about.
+    /// The name under `accept`; it names the value in question.
     pub name: String,
-    /// A sentence that says what is odd, with place, value, unit and bound.
+    /// A sentence about the odd value, with place, value, unit and bound.
     pub words: String,
 }
 
@@ -34,7 +34,7 @@ impl Question {
         Question { name, words }
     }
 
-    /// The names of all questions.
+    /// Returns the names of all questions.
     pub fn names() -> BTreeSet<String> {
         let limited = LIMITS.iter().map(|limit| limit.name.to_owned());
         let measured = Channel::ALL.map(|channel| channel.column().to_owned());
@@ -46,7 +46,7 @@ impl Question {
             .collect()
     }
 
-    /// Whether there is a question of this name.
+    /// Checks that there is a question of this name.
     ///
     /// # Errors
     /// The sentence with the nearest name.
@@ -62,7 +62,7 @@ impl Question {
     }
 }
 
-/// The questions that are still to be answered, at least one.
+/// The questions without an answer, at least one.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{}; correct this, or accept it as meant: {}", self.words(), self.how())]
 pub struct Unanswered(pub Vec<Question>);

@@ -1,7 +1,8 @@
 //! Channels that were measured with the opposite sign.
 //!
-//! Where a wheel drives or brakes for certain, the sign of a channel is known. A channel that has the other sign in all such runs was
-//! probably recorded in the rig's axes, and a search would explain it by whatever acts the same way, as bulldozing does on the pull.
+//! In runs in which the wheel certainly drives or brakes, the sign of a channel is known. A channel that has the other sign in all
+//! these runs was probably recorded in the rig's axes, and a search would explain it by an effect with the same sign, as bulldozing
+//! on the pull.
 
 use shared::channel::Channel;
 use shared::experiment::{Experiment, TestRun};
@@ -9,34 +10,34 @@ use shared::limit::number;
 
 use super::question::{Question, sign_name};
 
-/// Fewest runs, and pairs of runs, that tell a sign.
-const LEAST: usize = 3;
-/// From this slip on thrust exceeds resistance: at less, a wheel on soft soil may be held back in drive.
+/// Minimum number of runs, and of pairs of runs, that determine a sign.
+const MIN_RUNS: usize = 3;
+/// Slip above which thrust exceeds resistance: below it, a driven wheel on soft soil may still be pushed.
 const PULLING: f64 = 0.2;
-/// From this slip on the torque exceeds that of bearings, and most wheels pull.
+/// Slip above which the torque exceeds the friction of bearings, and wheels usually pull.
 const TURNING: f64 = 0.1;
-/// Up to this slip more slip pulls more; beyond, a wheel that digs may pull less.
+/// Slip up to which the pull grows with slip; above it, a wheel that digs may pull less.
 const RISING: f64 = 0.3;
-/// Slips that differ by more are two slips.
+/// Smallest difference of two distinct slips.
 const APART: f64 = 0.05;
-/// Beyond this slip angle a wheel is dragged sideways rather than rolled `[deg]`.
+/// Slip angle above which a wheel is dragged sideways rather than rolled `[deg]`.
 const ROLLING_DEG: f64 = 45.0;
-/// From this slip angle on the soil resists sideways motion for certain `[deg]`.
+/// Slip angle above which the soil certainly resists sideways motion `[deg]`.
 const SIDEWAYS_DEG: f64 = 5.0;
 /// Relative difference of wheel loads that are alike.
 const LIKE_LOADS: f64 = 0.15;
 
-/// The questions about the signs of all channels.
+/// Returns the questions about the signs of all channels.
 ///
 /// Checked by `tests` below, `farm-tests mistakes::no_mistake_is_silent` and, for no question where none is due, by
 /// `farm-tests mistakes::the_examples_raise_no_question`.
 pub(super) fn questions(experiment: &Experiment) -> impl Iterator<Item = Question> {
     let of_channel = |channel: Channel| {
-        let told = match channel {
+        let complaint = match channel {
             Channel::DrawbarPull => opposite(experiment, channel).or_else(|| falling_pull(experiment)),
             _ => opposite(experiment, channel),
         };
-        told.map(|found| {
+        complaint.map(|found| {
             let (column, name) = (channel.column(), channel.name());
             let words = format!(
                 "{found}, but {}: turn the sign of {column}, in the map of an import by formula = \"-{name}\" with the rig's column under [quantities.{name}]",
@@ -61,7 +62,7 @@ fn convention(channel: Channel) -> &'static str {
     }
 }
 
-/// The runs in which the sign of a channel is known, in words.
+/// Returns a description of the runs in which the sign of a channel is known.
 fn known_where(channel: Channel) -> String {
     match channel {
         Channel::DrawbarPull => format!(" at a slip of {PULLING} or more either way"),
@@ -71,7 +72,7 @@ fn known_where(channel: Channel) -> String {
     }
 }
 
-/// The sign that a channel has in a run: 1 or -1; `None` where it may be either.
+/// Returns the sign of a channel in a run: 1 or -1; `None` if both are possible.
 fn sign(run: &TestRun, channel: Channel) -> Option<f64> {
     let rolls = run.slip_angle_deg.abs() <= ROLLING_DEG;
     let (is_known, quantity) = match channel {
@@ -83,7 +84,7 @@ fn sign(run: &TestRun, channel: Channel) -> Option<f64> {
     is_known.then(|| quantity.signum())
 }
 
-/// What is odd about a channel that has the opposite sign, or is 0, in every run in which its sign is known.
+/// Returns the complaint about a channel that has the opposite sign, or is 0, in every run in which its sign is known.
 fn opposite(experiment: &Experiment, channel: Channel) -> Option<String> {
     let judged = experiment.runs.iter().filter_map(|run| {
         let value = run.measured[channel.index()]?;
@@ -93,7 +94,7 @@ fn opposite(experiment: &Experiment, channel: Channel) -> Option<String> {
     let is_right = |(_, _, signed): &(&TestRun, f64, f64)| *signed > 0.0;
     // A channel that is 0 everywhere has no sign.
     let (run, value, _) = judged.iter().find(|(_, _, signed)| *signed < 0.0)?;
-    if judged.len() < LEAST || judged.iter().any(is_right) {
+    if judged.len() < MIN_RUNS || judged.iter().any(is_right) {
         return None;
     }
     let quantity = match channel {
@@ -143,7 +144,7 @@ fn falling_pull(experiment: &Experiment) -> Option<String> {
             }
         }
     }
-    let [low, high] = steepest.filter(|_| pairs >= LEAST)?;
+    let [low, high] = steepest.filter(|_| pairs >= MIN_RUNS)?;
     Some(format!(
         "drawbar_pull_n falls with slip between all {pairs} pairs of like runs up to slip {RISING}, as from run {} to run {}: {} N at slip {}, {} N at slip {}",
         low.0.name,
@@ -155,7 +156,7 @@ fn falling_pull(experiment: &Experiment) -> Option<String> {
     ))
 }
 
-/// Whether two runs differ in slip, and in the speed that sets it, alone.
+/// Returns whether two runs differ only in slip and in the speed that sets it.
 fn are_alike(a: &TestRun, b: &TestRun) -> bool {
     let [less, more] = [
         a.wheel_load_n.min(b.wheel_load_n),
@@ -174,7 +175,7 @@ mod tests {
 
     use super::*;
 
-    /// The names of the questions about runs of slip, wheel load, slip angle, pull, torque, sinkage and lateral force.
+    /// Returns the names of the questions about runs of slip, wheel load, slip angle, pull, torque, sinkage and lateral force.
     fn asked(rows: &[[f64; 7]]) -> Vec<String> {
         let mut runs = "run,wheel,soil,slip,wheel_load_n,sled_speed_m_s,slip_angle_deg,drawbar_pull_n,torque_n_m,sinkage_m,lateral_force_n,use\n".to_owned();
         for (i, [slip, load, angle, channels @ ..]) in rows.iter().enumerate() {

@@ -1,4 +1,4 @@
-//! Numbers outside the usual range of their quantity.
+//! Questions about numbers outside the usual range of their quantity.
 
 use shared::experiment::TestRun;
 use shared::limit::{self, Limit};
@@ -10,12 +10,12 @@ use crate::table::prior_entry::FreeParameter;
 
 /// Probability of a prior within the values that are judged.
 const CENTRAL: f64 = 0.9;
-/// The same of a wheel's radius, which is known.
+/// Probability of the prior of a wheel's radius within the values that are judged.
 const OF_RADIUS: f64 = 0.998;
-/// Relative distance at which a radius is still that of the wheel.
+/// Relative difference up to which a radius belongs to the wheel.
 const ABOUT: f64 = 0.02;
 
-/// Each quantity once, with the first of its values that is odd and the number of the others.
+/// Returns one question for each quantity, with its first odd value and the number of its other odd values.
 pub(super) fn questions(spec: &Spec) -> Vec<Question> {
     let mut questions = Vec::new();
     for limit in &limit::LIMITS {
@@ -40,21 +40,21 @@ pub(super) fn questions(spec: &Spec) -> Vec<Question> {
             questions.push(Question::new(limit.name, format!("{name}, fixed: {why}")));
         }
     }
-    questions.extend(spec.parameters.iter().filter_map(of_prior));
+    questions.extend(spec.parameters.iter().filter_map(prior_question));
     let has_posterior = |p: &&FreeParameter| {
         let joint = spec.joint_prior.as_ref();
         joint.is_some_and(|joint| joint.parameters.contains(&p.name))
     };
-    // A posterior was found, not typed.
+    // Nobody types a posterior, so its values raise no question.
     let typed = spec.parameters.iter().filter(|p| !has_posterior(p));
-    questions.extend(typed.filter_map(|p| of_radius(spec, p)));
+    questions.extend(typed.filter_map(|p| radius_prior_question(spec, p)));
     let fixed = spec.model.fixed.iter();
-    questions.extend(fixed.filter_map(|(name, &value)| of_fixed_radius(spec, name, value)));
+    questions.extend(fixed.filter_map(|(name, &value)| fixed_radius_question(spec, name, value)));
     questions
 }
 
-/// A prior of a wheel's radius that lies elsewhere than the wheel, with 99.8 % of its probability.
-fn of_radius(spec: &Spec, parameter: &FreeParameter) -> Option<Question> {
+/// Returns the question about a prior of a wheel's radius whose 99.8 % interval excludes the wheel's radius.
+fn radius_prior_question(spec: &Spec, parameter: &FreeParameter) -> Option<Question> {
     let end = 0.5 * (1.0 - OF_RADIUS);
     let [low, high] = [end, 1.0 - end].map(|p| parameter.marginal.quantile(p));
     let (wheel, radius_m) = elsewhere(spec, &parameter.name, [low, high])?;
@@ -68,18 +68,18 @@ fn of_radius(spec: &Spec, parameter: &FreeParameter) -> Option<Question> {
     Some(Question::new(WHEEL_RADIUS, words))
 }
 
-/// A wheel's radius that is fixed elsewhere than the wheel.
-fn of_fixed_radius(spec: &Spec, name: &str, value: f64) -> Option<Question> {
+/// Returns the question about a fixed wheel's radius that differs from the wheel's.
+fn fixed_radius_question(spec: &Spec, name: &str, value: f64) -> Option<Question> {
     let (wheel, radius_m) = elsewhere(spec, name, [value, value])?;
     let [value, radius_m] = [value, radius_m].map(limit::number);
     let words = format!("{name}, fixed: {value} m, and wheel {wheel} has radius_m = {radius_m}");
     Some(Question::new(WHEEL_RADIUS, words))
 }
 
-/// The first wheel, with its `radius_m`, to which radii of a parameter do not belong: they lie beside its rim and, where the model
+/// Returns the first wheel, with its `radius_m`, that a parameter's radii do not fit: they differ from its rim and, if the model
 /// rolls a smooth wheel in place of its grousers, beside their tips and what is between.
 fn elsewhere<'a>(spec: &'a Spec, parameter: &str, [low, high]: [f64; 2]) -> Option<(&'a str, f64)> {
-    let (name, own) = match parameter.split_once('.') {
+    let (name, stated_wheel) = match parameter.split_once('.') {
         Some((name, wheel)) => (name, Some(wheel)),
         None => (parameter, None),
     };
@@ -93,14 +93,14 @@ fn elsewhere<'a>(spec: &'a Spec, parameter: &str, [low, high]: [f64; 2]) -> Opti
             true => rim + geometry.grouser_height_m,
             false => rim,
         };
-        let is_meant = own.is_none_or(|own| own == wheel.as_str());
+        let is_meant = stated_wheel.is_none_or(|stated| stated == wheel.as_str());
         is_meant && (high < rim * (1.0 - ABOUT) || low > largest * (1.0 + ABOUT))
     })?;
     Some((wheel, geometry.radius_m))
 }
 
-/// A prior of which hardly anything lies in the usual range.
-fn of_prior(parameter: &FreeParameter) -> Option<Question> {
+/// Returns the question about a prior with hardly any probability in the usual range.
+fn prior_question(parameter: &FreeParameter) -> Option<Question> {
     let limit = limit::find(base(&parameter.name))?;
     let end = 0.5 * (1.0 - CENTRAL);
     let [low, high] = [end, 1.0 - end].map(|p| parameter.marginal.quantile(p));
@@ -116,12 +116,12 @@ fn of_prior(parameter: &FreeParameter) -> Option<Question> {
     Some(Question::new(limit.name, words))
 }
 
-/// The name of a parameter without that of a wheel.
+/// Returns the name of a parameter without that of a wheel.
 fn base(name: &str) -> &str {
     name.split_once('.').map_or(name, |(base, _)| base)
 }
 
-/// The values that the files state for a quantity, each with its place.
+/// Returns the values that the files state for a quantity, each with its place.
 fn values(spec: &Spec, limit: &Limit) -> Vec<(String, f64)> {
     let experiment = &spec.experiment;
     let runs = |value: fn(&TestRun) -> f64| {
@@ -195,7 +195,7 @@ mod tests {
     const RUNS: &str =
         "run,wheel,soil,slip,wheel_load_n,sled_speed_m_s,drawbar_pull_n\na,w,s,0.2,100,0.008,30\n";
 
-    /// The questions on the radius of a wheel with its rim at 0.125 m and its tips at 0.145 m.
+    /// Returns the questions on the radius of a wheel with its rim at 0.125 m and its tips at 0.145 m.
     fn asked(model: &str, radius: &str) -> Vec<String> {
         let priors = match model.contains("rft") {
             true => "",
@@ -212,10 +212,10 @@ mod tests {
             files: [("runs.csv".to_owned(), RUNS.to_owned())].into(),
         };
         let spec = Spec::new("job.toml", &job, "experiment.toml", &experiment).unwrap();
-        let of_radius = questions(&spec)
+        let about_radius = questions(&spec)
             .into_iter()
-            .filter(|own| own.name == WHEEL_RADIUS);
-        of_radius.map(|own| own.words).collect()
+            .filter(|question| question.name == WHEEL_RADIUS);
+        about_radius.map(|question| question.words).collect()
     }
 
     #[test]

@@ -16,7 +16,7 @@ use crate::table::prior_entry::FreeParameter;
 pub(super) struct Fitted {
     /// The fitted runs, as positions in the experiment.
     pub(super) fit_runs: Vec<usize>,
-    /// The others.
+    /// The runs that are not fitted, as positions in the experiment.
     pub(super) holdout_runs: Vec<usize>,
     pub(super) scatters: Vec<SoilScatter>,
     pub(super) likelihood: Likelihood,

@@ -3,8 +3,8 @@
 //! # Layout
 //! - `parameters`: which parameters are fixed and which are free, with their priors.
 //! - `fitted`: the measurements that are fitted, with their likelihood.
-//! - `variants`: what workers evaluate.
-//! - `words`: a specification in words.
+//! - `variants`: the model variants that workers evaluate.
+//! - `words`: the description of a specification for terminals and reports.
 
 mod fitted;
 mod parameters;
@@ -55,7 +55,7 @@ pub struct Spec {
     pub fit_runs: Vec<usize>,
     /// The runs that are not fitted, as positions in the experiment.
     pub holdout_runs: Vec<usize>,
-    /// The fitted runs, with everything that the model says of them.
+    /// The variant of the fitted runs.
     pub fit_variant: ModelVariant,
     /// The variant of the holdout runs, which workers evaluate for the final draws alone; `None` without holdout runs.
     pub holdout_variant: Option<ModelVariant>,
@@ -65,17 +65,17 @@ pub struct Spec {
     pub scatters: Vec<SoilScatter>,
     /// The observables that the likelihood takes.
     predicted: Vec<PredictedValue>,
-    /// Values that an independent test gives for parameters. The figures alone show them.
+    /// Values of parameters by independent tests. The figures alone show them.
     pub reference: BTreeMap<String, f64>,
-    /// The settings of the errors, as the job states them.
+    /// The settings of the likelihood, as the job states them.
     pub likelihood_settings: LikelihoodSettings,
     /// The measured readings of plates and rings; all are fitted.
     pub bevameter: BevameterReadings,
-    /// Whether its study looks for missing effects.
+    /// The search of its study for missing effects.
     pub discovery: DiscoverySettings,
-    /// Names of the questions that its job answers: what looks odd, and is meant.
+    /// Names of the plausibility questions whose odd values are intended.
     pub accepted: Vec<String>,
-    /// How many models the job compares, of which this is one; 1 where it has a table `[model]`.
+    /// Number of models that the job compares, this one included; 1 if it has a table `[model]`.
     pub models: usize,
 }
 
@@ -87,7 +87,7 @@ pub struct Spec {
 pub struct EffectsChanged {
     /// The version that the calibration is pinned to.
     pub begun: String,
-    /// The same equations with the effects of this program.
+    /// The version that the effects of this program give.
     pub now: String,
 }
 
@@ -116,7 +116,7 @@ impl Spec {
     /// Builds and validates the specification of a job and its experiment, both as values.
     ///
     /// # Errors
-    /// As those of [`Spec::new`].
+    /// The errors of [`Spec::new`].
     pub fn from_values(
         job_name: &str,
         job: Job,
@@ -154,10 +154,10 @@ impl Spec {
         })
     }
 
-    /// The specifications of every model that a job compares, in the order of the job.
+    /// Returns the specifications of every model that a job compares, in the order of the job.
     ///
     /// # Errors
-    /// As those of [`Spec::new`]; an error of a model as a whole has the line of its `[[models]]`.
+    /// The errors of [`Spec::new`]; an error of a model as a whole has the line of its `[[models]]`.
     pub fn of_models(
         job_name: &str,
         models: JobModels,
@@ -186,7 +186,7 @@ impl Spec {
             .collect()
     }
 
-    /// The variant that workers evaluate while sampling: the fitted runs with the channels that the likelihood takes.
+    /// Returns the variant that workers evaluate while sampling: the fitted runs with the channels that the likelihood takes.
     pub fn sampled_variant(&self) -> ModelVariant {
         let fitted: BTreeSet<_> = self
             .predicted
@@ -199,7 +199,7 @@ impl Spec {
         }
     }
 
-    /// The predicted values that the likelihood takes, of an evaluation of the fitted runs.
+    /// Returns the predicted values that the likelihood takes from an evaluation of the fitted runs.
     pub fn predicted_values(&self, observables: &Observables) -> Vec<f64> {
         self.predicted
             .iter()
@@ -207,12 +207,12 @@ impl Spec {
             .collect()
     }
 
-    /// Number of preparations of the soil that the fitted runs name; those without an id count each.
+    /// Returns the number of preparations of the soil of the fitted runs; each run without an id counts as one.
     pub fn preparations(&self) -> usize {
         noise::preparations(&self.experiment, &self.fit_runs).len()
     }
 
-    /// The measurements of wheels that are fitted.
+    /// Returns the fitted measurements of wheels.
     pub fn wheel_data(&self) -> usize {
         self.likelihood
             .data()
@@ -221,7 +221,7 @@ impl Spec {
             .count()
     }
 
-    /// Whether another specification means the same calibration; comments, the order of keys and what is accepted do not count.
+    /// Returns whether another specification is the same calibration; comments, the order of keys and accepted questions do not count.
     pub fn same_as(&self, other: &Spec) -> bool {
         // Debug output shows every number to the last bit.
         let text = |spec: &Spec| {
@@ -251,12 +251,12 @@ impl Spec {
         Err(EffectsChanged { begun, now })
     }
 
-    /// The joint prior, in parameter order.
+    /// Returns the joint prior, in parameter order.
     pub fn prior(&self) -> Prior {
         joint(&self.joint_prior, &self.parameters).expect("checked when the specification was made")
     }
 
-    /// The part of a parameter vector that the model takes: everything but the noise sds.
+    /// Returns the part of a parameter vector that the model takes: everything but the noise sds.
     ///
     /// Noise parameters stand behind the model's, so this is a prefix.
     pub fn model_theta<'a>(&self, theta: &'a [f64]) -> &'a [f64] {
@@ -264,7 +264,7 @@ impl Spec {
     }
 }
 
-/// Checks that the algorithms can work with so many parameters and fitted values.
+/// Checks that the algorithms can work with these numbers of parameters and fitted values.
 fn check_algorithms(job: &Job, parameters: usize, values: usize) -> Result<(), String> {
     if parameters == 0 {
         return Err("[priors] leaves no parameter free: there is nothing to calibrate".into());

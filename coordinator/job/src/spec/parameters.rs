@@ -1,4 +1,4 @@
-//! The parameters of a calibration: which are fixed and which are free, with their priors.
+//! The fixed and the free parameters of a calibration, with their priors.
 
 use std::collections::BTreeSet;
 
@@ -14,7 +14,7 @@ use crate::job::Job;
 use crate::table::posterior_prior::JointPrior;
 use crate::table::prior_entry::{FreeParameter, ParsedPrior};
 
-/// The model with everything that is fixed, and what is free.
+/// The model with its fixed parameters, and the free parameters.
 pub(super) struct Parameters {
     pub(super) model: ModelSettings,
     pub(super) effects: EffectSet,
@@ -25,8 +25,8 @@ pub(super) struct Parameters {
 }
 
 impl Parameters {
-    /// The parameters in their order: those of a posterior, those that the job states, those that the model, its effects, the rings and
-    /// the noise add.
+    /// Returns the parameters in their order: those of a posterior, those that the job states, then those that the model, its effects,
+    /// the rings and the noise add.
     pub(super) fn new(
         name: &str,
         job: &Job,
@@ -41,7 +41,7 @@ impl Parameters {
             effects: &effects,
             external: job.model.external.as_ref(),
         };
-        let (joint_prior, mut free) = of_posterior(name, job, &scope)?;
+        let (joint_prior, mut free) = posterior_parameters(name, job, &scope)?;
         let mut model = job.model.clone();
         add_stated(name, job, &scope, &mut model, &mut free)?;
         for parameter in model.kind.parameters() {
@@ -70,7 +70,7 @@ impl Parameters {
     }
 }
 
-/// The effects that the job lists, and those whose parameters it names.
+/// Returns the effects that the job lists, and those whose parameters it names.
 fn effects(name: &str, job: &Job) -> Result<EffectSet, FileError> {
     let named = job.priors.iter().map(|entry| entry.name.as_str());
     let named = named.filter(|name| !name.starts_with(NOISE_PREFIX));
@@ -83,8 +83,8 @@ fn effects(name: &str, job: &Job) -> Result<EffectSet, FileError> {
     )
 }
 
-/// The parameters that have the posterior of another calibration as their prior.
-fn of_posterior(
+/// Returns the parameters that have the posterior of another calibration as their prior.
+fn posterior_parameters(
     name: &str,
     job: &Job,
     scope: &ParameterScope,
@@ -106,7 +106,7 @@ fn of_posterior(
     Ok((Some(joint), covered))
 }
 
-/// Adds what the job states under `[priors]`.
+/// Adds the entries of the job under `[priors]`.
 fn add_stated(
     name: &str,
     job: &Job,
@@ -141,7 +141,7 @@ fn check_reference(job: &Job, scope: &ParameterScope) -> Result<(), String> {
     Ok(())
 }
 
-/// Adds what a job does not say of its effects: the number or the prior that the effect's file has.
+/// Adds parameters of effects that the job does not state, with the number or the prior of the effect's file.
 fn add_unstated(
     name: &str,
     effects: &EffectSet,
@@ -154,7 +154,7 @@ fn add_unstated(
     let stated = stated.iter().map(String::as_str).collect();
     for unstated in effects.unstated_parameters(&stated, wheels) {
         let parsed =
-            ParsedPrior::of_effect(&unstated.name, unstated.parameter).map_err(|e| {
+            ParsedPrior::from_effect(&unstated.name, unstated.parameter).map_err(|e| {
                 match &unstated.chosen.file {
                     Some(file) => FileError::at(file, unstated.parameter.line, e.to_string()),
                     None => FileError::whole(name, format!("effect {}: {e}", unstated.chosen.effect.name)),
@@ -170,7 +170,7 @@ fn add_unstated(
     Ok(())
 }
 
-/// The prior of parameters, of which the first may be jointly normal.
+/// Returns the prior of the parameters, the first of which may be jointly normal.
 pub(super) fn joint(joint: &Option<JointPrior>, parameters: &[FreeParameter]) -> Result<Prior, PriorError> {
     let prior = Prior::new(parameters.iter().map(|p| p.marginal.clone()).collect());
     match joint {

@@ -1,4 +1,4 @@
-//! What workers evaluate: the fitted runs and the holdout runs, with everything that the model says of them.
+//! The model variants that workers evaluate: one for the fitted runs and readings, one for the holdout runs.
 
 use shared::experiment::Experiment;
 use shared::model::{LowFidelityModel, ModelKind, ModelVariant};
@@ -33,7 +33,7 @@ impl Variants {
         if let Some(external) = &model.external {
             outside_model::check(external, experiment, &fitted.fit_runs, &fitted.likelihood)?;
         }
-        let mut fit = of_runs(&fitted.fit_runs, experiment, parameters, fitted)?;
+        let mut fit = variant_of_runs(&fitted.fit_runs, experiment, parameters, fitted)?;
         let readings = experiment.plates.len() + experiment.shear.len();
         if readings > 0 && !model.kind.has_soil_laws() {
             return Err(format!(
@@ -47,14 +47,14 @@ impl Variants {
         }
         let holdout = match fitted.holdout_runs.as_slice() {
             [] => None,
-            runs => Some(of_runs(runs, experiment, parameters, fitted)?),
+            runs => Some(variant_of_runs(runs, experiment, parameters, fitted)?),
         };
         Ok(Variants { fit, holdout })
     }
 }
 
-/// The variant of some runs.
-fn of_runs(
+/// Returns the variant of some runs.
+fn variant_of_runs(
     runs: &[usize],
     experiment: &Experiment,
     parameters: &Parameters,
@@ -74,7 +74,7 @@ fn of_runs(
     Ok(variant)
 }
 
-/// The quasi-static model from which a metamodel is made.
+/// Returns the quasi-static model from which a metamodel is made.
 fn low_fidelity(fit: &ModelVariant, fitted: &Fitted) -> Result<LowFidelityModel, String> {
     if fit.kind != ModelKind::Scm {
         return Err(

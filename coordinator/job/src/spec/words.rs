@@ -1,4 +1,4 @@
-//! A specification in words, for terminals and reports.
+//! The description of a specification for terminals and reports.
 
 use std::collections::BTreeSet;
 
@@ -7,7 +7,7 @@ use shared::experiment::{Scatter, ScatterSd};
 use crate::spec::Spec;
 
 impl Spec {
-    /// The model with its effects: `quasi_static with janosi_hanamoto, mine`, or `quasi_static with grousers, mine`.
+    /// Returns the model with its effects: `quasi_static with janosi_hanamoto, mine`, or `quasi_static with grousers, mine`.
     pub fn model_words(&self) -> String {
         let kind = self.model.kind.name();
         let grousers = self.model.rolls_grousers.then_some("grousers");
@@ -19,7 +19,7 @@ impl Spec {
         }
     }
 
-    /// The effects of the model: `EFFECT`, or `EFFECT.WHEEL` where its strength stands for one wheel of several.
+    /// Returns the effects of the model: `EFFECT`, or `EFFECT.WHEEL` if its strength is stated for one wheel of several.
     pub fn effects_on_wheels(&self) -> Vec<String> {
         let variant = &self.fit_variant;
         let names = || variant.parameters.iter().chain(variant.fixed.keys());
@@ -37,7 +37,7 @@ impl Spec {
         variant.effects.iter().map(|effect| shown(&effect.name)).collect()
     }
 
-    /// The errors that tests and runs have in common, a sentence each.
+    /// Returns a sentence for each error that tests or runs have in common.
     pub fn scatter_words(&self) -> Vec<String> {
         let sd = |scatter: Scatter| match self.experiment.noise.scatter(scatter) {
             ScatterSd::Known(sd) => format!("{sd}"),

@@ -3,8 +3,9 @@
 use inference::evolution::{CmaEsSettings, EvolutionSettings, EvolutionSettingsError};
 use inference::lm::{LmSettings, LmSettingsError};
 use inference::{Algorithm, TmcmcSettings, TmcmcSettingsError};
+use strum::{EnumString, IntoStaticStr};
 
-/// How parameters are found.
+/// The algorithm that finds the parameters, with its settings.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum AlgorithmSettings {
     /// A sample of the posterior.
@@ -20,10 +21,10 @@ pub enum AlgorithmSettings {
     },
 }
 
-/// Largest number of questions in a round of a search for a missing effect.
+/// Largest number of evaluations in a round of a search for a missing effect.
 const DISCOVERY_WIDTH: usize = 100_000;
 
-/// Settings that do not fit the prior.
+/// Settings that the prior's number of parameters does not allow.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum AlgorithmSettingsError {
     /// The sampler's.
@@ -38,12 +39,16 @@ pub enum AlgorithmSettingsError {
 }
 
 /// An algorithm by its name in files.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[derive(
+    Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize, EnumString, IntoStaticStr,
+)]
 #[serde(into = "&str", try_from = "String")]
+#[strum(serialize_all = "kebab-case")]
 pub enum AlgorithmName {
     /// Transitional Markov chain Monte Carlo.
     Tmcmc,
     /// TMCMC as published by Ching and Chen in 2007.
+    #[strum(serialize = "ching-chen-2007")]
     ChingChen2007,
     /// BASIS.
     Basis,
@@ -53,43 +58,18 @@ pub enum AlgorithmName {
     Ga,
     /// Covariance matrix adaptation.
     CmaEs,
-    /// Search for a missing effect, which a study starts by itself: no job states it.
+    /// Search for a missing effect; a study starts it, and no job states it.
     Discovery,
 }
 
 impl AlgorithmName {
-    /// Every algorithm.
-    const ALL: [AlgorithmName; 7] = [
-        AlgorithmName::Tmcmc,
-        AlgorithmName::ChingChen2007,
-        AlgorithmName::Basis,
-        AlgorithmName::Lm,
-        AlgorithmName::Ga,
-        AlgorithmName::CmaEs,
-        AlgorithmName::Discovery,
-    ];
-
-    /// The algorithms that find the most probable parameters, which a job may ask for beside a sample.
+    /// The algorithms that find the most probable parameters, which a job may run beside a sample.
     pub const POINT_ESTIMATES: [AlgorithmName; 3] =
         [AlgorithmName::Lm, AlgorithmName::Ga, AlgorithmName::CmaEs];
 
-    /// The name in files.
+    /// Returns the name in files.
     pub fn name(self) -> &'static str {
-        match self {
-            AlgorithmName::Tmcmc => "tmcmc",
-            AlgorithmName::ChingChen2007 => "ching-chen-2007",
-            AlgorithmName::Basis => "basis",
-            AlgorithmName::Lm => "lm",
-            AlgorithmName::Ga => "ga",
-            AlgorithmName::CmaEs => "cma-es",
-            AlgorithmName::Discovery => "discovery",
-        }
-    }
-}
-
-impl From<AlgorithmName> for &'static str {
-    fn from(algorithm: AlgorithmName) -> Self {
-        algorithm.name()
+        self.into()
     }
 }
 
@@ -97,13 +77,12 @@ impl TryFrom<String> for AlgorithmName {
     type Error = String;
 
     fn try_from(name: String) -> Result<Self, String> {
-        let known = AlgorithmName::ALL.into_iter().find(|known| known.name() == name);
-        known.ok_or_else(|| format!("unknown algorithm \"{name}\""))
+        name.parse().map_err(|_| format!("unknown algorithm \"{name}\""))
     }
 }
 
 impl AlgorithmSettings {
-    /// The algorithm.
+    /// Returns the algorithm.
     pub fn algorithm_name(&self) -> AlgorithmName {
         match self {
             AlgorithmSettings::Sample(settings) => match settings.algorithm {
@@ -118,12 +97,12 @@ impl AlgorithmSettings {
         }
     }
 
-    /// The algorithm's name in files.
+    /// Returns the algorithm's name in files.
     pub fn name(&self) -> &'static str {
         self.algorithm_name().name()
     }
 
-    /// The algorithm with its size: `tmcmc with 1000 particles`.
+    /// Returns the algorithm with its size: `tmcmc with 1000 particles`.
     pub fn words(&self) -> String {
         let name = self.name();
         match self {
@@ -149,7 +128,7 @@ impl AlgorithmSettings {
         }
     }
 
-    /// Whether it ends with draws of the posterior, or of its normal approximation.
+    /// Returns whether it ends with draws of the posterior, or of its normal approximation.
     pub fn has_posterior(&self) -> bool {
         match self {
             AlgorithmSettings::Sample(_) => true,
@@ -158,7 +137,7 @@ impl AlgorithmSettings {
         }
     }
 
-    /// Whether predicted values are told, not log-likelihoods alone: to a fit, a search, and where a metamodel learns.
+    /// Returns whether the engine receives predicted values in addition to log-likelihoods: fits, searches and metamodels do.
     pub fn is_told_values(&self) -> bool {
         let told = matches!(
             self,
@@ -167,12 +146,12 @@ impl AlgorithmSettings {
         told || self.has_metamodel()
     }
 
-    /// Whether a metamodel takes moves between evaluations.
+    /// Returns whether a metamodel takes moves between evaluations.
     pub fn has_metamodel(&self) -> bool {
         self.metamodel_moves() > 0
     }
 
-    /// Moves of a metamodel between two evaluations.
+    /// Returns the number of moves of a metamodel between two evaluations.
     pub fn metamodel_moves(&self) -> usize {
         match self {
             AlgorithmSettings::Sample(settings) => settings.metamodel_moves,
@@ -182,7 +161,7 @@ impl AlgorithmSettings {
         }
     }
 
-    /// The key of the budget that a longer run needs more of.
+    /// Returns the key of the budget that a longer run increases.
     pub fn budget_key(&self) -> &'static str {
         match self {
             AlgorithmSettings::Sample(_) | AlgorithmSettings::Discover { .. } => "particles",
@@ -193,7 +172,7 @@ impl AlgorithmSettings {
         }
     }
 
-    /// The seed.
+    /// Returns the seed.
     pub fn seed(&self) -> u64 {
         match self {
             AlgorithmSettings::Sample(settings) => settings.seed,
@@ -203,7 +182,7 @@ impl AlgorithmSettings {
         }
     }
 
-    /// Largest number of proposals in a round: evaluations are numbered by it.
+    /// Returns the largest number of proposals in a round, which spaces the numbers of evaluations.
     pub fn width(&self) -> usize {
         match self {
             AlgorithmSettings::Sample(settings) => settings.particles,
@@ -214,7 +193,7 @@ impl AlgorithmSettings {
         }
     }
 
-    /// Largest number of evaluations, where the settings state one.
+    /// Returns the largest number of evaluations, if the settings state one.
     pub fn max_evaluations(&self) -> Option<usize> {
         match self {
             AlgorithmSettings::Sample(_) | AlgorithmSettings::Discover { .. } => None,
@@ -223,7 +202,7 @@ impl AlgorithmSettings {
         }
     }
 
-    /// Checks the settings for so many parameters.
+    /// Checks the settings for a number of parameters.
     ///
     /// # Errors
     /// [`AlgorithmSettingsError`] names the setting, its value and its bound.

@@ -1,4 +1,4 @@
-//! The priors that a job states for candidates of its searches, without adding them: `[discovery.priors]`.
+//! The table `[discovery.priors]`: priors of parameters that a search may add.
 
 use std::collections::BTreeMap;
 
@@ -11,7 +11,7 @@ use super::error::TableError;
 use super::prior_entry::marginal;
 use super::prior_entry_error::PriorEntryError;
 
-/// Names of the parameters of the model that a search may free; those of [`PlainParameter`](crate::PlainParameter).
+/// Names of the parameters of the model that a search may free, as in [`PlainParameter`](crate::PlainParameter).
 pub(crate) const PLAIN: [&str; 6] = [
     "cohesion_pa",
     "gamma_exponent",
@@ -21,7 +21,7 @@ pub(crate) const PLAIN: [&str; 6] = [
     "bearing_credit",
 ];
 
-/// The table of a job's text by the full names of the parameters; empty where there is none.
+/// Returns the table of a job's text by the full names of the parameters; empty if there is none.
 pub fn candidate_priors(toml: &str) -> BTreeMap<String, toml::Value> {
     let job: Option<toml::Table> = toml.parse().ok();
     let table = job
@@ -30,14 +30,15 @@ pub fn candidate_priors(toml: &str) -> BTreeMap<String, toml::Value> {
     table.map_or(BTreeMap::new(), by_name)
 }
 
-/// Its entries by full names: a dotted key without quotes is a table under the effect's name.
+/// Returns the entries by full names: TOML reads a dotted key without quotes as a table under the effect's name.
 pub(crate) fn by_name(table: &toml::Table) -> BTreeMap<String, toml::Value> {
     let mut named = BTreeMap::new();
     for (key, value) in table {
         match value.as_table() {
-            Some(own) if !key.contains('.') && !PLAIN.contains(&key.as_str()) => {
+            Some(table) if !key.contains('.') && !PLAIN.contains(&key.as_str()) => {
                 named.extend(
-                    own.iter()
+                    table
+                        .iter()
                         .map(|(name, value)| (format!("{key}.{name}"), value.clone())),
                 );
             }
@@ -51,13 +52,13 @@ pub(crate) fn by_name(table: &toml::Table) -> BTreeMap<String, toml::Value> {
 
 /// Checks that each prior is one of a parameter that a search may add.
 pub(super) fn check(table: &toml::Table) -> Result<(), TableError> {
-    let of_effects = catalogue().iter().flat_map(|effect| {
+    let effect_parameters = catalogue().iter().flat_map(|effect| {
         effect
             .parameters
             .iter()
             .map(move |p| parameter_name(effect, p, None))
     });
-    let known: Vec<String> = of_effects.chain(PLAIN.map(String::from)).collect();
+    let known: Vec<String> = effect_parameters.chain(PLAIN.map(String::from)).collect();
     for (name, value) in by_name(table) {
         if !known.contains(&name) {
             let names = known.iter().map(String::as_str);

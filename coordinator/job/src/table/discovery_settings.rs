@@ -1,7 +1,10 @@
 //! The table `[discovery]`: whether a study looks for the effects that its model misses, and adds them.
 
+use schemars::JsonSchema;
 use serde::Deserialize;
+use serde_json::Value;
 use shared::file::unknown_word;
+use strum::VariantNames;
 
 use super::algorithm_settings::AlgorithmSettings;
 use super::candidate_priors;
@@ -22,23 +25,30 @@ pub struct DiscoverySettings {
 }
 
 /// Who decides whether a missing effect is added.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, strum::EnumString, strum::VariantNames)]
+#[strum(serialize_all = "lowercase")]
 pub enum Apply {
-    /// Nobody: it is not looked for.
+    /// Nobody: the study does not search for missing effects.
     Off,
-    /// The user: it is looked for, and the study ends with what was found.
+    /// The user: the study ends with the effects that its search found.
     Ask,
-    /// The study: what is named is added, until nothing more is.
+    /// The study: it adds the effect that a search names, and searches again until none is named.
     Auto,
 }
 
-/// The table as written.
-#[derive(Deserialize)]
+/// The search for a missing effect.
+#[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub(crate) struct RawDiscovery {
+    /// Who decides whether a missing effect is added.
+    #[schemars(extend("enum" = Apply::VARIANTS))]
     apply: String,
+    /// Largest number of effects that `"auto"` adds.
+    #[schemars(range(min = 1, max = MAX_EFFECTS))]
     max_effects: usize,
+    /// Whether the other kind of model is a candidate too.
     other_kind: bool,
+    #[schemars(with = "Value")]
     pub(crate) priors: toml::Table,
 }
 
@@ -54,22 +64,16 @@ impl Default for RawDiscovery {
 }
 
 impl RawDiscovery {
-    /// The settings of a job with this algorithm.
+    /// Returns the settings of a job with this algorithm.
     pub(crate) fn settings(&self, algorithm: &AlgorithmSettings) -> Result<DiscoverySettings, TableError> {
         let max_effects = self.max_effects;
         if !(1..=MAX_EFFECTS).contains(&max_effects) {
             let rule = format!("must lie in [1, {MAX_EFFECTS}]");
             return Err(TableError::value("max_effects", max_effects, rule));
         }
-        let apply = match self.apply.as_str() {
-            "off" => Apply::Off,
-            "ask" => Apply::Ask,
-            "auto" => Apply::Auto,
-            other => {
-                let unknown = unknown_word("value of apply", other, ["off", "ask", "auto"]);
-                return Err(TableError::Unknown(unknown));
-            }
-        };
+        let known = || Apply::VARIANTS.iter().copied();
+        let unknown = |_| TableError::Unknown(unknown_word("value of apply", &self.apply, known()));
+        let apply = self.apply.parse().map_err(unknown)?;
         if apply != Apply::Off && !algorithm.has_posterior() {
             return Err(TableError::NoLedger {
                 apply: self.apply.clone(),

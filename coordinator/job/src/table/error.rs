@@ -1,9 +1,9 @@
-//! Why a table of a job is refused.
+//! The error of a table of a job.
 
-/// Why a table of a job is refused; the caller names the table.
+/// A reason why a table of a job is refused; the caller names the table.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub(crate) enum TableError {
-    /// A word that is not known, with the nearest known.
+    /// An unknown word, with the nearest known word.
     #[error("{0}")]
     Unknown(String),
     /// A value breaks its rule.
@@ -61,7 +61,7 @@ pub(crate) enum TableError {
 }
 
 impl TableError {
-    /// A value of another type.
+    /// Returns the error of a value of another type.
     pub(crate) fn kind(key: &'static str, value: &toml::Value, expected: &'static str) -> Self {
         TableError::Type {
             key,
@@ -70,7 +70,7 @@ impl TableError {
         }
     }
 
-    /// A value that breaks its rule.
+    /// Returns the error of a value that breaks its rule.
     pub(crate) fn value(key: &'static str, value: impl ToString, rule: impl Into<String>) -> Self {
         TableError::Value {
             key,

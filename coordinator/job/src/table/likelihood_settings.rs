@@ -1,6 +1,8 @@
 //! The table `[likelihood]`: how measurements scatter around the model.
 
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::Deserialize;
+use serde_json::{Map, Value, json};
 use shared::channel::Channel;
 use shared::file::{number, unknown_word};
 use statistics::likelihood::{DISCREPANCY_LEVELS, GREATEST_DISCREPANCY, MIN_DISCREPANCY};
@@ -8,25 +10,27 @@ use statistics::{Discrepancy, ErrorLaw};
 
 use super::error::TableError;
 
-/// Degrees of freedom of Student's t where a job says nothing.
-const USUAL_FREEDOM: f64 = 5.0;
+/// The error laws by their names in files.
+const LAWS: [&str; 2] = ["gaussian", "student_t"];
+/// Default degrees of freedom of Student's t.
+const DEFAULT_FREEDOM: f64 = 5.0;
 
 /// The scatter of measurements around the model, as a job states it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LikelihoodSettings {
     /// The law of the errors.
     pub law: ErrorLaw,
-    /// How far off the model may be in a condition, in noise sds, in the order of [`Channel::ALL`].
+    /// The discrepancy of the model in a condition, in noise sds, in the order of [`Channel::ALL`].
     pub discrepancies: [Discrepancy; 4],
 }
 
 impl LikelihoodSettings {
-    /// Whether the model may be off anywhere.
+    /// Returns whether any channel has a discrepancy.
     pub fn has_discrepancy(&self) -> bool {
         self.discrepancies.iter().any(|d| *d != Discrepancy::None)
     }
 
-    /// A sentence for each property that differs from independent normal errors.
+    /// Returns a sentence for each property that differs from independent normal errors.
     pub fn words(&self) -> Vec<String> {
         let mut words = Vec::new();
         if let ErrorLaw::StudentT { degrees_of_freedom } = self.law {
@@ -66,21 +70,51 @@ impl LikelihoodSettings {
     }
 }
 
-/// The table as written.
-#[derive(Deserialize)]
+/// The scatter of measurements around the model.
+#[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub(crate) struct RawLikelihood {
+    /// Law of the errors.
+    #[schemars(extend("enum" = LAWS))]
     kind: String,
+    /// Degrees of freedom of `student_t`; 5 if they are not stated.
+    #[schemars(range(min = 1))]
     degrees_of_freedom: Option<f64>,
+    #[schemars(schema_with = "discrepancy_schema")]
     discrepancy: toml::Value,
     #[serde(rename = "discrepancy.drawbar_pull")]
-    of_drawbar_pull: Option<toml::Value>,
+    #[schemars(schema_with = "channel_schema")]
+    drawbar_pull: Option<toml::Value>,
     #[serde(rename = "discrepancy.torque")]
-    of_torque: Option<toml::Value>,
+    #[schemars(schema_with = "channel_schema")]
+    torque: Option<toml::Value>,
     #[serde(rename = "discrepancy.sinkage")]
-    of_sinkage: Option<toml::Value>,
+    #[schemars(schema_with = "channel_schema")]
+    sinkage: Option<toml::Value>,
     #[serde(rename = "discrepancy.lateral_force")]
-    of_lateral_force: Option<toml::Value>,
+    #[schemars(schema_with = "channel_schema")]
+    lateral_force: Option<toml::Value>,
+}
+
+/// Returns the schema of the discrepancy of one channel.
+fn channel_schema(_: &mut SchemaGenerator) -> Schema {
+    json_schema!({
+        "description": "Model inadequacy per condition, in noise standard deviations.",
+        "anyOf": [{ "type": "number", "minimum": 0 }, { "type": "string", "enum": ["unknown"] }],
+    })
+}
+
+/// Returns the schema of `discrepancy`: a value for all channels, or a table by channel.
+fn discrepancy_schema(generator: &mut SchemaGenerator) -> Schema {
+    let mut schema = channel_schema(generator);
+    let by_channel: Map<String, Value> = Channel::ALL
+        .map(|channel| (channel.name().to_owned(), json!(schema)))
+        .into_iter()
+        .collect();
+    let table = json!({ "type": "object", "properties": by_channel, "additionalProperties": false });
+    let shapes = schema.get_mut("anyOf").and_then(Value::as_array_mut);
+    shapes.into_iter().for_each(|shapes| shapes.push(table.clone()));
+    schema
 }
 
 impl Default for RawLikelihood {
@@ -89,10 +123,10 @@ impl Default for RawLikelihood {
             kind: "gaussian".into(),
             degrees_of_freedom: None,
             discrepancy: toml::Value::Float(0.0),
-            of_drawbar_pull: None,
-            of_torque: None,
-            of_sinkage: None,
-            of_lateral_force: None,
+            drawbar_pull: None,
+            torque: None,
+            sinkage: None,
+            lateral_force: None,
         }
     }
 }
@@ -103,7 +137,7 @@ impl RawLikelihood {
             ("gaussian", None) => ErrorLaw::Gaussian,
             ("gaussian", Some(_)) => return Err(TableError::DegreesOfFreedom),
             ("student_t", given) => {
-                let degrees_of_freedom = given.unwrap_or(USUAL_FREEDOM);
+                let degrees_of_freedom = given.unwrap_or(DEFAULT_FREEDOM);
                 if !(degrees_of_freedom.is_finite() && degrees_of_freedom >= 1.0) {
                     let rule = "must be a finite number >= 1";
                     return Err(TableError::value("degrees_of_freedom", degrees_of_freedom, rule));
@@ -111,11 +145,11 @@ impl RawLikelihood {
                 ErrorLaw::StudentT { degrees_of_freedom }
             }
             (other, _) => {
-                let unknown = unknown_word("kind", other, ["gaussian", "student_t"]);
+                let unknown = unknown_word("kind", other, LAWS);
                 return Err(TableError::Unknown(unknown));
             }
         };
-        // discrepancy.torque = 0.5 is a table: the channels that it leaves out are inferred.
+        // TOML reads discrepancy.torque = 0.5 as a table; channels that are not in the table are inferred.
         let mut discrepancies = match &self.discrepancy {
             toml::Value::Table(_) => [Discrepancy::Unknown; 4],
             value => [discrepancy("discrepancy", value)?; 4],
@@ -131,10 +165,10 @@ impl RawLikelihood {
             }
         }
         let stated = [
-            &self.of_drawbar_pull,
-            &self.of_torque,
-            &self.of_sinkage,
-            &self.of_lateral_force,
+            &self.drawbar_pull,
+            &self.torque,
+            &self.sinkage,
+            &self.lateral_force,
         ];
         for (i, value) in stated.into_iter().enumerate() {
             if let Some(value) = value {

@@ -1,10 +1,9 @@
-//! The tables of `job.toml`: as written, and what they mean.
+//! The tables of `job.toml`: their keys, and the settings that they state.
 
 pub(crate) mod algorithm_settings;
 pub(crate) mod candidate_priors;
 pub(crate) mod discovery_settings;
 mod error;
-mod keys;
 pub(crate) mod likelihood_settings;
 pub(crate) mod model_entry;
 pub(crate) mod posterior_prior;

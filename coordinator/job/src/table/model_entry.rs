@@ -10,7 +10,7 @@ use shared::parameters::of_models;
 use super::prior_entry::PriorEntry;
 
 /// The numbers of models that a job can compare.
-const COMPARED: std::ops::RangeInclusive<usize> = 2..=8;
+pub(crate) const COMPARED: std::ops::RangeInclusive<usize> = 2..=8;
 
 /// The values of a table with their places in the text.
 type Spanned = BTreeMap<String, toml::Spanned<toml::Value>>;
@@ -18,29 +18,29 @@ type Spanned = BTreeMap<String, toml::Spanned<toml::Value>>;
 /// A forward model as a job writes it.
 #[derive(Debug)]
 pub(crate) struct ModelEntry {
-    /// Line of its `[[models]]`; `None` of a table `[model]`.
+    /// Line of its `[[models]]`; `None` for a table `[model]`.
     pub(crate) line: Option<usize>,
     /// The table without its priors.
     pub(crate) table: toml::Table,
     pub(crate) settings: ModelSettings,
-    /// Its priors: those of all models that it has, then its own.
+    /// The lines of the common `[priors]` that concern it, then the lines of its table.
     pub(crate) priors: Vec<PriorEntry>,
 }
 
-/// The part of a job that is read once more for its lines.
+/// The part of a job that is parsed again for line numbers.
 #[derive(Deserialize)]
 struct Lines {
     #[serde(default)]
-    models: Vec<toml::Spanned<OwnPriors>>,
+    models: Vec<toml::Spanned<PriorLines>>,
 }
 
 #[derive(Deserialize)]
-struct OwnPriors {
+struct PriorLines {
     #[serde(default)]
     priors: Spanned,
 }
 
-/// The models of a job, at least one.
+/// Returns the models of a job, at least one.
 ///
 /// # Arguments
 /// - `shared`: the table `[priors]`, which holds for every model that has the parameter; a model's own line comes before it.
@@ -75,7 +75,7 @@ pub(crate) fn model_entries(
     }
 }
 
-/// The entries of `[[models]]`.
+/// Returns the entries of `[[models]]`.
 fn compared_entries(
     name: &str,
     toml: &str,
@@ -119,7 +119,7 @@ fn compared_entries(
     Ok((first, read))
 }
 
-/// The entries of a table of priors, in the order of the file.
+/// Returns the entries of a table of priors, in the order of the file.
 fn entries(toml: &str, table: Spanned) -> Vec<PriorEntry> {
     let mut table: Vec<_> = table.into_iter().collect();
     table.sort_by_key(|(_, value)| value.span().start);
@@ -132,12 +132,12 @@ fn entries(toml: &str, table: Spanned) -> Vec<PriorEntry> {
     table.into_iter().map(entry).collect()
 }
 
-/// The line, counted from 1, in which a byte of a text stands.
+/// Returns the line, counted from 1, of a byte of a text.
 fn line_at(text: &str, byte: usize) -> usize {
     text[..byte].matches('\n').count() + 1
 }
 
-/// Whether a line of `[priors]` concerns a model among several: a base parameter only where the model has it.
+/// Returns whether a line of `[priors]` concerns a model among several: for a base parameter, if the model has it.
 pub(crate) fn is_shared_by(kind: ModelKind, name: &str) -> bool {
     let stem = name.split_once('.').map_or(name, |(stem, _)| stem);
     of_models().all(|p| p.name != stem) || kind.parameters().any(|p| p.name == stem)

@@ -1,4 +1,4 @@
-//! The posterior of another calibration as a prior: parameters that are jointly normal.
+//! The posterior of another calibration as a prior: a joint normal distribution of parameters.
 
 use std::collections::BTreeSet;
 
@@ -15,11 +15,11 @@ use statistics::{Distribution, Marginal};
 use super::error::TableError;
 use super::prior_entry::FreeParameter;
 
-/// Draws per parameter that a covariance asks for at least.
+/// Minimum number of draws per parameter of a covariance.
 const DRAWS_PER_PARAMETER: usize = 10;
 /// Relative standard deviation below which a column is constant.
 const ROUNDING: f64 = 1e-12;
-/// The parameter of an effect that rings feel too.
+/// The parameter of an effect that also acts under rings.
 const RING_MODULUS: &str = "janosi_hanamoto.shear_modulus_m";
 
 /// `posterior`, `transfer` and `moduli` under `[priors]`, as written.
@@ -27,28 +27,28 @@ const RING_MODULUS: &str = "janosi_hanamoto.shear_modulus_m";
 pub struct PosteriorPrior {
     /// Name of the file, a posterior's table of draws.
     pub file: String,
-    /// By how much the covariance is widened, ≥ 1: plates are no wheels.
+    /// Factor of the covariance, ≥ 1: soil under plates is not quite the soil under wheels.
     pub transfer: f64,
-    /// Whether draws of `log10_p_ref`, `kappa` and `n` are turned into `k_c`, `k_phi` and `n` first.
+    /// Whether draws of `log10_p_ref`, `kappa` and `n` are converted to `k_c`, `k_phi` and `n` first.
     pub literal: bool,
 }
 
-/// Which parameters another calibration's posterior is the prior of.
+/// The parameters whose prior is another calibration's posterior.
 #[derive(Debug, Clone, PartialEq)]
 pub struct JointPrior {
-    /// The keys of the job that ask for it.
+    /// The keys of the job that state it.
     pub stated: PosteriorPrior,
     /// Number of draws in the file.
     pub draws: usize,
     /// The correlated parameters: the first of the parameter vector, in this order.
     pub parameters: Vec<String>,
-    /// Their correlations.
+    /// Correlations of these parameters.
     pub correlations: Vec<Vec<f64>>,
-    /// Columns of parameters that the job speaks for itself, or that its model does not have.
+    /// Columns of parameters that the job states itself, or that its model does not have.
     pub unused: Vec<String>,
-    /// The Bekker moduli that the draws imply; `None` where they do not fix them.
+    /// The Bekker moduli that the draws imply; `None` if the draws do not determine them.
     pub moduli: Option<ImpliedModuli>,
-    /// Whether plates alone were the data of that calibration: it inferred how they scatter, and nothing that only a wheel shows.
+    /// Whether that calibration fitted plates alone: it inferred the scatter of plates, and no parameter that only wheels determine.
     pub of_plates: bool,
 }
 
@@ -66,7 +66,7 @@ pub struct ImpliedModuli {
 }
 
 impl PosteriorPrior {
-    /// Takes its keys out of the table `[priors]`, where they stand.
+    /// Removes its keys from the table `[priors]`.
     pub(crate) fn take(
         mut remove: impl FnMut(&str) -> Option<toml::Value>,
     ) -> Result<Option<PosteriorPrior>, TableError> {
@@ -111,7 +111,7 @@ impl PosteriorPrior {
 
     /// Fits the joint prior to the draws in the file's text: its parameters with their normal marginals.
     ///
-    /// Covered are the columns of parameters of which the job says nothing itself (`is_stated`); `fixed` has its numbers. Draws count equally; means and
+    /// It takes the columns of parameters that the job does not state itself (`is_stated`); `fixed` has its numbers. Draws count equally; means and
     /// covariances are those of the sample, the covariance times `transfer`. Nothing is truncated: what the model cannot be
     /// evaluated at, it refuses.
     ///
@@ -136,8 +136,8 @@ impl PosteriorPrior {
         }
         let (mut covered, mut unused) = (Vec::new(), Vec::new());
         for (position, name) in table.columns.iter().enumerate() {
-            let of_errors = name.starts_with(NOISE_PREFIX) || name == RING_TRANSFER;
-            if of_errors || ["log_likelihood", "log_prior"].contains(&name.as_str()) {
+            let is_error = name.starts_with(NOISE_PREFIX) || name == RING_TRANSFER;
+            if is_error || ["log_likelihood", "log_prior"].contains(&name.as_str()) {
                 continue;
             }
             match shared::model::lookup(name, scope) {
@@ -162,7 +162,7 @@ impl PosteriorPrior {
         let mut free = Vec::new();
         for ((_, name, quantity), column) in covered.iter().zip(&columns) {
             let (mean, sd) = mean_and_sd(column).unwrap_or_default();
-            // The rounding error of a sum of equal numbers is no spread.
+            // A difference within the rounding error of the sum counts as no spread.
             if sd <= ROUNDING * mean.abs() {
                 return Err(whole(format!(
                     "{name} is {} in every draw and has no density: fix it in the job",
@@ -209,8 +209,8 @@ impl PosteriorPrior {
     }
 }
 
-/// Whether a column of a posterior is of what a wheel shows and plates and rings do not: its radius, the noise of its channels, and
-/// effects, of which a ring feels the one of its shear modulus alone.
+/// Returns whether only wheels determine a column of a posterior: a radius, the noise of a channel, or an effect other than the
+/// shear modulus, which also acts under rings.
 fn is_of_wheel(column: &str) -> bool {
     let of_channel = |channel: Channel| column == noise_parameter(channel);
     match column.starts_with(NOISE_PREFIX) {
@@ -222,7 +222,7 @@ fn is_of_wheel(column: &str) -> bool {
 }
 
 impl JointPrior {
-    /// Lines for a terminal that describe the prior.
+    /// Returns lines for a terminal that describe the prior.
     pub fn words(&self) -> Vec<String> {
         let PosteriorPrior { file, transfer, .. } = &self.stated;
         let (names, draws) = (self.parameters.join(", "), self.draws);
@@ -311,7 +311,7 @@ impl Draws {
         self.rows.iter().map(|row| row[position]).collect()
     }
 
-    /// Turns the columns of `log10_p_ref` and `kappa` into those of `k_c` and `k_phi`, draw by draw.
+    /// Converts the columns of `log10_p_ref` and `kappa` to columns of `k_c` and `k_phi`, draw by draw.
     fn turn_to_moduli(&mut self) -> Result<(), TableError> {
         if self.position("k_c").is_some() && self.position("k_phi").is_some() {
             return Ok(());
@@ -325,7 +325,7 @@ impl Draws {
         Ok(())
     }
 
-    /// The moduli of the draws, where they, or what the job fixes, say them.
+    /// Returns the moduli of the draws if the draws and the fixed parameters of the job determine them.
     fn moduli(&self, fixed: impl Fn(&str) -> Option<f64>) -> Option<ImpliedModuli> {
         let values = |name: &str| match self.position(name) {
             Some(position) => Some(self.column(position)),
@@ -349,7 +349,7 @@ impl Draws {
     }
 }
 
-/// Correlation of two samples; 0 where one does not vary.
+/// Returns the correlation of two samples; 0 if one does not vary.
 fn correlation(a: &[f64], b: &[f64]) -> f64 {
     let ((mean_a, sd_a), (mean_b, sd_b)) = (
         mean_and_sd(a).unwrap_or_default(),
@@ -409,7 +409,7 @@ mod tests {
         Spec::new("job.toml", &job, "experiment.toml", &files).map_err(|e| e.to_string())
     }
 
-    /// Covariance of two columns of the draws, times `transfer`.
+    /// Returns the covariance of two columns of the draws, times `transfer`.
     fn covariance(transfer: f64, a: &[f64], b: &[f64]) -> f64 {
         let mean = |x: &[f64]| x.iter().sum::<f64>() / x.len() as f64;
         let (at, bt) = (mean(a), mean(b));

@@ -30,15 +30,15 @@ pub struct FreeParameter {
 pub struct PriorEntry {
     /// The parameter.
     pub name: String,
-    /// Line in the job's file; `None` of an entry that was added to the value.
+    /// Line in the job's file; `None` for an entry that was added to the value.
     pub line: Option<usize>,
-    /// Whether it is a table with a header of its own, `[priors.NAME]`.
+    /// Whether it is a table with a header, `[priors.NAME]`.
     pub(crate) has_header: bool,
     /// A number, or a table with one distribution.
     pub value: toml::Value,
 }
 
-/// The priors that models state for their parameters, by their texts.
+/// The default priors of the models' parameters, by their texts.
 static USUAL_PRIORS: LazyLock<BTreeMap<&'static str, toml::Value>> = LazyLock::new(|| {
     let value = |prior: &'static str| {
         prior
@@ -49,14 +49,14 @@ static USUAL_PRIORS: LazyLock<BTreeMap<&'static str, toml::Value>> = LazyLock::n
     texts.map(|prior| (prior, value(prior))).collect()
 });
 
-/// An entry that is read: a number or a prior.
+/// A parsed entry: a number or a prior.
 pub(crate) enum ParsedPrior {
     Fixed(f64),
     Free(FreeParameter),
 }
 
 impl PriorEntry {
-    /// An error of this entry of a job.
+    /// Returns an error of this entry of a job.
     pub(crate) fn error(&self, job: &str, message: String) -> FileError {
         match self.line {
             Some(line) => FileError::at(job, line, message),
@@ -82,22 +82,22 @@ impl PriorEntry {
         }))
     }
 
-    /// A dotted name without quotes is a table of tables to TOML; says so where one was probably meant.
+    /// Checks for a dotted name without quotes, which TOML reads as a table of tables.
     fn check_quotes(&self, wheels: &BTreeSet<&str>, effects: &EffectSet) -> Result<(), PriorEntryError> {
         let Some(table) = self.value.as_table() else {
             return Ok(());
         };
-        let of_effect = |key: &str| {
+        let is_effect = |key: &str| {
             let known = effects.iter().chain(formula::catalogue::catalogue());
             known
                 .filter(|e| e.name == self.name)
                 .any(|e| e.parameter(key).is_some())
         };
         let dotted = |key: &&String| {
-            let of_noise = Channel::ALL.iter().any(|c| c.column() == *key)
+            let is_noise = Channel::ALL.iter().any(|c| c.column() == *key)
                 || Scatter::ALL.iter().any(|s| s.key() == *key);
-            let of_ring = parameters::RING_TRANSFER == format!("{}.{key}", self.name);
-            wheels.contains(key.as_str()) || of_noise || of_ring || of_effect(key)
+            let is_ring = parameters::RING_TRANSFER == format!("{}.{key}", self.name);
+            wheels.contains(key.as_str()) || is_noise || is_ring || is_effect(key)
         };
         match table.keys().find(dotted) {
             None => Ok(()),
@@ -110,7 +110,7 @@ impl PriorEntry {
 }
 
 impl ParsedPrior {
-    /// The prior of a parameter of the model itself that the job does not mention; `None` where the model states none.
+    /// Returns the default prior of a parameter of the model that the job does not state; `None` if the model has none.
     pub(crate) fn usual(parameter: &BaseParameter) -> Option<Result<FreeParameter, PriorEntryError>> {
         let value = USUAL_PRIORS.get(parameter.prior?)?;
         let quantity = ParameterBounds::from(parameter);
@@ -123,8 +123,8 @@ impl ParsedPrior {
         Some(marginal.map(free))
     }
 
-    /// The value or prior that an effect's file states for a parameter that the job does not mention.
-    pub(crate) fn of_effect(name: &str, parameter: &Parameter) -> Result<ParsedPrior, PriorEntryError> {
+    /// Returns the value or prior that an effect's file states for a parameter that the job does not state.
+    pub(crate) fn from_effect(name: &str, parameter: &Parameter) -> Result<ParsedPrior, PriorEntryError> {
         if let Some(value) = number(&parameter.prior) {
             return Ok(ParsedPrior::Fixed(value));
         }
@@ -143,19 +143,19 @@ impl ParsedPrior {
     }
 }
 
-/// Checks what a user's effect file says of its parameters.
+/// Checks the values and priors of the parameters of a user's effect file.
 ///
 /// # Errors
 /// [`FileError`] with the line of the parameter.
-pub fn check_own(file: &str, effect: &Effect) -> Result<(), FileError> {
+pub fn check_effect(file: &str, effect: &Effect) -> Result<(), FileError> {
     for parameter in &effect.parameters {
-        ParsedPrior::of_effect(&parameter.name, parameter)
+        ParsedPrior::from_effect(&parameter.name, parameter)
             .map_err(|e| FileError::at(file, parameter.line, e.to_string()))?;
     }
     Ok(())
 }
 
-/// The parameters of an effect that its file leaves free, by their names in a job.
+/// Returns the parameters of an effect that its file leaves free, by their names in a job.
 ///
 /// # Errors
 /// [`PriorEntryError`] names the parameter.
@@ -163,14 +163,14 @@ pub fn free_parameters(effect: &Effect) -> Result<Vec<FreeParameter>, PriorEntry
     let mut free = Vec::new();
     for parameter in &effect.parameters {
         let name = parameter_name(effect, parameter, None);
-        if let ParsedPrior::Free(parameter) = ParsedPrior::of_effect(&name, parameter)? {
+        if let ParsedPrior::Free(parameter) = ParsedPrior::from_effect(&name, parameter)? {
             free.push(parameter);
         }
     }
     Ok(free)
 }
 
-/// The prior density that a table describes, within the quantity's physical bounds.
+/// Returns the prior density that a table describes, within the quantity's physical bounds.
 pub(crate) fn marginal(value: &toml::Value, quantity: &ParameterBounds) -> Result<Marginal, PriorEntryError> {
     let ParameterBounds { unit, lower, upper } = quantity;
     let (lower, upper, unit) = (*lower, *upper, behind(unit));
@@ -199,7 +199,7 @@ pub(crate) fn marginal(value: &toml::Value, quantity: &ParameterBounds) -> Resul
     if let Some(bounds) = stated {
         within(bounds, true)?;
     }
-    // A prior without bounds of its own ends where the quantity does.
+    // A prior without stated bounds has the bounds of the quantity.
     let bounds = stated.or(match distribution {
         Distribution::Uniform { .. } | Distribution::Loguniform { .. } => None,
         Distribution::Normal { .. } => Some([lower, upper]),
@@ -208,7 +208,7 @@ pub(crate) fn marginal(value: &toml::Value, quantity: &ParameterBounds) -> Resul
     Ok(Marginal::new(distribution, bounds)?)
 }
 
-/// Unit and physical bounds of a parameter.
+/// Returns the unit and the physical bounds of a parameter.
 fn quantity(name: &str, scope: &ParameterScope) -> Result<ParameterBounds, PriorEntryError> {
     let Some(column) = name.strip_prefix(NOISE_PREFIX) else {
         return Ok(shared::model::lookup(name, scope)?);

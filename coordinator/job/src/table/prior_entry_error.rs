@@ -1,4 +1,4 @@
-//! Why an entry of `[priors]` is refused.
+//! The error of an entry of `[priors]`.
 
 use shared::model::ModelError;
 use statistics::PriorError;
@@ -6,16 +6,16 @@ use statistics::PriorError;
 /// The distributions of a prior.
 pub(crate) const DISTRIBUTIONS: [&str; 5] = ["uniform", "loguniform", "normal", "lognormal", "half_normal"];
 
-/// Why an entry of `[priors]`, or the prior in an effect file, is refused.
+/// A reason why an entry of `[priors]`, or the prior in an effect file, is refused.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum PriorEntryError {
     /// The model has no such parameter.
     #[error(transparent)]
     Parameter(#[from] ModelError),
-    /// A word that is not known, with the nearest known.
+    /// An unknown word, with the nearest known word.
     #[error("{0}")]
     Unknown(String),
-    /// A noise sd is no constant of the job.
+    /// A fixed noise sd, which belongs to the experiment.
     #[error("{0} is fixed in the experiment's [noise], not here")]
     FixedNoise(String),
     /// A dotted name without quotes.
@@ -28,7 +28,7 @@ pub enum PriorEntryError {
     },
     /// The prior of one parameter.
     #[error("{name}: {error}")]
-    Of {
+    InParameter {
         /// The parameter.
         name: String,
         /// The error.
@@ -57,7 +57,7 @@ pub enum PriorEntryError {
     #[error("{}[{a}, {b}]{unit} {} the admissible range [{lower}, {upper}]{unit}",
         if *.stated { "bounds " } else { "" }, if *.stated { "leave" } else { "leaves" })]
     OutOfRange {
-        /// Whether the bounds of the prior do so, or its support.
+        /// Whether the stated bounds of the prior are beyond, or its support.
         stated: bool,
         /// Lower end.
         a: f64,
@@ -76,9 +76,9 @@ pub enum PriorEntryError {
 }
 
 impl PriorEntryError {
-    /// The error with the name of its parameter.
+    /// Adds the name of the parameter.
     pub(crate) fn in_parameter(self, name: impl Into<String>) -> Self {
-        PriorEntryError::Of {
+        PriorEntryError::InParameter {
             name: name.into(),
             error: Box::new(self),
         }

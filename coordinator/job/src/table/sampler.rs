@@ -1,7 +1,7 @@
 //! The table `[sampler]`: an algorithm with its settings.
 //!
-//! Each algorithm has a struct here. Its fields are the keys that the algorithm takes: reader, schema and the test of docs/job.md have
-//! their names, types, bounds, defaults and words from it. A new key is a field, and its use in `settings`.
+//! Each algorithm has a struct here. Its fields are the keys that the algorithm takes; the reader, the schema and the test of
+//! docs/job.md take names, types, bounds, defaults and descriptions from it. A new key is a field, and its use in `settings`.
 
 use inference::evolution::{CmaEsSettings, EvolutionSettings, GaSettings, MAX_POPULATION};
 use inference::lm::LmSettings;
@@ -10,13 +10,14 @@ use schemars::JsonSchema;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use shared::file::{FileError, TomlFile, unknown_word};
+use shared::keys::keys_of;
 use toml::de::DeValue;
 
 use super::algorithm_settings::{AlgorithmName, AlgorithmSettings};
 use super::error::TableError;
-use super::keys::keys_of;
+use crate::derived_schema::from_type;
 
-/// Least and most steps of a stage whose steps are subchains of a metamodel: a step of many moves forgets more than one move.
+/// Minimum and maximum number of steps of a stage whose steps are subchains of a metamodel, which decorrelate more than one move.
 const METAMODEL_STEPS: [usize; 2] = [3, 30];
 
 /// The algorithms that a job may state, in the order in which messages name them.
@@ -226,13 +227,13 @@ impl Default for CmaEs {
 trait Keys: DeserializeOwned + JsonSchema + Default {
     const NAME: AlgorithmName;
 
-    /// The settings.
+    /// Returns the settings.
     ///
     /// # Errors
     /// [`TableError`]: keys contradict each other.
     fn settings(self) -> Result<AlgorithmSettings, TableError>;
 
-    /// The point estimates that are asked for.
+    /// Returns the names of the point estimates.
     fn point_estimates(&self) -> &[String] {
         &[]
     }
@@ -361,7 +362,7 @@ pub(crate) struct StatedAlgorithm {
     /// The keys that it takes, in the order of its struct.
     pub(crate) keys: fn() -> &'static [&'static str],
     /// The schema of its keys.
-    pub(crate) schema: fn() -> schemars::Schema,
+    pub(crate) schema: fn() -> serde_json::Value,
     read: fn(&TomlFile, toml::Spanned<DeValue>) -> Result<SamplerTable, FileError>,
 }
 
@@ -370,11 +371,7 @@ impl StatedAlgorithm {
         StatedAlgorithm {
             name: K::NAME,
             keys: keys_of::<K>,
-            schema: || {
-                schemars::generate::SchemaSettings::draft07()
-                    .into_generator()
-                    .into_root_schema_for::<K>()
-            },
+            schema: from_type::<K>,
             read: |file, table| {
                 let keys: K = file.read(table)?;
                 SamplerTable::new(keys).map_err(|e| file.error(format!("[sampler] {e}")))
@@ -395,7 +392,7 @@ impl SamplerTable {
     /// Reads the table by the struct of the algorithm that it names.
     ///
     /// # Errors
-    /// [`FileError`] with the line of a key or value; of a whole table with its name.
+    /// [`FileError`] with the line of a key or value, or with the name of the table.
     pub(crate) fn read(file: &TomlFile) -> Result<SamplerTable, FileError> {
         let Some(mut value) = file.get("sampler").cloned() else {
             return SamplerTable::new(Tmcmc::default()).map_err(|e| file.error(e.to_string()));
@@ -455,10 +452,10 @@ impl SamplerTable {
     }
 }
 
-/// A fit or search beside a sample: with its usual settings and the sample's seed.
+/// Returns a fit or search beside a sample, with its default settings and the sample's seed.
 fn point_estimate(name: &str, seed: Seed) -> Result<AlgorithmSettings, TableError> {
-    let known = AlgorithmName::POINT_ESTIMATES;
-    match known.into_iter().find(|known| known.name() == name) {
+    let algorithms = AlgorithmName::POINT_ESTIMATES;
+    match algorithms.into_iter().find(|algorithm| algorithm.name() == name) {
         Some(AlgorithmName::Ga) => Ga {
             seed,
             ..Ga::default()
@@ -469,7 +466,7 @@ fn point_estimate(name: &str, seed: Seed) -> Result<AlgorithmSettings, TableErro
             ..CmaEs::default()
         }
         .settings(),
-        // Beside a sample no draws of an approximation are wanted.
+        // The sample makes draws of the normal approximation superfluous.
         Some(_) => Lm {
             seed,
             particles: 0,
@@ -477,13 +474,13 @@ fn point_estimate(name: &str, seed: Seed) -> Result<AlgorithmSettings, TableErro
         }
         .settings(),
         None => {
-            let known = known.map(AlgorithmName::name);
-            Err(TableError::Unknown(unknown_word("point estimate", name, known)))
+            let names = algorithms.map(AlgorithmName::name);
+            Err(TableError::Unknown(unknown_word("point estimate", name, names)))
         }
     }
 }
 
-/// The keys of all algorithms.
+/// Returns the keys of all algorithms.
 fn known_keys() -> impl Iterator<Item = &'static str> {
     let mut keys = vec!["algorithm"];
     for algorithm in &ALGORITHMS {

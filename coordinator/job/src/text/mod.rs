@@ -1,6 +1,6 @@
-//! The texts of jobs that follow from a job, for users to read: comments, and everything that a change leaves alone, stay as written.
+//! Edits of the text of a job, for users to read: comments, and everything that a change does not concern, stay as written.
 //!
-//! No other file edits the text of a job. What a program needs of such a job alone is made of its value ([`Job::with`](crate::Job::with)).
+//! No other file edits the text of a job. Jobs that only the program reads are changes of the value ([`Job::with`](crate::Job::with)).
 
 #[cfg(test)]
 mod tests;
@@ -18,10 +18,10 @@ use crate::service_effect::ServiceEffect;
 use crate::table::algorithm_settings::{AlgorithmName, AlgorithmSettings};
 use crate::table::model_entry::is_shared_by;
 
-/// A job with an addition; everything else stays as it is written.
+/// Returns a job with an addition; everything else stays as it is written.
 ///
 /// # Errors
-/// [`FileError`] where the text is no job with a table `[model]`, or where a line of `[priors]` or a file is there already.
+/// [`FileError`] if the text is no job with a table `[model]`, or if a line of `[priors]` or a file exists already.
 pub fn extended_job(name: &str, job: &FileSet, addition: &Addition) -> Result<FileSet, FileError> {
     if addition.is_empty() {
         return Ok(job.clone());
@@ -51,10 +51,10 @@ pub fn extended_job(name: &str, job: &FileSet, addition: &Addition) -> Result<Fi
     Ok(text.beside(&files))
 }
 
-/// A job without some of its effects: their names, their files and every line about their parameters go.
+/// Returns a job without some of its effects: their names, their files and every line about their parameters are removed.
 ///
 /// # Errors
-/// [`FileError`] where the text is no job.
+/// [`FileError`] if the text is no job.
 pub fn without_effects(name: &str, job: &FileSet, effects: &[String]) -> Result<FileSet, FileError> {
     let is_named = |effect: &str| effects.iter().any(|dropped| dropped == effect);
     let is_dropped = |file: &str| {
@@ -75,10 +75,10 @@ pub fn without_effects(name: &str, job: &FileSet, effects: &[String]) -> Result<
     Ok(text.beside(&files))
 }
 
-/// A job with further names under `accept`; those that are there already are not repeated.
+/// Returns a job with further names under `accept`, each name once.
 ///
 /// # Errors
-/// [`FileError`] where the text is no TOML, or `accept` no list.
+/// [`FileError`] if the text is no TOML, or `accept` no list.
 pub fn accepting_job(name: &str, toml: &str, accepted: &[String]) -> Result<String, FileError> {
     if accepted.is_empty() {
         return Ok(toml.to_owned());
@@ -96,10 +96,10 @@ pub fn accepting_job(name: &str, toml: &str, accepted: &[String]) -> Result<Stri
     Ok(text.document.to_string())
 }
 
-/// A job whose study searches for a missing effect: one that does not ask for it is given `[discovery] apply = "ask"`.
+/// Returns a job whose study searches for a missing effect, by `[discovery] apply = "ask"` if it states no search.
 ///
 /// # Errors
-/// [`FileError`] where the text is no job.
+/// [`FileError`] if the text is no job.
 pub fn searched_job(name: &str, job: &FileSet) -> Result<FileSet, FileError> {
     let mut text = JobText::parse(name, &job.toml)?;
     let discovery = text.table_or_new("discovery")?;
@@ -110,10 +110,10 @@ pub fn searched_job(name: &str, job: &FileSet) -> Result<FileSet, FileError> {
     Ok(text.beside(&job.files))
 }
 
-/// A job as its study goes on with it: without point estimates, and without a search of its own.
+/// Returns the job of a study's next calibration: without point estimates, and without a search.
 ///
 /// # Errors
-/// [`FileError`] where the text is no job.
+/// [`FileError`] if the text is no job.
 pub fn continued_job(name: &str, job: &FileSet) -> Result<FileSet, FileError> {
     let mut text = JobText::parse(name, &job.toml)?;
     text.keep_model(0)?;
@@ -122,14 +122,14 @@ pub fn continued_job(name: &str, job: &FileSet) -> Result<FileSet, FileError> {
     Ok(text.beside(&job.files))
 }
 
-/// The job of one of the models that a job compares: its table becomes `[model]`, and `[priors]` holds the lines of all models that
-/// concern it, then those of its own table.
+/// Returns the job of one of the models that a job compares: its table becomes `[model]`, and `[priors]` holds the lines of all models that
+/// concern it, then the lines of its table.
 ///
 /// # Arguments
 /// - `number`: of the model, from 0, in the order of the job.
 ///
 /// # Errors
-/// [`FileError`] where the text is no job, or has fewer models.
+/// [`FileError`] if the text is no job, or has fewer models.
 pub fn model_job(name: &str, job: &FileSet, number: usize) -> Result<FileSet, FileError> {
     let mut text = JobText::parse(name, &job.toml)?;
     text.keep_model(number)?;
@@ -137,26 +137,26 @@ pub fn model_job(name: &str, job: &FileSet, number: usize) -> Result<FileSet, Fi
     Ok(text.beside(&job.files))
 }
 
-/// A job with a fit or a search in place of its sampler; the seed and everything else stay as written. A point estimate is therefore
-/// stored, taken up again and shown like any other calibration.
+/// Returns a job with a fit or a search in place of its sampler; the seed and everything else stay as written. A point estimate is
+/// therefore stored, resumed and shown like any other calibration.
 ///
 /// # Errors
-/// [`FileError`] where the text is no job.
+/// [`FileError`] if the text is no job.
 pub fn point_job(name: &str, job: &FileSet, algorithm: &AlgorithmSettings) -> Result<FileSet, FileError> {
     let mut text = JobText::parse(name, &job.toml)?;
     text.set_algorithm(algorithm.name())?;
     if let AlgorithmSettings::Fit(_) = algorithm {
-        // The sample is the posterior: beside it no draws of an approximation are wanted.
+        // The sample makes draws of the normal approximation superfluous.
         text.table_or_new("sampler")?.insert("particles", value(0));
     }
     Ok(text.beside(&job.files))
 }
 
-/// The job by which a level that is left out is predicted: without point estimates and search of its own, by `lm` with its usual
-/// settings, or by the job's own algorithm.
+/// Returns the job that predicts a left-out level: without point estimates and search, by `lm` with its default settings or by the
+/// job's algorithm.
 ///
 /// # Errors
-/// [`FileError`] where the text is no job.
+/// [`FileError`] if the text is no job.
 pub fn validation_job(name: &str, job: &FileSet, by_own_algorithm: bool) -> Result<FileSet, FileError> {
     let continued = continued_job(name, job)?;
     if by_own_algorithm {
@@ -167,10 +167,10 @@ pub fn validation_job(name: &str, job: &FileSet, by_own_algorithm: bool) -> Resu
     Ok(text.beside(&continued.files))
 }
 
-/// The text of a job that does not list effects of a service's catalogue; a line that is wrong keeps its number.
+/// Returns a job without the effects of a service's catalogue; lines keep their numbers.
 ///
 /// # Errors
-/// [`FileError`] where the text is no TOML.
+/// [`FileError`] if the text is no TOML.
 pub fn without_service_effects(
     name: &str,
     toml: &str,
@@ -186,10 +186,10 @@ pub fn without_service_effects(
     Ok(text.document.to_string())
 }
 
-/// The job with effects of a service's catalogue as files of its own, so that no later version changes what it means.
+/// Returns the job with effects of a service's catalogue as its files, so that later versions of the catalogue do not change it.
 ///
 /// # Errors
-/// [`FileError`] where the job has another file of that name.
+/// [`FileError`] if the job has another file of that name.
 pub fn with_service_effects(
     name: &str,
     job: FileSet,
@@ -204,10 +204,10 @@ pub fn with_service_effects(
     extended_job(name, &FileSet { toml, ..job }, &addition)
 }
 
-/// The job by which versions before migration 20 searched the model of a job.
+/// Returns the job by which versions before migration 20 searched the model of a job.
 ///
 /// # Errors
-/// [`FileError`] where the text is no job.
+/// [`FileError`] if the text is no job.
 pub fn earlier_search(name: &str, job: &FileSet) -> Result<FileSet, FileError> {
     let mut text = JobText::parse(name, &job.toml)?;
     text.keep_model(0)?;
@@ -215,10 +215,10 @@ pub fn earlier_search(name: &str, job: &FileSet) -> Result<FileSet, FileError> {
     Ok(text.beside(&job.files))
 }
 
-/// The job of such a search as this version reads it: its model by the usual algorithm.
+/// Returns the job of such a search as this version reads it: its model by the default algorithm.
 ///
 /// # Errors
-/// [`FileError`] where the text is no job.
+/// [`FileError`] if the text is no job.
 pub fn searched_model(name: &str, search: &FileSet) -> Result<FileSet, FileError> {
     let mut text = JobText::parse(name, &search.toml)?;
     text.remove("sampler", |key| key == "algorithm");
@@ -227,7 +227,7 @@ pub fn searched_model(name: &str, search: &FileSet) -> Result<FileSet, FileError
 
 /// A job's text that is being changed.
 struct JobText<'n> {
-    /// How messages call the job.
+    /// Name of the job in messages.
     name: &'n str,
     document: DocumentMut,
 }
@@ -243,7 +243,7 @@ impl<'n> JobText<'n> {
         FileError::whole(self.name, message)
     }
 
-    /// The text, with files beside it.
+    /// Returns the text, with files beside it.
     fn beside(self, files: &BTreeMap<String, String>) -> FileSet {
         FileSet {
             toml: self.document.to_string(),
@@ -266,7 +266,7 @@ impl<'n> JobText<'n> {
         self.table("model").ok_or(missing)
     }
 
-    /// Puts a model in the place of all; a job with a table `[model]` stays as it is.
+    /// Replaces all compared models by one; a job with a table `[model]` stays as it is.
     fn keep_model(&mut self, number: usize) -> Result<(), FileError> {
         let Some(models) = self.document.remove("models") else {
             return Ok(());
@@ -301,7 +301,7 @@ impl<'n> JobText<'n> {
         Ok(())
     }
 
-    /// Removes `[discovery]` but for what says which candidates there are: what follows from a job asks for nothing itself.
+    /// Removes `[discovery]` except the keys that define the candidates, because a derived job starts no search itself.
     fn keep_candidates(&mut self) {
         self.remove("discovery", |key| !["priors", "other_kind"].contains(&key));
         if self
@@ -312,8 +312,8 @@ impl<'n> JobText<'n> {
         }
     }
 
-    /// Puts another algorithm with its usual settings in the place of the job's; the seed stays, and of `[discovery]` what says which
-    /// candidates there are.
+    /// Replaces the job's algorithm by another with its default settings; the seed and the keys of `[discovery]` that define the
+    /// candidates stay.
     fn set_algorithm(&mut self, algorithm: &str) -> Result<(), FileError> {
         self.table_or_new("sampler")?;
         self.remove("sampler", |key| key != "seed");
@@ -378,7 +378,7 @@ impl<'n> JobText<'n> {
 
     /// Adds a line under `[priors]`.
     fn add_prior(&mut self, parameter: &str, prior: &toml::Value) -> Result<(), FileError> {
-        // As TOML writes it on one line, which is how a prior stands in a job.
+        // Jobs state a prior as an inline table on one line.
         let line = prior.to_string().parse();
         let line: toml_edit::Value =
             line.map_err(|e: toml_edit::TomlError| self.error(format!("{parameter}: {e}")))?;

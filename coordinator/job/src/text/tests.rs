@@ -143,7 +143,7 @@ fn alone(toml: &str) -> FileSet {
     }
 }
 
-/// The text of a job with a change of its model.
+/// Returns the text of a job with a change of its model.
 fn changed(toml: &str, change: ModelChange) -> Result<String, String> {
     let addition = Addition {
         changes: vec![change],
@@ -153,7 +153,7 @@ fn changed(toml: &str, change: ModelChange) -> Result<String, String> {
     job.map(|job| job.toml).map_err(|e| e.to_string())
 }
 
-/// An effect of the catalogue, one in a file, and lines under `[priors]`.
+/// Returns an effect of the catalogue, one in a file, and lines under `[priors]`.
 fn addition(priors: &[(&str, &str)]) -> Addition {
     let read = |(name, value): &(&str, &str)| ((*name).to_owned(), value.parse().unwrap());
     Addition {
@@ -245,14 +245,14 @@ fn each_model_alone_has_its_parameters_in_the_order_of_the_whole_job() {
         assert_eq!((&alone.model, alone.algorithm), (&whole.model, whole.algorithm));
         assert_eq!((whole.models, alone.models), (2, 1));
     }
-    let own = &models.others[0].priors;
-    let names: Vec<&str> = own.iter().map(|p| p.name.as_str()).collect();
+    let priors = &models.others[0].priors;
+    let names: Vec<&str> = priors.iter().map(|p| p.name.as_str()).collect();
     assert_eq!(
         names,
         ["surface_friction", "noise.torque_n_m"],
         "nothing of a Bekker soil"
     );
-    assert_eq!(own[0].line, Some(10));
+    assert_eq!(priors[0].line, Some(10));
     let first: Vec<&str> = models.first.priors.iter().map(|p| p.name.as_str()).collect();
     assert_eq!(
         first,
@@ -292,7 +292,7 @@ fn mistakes_of_a_later_model_have_their_line() {
 
 const LISTED: &str = "[model]\nkind = \"scm\"\neffects = [\"mine@2\", \"adhesion\", \"yours\"] # why\n";
 
-fn own(named: &str, name: &str, version: i64) -> ServiceEffect {
+fn user_effect(named: &str, name: &str, version: i64) -> ServiceEffect {
     ServiceEffect::new(named.to_owned(), name, version, format!("text of {name}"))
 }
 
@@ -304,15 +304,15 @@ fn effects_of_a_service_become_files_of_the_job() {
         toml: LISTED.to_owned(),
         ..FileSet::default()
     };
-    let own = [own("mine@2", "mine", 2), own("yours", "yours", 7)];
-    let with = with_service_effects("job.toml", job.clone(), &own).unwrap();
+    let effects = [user_effect("mine@2", "mine", 2), user_effect("yours", "yours", 7)];
+    let with = with_service_effects("job.toml", job.clone(), &effects).unwrap();
     let expected = "[model]\nkind = \"scm\"\neffects = [ \"adhesion\"] # why\neffect_files = [\"mine@2.toml\", \"yours@7.toml\"]\n";
     assert_eq!(with.toml, expected);
     assert_eq!(with.files["yours@7.toml"], "text of yours");
-    let without = without_service_effects("job.toml", LISTED, &own).unwrap();
+    let without = without_service_effects("job.toml", LISTED, &effects).unwrap();
     assert_eq!(without.lines().count(), LISTED.lines().count());
     assert_eq!(with_service_effects("job.toml", job, &[]).unwrap().toml, LISTED);
-    let again = with_service_effects("job.toml", with, &own[..1]).unwrap_err();
+    let again = with_service_effects("job.toml", with, &effects[..1]).unwrap_err();
     assert_eq!(again.to_string(), "job.toml: file \"mine@2.toml\" exists already");
 }
 
@@ -325,9 +325,9 @@ fn a_point_estimate_has_the_job_s_seed_and_the_usual_settings() {
     assert_eq!(names, ["ga", "lm"]);
     for algorithm in &job.point_estimates {
         let text = point_job("job.toml", &alone(SAMPLED), algorithm).unwrap().toml;
-        let own = Job::parse("job.toml", &text).unwrap();
-        assert_eq!((own.algorithm, own.algorithm.seed()), (*algorithm, 7));
-        assert!(own.point_estimates.is_empty(), "it has none beside it");
+        let derived = Job::parse("job.toml", &text).unwrap();
+        assert_eq!((derived.algorithm, derived.algorithm.seed()), (*algorithm, 7));
+        assert!(derived.point_estimates.is_empty(), "it has none beside it");
         assert!(
             text.starts_with("# why\n[model]\nkind = \"scm\" # here\n"),
             "{text}"
@@ -371,17 +371,17 @@ fn the_model_stays_and_what_a_study_would_do_besides_goes() {
         toml: toml.into(),
         files: [("mine.toml".into(), "x".into())].into(),
     };
-    let of = |by_own| {
-        let own = validation_job("job.toml", &job, by_own).unwrap();
-        assert_eq!(own.files, job.files);
+    let validated = |by_own| {
+        let derived = validation_job("job.toml", &job, by_own).unwrap();
+        assert_eq!(derived.files, job.files);
         assert!(
-            own.toml.contains("effects = [\"adhesion\"]") && !own.toml.contains("auto"),
+            derived.toml.contains("effects = [\"adhesion\"]") && !derived.toml.contains("auto"),
             "{}",
-            own.toml
+            derived.toml
         );
-        Job::parse("job.toml", &own.toml).unwrap()
+        Job::parse("job.toml", &derived.toml).unwrap()
     };
-    let (fitted, sampled) = (of(false), of(true));
+    let (fitted, sampled) = (validated(false), validated(true));
     assert!(
         matches!(fitted.algorithm, AlgorithmSettings::Fit(settings) if settings.draws > 0 && settings.seed == 7)
     );

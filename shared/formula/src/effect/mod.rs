@@ -5,6 +5,8 @@ mod names;
 mod neutral;
 mod place;
 
+use strum::{EnumString, IntoStaticStr, VariantArray};
+
 use crate::evaluation::program::Program;
 use crate::hook::Hook;
 use crate::syntax::graph::{Graph, Id};
@@ -50,7 +52,8 @@ pub struct Parameter {
 }
 
 /// An effect that a model has in code, because no formula at a point can express it.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, EnumString, IntoStaticStr, VariantArray)]
+#[strum(serialize_all = "snake_case")]
 pub enum Mechanism {
     /// The soil springs back behind the axle.
     Rebound,
@@ -66,23 +69,11 @@ pub enum Mechanism {
 
 impl Mechanism {
     /// Every mechanism.
-    pub const ALL: [Mechanism; 5] = [
-        Mechanism::Rebound,
-        Mechanism::FlatPatch,
-        Mechanism::Digging,
-        Mechanism::EndWall,
-        Mechanism::SideWall,
-    ];
+    pub const ALL: &'static [Self] = Self::VARIANTS;
 
     /// Name in effect files.
     pub fn name(self) -> &'static str {
-        match self {
-            Mechanism::Rebound => "rebound",
-            Mechanism::FlatPatch => "flat_patch",
-            Mechanism::Digging => "digging",
-            Mechanism::EndWall => "end_wall",
-            Mechanism::SideWall => "side_wall",
-        }
+        self.into()
     }
 
     /// The parameters that it takes, in order.

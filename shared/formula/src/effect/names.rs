@@ -61,7 +61,7 @@ pub(super) fn check_free(what: &'static str, name: &str) -> Result<(), NameError
 
 /// Finds the mechanism of a name.
 pub(super) fn mechanism(name: &str) -> Result<Mechanism, NameError> {
-    let names = Mechanism::ALL.map(Mechanism::name);
-    let mechanism = Mechanism::ALL.into_iter().find(|m| m.name() == name);
-    mechanism.ok_or_else(|| NameError::Unknown(unknown_word("mechanism", name, names)))
+    let names = Mechanism::ALL.iter().map(|mechanism| mechanism.name());
+    name.parse()
+        .map_err(|_| NameError::Unknown(unknown_word("mechanism", name, names)))
 }

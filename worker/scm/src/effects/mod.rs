@@ -59,7 +59,7 @@ impl ModelForm {
         match self {
             ModelForm::QuasiStatic => &[Mechanism::Rebound, Mechanism::FlatPatch],
             ModelForm::WongReece | ModelForm::Rft => &[],
-            ModelForm::Spatial => &Mechanism::ALL,
+            ModelForm::Spatial => Mechanism::ALL,
             ModelForm::Outside => &[],
         }
     }

@@ -6,15 +6,15 @@ use serde::Deserializer;
 use serde::de::{DeserializeOwned, Error, Visitor};
 use serde::forward_to_deserialize_any;
 
-/// The keys of the struct that a table is read into, in the order of its fields; none of what is no struct.
-pub(crate) fn keys_of<T: DeserializeOwned>() -> &'static [&'static str] {
+/// Returns the keys of the struct that a table is read into, in the order of its fields; none for other types.
+pub fn keys_of<T: DeserializeOwned>() -> &'static [&'static str] {
     T::deserialize(Question).err().map_or(&[], |asked| asked.0)
 }
 
-/// Input that answers nothing: the struct says its fields when it asks for them.
+/// Input without values: the struct names its fields when it requests them.
 struct Question;
 
-/// The fields that were asked for.
+/// The fields that a struct requests.
 #[derive(Debug)]
 struct Asked(&'static [&'static str]);
 
