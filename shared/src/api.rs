@@ -172,7 +172,7 @@ impl CalibrationState {
         CalibrationState::Cancelled,
     ];
 
-    /// Word in JSON and in the store.
+    /// Returns the word in JSON and in the store.
     pub fn name(self) -> &'static str {
         match self {
             CalibrationState::Queued => "queued",
@@ -185,12 +185,12 @@ impl CalibrationState {
         }
     }
 
-    /// The state of a word.
+    /// Finds the state of a word.
     pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|s| s.name() == name)
     }
 
-    /// Whether the state is final.
+    /// Returns whether the state is final.
     pub fn is_final(self) -> bool {
         matches!(
             self,

@@ -6,7 +6,7 @@ use job::{EffectOnNodes, FreeParameter, Job, ModelSwitch, NamedFiles, PlainParam
 use record::{Extension, NotTried};
 
 use shared::model::ModelKind;
-use shared::parameters::{SPATIAL, of_models};
+use shared::parameters::{SPATIAL, model_parameters};
 
 use super::candidate::{CandidateEffect, candidate_of, spec, with_extensions};
 use super::law::dependence::Dependence;
@@ -57,7 +57,7 @@ impl CandidateEntry {
     /// The candidate that is a parameter of the model itself; `None` where the job does not hold it fixed.
     pub(super) fn plain(plain: &PlainParameter, base: &Spec) -> Option<Self> {
         let (neutral, density) = plain.held_by(base)?;
-        let unit = of_models().find(|known| known.name == plain.name)?.unit;
+        let unit = model_parameters().find(|known| known.name == plain.name)?.unit;
         let name = plain.name.to_owned();
         Some(Self {
             candidate: Candidate {

@@ -200,7 +200,7 @@ fn known() -> impl Iterator<Item = Known> {
     };
     // Of models that hold one parameter at different values, the usual comes first.
     let mut seen = std::collections::BTreeSet::new();
-    let ours = parameters::of_models()
+    let ours = parameters::model_parameters()
         .filter(move |base| seen.insert(base.name))
         .map(Known::from);
     ours.chain(of_effects()).chain(noise).chain([ring])

@@ -34,7 +34,7 @@ impl ModelKind {
         ModelKind::Umbridge,
     ];
 
-    /// Name in files and results.
+    /// Returns the name in files and results.
     pub fn name(self) -> &'static str {
         match self {
             ModelKind::QuasiStatic => "quasi_static",
@@ -56,7 +56,7 @@ impl ModelKind {
         Self::ALL.into_iter().find(|kind| kind.name() == name)
     }
 
-    /// The base parameters of a model of this kind; an external model's are stated in its job.
+    /// Returns the base parameters of a model of this kind; an external model's are stated in its job.
     pub fn parameters(self) -> impl Iterator<Item = &'static BaseParameter> {
         let specific: &[BaseParameter] = match self {
             ModelKind::QuasiStatic | ModelKind::Command | ModelKind::Umbridge => &[],
