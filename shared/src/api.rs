@@ -178,17 +178,17 @@ impl CalibrationState {
     /// Every state.
     pub const ALL: &'static [Self] = Self::VARIANTS;
 
-    /// Word in JSON and in the store.
+    /// Returns the word in JSON and in the store.
     pub fn name(self) -> &'static str {
         self.into()
     }
 
-    /// The state of a word.
+    /// Finds the state of a word.
     pub fn from_name(name: &str) -> Option<Self> {
         name.parse().ok()
     }
 
-    /// Whether the state is final.
+    /// Returns whether the state is final.
     pub fn is_final(self) -> bool {
         matches!(
             self,

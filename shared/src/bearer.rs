@@ -43,7 +43,7 @@ impl BearerToken {
         Ok(Some(BearerToken(token.to_owned())))
     }
 
-    /// The token itself, for a request.
+    /// Returns the token itself, for a request.
     pub fn expose(&self) -> &str {
         &self.0
     }

@@ -25,27 +25,27 @@ impl Channel {
         Channel::LateralForce,
     ];
 
-    /// Position in [`Channel::ALL`].
+    /// Returns the position in [`Channel::ALL`].
     pub fn index(self) -> usize {
         self as usize
     }
 
-    /// Name without unit, as in `summary.json`: `drawbar_pull`.
+    /// Returns the name without unit, as in `summary.json`: `drawbar_pull`.
     pub fn name(self) -> &'static str {
         ["drawbar_pull", "torque", "sinkage", "lateral_force"][self.index()]
     }
 
-    /// Column name with unit, as in `runs.csv`: `drawbar_pull_n`.
+    /// Returns the column name with unit, as in `runs.csv`: `drawbar_pull_n`.
     pub fn column(self) -> &'static str {
         ["drawbar_pull_n", "torque_n_m", "sinkage_m", "lateral_force_n"][self.index()]
     }
 
-    /// SI unit.
+    /// Returns the SI unit.
     pub fn unit(self) -> &'static str {
         ["N", "N m", "m", "N"][self.index()]
     }
 
-    /// Words for people: `drawbar pull`.
+    /// Returns the words for people: `drawbar pull`.
     pub fn words(self) -> &'static str {
         ["drawbar pull", "torque", "sinkage", "lateral force"][self.index()]
     }

@@ -116,7 +116,7 @@ impl RepeatedAnswer {
         }
     }
 
-    /// The difference of a channel.
+    /// Returns the difference of a channel.
     pub fn channel(&self, channel: Channel) -> f64 {
         match channel {
             Channel::DrawbarPull => self.drawbar_pull_n,

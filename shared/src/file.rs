@@ -21,7 +21,7 @@ pub struct FileSet {
 }
 
 impl FileSet {
-    /// The text of a file that is named in the file `by`; a [`FileError`] of `by` if the file is not in the set.
+    /// Returns the text of a file that is named in the file `by`; a [`FileError`] of `by` if the file is not in the set.
     pub fn named(&self, by: &str, file: &str) -> Result<&str, FileError> {
         let text = self.files.get(file).map(String::as_str);
         text.ok_or_else(|| FileError::whole(by, format!("file \"{file}\" is named but was not sent")))
@@ -51,7 +51,7 @@ fn place(line: Option<usize>, column: Option<usize>) -> String {
 }
 
 impl FileError {
-    /// An error of a whole file.
+    /// Returns an error of a whole file.
     pub fn whole(file: &str, message: impl Into<String>) -> Self {
         FileError {
             file: file.to_owned(),
@@ -61,7 +61,7 @@ impl FileError {
         }
     }
 
-    /// An error of one line, counted from 1.
+    /// Returns an error of one line, counted from 1.
     pub fn at(file: &str, line: usize, message: impl Into<String>) -> Self {
         FileError {
             file: file.to_owned(),
@@ -100,7 +100,7 @@ impl<'t> TomlFile<'t> {
         Ok(TomlFile { name, text, root })
     }
 
-    /// The value of a key of the file's root.
+    /// Returns the value of a key of the file's root.
     pub fn get(&self, key: &str) -> Option<&toml::Spanned<DeValue<'t>>> {
         self.root.get_ref().get(key)
     }
@@ -115,12 +115,12 @@ impl<'t> TomlFile<'t> {
         T::deserialize(toml::Deserializer::from(self.root)).map_err(|e| toml_error(self.name, self.text, &e))
     }
 
-    /// An error in the line of a place of the file.
+    /// Returns an error in the line of a place of the file.
     pub fn error_at(&self, place: &Range<usize>, message: impl Into<String>) -> FileError {
         FileError::at(self.name, line_of(self.text, place.start), message)
     }
 
-    /// An error of the file as a whole.
+    /// Returns an error of the file as a whole.
     pub fn error(&self, message: impl Into<String>) -> FileError {
         FileError::whole(self.name, message)
     }
@@ -141,12 +141,12 @@ fn toml_error(file: &str, text: &str, error: &toml::de::Error) -> FileError {
     }
 }
 
-/// The line, counted from 1, of the byte at `offset`.
+/// Returns the line, counted from 1, of the byte at `offset`.
 fn line_of(text: &str, offset: usize) -> usize {
     text.bytes().take(offset).filter(|&b| b == b'\n').count() + 1
 }
 
-/// A number; an integer counts as one.
+/// Returns a value as a number; an integer counts as one.
 pub fn number(value: &toml::Value) -> Option<f64> {
     value.as_float().or_else(|| value.as_integer().map(|i| i as f64))
 }
@@ -165,18 +165,14 @@ mod tests {
     #[test]
     fn an_unknown_key_names_its_line_and_the_nearest_known() {
         let error = parse_toml::<Toy>("toy.toml", "# a comment\nradus_m = 1.0\n").unwrap_err();
-        assert_eq!(
-            error.to_string(),
-            "toy.toml line 2: unknown key \"radus_m\"; the nearest known is \"radius_m\""
-        );
+        let message = "toy.toml line 2: unknown key \"radus_m\"; the nearest known is \"radius_m\"";
+        assert_eq!(error.to_string(), message);
     }
 
     #[test]
     fn a_word_without_a_near_one_lists_the_known_ones() {
-        assert_eq!(
-            unknown_word("column", "zzzzzz", ["run", "slip"]),
-            "unknown column \"zzzzzz\"; known are run, slip"
-        );
+        let message = unknown_word("column", "zzzzzz", ["run", "slip"]);
+        assert_eq!(message, "unknown column \"zzzzzz\"; known are run, slip");
     }
 
     #[test]
@@ -192,9 +188,7 @@ mod tests {
         let names = ["a"; 79].join(".");
         let text = format!("x = {}1{}", format!("{{ {names} = ").repeat(79), " }".repeat(79));
         let error = parse_toml::<toml::Table>("job.toml", &text).unwrap_err();
-        assert_eq!(
-            error.to_string(),
-            "job.toml line 1: brackets must be nested at most 16 deep"
-        );
+        let message = "job.toml line 1: brackets must be nested at most 16 deep";
+        assert_eq!(error.to_string(), message);
     }
 }

@@ -22,6 +22,8 @@
 
 pub mod api;
 pub mod bearer;
+#[cfg(test)]
+mod case_table;
 pub mod channel;
 pub mod exchange;
 pub mod experiment;

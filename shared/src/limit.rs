@@ -19,6 +19,10 @@ pub struct Limit {
 
 const LENGTHS: &[(&str, f64)] = &[("mm", 1e-3), ("cm", 1e-2), ("in", 0.0254)];
 const ANGLES: &[(&str, f64)] = &[("rad", 180.0 / std::f64::consts::PI)];
+const WEIGHTS: &[(&str, f64)] = &[("kN", 1e3), ("g", 9.81e-3), ("kg", 9.81)];
+const SPEEDS: &[(&str, f64)] = &[("mm/s", 1e-3), ("cm/s", 1e-2), ("km/s", 1e3)];
+const DENSITIES: &[(&str, f64)] = &[("g/cm^3", 1e3)];
+const PRESSURES: &[(&str, f64)] = &[("MPa", 1e6), ("kPa", 1e3)];
 
 const fn limit(
     name: &'static str,
@@ -40,20 +44,8 @@ const ANY: f64 = f64::INFINITY;
 
 /// Every quantity that has limits.
 pub const LIMITS: [Limit; 27] = [
-    limit(
-        "wheel_load_n",
-        "N",
-        [0.0, 1e7],
-        [1.0, 2e4],
-        &[("kN", 1e3), ("g", 9.81e-3), ("kg", 9.81)],
-    ),
-    limit(
-        "sled_speed_m_s",
-        "m/s",
-        [0.0, 1e3],
-        [1e-4, 2.0],
-        &[("mm/s", 1e-3), ("cm/s", 1e-2), ("km/s", 1e3)],
-    ),
+    limit("wheel_load_n", "N", [0.0, 1e7], [1.0, 2e4], WEIGHTS),
+    limit("sled_speed_m_s", "m/s", [0.0, 1e3], [1e-4, 2.0], SPEEDS),
     limit("slip", "1", [-1.0, 1.0], [-1.0, 1.0], &[("per cent", 1e-2)]),
     limit("radius_m", "m", [0.0, 10.0], [0.01, 1.0], LENGTHS),
     limit("width_m", "m", [0.0, 10.0], [0.003, 1.0], LENGTHS),
@@ -73,22 +65,10 @@ pub const LIMITS: [Limit; 27] = [
         &[("cm/s^2", 1e-2)],
     ),
     limit("bin_length_m", "m", [0.0, 1e4], [0.1, 100.0], LENGTHS),
-    limit(
-        "density_kg_m3",
-        "kg/m^3",
-        [0.0, 2.5e4],
-        [200.0, 5e3],
-        &[("g/cm^3", 1e3)],
-    ),
+    limit("density_kg_m3", "kg/m^3", [0.0, 2.5e4], [200.0, 5e3], DENSITIES),
     limit("repose_angle_deg", "deg", [0.0, 90.0], [10.0, 60.0], ANGLES),
     limit("plate_radius_m", "m", [0.0, 1.0], [0.005, 0.5], LENGTHS),
-    limit(
-        "pressure_pa",
-        "Pa",
-        [-1e9, 1e9],
-        [-1e4, 1e7],
-        &[("MPa", 1e6), ("kPa", 1e3)],
-    ),
+    limit("pressure_pa", "Pa", [-1e9, 1e9], [-1e4, 1e7], PRESSURES),
     limit("friction_angle_deg", "deg", [0.0, 89.0], [8.0, 60.0], ANGLES),
     limit("cohesion_pa", "Pa", [0.0, ANY], [0.0, 1e5], &[]),
     limit("log10_p_ref", "log10 Pa", [-3.0, 12.0], [1.0, 7.0], &[]),
@@ -105,7 +85,7 @@ pub const LIMITS: [Limit; 27] = [
     limit("steady_travel_m", "m", [0.0, 1e4], [0.01, 100.0], LENGTHS),
 ];
 
-/// The limits of a quantity by its name.
+/// Returns the limits of a quantity by its name.
 pub fn find(name: &str) -> Option<&'static Limit> {
     LIMITS.iter().find(|limit| limit.name == name)
 }
@@ -120,29 +100,26 @@ pub fn impossible(name: &str, value: f64) -> Option<String> {
 impl Limit {
     /// Returns the message about an unusual value: `0.06 N must be at least 1 N …`; `None` for a usual one.
     pub fn unusual(&self, value: f64) -> Option<String> {
-        let [least, greatest] = self.usual;
+        let [min, max] = self.usual;
         let side = match value {
-            value if value < least => format!("below {}", self.amount(least)),
-            value if value > greatest => format!("above {}", self.amount(greatest)),
+            value if value < min => format!("below {}", self.amount(min)),
+            value if value > max => format!("above {}", self.amount(max)),
             _ => return None,
         };
-        Some(format!(
-            "{} is {side}{}",
-            self.amount(value),
-            self.question(value)
-        ))
+        let (amount, question) = (self.amount(value), self.question(value));
+        Some(format!("{amount} is {side}{question}"))
     }
 
     /// Returns whether any value between two is usual.
     pub fn is_usual_within(&self, low: f64, high: f64) -> bool {
-        let [least, greatest] = self.usual;
-        low <= greatest && high >= least
+        let [min, max] = self.usual;
+        low <= max && high >= min
     }
 
-    fn outside(&self, [least, greatest]: [f64; 2], value: f64) -> Option<String> {
+    fn outside(&self, [min, max]: [f64; 2], value: f64) -> Option<String> {
         let bound = match value {
-            value if value < least => format!("at least {}", self.amount(least)),
-            value if value > greatest => format!("at most {}", self.amount(greatest)),
+            value if value < min => format!("at least {}", self.amount(min)),
+            value if value > max => format!("at most {}", self.amount(max)),
             _ => return None,
         };
         Some(format!("{} must be {bound}", self.amount(value)))
@@ -157,11 +134,11 @@ impl Limit {
 
     /// Asks whether another unit was typed: the units in which the value is usual.
     fn question(&self, value: f64) -> String {
-        let [least, greatest] = self.usual;
+        let [min, max] = self.usual;
         let typed: Vec<String> = self
             .mistaken
             .iter()
-            .filter(|(_, size)| (least..=greatest).contains(&(value * size)))
+            .filter(|(_, size)| (min..=max).contains(&(value * size)))
             .map(|(unit, size)| format!("{unit} ({})", self.amount(value * size)))
             .collect();
         match typed.is_empty() {
@@ -184,52 +161,42 @@ pub fn number(value: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::case_table::cases;
 
     #[test]
     fn a_value_in_another_unit_is_asked_about_in_it() {
-        let unusual = |name: &str, value: f64| find(name).unwrap().unusual(value);
-        for (name, value, question) in [
-            (
-                "wheel_load_n",
-                0.06,
-                "0.06 N is below 1 N: was it typed in kN (60 N)?",
-            ),
-            (
-                "wheel_load_n",
-                60_000.0,
-                "60000 N is above 20000 N: was it typed in g (588.6 N)?",
-            ),
-            (
-                "sled_speed_m_s",
-                9.5,
-                "9.5 m/s is above 2 m/s: was it typed in mm/s (0.0095 m/s) or cm/s (0.095 m/s)?",
-            ),
-            (
-                "friction_angle_deg",
-                0.52,
-                "0.52 deg is below 8 deg: was it typed in rad (29.7938 deg)?",
-            ),
-            ("cohesion_pa", 2e10, "2e10 Pa is above 100000 Pa"),
-        ] {
-            assert_eq!(unusual(name, value).unwrap(), question);
+        let split = |text: &'static str| {
+            let (name, value) = text.split_once(' ').unwrap();
+            (name, value.parse::<f64>().unwrap())
+        };
+        for (value, question) in cases(
+            r#"
+            wheel_load_n 0.06 => 0.06 N is below 1 N: was it typed in kN (60 N)?
+            wheel_load_n 60000 => 60000 N is above 20000 N: was it typed in g (588.6 N)?
+            sled_speed_m_s 9.5 => 9.5 m/s is above 2 m/s: was it typed in mm/s (0.0095 m/s) or cm/s (0.095 m/s)?
+            friction_angle_deg 0.52 => 0.52 deg is below 8 deg: was it typed in rad (29.7938 deg)?
+            cohesion_pa 2e10 => 2e10 Pa is above 100000 Pa"#,
+        ) {
+            let (name, value) = split(value);
+            assert_eq!(find(name).unwrap().unusual(value).unwrap(), question);
         }
-        assert_eq!(unusual("wheel_load_n", 60.0), None);
-        assert_eq!(
-            impossible("radius_m", 125.0).unwrap(),
-            "125 m must be at most 10 m: was it typed in mm (0.125 m)?"
-        );
-        assert_eq!(
-            impossible("dem_spacing_m", 1e300).unwrap(),
-            "1e300 m must be at most 1 m"
-        );
+        assert_eq!(find("wheel_load_n").unwrap().unusual(60.0), None);
+        for (value, question) in cases(
+            r#"
+            radius_m 125 => 125 m must be at most 10 m: was it typed in mm (0.125 m)?
+            dem_spacing_m 1e300 => 1e300 m must be at most 1 m"#,
+        ) {
+            let (name, value) = split(value);
+            assert_eq!(impossible(name, value).unwrap(), question);
+        }
         assert_eq!(impossible("nobody_knows_it", 1e300), None);
     }
 
     #[test]
     fn usual_values_are_possible() {
         for (place, limit) in LIMITS.iter().enumerate() {
-            let ([least, greatest], [low, high]) = (limit.possible, limit.usual);
-            assert!(least <= low && low < high && high <= greatest, "{}", limit.name);
+            let ([min, max], [low, high]) = (limit.possible, limit.usual);
+            assert!(min <= low && low < high && high <= max, "{}", limit.name);
             assert!(LIMITS[..place].iter().all(|other| other.name != limit.name));
         }
     }

@@ -101,7 +101,7 @@ pub struct SimulatedHistory {
 }
 
 impl SimulatedHistory {
-    /// Samples of a channel.
+    /// Returns the samples of a channel.
     pub fn channel(&self, channel: Channel) -> &[f64] {
         match channel {
             Channel::DrawbarPull => &self.drawbar_pull_n,
@@ -130,7 +130,7 @@ impl Observables {
         }
     }
 
-    /// Values of a channel, by run.
+    /// Returns the values of a channel, by run.
     pub fn channel(&self, channel: Channel) -> &[f64] {
         match channel {
             Channel::DrawbarPull => &self.drawbar_pull_n,
@@ -140,7 +140,7 @@ impl Observables {
         }
     }
 
-    /// Values of a channel, writable.
+    /// Returns the values of a channel, writable.
     pub fn channel_mut(&mut self, channel: Channel) -> &mut Vec<f64> {
         match channel {
             Channel::DrawbarPull => &mut self.drawbar_pull_n,
@@ -150,7 +150,7 @@ impl Observables {
         }
     }
 
-    /// Change of a channel with ln k*, by run; empty unless the variant requests it.
+    /// Returns the change of a channel with ln k*, by run; empty unless the variant requests it.
     pub fn sensitivity(&self, channel: Channel) -> &[f64] {
         match channel {
             Channel::DrawbarPull => &self.d_drawbar_pull_n,
@@ -184,7 +184,7 @@ impl Observables {
         self.settled_to = Vec::new();
     }
 
-    /// A 64-bit hash: results with different bits almost certainly differ in it.
+    /// Computes a 64-bit hash: results with different bits almost certainly differ in it.
     pub fn fingerprint(&self) -> u64 {
         let bits = self.numbers().map(f64::to_bits);
         let counts = self.nodes_in_contact.iter().map(|&n| u64::from(n));
@@ -194,12 +194,11 @@ impl Observables {
 
     /// Returns whether every number is finite.
     pub fn is_finite(&self) -> bool {
-        self.numbers()
-            .chain(self.coarse.iter().flatten().copied())
-            .all(f64::is_finite)
+        let mut numbers = self.numbers().chain(self.coarse.iter().flatten().copied());
+        numbers.all(f64::is_finite)
     }
 
-    /// Every number except the counts and the low-fidelity values.
+    /// Returns every number except the counts and the low-fidelity values.
     fn numbers(&self) -> impl Iterator<Item = f64> {
         let vectors = [
             &self.drawbar_pull_n,
@@ -222,12 +221,8 @@ impl Observables {
             .histories
             .iter()
             .flat_map(|history| Channel::ALL.map(|c| history.channel(c)));
-        vectors
-            .into_iter()
-            .map(Vec::as_slice)
-            .chain(samples)
-            .flatten()
-            .copied()
+        let vectors = vectors.into_iter().map(Vec::as_slice);
+        vectors.chain(samples).flatten().copied()
     }
 }
 
@@ -252,7 +247,7 @@ pub struct Fault {
     pub message: String,
 }
 
-/// FNV-1a with a rotation, over 64-bit words: stable over versions, unlike the standard library's hasher.
+/// Computes FNV-1a with a rotation, over 64-bit words: stable over versions, unlike the standard library's hasher.
 fn fnv(words: impl Iterator<Item = u64>) -> u64 {
     words.fold(0xcbf2_9ce4_8422_2325, |hash, word| {
         (hash ^ word).wrapping_mul(0x0000_0100_0000_01b3).rotate_left(29)

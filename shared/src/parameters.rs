@@ -24,13 +24,9 @@ pub struct BaseParameter {
     pub prior: Option<&'static str>,
 }
 
-const fn base(
-    name: &'static str,
-    unit: &'static str,
-    lower: f64,
-    upper: f64,
-    default: Option<f64>,
-) -> BaseParameter {
+type Text = &'static str;
+
+const fn base(name: Text, unit: Text, lower: f64, upper: f64, default: Option<f64>) -> BaseParameter {
     BaseParameter {
         name,
         unit,
@@ -41,13 +37,7 @@ const fn base(
     }
 }
 
-const fn inferred(
-    name: &'static str,
-    unit: &'static str,
-    lower: f64,
-    upper: f64,
-    prior: &'static str,
-) -> BaseParameter {
+const fn inferred(name: Text, unit: Text, lower: f64, upper: f64, prior: Text) -> BaseParameter {
     BaseParameter {
         prior: Some(prior),
         ..base(name, unit, lower, upper, None)
@@ -75,25 +65,16 @@ pub const SPATIAL: [BaseParameter; 3] = [
     base("bearing_credit", "1", 0.0, 1.0, Some(0.3)),
 ];
 
+const C1: Text = "{ normal = [0.35, 0.1], bounds = [0.0, 0.8] }";
+const C2: Text = "{ normal = [0.3, 0.15], bounds = [-0.2, 1.0] }";
+
 /// Parameters of `wong_reece` that other models lack or hold at another value.
 ///
 /// Priors: c1 and c2 of published sands lie in 0.18 to 0.43 and 0.32 to 0.41 (Wong & Reece 1967), shear moduli of sands from
 /// 5 to 25 mm. gamma and the law of the slip velocity are inactive unless a job uses them.
 pub const WONG_REECE: [BaseParameter; 5] = [
-    inferred(
-        "c1",
-        "1",
-        -1.0,
-        1.0,
-        "{ normal = [0.35, 0.1], bounds = [0.0, 0.8] }",
-    ),
-    inferred(
-        "c2",
-        "1",
-        -1.0,
-        2.0,
-        "{ normal = [0.3, 0.15], bounds = [-0.2, 1.0] }",
-    ),
+    inferred("c1", "1", -1.0, 1.0, C1),
+    inferred("c2", "1", -1.0, 2.0, C2),
     inferred(
         "shear_modulus_m",
         "m",
@@ -115,8 +96,8 @@ pub const RFT: [BaseParameter; 2] = [
 /// The one base parameter that every model has.
 pub const WHEEL_RADIUS: &str = "wheel_radius_m";
 
-/// The parameters of every model; a parameter that two models hold at different values appears twice.
-pub fn of_models() -> impl Iterator<Item = &'static BaseParameter> + Clone {
+/// Returns the parameters of every model; a parameter that two models hold at different values appears twice.
+pub fn model_parameters() -> impl Iterator<Item = &'static BaseParameter> + Clone {
     BASE.iter().chain(&SPATIAL).chain(&WONG_REECE).chain(&RFT)
 }
 
@@ -144,7 +125,7 @@ impl From<&BaseParameter> for ParameterBounds {
 /// Returns whether a name already has a meaning in jobs, so that no effect may have it.
 pub(crate) fn is_taken(name: &str) -> bool {
     // "none" is the absence of effects in results
-    ["none", "noise", "bevameter"].contains(&name) || of_models().any(|p| p.name == name)
+    ["none", "noise", "bevameter"].contains(&name) || model_parameters().any(|p| p.name == name)
 }
 
 /// Natural logarithm of the ratio of tan(phi) under a ring to tan(phi) under the wheel, which share the other parameters; a
@@ -156,7 +137,7 @@ pub const B_REF_M: f64 = 0.03;
 /// Sinkage at which `p_ref` is defined `[m]`.
 pub const Z_REF_M: f64 = 0.01;
 
-/// Bekker's moduli `k_c` `[N/m^(n+1)]` and `k_phi` `[N/m^(n+2)]` from `log10_p_ref`, `kappa` and n.
+/// Returns Bekker's moduli `k_c` `[N/m^(n+1)]` and `k_phi` `[N/m^(n+2)]` from `log10_p_ref`, `kappa` and n.
 ///
 /// `p_ref = (k_c / b_ref + k_phi) z_ref^n`, `kappa = k_c / (k_phi b_ref)`, hence `k_phi = p_ref / (z_ref^n (1 + kappa))` and
 /// `k_c = kappa k_phi b_ref`. Infinite at `kappa = -1`. The models' own conversion gives the same bits: checked by
@@ -169,17 +150,17 @@ pub fn bekker_moduli(log10_p_ref: f64, kappa: f64, n: f64) -> (f64, f64) {
 /// Prefix of the inferred noise standard deviations.
 pub const NOISE_PREFIX: &str = "noise.";
 
-/// The parameter for the noise sd of a channel: `noise.drawbar_pull_n`.
+/// Returns the parameter for the noise sd of a channel: `noise.drawbar_pull_n`.
 pub fn noise_parameter(channel: Channel) -> String {
     format!("{NOISE_PREFIX}{}", channel.column())
 }
 
-/// The parameter for a relative scatter: `noise.run_scatter`.
+/// Returns the parameter for a relative scatter: `noise.run_scatter`.
 pub fn scatter_parameter(scatter: Scatter) -> String {
     format!("{NOISE_PREFIX}{}", scatter.key())
 }
 
-/// A unit after a number in a sentence: ` m`, or nothing for a dimensionless number.
+/// Returns a unit after a number in a sentence: ` m`, or nothing for a dimensionless number.
 pub fn behind(unit: &str) -> String {
     if unit == "1" {
         String::new()

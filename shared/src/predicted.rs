@@ -53,7 +53,7 @@ pub enum PredictedValue {
 }
 
 impl PredictedValue {
-    /// The wheel's channel that it is computed from; `None` for a plate or a ring.
+    /// Returns the wheel's channel that it is computed from; `None` for a plate or a ring.
     pub fn channel(self) -> Option<Channel> {
         match self {
             PredictedValue::Average { channel, .. } | PredictedValue::Sensitivity { channel, .. } => {
@@ -68,7 +68,7 @@ impl PredictedValue {
         }
     }
 
-    /// The value in `observables`, which must cover the variant of this prediction.
+    /// Returns the value in `observables`, which must cover the variant of this prediction.
     pub fn select(self, observables: &Observables) -> f64 {
         match self {
             PredictedValue::Average { channel, run } => observables.channel(channel)[run],

@@ -141,7 +141,7 @@ impl<'a> Place<'a> {
     }
 }
 
-/// The number at the end of `an array of length 2` and similar texts.
+/// Returns the number at the end of `an array of length 2` and similar texts.
 fn length(expected: &str) -> Option<&str> {
     let last = expected.rsplit(' ').next()?;
     let is_list = expected.starts_with("an array of length") || expected.starts_with("a tuple of size");
@@ -159,6 +159,7 @@ fn shortened(text: &str) -> String {
 mod tests {
     use serde::Deserialize;
 
+    use crate::case_table::cases;
     use crate::file::parse_toml;
 
     #[derive(Debug, Default, Deserialize)]
@@ -191,43 +192,26 @@ mod tests {
 
     #[test]
     fn no_word_of_the_parser_reaches_a_user() {
-        for (text, message) in [
-            (
-                "count = \"60\"",
-                "count = \"60\" must be a whole number >= 0: write 60",
-            ),
-            (
-                "count = 60.0",
-                "count = 60.0 must be a whole number >= 0: write 60",
-            ),
-            ("count = -1", "count = -1 must be a whole number >= 0"),
-            ("order = 1.5", "order = 1.5 must be a whole number"),
-            ("size_m = \"wide\"", "size_m = \"wide\" must be a number"),
-            (
-                "size_m = 0,112 # m",
-                "size_m = 0,112: a number has a point, no comma: write 0.112",
-            ),
-            (
-                "size_m = 0.112 m",
-                "a value is neither a number nor a text in quotes; a number stands without its unit",
-            ),
-            ("name = 5", "name = 5 must be a text in quotes"),
-            ("moves = 4", "moves = 4 must be a list of 2 values"),
-            ("names = \"a\"", "names = \"a\" must be a list in brackets"),
-            ("names = [1]", "names = 1 must be a text in quotes"),
-            ("is_on = \"yes\"", "is_on = \"yes\" must be true or false"),
-            (
-                "kind = \"papr\"",
-                "unknown value of kind \"papr\"; the nearest known is \"paper\"",
-            ),
-            ("inner = 5", "inner = 5 must be a table of keys and values"),
-            (
-                "inner = { width_m = \"1\" }",
-                "width_m = \"1\" must be a number: write 1",
-            ),
-            ("[inner]", "the key \"width_m\" is missing"),
-            ("nam = 5", "unknown key \"nam\"; the nearest known is \"name\""),
-        ] {
+        for (text, message) in cases(
+            r#"
+            count = "60" => count = "60" must be a whole number >= 0: write 60
+            count = 60.0 => count = 60.0 must be a whole number >= 0: write 60
+            count = -1 => count = -1 must be a whole number >= 0
+            order = 1.5 => order = 1.5 must be a whole number
+            size_m = "wide" => size_m = "wide" must be a number
+            size_m = 0,112 # m => size_m = 0,112: a number has a point, no comma: write 0.112
+            size_m = 0.112 m => a value is neither a number nor a text in quotes; a number stands without its unit
+            name = 5 => name = 5 must be a text in quotes
+            moves = 4 => moves = 4 must be a list of 2 values
+            names = "a" => names = "a" must be a list in brackets
+            names = [1] => names = 1 must be a text in quotes
+            is_on = "yes" => is_on = "yes" must be true or false
+            kind = "papr" => unknown value of kind "papr"; the nearest known is "paper"
+            inner = 5 => inner = 5 must be a table of keys and values
+            inner = { width_m = "1" } => width_m = "1" must be a number: write 1
+            [inner] => the key "width_m" is missing
+            nam = 5 => unknown key "nam"; the nearest known is "name""#,
+        ) {
             let error = parse_toml::<Toy>("toy.toml", &format!("# a comment\n{text}\n")).unwrap_err();
             assert_eq!(error.to_string(), format!("toy.toml line 2: {message}"), "{text}");
         }

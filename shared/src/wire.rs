@@ -44,18 +44,18 @@ impl WireForm {
     /// Every form.
     pub const ALL: [WireForm; 2] = [WireForm::Json, WireForm::MessagePack];
 
-    /// The name of the form: `json`, `msgpack`.
+    /// Returns the name of the form: `json`, `msgpack`.
     pub fn name(self) -> &'static str {
         ["json", "msgpack"][self as usize]
     }
 
-    /// The media type of the form.
+    /// Returns the media type of the form.
     pub fn media_type(self) -> &'static str {
         ["application/json", "application/vnd.msgpack"][self as usize]
     }
 
     /// Finds the form of a media type, ignoring its parameters.
-    pub fn of_media_type(text: &str) -> Option<Self> {
+    pub fn from_media_type(text: &str) -> Option<Self> {
         let essence = text.split(';').next().unwrap_or_default().trim();
         let named = |form: &Self| essence.eq_ignore_ascii_case(form.media_type());
         Self::ALL.into_iter().find(named)
@@ -275,12 +275,12 @@ mod tests {
     #[test]
     fn a_form_is_known_by_its_media_type_and_its_word() {
         for form in WireForm::ALL {
-            assert_eq!(WireForm::of_media_type(form.media_type()), Some(form));
+            assert_eq!(WireForm::from_media_type(form.media_type()), Some(form));
             assert_eq!(form.name().parse(), Ok(form));
         }
-        let with = WireForm::of_media_type("Application/JSON; charset=utf-8");
+        let with = WireForm::from_media_type("Application/JSON; charset=utf-8");
         assert_eq!(with, Some(WireForm::Json));
-        assert_eq!(WireForm::of_media_type("application/cbor"), None);
+        assert_eq!(WireForm::from_media_type("application/cbor"), None);
         assert!("xml".parse::<WireForm>().is_err());
     }
 }

@@ -79,12 +79,12 @@ const QUEUES: [(&str, &str, &str); 4] = [
 ];
 
 impl PullArguments {
-    /// The queue's job that this process belongs to, such as `slurm 1234_5`.
+    /// Returns the queue's job that this process belongs to, such as `slurm 1234_5`.
     pub fn queue_job(&self) -> Option<String> {
         queue_job(|name| std::env::var(name).ok())
     }
 
-    /// The time until the worker ends by itself: after its lifetime, or before the end of its Slurm job.
+    /// Returns the time until the worker ends by itself: after its lifetime, or before the end of its Slurm job.
     pub fn ends_in(&self) -> Option<Duration> {
         /// Slurm's first signal may come this long before the end; a worker needs 5 s.
         const EARLY: Duration = Duration::from_secs(30);
@@ -103,16 +103,16 @@ impl PullArguments {
 
 /// Finds the queue's job among the variables of a process.
 fn queue_job(variable: impl Fn(&str) -> Option<String>) -> Option<String> {
-    let told = |name: &str| variable(name).filter(|value| !value.is_empty());
-    if let (Some(array), Some(task)) = (told("SLURM_ARRAY_JOB_ID"), told("SLURM_ARRAY_TASK_ID")) {
+    let set = |name: &str| variable(name).filter(|value| !value.is_empty());
+    if let (Some(array), Some(task)) = (set("SLURM_ARRAY_JOB_ID"), set("SLURM_ARRAY_TASK_ID")) {
         return Some(format!("slurm {array}_{task}"));
     }
-    if told("KUBERNETES_SERVICE_HOST").is_some() {
-        return told("HOSTNAME").map(|pod| format!("kubernetes {pod}"));
+    if set("KUBERNETES_SERVICE_HOST").is_some() {
+        return set("HOSTNAME").map(|pod| format!("kubernetes {pod}"));
     }
     QUEUES.iter().find_map(|(queue, job, task)| {
-        let job = told(job)?;
-        Some(match told(task) {
+        let job = set(job)?;
+        Some(match set(task) {
             Some(task) => format!("{queue} {job}_{task}"),
             None => format!("{queue} {job}"),
         })
@@ -193,7 +193,7 @@ pub struct Simulate {
     pub shear: Option<PathBuf>,
 }
 
-/// The log filter: `RUST_LOG`, a level or comma-separated `target=level`, else `info`.
+/// Returns the log filter: `RUST_LOG`, a level or comma-separated `target=level`, else `info`.
 pub fn log_filter() -> Targets {
     let stated = std::env::var("RUST_LOG").ok().and_then(|text| text.parse().ok());
     stated.unwrap_or_else(|| Targets::new().with_default(LevelFilter::INFO))

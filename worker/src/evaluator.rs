@@ -28,12 +28,12 @@ impl SimulationClock {
         self.simulated_ns.load(Ordering::Relaxed) as f64 * 1e-9
     }
 
-    /// Number of completed evaluations.
+    /// Returns the number of completed evaluations.
     pub fn evaluations(&self) -> u64 {
         self.evaluations.load(Ordering::Relaxed)
     }
 
-    /// Mean time of an evaluation `[s]`; `None` before the first.
+    /// Returns the mean time of an evaluation `[s]`; `None` before the first.
     pub fn mean_s(&self) -> Option<f64> {
         let evaluations = self.evaluations();
         (evaluations > 0).then(|| self.simulated_s() / evaluations as f64)
@@ -111,7 +111,7 @@ impl Evaluator {
         std::mem::take(&mut *lock(&self.bench.results))
     }
 
-    /// Numbers of the leases that are being evaluated.
+    /// Returns the numbers of the leases that are being evaluated.
     pub fn started(&self) -> Vec<u64> {
         lock(&self.bench.started).iter().copied().collect()
     }

@@ -6,7 +6,7 @@ use shared::experiment::Experiment;
 use shared::file::FileSet;
 use shared::model::{EffectSet, ModelSettings, ModelVariant};
 
-/// One run of a smooth wheel on a soil whose parameters are fixed.
+/// Returns one run of a smooth wheel on a soil whose parameters are fixed.
 pub(crate) fn variant() -> ModelVariant {
     let files = FileSet {
         toml: include_str!("../../tests/data/nothing-hidden/experiment.toml").into(),

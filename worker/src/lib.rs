@@ -26,7 +26,7 @@ pub mod serve;
 pub mod shell;
 pub mod simulate;
 
-/// Version of the equations that this worker computes.
+/// Returns the version of the equations that this worker computes.
 pub fn model_version() -> &'static str {
     scm::MODEL_VERSION
 }

@@ -80,7 +80,7 @@ pub enum ProgramError {
 }
 
 impl ProgramError {
-    /// The exit status for this error.
+    /// Returns the exit status for this error.
     pub fn status(&self) -> u8 {
         match self {
             ProgramError::Exchange(ExchangeError::Refused(_)) => REFUSED,
@@ -177,7 +177,8 @@ fn name() -> String {
     )
 }
 
-/// Ready at ^C, SIGTERM, or SIGUSR1, which sites configure as Slurm's signal before the end of a job.
+/// Returns a future that is ready at ^C, SIGTERM, or SIGUSR1, which sites configure as Slurm's signal before the end of a
+/// job.
 fn stop_signal() -> io::Result<impl Future<Output = ()>> {
     use tokio::signal::unix::{SignalKind, signal};
     let mut terminate = signal(SignalKind::terminate())?;

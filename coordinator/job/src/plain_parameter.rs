@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::LazyLock;
 
-use shared::parameters::of_models;
+use shared::parameters::model_parameters;
 use statistics::Marginal;
 
 use crate::model_switch::MODEL_SWITCHES;
@@ -91,7 +91,7 @@ impl PlainParameter {
 
     fn read_prior(&self) -> Option<(toml::Value, Marginal)> {
         let value: toml::Value = self.prior.parse().ok()?;
-        let known = of_models().find(|p| p.name == self.name)?;
+        let known = model_parameters().find(|p| p.name == self.name)?;
         let density = marginal(&value, &known.into()).ok()?;
         Some((value, density))
     }
@@ -102,7 +102,7 @@ impl PlainParameter {
         let is_free = spec.parameters.iter().any(|p| p.name == self.name);
         let known = match &spec.model.external {
             None => spec.model.kind.parameters().find(|p| p.name == self.name)?,
-            Some(model) if model.shares(self.name) => of_models().find(|p| p.name == self.name)?,
+            Some(model) if model.shares(self.name) => model_parameters().find(|p| p.name == self.name)?,
             Some(_) => return None,
         };
         if is_free || self.covered_by.is_some() || spec.fit_variant.conditions.is_empty() {
@@ -146,7 +146,7 @@ mod tests {
     fn every_one_is_a_parameter_whose_default_its_prior_holds() {
         for plain in &PLAIN_PARAMETERS {
             let (_, density) = plain.prior().unwrap_or_else(|| panic!("{}", plain.name));
-            let known = of_models().find(|p| p.name == plain.name).unwrap();
+            let known = model_parameters().find(|p| p.name == plain.name).unwrap();
             let (lower, upper) = density.support();
             assert!(
                 (lower..=upper).contains(&known.default.unwrap()),

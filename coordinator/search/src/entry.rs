@@ -6,7 +6,7 @@ use job::{EffectOnNodes, FreeParameter, Job, ModelSwitch, NamedFiles, PlainParam
 use record::{Extension, NotTried};
 
 use shared::model::ModelKind;
-use shared::parameters::{SPATIAL, of_models};
+use shared::parameters::{SPATIAL, model_parameters};
 
 use super::candidate::{CandidateEffect, candidate_of, spec, with_extensions};
 use super::law::dependence::Dependence;
@@ -63,7 +63,7 @@ impl CandidateEntry {
     /// Makes the candidate that frees a parameter of the model itself; `None` if the job does not hold it fixed.
     pub(super) fn plain(plain: &PlainParameter, base: &Spec) -> Option<Self> {
         let (neutral, density) = plain.held_by(base)?;
-        let unit = of_models().find(|parameter| parameter.name == plain.name)?.unit;
+        let unit = model_parameters().find(|parameter| parameter.name == plain.name)?.unit;
         let name = plain.name.to_owned();
         Some(Self {
             candidate: Candidate {

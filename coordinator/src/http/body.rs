@@ -43,7 +43,7 @@ pub(super) fn check_form(request: &Request) -> Result<(), HttpError> {
     }
     let stated = request.headers().get(CONTENT_TYPE);
     let stated = stated.and_then(|value| value.to_str().ok()).unwrap_or_default();
-    if WireForm::of_media_type(stated) == Some(WireForm::Json) {
+    if WireForm::from_media_type(stated) == Some(WireForm::Json) {
         return Ok(());
     }
     let message = format!(

@@ -162,13 +162,13 @@ fn forms(headers: &HeaderMap) -> Result<(WireForm, WireForm), HttpError> {
             .and_then(|value: &HeaderValue| value.to_str().ok())
     };
     let stated = header(CONTENT_TYPE).unwrap_or_default();
-    let Some(form) = WireForm::of_media_type(stated) else {
+    let Some(form) = WireForm::from_media_type(stated) else {
         let forms = WireForm::ALL.map(WireForm::media_type).join(" or ");
         let message = format!("Content-Type \"{stated}\" must be {forms}");
         return Err(HttpError::new(ErrorKind::UnsupportedMediaType, message));
     };
     let mut accepted = header(ACCEPT).unwrap_or_default().split(',');
-    let answer = accepted.find_map(WireForm::of_media_type).unwrap_or(form);
+    let answer = accepted.find_map(WireForm::from_media_type).unwrap_or(form);
     Ok((form, answer))
 }
 

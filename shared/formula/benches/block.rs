@@ -206,7 +206,7 @@ fn exponential_native(bencher: divan::Bencher<'_, '_>, points: usize) {
 }
 
 /// Returns the minimum time of a step over many batches, in nanoseconds.
-fn least(mut step: impl FnMut()) -> f64 {
+fn min_time(mut step: impl FnMut()) -> f64 {
     const BATCH: u32 = 2000;
     let batches = (0..300).map(|_| {
         let start = Instant::now();
@@ -221,8 +221,8 @@ fn print_ratios() {
     for law in LAWS {
         for points in POINTS {
             let (mut interpreted, mut by_hand) = (Interpreted::new(law), Native::new(law));
-            let ours = least(|| interpreted.step(points)) / points as f64;
-            let theirs = least(|| by_hand.step(points)) / points as f64;
+            let ours = min_time(|| interpreted.step(points)) / points as f64;
+            let theirs = min_time(|| by_hand.step(points)) / points as f64;
             let ratio = ours / theirs;
             println!(
                 "{:<12} {points:>6} {ours:>12.2} {theirs:>7.2} {ratio:>23.2}",

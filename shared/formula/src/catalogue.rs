@@ -64,12 +64,12 @@ static CATALOGUE: LazyLock<Vec<Effect>> = LazyLock::new(|| {
     FILES.iter().map(read).collect()
 });
 
-/// Every effect of the catalogue, in the order in which effects follow each other at a hook.
+/// Returns every effect of the catalogue, in the order in which effects follow each other at a hook.
 pub fn catalogue() -> &'static [Effect] {
     &CATALOGUE
 }
 
-/// An effect of the catalogue by name.
+/// Returns an effect of the catalogue by name.
 pub fn find(name: &str) -> Option<&'static Effect> {
     catalogue().iter().find(|effect| effect.name == name)
 }

@@ -47,12 +47,12 @@ impl Expression {
         Ok(Expression { graph, result, used })
     }
 
-    /// The unit of the result, if the units determine it; a plain number takes any unit.
+    /// Returns the unit of the result, if the units determine it; a plain number takes any unit.
     pub fn unit(&self) -> Option<Unit> {
         self.graph.unit(self.result)
     }
 
-    /// The positions of the names that it uses.
+    /// Returns the positions of the names that it uses.
     pub fn used(&self) -> &[usize] {
         &self.used
     }

@@ -69,17 +69,17 @@ impl Hook {
     /// The measured channels: each formula sees the channels before this effect.
     pub const CHANNELS: [Hook; 4] = [Hook::DrawbarPull, Hook::Torque, Hook::Sinkage, Hook::LateralForce];
 
-    /// Key in effect files.
+    /// Returns the key in effect files.
     pub fn name(self) -> &'static str {
         TABLE[self as usize].1
     }
 
-    /// The variable that the formula replaces.
+    /// Returns the variable that the formula replaces.
     pub fn target(self) -> Variable {
         TABLE[self as usize].2
     }
 
-    /// The variables that its formula may use.
+    /// Returns the variables that its formula may use.
     pub fn sees(self) -> Variables {
         use Variable::{
             BEff, ContactLength, DrawbarPull, J, KStar, LateralForce, P, Position, Sinkage, Tau, TauMax,
@@ -112,7 +112,7 @@ impl Hook {
             }
     }
 
-    /// The bound that [`Hook::admits`] checks, in words.
+    /// Returns the bound that [`Hook::admits`] checks, in words.
     pub fn bound(self) -> &'static str {
         match self {
             Hook::Slip => "in [-1, 1)",

@@ -76,12 +76,12 @@ impl Unit {
         if any { Ok(unit) } else { Err(unknown(text)) }
     }
 
-    /// The unit of a product; `None` if its powers are too large.
+    /// Returns the unit of a product; `None` if its powers are too large.
     pub(crate) fn times(self, other: Unit) -> Option<Unit> {
         self.combine(other, |a, b| a + b)
     }
 
-    /// The unit of a quotient.
+    /// Returns the unit of a quotient.
     pub(crate) fn over(self, other: Unit) -> Option<Unit> {
         self.combine(other, |a, b| a - b)
     }
@@ -94,7 +94,7 @@ impl Unit {
         Unit { halves }.within_reach()
     }
 
-    /// The unit of a power; `None` if it is no whole number of halves.
+    /// Returns the unit of a power; `None` if it is no whole number of halves.
     pub(crate) fn to_the(self, power: f64) -> Option<Unit> {
         let mut halves = [0; 4];
         for (new, old) in halves.iter_mut().zip(self.halves) {

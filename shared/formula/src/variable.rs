@@ -133,7 +133,7 @@ impl Variable {
         all
     };
 
-    /// Name in formulas.
+    /// Returns the name in formulas.
     pub fn name(self) -> &'static str {
         TABLE[self as usize].1
     }
@@ -160,12 +160,12 @@ impl Variables {
         Variables((1 << (last + 1)) - (1 << first))
     };
 
-    /// The set of these variables.
+    /// Returns the set of these variables.
     pub fn new(variables: &[Variable]) -> Self {
         variables.iter().fold(Self::default(), |set, &v| set.with(v))
     }
 
-    /// The set with one more variable.
+    /// Returns the set with one more variable.
     #[must_use]
     pub fn with(self, variable: Variable) -> Self {
         Self(self.0 | 1 << variable as u8)
@@ -176,7 +176,7 @@ impl Variables {
         self.0 >> variable as u8 & 1 == 1
     }
 
-    /// The union of two sets.
+    /// Returns the union of two sets.
     #[must_use]
     pub fn union(self, other: Self) -> Self {
         Self(self.0 | other.0)
@@ -187,7 +187,7 @@ impl Variables {
         self.0 & other.0 != 0
     }
 
-    /// The members, in numerical order.
+    /// Returns the members, in numerical order.
     pub fn iter(self) -> impl Iterator<Item = Variable> {
         Variable::ALL.into_iter().filter(move |&v| self.contains(v))
     }

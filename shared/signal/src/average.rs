@@ -16,7 +16,7 @@ use super::period_mean::{PeriodMean, SampledSignal, Window, period_mean};
 /// - `period_s`: period of the oscillation `[s]`; `None`: no oscillation.
 ///
 /// # Errors
-/// Those of [`period_mean`], which also states validity and source. Checked by `an_average_is_filter_cut_and_mean_in_this_order`.
+/// As for [`period_mean`], which also states validity and source. Checked by `an_average_is_filter_cut_and_mean_in_this_order`.
 pub fn average(
     samples: &mut [f64],
     interval_s: f64,

@@ -45,7 +45,7 @@ impl LowPass {
         })
     }
 
-    /// Like [`LowPass::new`], but a cut-off of 0 Hz means no filter, as in the protocol of an experiment.
+    /// Designs a filter like [`LowPass::new`], but a cut-off of 0 Hz means no filter, as in the protocol of an experiment.
     pub fn unless_zero(cutoff_hz: f64, sample_hz: f64) -> Result<Option<Self>, SignalError> {
         if cutoff_hz == 0.0 {
             return Ok(None);

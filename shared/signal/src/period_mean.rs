@@ -17,7 +17,7 @@ pub struct SampledSignal<'a> {
 }
 
 impl SampledSignal<'_> {
-    /// End of the last interval `[s]`.
+    /// Returns the end of the last interval `[s]`.
     pub fn end_s(&self) -> f64 {
         self.start_s + self.samples.len() as f64 * self.interval_s
     }

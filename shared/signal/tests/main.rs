@@ -2,9 +2,7 @@
 
 use core::f64::consts::PI;
 
-use signal::{
-    INTERVAL_S, LowPass, SampledSignal, SignalError, Window, average, intervals, period_mean, resample,
-};
+use signal::{INTERVAL_S, LowPass, SampledSignal, Window, average, intervals, period_mean, resample};
 
 const RATE_HZ: f64 = 10.0;
 
@@ -69,21 +67,18 @@ fn a_regular_history_comes_through_and_its_last_interval_is_not_lost_to_rounding
 #[test]
 fn histories_that_are_none_are_refused_by_position_and_length() {
     let mut out = [0.0; 8];
-    let refused = |edges: &[f64], values: &[f64], out: &mut [f64]| {
-        resample(edges, values, INTERVAL_S, out).unwrap_err().to_string()
-    };
-    assert_eq!(
-        refused(&[0.0, 0.5, 0.4], &[1.0, 2.0], &mut out),
-        "time 0.4 s at position 2 does not lie after 0.5 s"
-    );
-    assert_eq!(
-        refused(&[0.0, 0.5], &[1.0, 2.0], &mut out),
-        "edges_s has 2 entries, 3 are needed"
-    );
-    assert_eq!(
-        refused(&[0.0, 0.9], &[1.0], &mut out),
-        "out has 8 entries, 9 are needed"
-    );
+    for (edges, values, message) in [
+        (
+            &[0.0, 0.5, 0.4][..],
+            &[1.0, 2.0][..],
+            "time 0.4 s at position 2 does not lie after 0.5 s",
+        ),
+        (&[0.0, 0.5], &[1.0, 2.0], "edges_s has 2 entries, 3 are needed"),
+        (&[0.0, 0.9], &[1.0], "out has 8 entries, 9 are needed"),
+    ] {
+        let refused = resample(edges, values, INTERVAL_S, &mut out).unwrap_err();
+        assert_eq!(refused.to_string(), message);
+    }
     assert!(resample(&[0.0, f64::NAN], &[1.0], INTERVAL_S, &mut out).is_err());
     assert_eq!(resample(&[0.0], &[], INTERVAL_S, &mut out), Ok(0));
     // The history is shorter than one interval.
@@ -96,33 +91,17 @@ fn figures_of_an_independent_filter_are_met() {
     let input: Vec<f64> = (0..30_u32)
         .map(|i| f64::from((7 * i * i + 3 * i) % 23) / 4.0)
         .collect();
-    type Figures = (f64, [(usize, f64); 5]);
-    let expected: [Figures; 2] = [
-        (
-            0.5,
-            [
-                (0, 0.096_136_747_615_719_16),
-                (1, 0.689_670_578_833_247),
-                (14, 2.424_488_123_670_505),
-                (28, 3.750_172_265_844_465_6),
-                (29, 4.242_588_417_150_084),
-            ],
-        ),
-        (
-            2.0,
-            [
-                (0, -0.000_111_500_303_437_539_47),
-                (1, 1.677_008_472_763_129_4),
-                (14, 1.890_807_187_443_842),
-                (28, 2.471_380_059_978_904_4),
-                (29, 4.249_983_668_503_765),
-            ],
-        ),
-    ];
-    for (cutoff_hz, figures) in expected {
-        let mut history = input.clone();
-        LowPass::new(cutoff_hz, RATE_HZ).unwrap().apply(&mut history);
-        for (i, figure) in figures {
+    // position, and value with a cut-off of 0.5 Hz and of 2 Hz
+    for (i, slow, fast) in [
+        (0, 0.096_136_747_615_719_16, -0.000_111_500_303_437_539_47),
+        (1, 0.689_670_578_833_247, 1.677_008_472_763_129_4),
+        (14, 2.424_488_123_670_505, 1.890_807_187_443_842),
+        (28, 3.750_172_265_844_465_6, 2.471_380_059_978_904_4),
+        (29, 4.242_588_417_150_084, 4.249_983_668_503_765),
+    ] {
+        for (cutoff_hz, figure) in [(0.5, slow), (2.0, fast)] {
+            let mut history = input.clone();
+            LowPass::new(cutoff_hz, RATE_HZ).unwrap().apply(&mut history);
             assert!(
                 (history[i] - figure).abs() < 1e-13,
                 "{i}: {} {figure}",
@@ -158,10 +137,7 @@ fn sines_keep_their_phase_and_are_weakened_by_the_gain_squared() {
         for i in 500..1500 {
             let expected = gain * sine(i);
             let got = history[i as usize];
-            assert!(
-                (got - expected).abs() < 1e-10,
-                "{frequency_hz} Hz at {i}: {got} {expected}"
-            );
+            assert!((got - expected).abs() < 1e-10, "{frequency_hz} Hz at {i}: {got}");
         }
     }
 }
@@ -199,18 +175,26 @@ fn swinging(mean: f64, amplitude: f64, period_s: f64, count: u32) -> Vec<f64> {
         .collect()
 }
 
-fn mean_of(samples: &[f64], from_s: f64, to_s: f64, period_s: Option<f64>) -> (f64, u32, f64) {
-    let history = SampledSignal {
-        start_s: 0.0,
+/// A history that starts at a time `[s]`.
+fn from(start_s: f64, samples: &[f64]) -> SampledSignal<'_> {
+    SampledSignal {
+        start_s,
         interval_s: INTERVAL_S,
         samples,
-    };
-    let window = Window {
+    }
+}
+
+fn window(from_s: f64, to_s: f64, period_s: Option<f64>) -> Window {
+    Window {
         from_s,
         to_s,
         period_s,
-    };
-    let got = period_mean(&history, &window).expect("a window within the history");
+    }
+}
+
+fn mean_of(samples: &[f64], from_s: f64, to_s: f64, period_s: Option<f64>) -> (f64, u32, f64) {
+    let got = period_mean(&from(0.0, samples), &window(from_s, to_s, period_s));
+    let got = got.expect("a window within the history");
     (got.mean, got.periods, got.covered_s)
 }
 
@@ -227,10 +211,8 @@ fn a_mean_over_whole_periods_is_free_of_the_swing() {
     // 28 s hold four periods and 2 s, which change the mean by up to A / (π N) = 1 N.
     let (off, none, covered) = mean_of(&samples, 20.0, 48.0, None);
     assert_eq!(none, 0);
-    assert!(
-        (covered - 28.0).abs() < 1e-12 && (off - 38.661_641_547_852).abs() < 1e-9,
-        "{off}"
-    );
+    assert!((covered - 28.0).abs() < 1e-12, "{covered}");
+    assert!((off - 38.661_641_547_852).abs() < 1e-9, "{off}");
     assert!((mean_of(&samples, 20.0, 48.0, Some(6.5)).0 - 38.0).abs() < 1e-12);
     // A period that is not a multiple of the interval leaves at most π A dt² / (4 N P²): 7e-4 N of 13 N for P = 6.53 s.
     let samples = swinging(38.0, 13.0, 6.53, 500);
@@ -255,35 +237,15 @@ fn a_period_that_just_fits_counts_and_one_too_long_takes_the_window() {
 
 #[test]
 fn windows_outside_the_history_are_refused() {
-    let history = SampledSignal {
-        start_s: 1.0,
-        interval_s: INTERVAL_S,
-        samples: &[1.0; 20],
-    };
-    let refused = |from_s: f64, to_s: f64, period_s: Option<f64>| -> SignalError {
-        let window = Window {
-            from_s,
-            to_s,
-            period_s,
-        };
-        period_mean(&history, &window).unwrap_err()
-    };
-    assert_eq!(
-        refused(0.5, 2.0, None).to_string(),
-        "from_s = 0.5 s must be at least 1 s"
-    );
-    assert_eq!(
-        refused(1.5, 4.0, None).to_string(),
-        "to_s = 4 s must be at most 3 s"
-    );
-    assert_eq!(
-        refused(2.0, 2.0, None).to_string(),
-        "to_s = 2 s must be above 2 s"
-    );
-    assert_eq!(
-        refused(1.0, 3.0, Some(0.0)).to_string(),
-        "period_s = 0 s must be above 0 s"
-    );
+    for (window, message) in [
+        (window(0.5, 2.0, None), "from_s = 0.5 s must be at least 1 s"),
+        (window(1.5, 4.0, None), "to_s = 4 s must be at most 3 s"),
+        (window(2.0, 2.0, None), "to_s = 2 s must be above 2 s"),
+        (window(1.0, 3.0, Some(0.0)), "period_s = 0 s must be above 0 s"),
+    ] {
+        let refused = period_mean(&from(1.0, &[1.0; 20]), &window).unwrap_err();
+        assert_eq!(refused.to_string(), message);
+    }
 }
 
 #[test]
@@ -294,17 +256,8 @@ fn an_average_is_filter_cut_and_mean_in_this_order() {
     let filter = LowPass::new(0.5, RATE_HZ).unwrap();
     let mut filtered = raw.clone();
     filter.apply(&mut filtered);
-    let history = SampledSignal {
-        start_s: 0.0,
-        interval_s: INTERVAL_S,
-        samples: &filtered,
-    };
-    let window = Window {
-        from_s: 8.0,
-        to_s: history.end_s(),
-        period_s: Some(6.5),
-    };
-    let expected = period_mean(&history, &window).unwrap();
+    let history = from(0.0, &filtered);
+    let expected = period_mean(&history, &window(8.0, history.end_s(), Some(6.5))).unwrap();
     let mut samples = raw.clone();
     let got = average(&mut samples, INTERVAL_S, Some(&filter), 8.0, Some(6.5)).unwrap();
     assert_eq!(got, expected);

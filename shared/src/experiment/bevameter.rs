@@ -102,6 +102,7 @@ fn some<T>(file: &str, readings: Vec<T>, otherwise: &str) -> Result<Vec<T>, File
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::case_table::cases;
 
     #[test]
     fn readings_keep_their_order_and_a_blank_measurement() {
@@ -122,36 +123,27 @@ mod tests {
             let text = format!("test,plate_radius_m,sinkage_m,pressure_pa\na,0.03,0.001,500\n{row}\n");
             plates("plates.csv", &text).unwrap_err().to_string()
         };
-        for (row, message) in [
-            ("a,0,0.002,1", "plate_radius_m 0 m must be > 0 m"),
-            ("a,0.03,-0.002,1", "sinkage_m -0.002 m must be >= 0 m"),
-            (
-                "a,30,0.002,1",
-                "plate_radius_m 30 m must be at most 1 m: was it typed in mm (0.03 m) or cm (0.3 m)?",
-            ),
-            (
-                "a,0.03,2,1",
-                "sinkage_m 2 m must be <= 1 m: metres are expected, were these millimetres?",
-            ),
-            ("a,0.03,,1", "sinkage_m is blank"),
-            (",0.03,0.002,1", "test is blank"),
-            ("a,0.03,0.002,inf", "pressure_pa inf is not a finite number"),
-            ("a,0.03,0.002", "3 fields where the header has 4"),
-        ] {
+        for (row, message) in cases(
+            r#"
+            a,0,0.002,1 => plate_radius_m 0 m must be > 0 m
+            a,0.03,-0.002,1 => sinkage_m -0.002 m must be >= 0 m
+            a,30,0.002,1 => plate_radius_m 30 m must be at most 1 m: was it typed in mm (0.03 m) or cm (0.3 m)?
+            a,0.03,2,1 => sinkage_m 2 m must be <= 1 m: metres are expected, were these millimetres?
+            a,0.03,,1 => sinkage_m is blank
+            ,0.03,0.002,1 => test is blank
+            a,0.03,0.002,inf => pressure_pa inf is not a finite number
+            a,0.03,0.002 => 3 fields where the header has 4"#,
+        ) {
             assert_eq!(plate(row), format!("plates.csv line 3: {message}"));
         }
-        let ring = |text: &str| shear("shear.csv", text).unwrap_err().to_string();
-        assert_eq!(
-            ring("test,normal_stress_pa,shear_displacement_mm,shear_stress_pa\n"),
-            "shear.csv line 1: unknown column \"shear_displacement_mm\"; the nearest known is \"shear_displacement_m\""
-        );
-        assert_eq!(
-            ring("test,normal_stress_pa,shear_stress_pa\n"),
-            "shear.csv line 1: column \"shear_displacement_m\" is missing"
-        );
-        assert_eq!(
-            ring("test,normal_stress_pa,shear_displacement_m\n"),
-            "shear.csv: the file has no reading of a ring"
-        );
+        for (columns, message) in cases(
+            r#"
+            shear_displacement_mm,shear_stress_pa =>  line 1: unknown column "shear_displacement_mm"; the nearest known is "shear_displacement_m"
+            shear_stress_pa =>  line 1: column "shear_displacement_m" is missing
+            shear_displacement_m => : the file has no reading of a ring"#,
+        ) {
+            let refused = shear("shear.csv", &format!("test,normal_stress_pa,{columns}\n")).unwrap_err();
+            assert_eq!(refused.to_string(), format!("shear.csv{message}"));
+        }
     }
 }

@@ -141,6 +141,7 @@ fn is_doi(text: &str) -> bool {
 #[cfg(test)]
 mod tests {
     use super::Campaign;
+    use crate::case_table::cases;
     use crate::file::parse_toml;
 
     /// Reads a campaign with these lines.
@@ -159,35 +160,23 @@ mod tests {
 
     #[test]
     fn a_wrong_campaign_is_refused_with_its_mistake() {
-        for (lines, message) in [
-            ("title = \" \"", "title is blank"),
-            ("title = \"a\"\nauthors = [\"\"]", "authors is blank"),
-            (
-                "title = \"a\"\nnoise = \"\\u001b[31m\"",
-                "noise \"\u{1b}[31m\" has a control character",
-            ),
-            (
-                "title = \"a\"\ndate = \"30.4.2025\"",
-                "date \"30.4.2025\" must be a year, YYYY-MM or YYYY-MM-DD",
-            ),
-            (
-                "title = \"a\"\ndate = \"2025-13\"",
-                "date \"2025-13\" must be a year, YYYY-MM or YYYY-MM-DD",
-            ),
-            (
-                "title = \"a\"\ndoi = \"https://doi.org/10.1/x\"",
-                "doi \"https://doi.org/10.1/x\" must be of the form 10.1016/j.jterra.2010.08.001, without https://doi.org/",
-            ),
-            (
-                "title = \"a\"\ndigitised = true",
-                "digitised = true needs source: the figures that the rows were read off, and who read them",
-            ),
-        ] {
-            assert_eq!(read(lines).unwrap_err(), message);
+        assert_eq!(read("title = \" \"").unwrap_err(), "title is blank");
+        for (line, message) in cases(
+            r#"
+            authors = [""] => authors is blank
+            noise = "\u001b[31m" => noise "ESC[31m" has a control character
+            date = "30.4.2025" => date "30.4.2025" must be a year, YYYY-MM or YYYY-MM-DD
+            date = "2025-13" => date "2025-13" must be a year, YYYY-MM or YYYY-MM-DD
+            doi = "https://doi.org/10.1/x" => doi "https://doi.org/10.1/x" must be of the form 10.1016/j.jterra.2010.08.001, without https://doi.org/
+            digitised = true => digitised = true needs source: the figures that the rows were read off, and who read them"#,
+        ) {
+            let refused = read(&format!("title = \"a\"\n{line}")).unwrap_err();
+            assert_eq!(refused.replace('\u{1b}', "ESC"), message);
         }
         let unknown = read("title = \"a\"\nlicense = \"MIT\"").unwrap_err();
+        let expected = "unknown key \"license\"";
         assert!(
-            unknown.contains("unknown key \"license\"") && unknown.contains("licence"),
+            unknown.contains(expected) && unknown.contains("licence"),
             "{unknown}"
         );
     }

@@ -40,7 +40,7 @@ pub(super) enum ValueError {
     },
     #[error("{key} {value} is not a finite number")]
     NotFinite { key: String, value: f64 },
-    /// `bound` is `> 0`, `>= 0`, `< 90`…
+    /// The value breaks `bound`, such as `> 0`, `>= 0` or `< 90`.
     #[error("{key} {value} {unit} must be {bound} {unit}")]
     Bound {
         key: String,

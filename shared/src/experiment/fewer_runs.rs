@@ -6,7 +6,7 @@ use crate::file::{FileError, FileSet};
 
 impl Experiment {
     /// Returns the files of an experiment with these fitted runs held out: `use = holdout` in their rows of `runs.csv`. All
-    /// columns stay; comments are left out.
+    /// columns are kept; comments are dropped.
     ///
     /// A [`FileError`] names a run that is unknown, named twice or already held out; one fitted run must remain.
     pub fn with_held_out(name: &str, files: &FileSet, runs: &[String]) -> Result<FileSet, FileError> {

@@ -45,12 +45,12 @@ pub struct Recorded {
 }
 
 impl MeasuredHistory {
-    /// A channel's recording, if there is one.
+    /// Returns a channel's recording, if there is one.
     pub fn channel(&self, channel: Channel) -> Option<&Recorded> {
         self.recorded[channel.index()].as_ref()
     }
 
-    /// The channels that are recorded, in the order of all tables.
+    /// Returns the channels that are recorded, in the order of all tables.
     pub fn channels(&self) -> impl Iterator<Item = (Channel, &Recorded)> {
         Channel::ALL
             .into_iter()
@@ -172,6 +172,7 @@ fn interval(t_s: &[f64]) -> Result<f64, (usize, String)> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::case_table::cases;
 
     /// 2 pi 0.125 m / 12 / 10 mm/s = 6.545 s from grouser to grouser at this slip and speed.
     const MOTION: (f64, f64) = (0.2, 0.008);
@@ -193,7 +194,7 @@ mod tests {
         averaged("h.csv", text, &wheel(), protocol, MOTION).map_err(|e| e.to_string())
     }
 
-    /// Sixty seconds at 10 Hz: a pull that oscillates by 3 N with the passing grousers, after a transient.
+    /// Returns sixty seconds at 10 Hz: a pull that oscillates by 3 N with the passing grousers, after a transient.
     fn recording() -> String {
         let mut text = "# a rig\nt_s,drawbar_pull_n,sinkage_m,wheel_load_n\n".to_owned();
         for k in 1..=600 {
@@ -205,7 +206,7 @@ mod tests {
         text
     }
 
-    /// An oscillation of period 1 and mean 0.
+    /// Returns an oscillation of period 1 and mean 0.
     fn swing(x: f64) -> f64 {
         (std::f64::consts::TAU * x).sin()
     }
@@ -238,48 +239,31 @@ mod tests {
             measured_transient_s: 0.0,
             ..AveragingProtocol::default()
         };
-        let rows = |rows: &str| read(&format!("t_s,sinkage_m\n{rows}"), &steady).unwrap_err();
-        for (wrong, message) in [
-            (
-                "0.1,0\n0.2,0\n0.2,0\n0.3,0\n",
-                "h.csv line 4: t_s 0.2 s must lie after 0.2 s",
-            ),
-            (
-                "0.1,0\n0.2,0\n0.4,0\n",
-                "h.csv line 4: t_s 0.4 s comes 0.200000 s after the one before, the first two are 0.100000 s apart: steps must be equal",
-            ),
-            ("0.1,0\n0.2,\n0.3,0\n", "h.csv line 3: sinkage_m is blank"),
-            (
-                "0.1,0\n0.2,inf\n0.3,0\n",
-                "h.csv line 3: sinkage_m inf is not a finite number",
-            ),
-            (
-                "0.1,0\n0.2,5\n0.3,0\n",
-                "h.csv line 3: sinkage_m 5 m is more than the wheel's diameter 0.25 m: metres are expected, were these millimetres or centimetres?",
-            ),
-            ("0.1,0\n0.2,0\n", "h.csv: 2 samples are too few: at least 3"),
-            (
-                "1,0\n2,0\n3,0\n",
-                "h.csv: [protocol] lowpass_hz = 0.5 Hz must be below 0.5 Hz",
-            ),
-        ] {
-            assert_eq!(rows(wrong), message);
+        // a table's line has a slash where the file begins a new line
+        let refused =
+            |text: &str, protocol: &AveragingProtocol| read(&text.replace('/', "\n"), protocol).unwrap_err();
+        for (wrong, message) in cases(
+            r#"
+            0.1,0/0.2,0/0.2,0/0.3,0 => h.csv line 4: t_s 0.2 s must lie after 0.2 s
+            0.1,0/0.2,0/0.4,0 => h.csv line 4: t_s 0.4 s comes 0.200000 s after the one before, the first two are 0.100000 s apart: steps must be equal
+            0.1,0/0.2,/0.3,0 => h.csv line 3: sinkage_m is blank
+            0.1,0/0.2,inf/0.3,0 => h.csv line 3: sinkage_m inf is not a finite number
+            0.1,0/0.2,5/0.3,0 => h.csv line 3: sinkage_m 5 m is more than the wheel's diameter 0.25 m: metres are expected, were these millimetres or centimetres?
+            0.1,0/0.2,0 => h.csv: 2 samples are too few: at least 3
+            1,0/2,0/3,0 => h.csv: [protocol] lowpass_hz = 0.5 Hz must be below 0.5 Hz"#,
+        ) {
+            assert_eq!(refused(&format!("t_s,sinkage_m/{wrong}/"), &steady), message);
         }
-        assert_eq!(
-            read("t_s\n0.1\n0.2\n0.3\n", &steady).unwrap_err(),
-            "h.csv: no column of a channel: drawbar_pull_n, torque_n_m, sinkage_m, lateral_force_n"
-        );
-        assert_eq!(
-            read("t_s,torqe_n_m\n", &steady).unwrap_err(),
-            "h.csv line 1: unknown column \"torqe_n_m\"; the nearest known is \"torque_n_m\""
-        );
-        assert_eq!(
-            read(
-                "t_s,sinkage_m\n0.1,0\n0.2,0\n0.3,0\n",
-                &AveragingProtocol::default()
-            )
-            .unwrap_err(),
-            "h.csv: [protocol] measured_transient_s 40 s must be < 0.300000 s, the length of the recording"
-        );
+        for (text, message) in cases(
+            r#"
+            t_s/0.1/0.2/0.3/ => h.csv: no column of a channel: drawbar_pull_n, torque_n_m, sinkage_m, lateral_force_n
+            t_s,torqe_n_m/ => h.csv line 1: unknown column "torqe_n_m"; the nearest known is "torque_n_m""#,
+        ) {
+            assert_eq!(refused(text, &steady), message);
+        }
+        let short = refused("t_s,sinkage_m/0.1,0/0.2,0/0.3,0/", &AveragingProtocol::default());
+        let message =
+            "[protocol] measured_transient_s 40 s must be < 0.300000 s, the length of the recording";
+        assert_eq!(short, format!("h.csv: {message}"));
     }
 }

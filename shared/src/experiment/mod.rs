@@ -72,7 +72,7 @@ pub struct Series {
 }
 
 impl Series {
-    /// Position of a run in the series: −0.5 the first, 0.5 the last; `None` for a run without a number.
+    /// Returns the position of a run in the series: −0.5 the first, 0.5 the last; `None` for a run without a number.
     pub fn position(self, run: &TestRun) -> Option<f64> {
         let [first, last] = [self.first, self.last].map(f64::from);
         run.order
@@ -161,12 +161,13 @@ impl Experiment {
         })
     }
 
-    /// Names of the wheels that the runs use.
+    /// Returns the names of the wheels that the runs use.
     pub fn wheel_names(&self) -> BTreeSet<&str> {
         self.runs.iter().map(|r| r.wheel.as_str()).collect()
     }
 
-    /// The series of all runs, with the holdout runs; `None` if the column `order` is absent or has a single value.
+    /// Returns the series of all runs, with the holdout runs; `None` if the column `order` is absent or has a single
+    /// value.
     pub fn series(&self) -> Option<Series> {
         let orders = || self.runs.iter().filter_map(|run| run.order);
         let (first, last) = (orders().min()?, orders().max()?);
@@ -184,6 +185,7 @@ impl Experiment {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::case_table::cases;
 
     const TOML: &str = "runs = \"runs.csv\"\n[wheel.w]\nradius_m = 0.1\nwidth_m = 0.05\n[soil.s]\n[noise]\ndrawbar_pull_n = 1.0\n";
     const HEADER: &str = "run,wheel,soil,slip,wheel_load_n,sled_speed_m_s,drawbar_pull_n,sinkage_m,use\n";
@@ -207,73 +209,40 @@ mod tests {
         assert!(!experiment.measures(Channel::Sinkage, RunUse::Fit));
     }
 
-    /// Each case has one wrong value; the message must name line, quantity, value, unit and bound.
+    /// Checks that each case, which has one wrong value, is refused with line, quantity, value, unit and bound.
     #[test]
     fn malformed_experiments_are_refused_with_their_mistake() {
         let row = |row: &str| parse(TOML, &format!("{HEADER}{row}\n")).unwrap_err();
-        for (wrong, message) in [
-            (
-                "a,w,s,1.0,100,0.01,1,,fit",
-                "runs.csv line 2: slip 1 must lie in [-1, 1)",
-            ),
-            (
-                "a,w,s,0.2,-5,0.01,1,,fit",
-                "runs.csv line 2: wheel_load_n -5 N must be > 0 N",
-            ),
-            (
-                "a,w,s,0.2,100,0,1,,fit",
-                "runs.csv line 2: sled_speed_m_s 0 m/s must be > 0 m/s",
-            ),
-            (
-                "a,w,s,0.2,100,0.01,1,5.2,fit",
-                "runs.csv line 2: sinkage_m 5.2 m is more than the wheel's diameter 0.2 m: metres are expected, were these millimetres or centimetres?",
-            ),
-            (
-                "a,v,s,0.2,100,0.01,1,,fit",
-                "runs.csv line 2: unknown wheel \"v\"; known are w",
-            ),
-            (
-                "a,w,s,zero,100,0.01,1,,fit",
-                "runs.csv line 2: slip \"zero\" is not a number",
-            ),
-            (
-                "a,w,s,0.2,100,0.01,NaN,,fit",
-                "runs.csv line 2: drawbar_pull_n NaN is not a finite number",
-            ),
-            (
-                "a,w,s,0.2,100,0.01,1,,both",
-                "runs.csv line 2: use \"both\" must be fit or holdout",
-            ),
-            (
-                "a,w,s,0.2,100,0.01",
-                "runs.csv line 2: 6 fields where the header has 9",
-            ),
-        ] {
-            assert_eq!(row(wrong), message);
+        for (wrong, message) in cases(
+            r#"
+            a,w,s,1.0,100,0.01,1,,fit => slip 1 must lie in [-1, 1)
+            a,w,s,0.2,-5,0.01,1,,fit => wheel_load_n -5 N must be > 0 N
+            a,w,s,0.2,100,0,1,,fit => sled_speed_m_s 0 m/s must be > 0 m/s
+            a,w,s,0.2,100,0.01,1,5.2,fit => sinkage_m 5.2 m is more than the wheel's diameter 0.2 m: metres are expected, were these millimetres or centimetres?
+            a,v,s,0.2,100,0.01,1,,fit => unknown wheel "v"; known are w
+            a,w,s,zero,100,0.01,1,,fit => slip "zero" is not a number
+            a,w,s,0.2,100,0.01,NaN,,fit => drawbar_pull_n NaN is not a finite number
+            a,w,s,0.2,100,0.01,1,,both => use "both" must be fit or holdout
+            a,w,s,0.2,100,0.01 => 6 fields where the header has 9"#,
+        ) {
+            assert_eq!(row(wrong), format!("runs.csv line 2: {message}"));
         }
+        let refused = |csv: &str, message: &str| assert_eq!(parse(TOML, csv).unwrap_err(), message);
         let two = format!("{HEADER}a,w,s,0.2,100,0.01,1,,fit\na,w,s,0.2,100,0.01,1,,fit\n");
-        assert_eq!(
-            parse(TOML, &two).unwrap_err(),
-            "runs.csv line 3: run \"a\" appears twice (first on line 2)"
-        );
-        assert_eq!(
-            parse(TOML, HEADER).unwrap_err(),
-            "runs.csv: the file has no test run"
-        );
+        refused(&two, "runs.csv line 3: run \"a\" appears twice (first on line 2)");
+        refused(HEADER, "runs.csv: the file has no test run");
         let commented =
             format!("# a\n\n{HEADER}a,w,s,0.2,100,0.01,1,,fit\n# b\n# c\nd,w,s,2,100,0.01,1,,fit");
-        assert_eq!(
-            parse(TOML, &commented).unwrap_err(),
-            "runs.csv line 7: slip 2 must be at most 1: was it typed in per cent (0.02)?"
-        );
+        let message = "runs.csv line 7: slip 2 must be at most 1: was it typed in per cent (0.02)?";
+        refused(&commented, message);
         let column = "run,wheel,soil,slipp,wheel_load_n,sled_speed_m_s\n";
-        assert_eq!(
-            parse(TOML, column).unwrap_err(),
-            "runs.csv line 1: unknown column \"slipp\"; the nearest known is \"slip\""
+        refused(
+            column,
+            "runs.csv line 1: unknown column \"slipp\"; the nearest known is \"slip\"",
         );
-        let negative = TOML.replace("0.05", "-0.05");
+        let negative = parse(&TOML.replace("0.05", "-0.05"), HEADER).unwrap_err();
         assert_eq!(
-            parse(&negative, HEADER).unwrap_err(),
+            negative,
             "experiment.toml: [wheel.w] width_m -0.05 m must be > 0 m"
         );
     }
@@ -285,10 +254,8 @@ mod tests {
         let with = |lines: &str| parse(&format!("{TOML}[campaign]\n{lines}\n"), &row);
         let campaign = with("title = \"Sand\"").unwrap().campaign;
         assert_eq!(campaign.unwrap().title, "Sand");
-        assert_eq!(
-            with("title = \"\"").unwrap_err(),
-            "experiment.toml: [campaign] title is blank"
-        );
+        let message = with("title = \"\"").unwrap_err();
+        assert_eq!(message, "experiment.toml: [campaign] title is blank");
     }
 
     #[test]
@@ -304,17 +271,13 @@ mod tests {
         assert_eq!(prepared, [Some("bed 1"), Some("bed 1"), None]);
         assert_eq!(read("a,w,s,0.2,100,0.01,1,,fit,4,\n").unwrap().series(), None);
         assert_eq!(read("a,w,s,0.2,100,0.01,1,,fit,,\n").unwrap().series(), None);
-        for (wrong, message) in [
-            (
-                rows.replace(",5,", ",,"),
-                "runs.csv line 4: run \"c\" has no order, but run \"a\" has one: a drift over the series needs the numbers of all",
-            ),
-            (
-                rows.replace(",5,", ",5.5,"),
-                "runs.csv line 4: order \"5.5\" must be a whole number: that of the run in time",
-            ),
-        ] {
-            assert_eq!(read(&wrong).unwrap_err(), message);
+        for (order, message) in cases(
+            r#"
+            ,, => run "c" has no order, but run "a" has one: a drift over the series needs the numbers of all
+            ,5.5, => order "5.5" must be a whole number: that of the run in time"#,
+        ) {
+            let wrong = read(&rows.replace(",5,", order)).unwrap_err();
+            assert_eq!(wrong, format!("runs.csv line 4: {message}"));
         }
     }
 
@@ -322,10 +285,10 @@ mod tests {
     fn a_scatter_of_preparations_needs_their_ids() {
         let toml = TOML.replace("[noise]", "[noise]\npreparation_scatter = 0.1");
         let row = "a,w,s,0.2,100,0.01,1,,fit";
-        assert_eq!(
-            parse(&toml, &format!("{HEADER}{row}\n")).unwrap_err(),
-            "experiment.toml: [noise] preparation_scatter needs the column prepared in runs.csv: the preparation of each run"
-        );
+        let refused = parse(&toml, &format!("{HEADER}{row}\n")).unwrap_err();
+        let message =
+            "preparation_scatter needs the column prepared in runs.csv: the preparation of each run";
+        assert_eq!(refused, format!("experiment.toml: [noise] {message}"));
         let header = HEADER.replace("use", "use,prepared");
         let noise = parse(&toml, &format!("{header}{row},bed 1\n")).unwrap().noise;
         assert_eq!(noise.scatter(Scatter::Preparation), ScatterSd::Known(0.1));
@@ -334,10 +297,8 @@ mod tests {
 
     #[test]
     fn a_history_gives_the_channels_that_are_not_stated() {
-        let toml = TOML.replace(
-            "[noise]",
-            "[protocol]\nmeasured_transient_s = 0.1\nlowpass_hz = 0.0\n[noise]",
-        );
+        let protocol = "[protocol]\nmeasured_transient_s = 0.1\nlowpass_hz = 0.0\n[noise]";
+        let toml = TOML.replace("[noise]", protocol);
         let header = HEADER.replace("use", "history,use");
         let with = |row: &str| {
             let csv = format!("{header}{row}\n");
@@ -356,14 +317,13 @@ mod tests {
             .remove(0);
         assert_eq!(run.measured, [Some(2.0), None, Some(0.004), None]);
         assert_eq!(run.history.unwrap().file, "h.csv");
-        assert_eq!(
-            with("a,w,s,0.2,100,0.01,5,,h.csv,fit").unwrap_err(),
-            "runs.csv line 2: run \"a\": drawbar_pull_n is stated as 5 N and recorded in h.csv: leave one of them out"
-        );
-        assert_eq!(
-            with("a,w,s,0.2,100,0.01,,,other.csv,fit").unwrap_err(),
-            "runs.csv: file \"other.csv\" is named but was not sent"
-        );
+        for (row, message) in cases(
+            r#"
+            5,,h.csv,fit => runs.csv line 2: run "a": drawbar_pull_n is stated as 5 N and recorded in h.csv: leave one of them out
+            ,,other.csv,fit => runs.csv: file "other.csv" is named but was not sent"#,
+        ) {
+            assert_eq!(with(&format!("a,w,s,0.2,100,0.01,{row}")).unwrap_err(), message);
+        }
     }
 
     #[test]
@@ -375,21 +335,16 @@ mod tests {
         assert_eq!(noise.scatter(Scatter::Run), ScatterSd::Known(0.1));
         assert_eq!(noise.scatter(Scatter::PlateReading), ScatterSd::Unknown);
         assert_eq!(noise.scatter(Scatter::RingTest), ScatterSd::Known(0.05));
-        for (line, message) in [
-            (
-                "run_scatter = -0.1",
-                "[noise] run_scatter -0.1 must lie in [0, 1]: it is relative",
-            ),
-            (
-                "ring_noise = 0.0",
-                "[noise] ring_noise 0 must be > 0 and <= 1: it is relative",
-            ),
-            (
-                "plate_scatter = \"replicates\"",
-                "[noise] plate_scatter = \"replicates\" must be a number or \"unknown\"",
-            ),
-        ] {
-            assert_eq!(read(line).unwrap_err(), format!("experiment.toml: {message}"));
+        for (line, message) in cases(
+            r#"
+            run_scatter = -0.1 => run_scatter -0.1 must lie in [0, 1]: it is relative
+            ring_noise = 0.0 => ring_noise 0 must be > 0 and <= 1: it is relative
+            plate_scatter = "replicates" => plate_scatter = "replicates" must be a number or "unknown""#,
+        ) {
+            assert_eq!(
+                read(line).unwrap_err(),
+                format!("experiment.toml: [noise] {message}")
+            );
         }
     }
 }

@@ -8,7 +8,7 @@ use crate::file::{FileError, FileSet};
 impl Experiment {
     /// Returns the files of an experiment with the rows of another `runs.csv` appended, and the resulting number of runs.
     ///
-    /// Columns are matched by name; rows of a file without a column leave it blank. Comments of both files are left out. A
+    /// Columns are matched by name; rows of a file without a column leave it blank. Comments of both files are dropped. A
     /// [`FileError`] names the line of a new row that is malformed or whose run is in the experiment already.
     pub fn with_runs(name: &str, files: &FileSet, csv: &str) -> Result<(FileSet, usize), FileError> {
         let before = Experiment::parse(name, files)?;
@@ -97,6 +97,8 @@ mod tests {
     const RUNS: &str = "# first day\nrun,wheel,soil,slip,wheel_load_n,sled_speed_m_s,drawbar_pull_n,use\n\"one, two\",a,sand,0.2,25,0.01,0.5,fit\n";
     const MORE: &str = "# second day\nuse,run,wheel,soil,slip,wheel_load_n,sled_speed_m_s,torque_n_m\n# sunny\nholdout,three,a,sand,0.4,25,0.02,0.7\n";
 
+    const PLATES: &str = "test,plate_radius_m,sinkage_m,pressure_pa\na,0.03,0.01,8000\n";
+
     fn files(runs: &str) -> FileSet {
         FileSet {
             toml: TOML.into(),
@@ -116,33 +118,26 @@ mod tests {
 
     #[test]
     fn rows_that_cannot_be_added_are_named_by_line() {
-        for (new_rows, message) in [
+        for (old, new, message) in [
             (
-                MORE.replace("three", "\"one, two\""),
-                "runs.csv line 4: run \"one, two\" is in the study already",
+                "three",
+                "\"one, two\"",
+                "line 4: run \"one, two\" is in the study already",
             ),
-            (
-                MORE.replace("0.4,25", "1.4,25"),
-                "runs.csv line 4: slip 1.4 must be at most 1",
-            ),
-            (
-                MORE.replace("torque_n_m", "torque"),
-                "runs.csv line 2: unknown column \"torque\"",
-            ),
-            (
-                MORE.replace("0.02,0.7", "0.02"),
-                "runs.csv line 4: 7 fields where the header has 8",
-            ),
+            ("0.4,25", "1.4,25", "line 4: slip 1.4 must be at most 1"),
+            ("torque_n_m", "torque", "line 2: unknown column \"torque\""),
+            ("0.02,0.7", "0.02", "line 4: 7 fields where the header has 8"),
         ] {
+            let new_rows = MORE.replace(old, new);
             let error = Experiment::with_runs("experiment.toml", &files(RUNS), &new_rows).unwrap_err();
-            assert!(error.to_string().starts_with(message), "{error}");
+            assert!(
+                error.to_string().starts_with(&format!("runs.csv {message}")),
+                "{error}"
+            );
         }
         let plates = FileSet {
             toml: TOML.replace("runs = \"runs.csv\"", "plates = \"plates.csv\""),
-            files: BTreeMap::from([(
-                "plates.csv".into(),
-                "test,plate_radius_m,sinkage_m,pressure_pa\na,0.03,0.01,8000\n".into(),
-            )]),
+            files: [("plates.csv".into(), PLATES.into())].into(),
         };
         let error = Experiment::with_runs("experiment.toml", &plates, MORE).unwrap_err();
         assert!(error.to_string().contains("no runs to append to"), "{error}");

@@ -55,7 +55,7 @@ pub enum RunUse {
 }
 
 impl RunUse {
-    /// Word in the column `use` and in results.
+    /// Returns the word in the column `use` and in results.
     pub fn name(self) -> &'static str {
         self.into()
     }
@@ -80,7 +80,7 @@ const ORDER: &str = "order";
 /// The column of the preparations.
 const PREPARED: &str = "prepared";
 
-/// The known columns of `runs.csv`.
+/// Returns the known columns of `runs.csv`.
 fn columns<'a>(sd_columns: &'a [String; 4]) -> Columns<'a> {
     let mut allowed: Vec<&str> = CONDITION_COLUMNS.to_vec();
     allowed.extend(Channel::ALL.iter().map(|c| c.column()));
@@ -97,7 +97,7 @@ fn sd_columns() -> [String; 4] {
     Channel::ALL.map(|c| format!("{}_sd", c.column()))
 }
 
-/// The files of histories that the runs name, each once.
+/// Returns the files of histories that the runs name, each once.
 pub(super) fn named_histories(file: &str, text: &str) -> Result<BTreeSet<String>, FileError> {
     let names = table::rows(file, text, &columns(&sd_columns()), |row, _| {
         Ok(row.text(HISTORY).map(str::to_owned))

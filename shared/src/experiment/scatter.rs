@@ -42,12 +42,12 @@ impl Scatter {
         Scatter::RingReading,
     ];
 
-    /// Position in [`Scatter::ALL`].
+    /// Returns the position in [`Scatter::ALL`].
     pub fn index(self) -> usize {
         self as usize
     }
 
-    /// Key under `[noise]`, and in the parameter's name.
+    /// Returns the key under `[noise]`, and in the parameter's name.
     pub fn key(self) -> &'static str {
         match self {
             Scatter::Run => "run_scatter",
@@ -60,7 +60,7 @@ impl Scatter {
         }
     }
 
-    /// The value if the experiment states none. The scatter of preparations is inferred: an experiment that names
+    /// Returns the value if the experiment states none. The scatter of preparations is inferred: an experiment that names
     /// preparations expects them to differ, and without the column `prepared` it has no effect.
     pub fn usual(self) -> ScatterSd {
         match self {
@@ -72,8 +72,9 @@ impl Scatter {
         }
     }
 
-    /// Scale of the half-normal prior of an unknown scatter if the job states none: for tests and readings twice the usual
-    /// value, for the soil's stiffness 0.2 and for its strength 0.05 (one degree of friction changes it by 0.04).
+    /// Returns the scale of the half-normal prior of an unknown scatter if the job states none: for tests and readings
+    /// twice the usual value, for the soil's stiffness 0.2 and for its strength 0.05 (one degree of friction changes it
+    /// by 0.04).
     pub fn prior_scale(self) -> f64 {
         match self {
             Scatter::Run | Scatter::Preparation | Scatter::PlateTest => 0.2,

@@ -75,7 +75,7 @@ impl Default for Noise {
 }
 
 impl Noise {
-    /// A relative standard deviation.
+    /// Returns a relative standard deviation.
     pub fn scatter(&self, scatter: Scatter) -> ScatterSd {
         self.scatter[scatter.index()]
     }

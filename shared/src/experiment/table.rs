@@ -114,16 +114,16 @@ pub(super) fn rows<T>(
 }
 
 /// The number of bad rows that an error describes.
-const TOLD: usize = 3;
+const MAX_DESCRIBED: usize = 3;
 
 /// Joins bad rows into one error: the first, the next ones, and the number of the rest.
 fn all(file: &str, wrong: &[FileError]) -> FileError {
     let line = |error: &FileError| error.line.unwrap_or_default();
     let mut message = wrong[0].message.clone();
-    for error in &wrong[1..wrong.len().min(TOLD)] {
+    for error in &wrong[1..wrong.len().min(MAX_DESCRIBED)] {
         message += &format!("; line {}: {}", line(error), error.message);
     }
-    match wrong.len().saturating_sub(TOLD) {
+    match wrong.len().saturating_sub(MAX_DESCRIBED) {
         0 => {}
         1 => message += "; and 1 more row is wrong",
         count => message += &format!("; and {count} more rows are wrong"),
@@ -131,7 +131,7 @@ fn all(file: &str, wrong: &[FileError]) -> FileError {
     FileError::at(file, line(&wrong[0]), message)
 }
 
-/// The line of a record, counted from 1; the position that the reader gives is that of the comments before it.
+/// Returns the line of a record, counted from 1; the position that the reader gives is that of the comments before it.
 pub(super) fn line_of(text: &str, record: &csv::StringRecord) -> usize {
     let Some(position) = record.position() else {
         return 1;
@@ -193,7 +193,7 @@ impl Row<'_> {
         self.positions.contains_key(column)
     }
 
-    /// The field of a column; `None` if it is blank or the column absent.
+    /// Returns the field of a column; `None` if it is blank or the column absent.
     pub(super) fn text(&self, column: &str) -> Option<&str> {
         self.positions
             .get(column)
@@ -201,13 +201,13 @@ impl Row<'_> {
             .filter(|s| !s.is_empty())
     }
 
-    /// The field of a column, which must not be blank.
+    /// Returns the field of a column, which must not be blank.
     pub(super) fn word(&self, column: &str) -> Result<&str, ValueError> {
         self.text(column)
             .ok_or_else(|| ValueError::Blank(column.to_owned()))
     }
 
-    /// A finite number; `None` if the field is blank or the column absent.
+    /// Returns a finite number; `None` if the field is blank or the column absent.
     pub(super) fn number(&self, column: &str) -> Result<Option<f64>, ValueError> {
         let Some(text) = self.text(column) else {
             return Ok(None);
@@ -224,27 +224,27 @@ impl Row<'_> {
         }
     }
 
-    /// A finite number, which is required.
+    /// Returns a finite number, which is required.
     pub(super) fn required(&self, column: &str) -> Result<f64, ValueError> {
         self.number(column)?
             .ok_or_else(|| ValueError::Blank(column.to_owned()))
     }
 
-    /// A number above 0, which is required.
+    /// Returns a number above 0, which is required.
     pub(super) fn positive(&self, column: &str, unit: &str) -> Result<f64, ValueError> {
         let value = self.required(column)?;
         positive(column, value, unit)?;
         Ok(value)
     }
 
-    /// A number of at least 0, which is required.
+    /// Returns a number of at least 0, which is required.
     pub(super) fn not_negative(&self, column: &str, unit: &str) -> Result<f64, ValueError> {
         let value = self.required(column)?;
         not_negative(column, value, unit)?;
         Ok(value)
     }
 
-    /// A name that must be a key of `names`.
+    /// Returns a name that must be a key of `names`.
     pub(super) fn named<T>(&self, column: &str, names: &BTreeMap<String, T>) -> Result<String, ValueError> {
         let name = self.word(column)?;
         if names.contains_key(name) {

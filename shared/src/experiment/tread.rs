@@ -42,7 +42,7 @@ pub(super) struct RawTread {
 }
 
 impl RawTread {
-    /// The first key that is stated.
+    /// Returns the first key that is stated.
     pub(super) fn stated(&self) -> Option<&'static str> {
         let keys = [
             ("grouser_rows", self.rows.is_some()),
@@ -55,7 +55,7 @@ impl RawTread {
         keys.into_iter().find_map(|(key, stated)| stated.then_some(key))
     }
 
-    /// The tread of a wheel of a width; `None` if its grousers are straight bars across its whole width.
+    /// Returns the tread of a wheel of a width; `None` if its grousers are straight bars across its whole width.
     pub(super) fn check(&self, wheel_width_m: f64, grousers: u32) -> Result<Option<Tread>, ValueError> {
         let Some(stated) = self.stated() else {
             return Ok(None);
@@ -116,10 +116,10 @@ impl Tread {
     }
 
     fn is_straight(&self, wheel_width_m: f64) -> bool {
-        let least = (1.0 - ROUNDING) * wheel_width_m;
+        let min_width = (1.0 - ROUNDING) * wheel_width_m;
         let covers = self
             .width_m
-            .is_none_or(|width| width * f64::from(self.rows) >= least);
+            .is_none_or(|width| width * f64::from(self.rows) >= min_width);
         let bends = [self.stagger, self.angle_deg, self.chevron_deg, self.bow_m];
         covers && bends.iter().all(|bend| bend.abs() == 0.0)
     }
@@ -136,27 +136,16 @@ mod tests {
     #[test]
     fn a_wheel_without_tread_keys_has_straight_bars() {
         assert_eq!(check(RawTread::default()), Ok(None));
-        for straight in [
-            RawTread {
-                rows: Some(1),
-                angle_deg: Some(0.0),
-                ..RawTread::default()
-            },
-            RawTread {
-                rows: Some(3),
-                stagger: Some(0.0),
-                width_m: Some(0.02),
-                ..RawTread::default()
-            },
-        ] {
-            assert_eq!(check(straight), Ok(None));
-        }
-        let staggered = RawTread {
-            rows: Some(2),
-            stagger: Some(0.5),
-            ..RawTread::default()
+        let with = |change: fn(&mut RawTread)| {
+            let mut raw = RawTread::default();
+            change(&mut raw);
+            check(raw)
         };
-        let tread = check(staggered).unwrap().expect("a tread");
+        let level = with(|t| (t.rows, t.angle_deg) = (Some(1), Some(0.0)));
+        let aligned = with(|t| (t.rows, t.stagger, t.width_m) = (Some(3), Some(0.0), Some(0.02)));
+        assert_eq!((level, aligned), (Ok(None), Ok(None)));
+        let tread = with(|t| (t.rows, t.stagger) = (Some(2), Some(0.5)));
+        let tread = tread.unwrap().expect("a tread");
         assert_eq!((tread.rows, tread.stagger, tread.width_m), (2, 0.5, None));
     }
 
@@ -177,10 +166,10 @@ mod tests {
             ),
             ("grouser_width_m 0 m must be > 0 m", |t| t.width_m = Some(0.0)),
             ("grouser_angle_deg 90 deg must be at most 89 deg", |t| {
-                t.angle_deg = Some(90.0);
+                t.angle_deg = Some(90.0)
             }),
             ("grouser_chevron_deg -90 deg must be at least -89 deg", |t| {
-                t.chevron_deg = Some(-90.0);
+                t.chevron_deg = Some(-90.0)
             }),
             (
                 "grouser_bow_m 5 m must be at most 1 m: was it typed in mm (0.005 m) or cm (0.05 m)?",
@@ -196,9 +185,7 @@ mod tests {
             rows: Some(2),
             ..RawTread::default()
         };
-        assert_eq!(
-            rows.check(0.06, 0).unwrap_err().to_string(),
-            "grouser_rows says how grousers stand: grouser_count must be at least 1"
-        );
+        let message = "grouser_rows says how grousers stand: grouser_count must be at least 1";
+        assert_eq!(rows.check(0.06, 0).unwrap_err().to_string(), message);
     }
 }

@@ -7,8 +7,8 @@ use super::check::{ValueError, not_negative, positive};
 use super::mesh::{self, WheelMesh};
 use super::tread::{MAX_ROWS, RawTread, Tread};
 
-/// Speed of the rim `[m/s]` with the rig's radius: `v / (1 - s)` for s ≥ 0 and `v (1 + s)` for s < 0, v the sled speed
-/// `[m/s]`; 0 for a locked wheel.
+/// Returns the speed of the rim `[m/s]` with the rig's radius: `v / (1 - s)` for s ≥ 0 and `v (1 + s)` for s < 0, v the
+/// sled speed `[m/s]`; 0 for a locked wheel.
 pub fn rim_speed_m_s(slip: f64, sled_speed_m_s: f64) -> f64 {
     if slip < 0.0 {
         sled_speed_m_s * (1.0 + slip)
@@ -59,8 +59,8 @@ impl WheelGeometry {
         Ok(())
     }
 
-    /// Time from one grouser to the next `[s]`, with the rim speed computed by the rig: `2 pi R_s / (N omega R_s)` with
-    /// `omega R_s = v / (1 - s)` for s ≥ 0 and `v (1 + s)` for s < 0, v the sled speed `[m/s]`.
+    /// Returns the time from one grouser to the next `[s]`, with the rim speed computed by the rig: `2 pi R_s / (N
+    /// omega R_s)` with `omega R_s = v / (1 - s)` for s ≥ 0 and `v (1 + s)` for s < 0, v the sled speed `[m/s]`.
     ///
     /// `None` without a count of grousers, and for a wheel that does not turn. A surface mesh has no count.
     pub fn grouser_period_s(&self, slip: f64, sled_speed_m_s: f64) -> Option<f64> {
@@ -117,7 +117,7 @@ pub(super) struct RawWheel {
 }
 
 impl RawWheel {
-    /// The wheel without its mesh, and the name of the mesh's file.
+    /// Returns the wheel without its mesh, and the name of the mesh's file.
     pub(super) fn check(self) -> Result<(WheelGeometry, Option<String>), ValueError> {
         let mut wheel = WheelGeometry {
             radius_m: self.radius_m,

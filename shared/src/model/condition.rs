@@ -33,7 +33,7 @@ pub struct RunCondition {
 }
 
 impl RunCondition {
-    /// The condition of a run, without the properties that only some models and effects use.
+    /// Returns the condition of a run, without the properties that only some models and effects use.
     pub(super) fn new(run: &TestRun) -> Self {
         RunCondition {
             repose_angle_deg: None,

@@ -12,7 +12,8 @@ use super::error::ModelError;
 use crate::file::{FileError, unknown_word};
 use crate::parameters::{self, ParameterBounds};
 
-/// An effect with its file as it is sent: the worker may have another version of the catalogue, and has no file of the user.
+/// An effect and the text of its file, as sent to a worker, which may have another version of the catalogue and lacks the
+/// user's files.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct EffectText {
@@ -30,7 +31,7 @@ pub struct EffectSet(Vec<Chosen>);
 /// An effect of a job.
 #[derive(Debug, Clone)]
 pub struct Chosen {
-    /// The effect itself.
+    /// The effect, as its file describes it.
     pub effect: Effect,
     /// The user's file; `None` for an effect of the catalogue.
     pub file: Option<String>,
@@ -64,7 +65,7 @@ impl EffectSet {
     /// - `file`: the name of the job in messages.
     /// - `effects`, `files`: the effects of the catalogue and the effect files that the model lists.
     /// - `names`: every parameter that the job names.
-    /// - `read`: reads an effect file; `None` of a file that was not sent.
+    /// - `read`: reads an effect file by its name; `None` for a file that is not in the set.
     ///
     /// # Errors
     /// [`FileError`] of the effect's file with line and column, or of the job.
@@ -117,9 +118,9 @@ impl EffectSet {
     /// Reads the effects of a message; [`ModelError`] names the effect and the mistake in its file.
     pub fn read(texts: &[EffectText]) -> Result<Self, ModelError> {
         let read = |sent: &EffectText| {
-            // The catalogue is read already.
-            let known = find(&sent.name).filter(|effect| effect.text == sent.text);
-            let effect = match known {
+            // An effect of the catalogue with the same text has been read already.
+            let listed = find(&sent.name).filter(|effect| effect.text == sent.text);
+            let effect = match listed {
                 Some(effect) => effect.clone(),
                 None => Effect::read(&sent.text).map_err(|error| ModelError::Effect {
                     name: sent.name.clone(),
@@ -137,7 +138,7 @@ impl EffectSet {
         texts.iter().map(read).collect::<Result<_, _>>().map(EffectSet)
     }
 
-    /// Their files, in order.
+    /// Returns the files of the effects, in order.
     pub fn texts(&self) -> Vec<EffectText> {
         let text = |effect: &Effect| EffectText {
             name: effect.name.clone(),
@@ -146,18 +147,18 @@ impl EffectSet {
         self.iter().map(text).collect()
     }
 
-    /// The effects, in order.
+    /// Returns the effects, in order.
     pub fn iter(&self) -> impl Iterator<Item = &Effect> {
         self.0.iter().map(|chosen| &chosen.effect)
     }
 
-    /// An effect that uses a variable, if there is one.
+    /// Returns an effect that uses a variable, if there is one.
     pub fn using(&self, variable: Variable) -> Option<&Effect> {
         self.iter().find(|effect| effect.uses().contains(variable))
     }
 
-    /// The bounds of an effect's parameter; `None` if the name has another form. [`ModelError`] names an unknown word and
-    /// the nearest known one.
+    /// Returns the bounds of an effect's parameter; `None` if the name has another form. [`ModelError`] names an
+    /// unknown word and the nearest known one.
     pub fn lookup(&self, name: &str, wheels: &BTreeSet<&str>) -> Option<Result<ParameterBounds, ModelError>> {
         let (effect, parameter, wheel) = parts(name)?;
         Some(self.find(effect).and_then(|effect| {
@@ -171,7 +172,7 @@ impl EffectSet {
                 return Err(ModelError::Unknown(unknown_word("wheel", unknown, names)));
             }
             let parameter = &effect.parameters[place];
-            // the prior in the file shows whether the parameter is a magnitude
+            // A prior on positive values in the file means that the parameter is a magnitude.
             let magnitude = ["half_normal", "lognormal", "loguniform"];
             let positive = magnitude.iter().any(|d| parameter.prior.get(d).is_some());
             Ok(ParameterBounds {
@@ -190,8 +191,8 @@ impl EffectSet {
         })
     }
 
-    /// The parameters of effects that are missing among these names: for an effect on all wheels its parameters, and for an
-    /// effect with a strength for one wheel the parameters of that wheel.
+    /// Returns the parameters of effects that are missing among these names: for an effect on all wheels its
+    /// parameters, and for an effect with a strength for one wheel the parameters of that wheel.
     pub fn unstated_parameters<'a>(
         &'a self,
         names: &BTreeSet<&str>,
@@ -258,7 +259,7 @@ impl EffectSet {
         }
     }
 
-    /// The wheels, among these, that an effect acts on, by the names of a complete job.
+    /// Returns the wheels, among these, that an effect acts on, by the names of a complete job.
     pub fn acts_on<'a>(
         effect: &Effect,
         names: &BTreeSet<&str>,
@@ -267,8 +268,8 @@ impl EffectSet {
         Reach::new(effect, names, wheels).wheels
     }
 
-    /// The effects' part of a model version: empty without effects, otherwise the first bytes of the SHA-256 of their files
-    /// in order.
+    /// Returns the effects' part of a model version: empty without effects, otherwise the first bytes of the SHA-256 of
+    /// their files in order.
     pub fn version(texts: &[EffectText]) -> String {
         if texts.is_empty() {
             return String::new();
@@ -293,7 +294,7 @@ struct Reach<'a, 'n> {
     effect: &'n Effect,
     names: &'n BTreeSet<&'n str>,
     wheels: BTreeSet<&'a str>,
-    /// True if strengths are stated for single wheels only.
+    /// True if the effect's strengths are stated for single wheels only.
     on_some: bool,
 }
 
@@ -359,10 +360,13 @@ mod tests {
     use std::collections::BTreeMap;
 
     use super::*;
+    use crate::case_table::cases;
 
     const MINE: &str = "name = \"mine\"\nsummary = \"s\"\nsource = \"s\"\nshear = \"tau * (1 - a * exp(-v_t / v_a))\"\n\
         [parameters.a]\nunit = \"1\"\nneutral = 0.0\nprior = { uniform = [0.0, 0.8] }\n\
         [parameters.v_a]\nunit = \"m/s\"\nprior = 0.01\n";
+
+    const MECHANISM: &str = " 4: mechanism is reserved for the catalogue: a file has formulas";
 
     fn choose(effects: &[&str], names: &[&str], mine: &str) -> Result<EffectSet, String> {
         let effects: Vec<String> = effects.iter().map(|&e| e.to_owned()).collect();
@@ -375,20 +379,14 @@ mod tests {
 
     fn unstated(set: &EffectSet, names: &[&str]) -> Vec<String> {
         let (names, wheels) = (names.iter().copied().collect(), BTreeSet::from(["w", "x"]));
-        set.unstated_parameters(&names, &wheels)
-            .into_iter()
-            .map(|u| u.name)
-            .collect()
+        let unstated = set.unstated_parameters(&names, &wheels).into_iter();
+        unstated.map(|parameter| parameter.name).collect()
     }
 
     #[test]
     fn effects_follow_each_other_as_the_catalogue_has_them_then_files() {
-        let set = choose(
-            &["sled_tare", "hard_pan"],
-            &["slip_sinkage.exponent_per_slip"],
-            MINE,
-        )
-        .unwrap();
+        let named = &["slip_sinkage.exponent_per_slip"];
+        let set = choose(&["sled_tare", "hard_pan"], named, MINE).unwrap();
         let names: Vec<&str> = set.iter().map(|e| e.name.as_str()).collect();
         assert_eq!(names, ["slip_sinkage", "hard_pan", "sled_tare", "mine"]);
     }
@@ -402,57 +400,46 @@ mod tests {
         assert_eq!(unstated(&set, &["mine.a", "mine.v_a.w"]), ["mine.v_a"]);
         let two = choose(&["peak_pressure_angle"], &[], MINE).unwrap();
         let stated = ["peak_pressure_angle.front_share.x", "mine.a", "mine.v_a"];
-        assert_eq!(
-            unstated(&two, &stated),
-            ["peak_pressure_angle.front_share_per_slip.x"]
-        );
+        let missing = ["peak_pressure_angle.front_share_per_slip.x"];
+        assert_eq!(unstated(&two, &stated), missing);
     }
 
     #[test]
     fn contradictory_and_idle_parameters_are_refused() {
         let set = choose(&[], &[], MINE).unwrap();
-        let check = |names: &[&str]| {
-            let names = names.iter().copied().collect();
-            set.check_complete(&names, &BTreeSet::from(["w", "x"]))
-                .unwrap_err()
-                .to_string()
-        };
-        assert_eq!(
-            check(&["mine.a", "mine.a.w", "mine.v_a"]),
-            "mine.a is given both for all wheels and for one wheel"
-        );
-        assert_eq!(
-            check(&["mine.a.w", "mine.v_a.x"]),
-            "mine.v_a.x has no effect: effect mine does not act on wheel x"
-        );
-        assert_eq!(
-            check(&["mine.a.w"]),
-            "parameter mine.v_a has neither a prior nor a fixed value"
-        );
+        for (names, message) in cases(
+            r#"
+            mine.a mine.a.w mine.v_a => mine.a is given both for all wheels and for one wheel
+            mine.a.w mine.v_a.x => mine.v_a.x has no effect: effect mine does not act on wheel x
+            mine.a.w => parameter mine.v_a has neither a prior nor a fixed value"#,
+        ) {
+            let refused = set.check_complete(&names.split(' ').collect(), &BTreeSet::from(["w", "x"]));
+            assert_eq!(refused.unwrap_err().to_string(), message);
+        }
     }
 
     #[test]
     fn files_with_names_of_the_catalogue_are_refused_by_line() {
-        let named = |name: &str| MINE.replace("\"mine\"", &format!("\"{name}\""));
-        for (text, message) in [
+        for (old, new, message) in [
             (
-                named("bulldozing"),
-                "mine.toml line 1: name \"bulldozing\" belongs to an effect of the catalogue",
+                "\"mine\"",
+                "\"bulldozing\"",
+                " 1: name \"bulldozing\" belongs to an effect of the catalogue",
             ),
             (
-                named("noise"),
-                "mine.toml line 1: name \"noise\" has another meaning in a job",
+                "\"mine\"",
+                "\"noise\"",
+                " 1: name \"noise\" has another meaning in a job",
             ),
+            ("shear =", "mechanism = \"rebound\"\nshear =", MECHANISM),
             (
-                MINE.replace("source = \"s\"", "source = \"s\"\nmechanism = \"rebound\""),
-                "mine.toml line 4: mechanism is reserved for the catalogue: a file has formulas",
-            ),
-            (
-                MINE.replace("exp(-v_t", "exp(-vt"),
-                "mine.toml line 4, column 30: unknown name \"vt\"; the nearest known is \"v_t\"",
+                "-v_t",
+                "-vt",
+                " 4, column 30: unknown name \"vt\"; the nearest known is \"v_t\"",
             ),
         ] {
-            assert_eq!(choose(&[], &[], &text).unwrap_err(), message);
+            let refused = choose(&[], &[], &MINE.replace(old, new)).unwrap_err();
+            assert_eq!(refused, format!("mine.toml line{message}"));
         }
     }
 }

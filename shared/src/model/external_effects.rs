@@ -31,7 +31,7 @@ impl ExternalModel {
         })
     }
 
-    /// The reason why an effect cannot act around the model; `None` if it can.
+    /// Returns the reason why an effect cannot act around the model; `None` if it can.
     pub fn why_not(&self, effect: &Effect) -> Option<String> {
         if effect.hooks().next().is_none() {
             return Some(INSIDE.to_owned());
@@ -51,7 +51,7 @@ impl ExternalModel {
         ))
     }
 
-    /// The reason why no effect can act on a quantity; `None` if one can.
+    /// Returns the reason why no effect can act on a quantity; `None` if one can.
     fn lacks(&self, hook: Hook) -> Option<String> {
         let among = |is_there: bool, name: &str, list: &str| {
             (!is_there).then(|| format!("{name} is not among the {list} of this model"))
@@ -118,7 +118,7 @@ impl ExternalModel {
     }
 }
 
-/// The message for effects inside the contact, which are the majority.
+/// The message for an effect inside the contact.
 const INSIDE: &str = "it acts inside the contact of wheel and soil, which this model does not show";
 
 /// The reaction of the soil to a load.
@@ -136,10 +136,8 @@ mod tests {
             "kind = \"command\"\nprogram = \"w\"\nversion = \"1\"\ninputs = [{inputs}]\nparameters = [{parameters}]\n\
              outputs = [\"drawbar_pull_n\", \"torque_n_m\", \"sinkage_m\"]"
         );
-        ModelSettings::from_table(&text.parse().unwrap())
-            .unwrap()
-            .external
-            .unwrap()
+        let settings = ModelSettings::from_table(&text.parse().unwrap()).unwrap();
+        settings.external.unwrap()
     }
 
     fn why(model: &ExternalModel, effect: &str) -> Option<String> {
@@ -149,17 +147,9 @@ mod tests {
     #[test]
     fn effects_act_on_the_inputs_and_outputs_of_a_model() {
         let bare = model("\"slip\"", "\"k_phi\"");
-        let all = model(
-            "\"slip\", \"wheel_load_n\", \"radius_m\", \"width_m\"",
-            "\"n\", \"friction_angle_deg\"",
-        );
-        for effect in [
-            "sled_tare",
-            "sled_drag",
-            "torque_gain",
-            "sinkage_offset",
-            "bearing_friction",
-        ] {
+        let inputs = r#""slip", "wheel_load_n", "radius_m", "width_m""#;
+        let all = model(inputs, r#""n", "friction_angle_deg""#);
+        for effect in "sled_tare sled_drag torque_gain sinkage_offset bearing_friction".split(' ') {
             assert_eq!(why(&bare, effect), None, "{effect}");
         }
         for (effect, missing) in [
@@ -167,11 +157,8 @@ mod tests {
             ("edge_loss", "width_m"),
             ("slip_sinkage", "n"),
         ] {
-            assert!(
-                why(&bare, effect)
-                    .unwrap()
-                    .starts_with(&format!("{missing} is not among the"))
-            );
+            let reason = format!("{missing} is not among the");
+            assert!(why(&bare, effect).unwrap().starts_with(&reason));
             assert_eq!(why(&all, effect), None, "{effect}");
         }
         for (effect, reason) in [

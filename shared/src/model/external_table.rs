@@ -101,7 +101,7 @@ pub(super) fn external(kind: ModelKind, table: &toml::Table) -> Result<ExternalM
     let mut read_parameters: Vec<ExternalParameter> = Vec::new();
     for text in &parameters {
         match ExternalParameter::read(text) {
-            Some(parameter) => match is_own_name(&parameter.name) {
+            Some(parameter) => match check_free(&parameter.name) {
                 Ok(()) => read_parameters.push(parameter),
                 Err(message) => wrong.push(message),
             },
@@ -165,7 +165,7 @@ fn names(kind: &str, key: &str, table: &toml::Table) -> Result<Vec<String>, Stri
 }
 
 /// Checks that a name is not used by an effect, a noise or a key of `[model]`.
-fn is_own_name(name: &str) -> Result<(), String> {
+fn check_free(name: &str) -> Result<(), String> {
     let is_word = name.starts_with(|c: char| c.is_ascii_alphabetic())
         && name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_')
         && name.len() <= 60;
@@ -233,6 +233,8 @@ mod tests {
     const PROGRAM: &str = "program = \"wheel.py\"\nversion = \"1\"\ninputs = [\"slip\", \"wheel_load_n\"]\n\
         parameters = [\"n\", \"stiffness [Pa]\"]\noutputs = [\"drawbar_pull_n\"]\n";
 
+    const SERVER: &str = "url = \"http://h:1/\"\nmodel = \"wheel\"";
+
     fn read(kind: ModelKind, text: &str) -> Result<ExternalModel, String> {
         external(kind, &text.parse().unwrap()).map_err(|e| e.to_string())
     }
@@ -266,10 +268,7 @@ mod tests {
 
     #[test]
     fn a_server_is_its_url_and_the_model_there() {
-        let text = PROGRAM.replace(
-            "program = \"wheel.py\"",
-            "url = \"http://h:1/\"\nmodel = \"wheel\"",
-        );
+        let text = PROGRAM.replace("program = \"wheel.py\"", SERVER);
         let model = read(ModelKind::Umbridge, &text).unwrap();
         assert_eq!(model.source.name(), "http://h:1 wheel");
         assert_eq!(model.memory_mb, None);
@@ -281,14 +280,10 @@ mod tests {
     fn no_name_has_control_characters() {
         let text = PROGRAM.replace("wheel.py", "wheel\\u0000.py");
         let error = read(ModelKind::Command, &text).unwrap_err();
-        assert!(
-            error.contains(r#"program = "wheel\0.py" must be the name of a file"#),
-            "{error}"
-        );
-        let text = PROGRAM.replace(
-            "program = \"wheel.py\"",
-            "url = \"http://h\\u0000\"\nmodel = \"wheel\"",
-        );
+        let message = r#"program = "wheel\0.py" must be the name of a file"#;
+        assert!(error.contains(message), "{error}");
+        let server = SERVER.replace(":1/", "\\u0000");
+        let text = PROGRAM.replace("program = \"wheel.py\"", &server);
         let error = read(ModelKind::Umbridge, &text).unwrap_err();
         assert!(error.contains(r#"url = "http://h\0" must be"#), "{error}");
     }

@@ -41,7 +41,7 @@ impl ModelKind {
     /// Every kind.
     pub const ALL: &'static [Self] = Self::VARIANTS;
 
-    /// Name in files and results.
+    /// Returns the name in files and results.
     pub fn name(self) -> &'static str {
         self.into()
     }
@@ -56,7 +56,7 @@ impl ModelKind {
         name.parse().ok()
     }
 
-    /// The base parameters of a model of this kind; an external model's are stated in its job.
+    /// Returns the base parameters of a model of this kind; an external model's are stated in its job.
     pub fn parameters(self) -> impl Iterator<Item = &'static BaseParameter> {
         let specific: &[BaseParameter] = match self {
             ModelKind::QuasiStatic | ModelKind::Command | ModelKind::Umbridge => &[],

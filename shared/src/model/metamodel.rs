@@ -10,8 +10,8 @@ use super::variant::ModelVariant;
 use crate::parameters;
 
 impl ModelVariant {
-    /// The variant of the quasi-static model with the same conditions and parameters; [`ModelError`] names what that model
-    /// cannot express.
+    /// Returns the variant of the quasi-static model with the same conditions and parameters; [`ModelError`] names what
+    /// that model cannot express.
     pub fn coarse(&self) -> Result<ModelVariant, ModelError> {
         let coarse = ModelVariant {
             kind: ModelKind::QuasiStatic,
@@ -31,7 +31,7 @@ impl ModelVariant {
         Ok(coarse)
     }
 
-    /// The variant with the metamodel of a stage.
+    /// Returns the variant with the metamodel of a stage.
     pub fn with_metamodel(&self, metamodel: &Metamodel) -> ModelVariant {
         ModelVariant {
             low_fidelity: self.low_fidelity.as_ref().map(|low_fidelity| LowFidelityModel {

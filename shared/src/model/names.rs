@@ -7,7 +7,7 @@ use super::error::ModelError;
 use super::external::ExternalModel;
 use super::kind::ModelKind;
 use crate::file::unknown_word;
-use crate::parameters::{BASE, ParameterBounds, RING_TRANSFER, SPATIAL, WHEEL_RADIUS, of_models};
+use crate::parameters::{BASE, ParameterBounds, RING_TRANSFER, SPATIAL, WHEEL_RADIUS, model_parameters};
 
 /// The objects that give parameter names their meaning.
 #[derive(Debug, Clone, Copy)]
@@ -22,11 +22,13 @@ pub struct ParameterScope<'a> {
 
 impl ParameterScope<'_> {
     /// Finds a parameter of the model itself.
-    fn of_model(&self, name: &str) -> Option<ParameterBounds> {
+    fn model_parameter(&self, name: &str) -> Option<ParameterBounds> {
         let Some(model) = self.external else {
-            return of_models().find(|p| p.name == name).map(ParameterBounds::from);
+            return model_parameters()
+                .find(|p| p.name == name)
+                .map(ParameterBounds::from);
         };
-        // the radius of the rim may replace the experiment's
+        // A parameter may replace the radius that the experiment states.
         let radius = BASE.iter().filter(|p| p.name == WHEEL_RADIUS);
         let mut radius = radius.filter(|p| p.name == name).map(ParameterBounds::from);
         let declared = model.parameter(name).map(|parameter| parameter.bounds());
@@ -35,15 +37,15 @@ impl ParameterScope<'_> {
 
     fn unknown(&self, name: &str) -> ModelError {
         let names: Vec<&str> = match self.external {
-            None => of_models().map(|p| p.name).collect(),
+            None => model_parameters().map(|p| p.name).collect(),
             Some(model) => model.parameters.iter().map(|p| p.name.as_str()).collect(),
         };
         ModelError::Unknown(unknown_word("parameter", name, names))
     }
 }
 
-/// Unit and bounds of a parameter of the model, of one of its wheels or of an effect, by name. [`ModelError`] names the
-/// unknown name and the nearest known one.
+/// Returns the unit and bounds of a parameter of the model, of one of its wheels or of an effect, by name.
+/// [`ModelError`] names the unknown name and the nearest known one.
 pub fn lookup(name: &str, scope: &ParameterScope) -> Result<ParameterBounds, ModelError> {
     let wheels = scope.wheels;
     if name == RING_TRANSFER {
@@ -56,7 +58,7 @@ pub fn lookup(name: &str, scope: &ParameterScope) -> Result<ParameterBounds, Mod
     let (stem, wheel) = name
         .split_once('.')
         .map_or((name, None), |(stem, wheel)| (stem, Some(wheel)));
-    match (scope.of_model(stem), wheel) {
+    match (scope.model_parameter(stem), wheel) {
         (Some(bounds), None) => Ok(bounds),
         (Some(bounds), Some(w)) if stem == WHEEL_RADIUS => {
             if wheels.contains(w) {
@@ -70,8 +72,8 @@ pub fn lookup(name: &str, scope: &ParameterScope) -> Result<ParameterBounds, Mod
             "parameter {stem} belongs to the soil, not to one wheel: \"{name}\""
         ))),
         (None, _) => {
-            let of_effect = scope.effects.lookup(name, wheels);
-            of_effect.unwrap_or_else(|| Err(scope.unknown(name)))
+            let bounds = scope.effects.lookup(name, wheels);
+            bounds.unwrap_or_else(|| Err(scope.unknown(name)))
         }
     }
 }
@@ -137,7 +139,7 @@ fn check_soil(kind: ModelKind, names: &BTreeSet<&str>) -> Result<(), ModelError>
 /// wheel rolls.
 fn check_kind(kind: ModelKind, name: &str) -> Result<(), ModelError> {
     let stem = name.split_once('.').map_or(name, |(stem, _)| stem);
-    let is_base = of_models().any(|p| p.name == stem) && SPATIAL.iter().all(|p| p.name != stem);
+    let is_base = model_parameters().any(|p| p.name == stem) && SPATIAL.iter().all(|p| p.name != stem);
     if !is_base || kind.parameters().any(|p| p.name == stem) {
         return Ok(());
     }
@@ -159,6 +161,7 @@ const BOTH_STIFFNESSES: &str = "the stiffness is given twice: k_c and k_phi excl
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::case_table::cases;
     use crate::parameters::check_value;
 
     fn scope<'a>(wheels: &'a BTreeSet<&'a str>, effects: &'a EffectSet) -> ParameterScope<'a> {
@@ -169,76 +172,59 @@ mod tests {
         }
     }
 
-    fn check(names: &[&str]) -> Result<(), ModelError> {
+    fn check(kind: ModelKind, names: &str) -> Result<(), String> {
         let (wheels, none) = (BTreeSet::from(["smooth"]), EffectSet::default());
-        check_complete(
-            ModelKind::QuasiStatic,
-            &names.iter().copied().collect(),
-            &scope(&wheels, &none),
-        )
+        let names = names.split(' ').collect();
+        check_complete(kind, &names, &scope(&wheels, &none)).map_err(|e| e.to_string())
     }
 
     #[test]
     fn a_model_needs_exactly_its_parameters() {
-        let none = (BTreeSet::from(["smooth"]), EffectSet::default());
-        let check = |kind, names: &[&str]| {
-            let names: BTreeSet<&str> = names.iter().copied().collect();
-            check_complete(kind, &names, &scope(&none.0, &none.1)).map_err(|e| e.to_string())
-        };
-        let rft = ["xi_n_pa_m", "surface_friction", "wheel_radius_m.smooth"];
-        assert_eq!(check(ModelKind::Rft, &rft), Ok(()));
-        assert_eq!(
-            check(ModelKind::Rft, &rft[1..]).unwrap_err(),
-            "parameter xi_n_pa_m has neither a prior nor a fixed value"
-        );
-        assert_eq!(
-            check(ModelKind::Rft, &["n", "xi_n_pa_m", "surface_friction"]).unwrap_err(),
-            "n is a parameter of quasi_static, scm, wong_reece, not of rft, which has wheel_radius_m, xi_n_pa_m, surface_friction"
-        );
-        let laws = ["k_c", "k_phi", "n", "friction_angle_deg", "c1", "c2"];
-        assert_eq!(
-            check(ModelKind::WongReece, &laws).unwrap_err(),
-            "parameter shear_modulus_m has neither a prior nor a fixed value"
-        );
-        let refused = check(ModelKind::QuasiStatic, &laws).unwrap_err();
-        assert!(
-            refused.starts_with("c1 is a parameter of wong_reece, not of quasi_static"),
-            "{refused}"
-        );
+        let rft = "surface_friction wheel_radius_m.smooth";
+        assert_eq!(check(ModelKind::Rft, &format!("xi_n_pa_m {rft}")), Ok(()));
+        let laws = "k_c k_phi n friction_angle_deg c1 c2";
+        for (kind, names, message) in [
+            (
+                ModelKind::Rft,
+                rft,
+                "parameter xi_n_pa_m has neither a prior nor a fixed value",
+            ),
+            (
+                ModelKind::Rft,
+                "n xi_n_pa_m surface_friction",
+                "n is a parameter of quasi_static, scm, wong_reece, not of rft, which has wheel_radius_m, xi_n_pa_m, surface_friction",
+            ),
+            (
+                ModelKind::WongReece,
+                laws,
+                "parameter shear_modulus_m has neither a prior nor a fixed value",
+            ),
+            (
+                ModelKind::QuasiStatic,
+                laws,
+                "c1 is a parameter of wong_reece, not of quasi_static",
+            ),
+        ] {
+            let refused = check(kind, names).unwrap_err();
+            assert!(refused.starts_with(message), "{refused}");
+        }
     }
 
     #[test]
     fn either_stiffness_is_complete_and_both_are_refused() {
-        assert_eq!(check(&["k_c", "k_phi", "n", "friction_angle_deg"]), Ok(()));
-        assert_eq!(
-            check(&["log10_p_ref", "kappa", "n", "friction_angle_deg"]),
-            Ok(())
-        );
-        assert!(
-            check(&["k_c", "k_phi", "kappa", "n", "friction_angle_deg"])
-                .unwrap_err()
-                .to_string()
-                .contains("twice")
-        );
-        assert!(
-            check(&["k_c", "n", "friction_angle_deg"])
-                .unwrap_err()
-                .to_string()
-                .contains("needs")
-        );
+        let with = |names| check(ModelKind::QuasiStatic, &format!("{names} n friction_angle_deg"));
+        assert_eq!(with("k_c k_phi"), Ok(()));
+        assert_eq!(with("log10_p_ref kappa"), Ok(()));
+        assert!(with("k_c k_phi kappa").unwrap_err().contains("twice"));
+        assert!(with("k_c").unwrap_err().contains("needs"));
     }
 
     #[test]
     fn a_radius_of_an_unknown_wheel_names_the_nearest() {
-        let error = lookup(
-            "wheel_radius_m.smoth",
-            &scope(&BTreeSet::from(["smooth"]), &EffectSet::default()),
-        )
-        .unwrap_err();
-        assert_eq!(
-            error.to_string(),
-            "unknown wheel \"smoth\"; the nearest known is \"smooth\""
-        );
+        let (wheels, none) = (BTreeSet::from(["smooth"]), EffectSet::default());
+        let error = lookup("wheel_radius_m.smoth", &scope(&wheels, &none)).unwrap_err();
+        let message = "unknown wheel \"smoth\"; the nearest known is \"smooth\"";
+        assert_eq!(error.to_string(), message);
     }
 
     #[test]
@@ -246,34 +232,33 @@ mod tests {
         let name = "janosi_hanamoto.shear_modulus_m";
         let effects = EffectSet::choose("job.toml", (&[], &[]), [name], |_| None).unwrap();
         let lookup = |name: &str| lookup(name, &scope(&BTreeSet::from(["w"]), &effects));
-        assert_eq!(
-            check_value(&lookup(name).unwrap(), name, -0.01)
-                .unwrap_err()
-                .to_string(),
-            "janosi_hanamoto.shear_modulus_m = -0.01 m lies outside [0, inf] m"
-        );
+        let outside = check_value(&lookup(name).unwrap(), name, -0.01).unwrap_err();
+        let message = "janosi_hanamoto.shear_modulus_m = -0.01 m lies outside [0, inf] m";
+        assert_eq!(outside.to_string(), message);
         assert_eq!(lookup("janosi_hanamoto.shear_modulus_m.w").unwrap().unit, "m");
-        assert_eq!(
-            lookup("janosi_hanamoto.shear_modulus").unwrap_err().to_string(),
-            "unknown parameter of effect janosi_hanamoto \"shear_modulus\"; the nearest known is \"shear_modulus_m\""
-        );
-        assert_eq!(
-            lookup("buldozing.scale").unwrap_err().to_string(),
-            "unknown effect \"buldozing\"; the nearest known is \"bulldozing\""
-        );
+        for (name, message) in cases(
+            r#"
+            janosi_hanamoto.shear_modulus => unknown parameter of effect janosi_hanamoto "shear_modulus"; the nearest known is "shear_modulus_m"
+            buldozing.scale => unknown effect "buldozing"; the nearest known is "bulldozing""#,
+        ) {
+            assert_eq!(lookup(name).unwrap_err().to_string(), message);
+        }
     }
 
     #[test]
     fn a_value_outside_its_bounds_names_value_unit_and_bound() {
         let (wheels, none) = (BTreeSet::new(), EffectSet::default());
-        let phi = lookup("friction_angle_deg", &scope(&wheels, &none)).unwrap();
-        let error = check_value(&phi, "friction_angle_deg", 95.0).unwrap_err();
-        assert_eq!(
-            error.to_string(),
-            "friction_angle_deg = 95 deg lies outside [0, 89] deg"
-        );
-        let n = lookup("n", &scope(&wheels, &none)).unwrap();
-        let error = check_value(&n, "n", -1.0).unwrap_err();
-        assert_eq!(error.to_string(), "n = -1 lies outside [0.01, 10]");
+        for (name, value, message) in [
+            (
+                "friction_angle_deg",
+                95.0,
+                "friction_angle_deg = 95 deg lies outside [0, 89] deg",
+            ),
+            ("n", -1.0, "n = -1 lies outside [0.01, 10]"),
+        ] {
+            let bounds = lookup(name, &scope(&wheels, &none)).unwrap();
+            let error = check_value(&bounds, name, value).unwrap_err();
+            assert_eq!(error.to_string(), message);
+        }
     }
 }

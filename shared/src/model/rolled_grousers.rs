@@ -98,6 +98,7 @@ fn check_bars(wheel: &WheelGeometry) -> Result<(), String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::case_table::cases;
     use crate::experiment::Experiment;
     use crate::file::FileSet;
     use crate::model::ModelSettings;
@@ -105,7 +106,7 @@ mod tests {
     const GROUSERS: &str = "grouser_count = 12\ngrouser_height_m = 0.009\ngrouser_thickness_m = 0.002\n";
     const SOIL: &str = "log10_p_ref = 4.6\nkappa = 0.0\nn = 1.1\nfriction_angle_deg = 30.0\n";
 
-    /// The variant of two wheels; `b` is smooth.
+    /// Returns the variant of two wheels; `b` is smooth.
     fn variant(model: &str, grousers: &str) -> Result<ModelVariant, String> {
         let files = FileSet {
             toml: format!(
@@ -136,10 +137,8 @@ mod tests {
         let hash = |model: &str| variant(model, GROUSERS).unwrap().hash();
         let plain = variant("kind = \"quasi_static\"", GROUSERS).unwrap();
         assert!(!serde_json::to_string(&plain).unwrap().contains("rolls_grousers"));
-        assert_eq!(
-            hash("kind = \"quasi_static\"\ngrousers = \"ignored\""),
-            plain.hash()
-        );
+        let ignored = hash("kind = \"quasi_static\"\ngrousers = \"ignored\"");
+        assert_eq!(ignored, plain.hash());
         assert_ne!(hash(ROLLED), plain.hash());
         assert!(variant(ROLLED, GROUSERS).unwrap().rolls_grousers);
     }
@@ -147,66 +146,46 @@ mod tests {
     #[test]
     fn wheels_and_effects_without_a_form_with_grousers_are_named_with_the_bound() {
         let refused = |model: &str, grousers: &str| variant(model, grousers).unwrap_err();
-        for (model, message) in [
-            (
-                "kind = \"quasi_static\"\ngrousers = \"rolling\"",
-                "grousers = \"rolling\" must be \"ignored\" or \"rolled\"",
-            ),
-            (
-                "kind = \"scm\"\ngrousers = \"ignored\"",
-                "grousers: scm rolls grousers as they are declared; the key is for kind = \"quasi_static\"",
-            ),
-            (
-                "kind = \"wong_reece\"\ngrousers = \"rolled\"",
-                "grousers: wong_reece rolls a smooth rim; the key is for kind = \"quasi_static\"",
-            ),
-        ] {
-            assert_eq!(refused(model, GROUSERS), message);
+        // a table's line has a slash where the file begins a new line
+        for (model, message) in cases(
+            r#"
+            quasi_static"/grousers = "rolling" => grousers = "rolling" must be "ignored" or "rolled"
+            scm"/grousers = "ignored" => grousers: scm rolls grousers as they are declared; the key is for kind = "quasi_static"
+            wong_reece"/grousers = "rolled" => grousers: wong_reece rolls a smooth rim; the key is for kind = "quasi_static""#,
+        ) {
+            let model = format!("kind = \"{}", model.replace('/', "\n"));
+            assert_eq!(refused(&model, GROUSERS), message);
         }
-        for (grousers, message) in [
-            ("", "no wheel has grousers; leave the key out"),
-            (
-                "grouser_count = 12\n",
-                "wheel a: grouser_height_m 0 m must be > 0 m and <= radius_m = 0.125 m",
-            ),
-            (
-                "grouser_height_m = 0.01\n",
-                "wheel a: grouser_count 0 must be at least 1, or grouser_height_m 0 m",
-            ),
-            (
-                "grouser_count = 12\ngrouser_height_m = 0.009\ngrouser_thickness_m = 0.07\n",
-                "wheel a: grouser_thickness_m 0.07 m must be > 0 m and < 0.0654 m, the room on the rim for each of 12",
-            ),
-            (
-                &format!("{GROUSERS}grouser_chevron_deg = 20.0\n"),
-                "wheel a: its grousers are not straight bars across the whole wheel, the only ones that quasi_static knows; use kind = \"scm\" or grousers = \"ignored\"",
-            ),
-        ] {
-            assert_eq!(
-                refused(ROLLED, grousers),
-                format!("grousers = \"rolled\": {message}")
-            );
+        for (keys, message) in cases(
+            r#"
+            # none => no wheel has grousers; leave the key out
+            grouser_count = 12 => wheel a: grouser_height_m 0 m must be > 0 m and <= radius_m = 0.125 m
+            grouser_height_m = 0.01 => wheel a: grouser_count 0 must be at least 1, or grouser_height_m 0 m
+            grouser_count = 12/grouser_height_m = 0.009/grouser_thickness_m = 0.07 => wheel a: grouser_thickness_m 0.07 m must be > 0 m and < 0.0654 m, the room on the rim for each of 12
+            grouser_count = 12/grouser_height_m = 0.009/grouser_thickness_m = 0.002/grouser_chevron_deg = 20.0 => wheel a: its grousers are not straight bars across the whole wheel, the only ones that quasi_static knows; use kind = "scm" or grousers = "ignored""#,
+        ) {
+            let refused = refused(ROLLED, &format!("{}\n", keys.replace('/', "\n")));
+            assert_eq!(refused, format!("grousers = \"rolled\": {message}"));
         }
     }
 
     #[test]
     fn effects_without_a_form_under_grousers_act_on_the_smooth_wheel_alone() {
-        for (effect, parameter) in [
-            ("elastic_rebound", "compliance_m_pa"),
-            ("wheel_flexibility", "deflection_m_n"),
+        for parameter in [
+            "elastic_rebound.compliance_m_pa",
+            "wheel_flexibility.deflection_m_n",
         ] {
+            let (effect, _) = parameter.split_once('.').unwrap();
             let on = |wheel: &str| {
-                let strength = format!("\"{effect}.{parameter}{wheel}\" = 1e-9");
+                let strength = format!("\"{parameter}{wheel}\" = 1e-9");
                 variant(&format!("{ROLLED}\n{strength}"), GROUSERS)
             };
             assert!(on(".b").is_ok());
             for wheel in ["", ".a"] {
                 let message = on(wheel).unwrap_err();
-                assert!(
-                    message.starts_with(&format!("grousers = \"rolled\": effect {effect} is "))
-                        && message.contains("under the grousers of wheel a"),
-                    "{message}"
-                );
+                let begin = format!("grousers = \"rolled\": effect {effect} is ");
+                assert!(message.starts_with(&begin), "{message}");
+                assert!(message.contains("under the grousers of wheel a"), "{message}");
             }
         }
     }

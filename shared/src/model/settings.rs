@@ -89,7 +89,7 @@ impl ModelSettings {
         Ok(settings)
     }
 
-    /// The keys that only a model of this kind has, in addition to its parameters.
+    /// Returns the keys that only a model of this kind has, in addition to its parameters.
     pub fn keys_of(kind: ModelKind) -> &'static [&'static str] {
         match kind {
             ModelKind::QuasiStatic => &[grouser_key::KEY],
@@ -107,7 +107,7 @@ impl ModelSettings {
     /// Adds effects of the catalogue by name, and effect files. [`ModelError`] names the effect that is unknown or listed
     /// already, or the number of effects.
     pub fn add_effects(&mut self, effects: &[String], files: &[String]) -> Result<(), ModelError> {
-        // this check is first, because the ones below compare every pair of names
+        // This check comes first, because the checks below compare every pair of names.
         EffectSet::check_count(self.effects.len() + self.effect_files.len() + effects.len() + files.len())?;
         for name in effects {
             if name.ends_with(".toml") {
@@ -180,7 +180,7 @@ fn fixed_parameter(
     }
     // the part before a dot may name an effect of a file that is read later
     let base: Vec<&str> = match external {
-        None => parameters::of_models().map(|p| p.name).collect(),
+        None => parameters::model_parameters().map(|p| p.name).collect(),
         Some(model) => {
             let parameters = model.parameters.iter().map(|p| p.name.as_str());
             parameters.chain(["wheel_radius_m"]).collect()
@@ -210,12 +210,8 @@ mod tests {
             let mut names: Vec<String> = (0..60_000).map(|i| format!("\"e{i}{end}\"")).collect();
             names[59_999] = names[0].clone();
             let table = format!("kind = \"scm\"\n{key} = [{}]", names.join(", "));
-            assert_eq!(
-                ModelSettings::from_table(&toml::from_str(&table).unwrap())
-                    .unwrap_err()
-                    .to_string(),
-                "60000 effects must be at most 10"
-            );
+            let refused = ModelSettings::from_table(&toml::from_str(&table).unwrap()).unwrap_err();
+            assert_eq!(refused.to_string(), "60000 effects must be at most 10");
         }
     }
 }

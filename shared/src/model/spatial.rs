@@ -192,26 +192,24 @@ impl SpatialSettings {
 mod tests {
     use super::*;
 
+    const NEGATIVE: &str = "vertical = \"dynamic\"\ndamping_n_s_m = -1.0";
+
     fn read(text: &str) -> Result<SpatialSettings, ModelError> {
         SpatialSettings::from_table(toml::from_str(text).unwrap())
     }
 
     #[test]
     fn values_out_of_bounds_and_unknown_words_are_named() {
-        assert_eq!(
-            read("dem_spacing_m = 0.0").unwrap_err().to_string(),
-            "dem_spacing_m 0 m must be > 0 m"
-        );
-        assert_eq!(
-            read("vertical = \"dynamic\"\ndamping_n_s_m = -1.0")
-                .unwrap_err()
-                .to_string(),
-            "damping_n_s_m -1 N s/m must be >= 0 N s/m"
-        );
-        assert_eq!(
-            read("damping_n_s_m = 1.0").unwrap_err().to_string(),
-            "damping_n_s_m has no effect without vertical = \"dynamic\""
-        );
+        for (text, message) in [
+            ("dem_spacing_m = 0.0", "dem_spacing_m 0 m must be > 0 m"),
+            (NEGATIVE, "damping_n_s_m -1 N s/m must be >= 0 N s/m"),
+            (
+                "damping_n_s_m = 1.0",
+                "damping_n_s_m has no effect without vertical = \"dynamic\"",
+            ),
+        ] {
+            assert_eq!(read(text).unwrap_err().to_string(), message);
+        }
         for (text, words) in [
             ("displacement = \"soil\"", ["soil", "rim", "node"]),
             ("footprint = \"contour\"", ["contour", "hull", "patches"]),

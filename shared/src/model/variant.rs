@@ -80,7 +80,8 @@ pub struct ModelVariant {
 }
 
 impl ModelVariant {
-    /// The variant for some of an experiment's runs; base parameters that are neither free nor fixed take their defaults.
+    /// Returns the variant for some of an experiment's runs; base parameters that are neither free nor fixed take their
+    /// defaults.
     ///
     /// # Errors
     /// [`ModelError`] names a parameter that is unknown, out of bounds, missing or given twice.
@@ -98,9 +99,9 @@ impl ModelVariant {
             external: settings.external.as_ref(),
         };
         let mut fixed = settings.fixed.clone();
-        let of_job = settings.external.iter().flat_map(|model| &model.parameters);
-        let of_job = of_job.filter_map(|p| p.base_parameter().filter(|base| base.unit == p.unit));
-        for parameter in settings.kind.parameters().chain(of_job) {
+        let stated = settings.external.iter().flat_map(|model| &model.parameters);
+        let stated = stated.filter_map(|p| p.base_parameter().filter(|base| base.unit == p.unit));
+        for parameter in settings.kind.parameters().chain(stated) {
             let Some(default) = parameter.default else {
                 continue;
             };
@@ -186,7 +187,7 @@ impl ModelVariant {
         Ok(variant)
     }
 
-    /// The variant with the time histories of its runs; `None` for a steady-state model and without runs.
+    /// Returns the variant with the time histories of its runs; `None` for a steady-state model and without runs.
     pub fn with_histories(&self) -> Option<Self> {
         let rolls = self.kind == ModelKind::Scm && !self.conditions.is_empty();
         rolls.then(|| ModelVariant {
@@ -196,7 +197,7 @@ impl ModelVariant {
         })
     }
 
-    /// Variants for each condition alone.
+    /// Returns variants for each condition alone.
     pub fn by_condition(&self) -> impl Iterator<Item = Self> {
         self.conditions.iter().map(|condition| ModelVariant {
             conditions: vec![condition.clone()],
@@ -204,7 +205,7 @@ impl ModelVariant {
         })
     }
 
-    /// The names of all parameters, free and fixed.
+    /// Returns the names of all parameters, free and fixed.
     pub(super) fn names(&self) -> impl Iterator<Item = &str> {
         self.parameters
             .iter()
@@ -212,8 +213,8 @@ impl ModelVariant {
             .map(String::as_str)
     }
 
-    /// Version of the model that a worker with these equations computes: the version of the equations, the version that the
-    /// job states for an external model, and the version of the effects.
+    /// Returns the version of the model that a worker with these equations computes: the version of the equations, the
+    /// version that the job states for an external model, and the version of the effects.
     ///
     /// A calibration is pinned to all three; [`equations_of`] is the part that a worker knows.
     pub fn model_version(&self, equations: &str) -> String {
@@ -225,7 +226,7 @@ impl ModelVariant {
         format!("{equations}{stated}{}", EffectSet::version(&self.effects))
     }
 
-    /// Name of the variant on the wire, by [`hash_of`].
+    /// Returns the name of the variant on the wire, by [`hash_of`].
     pub fn hash(&self) -> String {
         hash_of(&self.text())
     }
@@ -236,13 +237,13 @@ impl ModelVariant {
     }
 }
 
-/// The hash of a variant's text: the first 128 bits of the SHA-256, in hex.
+/// Returns the hash of a variant's text: the first 128 bits of the SHA-256, in hex.
 pub fn hash_of(text: &[u8]) -> String {
     let digest = Sha256::digest(text);
     digest[..16].iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
-/// The part of a model's version that names the equations.
+/// Returns the part of a model's version that names the equations.
 pub fn equations_of(version: &str) -> &str {
     version
         .split_once('+')
@@ -256,11 +257,11 @@ fn check_grousers(
     experiment: &Experiment,
 ) -> Result<(), ModelError> {
     let wheels = experiment.wheel_names();
-    let of_grousers = |effect: &&Effect| {
+    let uses_grousers = |effect: &&Effect| {
         let uses = effect.uses();
         uses.contains(Variable::GrouserCount) || uses.contains(Variable::GrouserHeight)
     };
-    for effect in effects.iter().filter(of_grousers) {
+    for effect in effects.iter().filter(uses_grousers) {
         let reach = EffectSet::acts_on(effect, names, &wheels);
         let mut smooth = reach
             .iter()
@@ -283,8 +284,8 @@ impl Observables {
         let runs = variant.conditions.len();
         let derivatives = if variant.stiffness_sensitivity { runs } else { 0 };
         let all = variant.channels.is_empty();
-        let asked = |channel: &Channel| all || variant.channels.contains(channel);
-        let fits = |len: usize, full: usize, asked: bool| len == full || (len == 0 && !asked);
+        let is_requested = |channel: &Channel| all || variant.channels.contains(channel);
+        let fits = |len: usize, full: usize, is_requested: bool| len == full || (len == 0 && !is_requested);
         let histories = if variant.histories { runs } else { 0 };
         let whole = |history: &SimulatedHistory| {
             let samples = history.sinkage_m.len();
@@ -295,8 +296,8 @@ impl Observables {
             && self.histories.len() == histories
             && self.histories.iter().all(whole)
             && Channel::ALL.iter().all(|c| {
-                fits(self.sensitivity(*c).len(), derivatives, asked(c))
-                    && fits(self.channel(*c).len(), runs, asked(c))
+                fits(self.sensitivity(*c).len(), derivatives, is_requested(c))
+                    && fits(self.channel(*c).len(), runs, is_requested(c))
             })
             && [
                 &self.b_eff_m,

@@ -46,7 +46,7 @@ impl LogLikelihood {
         }
     }
 
-    /// The number; minus infinity for [`LogLikelihood::Impossible`].
+    /// Returns the number; minus infinity for [`LogLikelihood::Impossible`].
     #[must_use]
     pub fn value(self) -> f64 {
         match self {

@@ -17,7 +17,7 @@ const SCHEME: [u8; 8] = *b"grouser1";
 pub struct Stream(ChaCha8Rng);
 
 impl Stream {
-    /// The stream of one particle at one step of one stage.
+    /// Creates the stream of one particle at one step of one stage.
     #[must_use]
     pub fn new(seed: u64, stage: u64, particle: u64, step: u64) -> Self {
         let mut key = [0_u8; 32];
@@ -30,24 +30,24 @@ impl Stream {
         Self(generator)
     }
 
-    /// A uniform number in the open interval (0, 1), on a grid of 2^-53.
+    /// Draws a uniform number in the open interval (0, 1), on a grid of 2^-53.
     pub fn uniform(&mut self) -> f64 {
         ((self.0.next_u64() >> 11) as f64 + 0.5) * UNIFORM_STEP
     }
 
-    /// A uniform integer in `0..bound` (0 for a bound of 0); the bias is below `bound` / 2^64.
+    /// Draws a uniform integer in `0..bound` (0 for a bound of 0); the bias is below `bound` / 2^64.
     pub fn below(&mut self, bound: usize) -> usize {
         ((u128::from(self.0.next_u64()) * bound as u128) >> 64) as usize
     }
 
-    /// A pair of independent standard normal numbers (Box & Muller 1958, doi:10.1214/aoms/1177706645).
+    /// Draws a pair of independent standard normal numbers (Box & Muller 1958, doi:10.1214/aoms/1177706645).
     pub fn normal_pair(&mut self) -> (f64, f64) {
         let radius = (-2.0 * libm::log(self.uniform())).sqrt();
         let angle = std::f64::consts::TAU * self.uniform();
         (radius * libm::cos(angle), radius * libm::sin(angle))
     }
 
-    /// `count` independent standard normal numbers.
+    /// Draws `count` independent standard normal numbers.
     pub fn normals(&mut self, count: usize) -> Vec<f64> {
         let mut normals = Vec::with_capacity(count + 1);
         while normals.len() < count {

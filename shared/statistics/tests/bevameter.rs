@@ -4,15 +4,12 @@ use nalgebra::DMatrix;
 use statistics::{CommonError, CommonErrorSize, Datum, Discrepancy, ErrorLaw, ErrorSd, Likelihood};
 
 /// The logarithm of a stress as a function of the parameters.
-type LogStress<'a> = &'a dyn Fn(&[f64]) -> f64;
-
-/// [`LogStress`] as an owned function.
 type Law = Box<dyn Fn(&[f64]) -> f64>;
 
 /// Standard deviations and the correlation of the first two parameters after tests, each a list of readings, from the Fisher
 /// information: errors of logarithms, 1 / J' S^-1 J.
-fn posterior(tests: &[Vec<LogStress>], theta: &[f64], steps: &[f64], s_u: f64, s_e: f64) -> (Vec<f64>, f64) {
-    let readings: Vec<LogStress> = tests.iter().flatten().copied().collect();
+fn posterior(tests: &[Vec<Law>], theta: &[f64], steps: &[f64], s_u: f64, s_e: f64) -> (Vec<f64>, f64) {
+    let readings: Vec<&Law> = tests.iter().flatten().collect();
     let data = (0..readings.len())
         .map(|run| Datum {
             run,
@@ -43,11 +40,10 @@ fn posterior(tests: &[Vec<LogStress>], theta: &[f64], steps: &[f64], s_u: f64, s
                 moved
             };
             let (above, below) = (at(1.0), at(-1.0));
-            let column: Vec<f64> = readings
+            let slopes = readings
                 .iter()
-                .map(|f| (f(&above) - f(&below)) / (2.0 * steps[k]))
-                .collect();
-            whitening.apply(&column)
+                .map(|f| (f(&above) - f(&below)) / (2.0 * steps[k]));
+            whitening.apply(&slopes.collect::<Vec<f64>>())
         })
         .collect();
     let count = theta.len();
@@ -86,11 +82,7 @@ fn plates_fix_the_moduli_as_well_as_they_should() {
                 laws.push((0..15).map(reading).collect());
             }
         }
-        let tests: Vec<Vec<LogStress>> = laws
-            .iter()
-            .map(|t| t.iter().map(|f| &**f as LogStress).collect())
-            .collect();
-        let (got, corr) = posterior(&tests, &[0.0, 1e7, 1.1], &[10.0, 1e3, 1e-5], s_u, 0.03);
+        let (got, corr) = posterior(&laws, &[0.0, 1e7, 1.1], &[10.0, 1e3, 1e-5], s_u, 0.03);
         within(0.2, &got[..2], &sds);
         assert!((corr - correlation).abs() < 0.05, "{corr}, not {correlation}");
         // The table has .003 to .008, decreasing with the number of tests.
@@ -119,11 +111,7 @@ fn rings_fix_strength_and_modulus_as_well_as_they_should() {
             };
             laws.push((0..30).map(reading).collect());
         }
-        let tests: Vec<Vec<LogStress>> = laws
-            .iter()
-            .map(|t| t.iter().map(|f| &**f as LogStress).collect())
-            .collect();
-        let (got, corr) = posterior(&tests, &[0.0, 30.0, 0.012], &[0.1, 1e-4, 1e-7], s_u, s_e);
+        let (got, corr) = posterior(&laws, &[0.0, 30.0, 0.012], &[0.1, 1e-4, 1e-7], s_u, s_e);
         within(0.2, &got[..2], &sds[..2]);
         assert!((corr - correlation).abs() < 0.07, "{corr}, not {correlation}");
         assert!(got[2] < 1.2 * sds[2], "{got:?}, not {sds:?}");

@@ -4,42 +4,27 @@ use proptest::prelude::*;
 use statistics::rng::Stream;
 use statistics::{Distribution, Marginal, Prior, PriorError};
 
+fn uniform(lower: f64, upper: f64) -> Distribution {
+    Distribution::Uniform { lower, upper }
+}
+
+fn loguniform(lower: f64, upper: f64) -> Distribution {
+    Distribution::Loguniform { lower, upper }
+}
+
+fn lognormal(median: f64, factor: f64) -> Distribution {
+    Distribution::Lognormal { median, factor }
+}
+
 fn cases() -> Vec<Marginal> {
     let normal = Distribution::Normal { mean: 1.1, sd: 0.2 };
-    let lognormal = Distribution::Lognormal {
-        median: 0.008,
-        factor: 2.5,
-    };
+    let lognormal = lognormal(0.008, 2.5);
     let half = Distribution::HalfNormal { scale: 0.3 };
     [
-        (
-            Distribution::Uniform {
-                lower: 4.0,
-                upper: 5.6,
-            },
-            None,
-        ),
-        (
-            Distribution::Uniform {
-                lower: 4.0,
-                upper: 5.6,
-            },
-            Some([4.5, 5.0]),
-        ),
-        (
-            Distribution::Loguniform {
-                lower: 1e-3,
-                upper: 2.0,
-            },
-            None,
-        ),
-        (
-            Distribution::Loguniform {
-                lower: 1e-3,
-                upper: 2.0,
-            },
-            Some([1e-2, 0.5]),
-        ),
+        (uniform(4.0, 5.6), None),
+        (uniform(4.0, 5.6), Some([4.5, 5.0])),
+        (loguniform(1e-3, 2.0), None),
+        (loguniform(1e-3, 2.0), Some([1e-2, 0.5])),
         (normal, None),
         (normal, Some([0.8, 2.0])),
         (normal, Some([1.8, 2.5])),
@@ -59,11 +44,9 @@ fn cases() -> Vec<Marginal> {
 /// about `centre`.
 fn moment(marginal: &Marginal, power: i32, centre: f64) -> f64 {
     const POINTS: u32 = 200_000;
-    let (low, high) = (marginal.quantile(1e-13), marginal.quantile(1.0 - 1e-13));
-    let (low, high) = if marginal.support().1.is_finite() {
-        marginal.support()
-    } else {
-        (low, high)
+    let (low, high) = match marginal.support() {
+        support if support.1.is_finite() => support,
+        _ => (marginal.quantile(1e-13), marginal.quantile(1.0 - 1e-13)),
     };
     let log = low > 0.0;
     let (from, to) = if log { (low.ln(), high.ln()) } else { (low, high) };
@@ -85,7 +68,7 @@ fn densities_integrate_to_one_and_have_the_stated_moments() {
         let mean = moment(&marginal, 1, 0.0);
         assert!(
             (mean / marginal.mean() - 1.0).abs() < 1e-6,
-            "{marginal:?}: mean {mean}"
+            "{marginal:?}: {mean}"
         );
         let sd = moment(&marginal, 2, mean).sqrt();
         assert!((sd / marginal.sd() - 1.0).abs() < 1e-6, "{marginal:?}: sd {sd}");
@@ -99,17 +82,11 @@ fn closed_forms() {
         (marginal.mean(), marginal.sd())
     };
     let close = |a: f64, b: f64| assert!((a / b - 1.0).abs() < 1e-8, "{a} {b}");
-    let (mean, sd) = moments(Distribution::Uniform {
-        lower: 1.0,
-        upper: 4.0,
-    });
+    let (mean, sd) = moments(uniform(1.0, 4.0));
     close(mean, 2.5);
     close(sd, 3.0 / 12.0_f64.sqrt());
     // s = ln 2.5: mean = m exp(s^2/2), sd = mean sqrt(exp(s^2) - 1).
-    let (mean, sd) = moments(Distribution::Lognormal {
-        median: 0.008,
-        factor: 2.5,
-    });
+    let (mean, sd) = moments(lognormal(0.008, 2.5));
     let variance = 2.5_f64.ln().powi(2);
     close(mean, 0.008 * (variance / 2.0).exp());
     close(sd, mean * (variance.exp() - 1.0).sqrt());
@@ -117,19 +94,15 @@ fn closed_forms() {
     close(mean, 2.0 * (2.0 / std::f64::consts::PI).sqrt());
     close(sd, 2.0 * (1.0 - 2.0 / std::f64::consts::PI).sqrt());
     // (b - a) / ln(b / a).
-    let (mean, _) = moments(Distribution::Loguniform {
-        lower: 0.01,
-        upper: 1.0,
-    });
+    let (mean, _) = moments(loguniform(0.01, 1.0));
     close(mean, 0.99 / 100.0_f64.ln());
 }
 
 #[test]
 fn draws_follow_the_density() {
     for marginal in cases() {
-        let draws: Vec<f64> = (0..4000)
-            .map(|i| marginal.sample(&mut Stream::new(3, 0, i, 0)))
-            .collect();
+        let draw = |i| marginal.sample(&mut Stream::new(3, 0, i, 0));
+        let draws: Vec<f64> = (0..4000).map(draw).collect();
         let (low, high) = marginal.support();
         assert!(draws.iter().all(|&x| low <= x && x <= high));
         let (mean, sd) = mean_and_sd(&draws);
@@ -156,70 +129,44 @@ fn outside_the_support_the_density_is_zero() {
 fn errors_name_value_and_bound() {
     let refuse = |distribution, bounds| Marginal::new(distribution, bounds).unwrap_err().to_string();
     let normal = Distribution::Normal { mean: 0.0, sd: 1.0 };
-    let lognormal = |factor| Distribution::Lognormal { median: 1.0, factor };
-    assert_eq!(
-        refuse(Distribution::Normal { mean: 0.0, sd: 0.0 }, None),
-        "sd 0 is not above 0"
+    let (certain, negative) = (
+        Distribution::Normal { mean: 0.0, sd: 0.0 },
+        Distribution::HalfNormal { scale: -1.0 },
     );
-    assert_eq!(refuse(lognormal(1.0), None), "factor 1 is not above 1");
-    assert_eq!(
-        refuse(Distribution::HalfNormal { scale: -1.0 }, None),
-        "scale -1 is not above 0"
-    );
-    assert_eq!(
-        refuse(normal, Some([2.0, 1.0])),
-        "lower bound 2 is not below upper bound 1"
-    );
-    assert_eq!(
-        refuse(normal, Some([f64::NAN, 1.0])),
-        "lower bound NaN is not below upper bound 1"
-    );
-    assert_eq!(
-        refuse(normal, Some([60.0, 61.0])),
-        "bounds [60, 61] hold no probability"
-    );
-    assert_eq!(
-        refuse(
-            Distribution::Uniform {
-                lower: 0.0,
-                upper: 1.0
-            },
-            Some([0.5, 1.5])
+    for (distribution, bounds, message) in [
+        (certain, None, "sd 0 is not above 0"),
+        (lognormal(1.0, 1.0), None, "factor 1 is not above 1"),
+        (negative, None, "scale -1 is not above 0"),
+        (
+            normal,
+            Some([2.0, 1.0]),
+            "lower bound 2 is not below upper bound 1",
         ),
-        "bounds [0.5, 1.5] reach outside the support [0, 1]"
-    );
-    assert_eq!(
-        refuse(
-            Distribution::Loguniform {
-                lower: 0.0,
-                upper: 1.0
-            },
-            None
+        (
+            normal,
+            Some([f64::NAN, 1.0]),
+            "lower bound NaN is not below upper bound 1",
         ),
-        "lower 0 is not above 0"
-    );
+        (normal, Some([60.0, 61.0]), "bounds [60, 61] hold no probability"),
+        (
+            uniform(0.0, 1.0),
+            Some([0.5, 1.5]),
+            "bounds [0.5, 1.5] reach outside the support [0, 1]",
+        ),
+        (loguniform(0.0, 1.0), None, "lower 0 is not above 0"),
+    ] {
+        assert_eq!(refuse(distribution, bounds), message);
+    }
+    let infinite = Marginal::new(uniform(0.0, f64::INFINITY), None);
     assert!(matches!(
-        Marginal::new(
-            Distribution::Uniform {
-                lower: 0.0,
-                upper: f64::INFINITY
-            },
-            None
-        ),
+        infinite,
         Err(PriorError::NotFinite { name: "upper", .. })
     ));
 }
 
 #[test]
 fn nearness_to_a_bound_is_judged_in_the_sampling_coordinate() {
-    let marginal = Marginal::new(
-        Distribution::Loguniform {
-            lower: 1e-3,
-            upper: 10.0,
-        },
-        None,
-    )
-    .unwrap();
+    let marginal = Marginal::new(loguniform(1e-3, 10.0), None).unwrap();
     // 0.01 is one of four decades above the lower end, although within 2 % of the linear range.
     assert!(!marginal.at_bound(0.01, 0.1));
     assert!(marginal.at_bound(0.001_1, 0.1));
@@ -252,14 +199,7 @@ fn scores_are_normal_quantiles() {
             assert!((marginal.normal_score(x) - score).abs() < 1e-6, "{marginal:?}");
         }
     }
-    let marginal = Marginal::new(
-        Distribution::Uniform {
-            lower: 4.0,
-            upper: 5.6,
-        },
-        None,
-    )
-    .unwrap();
+    let marginal = Marginal::new(uniform(4.0, 5.6), None).unwrap();
     assert!(marginal.normal_score(4.0) < -37.0 && marginal.normal_score(5.6) > 37.0);
     assert!(marginal.cumulative(3.0) <= 0.0 && marginal.cumulative(6.0) >= 1.0);
 }
@@ -284,19 +224,12 @@ fn joint() -> Prior {
     let ([mean, log_median], [sd, log_factor], rho) = JOINT;
     let marginals = [
         Distribution::Normal { mean, sd },
-        Distribution::Uniform {
-            lower: 1.0,
-            upper: 3.0,
-        },
-        Distribution::Lognormal {
-            median: libm::exp(log_median),
-            factor: libm::exp(log_factor),
-        },
+        uniform(1.0, 3.0),
+        lognormal(libm::exp(log_median), libm::exp(log_factor)),
     ];
     let marginals = marginals.map(|d| Marginal::new(d, None).unwrap()).to_vec();
-    Prior::new(marginals)
-        .correlated(vec![0, 2], &[vec![1.0, rho], vec![rho, 1.0]])
-        .unwrap()
+    let joint = Prior::new(marginals).correlated(vec![0, 2], &[vec![1.0, rho], vec![rho, 1.0]]);
+    joint.unwrap()
 }
 
 /// p(x, y) = exp(-(u^2 - 2 rho u v + v^2) / (2 (1 - rho^2))) / (2 pi s t sqrt(1 - rho^2)) in x and ln y.
@@ -322,12 +255,12 @@ fn correlated_parameters_have_the_closed_form() {
 #[test]
 fn some_parameters_keep_their_correlations() {
     let prior = joint();
-    let both = prior.of_some(&[0, 2]);
+    let both = prior.subset(&[0, 2]);
     let point = [3.93, 1.5, 0.007];
-    let of_second = prior.of_some(&[1]).log_density(&[1.5]);
-    let got = both.log_density(&[3.93, 0.007]) + of_second;
+    let second = prior.subset(&[1]).log_density(&[1.5]);
+    let got = both.log_density(&[3.93, 0.007]) + second;
     assert!((got - prior.log_density(&point)).abs() < 1e-12, "{got}");
-    let alone = prior.of_some(&[2]);
+    let alone = prior.subset(&[2]);
     assert!(both.is_correlated() && !alone.is_correlated());
     let marginal = prior.marginals()[2].log_density(0.007);
     assert!((alone.log_density(&[0.007]) - marginal).abs() < 1e-12);
@@ -337,21 +270,16 @@ fn some_parameters_keep_their_correlations() {
 fn draws_of_correlated_parameters_have_their_moments() {
     let ([m, l], [s, t], rho) = JOINT;
     let prior = joint();
-    let draws: Vec<Vec<f64>> = (0..40_000)
-        .map(|k| prior.sample(&mut Stream::new(3, 0, k, 0)))
-        .collect();
-    let n = draws.len() as f64;
-    let z: Vec<[f64; 3]> = draws
-        .iter()
-        .map(|d| {
-            [
-                (d[0] - m) / s,
-                (libm::log(d[2]) - l) / t,
-                (d[1] - 2.0) * 3.0_f64.sqrt(),
-            ]
-        })
-        .collect();
-    let moment = |f: &dyn Fn(&[f64; 3]) -> f64| z.iter().map(f).sum::<f64>() / n;
+    let draw = |k| {
+        let d = prior.sample(&mut Stream::new(3, 0, k, 0));
+        [
+            (d[0] - m) / s,
+            (libm::log(d[2]) - l) / t,
+            (d[1] - 2.0) * 3.0_f64.sqrt(),
+        ]
+    };
+    let z: Vec<[f64; 3]> = (0..40_000).map(draw).collect();
+    let moment = |f: &dyn Fn(&[f64; 3]) -> f64| z.iter().map(f).sum::<f64>() / z.len() as f64;
     // four standard errors of 40 000 draws: 0.02, of squares 0.028
     for (what, got, expected) in [
         ("mean of x", moment(&|z| z[0]), 0.0),
@@ -372,10 +300,8 @@ fn invalid_correlations_are_refused() {
     let prior = |second| Prior::new(vec![normal(None), second]);
     let half = vec![vec![1.0, 0.5], vec![0.5, 1.0]];
     assert!(prior(normal(None)).correlated(vec![0, 1], &half).is_ok());
-    assert_eq!(
-        prior(normal(Some([-1.0, 1.0]))).correlated(vec![0, 1], &half),
-        Err(PriorError::NotNormal { parameter: 1 })
-    );
+    let truncated = prior(normal(Some([-1.0, 1.0]))).correlated(vec![0, 1], &half);
+    assert_eq!(truncated, Err(PriorError::NotNormal { parameter: 1 }));
     for wrong in [
         vec![vec![1.0, 1.0], vec![1.0, 1.0]],
         vec![vec![1.0, 0.5], vec![0.4, 1.0]],

@@ -3,6 +3,7 @@
 //! `cargo bench -p scm --bench validation`; it fails if a row fails.
 
 #[path = "../tests/scene.rs"]
+#[expect(dead_code, reason = "tests ask more of a track")]
 mod scene;
 #[path = "../tests/support.rs"]
 #[expect(dead_code, reason = "tests draw random cases, the table does not")]

@@ -63,7 +63,8 @@ impl Condition {
         Ok(self)
     }
 
-    /// Rim speed as computed by the rig, `omega R_s = v / (1 − s)` for s ≥ 0 and `v (1 + s)` for s < 0 `[m/s]`.
+    /// Returns the rim speed as computed by the rig, `omega R_s = v / (1 − s)` for s ≥ 0 and `v (1 + s)` for s < 0
+    /// `[m/s]`.
     pub fn rig_rim_speed_m_s(&self) -> f64 {
         if self.slip < 0.0 {
             self.sled_speed_m_s * (1.0 + self.slip)

@@ -1,6 +1,6 @@
 //! Effective width of a footprint.
 
-/// Effective width of a footprint of area A and contour length L.
+/// Returns the effective width of a footprint of area A and contour length L.
 ///
 /// `b_eff = 2 A / L`; a circle of radius r has `b_eff` = r, Bekker's convention for round plates.
 ///
@@ -11,7 +11,7 @@ pub fn effective_width(area: f64, contour_length: f64) -> f64 {
     2.0 * area / contour_length
 }
 
-/// Effective width of a rectangular footprint `[m]`: `l b / (l + b)`.
+/// Returns the effective width of a rectangular footprint `[m]`: `l b / (l + b)`.
 ///
 /// # Arguments
 /// - `length`: l `[m]`, ≥ 0; `width`: b `[m]`, > 0.

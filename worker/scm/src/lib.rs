@@ -47,6 +47,8 @@ pub mod averages;
 pub mod bevameter;
 pub mod condition;
 pub mod effects;
+#[cfg(test)]
+mod fixture;
 pub mod footprint;
 pub mod outside;
 pub mod pressure_distribution;

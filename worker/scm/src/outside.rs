@@ -43,23 +43,23 @@ impl OutsideRun {
         Ok(OutsideRun(case))
     }
 
-    /// The condition of the run.
+    /// Returns the condition of the run.
     pub fn condition(&self) -> &Condition {
         &self.0.condition
     }
 
-    /// The wheel after the effects.
+    /// Returns the wheel after the effects.
     pub fn wheel(&self) -> &Wheel {
         &self.0.wheel
     }
 
-    /// The sinkage exponent after the effects.
+    /// Returns the sinkage exponent after the effects.
     pub fn sinkage_exponent(&self) -> f64 {
         self.0.soil.n
     }
 
-    /// The measured channels: drawbar pull `[N]`, torque \[N m\], sinkage `[m]`, lateral force `[N]`, from those that the
-    /// model answered; NaN is a channel that the model lacks, which no effect may use.
+    /// Returns the measured channels: drawbar pull `[N]`, torque \[N m\], sinkage `[m]`, lateral force `[N]`, from
+    /// those that the model answered; NaN is a channel that the model lacks, which no effect may use.
     ///
     /// [`Rejection::Formula`]: a formula gives an inadmissible value.
     pub fn measured(&self, effects: &Active, channels: [f64; 4]) -> Result<[f64; 4], Rejection> {
@@ -81,19 +81,8 @@ mod tests {
 
     use super::*;
     use crate::effects::{CompiledEffects, ModelForm};
+    use crate::fixture::{CONDITION, WHEEL};
 
-    const WHEEL: Wheel = Wheel {
-        radius_m: 0.125,
-        width_m: 0.1,
-        rig_radius_m: 0.125,
-    };
-    const CONDITION: Condition = Condition {
-        slip: 0.2,
-        wheel_load_n: 100.0,
-        sled_speed_m_s: 0.01,
-        slip_angle_rad: 0.0,
-        pass: 1,
-    };
     const NO_SOIL: Soil = Soil {
         k_c: f64::NAN,
         k_phi: f64::NAN,

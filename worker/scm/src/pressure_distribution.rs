@@ -23,7 +23,7 @@ pub enum PressureDistribution {
 }
 
 impl PressureDistribution {
-    /// The law with exponent m ≥ 0.
+    /// Returns the law with exponent m ≥ 0.
     pub fn new(exponent: f64) -> Self {
         const HALF: u64 = 0.5_f64.to_bits();
         const ONE: u64 = 1.0_f64.to_bits();
@@ -35,7 +35,7 @@ impl PressureDistribution {
         }
     }
 
-    /// The exponent m `[–]`.
+    /// Returns the exponent m `[–]`.
     pub fn exponent(self) -> f64 {
         match self {
             Self::Uniform => 0.0,
@@ -45,7 +45,7 @@ impl PressureDistribution {
         }
     }
 
-    /// `g(u)` for a block of distances u from the border relative to the largest one, each in (0, 1].
+    /// Returns `g(u)` for a block of distances u from the border relative to the largest one, each in (0, 1].
     #[inline]
     pub fn shape<const N: usize>(self, relative_distance: [f64; N]) -> [f64; N] {
         match self {
@@ -75,7 +75,7 @@ pub struct RectangleDistribution {
 }
 
 impl RectangleDistribution {
-    /// The distribution over a footprint of the given length and half width `[m]`, both > 0.
+    /// Returns the distribution over a footprint of the given length and half width `[m]`, both > 0.
     #[inline]
     pub fn new(law: PressureDistribution, length: f64, half_width: f64) -> Self {
         let m = law.exponent();
@@ -94,7 +94,7 @@ impl RectangleDistribution {
         }
     }
 
-    /// gamma `[–]` at distances `[m]` from the nearer end, each in (0, l/2].
+    /// Returns gamma `[–]` at distances `[m]` from the nearer end, each in (0, l/2].
     #[inline]
     pub fn gamma<const N: usize>(&self, from_end: [f64; N]) -> [f64; N] {
         let distance = from_end.map(|dx| if dx < self.half_width { dx } else { self.half_width });

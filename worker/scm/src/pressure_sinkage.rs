@@ -20,7 +20,7 @@ pub fn k_star(soil: &Soil, b_eff: f64) -> f64 {
     soil.k_c / b_eff + soil.k_phi
 }
 
-/// Normal pressure under a flat footprint at a sinkage, before its distribution over the footprint.
+/// Returns the normal pressure under a flat footprint at a sinkage, before its distribution over the footprint.
 ///
 /// `p = k* z^n`
 ///

@@ -32,7 +32,7 @@ pub(crate) const WEIGHT: [f64; NODES] = [
     0.005_909_979_436_670_7,
 ];
 
-/// 1 − S(s) at node i, without the cancellation: the rule is symmetric.
+/// Returns 1 − S(s) at node i, without the cancellation: the rule is symmetric.
 pub(crate) const fn place_from_end(node: usize) -> f64 {
     PLACE[NODES - 1 - node]
 }

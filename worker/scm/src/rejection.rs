@@ -92,7 +92,7 @@ pub struct FormulaRefusal {
     pub values: String,
 }
 
-/// A unit after a number; nothing for a dimensionless one.
+/// Returns a unit after a number; nothing for a dimensionless one.
 pub(crate) fn shown(unit: &str) -> String {
     match unit {
         "1" => String::new(),
@@ -101,7 +101,7 @@ pub(crate) fn shown(unit: &str) -> String {
 }
 
 impl Rejection {
-    /// A stable word for counting rejections by kind; part of the wire format.
+    /// Returns a stable word for counting rejections by kind; part of the wire format.
     pub fn kind(&self) -> &'static str {
         match self {
             Self::NoSupport { .. } => "no_support",

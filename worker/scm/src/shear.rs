@@ -1,6 +1,6 @@
 //! Shear stress of a soil against a sliding surface.
 
-/// Strength of a soil under a normal pressure (Mohr–Coulomb).
+/// Returns the strength of a soil under a normal pressure (Mohr–Coulomb).
 ///
 /// `tau_max = c + p tan(phi)`
 ///
@@ -23,7 +23,7 @@ pub struct ShearVelocity {
 }
 
 impl ShearVelocity {
-    /// The law with reference velocity v0 `[m/s]`, ≥ 0; with v0 = 0 any motion mobilises the whole strength.
+    /// Returns the law with reference velocity v0 `[m/s]`, ≥ 0; with v0 = 0 any motion mobilises the whole strength.
     pub fn new(reference_velocity: f64) -> Self {
         // 1/0 would give 0 · ∞ for a point at rest; the largest number gives 0 there and ∞ elsewhere.
         Self {
@@ -31,7 +31,7 @@ impl ShearVelocity {
         }
     }
 
-    /// Mobilised share of the strength per unit of slip velocity.
+    /// Returns the mobilised share of the strength per unit of slip velocity.
     ///
     /// `(1 − exp(−|v| / v0)) / |v|`: multiplied by `tau_max` and by a component of the velocity of the rim
     /// against the soil it gives that component of the shear stress. At |v| = 0 the components are zero.
@@ -55,7 +55,7 @@ impl ShearVelocity {
             }
     }
 
-    /// Mobilised share of the strength at a speed `[m/s]`: `1 − exp(−|v| / v0)`, and 0 at rest.
+    /// Returns the mobilised share of the strength at a speed `[m/s]`: `1 − exp(−|v| / v0)`, and 0 at rest.
     #[inline]
     pub fn mobilised(&self, speed: f64) -> f64 {
         let share = self.mobilised_in_motion(speed);
@@ -82,7 +82,7 @@ pub struct ShearDisplacement {
 }
 
 impl ShearDisplacement {
-    /// The law with shear modulus K `[m]`, ≥ 0; with K = 0 any displacement mobilises the whole strength.
+    /// Returns the law with shear modulus K `[m]`, ≥ 0; with K = 0 any displacement mobilises the whole strength.
     pub fn new(modulus_m: f64) -> Self {
         // 0 · ∞ at zero displacement would be NaN, as for the velocity law
         Self {
@@ -90,7 +90,7 @@ impl ShearDisplacement {
         }
     }
 
-    /// Mobilised share of the strength.
+    /// Returns the mobilised share of the strength.
     ///
     /// `1 − exp(−j / K)`, one exponential.
     ///

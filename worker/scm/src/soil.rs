@@ -70,7 +70,7 @@ impl Soil {
     }
 }
 
-/// Bekker's moduli `(k_c, k_phi)` from a reference pressure and the share of the cohesive term.
+/// Returns Bekker's moduli `(k_c, k_phi)` from a reference pressure and the share of the cohesive term.
 ///
 /// `p_ref = (k_c / b_ref + k_phi) z_ref^n`, `kappa = k_c / (k_phi b_ref)`, hence
 /// `k_phi = p_ref / (z_ref^n (1 + kappa))` and `k_c = kappa k_phi b_ref`, with `b_ref` = 30 mm, `z_ref` = 10 mm.

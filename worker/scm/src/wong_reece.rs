@@ -86,7 +86,7 @@ pub(crate) struct Peak {
 }
 
 impl PeakedStresses {
-    /// The peak in a contact that reaches `front` ahead of the axle `[m]`.
+    /// Returns the peak in a contact that reaches `front` ahead of the axle `[m]`.
     pub(crate) fn peak(&self, radius: f64, front: f64) -> Peak {
         let entry_angle = libm::asin(front / radius);
         let angle = self.share * entry_angle;
@@ -102,7 +102,7 @@ impl PeakedStresses {
 }
 
 impl Peak {
-    /// Effective depth for the pressure at a place behind the peak, relative to that of the lowest point.
+    /// Returns the effective depth for the pressure at a place behind the peak, relative to that of the lowest point.
     pub(crate) fn relative_depth(&self, x: f64) -> f64 {
         let angle = libm::asin(x / self.radius);
         let mirrored = self.entry_angle - angle * (self.entry_angle - self.angle) / self.angle;
@@ -140,18 +140,12 @@ mod tests {
         for (slip, share) in [(-0.9, "-0.22999"), (0.9, "1.03")] {
             let law = WongReece { c2: 0.7, ..LAW };
             let message = law.at(slip).unwrap_err().to_string();
-            assert!(
-                message.contains("c1 + c2 slip = ") && message.contains(share),
-                "{message}"
-            );
+            assert!(message.contains(&format!("c1 + c2 slip = {share}")), "{message}");
         }
-        assert!(
-            WongReece {
-                shear_modulus_m: -0.1,
-                ..LAW
-            }
-            .at(0.0)
-            .is_err()
-        );
+        let negative = WongReece {
+            shear_modulus_m: -0.1,
+            ..LAW
+        };
+        assert!(negative.at(0.0).is_err());
     }
 }

@@ -9,6 +9,14 @@ fn sand() -> Soil {
     base(0.2, 100.0, 30.0).soil
 }
 
+fn ring(inner_radius_m: f64, outer_radius_m: f64) -> Result<Ring, Rejection> {
+    let ring = Ring {
+        inner_radius_m,
+        outer_radius_m,
+    };
+    ring.checked()
+}
+
 const SMALL: Plate = Plate::Circle { radius_m: 0.04 };
 
 #[test]
@@ -76,12 +84,7 @@ fn strength_is_reached_by_way() {
 
 #[test]
 fn torque_of_a_ring_is_the_moment_of_its_stress_and_back() {
-    let ring = Ring {
-        inner_radius_m: 0.08,
-        outer_radius_m: 0.11,
-    }
-    .checked()
-    .unwrap();
+    let ring = ring(0.08, 0.11).unwrap();
     // Midpoint sum of tau · 2 π r² dr at 10 kPa.
     let slices = 20_000;
     let dr = 0.03 / f64::from(slices);
@@ -103,10 +106,8 @@ fn a_plate_too_small_for_a_negative_k_c_is_rejected_by_its_modulus() {
     // k_c = −5e5 under 40 mm: k* = 1e7 − 1.25e7 < 0; under 60 mm it is 1.67e6
     let soil = Soil { k_c: -5e5, ..sand() };
     let rejection = plate::pressure(&soil, &SMALL, 0.006).unwrap_err();
-    assert_eq!(
-        rejection.to_string(),
-        "invalid parameter: k_star = -2500000 N/m^(n+2) must be above 0 under the plate"
-    );
+    let expected = "invalid parameter: k_star = -2500000 N/m^(n+2) must be above 0 under the plate";
+    assert_eq!(rejection.to_string(), expected);
     assert!(plate::pressure(&soil, &Plate::Circle { radius_m: 0.06 }, 0.006).unwrap() > 0.0);
 }
 
@@ -120,17 +121,8 @@ fn arguments_outside_their_bounds_are_rejected_by_name() {
     let flat = Plate::Circle { radius_m: 0.0 };
     named(plate::pressure(&sand(), &SMALL, -1e-3), "sinkage_m");
     named(plate::pressure(&sand(), &flat, 1e-3), "plate_width_m");
-    named(
-        ring::shear_stress(&sand(), &law, f64::NAN, 0.01),
-        "normal_stress_pa",
-    );
-    named(
-        ring::shear_stress(&sand(), &law, 1e4, -0.01),
-        "shear_displacement_m",
-    );
-    let ring = Ring {
-        inner_radius_m: 0.1,
-        outer_radius_m: 0.1,
-    };
-    assert!(ring.checked().is_err());
+    let stress = |normal: f64, displacement: f64| ring::shear_stress(&sand(), &law, normal, displacement);
+    named(stress(f64::NAN, 0.01), "normal_stress_pa");
+    named(stress(1e4, -0.01), "shear_displacement_m");
+    assert!(ring(0.1, 0.1).is_err());
 }

@@ -57,11 +57,8 @@ fn forces(case: &Case, law: Law, sinkage: f64, strips: u32) -> [f64; 4] {
         let speed = v_x.hypot(v_y);
         let half_step = 0.5 * speed * dx / (r * theta.cos()) / case.omega();
         slid += half_step;
-        let limit = (law.limit)(
-            soil.cohesion_pa + p * soil.friction_angle_rad.tan(),
-            p,
-            soil.friction_angle_rad,
-        );
+        let phi = soil.friction_angle_rad;
+        let limit = (law.limit)(soil.cohesion_pa + p * phi.tan(), p, phi);
         let tau = (law.shear)(limit * (1.0 - (-speed / soil.shear_velocity_m_s).exp()), slid);
         slid += half_step;
         let (tau_x, tau_y) = (tau * v_x / speed, tau * v_y / speed);
@@ -117,10 +114,7 @@ pub(crate) fn deviation_with(case: &Case, law: Law, got: &Averages) -> Option<[f
 fn deviation_below(case: &Case, bound: f64) -> f64 {
     let deviations = deviation_with(case, NONE, &case.simulate()).expect("the base has support");
     for (i, difference) in deviations.into_iter().enumerate() {
-        assert!(
-            difference < bound,
-            "channel {i} differs by {difference} in {case:?}"
-        );
+        assert!(difference < bound, "channel {i}: {difference} in {case:?}");
     }
     deviations.into_iter().fold(0.0, f64::max)
 }
@@ -133,8 +127,7 @@ fn random_runs_agree_with_the_brute_force_integrator() {
     for _ in 0..100 {
         let case = draws.case();
         let Some(sinkage) = first_sinkage(&case, NONE) else {
-            let rejection = scm::quasi_static::simulate(&case.soil, &case.wheel, &case.condition)
-                .expect_err("a rejection");
+            let rejection = case.try_simulate().expect_err("a rejection");
             assert_eq!(rejection.kind(), "no_support", "{case:?}");
             unsupported += 1;
             continue;
@@ -181,14 +174,8 @@ fn slow_mobilisation_of_any_speed_agrees_with_the_brute_force_integrator() {
 #[test]
 fn other_exponents_and_sharp_mobilisation_agree_within_1e_4_of_the_load() {
     let mut worst = 0.0_f64;
-    for (m, v0) in [
-        (0.2, 1e-3),
-        (0.3, 1e-3),
-        (0.8, 1e-3),
-        (2.0, 1e-3),
-        (0.5, 1e-5),
-        (0.5, 0.0),
-    ] {
+    let sharp = [(0.5, 1e-5), (0.5, 0.0)];
+    for (m, v0) in [0.2, 0.3, 0.8, 2.0].map(|m| (m, 1e-3)).into_iter().chain(sharp) {
         for slip in [-0.3, -0.02, 0.2] {
             let mut case = base(slip, 100.0, 30.0);
             (case.soil.gamma_exponent, case.soil.shear_velocity_m_s) = (m, v0);

@@ -1,8 +1,7 @@
 //! Invariants that hold for all parameters.
 
-use crate::support::{Case, Draws, base};
+use crate::support::{Draws, assert_near, base};
 use proptest::prelude::*;
-use scm::quasi_static::simulate;
 
 proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(400) })]
@@ -13,11 +12,7 @@ proptest! {
         case.condition.slip_angle_rad = 0.1 + case.condition.slip_angle_rad.abs();
         let mut mirrored = case;
         mirrored.condition.slip_angle_rad = -case.condition.slip_angle_rad;
-        let (left, right) = (
-            simulate(&case.soil, &case.wheel, &case.condition),
-            simulate(&mirrored.soil, &mirrored.wheel, &mirrored.condition),
-        );
-        let (Ok(left), Ok(mut right)) = (left, right) else { return Ok(()) };
+        let (Ok(left), Ok(mut right)) = (case.try_simulate(), mirrored.try_simulate()) else { return Ok(()) };
         prop_assert!(left.lateral_force_n > 0.0);
         right.lateral_force_n = -right.lateral_force_n;
         prop_assert_eq!(left, right); // equal to the last bit
@@ -31,7 +26,7 @@ proptest! {
         scaled.soil.k_c *= factor;
         scaled.soil.k_phi *= factor;
         scaled.condition.wheel_load_n *= factor;
-        let Ok(got) = simulate(&case.soil, &case.wheel, &case.condition) else { return Ok(()) };
+        let Ok(got) = case.try_simulate() else { return Ok(()) };
         let expected = scaled.simulate();
         let tolerance = 1e-6 * case.condition.wheel_load_n;
         prop_assert!((got.sinkage_m / expected.sinkage_m - 1.0).abs() < 1e-7);
@@ -42,7 +37,7 @@ proptest! {
     #[test]
     fn motor_and_sled_never_draw_power_from_the_soil(seed: u64) {
         let case = Draws(seed).case();
-        let Ok(got) = simulate(&case.soil, &case.wheel, &case.condition) else { return Ok(()) };
+        let Ok(got) = case.try_simulate() else { return Ok(()) };
         let (sin_beta, cos_beta) = case.condition.slip_angle_rad.sin_cos();
         let v = case.condition.sled_speed_m_s;
         let power = got.torque_n_m * case.omega() - got.drawbar_pull_n * v * cos_beta
@@ -53,7 +48,7 @@ proptest! {
     #[test]
     fn the_soil_carries_the_load_and_the_channels_are_finite(seed: u64) {
         let case = Draws(seed).case();
-        let Ok(got) = simulate(&case.soil, &case.wheel, &case.condition) else { return Ok(()) };
+        let Ok(got) = case.try_simulate() else { return Ok(()) };
         prop_assert!(got.residual_load_n.abs() <= 1e-9 * case.condition.wheel_load_n);
         prop_assert!(got.sinkage_m > 0.0 && got.sinkage_m < case.wheel.radius_m);
         prop_assert!(got.contact_length_m > got.b_eff_m && got.nodes_in_contact >= 16);
@@ -66,14 +61,8 @@ fn motor_gives_at_least_the_power_that_the_sled_takes() {
     // base case: T omega = 0.48 W, F v = 0.29 W
     let case = base(0.2, 100.0, 30.0);
     let got = case.simulate();
-    let (motor, sled) = (
-        got.torque_n_m * case.omega(),
-        got.drawbar_pull_n * case.condition.sled_speed_m_s,
-    );
-    assert!(
-        (motor - 0.48).abs() < 0.01 && (sled - 0.29).abs() < 0.01,
-        "{motor} {sled}"
-    );
+    assert!((got.torque_n_m * case.omega() - 0.48).abs() < 0.01, "{got:?}");
+    assert!((got.drawbar_pull_n * case.condition.sled_speed_m_s - 0.29).abs() < 0.01);
 }
 
 #[test]
@@ -84,9 +73,11 @@ fn slip_comes_from_the_radius_of_the_rig() {
     let mut by_model = by_rig;
     by_model.wheel.rig_radius_m = 0.15;
     by_model.condition.slip = 1.0 - (1.0 - 0.2) * 0.125 / 0.15;
-    let (by_rig, by_model) = (by_rig.simulate(), by_model.simulate());
-    assert!((by_rig.drawbar_pull_n - by_model.drawbar_pull_n).abs() < 1e-6);
-    assert!((by_rig.torque_n_m - by_model.torque_n_m).abs() < 1e-7);
+    assert_near(
+        &by_rig.simulate(),
+        &by_model.simulate(),
+        [1e-6, 1e-7, f64::INFINITY],
+    );
 }
 
 #[test]
@@ -94,29 +85,20 @@ fn locked_wheel_is_dragged_against_motor_and_sled() {
     let mut case = base(-1.0, 100.0, 30.0);
     case.condition.sled_speed_m_s = 0.01;
     let got = case.simulate();
-    assert!(
-        got.torque_n_m < 0.0 && got.drawbar_pull_n < -0.5 * 100.0,
-        "{got:?}"
-    );
+    assert!(got.torque_n_m < 0.0 && got.drawbar_pull_n < -50.0, "{got:?}");
 }
 
 #[test]
 fn drawbar_pull_and_torque_rise_with_slip() {
-    let pulls: Vec<(f64, f64)> = [-0.5, -0.1, 0.0, 0.05, 0.2, 0.6, 0.9]
-        .into_iter()
-        .map(|slip| {
-            let mut case: Case = base(slip, 100.0, 30.0);
-            case.condition.sled_speed_m_s = 0.01;
-            let got = case.simulate();
-            (got.drawbar_pull_n, got.torque_n_m)
-        })
-        .collect();
-    assert!(
-        pulls
-            .windows(2)
-            .all(|pair| pair[0].0 < pair[1].0 && pair[0].1 < pair[1].1),
-        "{pulls:?}"
-    );
+    let runs = [-0.5, -0.1, 0.0, 0.05, 0.2, 0.6, 0.9].map(|slip| {
+        let mut case = base(slip, 100.0, 30.0);
+        case.condition.sled_speed_m_s = 0.01;
+        case.simulate()
+    });
+    for pair in runs.windows(2) {
+        assert!(pair[0].drawbar_pull_n < pair[1].drawbar_pull_n, "{pair:?}");
+        assert!(pair[0].torque_n_m < pair[1].torque_n_m, "{pair:?}");
+    }
 }
 
 #[test]

@@ -31,10 +31,7 @@ fn gamma_averages_the_distance_to_the_border_over_the_width() {
             let distribution = RectangleDistribution::new(law, length, 0.5 * width);
             for (x, expected) in gamma_by_cells(length, width, exponent) {
                 let [gamma] = distribution.gamma([x]);
-                assert!(
-                    (gamma - expected).abs() < 1e-3,
-                    "l {length} b {width} m {exponent} x {x}: {gamma} {expected}"
-                );
+                assert!((gamma - expected).abs() < 1e-3, "{law:?} {distribution:?} {x}");
             }
         }
     }
@@ -55,10 +52,7 @@ fn gamma_has_mean_one() {
                     gamma * 6.0 * s * (1.0 - s) / f64::from(steps)
                 })
                 .sum();
-            assert!(
-                (mean - 1.0).abs() < 1e-8,
-                "l {length} b {width} m {exponent}: {mean}"
-            );
+            assert!((mean - 1.0).abs() < 1e-8, "{distribution:?}: {mean}");
         }
     }
 }

@@ -38,13 +38,17 @@ impl Track {
     pub(crate) fn with_grousers(case: Case) -> Self {
         Self {
             ground: Ground::default(),
-            shape: Shape::Rim(Grousers {
-                count: 12,
-                height_m: 0.009,
-                thickness_m: 0.002,
-            }),
+            shape: Shape::Rim(bars(12, 0.009, 0.002)),
             ..Self::smooth(case)
         }
+    }
+
+    /// Sets the end of a steady run: a tolerance, and a maximum travel `[m]`.
+    pub(crate) fn end_steady(&mut self, tolerance: f64, most_travel_m: f64) {
+        self.settings.protocol = Protocol::Steady {
+            tolerance,
+            most_travel_m,
+        };
     }
 
     /// Rolls a distance unconditionally, and averages over the last part of it.
@@ -65,10 +69,15 @@ impl Track {
         self.effects.push((effect.clone(), values.to_vec()));
     }
 
+    /// Adds an effect of the catalogue.
+    pub(crate) fn enter_named(&mut self, name: &str, values: &[f64]) {
+        let effect = formula::catalogue::find(name).unwrap_or_else(|| panic!("no effect {name}"));
+        self.enter(effect, values);
+    }
+
     /// Adds Janosi and Hanamoto's law with a shear modulus `[m]`.
     pub(crate) fn enter_displacement_law(&mut self, shear_modulus_m: f64) {
-        let law = formula::catalogue::find("janosi_hanamoto").expect("in the catalogue");
-        self.enter(law, &[shear_modulus_m]);
+        self.enter_named("janosi_hanamoto", &[shear_modulus_m]);
     }
 
     pub(crate) fn try_roll(&self) -> Result<SpatialRun, Rejection> {
@@ -100,6 +109,36 @@ impl Track {
     pub(crate) fn averages(&self) -> Averages {
         self.roll().averages
     }
+}
+
+/// Grousers of a height `[m]` and a thickness `[m]`.
+pub(crate) const fn bars(count: u32, height_m: f64, thickness_m: f64) -> Grousers {
+    Grousers {
+        count,
+        height_m,
+        thickness_m,
+    }
+}
+
+/// Twelve grousers of 9 mm at a slip, under 100 N, on sand of 30°.
+pub(crate) fn grousered(slip: f64) -> Track {
+    Track::with_grousers(base(slip, 100.0, 30.0))
+}
+
+/// A smooth wheel and one with grousers at a slip of 0.2, under 100 N, on sand of 30°.
+pub(crate) fn both() -> [Track; 2] {
+    [smooth(0.2, 100.0, 30.0), grousered(0.2)]
+}
+
+/// Largest magnitude of some values.
+pub(crate) fn max_abs(values: &[f64]) -> f64 {
+    values.iter().fold(0.0, |largest, x| largest.max(x.abs()))
+}
+
+/// Difference of the largest and the smallest of some values.
+pub(crate) fn range(values: &[f64]) -> f64 {
+    let bound = |fold: fn(f64, f64) -> f64| values.iter().copied().reduce(fold).expect("values");
+    bound(f64::max) - bound(f64::min)
 }
 
 /// A smooth wheel at a slip, under a load `[N]`, on sand of an angle of friction `[°]`.

@@ -1,6 +1,8 @@
-//! The base case of tests, and reproducible pseudo-random numbers.
+//! The base case of tests, comparisons of runs, and reproducible pseudo-random numbers.
 
-use scm::{Averages, Condition, Soil, Wheel, quasi_static};
+use formula::Effect;
+use scm::effects::{Active, CompiledEffects, ModelForm, Site};
+use scm::{Averages, Condition, Rejection, Soil, Wheel, quasi_static};
 
 /// A soil, a wheel and a condition.
 #[derive(Debug, Clone, Copy)]
@@ -11,23 +13,23 @@ pub(crate) struct Case {
 }
 
 impl Case {
-    pub(crate) fn simulate(&self) -> Averages {
+    pub(crate) fn try_simulate(&self) -> Result<Averages, Rejection> {
         quasi_static::simulate(&self.soil, &self.wheel, &self.condition)
+    }
+
+    pub(crate) fn simulate(&self) -> Averages {
+        self.try_simulate()
             .unwrap_or_else(|rejection| panic!("{rejection}: {self:?}"))
+    }
+
+    pub(crate) fn simulate_with(&self, effects: &mut Active, site: &Site) -> Result<Averages, Rejection> {
+        quasi_static::simulate_with(&self.soil, &self.wheel, &self.condition, effects, site)
     }
 
     /// Rotation speed omega [rad/s] from the rig's radius.
     pub(crate) fn omega(&self) -> f64 {
-        let Condition {
-            slip,
-            sled_speed_m_s: v,
-            ..
-        } = self.condition;
-        (if slip < 0.0 {
-            v * (1.0 + slip)
-        } else {
-            v / (1.0 - slip)
-        }) / self.wheel.rig_radius_m
+        let (slip, v) = (self.condition.slip, self.condition.sled_speed_m_s);
+        v * (1.0 + slip.min(0.0)) / (1.0 - slip.max(0.0)) / self.wheel.rig_radius_m
     }
 }
 
@@ -56,6 +58,27 @@ pub(crate) fn base(slip: f64, wheel_load_n: f64, friction_angle_deg: f64) -> Cas
             pass: 1,
         },
     }
+}
+
+/// Compiles effects for the quasi-static model.
+pub(crate) fn compiled<'a>(effects: impl IntoIterator<Item = &'a Effect>) -> CompiledEffects {
+    CompiledEffects::compile(ModelForm::QuasiStatic, effects).expect("effects that the model can express")
+}
+
+/// Reads an effect without parameters, from the lines of its file that state its formulas.
+pub(crate) fn law(formulas: &str) -> Effect {
+    let text = format!("name = \"odd\"\nsummary = \"an odd law\"\nsource = \"none\"\n{formulas}\n");
+    Effect::read(&text).unwrap_or_else(|error| panic!("{error}: {text}"))
+}
+
+/// Asserts that drawbar pull `[N]` and torque \[N m\] of two runs differ by less than these bounds, and their sinkages by
+/// less than a relative bound; an infinite bound compares nothing.
+#[track_caller]
+pub(crate) fn assert_near(got: &Averages, expected: &Averages, [pull, torque, sinkage]: [f64; 3]) {
+    let near = (got.drawbar_pull_n - expected.drawbar_pull_n).abs() < pull
+        && (got.torque_n_m - expected.torque_n_m).abs() < torque
+        && (got.sinkage_m / expected.sinkage_m - 1.0).abs() < sinkage;
+    assert!(near, "{got:?} is not {expected:?} to {pull}, {torque}, {sinkage}");
 }
 
 /// A linear congruential generator (Knuth's MMIX constants).

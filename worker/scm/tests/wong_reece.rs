@@ -13,6 +13,15 @@ fn simulate(case: &Case, law: &WongReece) -> Result<Averages, Rejection> {
     quasi_static::simulate_wong_reece(&case.soil, &case.wheel, &case.condition, law, &mut none, &site)
 }
 
+/// The law of this peak with a shear modulus `[m]`.
+fn law(c1: f64, c2: f64, shear_modulus_m: f64) -> WongReece {
+    WongReece {
+        c1,
+        c2,
+        shear_modulus_m,
+    }
+}
+
 /// The published model: gamma and the factor of the slip velocity are 1.
 fn published(slip: f64, wheel_load_n: f64) -> Case {
     let mut case = base(slip, wheel_load_n, 30.0);
@@ -67,22 +76,18 @@ fn sinkage(case: &Case, law: &WongReece) -> f64 {
 #[test]
 fn driven_wheels_agree_with_an_independent_integration() {
     let mut worst = [0.0_f64; 3];
-    for (c1, c2, shear_modulus_m) in [
-        (0.4, 0.0, 0.01),
-        (0.43, 0.32, 0.02),
-        (0.18, 0.32, 0.005),
-        (0.0, 0.3, 0.01),
+    for law in [
+        law(0.4, 0.0, 0.01),
+        law(0.43, 0.32, 0.02),
+        law(0.18, 0.32, 0.005),
+        law(0.0, 0.3, 0.01),
     ] {
-        let law = WongReece {
-            c1,
-            c2,
-            shear_modulus_m,
-        };
-        for (slip, load, cohesion, k_c) in [
+        let runs = [
             (0.05, 60.0, 0.0, 0.0),
             (0.2, 150.0, 200.0, 2e4),
             (0.6, 100.0, 0.0, -1e4),
-        ] {
+        ];
+        for (slip, load, cohesion, k_c) in runs {
             let mut case = published(slip, load);
             (case.soil.cohesion_pa, case.soil.k_c) = (cohesion, k_c);
             let got = simulate(&case, &law).unwrap();
@@ -105,26 +110,14 @@ fn driven_wheels_agree_with_an_independent_integration() {
 #[test]
 fn a_peak_farther_ahead_sinks_the_wheel_and_costs_pull() {
     let case = published(0.2, 150.0);
-    let at = |c1: f64| {
-        let law = WongReece {
-            c1,
-            c2: 0.0,
-            shear_modulus_m: 0.01,
-        };
-        simulate(&case, &law).unwrap()
-    };
-    let [low, middle, high] = [0.1, 0.3, 0.5].map(at);
+    let [low, middle, high] = [0.1, 0.3, 0.5].map(|c1| simulate(&case, &law(c1, 0.0, 0.01)).unwrap());
     assert!(low.sinkage_m < middle.sinkage_m && middle.sinkage_m < high.sinkage_m);
     assert!(low.drawbar_pull_n > middle.drawbar_pull_n && middle.drawbar_pull_n > high.drawbar_pull_n);
 }
 
 #[test]
 fn skid_has_a_balance_and_the_line_of_the_peak_ends_where_it_leaves_the_contact() {
-    let law = WongReece {
-        c1: 0.4,
-        c2: 0.3,
-        shear_modulus_m: 0.01,
-    };
+    let law = law(0.4, 0.3, 0.01);
     let skid = simulate(&published(-0.3, 100.0), &law).unwrap();
     assert!(skid.drawbar_pull_n < 0.0 && skid.residual_load_n.abs() < 1e-6);
     let steep = WongReece { c2: 1.0, ..law };
@@ -137,11 +130,7 @@ fn skid_has_a_balance_and_the_line_of_the_peak_ends_where_it_leaves_the_contact(
 
 #[test]
 fn a_sideways_wheel_is_resisted() {
-    let law = WongReece {
-        c1: 0.4,
-        c2: 0.3,
-        shear_modulus_m: 0.01,
-    };
+    let law = law(0.4, 0.3, 0.01);
     let mut case = published(0.2, 100.0);
     let straight = simulate(&case, &law).unwrap();
     case.condition.slip_angle_rad = 0.3;

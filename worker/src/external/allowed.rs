@@ -86,7 +86,7 @@ impl AllowedModels {
         self.programs.is_empty() && self.servers.is_empty()
     }
 
-    /// The models that the worker announces: the last identity of each by its name.
+    /// Returns the models that the worker announces: the last identity of each by its name.
     pub fn announced(&self) -> BTreeMap<String, String> {
         lock(&self.identities).clone()
     }
@@ -110,10 +110,10 @@ impl AllowedModels {
                 ),
                 Err(CallError::Slow) => {
                     let identities = lock(&self.identities);
-                    let of_server = identities
+                    let served = identities
                         .iter()
                         .filter(|(name, _)| name.starts_with(&name_of("")));
-                    seen.extend(of_server.map(|(name, identity)| (name.clone(), identity.clone())));
+                    seen.extend(served.map(|(name, identity)| (name.clone(), identity.clone())));
                 }
                 Err(error) => {
                     let reason = error.words(server.url());
@@ -168,7 +168,7 @@ impl AllowedModels {
         }
     }
 
-    /// Kills the running programs, and starts none any more.
+    /// Kills the running programs, and starts no more.
     pub fn stop(&self) {
         self.groups.stop();
     }
@@ -184,7 +184,7 @@ impl AllowedModels {
             .ok_or_else(|| not_allowed(url))
     }
 
-    /// The SHA-256 of a program's file.
+    /// Returns the SHA-256 of a program's file.
     fn hash(&self, name: &str) -> Result<String, String> {
         let path = self.program(name)?;
         let failed = |e: std::io::Error| format!("{}: {e}", path.display());

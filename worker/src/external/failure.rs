@@ -14,12 +14,12 @@ pub(crate) enum ExternalFailure {
 }
 
 impl ExternalFailure {
-    /// The model refuses a run.
+    /// Creates the failure of a model that refuses a run.
     pub(crate) fn refused(kind: &str, run: usize, message: String) -> Self {
         ExternalFailure::Refused(rejection(kind, run, message))
     }
 
-    /// The model broke down at a run, as far as is known.
+    /// Creates the failure of a model that broke down, probably at a run.
     pub(crate) fn broke(kind: &str, run: usize, message: String) -> Self {
         ExternalFailure::Broke(rejection(kind, run, message))
     }

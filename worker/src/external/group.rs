@@ -28,7 +28,7 @@ struct Running {
 /// Why a process is not accepted.
 #[derive(Debug, thiserror::Error)]
 pub(super) enum GroupError {
-    /// The worker starts no process any more.
+    /// The worker no longer starts processes.
     #[error("the worker stops")]
     Stopped,
     /// The process number of the operating system is invalid.
@@ -128,7 +128,7 @@ mod tests {
 
     use super::*;
 
-    /// A process and a child, both of which sleep and hold standard output.
+    /// Starts a process and a child, both of which sleep and hold standard output.
     fn sleeper() -> Child {
         let mut command = Command::new("sh");
         command.args(["-c", "sleep 600 & sleep 600"]).process_group(0);

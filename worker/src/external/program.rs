@@ -45,29 +45,29 @@ pub(super) fn evaluate(
         )));
     };
     if answers.len() != runs.len() {
-        let (given, asked) = (answers.len(), runs.len());
+        let (given, requested) = (answers.len(), runs.len());
         return Err(machine(format!(
-            "{given} runs are answered of {asked} that were asked"
+            "{given} runs are answered of {requested} that were asked"
         )));
     }
-    let of_run = |(run, answer): (usize, &Value)| match answer.get("rejected") {
+    let outcome = |(run, answer): (usize, &Value)| match answer.get("rejected") {
         Some(reason) => {
             let reason = reason.as_str().map_or_else(|| shortened(reason), beginning);
             Err(ExternalFailure::refused("model", run, reason))
         }
         None => outputs(run, &model.outputs, |_, channel| answer.get(channel.column())),
     };
-    answers.iter().enumerate().map(of_run).collect()
+    answers.iter().enumerate().map(outcome).collect()
 }
 
 fn question(model: &ExternalModel, runs: &[ExternalRun]) -> Vec<u8> {
-    let of_run = |run: &ExternalRun| {
+    let input = |run: &ExternalRun| {
         let inputs = model.inputs.iter().map(|input| input.name().to_owned());
         let parameters = model.parameters.iter().map(|parameter| parameter.name.clone());
         let values = run.inputs.iter().chain(&run.parameters).map(|value| json!(value));
         Value::Object(inputs.chain(parameters).zip(values).collect::<Map<_, _>>())
     };
-    let runs: Vec<Value> = runs.iter().map(of_run).collect();
+    let runs: Vec<Value> = runs.iter().map(input).collect();
     let mut text = json!({ "runs": runs }).to_string().into_bytes();
     text.push(b'\n');
     text

@@ -104,11 +104,11 @@ impl UmbridgeServer {
     ) -> Result<Vec<Vec<f64>>, ExternalFailure> {
         let layout = self.layout(name, model)?;
         let limit = Duration::from_secs_f64(model.time_s);
-        let one = |(run, asked): (usize, &ExternalRun)| {
+        let one = |(run, input): (usize, &ExternalRun)| {
             let input = match layout {
-                Layout::Two => json!([asked.inputs, asked.parameters]),
+                Layout::Two => json!([input.inputs, input.parameters]),
                 Layout::One => {
-                    let all = [asked.inputs.as_slice(), &asked.parameters].concat();
+                    let all = [input.inputs.as_slice(), &input.parameters].concat();
                     json!([all])
                 }
             };

@@ -13,7 +13,7 @@ const SHEAR_DISPLACEMENT: &str = "janosi_hanamoto";
 /// The K of that effect for all wheels, because a ring is not a wheel.
 const SHEAR_MODULUS: &str = "janosi_hanamoto.shear_modulus_m";
 
-/// The effects of a variant that do not act on plates and rings.
+/// Returns the effects of a variant that do not act on plates and rings.
 pub fn without_action(variant: &ModelVariant) -> impl Iterator<Item = &str> {
     let felt = ParameterSource::find(variant, SHEAR_MODULUS).map(|_| SHEAR_DISPLACEMENT);
     let names = variant.effects.iter().map(|effect| effect.name.as_str());
@@ -47,7 +47,7 @@ impl CompiledBevameter {
         })
     }
 
-    /// The readings at one parameter vector.
+    /// Returns the readings at one parameter vector.
     pub fn at(&self, theta: &[f64]) -> Readings {
         let soil = self.soil.soil(theta);
         let friction_angle_rad = match self.ln_transfer {
@@ -69,15 +69,15 @@ impl CompiledBevameter {
 }
 
 impl Readings {
-    /// Pressure `[Pa]` under a round plate of this radius `[m]` at this sinkage `[m]`; a [`Rejection`] if the soil cannot
-    /// carry such a plate, or a number is outside its bounds.
+    /// Returns the pressure `[Pa]` under a round plate of this radius `[m]` at this sinkage `[m]`; a [`Rejection`] if
+    /// the soil cannot carry such a plate, or a number is outside its bounds.
     pub fn pressure_pa(&self, plate_radius_m: f64, sinkage_m: f64) -> Result<f64, Rejection> {
         let radius_m = plate_radius_m;
         plate::pressure(&self.soil, &Plate::Circle { radius_m }, sinkage_m)
     }
 
-    /// Shear stress `[Pa]` under a ring at this normal stress `[Pa]` after this displacement `[m]`; a [`Rejection`] if a
-    /// number is outside its bounds.
+    /// Returns the shear stress `[Pa]` under a ring at this normal stress `[Pa]` after this displacement `[m]`; a
+    /// [`Rejection`] if a number is outside its bounds.
     pub fn shear_stress_pa(&self, normal_stress_pa: f64, displacement_m: f64) -> Result<f64, Rejection> {
         ring::shear_stress(&self.under_ring, &self.law, normal_stress_pa, displacement_m)
     }

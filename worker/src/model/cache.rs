@@ -42,7 +42,7 @@ impl VariantCache {
         }
     }
 
-    /// The compiled variant of a hash, if it is in the cache.
+    /// Returns the compiled variant of a hash, if it is in the cache.
     pub fn get(&self, hash: &str) -> Option<Arc<CompiledVariant>> {
         self.variants.get(hash).map(|cached| cached.compiled.clone())
     }
@@ -53,7 +53,7 @@ impl VariantCache {
         let actual = hash_of(&text);
         if actual != hash {
             return Err(CompileError::OtherHash {
-                asked: hash.to_owned(),
+                requested: hash.to_owned(),
                 actual,
             });
         }
@@ -108,8 +108,8 @@ mod tests {
     #[test]
     fn a_long_variant_evicts_others_and_stays() {
         let mut long = variant();
-        let of_each = serde_json::to_vec(&long.conditions[0]).unwrap().len();
-        let count = VariantCache::MAX_BYTES / of_each;
+        let condition_bytes = serde_json::to_vec(&long.conditions[0]).unwrap().len();
+        let count = VariantCache::MAX_BYTES / condition_bytes;
         long.conditions = vec![long.conditions[0].clone(); count];
         let mut variants = under_loads(3);
         variants.insert(2, (long.hash(), long));

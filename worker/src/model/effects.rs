@@ -17,7 +17,7 @@ pub(super) struct EffectMap {
     /// Each distinct set of sources once: effects are activated once per set.
     sources: Vec<Sources>,
     /// The set of sources of each wheel, in the variant's order.
-    of_wheel: Vec<usize>,
+    by_wheel: Vec<usize>,
     /// The site of each condition.
     sites: Vec<Site>,
 }
@@ -26,13 +26,13 @@ pub(super) struct EffectMap {
 #[derive(Debug)]
 pub(super) struct ActiveEffects<'a> {
     active: Vec<Active<'a>>,
-    of_wheel: &'a [usize],
+    by_wheel: &'a [usize],
 }
 
 impl<'a> ActiveEffects<'a> {
-    /// The effects on a wheel, by its place in the variant, with their working memory.
+    /// Returns the effects on a wheel, by its place in the variant, with their working memory.
     pub(super) fn on_wheel(&mut self, place: usize) -> &mut Active<'a> {
-        &mut self.active[self.of_wheel[place]]
+        &mut self.active[self.by_wheel[place]]
     }
 }
 
@@ -49,11 +49,11 @@ impl EffectMap {
         };
         let effects = CompiledEffects::compile(model, set.iter())?;
         let mut sources: Vec<Sources> = Vec::new();
-        let mut of_wheel = Vec::new();
+        let mut by_wheel = Vec::new();
         for wheel in variant.wheels.keys() {
             let wheel_sources = sources_of(variant, set, wheel)?;
             let place = sources.iter().position(|other| *other == wheel_sources);
-            of_wheel.push(place.unwrap_or(sources.len()));
+            by_wheel.push(place.unwrap_or(sources.len()));
             if place.is_none() {
                 sources.push(wheel_sources);
             }
@@ -61,22 +61,22 @@ impl EffectMap {
         Ok(EffectMap {
             effects,
             sources,
-            of_wheel,
+            by_wheel,
             sites: sites(variant),
         })
     }
 
-    /// The effects at one parameter vector.
+    /// Returns the effects at one parameter vector.
     pub(super) fn at(&self, theta: &[f64]) -> ActiveEffects<'_> {
         let values = |sources: &Vec<ParameterSource>| sources.iter().map(|s| s.value(theta)).collect();
         let active = |sources: &Sources| self.effects.activate(sources.iter().map(values));
         ActiveEffects {
             active: self.sources.iter().map(active).collect(),
-            of_wheel: &self.of_wheel,
+            by_wheel: &self.by_wheel,
         }
     }
 
-    /// The site of the condition at a position of the variant.
+    /// Returns the site of the condition at a position of the variant.
     pub(super) fn site(&self, position: usize) -> &Site {
         &self.sites[position]
     }
@@ -85,23 +85,23 @@ impl EffectMap {
 /// Finds the sources of a wheel's values: the wheel's parameter, the parameter of all wheels, or the neutral value of a
 /// strength that acts elsewhere.
 fn sources_of(variant: &ModelVariant, set: &EffectSet, wheel: &str) -> Result<Sources, ModelError> {
-    let of_effect = |effect: &formula::Effect| {
+    let effect_sources = |effect: &formula::Effect| {
         let strengths = effect.parameters.iter().filter(|p| p.neutral.is_some());
         let find = |p: &formula::Parameter| {
-            let of_wheel = ParameterSource::find(variant, &parameter_name(effect, p, Some(wheel)));
-            of_wheel.or_else(|| ParameterSource::find(variant, &parameter_name(effect, p, None)))
+            let on_wheel = ParameterSource::find(variant, &parameter_name(effect, p, Some(wheel)));
+            on_wheel.or_else(|| ParameterSource::find(variant, &parameter_name(effect, p, None)))
         };
         let acts = strengths.clone().count() == 0 || strengths.clone().any(|p| find(p).is_some());
         let source = |p: &formula::Parameter| match (find(p), p.neutral) {
             (Some(source), _) => Ok(source),
             (None, Some(neutral)) => Ok(ParameterSource::Fixed(neutral)),
-            // the shape of an absent effect
+            // a parameter that only shapes an effect which is absent on this wheel
             (None, None) if !acts => Ok(ParameterSource::Fixed(0.0)),
             (None, None) => Err(ModelError::Unset(parameter_name(effect, p, None))),
         };
         effect.parameters.iter().map(source).collect()
     };
-    set.iter().map(of_effect).collect()
+    set.iter().map(effect_sources).collect()
 }
 
 fn sites(variant: &ModelVariant) -> Vec<Site> {

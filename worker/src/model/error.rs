@@ -28,10 +28,10 @@ pub enum CompileError {
     #[error("a model that is not ours comes without its description")]
     NoDescription,
     /// The hash of a variant differs from the requested one.
-    #[error("variant {asked} came with hash {actual}: coordinator and worker read it differently")]
+    #[error("variant {requested} came with hash {actual}: coordinator and worker read it differently")]
     OtherHash {
         /// The requested hash.
-        asked: String,
+        requested: String,
         /// The hash computed here.
         actual: String,
     },

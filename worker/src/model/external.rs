@@ -95,7 +95,7 @@ impl OutsideModel {
         })
     }
 
-    /// Number of conditions of an evaluation.
+    /// Returns the number of conditions of an evaluation.
     pub(super) fn runs(&self) -> usize {
         self.conditions.len()
     }
@@ -161,14 +161,14 @@ impl OutsideModel {
         };
         let mut effects = self.effects.at(theta);
         let mut given = Vec::with_capacity(self.runs());
-        let mut asked = Vec::with_capacity(self.runs());
+        let mut questions = Vec::with_capacity(self.runs());
         for (position, (place, _)) in self.conditions.iter().enumerate() {
             let run = self.run(theta, position, effects.on_wheel(*place));
             let run = run.map_err(|rejection| refused(position, &rejection))?;
-            asked.push(self.question(theta, *place, &run));
+            questions.push(self.question(theta, *place, &run));
             given.push(run);
         }
-        let answers = self.models.evaluate(&self.description, &asked)?;
+        let answers = self.models.evaluate(&self.description, &questions)?;
         let mut observables = Observables::default();
         for (position, (run, answer)) in given.iter().zip(answers).enumerate() {
             let mut channels = [f64::NAN; 4];

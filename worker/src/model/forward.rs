@@ -86,7 +86,7 @@ impl ForwardModel {
         })
     }
 
-    /// Number of conditions of an evaluation.
+    /// Returns the number of conditions of an evaluation.
     pub(super) fn runs(&self) -> usize {
         self.conditions.len()
     }

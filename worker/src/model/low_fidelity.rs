@@ -17,8 +17,8 @@ pub(super) struct CompiledLowFidelity {
 }
 
 impl CompiledLowFidelity {
-    /// The low-fidelity model of a variant; `None` if it has none. [`CompileError`] names what the quasi-static model cannot
-    /// express.
+    /// Returns the low-fidelity model of a variant; `None` if it has none. [`CompileError`] names what the quasi-static
+    /// model cannot express.
     pub(super) fn new(variant: &ModelVariant) -> Result<Option<Self>, CompileError> {
         let Some(low_fidelity) = &variant.low_fidelity else {
             return Ok(None);
@@ -30,7 +30,7 @@ impl CompiledLowFidelity {
         }))
     }
 
-    /// The quasi-static model's predicted values; `None` if it rejects the parameters.
+    /// Returns the quasi-static model's predicted values; `None` if it rejects the parameters.
     pub(super) fn values(&self, theta: &[f64]) -> Option<Vec<f64>> {
         match self.coarse.evaluate(theta, |_| {}) {
             Outcome::Evaluated(observables) => Some(

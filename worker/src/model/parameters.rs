@@ -118,7 +118,7 @@ impl GroundMap {
         })
     }
 
-    /// The ground with the condition's angle of repose, or the model's default without one.
+    /// Returns the ground with the condition's angle of repose, or the model's default without one.
     pub(super) fn ground(&self, theta: &[f64], repose_angle_deg: Option<f64>) -> Ground {
         let default = Ground::default();
         Ground {
@@ -185,11 +185,11 @@ pub(super) struct Radius(Option<ParameterSource>);
 
 impl Radius {
     pub(super) fn new(variant: &ModelVariant, wheel: &str) -> Self {
-        let of_wheel = ParameterSource::find(variant, &format!("wheel_radius_m.{wheel}"));
-        Radius(of_wheel.or_else(|| ParameterSource::find(variant, "wheel_radius_m")))
+        let on_wheel = ParameterSource::find(variant, &format!("wheel_radius_m.{wheel}"));
+        Radius(on_wheel.or_else(|| ParameterSource::find(variant, "wheel_radius_m")))
     }
 
-    /// The radius `[m]`; `None` = the experiment's.
+    /// Returns the radius `[m]`; `None` = the experiment's.
     pub(super) fn value(&self, theta: &[f64]) -> Option<f64> {
         self.0.map(|source| source.value(theta))
     }
@@ -200,8 +200,8 @@ mod tests {
     #[test]
     fn moduli_are_converted_alike_everywhere() {
         for (log10_p_ref, kappa, n) in [(4.56, 0.0, 1.1), (3.93, -0.66, 1.295), (5.5, 0.4, 0.8)] {
-            let of_names = shared::parameters::bekker_moduli(log10_p_ref, kappa, n);
-            assert_eq!(of_names, scm::bekker_moduli(log10_p_ref, kappa, n));
+            let by_names = shared::parameters::bekker_moduli(log10_p_ref, kappa, n);
+            assert_eq!(by_names, scm::bekker_moduli(log10_p_ref, kappa, n));
         }
     }
 }

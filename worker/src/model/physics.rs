@@ -70,7 +70,7 @@ impl Physics {
         })
     }
 
-    /// The equations at a parameter vector; [`Rejection::InvalidParameter`] if a number is outside its bounds.
+    /// Returns the equations at a parameter vector; [`Rejection::InvalidParameter`] if a number is outside its bounds.
     pub(super) fn at(&self, theta: &[f64]) -> Result<Settled<'_>, Rejection> {
         Ok(match self {
             Physics::QuasiStatic(soil, grousers) => {
@@ -107,7 +107,7 @@ impl Settled<'_> {
         averages.map(Simulated::Steady)
     }
 
-    /// The equations on a soil whose pressure at the same depth is `factor` times as large.
+    /// Returns the equations on a soil whose pressure at the same depth is `factor` times as large.
     pub(super) fn stiffer(&self, factor: f64) -> Self {
         let stiffer = |soil: &Soil| Soil {
             k_c: soil.k_c * factor,
@@ -126,7 +126,7 @@ impl Settled<'_> {
     }
 }
 
-/// The grousers of a wheel if they roll, else none.
+/// Returns the grousers of a wheel if they roll, else none.
 fn straight_grousers(wheel: &WheelGeometry, roll: bool) -> StraightGrousers {
     StraightGrousers {
         count: if roll { wheel.grouser_count } else { 0 },

@@ -44,7 +44,7 @@ impl CompiledVariant {
         })
     }
 
-    /// Number of conditions of an evaluation.
+    /// Returns the number of conditions of an evaluation.
     pub fn runs(&self) -> usize {
         match &self.model {
             Model::Ours(forward) => forward.runs(),
@@ -57,7 +57,7 @@ impl CompiledVariant {
         self.evaluate_and_keep(theta, |_| {})
     }
 
-    /// Like [`CompiledVariant::evaluate`]; `keep` receives each run of a time-dependent model, in the order of the conditions.
+    /// Evaluates like [`CompiledVariant::evaluate`]; `keep` receives each run of a time-dependent model, in the order of the conditions.
     pub fn evaluate_and_keep(&self, theta: &[f64], keep: impl FnMut(SpatialRun)) -> Outcome {
         let mut outcome = match &self.model {
             Model::Ours(forward) => forward.evaluate(theta, keep),
@@ -86,7 +86,8 @@ impl CompiledVariant {
         }
     }
 
-    /// Evaluates a lease: the model at `theta`, or at the end of a subchain that starts there, unless the subchain did not move.
+    /// Evaluates a lease: the model at `theta`, or at the end of a subchain that starts there. There is no outcome if the
+    /// subchain did not move.
     pub fn serve(
         &self,
         theta: &[f64],
@@ -99,19 +100,20 @@ impl CompiledVariant {
         let Model::Ours(forward) = &self.model else {
             return fault("a subchain was asked of a model that is not ours".into());
         };
-        let low_fidelity = self.low_fidelity.as_ref();
-        let Some((low_fidelity, metamodel)) = low_fidelity.and_then(|c| Some((c, c.metamodel.as_ref()?)))
-        else {
+        let compiled = self.low_fidelity.as_ref();
+        let with_metamodel = compiled.and_then(|model| Some((model, model.metamodel.as_ref()?)));
+        let Some((coarse, metamodel)) = with_metamodel else {
             return fault("a subchain was asked of a variant without a metamodel".into());
         };
         if theta.len() < forward.dimension {
             let (given, needed) = (theta.len(), forward.dimension);
             return fault(format!("theta has {given} entries, the variant has {needed}"));
         }
-        let model = |theta: &[f64]| theta[..forward.dimension].to_vec();
-        match metamodel.run(subchain, theta, |theta| low_fidelity.values(&model(theta))) {
+        // the sampler's vector has the noise parameters after those of the model
+        let model_part = |theta: &[f64]| theta[..forward.dimension].to_vec();
+        match metamodel.run(subchain, theta, |theta| coarse.values(&model_part(theta))) {
             Ok(end) if end.accepted == 0 => (None, Some(end)),
-            Ok(end) => (Some(self.evaluate(&model(&end.theta))), Some(end)),
+            Ok(end) => (Some(self.evaluate(&model_part(&end.theta))), Some(end)),
             Err(error) => fault(format!("the metamodel: {error}")),
         }
     }

@@ -31,7 +31,7 @@ pub enum Ended {
 }
 
 impl Ended {
-    /// Words for the log.
+    /// Returns the words for the log.
     pub fn words(self) -> &'static str {
         match self {
             Ended::Asked => "asked to stop",
@@ -44,7 +44,7 @@ impl Ended {
 }
 
 impl WorkerLimits {
-    /// Waits until a worker that has been idle since then, if it is, reaches a limit of time.
+    /// Waits until the worker reaches a limit of time; `idle_since` is when it became idle, if it is.
     pub(super) fn reached(&self, idle_since: Option<Instant>) -> impl Future<Output = Ended> + use<> {
         let idle_until = idle_since.and_then(|since| Some(since + self.max_idle?));
         let ends_at = self.ends_at;
@@ -73,7 +73,7 @@ impl WorkerLimits {
     }
 }
 
-/// Memory that this process holds `[bytes]`, from `/proc/self/status`, proc(5).
+/// Returns the memory that this process holds `[bytes]`, from `/proc/self/status`, proc(5).
 fn resident_bytes() -> Option<u64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:"))?;

@@ -43,7 +43,7 @@ const BACK_OFF: [Duration; 2] = [Duration::from_millis(100), Duration::from_secs
 /// The interval at which external models are asked for their identity.
 const ASK: Duration = Duration::from_secs(5);
 
-/// The state of the coordinator in its last answer.
+/// The state of the farm by the coordinator's last answer.
 #[derive(Debug)]
 struct LastAnswer {
     remaining: u64,
@@ -52,7 +52,7 @@ struct LastAnswer {
     workers: u32,
     lease_ms: u64,
     /// Number of leases that the last successful request brought.
-    asked: usize,
+    batch: usize,
     /// The maximum number of runs per evaluation in the last batch.
     runs: usize,
 }
@@ -72,7 +72,7 @@ pub(super) struct Worker<C> {
     settings: PullSettings,
     variants: VariantCache,
     /// The time at which external models were last asked for their identity.
-    asked: Option<Instant>,
+    models_asked: Option<Instant>,
     /// Leases without a result so far.
     held: BTreeSet<u64>,
     /// Results that the coordinator has not acknowledged.
@@ -105,7 +105,7 @@ impl<C: Coordinator> Worker<C> {
             evaluator,
             clock,
             variants: VariantCache::new(settings.models.clone()),
-            asked: None,
+            models_asked: None,
             settings,
             held: BTreeSet::new(),
             outbox: Vec::new(),
@@ -117,7 +117,7 @@ impl<C: Coordinator> Worker<C> {
                 in_hand: None,
                 workers: 1,
                 lease_ms: WAIT_MS,
-                asked: 0,
+                batch: 0,
                 runs: 1,
             },
             flushed: Instant::now(),
@@ -144,7 +144,7 @@ impl<C: Coordinator> Worker<C> {
                     () = &mut shutdown => return self.stop(Ended::Asked).await,
                     ended = &mut reached => return self.stop(ended).await,
                     () = self.evaluator.woken() => {}
-                    // short leases are renewed more often
+                    // A short lease must be renewed before the flush is due.
                     () = tokio::time::sleep(FLUSH.min(self.renewal_period())) => {}
                 }
                 continue;
@@ -182,7 +182,7 @@ impl<C: Coordinator> Worker<C> {
                     }
                     back_off = BACK_OFF[0];
                     tokio::select! {
-                        // New leases are held by now, and given back.
+                        // The answer has been accepted by now: its leases are held, and `stop` gives them back.
                         () = &mut shutdown => return self.stop(Ended::Asked).await,
                         ended = &mut reached => return self.stop(ended).await,
                         () = self.accept(response) => {}
@@ -246,12 +246,12 @@ impl<C: Coordinator> Worker<C> {
 
     /// Asks the external models for their identity from time to time, because one may have been started or replaced.
     async fn ask_models(&mut self) {
-        let is_due = self.asked.is_none_or(|asked| asked.elapsed() >= ASK);
+        let is_due = self.models_asked.is_none_or(|time| time.elapsed() >= ASK);
         if self.settings.models.is_empty() || !is_due {
             return;
         }
         self.settings.models.refresh().await;
-        self.asked = Some(Instant::now());
+        self.models_asked = Some(Instant::now());
     }
 
     /// Collects the results of the threads.
@@ -266,10 +266,10 @@ impl<C: Coordinator> Worker<C> {
         self.outbox.push(result);
     }
 
-    /// An exchange is due when half of the last batch is done and there is more to get or enough to send, when no lease is
-    /// held, or when results or renewals have waited long enough.
+    /// Returns whether an exchange is due: when half of the last batch is done and there is more to get or enough to send, when
+    /// no lease is held, or when results or renewals have waited long enough.
     fn is_time_to_exchange(&self) -> bool {
-        let half_done = self.held.len() * 2 <= self.last_answer.asked;
+        let half_done = self.held.len() * 2 <= self.last_answer.batch;
         let much_done = self.outbox.len() as f64 >= self.evaluations_in(MIN_WORK_S);
         self.held.is_empty()
             || (half_done && (self.last_answer.remaining > 0 || much_done))
@@ -286,26 +286,26 @@ impl<C: Coordinator> Worker<C> {
         !self.held.is_empty() && self.renewed.elapsed() >= self.renewal_period()
     }
 
-    /// The number of evaluations that all threads complete in a time `[s]`, as far as known; at least one each.
+    /// Returns the number of evaluations that all threads complete in a time `[s]`, as far as known; at least one each.
     fn evaluations_in(&self, seconds: f64) -> f64 {
         let threads = self.settings.threads as f64;
         let mean = self.clock.mean_s();
         mean.map_or(threads, |mean| (seconds * threads / mean.max(1e-9)).max(threads))
     }
 
-    /// The number of evaluations to request: at most 1.5 s of work.
+    /// Returns the number of evaluations to request: at most 1.5 s of work.
     ///
     /// A single worker takes all that remains; otherwise a worker takes half of its share, so that a slower worker leaves
     /// work to a faster one, but never splits below the amount that is worth an exchange. The same amount is requested from
     /// a round of unknown size.
     fn want(&self) -> u32 {
-        let least = self.evaluations_in(MIN_WORK_S);
+        let min_count = self.evaluations_in(MIN_WORK_S);
         let share = self.last_answer.remaining as f64 / f64::from(self.last_answer.workers.max(1));
         let share = match (self.last_answer.remaining, self.last_answer.workers) {
-            (0, _) => least,
+            (0, _) => min_count,
             (_, 0 | 1) => share,
             _ => (0.5 * share)
-                .max(least.min(share))
+                .max(min_count.min(share))
                 .max(self.settings.threads as f64),
         };
         let want = self.evaluations_in(WORK_S).min(share) - self.held.len() as f64;
@@ -343,7 +343,7 @@ impl<C: Coordinator> Worker<C> {
         }
     }
 
-    /// The time that the coordinator may wait for work before it answers an idle worker `[ms]`.
+    /// Returns the time that the coordinator may wait for work before it answers an idle worker `[ms]`.
     fn patience_ms(&self) -> u64 {
         match self.settings.limits.once {
             // With `--once` the worker must learn soon that nothing is left.
@@ -378,7 +378,7 @@ impl<C: Coordinator> Worker<C> {
         });
     }
 
-    /// Leases whose evaluation has begun, or begins after the coordinator's answer.
+    /// Returns the leases whose evaluation has begun, or begins after the coordinator's answer.
     fn started(&self) -> Vec<u64> {
         let announced = self.announced.iter().map(|(lease, _)| lease.lease);
         self.evaluator.started().into_iter().chain(announced).collect()
@@ -399,7 +399,7 @@ impl<C: Coordinator> Worker<C> {
             in_hand: Some(response.in_hand),
             workers: response.workers,
             lease_ms: response.lease_ms,
-            asked: response.leases.len() + self.held.len(),
+            batch: response.leases.len() + self.held.len(),
             runs: self.last_answer.runs,
         };
         self.held.extend(response.leases.iter().map(|l| l.lease));
@@ -475,7 +475,7 @@ impl<C: Coordinator> Worker<C> {
                 .add(hash, &variant)
                 .map_err(|e| Missing::Unusable(e.to_string())),
             Err(ExchangeError::Refused(reason)) => Err(Missing::Unusable(reason)),
-            // it is no error if the calibration has ended meanwhile, or the coordinator is away
+            // It is no error if the calibration has ended meanwhile, or if the coordinator is away.
             Ok(None) | Err(ExchangeError::Away(_)) => Err(Missing::Away),
         }
     }

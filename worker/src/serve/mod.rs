@@ -50,7 +50,7 @@ struct ProtocolError {
 }
 
 impl ProtocolError {
-    fn of_client(kind: &'static str, message: String) -> Self {
+    fn client_error(kind: &'static str, message: String) -> Self {
         ProtocolError {
             status: StatusCode::BAD_REQUEST,
             kind,
@@ -123,7 +123,7 @@ async fn channels(State(threads): State<Threads>, body: Bytes) -> Result<Json<Va
     });
     match answer.await.map_err(|e| internal(e.to_string()))? {
         Ok(channels) => Ok(Json(json!({ "output": [channels] }))),
-        Err(ServedError::Input(message)) => Err(ProtocolError::of_client("InvalidInput", message)),
+        Err(ServedError::Input(message)) => Err(ProtocolError::client_error("InvalidInput", message)),
         Err(ServedError::Rejected(message)) => Err(internal(message)),
     }
 }
@@ -133,19 +133,19 @@ async fn unsupported(uri: Uri) -> ProtocolError {
         "{} is not supported: these models have no derivatives",
         uri.path()
     );
-    ProtocolError::of_client("UnsupportedFeature", message)
+    ProtocolError::client_error("UnsupportedFeature", message)
 }
 
 /// Reads the model and the question of a body.
 fn read(body: &[u8]) -> Result<(ModelKind, Question), ProtocolError> {
     let question: Question = serde_json::from_slice(body)
-        .map_err(|e| ProtocolError::of_client("InvalidInput", format!("the body: {e}")))?;
+        .map_err(|e| ProtocolError::client_error("InvalidInput", format!("the body: {e}")))?;
     match MODELS.into_iter().find(|kind| kind.name() == question.name) {
         Some(kind) => Ok((kind, question)),
         None => {
             let names = MODELS.map(ModelKind::name).join(", ");
             let message = format!("model \"{}\" is none of {names}", question.name);
-            Err(ProtocolError::of_client("ModelNotFound", message))
+            Err(ProtocolError::client_error("ModelNotFound", message))
         }
     }
 }

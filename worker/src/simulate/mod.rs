@@ -38,12 +38,12 @@ use crate::model::{CompiledBevameter, CompiledVariant, without_action};
 pub fn simulate(command: &Simulate, models: &Arc<AllowedModels>) -> Result<(), SimulateError> {
     let name = command.experiment.display().to_string();
     let experiment = Experiment::parse(&name, &Experiment::read_files(&command.experiment)?)?;
-    for (flag, key, asked, rows) in [
+    for (flag, key, path, rows) in [
         ("--out", "runs", &command.out, experiment.runs.len()),
         ("--plates", "plates", &command.plates, experiment.plates.len()),
         ("--shear", "shear", &command.shear, experiment.shear.len()),
     ] {
-        if asked.is_some() && rows == 0 {
+        if path.is_some() && rows == 0 {
             let message = format!("{flag}: the experiment names no {key}: add {key} = \"{key}.csv\"");
             return Err(FileError::whole(&name, message).into());
         }

@@ -79,7 +79,7 @@ impl NormalCoordinate {
     /// Returns the value of a parameter at a coordinate.
     pub(crate) fn value(&self, t: f64) -> f64 {
         match self.side {
-            Side::Both => self.marginal.of_normal_score(t),
+            Side::Both => self.marginal.from_normal_score(t),
             Side::Above => self.marginal.quantile(1.0 - 2.0 * normal::cdf(-t)),
             Side::Below => self.marginal.quantile(2.0 * normal::cdf(-t)),
         }

@@ -26,7 +26,7 @@ impl SearchState {
         let reductions = self.task.reductions.iter().enumerate();
         let branches = reductions.filter_map(|(k, reduction)| {
             let kept = reduction.parameters.iter();
-            let prior = self.task.prior.of_some(&reduction.parameters);
+            let prior = self.task.prior.subset(&reduction.parameters);
             let settings = SearchSettings {
                 starts: Starts::Draws(vec![kept.map(|&i| theta[i]).collect()]),
                 ..self.task.settings.clone()

@@ -111,7 +111,7 @@ fn entangled(
     let density = |scores: &[f64]| {
         let mut theta = theta.to_vec();
         for (i, score) in scores.iter().enumerate() {
-            theta[parameters[i]] = marginal(i).of_normal_score(*score);
+            theta[parameters[i]] = marginal(i).from_normal_score(*score);
         }
         let squares: f64 = scores.iter().map(|score| score * score).sum();
         let scored = likelihood.log_likelihood(predicted, &theta);
@@ -135,7 +135,7 @@ fn entangled(
     let middle = density(&scores);
     (0..scores.len())
         .map(|i| {
-            let value = |score| marginal(i).of_normal_score(score);
+            let value = |score| marginal(i).from_normal_score(score);
             let (low, high) = (scores[i] - DIFFERENCE, scores[i] + DIFFERENCE);
             let bend = 2.0 * middle - along(&scores, i, low) - along(&scores, i, high);
             let curvature = bend / (DIFFERENCE * DIFFERENCE);

@@ -82,7 +82,7 @@ impl LinearisedPosterior<'_> {
         let marginals = self.objective.prior.marginals().iter();
         marginals
             .zip(scores)
-            .map(|(m, &z)| m.of_normal_score(z))
+            .map(|(m, &z)| m.from_normal_score(z))
             .collect()
     }
 
@@ -179,7 +179,7 @@ impl LinearisedPosterior<'_> {
         for k in self.objective.noises.parameters() {
             let at = |offset: f64| {
                 let mut theta = theta.clone();
-                theta[k] = prior.marginals()[k].of_normal_score(scores[k] + offset);
+                theta[k] = prior.marginals()[k].from_normal_score(scores[k] + offset);
                 let scored = likelihood.log_likelihood(&predicted, &theta);
                 scored.map_or(f64::NEG_INFINITY, |l| l.value())
             };

@@ -5,7 +5,7 @@ use serde::Deserialize;
 use serde_json::{Map, Value, json};
 use shared::channel::Channel;
 use shared::file::{number, unknown_word};
-use statistics::likelihood::{DISCREPANCY_LEVELS, GREATEST_DISCREPANCY, MIN_DISCREPANCY};
+use statistics::likelihood::{DISCREPANCY_LEVELS, MAX_DISCREPANCY, MIN_DISCREPANCY};
 use statistics::{Discrepancy, ErrorLaw};
 
 use super::error::TableError;
@@ -44,7 +44,7 @@ impl LikelihoodSettings {
             )
         };
         let inferred = format!(
-            "m of each channel is marginalised over {DISCREPANCY_LEVELS} values from {MIN_DISCREPANCY} to {GREATEST_DISCREPANCY}, uniform in log m"
+            "m of each channel is marginalised over {DISCREPANCY_LEVELS} values from {MIN_DISCREPANCY} to {MAX_DISCREPANCY}, uniform in log m"
         );
         let first = self.discrepancies[0];
         if self.discrepancies.iter().all(|discrepancy| *discrepancy == first) {

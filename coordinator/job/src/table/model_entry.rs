@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use serde::Deserialize;
 use shared::file::{FileError, parse_toml};
 use shared::model::{ModelKind, ModelSettings};
-use shared::parameters::of_models;
+use shared::parameters::model_parameters;
 
 use super::prior_entry::PriorEntry;
 
@@ -140,5 +140,5 @@ fn line_at(text: &str, byte: usize) -> usize {
 /// Returns whether a line of `[priors]` concerns a model among several: for a base parameter, if the model has it.
 pub(crate) fn is_shared_by(kind: ModelKind, name: &str) -> bool {
     let stem = name.split_once('.').map_or(name, |(stem, _)| stem);
-    of_models().all(|p| p.name != stem) || kind.parameters().any(|p| p.name == stem)
+    model_parameters().all(|p| p.name != stem) || kind.parameters().any(|p| p.name == stem)
 }

@@ -45,7 +45,7 @@ static USUAL_PRIORS: LazyLock<BTreeMap<&'static str, toml::Value>> = LazyLock::n
             .parse()
             .unwrap_or_else(|_| toml::Value::String(prior.to_owned()))
     };
-    let texts = parameters::of_models().filter_map(|parameter| parameter.prior);
+    let texts = parameters::model_parameters().filter_map(|parameter| parameter.prior);
     texts.map(|prior| (prior, value(prior))).collect()
 });
 

@@ -71,12 +71,12 @@ impl Mechanism {
     /// Every mechanism.
     pub const ALL: &'static [Self] = Self::VARIANTS;
 
-    /// Name in effect files.
+    /// Returns the name in effect files.
     pub fn name(self) -> &'static str {
         self.into()
     }
 
-    /// The parameters that it takes, in order.
+    /// Returns the parameters that it takes, in order.
     pub fn parameters(self) -> &'static [&'static str] {
         match self {
             Mechanism::Rebound => &["compliance_m_pa"],
@@ -87,7 +87,7 @@ impl Mechanism {
         }
     }
 
-    /// The variables that it uses in addition to those of the effect's formulas.
+    /// Returns the variables that it uses in addition to those of the effect's formulas.
     fn uses(self) -> Variables {
         match self {
             Mechanism::SideWall => Variables::new(&[Variable::Density, Variable::Gravity]),
@@ -122,7 +122,7 @@ impl Effect {
     /// The maximum size of a file, in bytes.
     pub const LONGEST: usize = 32_768;
 
-    /// The quantities that its formulas replace, in the order of evaluation.
+    /// Returns the quantities that its formulas replace, in the order of evaluation.
     pub fn hooks(&self) -> impl Iterator<Item = Hook> {
         self.formulas.iter().map(|(hook, _)| *hook)
     }
@@ -153,7 +153,7 @@ impl Effect {
             .is_some_and(|(_, result)| is_proportional(&self.graph, *result, hook.target()))
     }
 
-    /// The variables that its formulas and its mechanism use.
+    /// Returns the variables that its formulas and its mechanism use.
     pub fn uses(&self) -> Variables {
         let uses = self
             .formulas
@@ -182,7 +182,7 @@ impl Effect {
         self.hooks().any(|hook| HOOKS.contains(&hook)) || self.uses().meets(Variables::new(&PARAMETERS))
     }
 
-    /// Position of a parameter by name.
+    /// Returns the position of a parameter by name.
     pub fn parameter(&self, name: &str) -> Option<usize> {
         self.parameters.iter().position(|p| p.name == name)
     }

@@ -6,7 +6,7 @@ use crate::variable::{Variable, Variables};
 
 /// Relative difference that rounding can cause.
 const ROUNDING: f64 = 1e-9;
-/// Shares of the size of each variable at which formulas are evaluated.
+/// The points at which formulas are evaluated, as shares of the size of each variable.
 const SHARES: [f64; 3] = [0.31, 0.74, 1.0];
 
 impl Effect {
@@ -80,7 +80,7 @@ impl Effect {
 /// Returns the fixed value of a parameter, or a possible one.
 fn value(parameter: &Parameter) -> f64 {
     let number = |value: &toml::Value| value.as_float().or_else(|| value.as_integer().map(|i| i as f64));
-    let of_prior = || {
+    let prior_value = || {
         let table = parameter.prior.as_table()?;
         let first = table.values().find_map(toml::Value::as_array)?;
         first.iter().rev().find_map(number)
@@ -88,7 +88,7 @@ fn value(parameter: &Parameter) -> f64 {
     let stated = parameter.neutral.or(parameter.typical);
     stated
         .or_else(|| number(&parameter.prior))
-        .or_else(of_prior)
+        .or_else(prior_value)
         .unwrap_or(1.0)
 }
 

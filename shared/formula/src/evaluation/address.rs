@@ -18,7 +18,7 @@ pub(crate) struct Address {
 }
 
 impl Address {
-    /// The column of a variable.
+    /// Returns the column of a variable.
     pub(crate) fn column(variable: Variable) -> Self {
         Self {
             first: (variable as usize * BLOCK) as u32,
@@ -26,7 +26,7 @@ impl Address {
         }
     }
 
-    /// A register of a program, which holds a value for every point.
+    /// Returns a register of a program, which holds a value for every point.
     pub(crate) fn register(register: usize) -> Self {
         Self {
             first: (COLUMNS + register * BLOCK) as u32,
@@ -34,7 +34,7 @@ impl Address {
         }
     }
 
-    /// The address of a value that all points share; constants follow the registers.
+    /// Returns the address of a value that all points share; constants follow the registers.
     pub(crate) fn constant(registers: usize, constant: usize) -> Self {
         Self {
             first: Self::register(registers).first + (constant * LANES) as u32,
@@ -42,7 +42,7 @@ impl Address {
         }
     }
 
-    /// Position of a group's first value.
+    /// Returns the position of a group's first value.
     #[inline]
     pub(crate) fn at(self, group: usize) -> usize {
         self.first as usize + group * self.step as usize

@@ -12,8 +12,8 @@ pub(crate) const LANES: usize = 8;
 /// The values of a quantity at [`LANES`] points.
 pub(crate) type Lanes = [f64; LANES];
 
-/// The greatest argument of the exponential that vectorises; below its negative, e^x is 0.
-const GREATEST: f64 = 700.0;
+/// The largest argument of the exponential that vectorises; below its negative, e^x is 0.
+const MAX_EXPONENT: f64 = 700.0;
 
 /// Computes an operation of one argument at one point.
 pub(crate) fn unary(operation: Unary, a: f64) -> f64 {
@@ -93,7 +93,7 @@ pub(crate) fn binary_lanes(operation: Binary, a: &Lanes, b: &Lanes) -> Lanes {
     }
 }
 
-/// [`choose`] at many points.
+/// Computes [`choose`] at many points.
 #[inline(always)]
 pub(crate) fn choose_lanes(condition: &Lanes, a: &Lanes, b: &Lanes) -> Lanes {
     let mut out = [0.0; LANES];
@@ -137,7 +137,7 @@ fn vector_or_each(a: &Lanes, vector: impl Fn(f64) -> (f64, bool), each: impl Fn(
 #[inline(always)]
 fn exp_in_reach(a: f64) -> (f64, bool) {
     let value = elementary::exp(a);
-    (if a < -GREATEST { 0.0 } else { value }, a <= GREATEST)
+    (if a < -MAX_EXPONENT { 0.0 } else { value }, a <= MAX_EXPONENT)
 }
 
 fn exp(a: f64) -> f64 {
@@ -172,7 +172,7 @@ fn power_in_reach(a: f64, b: f64) -> (f64, bool) {
     let exponent = b * elementary::ln(a);
     let zero = is_zero_power(a, b);
     let value = elementary::exp(exponent);
-    let vectorises = zero | (has_logarithm(a) & (exponent.abs() <= GREATEST));
+    let vectorises = zero | (has_logarithm(a) & (exponent.abs() <= MAX_EXPONENT));
     (if zero { 0.0 } else { value }, vectorises)
 }
 

@@ -37,7 +37,7 @@ impl Default for Block {
 }
 
 impl Block {
-    /// A variable at all points; zero where nothing was written.
+    /// Returns the values of a variable at all points; zero where nothing was written.
     ///
     /// # Panics
     /// Panics for a variable beyond the first [`Variable::LOCAL`].
@@ -47,7 +47,7 @@ impl Block {
         &self.memory[..COLUMNS][first..first + BLOCK]
     }
 
-    /// The column of a variable, writable.
+    /// Returns the column of a variable, writable.
     #[inline]
     pub fn column_mut(&mut self, variable: Variable) -> &mut [f64] {
         let first = variable as usize * BLOCK;

@@ -12,13 +12,13 @@ const ONE: u64 = 0x3ff0_0000_0000_0000; // bits of 1.0
 const ROOT_HALF: u64 = 0x3fe6_a09e_667f_3bcd; // bits of sqrt(1/2)
 const TWO_52: f64 = 4_503_599_627_370_496.0;
 
-/// The least argument of [`exp`] that is distinguished from smaller ones.
-pub const EXP_LEAST: f64 = -700.0;
+/// The smallest argument of [`exp`] that is distinguished from smaller ones.
+pub const MIN_EXPONENT: f64 = -700.0;
 
-/// Computes e^x for x ≤ 700; below [`EXP_LEAST`] it gives e^−700 (1e-304), which no sum in this crate can tell from 0.
+/// Computes e^x for x ≤ 700; below [`MIN_EXPONENT`] it gives e^−700 (1e-304), which no sum in this crate can tell from 0.
 #[inline]
 pub fn exp(x: f64) -> f64 {
-    let x = if x > EXP_LEAST { x } else { EXP_LEAST };
+    let x = if x > MIN_EXPONENT { x } else { MIN_EXPONENT };
     // Adding 1.5 · 2^52 leaves the nearest integer k in the low bits of the sum.
     let shifted = x * core::f64::consts::LOG2_E + 1.5 * TWO_52;
     let k = shifted - 1.5 * TWO_52;

@@ -168,22 +168,22 @@ impl Program {
         }
     }
 
-    /// The variables that the formula uses.
+    /// Returns the variables that the formula uses.
     pub fn uses(&self) -> Variables {
         self.uses
     }
 
-    /// The variables that differ from point to point.
+    /// Returns the variables that differ from point to point.
     pub fn local(&self) -> Variables {
         self.local
     }
 
-    /// The parameters that it uses, by their position in the effect.
+    /// Returns the parameters that it uses, by their position in the effect.
     pub fn parameters(&self) -> &[u8] {
         &self.parameters
     }
 
-    /// The variables on which the result depends through a kink or a jump.
+    /// Returns the variables on which the result depends through a kink or a jump.
     pub fn kinks(&self) -> Variables {
         self.kinks
     }
@@ -229,7 +229,7 @@ impl Program {
     }
 }
 
-/// The variables whose change takes an operation through a kink or a jump.
+/// Returns the variables whose change takes an operation through a kink or a jump.
 fn kinks_by(graph: &Graph, id: Id) -> Variables {
     match graph.node(id) {
         Node::If(condition, ..) => graph.variables(condition),

@@ -54,7 +54,7 @@ pub(crate) enum Node {
 }
 
 impl Node {
-    /// The arguments of the operation.
+    /// Returns the arguments of the operation.
     pub(crate) fn arguments(self) -> impl Iterator<Item = Id> {
         let arguments = match self {
             Node::Number(_) | Node::Variable(_) | Node::Parameter(_) => [None; 3],
@@ -79,7 +79,7 @@ impl Graph {
     /// The maximum number of operations of an effect.
     pub(crate) const MAX_OPERATIONS: usize = 1000;
 
-    /// Adds an operation with its unit, unless it is there already; `None` if there are too many.
+    /// Adds an operation with its unit, or finds it if the graph has it; `None` if there are too many.
     pub(crate) fn add(&mut self, node: Node, unit: Option<Unit>) -> Option<Id> {
         if let Some(&id) = self.positions.get(&node) {
             return Some(id);
@@ -94,7 +94,7 @@ impl Graph {
         Some(id)
     }
 
-    /// The position of an operation, if it is in the graph.
+    /// Returns the position of an operation, if it is in the graph.
     pub(crate) fn find(&self, node: Node) -> Option<Id> {
         self.positions.get(&node).copied()
     }
@@ -103,7 +103,7 @@ impl Graph {
         self.nodes[usize::from(id.0)]
     }
 
-    /// The unit of an operation, if it is determined.
+    /// Returns the unit of an operation, if it is determined.
     pub(crate) fn unit(&self, id: Id) -> Option<Unit> {
         self.units[usize::from(id.0)]
     }
@@ -112,7 +112,7 @@ impl Graph {
         self.nodes.len()
     }
 
-    /// The operations that a result depends on: arguments first, the result last.
+    /// Returns the operations that a result depends on: arguments first, the result last.
     pub(crate) fn behind(&self, result: Id) -> Vec<Id> {
         let mut needed = vec![false; usize::from(result.0) + 1];
         needed[usize::from(result.0)] = true;
@@ -129,7 +129,7 @@ impl Graph {
             .collect()
     }
 
-    /// The variables that a result depends on.
+    /// Returns the variables that a result depends on.
     pub(crate) fn variables(&self, result: Id) -> Variables {
         self.behind(result)
             .into_iter()

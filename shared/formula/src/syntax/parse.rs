@@ -36,7 +36,7 @@ const UNARY: [(&str, Unary); 8] = [
 
 const BINARY: [(&str, Binary); 3] = [("min", Binary::Min), ("max", Binary::Max), ("pow", Binary::Power)];
 
-/// The names that mean an operation or a constant in every formula.
+/// Returns the names that mean an operation or a constant in every formula.
 pub(crate) fn reserved() -> impl Iterator<Item = &'static str> {
     let functions = UNARY.iter().map(|f| f.0).chain(BINARY.iter().map(|f| f.0));
     functions.chain(["if", "pi"])
@@ -297,7 +297,7 @@ impl Parser<'_, '_> {
             || Variable::ALL.iter().any(|v| v.name() == name)
     }
 
-    /// The names that are visible.
+    /// Returns the names that are visible.
     fn names(&self) -> Vec<&str> {
         let scope = self.scope;
         let declared = scope

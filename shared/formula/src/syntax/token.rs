@@ -56,7 +56,7 @@ impl<'a> Tokens<'a> {
         }
     }
 
-    /// The character at which the last token begins.
+    /// Returns the character at which the last token begins.
     pub(crate) fn place(&self) -> usize {
         self.text[..self.begin].chars().count()
     }

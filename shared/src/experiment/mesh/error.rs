@@ -43,7 +43,7 @@ pub enum MeshError {
 }
 
 impl MeshError {
-    /// The error of a file.
+    /// Returns the error of a file.
     pub(super) fn in_file(&self, file: &str) -> FileError {
         FileError::whole(file, self.to_string())
     }

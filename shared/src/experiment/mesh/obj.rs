@@ -66,7 +66,7 @@ fn shape(text: &str) -> String {
     shape
 }
 
-/// The line, counted from 1, that ends at this byte.
+/// Returns the line, counted from 1, that ends at this byte.
 fn line_at(text: &str, end: usize) -> usize {
     let read = &text.as_bytes()[..end.min(text.len())];
     let ended = read.iter().filter(|&&b| b == b'\n').count();
@@ -123,18 +123,19 @@ mod tests {
     fn malformed_files_name_the_line() {
         let wrong = |old: &str, new: &str| {
             assert!(SQUARE.contains(old), "{old}");
-            parse("w.obj", &SQUARE.replacen(old, new, 1))
-                .unwrap_err()
-                .to_string()
+            let refused = parse("w.obj", &SQUARE.replacen(old, new, 1));
+            refused.unwrap_err().to_string()
         };
-        assert_eq!(
-            wrong("v 0.1 0.1 0", "v 0.1 nought 0"),
-            "w.obj line 5: position parse error"
-        );
-        assert_eq!(wrong("f -1 1 2", "f a b c"), "w.obj line 13: face parse error");
-        assert_eq!(
-            wrong("4//1", "9//1"),
-            "w.obj line 10: face vertex \"9//1\" is not among the 5 vertices"
-        );
+        for (old, new, message) in [
+            ("v 0.1 0.1 0", "v 0.1 nought 0", "5: position parse error"),
+            ("f -1 1 2", "f a b c", "13: face parse error"),
+            (
+                "4//1",
+                "9//1",
+                "10: face vertex \"9//1\" is not among the 5 vertices",
+            ),
+        ] {
+            assert_eq!(wrong(old, new), format!("w.obj line {message}"));
+        }
     }
 }

@@ -43,7 +43,7 @@ pub(super) fn parse(file: &str, text: &str) -> Result<WheelMesh, FileError> {
     Ok(indexed(&triangles))
 }
 
-/// The text form of a file: ASCII unchanged, binary as ASCII with every bit of its coordinates.
+/// Returns the text form of a file: ASCII unchanged, binary as ASCII with every bit of its coordinates.
 pub(super) fn text(file: &str, mut bytes: Vec<u8>) -> Result<String, FileError> {
     // Many binary files begin with the word "solid", too; their length identifies them.
     let count = bytes
@@ -132,29 +132,26 @@ mod tests {
     fn malformed_files_name_the_face() {
         let wrong = |old: &str, new: &str| {
             assert!(SQUARE.contains(old), "{old}");
-            parse("w.stl", &SQUARE.replacen(old, new, 1))
-                .unwrap_err()
-                .to_string()
+            let refused = parse("w.stl", &SQUARE.replacen(old, new, 1));
+            refused.unwrap_err().to_string()
         };
-        let second = wrong("VERTEX 0 0 0", "VERTEX 0 0");
-        assert!(
-            second.starts_with("w.stl: face 2: ") && second.contains("\"vertex\""),
-            "{second}"
-        );
-        let first = wrong("vertex 0.1 0 0", "vertex 0.1 0 nan");
-        assert!(
-            first.starts_with("w.stl: face 1: ") && first.contains("finite"),
-            "{first}"
-        );
-        assert_eq!(
-            wrong("ENDSOLID", ""),
-            "w.stl: the last line is not \"endsolid\": is the file cut off?"
-        );
-        assert!(wrong("solid left", "left").starts_with("w.stl: ASCII STL must begin with \"solid\""));
-        assert_eq!(
-            parse("w.stl", "solid\nendsolid").unwrap_err().to_string(),
-            "w.stl: the file has no triangle"
-        );
+        for (old, new, begin, part) in [
+            ("VERTEX 0 0 0", "VERTEX 0 0", "face 2: ", "\"vertex\""),
+            ("vertex 0.1 0 0", "vertex 0.1 0 nan", "face 1: ", "finite"),
+            (
+                "ENDSOLID",
+                "",
+                "the last line is not \"endsolid\"",
+                ": is the file cut off?",
+            ),
+            ("solid left", "left", "ASCII STL must begin with \"solid\"", ""),
+        ] {
+            let message = wrong(old, new);
+            assert!(message.starts_with(&format!("w.stl: {begin}")), "{message}");
+            assert!(message.contains(part), "{message}");
+        }
+        let empty = parse("w.stl", "solid\nendsolid").unwrap_err();
+        assert_eq!(empty.to_string(), "w.stl: the file has no triangle");
     }
 
     #[test]
@@ -180,10 +177,8 @@ mod tests {
         assert_eq!(read, numbers.map(|x| f64::from(x).to_bits()));
 
         bytes[96..100].copy_from_slice(&f32::INFINITY.to_le_bytes());
-        assert_eq!(
-            text("w.stl", bytes.clone()).unwrap_err().to_string(),
-            "w.stl: face 1: coordinate inf m is not finite"
-        );
+        let infinite = text("w.stl", bytes.clone()).unwrap_err().to_string();
+        assert_eq!(infinite, "w.stl: face 1: coordinate inf m is not finite");
         bytes.pop();
         let message = text("w.stl", bytes).unwrap_err().to_string();
         assert!(message.contains("134 bytes, not 133"), "{message}");

@@ -52,13 +52,13 @@ impl WheelMesh {
         Ok(())
     }
 
-    /// The largest distance of a vertex from the axle `[m]`.
+    /// Returns the largest distance of a vertex from the axle `[m]`.
     pub fn reach_m(&self) -> f64 {
         let squares = self.vertices_m.iter().map(|[x, _, z]| x * x + z * z);
         squares.fold(0.0, f64::max).sqrt()
     }
 
-    /// The extent of the surface along the axle `[m]`.
+    /// Returns the extent of the surface along the axle `[m]`.
     pub fn width_m(&self) -> f64 {
         let y = || self.vertices_m.iter().map(|v| v[1]);
         y().fold(f64::NEG_INFINITY, f64::max) - y().fold(f64::INFINITY, f64::min)
@@ -100,7 +100,7 @@ fn shown(metres: f64) -> f64 {
     format!("{metres:.5e}").parse().unwrap_or(metres)
 }
 
-/// The probable mistake behind an extent that is too large by a ratio.
+/// Returns the probable mistake behind an extent that is too large by a ratio.
 fn mistake(ratio: f64) -> &'static str {
     if ratio > 100.0 {
         "metres are expected, were these millimetres?"
@@ -124,8 +124,9 @@ pub(super) fn check_count(triangles: usize) -> Result<(), MeshError> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::case_table::cases;
 
-    /// A double pyramid of 0.1 m radius about the y axis, 0.04 m wide.
+    /// Returns a double pyramid of 0.1 m radius about the y axis, 0.04 m wide.
     fn spindle() -> WheelMesh {
         WheelMesh {
             vertices_m: vec![
@@ -151,54 +152,41 @@ mod tests {
     #[test]
     fn a_surface_that_does_not_fit_its_wheel_names_the_likely_mistake() {
         let mesh = spindle();
-        for (radius, width, message) in [
-            (
-                0.11,
-                0.04,
-                "the surface reaches 0.1 m from the axle, but radius_m is 0.11 m: metres are expected, and the axle is the y axis",
-            ),
-            (
-                0.06,
-                0.04,
-                "the surface reaches 0.1 m from the axle, more than 1.5 radius_m = 0.09 m: is the axle the y axis through the origin?",
-            ),
-            (
-                0.0002,
-                0.04,
-                "the surface reaches 0.1 m from the axle, more than 1.5 radius_m = 0.0003 m: metres are expected, were these millimetres?",
-            ),
-            (
-                0.1,
-                0.02,
-                "the surface is 0.04 m wide along y, more than 1.05 width_m = 0.021 m: is the axle the y axis through the origin?",
-            ),
-        ] {
-            assert_eq!(
-                mesh.check_against(radius, width).unwrap_err().to_string(),
-                message
-            );
+        for (size, message) in cases(
+            r#"
+            0.11 0.04 => reaches 0.1 m from the axle, but radius_m is 0.11 m: metres are expected, and the axle is the y axis
+            0.06 0.04 => reaches 0.1 m from the axle, more than 1.5 radius_m = 0.09 m: is the axle the y axis through the origin?
+            0.0002 0.04 => reaches 0.1 m from the axle, more than 1.5 radius_m = 0.0003 m: metres are expected, were these millimetres?
+            0.1 0.02 => is 0.04 m wide along y, more than 1.05 width_m = 0.021 m: is the axle the y axis through the origin?"#,
+        ) {
+            let (radius, width) = size.split_once(' ').unwrap();
+            let refused = mesh.check_against(radius.parse().unwrap(), width.parse().unwrap());
+            assert_eq!(refused.unwrap_err().to_string(), format!("the surface {message}"));
         }
     }
 
     #[test]
     fn indices_and_numbers_are_checked() {
-        let mut mesh = spindle();
-        mesh.triangles[2][1] = 5;
-        assert_eq!(
-            mesh.check().unwrap_err().to_string(),
-            "face 3: vertex 6 is not among the 5 vertices"
-        );
-        let mut mesh = spindle();
-        mesh.vertices_m[3][2] = f64::NAN;
-        assert_eq!(
-            mesh.check().unwrap_err().to_string(),
-            "vertex 4: coordinate NaN m is not finite"
-        );
-        let mut mesh = spindle();
-        mesh.triangles = vec![[0, 1, 2]; MAX_TRIANGLES + 1];
-        assert_eq!(
-            mesh.check().unwrap_err().to_string(),
-            "the surface has 200001 triangles, at most 200000 are allowed"
-        );
+        type Change = fn(&mut WheelMesh);
+        let too_many: Change = |mesh| mesh.triangles = vec![[0, 1, 2]; MAX_TRIANGLES + 1];
+        let changes: [(Change, &str); 3] = [
+            (
+                |mesh| mesh.triangles[2][1] = 5,
+                "face 3: vertex 6 is not among the 5 vertices",
+            ),
+            (
+                |mesh| mesh.vertices_m[3][2] = f64::NAN,
+                "vertex 4: coordinate NaN m is not finite",
+            ),
+            (
+                too_many,
+                "the surface has 200001 triangles, at most 200000 are allowed",
+            ),
+        ];
+        for (change, message) in changes {
+            let mut mesh = spindle();
+            change(&mut mesh);
+            assert_eq!(mesh.check().unwrap_err().to_string(), message);
+        }
     }
 }

@@ -53,7 +53,7 @@ pub enum Discrepancy {
     None,
     /// The known m, > 0.
     Known(f64),
-    /// m is marginalised over [`DISCREPANCY_LEVELS`] values from [`MIN_DISCREPANCY`] to [`GREATEST_DISCREPANCY`], equally
+    /// m is marginalised over [`DISCREPANCY_LEVELS`] values from [`MIN_DISCREPANCY`] to [`MAX_DISCREPANCY`], equally
     /// probable and equally spaced in ln m.
     ///
     /// Groups with correlated errors share one m.
@@ -62,14 +62,14 @@ pub enum Discrepancy {
 
 /// Number of values of an unknown m.
 pub const DISCREPANCY_LEVELS: usize = 17;
-/// The least value of an unknown m.
+/// The smallest value of an unknown m.
 pub const MIN_DISCREPANCY: f64 = 0.25;
 /// The largest value of an unknown m: a model with larger errors is useless.
-pub const GREATEST_DISCREPANCY: f64 = 64.0;
+pub const MAX_DISCREPANCY: f64 = 64.0;
 
-/// The values of an unknown m, each with the same prior probability.
+/// Returns the values of an unknown m, each with the same prior probability.
 pub fn discrepancy_levels() -> Vec<f64> {
-    let step = libm::log(GREATEST_DISCREPANCY / MIN_DISCREPANCY) / (DISCREPANCY_LEVELS - 1) as f64;
+    let step = libm::log(MAX_DISCREPANCY / MIN_DISCREPANCY) / (DISCREPANCY_LEVELS - 1) as f64;
     (0..DISCREPANCY_LEVELS)
         .map(|k| MIN_DISCREPANCY * libm::exp(step * k as f64))
         .collect()
@@ -108,13 +108,13 @@ pub(super) fn blocks(
     discrepancies: &[Discrepancy],
 ) -> (Vec<usize>, Vec<ErrorBlock>) {
     // A block is named by its smallest member; joining two renames the larger.
-    let mut least: Vec<usize> = (0..data.len()).collect();
+    let mut smallest: Vec<usize> = (0..data.len()).collect();
     for error in common {
-        let names: Vec<usize> = error.data.iter().map(|&i| least[i]).collect();
+        let names: Vec<usize> = error.data.iter().map(|&i| smallest[i]).collect();
         let Some(&first) = names.iter().min() else {
             continue;
         };
-        for name in &mut least {
+        for name in &mut smallest {
             if names.contains(name) {
                 *name = first;
             }
@@ -123,10 +123,10 @@ pub(super) fn blocks(
     let is_tied = |i: usize| common.iter().any(|error| error.data.contains(&i));
     let alone = (0..data.len()).filter(|&i| !is_tied(i)).collect();
     let blocks = (0..data.len())
-        .filter(|&i| least[i] == i && is_tied(i))
+        .filter(|&i| smallest[i] == i && is_tied(i))
         .map(|first| {
             let members: Vec<usize> = (0..common.len())
-                .filter(|&c| common[c].data.first().is_some_and(|&i| least[i] == first))
+                .filter(|&c| common[c].data.first().is_some_and(|&i| smallest[i] == first))
                 .collect();
             let unknown = members.iter().filter_map(|&c| match common[c].size {
                 CommonErrorSize::Discrepancy { group } => Some(group),
@@ -138,7 +138,7 @@ pub(super) fn blocks(
             unknown.sort_unstable();
             unknown.dedup();
             ErrorBlock {
-                data: (0..data.len()).filter(|&i| least[i] == first).collect(),
+                data: (0..data.len()).filter(|&i| smallest[i] == first).collect(),
                 common: members,
                 unknown,
                 family: None,
@@ -212,7 +212,7 @@ pub(super) fn check(count: usize, groups: usize, common: &[CommonError]) -> Resu
             return Err(LikelihoodError::Setting {
                 name: "sd of a common error",
                 value,
-                bound: "a finite number of at least 0",
+                bound: "a finite number of at smallest 0",
             });
         }
     }

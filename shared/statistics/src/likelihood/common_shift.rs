@@ -20,12 +20,12 @@ pub(super) struct CommonShift {
 }
 
 impl CommonShift {
-    /// The share of the information along the shift's direction that remains with a discrepancy of the size m.
+    /// Returns the share of the information along the shift's direction that remains with a discrepancy of the size m.
     pub(super) fn kept(&self, m: f64) -> f64 {
         1.0 / (1.0 + m * m * self.information)
     }
 
-    /// Log-density of the block; minus infinity where a sum overflows.
+    /// Returns the log-density of the block; minus infinity where a sum overflows.
     ///
     /// `ln det S = sum ln d_i^2 + ln(1 + m^2 u^2 w)` and `r' S^-1 r = sum (r_i - mean)^2 / d_i^2 + mean^2 w / (1 + m^2 u^2 w)` with
     /// `w = sum 1 / d_i^2`.

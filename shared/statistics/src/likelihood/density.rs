@@ -17,7 +17,7 @@ pub(super) struct ScoredBlock {
 }
 
 impl Likelihood {
-    /// ln p(data | theta), normalised: comparable between noise levels and between models.
+    /// Computes ln p(data | theta), normalised: comparable between noise levels and between models.
     ///
     /// For independent data, `sum_i [ -ln(sqrt(2 pi) sd_i) - (y_i - m_i)^2 / (2 sd_i^2) ]`, plus the log-density of each
     /// block; for blocks that share an unknown discrepancy, the logarithm of the mean over its values.
@@ -60,8 +60,8 @@ impl Likelihood {
         Ok(LogLikelihood::new(sum)?)
     }
 
-    /// The values of m of each group with their posterior probabilities at these parameters; 0 without discrepancy. Errors
-    /// are those of [`Likelihood::log_likelihood`].
+    /// Returns the values of m of each group with their posterior probabilities at these parameters; 0 without
+    /// discrepancy. Errors are those of [`Likelihood::log_likelihood`].
     pub fn discrepancy_weights(
         &self,
         values: &[f64],
@@ -80,7 +80,7 @@ impl Likelihood {
         Ok(self.discrepancies.iter().enumerate().map(levels).collect())
     }
 
-    /// The values of each unknown m with their posterior probabilities.
+    /// Returns the values of each unknown m with their posterior probabilities.
     pub(super) fn family_weights(
         &self,
         values: &[f64],
@@ -91,7 +91,7 @@ impl Likelihood {
             let densities = self.by_level(family, values, theta)?;
             let highest = densities.iter().copied().fold(f64::NEG_INFINITY, f64::max);
             if !highest.is_finite() {
-                // The data exclude every value, so the prior probabilities remain.
+                // The data exclude every value of m, so its prior probabilities are returned.
                 return Ok(equal_weights(levels));
             }
             let weights: Vec<f64> = densities.iter().map(|d| libm::exp(d - highest)).collect();
@@ -105,7 +105,7 @@ impl Likelihood {
         (0..self.families.len()).map(weights).collect()
     }
 
-    /// Log-density of the blocks that share an unknown discrepancy, for each value of m.
+    /// Returns the log-density of the blocks that share an unknown discrepancy, for each value of m.
     fn by_level(&self, family: usize, values: &[f64], theta: &[f64]) -> Result<Vec<f64>, LikelihoodError> {
         let levels = discrepancy_levels();
         let mut densities = vec![0.0; levels.len()];
@@ -134,7 +134,7 @@ impl Likelihood {
             let density = self
                 .law
                 .log_density(block.data.len(), s.squared_distance, log_determinant);
-            // A squared distance that overflows is a density of zero.
+            // A squared distance that overflows means a density of zero.
             if density.is_nan() {
                 f64::NEG_INFINITY
             } else {

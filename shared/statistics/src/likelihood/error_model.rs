@@ -52,8 +52,8 @@ impl TryFrom<SerialisedLikelihood> for Likelihood {
 }
 
 impl Likelihood {
-    /// Independent normal errors; the sums follow the order of the data. An invalid datum gives [`LikelihoodError::Value`]
-    /// or [`LikelihoodError::Noise`].
+    /// Creates a likelihood with independent normal errors; the sums follow the order of the data. An invalid datum
+    /// gives [`LikelihoodError::Value`] or [`LikelihoodError::Noise`].
     pub fn new(data: Vec<Datum>) -> Result<Self, LikelihoodError> {
         Self::with_common(data, ErrorLaw::Gaussian, Vec::new(), Vec::new())
     }
@@ -91,19 +91,19 @@ impl Likelihood {
         })
     }
 
-    /// The data, in their order.
+    /// Returns the data, in their order.
     #[must_use]
     pub fn data(&self) -> &[Datum] {
         &self.data
     }
 
-    /// The law of the errors.
+    /// Returns the law of the errors.
     #[must_use]
     pub fn law(&self) -> ErrorLaw {
         self.law
     }
 
-    /// The inadequacy m of the model for each group of data.
+    /// Returns the inadequacy m of the model for each group of data.
     #[must_use]
     pub fn discrepancies(&self) -> &[Discrepancy] {
         &self.discrepancies
@@ -116,25 +116,25 @@ impl Likelihood {
         self.common.iter().any(some)
     }
 
-    /// The common errors.
+    /// Returns the common errors.
     #[must_use]
     pub fn common(&self) -> &[CommonError] {
         &self.common
     }
 
-    /// The needed derivatives, ascending: they follow the predictions in the predicted values.
+    /// Returns the needed derivatives, ascending: they follow the predictions in the predicted values.
     #[must_use]
     pub fn sensitive(&self) -> &[Sensitive] {
         &self.sensitive
     }
 
-    /// Number of predicted values: one for each datum, then the derivatives.
+    /// Returns the number of predicted values: one for each datum, then the derivatives.
     #[must_use]
     pub fn values(&self) -> usize {
         self.data.len() + self.sensitive.len()
     }
 
-    /// The place of a derivative among the predicted values.
+    /// Returns the place of a derivative among the predicted values.
     pub(super) fn place(&self, wanted: Sensitive) -> usize {
         let position = self.sensitive.binary_search(&wanted);
         self.data.len() + position.expect("every common error has its derivatives among the sensitive ones")

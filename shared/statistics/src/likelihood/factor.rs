@@ -44,13 +44,13 @@ impl CholeskyFactor {
         Some(Self { count, rows })
     }
 
-    /// ln det S.
+    /// Returns ln det S.
     pub(super) fn log_determinant(&self) -> f64 {
         let logs = (0..self.count).map(|i| libm::log(self.rows[i * self.count + i]));
         2.0 * logs.sum::<f64>()
     }
 
-    /// `L^-1 v`.
+    /// Returns `L^-1 v`.
     pub(super) fn whiten(&self, mut v: Vec<f64>) -> Vec<f64> {
         for i in 0..self.count {
             let row = &self.rows[i * self.count..];

@@ -35,7 +35,7 @@ impl ErrorLaw {
         }
     }
 
-    /// Log-density of `count` errors whose scale matrix has this log-determinant, at this squared distance
+    /// Returns the log-density of `count` errors whose scale matrix has this log-determinant, at this squared distance
     /// `r' S^-1 r`.
     ///
     /// # Source
@@ -57,7 +57,7 @@ impl ErrorLaw {
         }
     }
 
-    /// Weights of the slope and of the expected curvature along the errors, relative to those of the normal law.
+    /// Returns the weights of the slope and of the expected curvature along the errors, relative to those of the normal law.
     ///
     /// The slope of the t is `(nu + k) / (nu + q)` times the normal's at the squared distance q; its Fisher
     /// information is `(nu + k) / (nu + k + 2)` times the normal's (Lange, Little & Taylor 1989, J. Am. Stat. Assoc.
@@ -72,7 +72,7 @@ impl ErrorLaw {
         }
     }
 
-    /// Probability of an error below z scales.
+    /// Returns the probability of an error below z scales.
     #[must_use]
     pub fn cumulative(self, z: f64) -> f64 {
         match self {
@@ -90,7 +90,7 @@ impl ErrorLaw {
 /// The maximum number of terms of the continued fraction; any nu below 1e6 needs far fewer.
 const TERMS: u32 = 10_000;
 
-/// The regularised incomplete beta function `I_x(a, b)` by its continued fraction (Lentz's method).
+/// Returns the regularised incomplete beta function `I_x(a, b)` by its continued fraction (Lentz's method).
 ///
 /// # Source
 /// Abramowitz & Stegun 26.5.8. Checked by `law::tests`.

@@ -25,7 +25,7 @@ mod subset;
 mod whitening;
 
 pub use common_error::{
-    CommonError, CommonErrorSize, DISCREPANCY_LEVELS, Discrepancy, GREATEST_DISCREPANCY, MIN_DISCREPANCY,
+    CommonError, CommonErrorSize, DISCREPANCY_LEVELS, Discrepancy, MAX_DISCREPANCY, MIN_DISCREPANCY,
     Sensitive, discrepancy_levels,
 };
 pub use datum::{Datum, ErrorSd, LikelihoodError};

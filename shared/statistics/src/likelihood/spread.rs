@@ -22,18 +22,18 @@ impl Likelihood {
         self.alone.binary_search(&datum).is_ok()
     }
 
-    /// The variance of each datum's error, noise and common errors; for an unknown discrepancy the mean over its values,
-    /// weighted by their posterior probabilities.
+    /// Returns the variance of each datum's error, noise and common errors; for an unknown discrepancy the mean over
+    /// its values, weighted by their posterior probabilities.
     ///
     /// # Arguments
-    /// As those of [`Likelihood::log_likelihood`].
+    /// As for [`Likelihood::log_likelihood`].
     ///
     /// # Returns
     /// The diagonal of the covariance [squared unit of the datum], in the order of the data; under Student's t that of
     /// the scale matrix.
     ///
     /// # Errors
-    /// Those of [`Likelihood::log_likelihood`]. Checked by `likelihood::variances_are_the_diagonal_of_the_covariance`.
+    /// As for [`Likelihood::log_likelihood`]. Checked by `likelihood::variances_are_the_diagonal_of_the_covariance`.
     pub fn error_variances(&self, values: &[f64], theta: &[f64]) -> Result<Vec<f64>, LikelihoodError> {
         self.check_values(values)?;
         let mut variances = vec![0.0; self.data.len()];
@@ -57,16 +57,16 @@ impl Likelihood {
         Ok(variances)
     }
 
-    /// The log-density of each datum on its own, marginalised over the errors of the others.
+    /// Returns the log-density of each datum on its own, marginalised over the errors of the others.
     ///
     /// # Arguments
-    /// As those of [`Likelihood::log_likelihood`].
+    /// As for [`Likelihood::log_likelihood`].
     ///
     /// # Returns
     /// One log-density for each datum, in order; without common errors they sum to the log-likelihood.
     ///
     /// # Errors
-    /// Those of [`Likelihood::log_likelihood`]. Checked by `likelihood::densities_of_single_data_are_those_of_their_variances`.
+    /// As for [`Likelihood::log_likelihood`]. Checked by `likelihood::densities_of_single_data_are_those_of_their_variances`.
     pub fn log_densities(&self, values: &[f64], theta: &[f64]) -> Result<Vec<f64>, LikelihoodError> {
         let variances = self.error_variances(values, theta)?;
         let density = |((datum, value), variance): ((&Datum, &f64), f64)| {
@@ -77,7 +77,7 @@ impl Likelihood {
         Ok(self.data.iter().zip(values).zip(variances).map(density).collect())
     }
 
-    /// The errors of a block for one value of its unknown m.
+    /// Returns the errors of a block for one value of its unknown m.
     pub(super) fn spread(
         &self,
         block: &ErrorBlock,

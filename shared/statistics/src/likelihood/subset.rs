@@ -5,7 +5,7 @@ use super::datum::LikelihoodError;
 use super::error_model::Likelihood;
 
 impl Likelihood {
-    /// The marginal likelihood of a subset of the data.
+    /// Returns the marginal likelihood of a subset of the data.
     ///
     /// # Arguments
     /// - `kept`: indices of the data, ascending.

@@ -77,10 +77,10 @@ impl ShiftTransform {
 }
 
 impl Likelihood {
-    /// The transform at these predicted values.
+    /// Returns the transform at these predicted values.
     ///
     /// # Errors
-    /// Those of [`Likelihood::log_likelihood`]. Checked by `likelihood::whitened_slopes_are_those_of_the_density`.
+    /// As for [`Likelihood::log_likelihood`]. Checked by `likelihood::whitened_slopes_are_those_of_the_density`.
     pub fn whitening(&self, values: &[f64], theta: &[f64]) -> Result<Whitening, LikelihoodError> {
         let mut whitening = Whitening {
             alone: Vec::with_capacity(self.alone.len()),
@@ -142,7 +142,7 @@ impl Likelihood {
 }
 
 impl Whitening {
-    /// The sum of the squared residuals.
+    /// Returns the sum of the squared residuals.
     pub fn squared_residuals(&self) -> f64 {
         self.residuals.iter().map(|r| r * r).sum()
     }
@@ -156,7 +156,7 @@ impl Whitening {
         }
     }
 
-    /// W v, with one element of v for each datum; further elements are ignored.
+    /// Returns W v, with one element of v for each datum; further elements are ignored.
     #[must_use]
     pub fn apply(&self, v: &[f64]) -> Vec<f64> {
         let mut whitened: Vec<f64> = self.alone.iter().map(|&(i, sd)| v[i] / sd).collect();
@@ -170,14 +170,14 @@ impl Whitening {
         whitened
     }
 
-    /// `sum_i a_i (W c)_i (W r)_i` of an applied c.
+    /// Returns `sum_i a_i (W c)_i (W r)_i` of an applied c.
     #[must_use]
     pub fn slope(&self, c: &[f64]) -> f64 {
         let terms = c.iter().zip(&self.residuals).zip(&self.slope_weights);
         terms.map(|((x, y), weight)| x * y * weight).sum()
     }
 
-    /// `sum_i b_i (W c)_i (W d)_i` of applied c and d.
+    /// Returns `sum_i b_i (W c)_i (W d)_i` of applied c and d.
     #[must_use]
     pub fn curvature(&self, c: &[f64], d: &[f64]) -> f64 {
         let terms = c.iter().zip(d).zip(&self.curvature_weights);

@@ -75,15 +75,15 @@ impl Correction {
             .collect();
         let squares: f64 = pairs.iter().map(|(_, _, w)| w * w).sum();
         let sum: f64 = pairs.iter().map(|(_, _, w)| w).sum();
-        // Many states of a pool repeat the state that their chain kept.
+        // After a rejected proposal a chain repeats its state, so a pool holds many copies.
         let effective = if squares > 0.0 { sum * sum / squares } else { 0.0 };
         [Degree::Quadratic, Degree::Linear, Degree::Constant]
             .into_iter()
             .filter(|degree| STATES_PER_COEFFICIENT * degree.count(factor.dimension()) as f64 <= effective)
-            .find_map(|degree| Self::of_degree(degree, &pairs, sum, effective))
+            .find_map(|degree| Self::with_degree(degree, &pairs, sum, effective))
     }
 
-    fn of_degree(degree: Degree, pairs: &[WeightedPair], sum: f64, effective: f64) -> Option<Self> {
+    fn with_degree(degree: Degree, pairs: &[WeightedPair], sum: f64, effective: f64) -> Option<Self> {
         let features: Vec<Vec<f64>> = pairs.iter().map(|(w, _, _)| degree.features(w)).collect();
         let count = features.first()?.len();
         let values = pairs.first()?.1.fine.len();
@@ -136,7 +136,7 @@ impl Correction {
         })
     }
 
-    /// Residual standard deviation of the regression, by predicted value.
+    /// Returns the residual standard deviation of the regression, by predicted value.
     pub(super) fn residual_sd(&self) -> &[f64] {
         &self.residual_sd
     }

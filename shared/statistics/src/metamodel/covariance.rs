@@ -59,12 +59,12 @@ impl CovarianceFactor {
         Self { root, mean, regular }
     }
 
-    /// Number of coordinates.
+    /// Returns the number of coordinates.
     pub fn dimension(&self) -> usize {
         self.root.nrows()
     }
 
-    /// A times `normals`.
+    /// Computes A times `normals`.
     pub fn spread(&self, normals: &[f64]) -> Vec<f64> {
         (0..self.root.nrows())
             .map(|row| {
@@ -77,7 +77,7 @@ impl CovarianceFactor {
             .collect()
     }
 
-    /// mean + A z.
+    /// Returns mean + A z.
     pub fn colour(&self, whitened: &[f64]) -> Vec<f64> {
         self.spread(whitened)
             .iter()
@@ -86,7 +86,7 @@ impl CovarianceFactor {
             .collect()
     }
 
-    /// A^-1 (x - mean), the inverse of [`CovarianceFactor::colour`]; `None` if A is singular.
+    /// Returns A^-1 (x - mean), the inverse of [`CovarianceFactor::colour`]; `None` if A is singular.
     pub fn whiten(&self, x: &[f64]) -> Option<Vec<f64>> {
         if !self.regular {
             return None;
@@ -122,7 +122,7 @@ mod square {
     }
 }
 
-/// V sqrt(max(lambda, 0)); zero if the correlation is not finite.
+/// Returns V sqrt(max(lambda, 0)); zero if the correlation is not finite.
 fn semidefinite_root(correlation: DMatrix<f64>) -> DMatrix<f64> {
     let dimension = correlation.nrows();
     if correlation.iter().any(|x| !x.is_finite()) {

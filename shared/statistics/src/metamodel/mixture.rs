@@ -149,7 +149,7 @@ mod tests {
         }
     }
 
-    /// q(x' | x) N(x) = q(x | x') N(x'): a jump is always accepted on the normal target of the pool.
+    /// Checks `q(x' | x) N(x) = q(x | x') N(x')`: a jump is always accepted on the normal target of the pool.
     #[test]
     fn the_jump_is_reversible_for_the_pool_s_normal() {
         let states: [&[f64]; 4] = [&[0.0, 1.0], &[2.0, 3.5], &[1.0, 0.0], &[5.0, 6.0]];

@@ -42,7 +42,7 @@ impl Pool {
         self.states.push(state);
     }
 
-    /// The log-likelihood of each state.
+    /// Returns the log-likelihood of each state.
     #[must_use]
     pub fn log_likelihoods(&self) -> Vec<f64> {
         self.states

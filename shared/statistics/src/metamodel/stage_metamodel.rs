@@ -85,13 +85,14 @@ impl Metamodel {
         }))
     }
 
-    /// The stage that it is frozen for.
+    /// Returns the stage that it is frozen for.
     #[must_use]
     pub fn stage(&self) -> usize {
         self.stage
     }
 
-    /// Log-likelihood of the corrected coarse model; minus infinity if the coarse model rejects the parameters.
+    /// Returns the log-likelihood of the corrected coarse model; minus infinity if the coarse model rejects the
+    /// parameters.
     pub(super) fn log_likelihood(
         &self,
         theta: &[f64],

@@ -57,8 +57,8 @@ impl Correlation {
         let matrix = DMatrix::from_fn(count, count, |i, j| correlations[i][j]);
         let symmetric =
             (0..count).all(|i| (0..i).all(|j| matrix[(i, j)].to_bits() == matrix[(j, i)].to_bits()));
-        let of_itself = (0..count).all(|i| (matrix[(i, i)] - 1.0).abs() < 1e-12);
-        if !symmetric || !of_itself {
+        let has_unit_diagonal = (0..count).all(|i| (matrix[(i, i)] - 1.0).abs() < 1e-12);
+        if !symmetric || !has_unit_diagonal {
             return Err(PriorError::NotACorrelation);
         }
         let cholesky = Cholesky::new(matrix).ok_or(PriorError::NotACorrelation)?;
@@ -77,12 +77,12 @@ impl Correlation {
         })
     }
 
-    /// The parameters and their correlations, as passed to [`Correlation::new`].
+    /// Returns the parameters and their correlations, as passed to [`Correlation::new`].
     pub(super) fn given(self) -> (Vec<usize>, Vec<Vec<f64>>) {
         (self.parameters, self.correlations)
     }
 
-    /// The contribution of the correlations to the log-density at sampling coordinates.
+    /// Returns the contribution of the correlations to the log-density at sampling coordinates.
     pub(super) fn log_density(&self, marginals: &[Marginal], coordinates: &[f64]) -> f64 {
         let z = self.standardised(marginals, coordinates);
         self.log_volume - 0.5 * z.dot(&(&self.excess * &z))
@@ -106,8 +106,8 @@ impl Correlation {
         }
     }
 
-    /// The correlations among the kept parameters, with new positions; `None` if fewer than two remain.
-    pub(super) fn of_some(self, marginals: &[Marginal], kept: &[usize]) -> Option<Self> {
+    /// Returns the correlations among the kept parameters, with new positions; `None` if fewer than two remain.
+    pub(super) fn subset(self, marginals: &[Marginal], kept: &[usize]) -> Option<Self> {
         let (parameters, correlations) = self.given();
         let members: Vec<(usize, usize)> = (0..kept.len())
             .filter_map(|new| Some((new, parameters.iter().position(|&p| p == kept[new])?)))
@@ -137,8 +137,8 @@ impl Correlation {
         }
     }
 
-    /// The contribution of the correlations to slope and curvature of -ln p at sampling coordinates, both in units of the
-    /// marginals' standard deviations.
+    /// Returns the contribution of the correlations to slope and curvature of -ln p at sampling coordinates, both in
+    /// units of the marginals' standard deviations.
     pub(super) fn slopes(&self, marginals: &[Marginal], coordinates: &[f64]) -> CorrelationSlopes {
         let slope = &self.excess * self.standardised(marginals, coordinates);
         let parameters = self.parameters.iter().copied();

@@ -56,7 +56,7 @@ impl Density {
         }
     }
 
-    /// The probabilities below and above u, which lies inside.
+    /// Returns the probabilities below and above u, which lies inside.
     pub(super) fn tails(&self, u: f64) -> [f64; 2] {
         match *self {
             Self::Uniform { lower, width } => [(u - lower) / width, (lower + width - u) / width],
@@ -73,18 +73,18 @@ impl Density {
         }
     }
 
-    /// Quantile for 0 < p < 1.
+    /// Returns the quantile for 0 < p < 1.
     pub(super) fn quantile(&self, p: f64) -> f64 {
         self.quantile_of([p, 1.0 - p])
     }
 
-    /// The point with the probability 0 < `tail` <= 1/2 above it, or below it.
+    /// Returns the point with the probability 0 < `tail` <= 1/2 above it, or below it.
     pub(super) fn tail_quantile(&self, tail: f64, above: bool) -> f64 {
         let rest = 1.0 - tail;
         self.quantile_of(if above { [rest, tail] } else { [tail, rest] })
     }
 
-    /// The point with these probabilities below and above it.
+    /// Returns the point with these probabilities below and above it.
     fn quantile_of(&self, [p, q]: [f64; 2]) -> f64 {
         match *self {
             Self::Uniform { lower, width } => lower + width * p,
@@ -109,7 +109,7 @@ impl Density {
     }
 }
 
-/// The part of [low, high] where a unit normal around `centre` is within [`TAIL_NATS`] of its maximum there.
+/// Returns the part of [low, high] where a unit normal around `centre` is within [`TAIL_NATS`] of its maximum there.
 pub(super) fn window(low: f64, high: f64, centre: f64) -> (f64, f64) {
     let peak = centre.max(low).min(high);
     let offset = (peak - centre).abs();

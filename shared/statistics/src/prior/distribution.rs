@@ -63,7 +63,7 @@ impl Distribution {
         }
     }
 
-    /// The interval outside which the density is zero.
+    /// Returns the interval outside which the density is zero.
     #[must_use]
     pub fn support(&self) -> (f64, f64) {
         match *self {

@@ -55,7 +55,7 @@ impl TryFrom<SerialisedMarginal> for Marginal {
 }
 
 impl Marginal {
-    /// A distribution, truncated to `bounds` and renormalised.
+    /// Creates a distribution, truncated to `bounds` and renormalised.
     ///
     /// # Errors
     /// [`PriorError`] names the number, its value and its bound: ends out of order, sd or scale <= 0, factor <= 1, a number
@@ -126,31 +126,31 @@ impl Marginal {
         Ok(marginal)
     }
 
-    /// The distribution before truncation.
+    /// Returns the distribution before truncation.
     #[must_use]
     pub fn distribution(&self) -> Distribution {
         self.distribution
     }
 
-    /// The interval outside which the density is zero; ends may be infinite.
+    /// Returns the interval outside which the density is zero; ends may be infinite.
     #[must_use]
     pub fn support(&self) -> (f64, f64) {
         (self.lower, self.upper)
     }
 
-    /// Mean of the truncated distribution.
+    /// Returns the mean of the truncated distribution.
     #[must_use]
     pub fn mean(&self) -> f64 {
         self.mean
     }
 
-    /// Standard deviation of the truncated distribution.
+    /// Returns the standard deviation of the truncated distribution.
     #[must_use]
     pub fn sd(&self) -> f64 {
         self.sd
     }
 
-    /// ln p(x); minus infinity outside the support.
+    /// Returns ln p(x); minus infinity outside the support.
     #[must_use]
     pub fn log_density(&self, x: f64) -> f64 {
         if !(self.lower <= x && x <= self.upper) || (self.coordinate == SamplingCoordinate::Log && x <= 0.0) {
@@ -165,7 +165,7 @@ impl Marginal {
         self.density.log_at(u) + jacobian
     }
 
-    /// The quantile x of probability `p`; the ends of the support for `p` <= 0 and >= 1.
+    /// Returns the quantile x of probability `p`; the ends of the support for `p` <= 0 and >= 1.
     #[must_use]
     pub fn quantile(&self, p: f64) -> f64 {
         if p >= 1.0 {
@@ -178,16 +178,16 @@ impl Marginal {
         }
     }
 
-    /// The share of the probability below x; 0 and 1 outside the support.
+    /// Returns the share of the probability below x; 0 and 1 outside the support.
     #[must_use]
     pub fn cumulative(&self, x: f64) -> f64 {
         self.tails(x)[0]
     }
 
-    /// The normal score of x: `Phi^-1(P(X < x))`.
+    /// Returns the normal score of x: `Phi^-1(P(X < x))`.
     ///
     /// Scores of draws from this distribution are standard normal. An x on an end of the support, or outside, has the score of the
-    /// least representable probability, +-37.5. Checked by `priors::scores_are_normal_quantiles`.
+    /// smallest representable probability, +-37.5. Checked by `priors::scores_are_normal_quantiles`.
     #[must_use]
     pub fn normal_score(&self, x: f64) -> f64 {
         let [below, above] = self.tails(x).map(|p| p.max(f64::MIN_POSITIVE));
@@ -202,7 +202,7 @@ impl Marginal {
     ///
     /// Checked by `frame::tests::scores_lead_back_to_where_they_came_from`.
     #[must_use]
-    pub fn of_normal_score(&self, z: f64) -> f64 {
+    pub fn from_normal_score(&self, z: f64) -> f64 {
         let tail = normal::cdf(-z.abs());
         if tail > 0.0 {
             self.inside(self.density.tail_quantile(tail, z > 0.0))
@@ -213,7 +213,7 @@ impl Marginal {
         }
     }
 
-    /// Mean and standard deviation of the sampling coordinate.
+    /// Returns the mean and standard deviation of the sampling coordinate.
     #[must_use]
     pub fn coordinate_moments(&self) -> (f64, f64) {
         match self.density {
@@ -229,7 +229,7 @@ impl Marginal {
         }
     }
 
-    /// The probabilities below and above x, each to full relative accuracy.
+    /// Returns the probabilities below and above x, each to full relative accuracy.
     pub fn tails(&self, x: f64) -> [f64; 2] {
         if x <= self.lower {
             [0.0, 1.0]
@@ -245,7 +245,7 @@ impl Marginal {
         self.quantile(stream.uniform())
     }
 
-    /// The sampling coordinate of x: ln x for lognormal and log-uniform marginals, else x.
+    /// Returns the sampling coordinate of x: ln x for lognormal and log-uniform marginals, else x.
     #[must_use]
     pub fn coordinate(&self, x: f64) -> f64 {
         self.coordinate.transform(x)
@@ -259,7 +259,7 @@ impl Marginal {
         at_bound(u(q05), u(q95), (u(self.lower), u(self.upper)))
     }
 
-    /// Slope and curvature of -ln p(x(u)) along the sampling coordinate u; p is the density of x, not of u.
+    /// Returns the slope and curvature of -ln p(x(u)) along the sampling coordinate u; p is the density of x, not of u.
     ///
     /// In its coordinate every distribution here has a parabolic or linear log-density, so the curvature is constant and
     /// never negative. A log coordinate adds u, because there ln p(x) = ln p(u) - u.
@@ -275,7 +275,7 @@ impl Marginal {
         }
     }
 
-    /// Mean and standard deviation of the sampling coordinate, if it is normal and not truncated.
+    /// Returns the mean and standard deviation of the sampling coordinate, if it is normal and not truncated.
     pub(super) fn untruncated_normal(&self) -> Option<(f64, f64)> {
         match self.density {
             Density::Normal {
@@ -285,8 +285,8 @@ impl Marginal {
         }
     }
 
-    /// Width of the sampling coordinate: its standard deviation, or that of a uniform density between the bounds if they are
-    /// narrower.
+    /// Returns the width of the sampling coordinate: its standard deviation, or that of a uniform density between the
+    /// bounds if they are narrower.
     pub fn width(&self) -> f64 {
         match self.density {
             Density::Uniform { width, .. } => width / 12.0_f64.sqrt(),
@@ -299,7 +299,7 @@ impl Marginal {
         self.coordinate == SamplingCoordinate::Log
     }
 
-    /// dx/du.
+    /// Returns dx/du.
     pub fn rate(&self, x: f64) -> f64 {
         match self.coordinate {
             SamplingCoordinate::Identity => 1.0,
@@ -307,17 +307,17 @@ impl Marginal {
         }
     }
 
-    /// x of a sampling coordinate inside the support; rounding cannot exceed an end.
+    /// Returns x of a sampling coordinate inside the support; rounding cannot exceed an end.
     pub fn inside(&self, u: f64) -> f64 {
         self.coordinate.value(u).max(self.lower).min(self.upper)
     }
 
-    /// x of a sampling coordinate.
+    /// Returns x of a sampling coordinate.
     pub fn value(&self, u: f64) -> f64 {
         self.coordinate.value(u)
     }
 
-    /// Log-density of the sampling coordinate; minus infinity if u or its x is outside the support.
+    /// Returns the log-density of the sampling coordinate; minus infinity if u or its x is outside the support.
     pub(super) fn log_density_of_coordinate(&self, u: f64) -> f64 {
         let x = self.coordinate.value(u);
         if self.lower <= x && x <= self.upper {
@@ -327,7 +327,7 @@ impl Marginal {
         }
     }
 
-    /// Mean and sd of x by quadrature over the relevant part of the support.
+    /// Returns the mean and sd of x by quadrature over the relevant part of the support.
     fn moments(&self) -> (f64, f64) {
         match self.density {
             Density::Uniform { lower, width } => {

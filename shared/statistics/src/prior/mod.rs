@@ -65,7 +65,7 @@ impl TryFrom<SerialisedPrior> for Prior {
 }
 
 impl Prior {
-    /// The product of the marginals, in the order of theta.
+    /// Creates the product of the marginals, in the order of theta.
     #[must_use]
     pub fn new(marginals: Vec<Marginal>) -> Self {
         Self {
@@ -91,19 +91,19 @@ impl Prior {
         })
     }
 
-    /// The marginals, in the order of theta.
+    /// Returns the marginals, in the order of theta.
     #[must_use]
     pub fn marginals(&self) -> &[Marginal] {
         &self.marginals
     }
 
-    /// The number of parameters.
+    /// Returns the number of parameters.
     #[must_use]
     pub fn dimension(&self) -> usize {
         self.marginals.len()
     }
 
-    /// ln p(theta); minus infinity outside the support and for a vector of the wrong length.
+    /// Returns ln p(theta); minus infinity outside the support and for a vector of the wrong length.
     #[must_use]
     pub fn log_density(&self, theta: &[f64]) -> f64 {
         if theta.len() != self.marginals.len() {
@@ -135,22 +135,22 @@ impl Prior {
         }
     }
 
-    /// The inverse of [`Prior::make_independent`].
+    /// Reverses [`Prior::make_independent`].
     pub fn make_dependent(&self, scores: &mut [f64]) {
         if let Some(correlation) = &self.correlation {
             correlation.colour(scores);
         }
     }
 
-    /// The marginal prior of some of the parameters: their marginals, and their correlations among themselves.
+    /// Returns the marginal prior of some of the parameters: their marginals, and their correlations among themselves.
     ///
     /// # Arguments
     /// - `kept`: ascending positions in theta.
     #[must_use]
-    pub fn of_some(&self, kept: &[usize]) -> Self {
+    pub fn subset(&self, kept: &[usize]) -> Self {
         let marginals: Vec<Marginal> = kept.iter().map(|&k| self.marginals[k].clone()).collect();
         let correlation = self.correlation.clone();
-        let correlation = correlation.and_then(|correlation| correlation.of_some(&marginals, kept));
+        let correlation = correlation.and_then(|correlation| correlation.subset(&marginals, kept));
         Self {
             marginals,
             correlation,
@@ -176,7 +176,7 @@ impl Prior {
         theta
     }
 
-    /// The contribution of the correlations to slope and curvature of -ln p at theta.
+    /// Returns the contribution of the correlations to slope and curvature of -ln p at theta.
     pub fn slopes_of_correlation(&self, theta: &[f64]) -> CorrelationSlopes {
         self.correlation
             .as_ref()
@@ -185,7 +185,7 @@ impl Prior {
             })
     }
 
-    /// Log-density of sampling coordinates, Jacobian included; minus infinity outside the support.
+    /// Returns the log-density of sampling coordinates, Jacobian included; minus infinity outside the support.
     pub fn log_density_of_coordinates(&self, coordinates: &[f64]) -> f64 {
         let independent: f64 = self
             .marginals
@@ -196,7 +196,7 @@ impl Prior {
         self.with_correlation(independent, || coordinates.to_vec())
     }
 
-    /// Sampling coordinates of theta.
+    /// Returns the sampling coordinates of theta.
     pub fn coordinates(&self, theta: &[f64]) -> Vec<f64> {
         self.marginals
             .iter()

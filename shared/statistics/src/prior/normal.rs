@@ -6,12 +6,12 @@ pub const LN_SQRT_TAU: f64 = 0.918_938_533_204_672_8;
 /// Number of Newton steps after which the quantile has converged for every representable probability.
 const NEWTON_STEPS: usize = 60;
 
-/// P(Z < z).
+/// Returns P(Z < z).
 pub fn cdf(z: f64) -> f64 {
     0.5 * libm::erfc(-z * std::f64::consts::FRAC_1_SQRT_2)
 }
 
-/// ln P(Z < z); below -30 by the first term of Mills' ratio, with an error of 1/z^2.
+/// Returns ln P(Z < z); below -30 by the first term of Mills' ratio, with an error of 1/z^2.
 pub fn log_cdf(z: f64) -> f64 {
     if z > -30.0 {
         libm::log(cdf(z))
@@ -20,7 +20,7 @@ pub fn log_cdf(z: f64) -> f64 {
     }
 }
 
-/// P(a < Z < b) without cancellation in the tails.
+/// Returns P(a < Z < b) without cancellation in the tails.
 pub(super) fn mass(a: f64, b: f64) -> f64 {
     if a > 0.0 {
         cdf(-a) - cdf(-b)

@@ -22,7 +22,7 @@ pub enum Plate {
 }
 
 impl Plate {
-    /// Bekker's width b of the plate `[m]`: the radius, or the short side.
+    /// Returns Bekker's width b of the plate `[m]`: the radius, or the short side.
     pub fn bekker_width_m(&self) -> f64 {
         match *self {
             Plate::Circle { radius_m } => radius_m,
@@ -30,7 +30,7 @@ impl Plate {
         }
     }
 
-    /// Area of the plate `[m²]`.
+    /// Returns the area of the plate `[m²]`.
     pub fn area_m2(&self) -> f64 {
         match *self {
             Plate::Circle { radius_m } => core::f64::consts::PI * radius_m * radius_m,
@@ -39,7 +39,7 @@ impl Plate {
     }
 }
 
-/// Pressure under a plate during first loading.
+/// Returns the pressure under a plate during first loading.
 ///
 /// `p = (k_c / b + k_phi) z^n`, uniform over the plate, with b the radius or the short side.
 ///
@@ -76,7 +76,7 @@ pub fn pressure(soil: &Soil, plate: &Plate, sinkage_m: f64) -> Result<f64, Rejec
     }
 }
 
-/// Load on a plate during first loading `[N]`: its area times [`pressure`], with the same errors.
+/// Returns the load on a plate during first loading `[N]`: its area times [`pressure`], with the same errors.
 pub fn load(soil: &Soil, plate: &Plate, sinkage_m: f64) -> Result<f64, Rejection> {
     Ok(plate.area_m2() * pressure(soil, plate, sinkage_m)?)
 }
@@ -97,12 +97,12 @@ pub struct Unloading {
 }
 
 impl Unloading {
-    /// The stiffness `k_u = k_0 + A_u z_u` `[Pa/m]` of an unloading that begins at the sinkage `z_u` `[m]`.
+    /// Returns the stiffness `k_u = k_0 + A_u z_u` `[Pa/m]` of an unloading that begins at the sinkage `z_u` `[m]`.
     pub fn stiffness(&self, deepest_m: f64) -> f64 {
         self.stiffness_pa_per_m + self.stiffening_pa_per_m2 * deepest_m
     }
 
-    /// Pressure under a plate that has been `deepest_m` deep and now is at `sinkage_m`.
+    /// Returns the pressure under a plate that has been `deepest_m` deep and now is at `sinkage_m`.
     ///
     /// # Arguments
     /// - `deepest_m`: `z_u` `[m]`, ≥ 0; `sinkage_m`: z `[m]`, ≥ 0. A plate deeper than `deepest_m` is in first loading.
@@ -111,7 +111,7 @@ impl Unloading {
     /// Pressure `[Pa]`. The soil does not pull: if the line falls below 0 the plate has left the soil, and 0 is returned.
     ///
     /// # Errors
-    /// Those of [`pressure`], and [`Rejection::InvalidParameter`] for a stiffness that is negative.
+    /// As for [`pressure`], and [`Rejection::InvalidParameter`] for a stiffness that is negative.
     ///
     /// # Validity
     /// Unloading and reloading follow one line; hysteresis is neglected.

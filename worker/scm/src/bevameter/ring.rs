@@ -4,7 +4,7 @@ use crate::rejection::{Rejection, require};
 use crate::shear::{ShearDisplacement, strength};
 use crate::soil::Soil;
 
-/// Shear stress under a surface that is displaced along the soil under a normal stress.
+/// Returns the shear stress under a surface that is displaced along the soil under a normal stress.
 ///
 /// `tau = (c + sigma tan(phi)) (1 − exp(−j / K))`
 ///
@@ -63,24 +63,25 @@ impl Ring {
         Ok(self)
     }
 
-    /// Displacement at the mean radius `[m]`: `j = theta (r_1 + r_2) / 2`, theta `[rad]`.
+    /// Returns the displacement at the mean radius `[m]`: `j = theta (r_1 + r_2) / 2`, theta `[rad]`.
     pub fn displacement_m(&self, angle_rad: f64) -> f64 {
         angle_rad * self.mean_radius_m()
     }
 
-    /// Angle `[rad]` by which the ring has turned after a displacement j `[m]` at its mean radius.
+    /// Returns the angle `[rad]` by which the ring has turned after a displacement j `[m]` at its mean radius.
     pub fn angle_rad(&self, displacement_m: f64) -> f64 {
         displacement_m / self.mean_radius_m()
     }
 
-    /// Shear stress `[Pa]` that corresponds to a torque M `[N m]`, taken as uniform: `tau = 3 M / (2 pi (r_2³ − r_1³))`.
+    /// Returns the shear stress `[Pa]` that corresponds to a torque M `[N m]`, taken as uniform: `tau = 3 M / (2 pi
+    /// (r_2³ − r_1³))`.
     ///
     /// Checked by `bevameter::torque_of_a_ring_is_the_moment_of_its_stress_and_back`.
     pub fn shear_stress_pa(&self, torque_n_m: f64) -> f64 {
         torque_n_m / self.torque_per_stress_m3()
     }
 
-    /// Torque `[N m]` of a uniform shear stress tau `[Pa]`: `M = 2 pi tau (r_2³ − r_1³) / 3`.
+    /// Returns the torque `[N m]` of a uniform shear stress tau `[Pa]`: `M = 2 pi tau (r_2³ − r_1³) / 3`.
     ///
     /// Checked by `bevameter::torque_of_a_ring_is_the_moment_of_its_stress_and_back`.
     pub fn torque_n_m(&self, shear_stress_pa: f64) -> f64 {

@@ -140,7 +140,7 @@ fn replace<'a, 'b>(
 ) -> Result<(), Rejection> {
     let mut scalars = Vec::new();
     for (program, law, parameters) in laws {
-        // without nodes all variables are shared
+        // Without nodes all points share all variables.
         let value = program
             .settle(variables, parameters, &mut scalars)
             .unwrap_or(f64::NAN);

@@ -54,7 +54,7 @@ impl Law {
     }
 }
 
-/// The formulas at a hook, in order, each with its effect and the values of its parameters.
+/// Returns the formulas at a hook, in order, each with its effect and the values of its parameters.
 pub(super) fn formulas_at<'a, 'v>(
     laws: &'v [(&'a Law, Vec<f64>)],
     hook: Hook,

@@ -43,7 +43,7 @@ pub enum ModelForm {
 }
 
 impl ModelForm {
-    /// Name in messages.
+    /// Returns the name in messages.
     fn name(self) -> &'static str {
         match self {
             ModelForm::QuasiStatic => "quasi_static",
@@ -54,7 +54,7 @@ impl ModelForm {
         }
     }
 
-    /// The mechanisms that the model implements in code; it then ignores the effect's formulas.
+    /// Returns the mechanisms that the model implements in code; it then ignores the effect's formulas.
     fn mechanisms(self) -> &'static [Mechanism] {
         match self {
             ModelForm::QuasiStatic => &[Mechanism::Rebound, Mechanism::FlatPatch],
@@ -64,7 +64,7 @@ impl ModelForm {
         }
     }
 
-    /// The variables that differ from node to node.
+    /// Returns the variables that differ from node to node.
     fn local(self) -> Variables {
         use Variable::{BEff, J, KStar, P, Position, Tau, TauMax, Vn, Vt, Z};
         let both = Variables::new(&[P, Z, Vn, Vt, J, Position, TauMax, Tau]);
@@ -93,7 +93,7 @@ pub struct Site {
 }
 
 impl Default for Site {
-    /// The default is Earth, a smooth wheel, and unknown for the rest.
+    /// Returns a site on Earth with a smooth wheel, whose other properties are unknown.
     fn default() -> Self {
         Self {
             density_kg_m3: None,
@@ -148,7 +148,7 @@ impl CompiledEffects {
         Ok(Self { laws })
     }
 
-    /// The effects, in their order.
+    /// Returns the effects, in their order.
     pub fn effects(&self) -> impl Iterator<Item = &Effect> {
         self.laws.iter().map(|law| &law.effect)
     }
@@ -190,12 +190,12 @@ impl<'a> Active<'a> {
         self.entered[hook as usize]
     }
 
-    /// The formulas at a hook, in order, each with its effect and parameters.
+    /// Returns the formulas at a hook, in order, each with its effect and parameters.
     fn at(&self, hook: Hook) -> impl Iterator<Item = (&'a Program, &'a Law, &[f64])> {
         formulas_at(&self.laws, hook)
     }
 
-    /// The parameters of an effect that the model implements in code, in the order of the effect's file.
+    /// Returns the parameters of an effect that the model implements in code, in the order of the effect's file.
     pub(crate) fn mechanism(&self, mechanism: Mechanism) -> Option<&[f64]> {
         let law = self.laws.iter().find(|(law, _)| law.mechanism == Some(mechanism));
         law.map(|(_, values)| values.as_slice())

@@ -60,7 +60,7 @@ impl<'a> NodeLaws<'a> {
         })
     }
 
-    /// The variables that formulas at nodes use.
+    /// Returns the variables that formulas at nodes use.
     pub(crate) fn uses(&self) -> Variables {
         self.uses
     }
@@ -78,8 +78,8 @@ impl<'a> NodeLaws<'a> {
 
     /// Returns whether stresses may jump as the contact changes.
     pub(crate) fn may_jump(&self) -> bool {
-        let of_contact = [Variable::ContactLength, Variable::BEff, Variable::KStar];
-        self.are_kinked() || self.kinks.meets(Variables::new(&of_contact))
+        let contact_variables = [Variable::ContactLength, Variable::BEff, Variable::KStar];
+        self.are_kinked() || self.kinks.meets(Variables::new(&contact_variables))
     }
 
     /// Returns whether there is a formula at a hook.
@@ -124,7 +124,7 @@ impl<'a> NodeLaws<'a> {
                 .extend_from_slice(&self.block.column(target)[..points]);
             self.block.replace(target, law.program, &law.scalars, points);
             let values = &self.block.column(target)[..points];
-            // the bounds of these hooks, without an early exit, so that the loop vectorises
+            // The bounds of these hooks are checked without an early exit, so that the loop vectorises.
             let fine = values
                 .iter()
                 .fold(true, |fine, value| fine & (0.0..=f64::MAX).contains(value));

@@ -105,7 +105,8 @@ struct Trial {
     log_ratio: f64,
 }
 
-/// Secant method in (y, ln load), kept within the bracket; `None` if the load is not reached going down from `start`.
+/// Searches the load by the secant method in (y, ln load), kept within the bracket; `None` if the load is not reached
+/// going down from `start`.
 fn search(
     footing: &mut Footing,
     load: f64,
@@ -163,7 +164,7 @@ fn search(
                 return Ok(Some(below.shared_with(&above, load)));
             }
         }
-        if bracket.low >= coordinate.greatest {
+        if bracket.low >= coordinate.max_y {
             return Ok(None);
         }
         let log_ratio = if carried > 0.0 {
@@ -174,7 +175,7 @@ fn search(
         let trial = Trial { y, log_ratio };
         let slope = slope(&footing.rim, coordinate, &reaction, trial, last);
         last = Some(trial);
-        y = next(bracket, trial, slope, evaluations).min(coordinate.greatest);
+        y = next(bracket, trial, slope, evaluations).min(coordinate.max_y);
     }
 }
 
@@ -184,7 +185,7 @@ fn are_neighbours(below: &Reaction, above: &Reaction) -> bool {
     above.contact_length - below.contact_length <= f64::EPSILON * above.contact_length
 }
 
-/// The next y to try.
+/// Returns the next y to try.
 fn next(bracket: Bracket, trial: Trial, slope: f64, evaluations: u32) -> f64 {
     let step = (-trial.log_ratio / slope).clamp(-LONGEST_STEP, LONGEST_STEP);
     let proposal = trial.y + step;
@@ -199,7 +200,7 @@ fn next(bracket: Bracket, trial: Trial, slope: f64, evaluations: u32) -> f64 {
     }
 }
 
-/// d ln(load) / dy from the chord through the last two trials if it rises, else from small angles.
+/// Returns d ln(load) / dy from the chord through the last two trials if it rises, else from small angles.
 fn slope(rim: &Rim, coordinate: &Coordinate, reaction: &Reaction, trial: Trial, last: Option<Trial>) -> f64 {
     if let Some(last) = last {
         let chord = (trial.log_ratio - last.log_ratio) / (trial.y - last.y);

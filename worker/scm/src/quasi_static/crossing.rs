@@ -29,7 +29,7 @@ pub(super) fn rises_up_to(rim: &Rim, contact_length: f64) -> bool {
     if rim.motion.drives_everywhere() {
         return pressure_slope > 0.0;
     }
-    // the bound below assumes a pressure that acts on average no farther ahead than half the contact
+    // The bound below assumes that the pressure acts on average no farther ahead than half the contact.
     if rim.peaked.is_some() {
         return false;
     }
@@ -84,7 +84,7 @@ pub(super) fn scan(footing: &mut Footing, load: f64) -> Result<Scan, Rejection> 
     Ok(Scan::Never(max_load))
 }
 
-/// Contact length and height of the peak between two lengths by golden sections; it ends early above `enough`.
+/// Finds the contact length and height of the peak between two lengths by golden sections; it ends early above `enough`.
 fn peak_between(
     footing: &mut Footing,
     mut left: f64,
@@ -121,9 +121,10 @@ fn peak_between(
 mod tests {
     use super::super::balance::first_balance;
     use super::*;
+    use crate::fixture::{CONDITION, Draws, SOIL};
     use crate::{Condition, Soil, Wheel};
 
-    /// Skid from locked to slight, soft to hard soil with and without `k_c`, small wheels and large.
+    /// Draws skid from locked to slight, soft to hard soil with and without `k_c`, small wheels and large.
     fn skidding(uniform: &mut impl FnMut(f64, f64) -> f64) -> (Footing<'static, 'static>, f64) {
         let n = uniform(0.3, 1.8);
         let (k_c, k_phi) = crate::bekker_moduli(uniform(3.0, 5.0), uniform(-0.9, 0.9), n);
@@ -133,8 +134,7 @@ mod tests {
             n,
             cohesion_pa: (uniform(-1_000.0, 500.0)).max(0.0),
             friction_angle_rad: uniform(15.0, 50.0).to_radians(),
-            shear_velocity_m_s: 1e-3,
-            gamma_exponent: 0.5,
+            ..SOIL
         };
         let radius_m = uniform(0.05, 0.15);
         let wheel = Wheel {
@@ -146,9 +146,7 @@ mod tests {
         let condition = Condition {
             slip: uniform(-1.0, 0.0),
             wheel_load_n,
-            sled_speed_m_s: 0.01,
-            slip_angle_rad: 0.0,
-            pass: 1,
+            ..CONDITION
         };
         let rim = Rim::new(&soil, &wheel, &condition);
         (Footing { rim, reshaping: None }, wheel_load_n)
@@ -157,13 +155,8 @@ mod tests {
     #[test]
     fn the_balance_is_the_first_that_a_fine_scan_meets() {
         const FINE: u32 = 2_000;
-        let mut state = 1_u64;
-        let mut uniform = |low: f64, high: f64| {
-            state = state
-                .wrapping_mul(6_364_136_223_846_793_005)
-                .wrapping_add(1_442_695_040_888_963_407);
-            low + (high - low) * (state >> 11) as f64 / (1_u64 << 53) as f64
-        };
+        let mut draws = Draws(1);
+        let mut uniform = |low: f64, high: f64| draws.uniform(low, high);
         let (mut met, mut bounded) = (0, 0);
         for _ in 0..1_000 {
             let (mut footing, load) = skidding(&mut uniform);
@@ -183,10 +176,10 @@ mod tests {
             match (first_balance(&mut footing, load), first) {
                 (Ok(balance), Some(place)) => {
                     let allowed = length(place - 1) - 1e-6 * radius..=length(place) + 1e-6 * radius;
+                    let length = balance.contact_length;
                     assert!(
-                        allowed.contains(&balance.contact_length),
-                        "{} for {allowed:?}: {load} N on {:?}",
-                        balance.contact_length,
+                        allowed.contains(&length),
+                        "{length}: {load} N on {:?}",
                         footing.rim
                     );
                     met += 1;

@@ -46,7 +46,7 @@ pub(super) struct Entry {
 }
 
 impl Slide {
-    /// The sliding of a rim with a flat of a half length `[m]`, 0 for none, at a distance from the axle.
+    /// Returns the sliding of a rim with a flat of a half length `[m]`, 0 for none, at a distance from the axle.
     pub(super) fn new(radius: f64, motion: &RimMotion, flat: f64, bottom_radius: f64) -> Self {
         let sign_change = motion.sign_change().map_or(f64::INFINITY, |sin| radius * sin);
         let forward = motion.forward / motion.rim_speed;
@@ -72,7 +72,7 @@ impl Slide {
         slide
     }
 
-    /// The front end of a contact at x `[m]`.
+    /// Returns the front end of a contact at x `[m]`.
     pub(super) fn enter(&self, front: f64) -> Entry {
         let [angle] = arcsine([front * self.per_radius]);
         let plain = self.flat <= 0.0 && !(self.skids && front > self.sign_change);
@@ -87,7 +87,7 @@ impl Slide {
         }
     }
 
-    /// Distance slid at places x `[m]` since the front end of the contact; vectorises.
+    /// Returns the distance slid at places x `[m]` since the front end of the contact; vectorises.
     #[inline(always)]
     pub(super) fn slid<const N: usize>(&self, entry: &Entry, x: [f64; N]) -> [f64; N] {
         let angle = arcsine(x.map(|x| x * self.per_radius));
@@ -110,13 +110,13 @@ impl Slide {
         slid.map(|way| if way < FARTHEST { way } else { FARTHEST }) // a locked wheel gives NaN or ∞
     }
 
-    /// `∫ v_t dt` along the arc from the lowest point to x, at this angle of the rim; odd in x.
+    /// Returns `∫ v_t dt` along the arc from the lowest point to x, at this angle of the rim; odd in x.
     #[inline(always)]
     fn backwards(&self, x: f64, angle: f64) -> f64 {
         self.radius * angle - self.forward * x
     }
 
-    /// `∫ |v_t| dt` along the arc.
+    /// Returns `∫ |v_t| dt` along the arc.
     fn way_on_arc(&self, x: f64, angle: f64) -> f64 {
         let backwards = self.backwards(x, angle);
         if !self.skids {
@@ -128,7 +128,7 @@ impl Slide {
         }
     }
 
-    /// `∫ |v_t| dt` along the rim.
+    /// Returns `∫ |v_t| dt` along the rim.
     fn way(&self, x: f64, angle: f64) -> f64 {
         if x.abs() <= self.flat {
             self.way_per_length * x
@@ -137,7 +137,7 @@ impl Slide {
         }
     }
 
-    /// Time from the lowest point to x, times the speed of the rim `[m]`; odd in x.
+    /// Returns the time from the lowest point to x, times the speed of the rim `[m]`; odd in x.
     #[inline(always)]
     fn time(&self, x: f64, angle: f64) -> f64 {
         if x.abs() <= self.flat {
@@ -148,13 +148,13 @@ impl Slide {
     }
 }
 
-/// A length with the sign of x.
+/// Returns a length with the sign of x.
 #[inline(always)]
 fn signed(length: f64, x: f64) -> f64 {
     if x < 0.0 { -length } else { length }
 }
 
-/// Arcsines of numbers in [−1, 1], to a few units in the last place; vectorises.
+/// Computes arcsines of numbers in [−1, 1], to a few units in the last place; vectorises.
 ///
 /// Up to |x| = 1/2 the rational approximation of `FreeBSD`'s msun, <https://www.netlib.org/fdlibm/e_asin.c>; beyond,
 /// `asin x = π/2 − 2 asin(sqrt((1 − x)/2))`.
@@ -206,7 +206,7 @@ mod tests {
         }
     }
 
-    /// Distance slid in a contact that begins 40 mm ahead of the axle.
+    /// Returns the distance slid in a contact that begins 40 mm ahead of the axle.
     fn slid<const N: usize>(slide: &Slide, x: [f64; N]) -> [f64; N] {
         slide.slid(&slide.enter(0.04), x)
     }
@@ -219,34 +219,26 @@ mod tests {
         }
     }
 
-    /// Sum of `|v_t| dt` over small steps of the angle.
+    /// Sums `|v_t| dt` over small steps of the angle.
     fn summed(motion: &RimMotion, front: f64, x: f64) -> f64 {
         const STEPS: u32 = 20_000;
         let (from, to) = (libm::asin(x / RADIUS), libm::asin(front / RADIUS));
         let step = (to - from) / f64::from(STEPS);
         let per_speed = RADIUS / motion.rim_speed;
-        let path = |i| {
-            motion
-                .tangential(libm::cos(from + (f64::from(i) + 0.5) * step))
-                .abs()
-                * step
-                * per_speed
-        };
+        let cosine = |i| libm::cos(from + (f64::from(i) + 0.5) * step);
+        let path = |i| motion.tangential(cosine(i)).abs() * step * per_speed;
         (0..STEPS).map(path).sum()
     }
 
     #[test]
     fn the_way_slid_is_the_integral_of_the_slip_velocity() {
-        // driving, skidding everywhere near the bottom, and changing direction within the contact
+        // The rim drives, skids everywhere near the bottom, or changes direction within the contact.
         for rim_speed in [0.0125, 0.007, 0.0098] {
             let motion = motion(rim_speed, 0.0);
             let slide = Slide::new(RADIUS, &motion, 0.0, RADIUS);
             for x in [-0.03, -0.015, 0.0, 0.01, 0.03, 0.04] {
                 let (actual, expected) = (slid(&slide, [x])[0], summed(&motion, 0.04, x));
-                assert!(
-                    (actual - expected).abs() < 1e-9,
-                    "{rim_speed} {x}: {actual} {expected}"
-                );
+                assert!((actual - expected).abs() < 1e-9, "{rim_speed} {x}: {actual}");
             }
         }
     }

@@ -14,8 +14,8 @@ pub(super) struct Footing<'r, 'e> {
 }
 
 impl Footing<'_, '_> {
-    /// The soil's force on the rim when the contact reaches a length of 0 < l ≤ R ahead of the axle; [`Rejection::Formula`]
-    /// if a formula gives an inadmissible value.
+    /// Returns the soil's force on the rim when the contact reaches a length of 0 < l ≤ R ahead of the axle;
+    /// [`Rejection::Formula`] if a formula gives an inadmissible value.
     pub(super) fn react(&mut self, contact_length: f64) -> Result<Reaction, Rejection> {
         let Some(reshaping) = &mut self.reshaping else {
             return Ok(self.rim.react(contact_length));

@@ -81,8 +81,8 @@ impl Grousered {
         grousered
     }
 
-    /// Distance behind the axle up to which flanks press in skid `[m]`: up to where the rim or the grouser ahead has pressed
-    /// deeper than the tips, or where the flanks no longer move into the soil.
+    /// Returns the distance behind the axle up to which flanks press in skid `[m]`: up to where the rim or the grouser
+    /// ahead has pressed deeper than the tips, or where the flanks no longer move into the soil.
     fn rear(&self) -> f64 {
         if self.flank.motion.drives_everywhere() {
             return 0.0;
@@ -102,27 +102,27 @@ impl Grousered {
         (self.tip_radius * libm::sin(high)).min(self.flank_turn())
     }
 
-    /// x at which flanks begin to move into the soil, or cease to; infinite if they do neither.
+    /// Returns x at which flanks begin to move into the soil, or cease to; infinite if they do neither.
     fn flank_turn(&self) -> f64 {
         // for a locked wheel, exactly the tips' radius where the tips' own sign changes
         let sine = self.flank.motion.sign_change();
         sine.map_or(f64::INFINITY, |sine| self.tip_radius * sine)
     }
 
-    /// Distance ahead of the axle up to which the rim touches soil `[m]`; 0 if only the tips touch.
+    /// Returns the distance ahead of the axle up to which the rim touches soil `[m]`; 0 if only the tips touch.
     pub(super) fn front_of_rim(&self, hub_height: f64) -> f64 {
         let square = (self.rim.radius - hub_height) * (self.rim.radius + hub_height);
         square.max(0.0).sqrt()
     }
 
-    /// The sliding of the rim, with its radius and entry, if a law uses it.
+    /// Returns the sliding of the rim, with its radius and entry, if a law uses it.
     pub(super) fn slide_of_rim(&self, hub_height: f64) -> Option<(f64, &Slide, Entry)> {
         let slide = self.slide.as_ref()?;
         let entry = slide.enter(self.front_of_rim(hub_height));
         Some((self.rim.radius, slide, entry))
     }
 
-    /// Places where stresses and shares have kinks, in addition to those of the cylinder of the tips `[m]`.
+    /// Returns the places where stresses and shares have kinks, in addition to those of the cylinder of the tips `[m]`.
     pub(super) fn kinks(&self, front_of_rim: f64) -> [f64; 3] {
         [
             front_of_rim,
@@ -204,8 +204,8 @@ impl Grousered {
         true
     }
 
-    /// Share of the ground at places that tips have swept since they were as deep as the rim is there; 0 where the rim does
-    /// not touch.
+    /// Returns the share of the ground at places that tips have swept since they were as deep as the rim is there; 0
+    /// where the rim does not touch.
     fn swept(&self, x: [f64; NODES], sine: [f64; NODES], touches: bool) -> [f64; NODES] {
         if !touches {
             return [0.0; NODES];
@@ -224,13 +224,14 @@ impl Grousered {
         })
     }
 
-    /// Height of the flank that meets soil `[m]`: its whole height in the soil, or the depth that tips reach beyond those ahead.
+    /// Returns the height of the flank that meets soil `[m]`: its whole height in the soil, or the depth that tips
+    /// reach beyond those ahead.
     fn chip(&self, sine: f64, cosine: f64, depth: f64) -> f64 {
         let deeper = self.tip_radius * self.pitch * sine / (self.speed_ratio * cosine - 1.0).abs();
         deeper.min(self.height * cosine).min(depth)
     }
 
-    /// Share of the ground under flanks with this height in the soil `[m]`.
+    /// Returns the share of the ground under flanks with this height in the soil `[m]`.
     fn flanks(&self, chip: f64, tangent: f64, cosine: f64) -> f64 {
         self.per_turn * tangent * chip / (cosine * self.flank.radius)
     }
@@ -255,46 +256,30 @@ impl Rim {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::fixture::{CONDITION, SOIL};
 
     const RADIUS: f64 = 0.125;
     const HEIGHT: f64 = 0.009;
 
     fn grousered(count: u32, slip: f64) -> (Grousered, Rim) {
-        let soil = Soil {
-            k_c: 0.0,
-            k_phi: 1e7,
-            n: 1.1,
-            cohesion_pa: 0.0,
-            friction_angle_rad: 0.5,
-            shear_velocity_m_s: 1e-3,
-            gamma_exponent: 0.5,
-        };
         let [rim, tips] = [RADIUS, RADIUS + HEIGHT].map(|radius_m| Wheel {
             radius_m,
             width_m: 0.112,
             rig_radius_m: RADIUS,
         });
-        let condition = Condition {
-            slip,
-            wheel_load_n: 100.0,
-            sled_speed_m_s: 0.01,
-            slip_angle_rad: 0.0,
-            pass: 1,
-        };
+        let condition = Condition { slip, ..CONDITION };
         let grousers = StraightGrousers {
             count,
             height_m: HEIGHT,
             thickness_m: 1e-5,
         };
-        let tips = Rim::new(&soil, &tips, &condition);
-        (
-            Grousered::new((&soil, &rim, &condition), &grousers, &tips, false),
-            tips,
-        )
+        let tips = Rim::new(&SOIL, &tips, &condition);
+        let grousered = Grousered::new((&SOIL, &rim, &condition), &grousers, &tips, false);
+        (grousered, tips)
     }
 
-    /// Share of the ground at x that a line-thin tip has passed more deeply than the rim is there: the test follows the
-    /// ground of a whole spacing of marks, each point with the history of its tips.
+    /// Returns the share of the ground at x that a line-thin tip has passed more deeply than the rim is there: the test
+    /// follows the ground of a whole spacing of marks, each point with the history of its tips.
     fn passed(count: u32, ratio: f64, x: f64) -> f64 {
         const POINTS: u32 = 400;
         const STEPS: u32 = 4_000;
@@ -306,7 +291,7 @@ mod tests {
         let way = |turned: f64| turned * tip / ratio;
         let is_passed = |phase: f64| {
             // the past positions, relative to the point, of the tip that is at an angle now
-            let of_tip = |number: i64| {
+            let tip_passes = |number: i64| {
                 let now = first + (phase + number as f64) * pitch;
                 let ahead = |turned: f64| {
                     let angle = now + turned;
@@ -321,7 +306,7 @@ mod tests {
                     crosses && current.1 <= libm::asin(farthest / tip) && current.1 >= first - 1.6
                 })
             };
-            (-2 - i64::from(count) / 2..=i64::from(count) / 2).any(of_tip)
+            (-2 - i64::from(count) / 2..=i64::from(count) / 2).any(tip_passes)
         };
         let hits = (0..POINTS)
             .filter(|i| is_passed((f64::from(*i) + 0.5) / f64::from(POINTS)))
@@ -344,10 +329,7 @@ mod tests {
                 let sine = [x / wheel.tip_radius; NODES];
                 let share = wheel.swept([x; NODES], sine, true)[0].min(1.0);
                 let counted = passed(count, wheel.speed_ratio, x);
-                assert!(
-                    (share - counted).abs() < 0.01,
-                    "{count} {slip} {x}: {share} {counted}"
-                );
+                assert!((share - counted).abs() < 0.01, "{slip} {x}: {share} {counted}");
             }
         }
     }

@@ -23,7 +23,8 @@ impl RimMotion {
         }
     }
 
-    /// Slip velocity along the rim `[m/s]` at cos(theta); > 0: the rim moves backwards and is pushed forwards.
+    /// Returns the slip velocity along the rim `[m/s]` at cos(theta); > 0: the rim moves backwards and is pushed
+    /// forwards.
     #[inline]
     pub(super) fn tangential(&self, cos_theta: f64) -> f64 {
         self.rim_speed - self.forward * cos_theta
@@ -34,7 +35,7 @@ impl RimMotion {
         self.tangential(1.0) >= 0.0
     }
 
-    /// sin(theta) in (0, 1] at which the tangential slip velocity changes sign, if it does.
+    /// Returns sin(theta) in (0, 1] at which the tangential slip velocity changes sign, if it does.
     pub(super) fn sign_change(&self) -> Option<f64> {
         let cos_theta = self.rim_speed / self.forward;
         (0.0..1.0)

@@ -39,7 +39,7 @@ use crate::pressure_sinkage::k_star;
 use crate::rejection::require;
 use crate::{Averages, Condition, Rejection, Soil, Wheel, WongReece};
 
-/// Steady forces, torque and sinkage of a smooth rigid wheel on plastic soil.
+/// Computes the steady forces, torque and sinkage of a smooth rigid wheel on plastic soil.
 ///
 /// With x = R sin(theta) along the ground from the lowest point, z(x) the sinkage of the rim, contact from
 /// theta = 0 to `theta_1 = acos(1 − z/R)` and per projected area dA:
@@ -115,10 +115,10 @@ pub fn simulate(soil: &Soil, wheel: &Wheel, condition: &Condition) -> Result<Ave
 /// - `site`: properties of the test site that formulas may use.
 ///
 /// # Errors
-/// Those of [`simulate`], and [`Rejection::Formula`] if a formula gives an inadmissible value at any trial of the balance.
+/// As for [`simulate`], and [`Rejection::Formula`] if a formula gives an inadmissible value at any trial of the balance.
 ///
 /// # Validity
-/// That of [`simulate`]. The displacement `j` belongs to an element of the rim in steady motion; `pass` is the only
+/// As for [`simulate`]. The displacement `j` belongs to an element of the rim in steady motion; `pass` is the only
 /// difference between passes. A jump of a law between two nodes of the quadrature is interpolated, so that forces are
 /// continuous in the parameters.
 ///
@@ -141,10 +141,10 @@ pub fn simulate_with(
 /// - `effects`: compiled for [`ModelForm::WongReece`](crate::effects::ModelForm::WongReece).
 ///
 /// # Errors
-/// Those of [`simulate_with`], and [`Rejection::InvalidParameter`] where `c1 + c2 slip` lies outside [0, 1).
+/// As for [`simulate_with`], and [`Rejection::InvalidParameter`] where `c1 + c2 slip` lies outside [0, 1).
 ///
 /// # Validity
-/// That of [`WongReece`]: neither rebound nor a flat, which the model lacks.
+/// As for [`WongReece`]; the model has neither rebound nor a flat.
 ///
 /// # Example
 /// ```
@@ -181,7 +181,7 @@ pub fn simulate_wong_reece(
 ///
 /// - tips, a share `N t / 2π R_t` of it, at their depth;
 /// - flanks, `(N / 2π) tan(a) e / ((R + h/2) cos(a))`, at the mean depth of their height e (projected on the vertical) in the soil,
-///   where their middle moves backwards over it. e is the least of `h cos(a)`, the tips' depth, and the depth that a tip reaches
+///   where their middle moves backwards over it. e is the minimum of `h cos(a)`, the tips' depth, and the depth that a tip reaches
 ///   beyond the one ahead: the marks' spacing on the ground, less t, times the slope of the tips' path over it;
 /// - the rim, on the ground that tips neither cover nor have swept, less the flanks' share. Tips have swept the share
 ///   `(N / 2π) |G(a) − G(a')|`, with a' where they were as deep as the rim is at x, `R_t sin(a') = sqrt(x² + R_t² − R²)`: at
@@ -200,11 +200,11 @@ pub fn simulate_wong_reece(
 /// [`Averages`]; the sinkage refers to the rim, and is negative if the tips alone carry the load. The contact is that of the tips.
 ///
 /// # Errors
-/// Those of [`simulate_with`], and [`Rejection::InvalidParameter`] for grousers outside their bounds, for rebounding soil
+/// As for [`simulate_with`], and [`Rejection::InvalidParameter`] for grousers outside their bounds, for rebounding soil
 /// and for a rim that its load flattens.
 ///
 /// # Validity
-/// That of [`simulate`]; at slip angles tips are assumed to leave the same marks as straight ahead. Over 200 runs (wheels of
+/// As for [`simulate`]; at slip angles tips are assumed to leave the same marks as straight ahead. Over 200 runs (wheels of
 /// 58 and 125 mm, 12 and 24 grousers of 5 and 9 mm by 2 mm, slip −0.7 to 0.9, `k_c` = 0) the rms difference from
 /// [`spatial`](crate::spatial) without flow is, relative to load, to load times radius, and in mm, 0.078, 0.025, 1.5 (the
 /// smooth rim: 0.134, 0.072, 12.4). The pull is too low by 0.060 on average: in [`spatial`](crate::spatial) unloading soil

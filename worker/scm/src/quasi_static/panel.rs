@@ -46,7 +46,8 @@ pub(super) struct Panel {
 }
 
 impl Panel {
-    /// A piece of the round rim ahead of the lowest part. Stages are loops over the nodes, so that each vectorises.
+    /// Lays the nodes on a piece of the round rim ahead of the lowest part. Stages are loops over the nodes, so that
+    /// each vectorises.
     #[inline(always)]
     pub(super) fn on_arc(&mut self, rim: &Rim, contact: &Contact, start: f64, end: f64) {
         self.place(rim, contact, start, end);
@@ -56,7 +57,8 @@ impl Panel {
         }
     }
 
-    /// A piece of the round rim with the pressure peak ahead of the axle: behind the peak the effective depth differs.
+    /// Lays the nodes on a piece of the round rim with the pressure peak ahead of the axle: behind the peak the
+    /// effective depth differs.
     pub(super) fn about(&mut self, rim: &Rim, contact: &Contact, start: f64, end: f64, peak: &Peak) {
         self.place(rim, contact, start, end);
         for i in 0..NODES {
@@ -69,7 +71,8 @@ impl Panel {
         }
     }
 
-    /// A piece of the round rim behind the lowest part, where the soil springs back by a height `[m]` and unloads linearly.
+    /// Lays the nodes on a piece of the round rim behind the lowest part, where the soil springs back by a height `[m]`
+    /// and unloads linearly.
     pub(super) fn behind(&mut self, rim: &Rim, contact: &Contact, start: f64, end: f64, recovered: f64) {
         self.place(rim, contact, start, end);
         for i in 0..NODES {
@@ -78,7 +81,7 @@ impl Panel {
         }
     }
 
-    /// A piece of the rim that is flat at a distance from the axle `[m]`.
+    /// Lays the nodes on a piece of the rim that is flat at a distance from the axle `[m]`.
     pub(super) fn on_flat(&mut self, rim: &Rim, contact: &Contact, start: f64, end: f64, distance: f64) {
         self.place(rim, contact, start, end);
         let tangential = rim.motion.rim_speed * (distance / rim.radius) - rim.motion.forward;
@@ -111,7 +114,7 @@ impl Panel {
             self.secant[i] = radius * per_height;
             self.tan_theta[i] = x * per_height;
             from_end[i] = if to_rear < to_front { to_rear } else { to_front };
-            // (height − hub_height) / z as a product: exact where the sinkage goes to zero
+            // (height − hub_height) / z is written as a product, which is exact where the sinkage goes to zero.
             let parabola = to_front * per_length * (1.0 + x * per_length) * contact.round_to_lowest;
             self.relative_sinkage[i] =
                 parabola * (radius + contact.hub_height) / (height + contact.hub_height);
@@ -123,7 +126,7 @@ impl Panel {
         self.pressure = contact.gamma.gamma(from_end);
     }
 
-    /// Projected area of a node `[m²]`.
+    /// Returns the projected area of a node `[m²]`.
     #[inline(always)]
     pub(super) fn area(&self, rim: &Rim, node: usize) -> f64 {
         rim.width * self.extent * WEIGHT[node]

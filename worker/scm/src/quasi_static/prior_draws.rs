@@ -8,6 +8,7 @@ use formula::effect::Mechanism;
 
 use super::{Footing, Mechanics, Panels, Reshaping, Rim, simulate_with};
 use crate::effects::{CompiledEffects, ModelForm, Site};
+use crate::fixture::Draws;
 use crate::{Condition, Rejection, Soil, Wheel};
 
 /// Number of draws of one effect under one kappa.
@@ -23,28 +24,12 @@ const SITE: Site = Site {
     grouser_count: 12,
     grouser_height_m: 0.009,
     bin_length_m: Some(1.5),
-    // The last run of a campaign, where a drift is largest.
+    // A drift is largest in the last run of a campaign.
     order: Some(0.5),
 };
 
-/// A linear congruential generator (Knuth's MMIX constants).
-struct Draws(u64);
-
 impl Draws {
-    fn uniform(&mut self, low: f64, high: f64) -> f64 {
-        self.0 = self
-            .0
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
-        low + (high - low) * (self.0 >> 11) as f64 / (1_u64 << 53) as f64
-    }
-
-    /// A nearly normal number: the sum of twelve uniform numbers.
-    fn normal(&mut self) -> f64 {
-        (0..12).map(|_| self.uniform(-0.5, 0.5)).sum()
-    }
-
-    /// A parameter of an effect, from the prior in its file.
+    /// Draws a parameter of an effect from the prior in its file.
     fn parameter(&mut self, parameter: &Parameter) -> f64 {
         let prior = &parameter.prior;
         if let Some(fixed) = prior.as_float() {

@@ -28,7 +28,7 @@ pub(super) struct Reaction {
 }
 
 impl Reaction {
-    /// Vertical force of the soil on the wheel, less the extra load `[N]`.
+    /// Returns the vertical force of the soil on the wheel, less the extra load `[N]`.
     pub(super) fn load(&self) -> f64 {
         self.load_from_pressure + self.load_from_shear - self.extra_load
     }
@@ -49,7 +49,7 @@ impl Reaction {
         self.nodes += NODES as u32;
     }
 
-    /// The contact without any force of the soil.
+    /// Returns the contact without any force of the soil.
     pub(super) fn unloaded(&self) -> Self {
         Self {
             load_from_pressure: 0.0,
@@ -80,7 +80,7 @@ impl Reaction {
 }
 
 impl Rim {
-    /// The soil's force on the base's rim when the contact reaches a length of 0 < l ≤ R ahead of the axle.
+    /// Returns the soil's force on the base's rim when the contact reaches a length of 0 < l ≤ R ahead of the axle.
     ///
     /// If k* ≤ 0 there is no support: all forces are zero and cannot balance a load.
     pub(super) fn react(&self, contact_length: f64) -> Reaction {
@@ -115,7 +115,7 @@ impl Rim {
         reaction
     }
 
-    /// Ends of the panels from rear to front, and how many panels there are.
+    /// Returns the ends of the panels from rear to front, and how many panels there are.
     pub(super) fn panel_ends(&self, length: f64) -> ([f64; 5], usize) {
         let mut ends = [0.0; 5];
         let mut panels = if length <= self.width {

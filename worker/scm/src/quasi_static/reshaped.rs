@@ -128,7 +128,7 @@ impl Mechanics {
         )
     }
 
-    /// Half length of the flat `[m]`: a contact that reaches less far ahead of the axle carries nothing.
+    /// Returns the half length of the flat `[m]`: a contact that reaches less far ahead of the axle carries nothing.
     pub(super) fn flat(&self, radius: f64) -> f64 {
         (self.deflection * (2.0 * radius - self.deflection))
             .max(0.0)
@@ -200,7 +200,7 @@ impl<'r, 'e> Reshaping<'r, 'e> {
         Ok(load - self.case.condition.wheel_load_n)
     }
 
-    /// The soil's force on the rim when the contact reaches a length ahead of the axle; see [`Rim::react`].
+    /// Returns the soil's force on the rim when the contact reaches a length ahead of the axle; see [`Rim::react`].
     pub(super) fn react(&mut self, rim: &Rim, front: f64) -> Result<Reaction, Rejection> {
         let shape = self.shape(rim, front);
         let length = front + shape.rear;
@@ -215,17 +215,17 @@ impl<'r, 'e> Reshaping<'r, 'e> {
         if shape.sinkage <= 0.0 || shape.k_star <= 0.0 {
             return Ok(reaction);
         }
-        let of_contact = [
+        let contact_variables = [
             (Variable::ContactLength, length),
             (Variable::BEff, shape.b_eff),
             (Variable::KStar, shape.k_star),
         ];
         if let Some(laws) = &mut self.laws
-            && of_contact
+            && contact_variables
                 .iter()
                 .any(|(variable, _)| laws.use_variable(*variable))
         {
-            for (variable, value) in of_contact {
+            for (variable, value) in contact_variables {
                 self.case.variables[variable as usize] = value;
             }
             laws.settle(&self.case.variables);
@@ -394,7 +394,7 @@ impl<'r, 'e> Reshaping<'r, 'e> {
             let mut across = [0.0; NODES];
             for i in 0..NODES {
                 let speed = panel.speed[i];
-                // at rest the stress has no direction and the velocities are 0
+                // At rest the stress has no direction, and the velocities are 0.
                 let per_speed = panel.shear[i]
                     / if speed > f64::MIN_POSITIVE {
                         speed
@@ -517,8 +517,8 @@ impl Shape {
         }
         if let Some(slide) = slide.filter(|_| laws.use_variable(Variable::J)) {
             let entry = slide.enter(self.front);
-            let of_rim = grousers.and_then(|grousers| grousers.slide_of_rim(self.hub_height));
-            write(laws, Variable::J, panels, |panel| match &of_rim {
+            let rim_slide = grousers.and_then(|grousers| grousers.slide_of_rim(self.hub_height));
+            write(laws, Variable::J, panels, |panel| match &rim_slide {
                 Some((radius, slide, entry)) if panel.arm <= *radius => slide.slid(entry, panel.x),
                 _ => slide.slid(&entry, panel.x),
             });

@@ -12,11 +12,11 @@ pub(super) struct Coordinate {
     unsupported: f64,
     radius: f64,
     /// y of l = R.
-    pub(super) greatest: f64,
+    pub(super) max_y: f64,
 }
 
 impl Coordinate {
-    /// The coordinate for a rim; `None` if k* ≤ 0 for every contact with l < R.
+    /// Returns the coordinate for a rim; `None` if k* ≤ 0 for every contact with l < R.
     pub(super) fn new(rim: &Rim) -> Option<Self> {
         let long = long_contact_modulus(rim);
         let unsupported = if rim.soil.k_c < 0.0 {
@@ -33,13 +33,13 @@ impl Coordinate {
         (long > 0.0 && unsupported < rim.radius).then(|| Self {
             unsupported,
             radius: rim.radius,
-            greatest: libm::log(rim.radius - unsupported),
+            max_y: libm::log(rim.radius - unsupported),
         })
     }
 
-    /// Contact length l ≤ R at y.
+    /// Returns the contact length l ≤ R at y.
     pub(super) fn contact_length(&self, y: f64) -> f64 {
-        if y < self.greatest {
+        if y < self.max_y {
             (self.unsupported + libm::exp(y)).min(self.radius)
         } else {
             self.radius
@@ -51,17 +51,17 @@ impl Coordinate {
         contact_length <= self.unsupported
     }
 
-    /// y of a contact length; −∞ for one without support.
+    /// Returns y of a contact length; −∞ for one without support.
     pub(super) fn at(&self, contact_length: f64) -> f64 {
         libm::log((contact_length - self.unsupported).max(0.0))
     }
 
-    /// dy / d ln l at a contact length.
+    /// Returns dy / d ln l at a contact length.
     pub(super) fn per_log_length(&self, contact_length: f64) -> f64 {
         contact_length / (contact_length - self.unsupported)
     }
 
-    /// y at which Bekker's closed form carries the load.
+    /// Returns y at which Bekker's closed form carries the load.
     ///
     /// Small angles (z = l² / 2R), gamma = 1 and no shear give `W = b (K l + k_c) l^(2n) I_n / (2R)^n` with
     /// `K = k_phi + k_c / b` and `I_n = ∫ (1 − u²)^n du` over (0, 1), which `(1 + 4n/π)^(−1/2)` approximates within 1 %,
@@ -78,7 +78,7 @@ impl Coordinate {
             let sinkage = libm::pow(load / (2.0 * rim.width * self.unsupported * long), 1.0 / n);
             let length = (self.unsupported * self.unsupported + 2.0 * rim.radius * sinkage).sqrt();
             let y = libm::log(length - self.unsupported);
-            return y.min(self.greatest - 0.1);
+            return y.min(self.max_y - 0.1);
         }
         let target = libm::log(load * shape / (rim.width * long)) + n * libm::log(2.0 * rim.radius);
         let mut y = target / (2.0 * n + 1.0);
@@ -93,11 +93,11 @@ impl Coordinate {
                 y += (target - value) / slope;
             }
         }
-        let deepest = self.greatest - 0.1;
+        let deepest = self.max_y - 0.1;
         if y < deepest { y } else { deepest }
     }
 
-    /// y at which a flattened rim on soil with `k_c` carries the load, by bisection.
+    /// Returns y at which a flattened rim on soil with `k_c` carries the load, by bisection.
     ///
     /// With a the flat's half length and L = l + a: `W = b k*(L) (2 a + (l − a) I_n) z^n`, `z = (l² − a²) / 2R`,
     /// `k*(L) = K + k_c / L`, which rises with l wherever it is positive.
@@ -112,7 +112,7 @@ impl Coordinate {
             let on_flat_and_arc = 2.0 * flat + (length - flat) * shape;
             rim.width * modulus * on_flat_and_arc * libm::pow(sinkage.max(0.0), n)
         };
-        let deepest = self.greatest - 0.1;
+        let deepest = self.max_y - 0.1;
         let (mut low, mut high) = (deepest - START_RANGE, deepest);
         for _ in 0..START_HALVINGS {
             let middle = 0.5 * (low + high);
@@ -130,7 +130,7 @@ impl Coordinate {
 const START_RANGE: f64 = 32.0;
 const START_HALVINGS: u32 = 12;
 
-/// k* of a contact much longer than wide: K = `k_phi` + `k_c` / b.
+/// Returns k* of a contact much longer than wide: K = `k_phi` + `k_c` / b.
 fn long_contact_modulus(rim: &Rim) -> f64 {
     rim.soil.k_phi + rim.soil.k_c / rim.width
 }

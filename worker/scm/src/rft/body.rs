@@ -29,7 +29,7 @@ pub(super) struct Element {
 }
 
 impl Element {
-    /// The element after the wheel has turned forwards by an angle of this sine and cosine.
+    /// Returns the element after the wheel has turned forwards by an angle of this sine and cosine.
     pub(super) fn turned(&self, sin: f64, cos: f64) -> Self {
         let turn = |v: [f64; 3]| [v[0] * cos + v[2] * sin, v[1], v[2] * cos - v[0] * sin];
         Element {
@@ -51,8 +51,8 @@ pub(super) struct Cylinder {
 }
 
 impl Cylinder {
-    /// The elements of the surface, with side walls only if the wheel moves sideways, because they otherwise slide in their
-    /// own plane.
+    /// Returns the elements of the surface, with side walls only if the wheel moves sideways, because they otherwise
+    /// slide in their own plane.
     pub(super) fn elements(&self, with_sides: bool) -> Vec<Element> {
         let mut elements = Vec::new();
         let (radius, tip) = (self.radius_m, self.radius_m + self.grouser_height_m);
@@ -153,7 +153,7 @@ impl Cylinder {
     }
 }
 
-/// The elements of a checked mesh: its triangles, halved until none is longer than 4 % of the mesh's reach.
+/// Returns the elements of a checked mesh: its triangles, halved until none is longer than 4 % of the mesh's reach.
 ///
 /// The order of the vertices determines the outward side; if the enclosed volume is negative, all triangles are reversed.
 pub(super) fn mesh_elements(mesh: &SurfaceMesh) -> Vec<Element> {
@@ -234,23 +234,20 @@ mod tests {
 
     #[test]
     fn a_closed_surface_has_no_direction_and_the_right_volume() {
-        for wheel in [
-            WHEEL,
-            Cylinder {
-                grousers: 0,
-                grouser_height_m: 0.0,
-                ..WHEEL
-            },
-        ] {
+        let smooth = Cylinder {
+            grousers: 0,
+            grouser_height_m: 0.0,
+            ..WHEEL
+        };
+        for wheel in [WHEEL, smooth] {
             let elements = wheel.elements(true);
             let total = |quantity: fn(&Element) -> f64| elements.iter().map(quantity).sum::<f64>();
-            for axis in [
-                total(|e| e.area * e.normal[0]),
-                total(|e| e.area * e.normal[1]),
-                total(|e| e.area * e.normal[2]),
-            ] {
-                assert!(axis.abs() < 1e-12, "{axis}");
-            }
+            let axes: [fn(&Element) -> f64; 3] = [
+                |e| e.area * e.normal[0],
+                |e| e.area * e.normal[1],
+                |e| e.area * e.normal[2],
+            ];
+            assert!(axes.map(total).iter().all(|sum| sum.abs() < 1e-12));
             // the divergence of the position is 3
             let volume = total(|e| e.area * dot(e.at, e.normal)) / 3.0;
             let expected =

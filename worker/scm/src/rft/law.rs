@@ -34,7 +34,7 @@ const COEFFICIENTS: [[f64; 3]; TERMS] = [
 ];
 const TERMS: usize = 20;
 
-/// The monomials up to the third degree.
+/// Returns the monomials up to the third degree.
 fn terms(x1: f64, x2: f64, x3: f64) -> [f64; TERMS] {
     [
         1.0,
@@ -151,13 +151,8 @@ mod tests {
         // beta = 45°, gamma = 0, psi = 0, without a limit of friction: f1 sin(beta) + f2 and −f1 cos(beta) − f3 along r and z
         let half = 0.5_f64.sqrt();
         let values = terms(0.0, half, half);
-        let f = |i: usize| {
-            values
-                .iter()
-                .zip(&COEFFICIENTS)
-                .map(|(t, c)| t * c[i])
-                .sum::<f64>()
-        };
+        let products = |i: usize| values.iter().zip(&COEFFICIENTS).map(move |(t, c)| t * c[i]);
+        let f = |i: usize| products(i).sum::<f64>();
         let got = stress([half, 0.0, -half], [1.0, 0.0, 0.0], 1e9).unwrap();
         assert!((got[0] - (f(0) * half + f(1))).abs() < 1e-12, "{got:?}");
         assert!((got[2] - (-f(0) * half - f(2))).abs() < 1e-12, "{got:?}");

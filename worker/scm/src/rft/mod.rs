@@ -73,12 +73,12 @@ enum Surface {
 }
 
 impl RftShape {
-    /// The rim of a [`Wheel`], with straight grousers.
+    /// Returns the rim of a [`Wheel`], with straight grousers.
     pub fn rim(grousers: Grousers) -> Self {
         RftShape(Surface::Rim(grousers))
     }
 
-    /// A closed surface, with the errors of [`SurfaceMesh::checked`].
+    /// Returns a closed surface, with the errors of [`SurfaceMesh::checked`].
     ///
     /// Its triangles name their vertices counter-clockwise as seen from outside, or all clockwise; those with a side longer
     /// than 4 % of the reach are divided.
@@ -94,7 +94,8 @@ impl RftShape {
     }
 }
 
-/// Steady forces, torque and sinkage of a wheel in granular soil by three-dimensional resistive force theory.
+/// Computes the steady forces, torque and sinkage of a wheel in granular soil by three-dimensional resistive force
+/// theory.
 ///
 /// Every element of the surface that moves towards the soil, `v·n > 0`, at a depth h feels the force
 /// `xi_n alpha(n, v / |v|) h dA`, alpha from the published fit (see `law`), `v = V + omega × r` in steady motion; forces add
@@ -184,7 +185,7 @@ pub fn simulate(
     Ok(averages)
 }
 
-/// Force on a level plate that is pressed into the soil, `xi_n alpha A d` `[N]`: linear in the depth.
+/// Returns the force on a level plate that is pressed into the soil, `xi_n alpha A d` `[N]`: linear in the depth.
 ///
 /// # Arguments
 /// - `area_m2`: A `[m²]`; `depth_m`: d `[m]`, ≥ 0.
@@ -227,7 +228,7 @@ impl Motion {
         }
     }
 
-    /// Direction in which a place moves; `None` at rest.
+    /// Returns the direction in which a place moves; `None` at rest.
     fn direction(&self, at: [f64; 3]) -> Option<[f64; 3]> {
         let velocity = [
             self.along + self.rotation * at[2],
@@ -239,8 +240,8 @@ impl Motion {
     }
 }
 
-/// The elements below the axle, lowest first, after the wheel has turned by an angle; elements above the axle are never in
-/// the soil.
+/// Returns the elements below the axle, lowest first, after the wheel has turned by an angle; elements above the axle
+/// are never in the soil.
 fn turned(elements: &[Element], angle: f64) -> Vec<Element> {
     let (sin, cos) = (libm::sin(angle), libm::cos(angle));
     let mut below: Vec<Element> = elements
@@ -252,7 +253,7 @@ fn turned(elements: &[Element], angle: f64) -> Vec<Element> {
     below
 }
 
-/// The elements of a rim at positions evenly spread over the pitch of its grousers; one position if it has none.
+/// Returns the elements of a rim at positions evenly spread over the pitch of its grousers; one position if it has none.
 fn rim_positions(grousers: Grousers, wheel: &Wheel, with_sides: bool) -> Vec<Vec<Element>> {
     let cylinder = Cylinder {
         radius_m: wheel.radius_m,
@@ -308,8 +309,8 @@ impl Positions<'_> {
         })
     }
 
-    /// The elements up to the depth of the lowest one `[m]` at which the load is first carried, and that depth; else the
-    /// largest load carried.
+    /// Returns the elements up to the depth of the lowest one `[m]` at which the load is first carried, and that depth;
+    /// else the largest load carried.
     fn sunk(&self, elements: &[Element], load: f64) -> Result<(Vec<Pushed>, f64), f64> {
         let lowest = elements.first().map_or(0.0, |element| element.at[2]);
         let mut pushed = Vec::new();
@@ -331,7 +332,7 @@ impl Positions<'_> {
         Err(max_carried)
     }
 
-    /// Means over the positions, each in balance.
+    /// Returns the means over the positions, each in balance.
     fn balanced(&self, load: f64) -> Result<Averages, Rejection> {
         let mut mean = Averages::default();
         let share = 1.0 / self.elements.len() as f64;

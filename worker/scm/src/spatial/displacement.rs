@@ -39,7 +39,7 @@ impl ShearPath {
         }
     }
 
-    /// Resets all displacements.
+    /// Resets all displacements to zero.
     pub(super) fn clear(&mut self) {
         self.slid.fill(0.0);
         self.last.fill(f64::MIN);
@@ -70,7 +70,7 @@ impl ShearPath {
         }));
     }
 
-    /// The bins over a strip.
+    /// Returns the bins over a strip.
     fn bins_of(&self, row: usize) -> impl Iterator<Item = usize> + use<> {
         let ([first, end], bins) = (self.spans[row], self.bins as i64);
         (first..end).map(move |bin| bin.rem_euclid(bins) as usize)

@@ -1,37 +1,17 @@
-//! The soil, the wheel and the condition of this module's tests.
+//! The scene and the grousers of this module's tests.
 
-use super::{Ground, Scene, Shape};
+use super::{Ground, Grousers, Scene, Shape};
 use crate::effects::{Active, Site};
-use crate::{Condition, Soil, Wheel};
+use crate::fixture::{SOIL, WHEEL};
 
-/// Cohesionless sand of 0.5 rad.
-pub(super) const SOIL: Soil = Soil {
-    k_c: 0.0,
-    k_phi: 1e7,
-    n: 1.1,
-    cohesion_pa: 0.0,
-    friction_angle_rad: 0.5,
-    shear_velocity_m_s: 1e-3,
-    gamma_exponent: 0.5,
+/// Twelve grousers of 9 mm by 2 mm.
+pub(super) const BARS: Grousers = Grousers {
+    count: 12,
+    height_m: 0.009,
+    thickness_m: 0.002,
 };
 
-/// A wheel of 125 mm by 112 mm.
-pub(super) const WHEEL: Wheel = Wheel {
-    radius_m: 0.125,
-    width_m: 0.112,
-    rig_radius_m: 0.125,
-};
-
-/// 100 N at slip 0.2, straight ahead.
-pub(super) const CONDITION: Condition = Condition {
-    slip: 0.2,
-    wheel_load_n: 100.0,
-    sled_speed_m_s: 0.01,
-    slip_angle_rad: 0.0,
-    pass: 1,
-};
-
-/// The soil and the wheel with the rest of a scene.
+/// Returns the soil and the wheel of unit tests with the rest of a scene.
 pub(super) fn scene<'a>(ground: &'a Ground, shape: &'a Shape, effects: &'a Active<'a>) -> Scene<'a> {
     Scene {
         soil: &SOIL,

@@ -40,7 +40,7 @@ use crate::{Condition, Rejection};
 /// Range of sled speeds for which the time and length of a step stay representable `[m/s]`.
 const SPEEDS_M_S: [f64; 2] = [1e-6, 1e3];
 
-/// A rigid wheel rolls over deformable soil at prescribed speeds of sled and rim.
+/// Rolls a rigid wheel over deformable soil at prescribed speeds of sled and rim.
 ///
 /// The soil is a height field of columns (spacing dx along the heading) and lanes (dy across). A step moves the wheel
 /// on, then finds the height of the hub at which the soil carries the load. At a trial height, for every node under the

@@ -11,7 +11,7 @@ pub(crate) const PACK: usize = 4;
 /// The lanes of one pack in a mask.
 pub(crate) const LANES: u64 = (1 << PACK) - 1;
 
-/// A mask that selects the lanes whose bits are set among the last [`PACK`] of `mask`.
+/// Returns a mask that selects the lanes whose bits are set among the last [`PACK`] of `mask`.
 #[inline]
 pub(crate) fn lanes_of(mask: u64) -> Pack {
     Pack::new(SELECTORS[(mask & LANES) as usize])
@@ -31,32 +31,32 @@ const SELECTORS: [[f64; PACK]; 1 << PACK] = {
     selectors
 };
 
-/// A number in every lane.
+/// Returns a number in every lane.
 #[inline]
 pub(crate) fn splat(value: f64) -> Pack {
     Pack::splat(value)
 }
 
-/// The greater of two, lane by lane; neither may be NaN.
+/// Returns the greater of two, lane by lane; neither may be NaN.
 #[inline]
-pub(crate) fn greater(a: Pack, b: Pack) -> Pack {
+pub(crate) fn max(a: Pack, b: Pack) -> Pack {
     a.fast_max(b)
 }
 
-/// The lesser of two, lane by lane; neither may be NaN.
+/// Returns the smaller of two, lane by lane; neither may be NaN.
 #[inline]
-pub(crate) fn lesser(a: Pack, b: Pack) -> Pack {
+pub(crate) fn min(a: Pack, b: Pack) -> Pack {
     a.fast_min(b)
 }
 
-/// The sum of the lanes, in an order that does not depend on the machine's vector width.
+/// Returns the sum of the lanes, in an order that does not depend on the machine's vector width.
 #[inline]
 pub(crate) fn sum(pack: Pack) -> f64 {
     let [a, b, c, d] = pack.to_array();
     (a + c) + (b + d)
 }
 
-/// The least lane; none may be NaN.
+/// Returns the smallest lane; none may be NaN.
 #[inline]
 pub(crate) fn min_lane(pack: Pack) -> f64 {
     let [a, b, c, d] = pack.to_array();
@@ -64,13 +64,13 @@ pub(crate) fn min_lane(pack: Pack) -> f64 {
     if low < high { low } else { high }
 }
 
-/// The greatest lane; none may be NaN.
+/// Returns the largest lane; none may be NaN.
 #[inline]
 pub(crate) fn max_lane(pack: Pack) -> f64 {
     -min_lane(-pack)
 }
 
-/// Four lanes of a row that begins at `first`.
+/// Returns four lanes of a row that begins at `first`.
 #[inline]
 pub(crate) fn load(row: &[f64], first: usize) -> Pack {
     let lanes = &row[first..first + PACK];

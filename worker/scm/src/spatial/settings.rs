@@ -20,7 +20,7 @@ pub struct Ground {
 }
 
 impl Default for Ground {
-    /// The default is nearly rigid-plastic sand of 32° of repose, a quarter of which flows.
+    /// Returns nearly rigid-plastic sand with an angle of repose of 32°, a quarter of which flows.
     fn default() -> Self {
         Self {
             elastic_stiffness_pa_m: 1e9,
@@ -88,7 +88,7 @@ pub enum Shape {
 }
 
 impl From<SurfaceMesh> for Shape {
-    /// A mesh whose period is found from its vertices, with the normals of its triangles.
+    /// Returns a mesh whose period is found from its vertices, with the normals of its triangles.
     fn from(surface: SurfaceMesh) -> Self {
         Self::Mesh {
             surface,

@@ -73,7 +73,7 @@ impl SideWall {
         Ok((condition.slip_angle_rad.abs() > 0.0).then_some(wall))
     }
 
-    /// The soil's push with the hub at a height, at the place of the contact.
+    /// Returns the soil's push with the hub at a height, at the place of the contact.
     pub(super) fn push(
         &self,
         contact: &Contact,
@@ -109,7 +109,7 @@ impl SideWall {
         push
     }
 
-    /// Passive force per length on a wall of a depth, with soil of a mean height above its wedge.
+    /// Returns the passive force per length on a wall of a depth, with soil of a mean height above its wedge.
     fn passive(&self, depth: f64, heap: f64) -> Passive {
         let n = self.root_n * self.root_n;
         let weight = 0.5 * n * self.unit_weight * depth * depth;
@@ -123,18 +123,19 @@ impl SideWall {
         }
     }
 
-    /// Mean height of the raised soil above the wedge beside a column of the wheel `[m]`; hollows do not count.
+    /// Returns the mean height of the raised soil above the wedge beside a column of the wheel `[m]`; hollows do not
+    /// count.
     fn heap(&self, contact: &Contact, terrain: &Terrain, column: usize, depth: f64, on_left: bool) -> f64 {
         let across = &contact.across;
         let reach = depth * self.root_n / terrain.dy;
-        let of_column = &terrain.surface[column * terrain.lanes..(column + 1) * terrain.lanes];
+        let column_surface = &terrain.surface[column * terrain.lanes..(column + 1) * terrain.lanes];
         let raised = |(lane, &height): (usize, &f64)| height.max(0.0) * (reach - lane as f64).clamp(0.0, 1.0);
         let lanes = libm::ceil(reach) as usize;
         let sum: f64 = if on_left {
-            let beside = of_column[across.first_lane + across.lanes..].iter();
+            let beside = column_surface[across.first_lane + across.lanes..].iter();
             beside.take(lanes).enumerate().map(raised).sum()
         } else {
-            let beside = of_column[..across.first_lane].iter().rev();
+            let beside = column_surface[..across.first_lane].iter().rev();
             beside.take(lanes).enumerate().map(raised).sum()
         };
         sum / reach
@@ -143,8 +144,8 @@ impl SideWall {
 
 #[cfg(test)]
 mod tests {
-    use super::super::fixture::{CONDITION, SOIL, WHEEL};
     use super::*;
+    use crate::fixture::{CONDITION, SOIL, WHEEL};
 
     const AT_AN_ANGLE: Condition = Condition {
         slip_angle_rad: 0.3,
@@ -153,18 +154,12 @@ mod tests {
 
     fn wall(cohesion_pa: f64, friction: f64) -> SideWall {
         let soil = Soil { cohesion_pa, ..SOIL };
-        SideWall::new(
-            [1.0, friction],
-            &soil,
-            WHEEL.radius_m,
-            [1500.0, 9.81],
-            &AT_AN_ANGLE,
-        )
-        .expect("a wall")
-        .expect("an angle")
+        let gravity = [1500.0, 9.81];
+        let wall = SideWall::new([1.0, friction], &soil, WHEEL.radius_m, gravity, &AT_AN_ANGLE);
+        wall.expect("a wall").expect("an angle")
     }
 
-    /// A wheel in the middle of a terrain whose lanes beside it have a height on the left.
+    /// Returns a wheel in the middle of a terrain whose lanes beside it have a height on the left.
     fn beside(heap: f64) -> (Contact, Terrain) {
         let mut terrain = Terrain::new(0.001, 0.004, -0.158, 600, 80, false);
         let mut contact = Contact::default();
@@ -182,20 +177,10 @@ mod tests {
             slip_angle_rad,
             ..CONDITION
         };
-        let pose = Pose {
-            x: 0.3,
-            y: 0.0,
-            turned: 0.0,
-        };
-        let law = ShearVelocity::new(1e-3);
+        let (x, y, turned) = (0.3, 0.0, 0.0);
+        let place = (Pose { x, y, turned }, WHEEL.radius_m - sinkage);
         let motion = Motion::new(&WHEEL, &condition);
-        wall.push(
-            &contact,
-            &terrain,
-            (pose, WHEEL.radius_m - sinkage),
-            &motion,
-            &law,
-        )
+        wall.push(&contact, &terrain, place, &motion, &ShearVelocity::new(1e-3))
     }
 
     #[test]
@@ -245,10 +230,8 @@ mod tests {
         let wall = wall(100.0, 0.3);
         let (left, right) = (push(&wall, 0.0, 0.02, 0.3), push(&wall, 0.0, 0.02, -0.3));
         assert_eq!(left.force_y.to_bits(), (-right.force_y).to_bits());
-        assert_eq!(
-            (left.force_x, left.force_z, left.torque),
-            (right.force_x, right.force_z, right.torque)
-        );
+        let rest = |push: &SidePush| (push.force_x, push.force_z, push.torque);
+        assert_eq!(rest(&left), rest(&right));
         assert!(left.force_y < 0.0 && left.torque != 0.0);
         assert!(push(&wall, 0.005, 0.02, 0.3).force_y < left.force_y);
         assert_eq!(push(&wall, 0.005, 0.02, -0.3), right);
@@ -261,9 +244,7 @@ mod tests {
         };
         assert!(new(1500.0, &CONDITION).expect("no refusal").is_none());
         let message = new(f64::NAN, &AT_AN_ANGLE).expect_err("a refusal").to_string();
-        assert!(
-            message.starts_with("invalid parameter: density_kg_m3 = NaN kg/m^3 must be"),
-            "{message}"
-        );
+        let begin = "invalid parameter: density_kg_m3 = NaN kg/m^3 must be";
+        assert!(message.starts_with(begin), "{message}");
     }
 }

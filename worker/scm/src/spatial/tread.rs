@@ -9,7 +9,7 @@ const MAX_ROWS: u32 = 100;
 
 /// Grousers in rows side by side: staggered, oblique, V-shaped or bent.
 ///
-/// Each row has `grousers.count` at equal distances. Row k of m, counted from the side at lesser y, has its middle at
+/// Each row has `grousers.count` at equal distances. Row k of m, counted from the side at smaller y, has its middle at
 /// `b ((k + 1/2) / m − 1/2)`, b the wheel's width, and covers [`Tread::width_m`] of it. At y from the wheel's middle plane
 /// the middle of a grouser lies further forward along the rim, at the lowest point of the rim, by
 ///
@@ -99,10 +99,10 @@ impl Tread {
     /// Returns whether every grouser is a straight bar across the whole wheel.
     pub(super) fn is_straight(&self, wheel: &Wheel) -> bool {
         let bends = [self.angle_rad, self.chevron_rad, self.bow_m];
-        let least = (1.0 - ROUNDING) * wheel.width_m;
+        let min_width = (1.0 - ROUNDING) * wheel.width_m;
         let covers = self
             .width_m
-            .is_none_or(|width| width * f64::from(self.rows) >= least);
+            .is_none_or(|width| width * f64::from(self.rows) >= min_width);
         let aligned = self.rows == 1 || self.stagger.abs() == 0.0;
         let one = covers && aligned && bends.iter().all(|bend| bend.abs() == 0.0);
         one || self.grousers.count == 0
@@ -118,13 +118,13 @@ impl Tread {
         self.angle_rad.abs() == 0.0 && rows.into_iter().all(alike)
     }
 
-    /// Shift of a row, relative to the pitch, in [0, 1).
+    /// Returns the shift of a row, relative to the pitch, in [0, 1).
     pub(super) fn shift(&self, row: u32) -> f64 {
         let turns = f64::from(row) * self.stagger;
         turns - libm::floor(turns)
     }
 
-    /// The range that the grousers of a row cover: from y to y on a wheel of a width `[m]`.
+    /// Returns the range that the grousers of a row cover: from y to y on a wheel of a width `[m]`.
     pub(super) fn covers(&self, row: u32, width: f64) -> [f64; 2] {
         let each = width / f64::from(self.rows);
         let middle = (f64::from(row) + 0.5) * each - 0.5 * width;
@@ -132,7 +132,8 @@ impl Tread {
         [middle - half, middle + half]
     }
 
-    /// Distance by which a bend moves a grouser forward at y on a wheel of a width, without its row's shift `[m]`.
+    /// Returns the distance by which a bend moves a grouser forward at y on a wheel of a width, without its row's shift
+    /// `[m]`.
     pub(super) fn bend(&self, y: f64, width: f64) -> f64 {
         let end = 2.0 * y / width;
         y * libm::tan(self.angle_rad) + y.abs() * libm::tan(self.chevron_rad) + self.bow_m * end * end

@@ -3,11 +3,26 @@
 use formula::Effect;
 use formula::catalogue::catalogue;
 use formula::effect::Mechanism;
-use scm::effects::{CompiledEffects, ModelForm};
-use scm::quasi_static;
 
-use crate::support::Draws;
+use crate::support::{Draws, compiled};
 use crate::validation::effects::{SITE, values};
+
+/// Asserts that effects at neutral strength change nothing in a number of draws.
+fn assert_neutral<'a>(effects: impl Iterator<Item = &'a Effect> + Clone, seed: u64, count: u32) {
+    let laws = compiled(effects.clone());
+    let mut draws = Draws(seed);
+    for case in (0..count).map(|_| draws.case()) {
+        let mut active = laws.activate(effects.clone().map(|effect| values(effect, "", f64::NAN)));
+        let with = case.simulate_with(&mut active, &SITE);
+        // the debug output shows every number to the last bit
+        let names: Vec<&str> = effects.clone().map(|effect| effect.name.as_str()).collect();
+        assert_eq!(
+            format!("{with:?}"),
+            format!("{:?}", case.try_simulate()),
+            "{names:?}"
+        );
+    }
+}
 
 /// The effects of the catalogue that the quasi-static model has.
 fn expressible() -> impl Iterator<Item = &'static Effect> + Clone {
@@ -18,27 +33,11 @@ fn expressible() -> impl Iterator<Item = &'static Effect> + Clone {
 #[test]
 fn each_effect_at_neutral_strength_is_the_base() {
     for effect in expressible() {
-        let effects = CompiledEffects::compile(ModelForm::QuasiStatic, [effect]).unwrap();
-        let mut draws = Draws(7);
-        for case in (0..20).map(|_| draws.case()) {
-            let mut active = effects.activate([values(effect, "", f64::NAN)]);
-            let with =
-                quasi_static::simulate_with(&case.soil, &case.wheel, &case.condition, &mut active, &SITE);
-            let without = quasi_static::simulate(&case.soil, &case.wheel, &case.condition);
-            // the debug output shows every number to the last bit
-            assert_eq!(format!("{with:?}"), format!("{without:?}"), "{}", effect.name);
-        }
+        assert_neutral(std::iter::once(effect), 7, 20);
     }
 }
 
 #[test]
 fn all_effects_together_at_neutral_strength_are_the_base() {
-    let effects = CompiledEffects::compile(ModelForm::QuasiStatic, expressible()).unwrap();
-    let mut draws = Draws(8);
-    for case in (0..50).map(|_| draws.case()) {
-        let mut active = effects.activate(expressible().map(|effect| values(effect, "", f64::NAN)));
-        let with = quasi_static::simulate_with(&case.soil, &case.wheel, &case.condition, &mut active, &SITE);
-        let without = quasi_static::simulate(&case.soil, &case.wheel, &case.condition);
-        assert_eq!(format!("{with:?}"), format!("{without:?}"));
-    }
+    assert_neutral(expressible(), 8, 50);
 }

@@ -1,10 +1,8 @@
 //! The slip variables of formulas at a slip angle, and the catalogue's effects there.
 
-use formula::Effect;
-use scm::effects::{CompiledEffects, ModelForm};
-use scm::{Averages, quasi_static};
+use scm::Averages;
 
-use crate::support::{Case, base};
+use crate::support::{Case, base, compiled, law};
 use crate::validation::effects::{SITE, with_effect};
 
 /// The base case at a slip angle.
@@ -14,16 +12,14 @@ fn at(slip: f64, degrees: f64) -> Case {
     case
 }
 
-fn lateral_force_by(formula: &str, case: &Case) -> f64 {
-    let text = format!(
-        "name = \"e\"\nsummary = \"s\"\nsource = \"s\"\nlateral_force = \"wheel_load / 100 * {formula}\"\n"
-    );
-    let effect = Effect::read(&text).expect("a formula");
-    let effects = CompiledEffects::compile(ModelForm::QuasiStatic, [&effect]).expect("a form");
-    let mut active = effects.activate([Vec::new()]);
-    quasi_static::simulate_with(&case.soil, &case.wheel, &case.condition, &mut active, &SITE)
-        .expect("a balance")
-        .lateral_force_n
+/// Returns the lateral force with these formulas, where `formula` gives it in newtons.
+fn lateral_force_by(formulas: &str, formula: &str, case: &Case) -> f64 {
+    let law = law(&format!(
+        "{formulas}lateral_force = \"wheel_load / 100 * {formula}\""
+    ));
+    let effects = compiled([&law]);
+    let run = case.simulate_with(&mut effects.activate([Vec::new()]), &SITE);
+    run.expect("a balance").lateral_force_n
 }
 
 #[test]
@@ -35,20 +31,15 @@ fn formulas_see_the_slip_angle_and_both_parts_of_the_slip() {
         ("longitudinal_slip", 1.0 - 0.8 * 0.75_f64.sqrt()),
         ("lateral_slip", 0.4),
     ] {
-        let got = lateral_force_by(formula, &at(0.2, 30.0));
+        let got = lateral_force_by("", formula, &at(0.2, 30.0));
         assert!((got - expected).abs() < 1e-12, "{formula}: {got}");
     }
 }
 
 #[test]
 fn a_slip_that_an_effect_changes_changes_both_parts() {
-    let text = "name = \"e\"\nsummary = \"s\"\nsource = \"s\"\nslip = \"slip + 0.3\"\nlateral_force = \"wheel_load / 100 * lateral_slip\"\n";
-    let effect = Effect::read(text).expect("a formula");
-    let effects = CompiledEffects::compile(ModelForm::QuasiStatic, [&effect]).expect("a form");
-    let case = at(0.2, 30.0);
-    let mut active = effects.activate([Vec::new()]);
-    let run = quasi_static::simulate_with(&case.soil, &case.wheel, &case.condition, &mut active, &SITE);
-    assert!((run.expect("a balance").lateral_force_n - 0.25).abs() < 1e-12);
+    let got = lateral_force_by("slip = \"slip + 0.3\"\n", "lateral_slip", &at(0.2, 30.0));
+    assert!((got - 0.25).abs() < 1e-12, "{got}");
 }
 
 fn with(case: &Case, name: &str, strength: &str, value: f64) -> Averages {
@@ -97,16 +88,11 @@ fn exponents_follow_skid_and_slip_angle() {
         // only the part along the heading counts
         ("slip_sinkage", "exponent_per_slip", at(0.2, 60.0), 0.4 * 0.1),
     ] {
-        let (got, expected) = (
-            with(&case, name, strength, 0.4),
-            equivalent(&case, added_exponent),
-        );
+        let got = with(&case, name, strength, 0.4).sinkage_m;
+        let expected = equivalent(&case, added_exponent).sinkage_m;
         assert!(
-            (got.sinkage_m - expected.sinkage_m).abs() < 1e-9,
-            "{name} at slip {}: {} for {}",
-            case.condition.slip,
-            got.sinkage_m,
-            expected.sinkage_m
+            (got - expected).abs() < 1e-9,
+            "{name}: {got} for {expected} in {case:?}"
         );
     }
 }

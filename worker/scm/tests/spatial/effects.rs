@@ -1,11 +1,11 @@
 //! Effects on the wheel in three dimensions: neutral effects, formulas, mechanisms, measured channels, refusals.
 
 use super::surfaces::{Surface, across};
-use crate::scene::{Track, smooth};
-use crate::support::base;
+use crate::scene::{Track, bars, grousered, smooth};
+use crate::support::law;
 use formula::Effect;
-use scm::Rejection;
-use scm::spatial::{Displacement, Grousers, Protocol, Shape, SpatialRun};
+use scm::spatial::{Displacement, Shape, SpatialRun};
+use scm::{Averages, Rejection};
 
 /// An effect with one dimensionless parameter `a` and these formulas.
 fn effect(formulas: &str) -> Effect {
@@ -14,10 +14,6 @@ fn effect(formulas: &str) -> Effect {
          [parameters.a]\nunit = \"1\"\nneutral = 0\nprior = {{ half_normal = 1.0 }}\n"
     );
     Effect::read(&text).unwrap_or_else(|error| panic!("{error}: {text}"))
-}
-
-fn catalogue(name: &str) -> &'static Effect {
-    formula::catalogue::find(name).unwrap_or_else(|| panic!("no effect {name}"))
 }
 
 /// A short run on a coarse grid.
@@ -32,7 +28,7 @@ fn short_smooth() -> Track {
 }
 
 fn short_with_grousers() -> Track {
-    short(Track::with_grousers(base(0.2, 100.0, 30.0)))
+    short(grousered(0.2))
 }
 
 /// A smooth wheel of 45 facets, a model of which keeps lanes apart.
@@ -43,10 +39,16 @@ fn short_mesh() -> Track {
 }
 
 fn rejection(track: &Track) -> Rejection {
-    match track.try_roll() {
-        Ok(run) => panic!("{:?}: {track:?}", run.averages),
-        Err(rejection) => rejection,
-    }
+    track.try_roll().expect_err("a rejection")
+}
+
+#[track_caller]
+fn assert_invalid(track: &Track, what: &str) {
+    let message = rejection(track).to_string();
+    assert!(
+        message.starts_with(&format!("invalid parameter: {what}")),
+        "{message}"
+    );
 }
 
 /// Greatest relative difference of two runs, over all steps and channels.
@@ -76,8 +78,7 @@ fn neutral_effects_are_none_bit_for_bit() {
 
 /// Strengths at their neutral values, other parameters at typical values.
 fn neutral(effect: &Effect) -> Vec<f64> {
-    let typical = typical(effect);
-    let values = effect.parameters.iter().zip(typical);
+    let values = effect.parameters.iter().zip(typical(effect));
     values
         .map(|(parameter, typical)| parameter.neutral.unwrap_or(typical))
         .collect()
@@ -111,8 +112,7 @@ fn formulas_equal_to_the_base_laws_give_the_base() {
                     let base = track.roll();
                     track.case.soil.shear_velocity_m_s = 0.0;
                     track.enter(&effect(formulas), &[1.0]);
-                    let got = track.roll();
-                    let off = difference(&base, &got);
+                    let off = difference(&base, &track.roll());
                     assert!(off < 1e-9, "{formulas}: {off:e}");
                 }
             }
@@ -128,10 +128,8 @@ fn a_stress_scaled_once_is_the_stress_scaled_at_every_height() {
         once.settings.displacement = keeper;
         let mut always = once.clone();
         once.enter(&effect("shear = \"tau * (1 - a * exp(-j / 0.01))\""), &[1.0]);
-        always.enter(
-            &effect("shear = \"min(tau, 1e9) * (1 - a * exp(-j / 0.01))\""),
-            &[1.0],
-        );
+        let hidden = effect("shear = \"min(tau, 1e9) * (1 - a * exp(-j / 0.01))\"");
+        always.enter(&hidden, &[1.0]);
         let off = difference(&once.roll(), &always.roll());
         assert!(off < 1e-9, "{keeper:?}: {off:e}");
     }
@@ -153,10 +151,7 @@ fn formulas_see_the_nodes_they_stand_for() {
         "tau > 0 and tau < tau_max",
         "pass == 1",
     ] {
-        let [first, second] = match rule.split_once(" and ") {
-            Some((first, second)) => [first, second],
-            None => [rule, rule],
-        };
+        let (first, second) = rule.split_once(" and ").unwrap_or((rule, rule));
         for track in [short_smooth(), short_with_grousers(), short_mesh()] {
             let mut track = track;
             let kept = format!("shear = \"tau * if({first}, if({second}, a, log(-1)), log(-1))\"");
@@ -177,7 +172,7 @@ fn an_inadmissible_value_is_refused_with_its_name_and_inputs() {
         ("slip = \"slip + a\"", "slip is 1.2"),
         ("wheel_load = \"wheel_load * (1 - a)\"", "wheel_load is 0 N"),
         (
-            "wheel_load = \"wheel_load - a * 100 * drawbar_pull\"",
+            "wheel_load = \"wheel_load - a * 1e2 * drawbar_pull\"",
             "wheel_load is -",
         ),
         ("torque = \"torque * log(-a)\"", "torque is NaN N m"),
@@ -186,19 +181,18 @@ fn an_inadmissible_value_is_refused_with_its_name_and_inputs() {
         track.enter(&effect(formulas), &[1.0]);
         let refused = rejection(&track);
         assert_eq!(refused.kind(), "formula", "{refused}");
-        let message = refused.to_string();
+        let (message, begin) = (refused.to_string(), format!("effect trial: {quantity}"));
         assert!(
-            message.starts_with(&format!("effect trial: {quantity}")),
+            message.starts_with(&begin) && message.contains("a = 1"),
             "{message}"
         );
-        assert!(message.contains("a = 1"), "{message}");
     }
 }
 
 #[test]
 fn a_load_that_follows_the_pull_is_the_one_that_is_carried() {
     let mut track = smooth(0.2, 100.0, 30.0);
-    track.enter(catalogue("load_transfer"), &[0.15]);
+    track.enter_named("load_transfer", &[0.15]);
     let run = track.roll();
     let (loads, pulls) = (&run.history.wheel_load_n, &run.history.drawbar_pull_n);
     let mut surplus = loads[0] - 100.0;
@@ -216,11 +210,11 @@ fn measured_channels_enter_only_histories_and_averages() {
     let track = smooth(0.2, 100.0, 30.0);
     let base = track.roll();
     let mut measured = track.clone();
-    measured.enter(catalogue("sled_tare"), &[3.0]);
-    measured.enter(catalogue("torque_gain"), &[0.05]);
-    measured.enter(catalogue("sinkage_offset"), &[0.002]);
+    measured.enter_named("sled_tare", &[3.0]);
+    measured.enter_named("torque_gain", &[0.05]);
+    measured.enter_named("sinkage_offset", &[0.002]);
     // a sensor error so large that the soil would seem to give power
-    measured.enter(catalogue("drawbar_pull_gain"), &[1.0]);
+    measured.enter_named("drawbar_pull_gain", &[1.0]);
     let run = measured.roll();
     assert!((run.dissipated_power_w / base.dissipated_power_w - 1.0).abs() < 0.02);
     assert_eq!(run.history.wheel_load_n[..50], base.history.wheel_load_n[..50]);
@@ -238,7 +232,7 @@ fn rebound_is_a_softer_elastic_line() {
     let mut track = short_smooth();
     let mut softer = track.clone();
     softer.ground.elastic_stiffness_pa_m = 1.0 / (1.0 / 1e9 + 5e-8);
-    track.enter(catalogue("elastic_rebound"), &[5e-8]);
+    track.enter_named("elastic_rebound", &[5e-8]);
     assert_eq!(track.roll(), softer.roll());
 }
 
@@ -246,38 +240,28 @@ fn rebound_is_a_softer_elastic_line() {
 fn a_flattened_rim_is_as_long_as_its_chord_and_a_mesh_has_none() {
     let mut track = smooth(0.2, 100.0, 30.0);
     let rigid = track.averages();
-    track.enter(catalogue("wheel_flexibility"), &[5e-5]);
+    track.enter_named("wheel_flexibility", &[5e-5]);
     let flat = track.averages();
     // half the chord of a circle of 125 mm cut off by 5 mm is 35 mm long
     assert!(flat.contact_length_m > 0.035, "{flat:?}");
     assert!(flat.sinkage_m < 0.5 * rigid.sinkage_m, "{flat:?}");
     track.shape = short_mesh().shape;
-    let message = rejection(&track).to_string();
-    assert!(
-        message.starts_with(
-            "invalid parameter: deflection_m_n = 0.00005 m/N must be 0 for a wheel given as a mesh"
-        ),
-        "{message}"
+    assert_invalid(
+        &track,
+        "deflection_m_n = 0.00005 m/N must be 0 for a wheel given as a mesh",
     );
     track.effects.clear();
-    track.enter(catalogue("edge_loss"), &[0.005]);
-    let message = rejection(&track).to_string();
-    assert!(
-        message.starts_with("invalid parameter: width_m = 0.102"),
-        "{message}"
-    );
+    track.enter_named("edge_loss", &[0.005]);
+    assert_invalid(&track, "width_m = 0.102");
 }
 
 #[test]
 fn grousers_on_a_flattened_rim_are_pushed_in_with_it() {
     let mut track = short_with_grousers();
     let rigid = track.averages();
-    track.enter(catalogue("wheel_flexibility"), &[5e-5]);
+    track.enter_named("wheel_flexibility", &[5e-5]);
     let flat = track.averages();
-    assert!(
-        flat.sinkage_m < rigid.sinkage_m && flat.sinkage_m > -0.009,
-        "{flat:?}"
-    );
+    assert!((-0.009..rigid.sinkage_m).contains(&flat.sinkage_m), "{flat:?}");
 }
 
 #[test]
@@ -285,32 +269,25 @@ fn digging_deepens_the_rut_with_slip_and_from_pass_to_pass() {
     let deeper = |slip: f64, pass: u32| {
         let mut track = smooth(slip, 100.0, 30.0);
         track.case.condition.pass = pass;
-        track.settings.protocol = Protocol::Steady {
-            tolerance: 0.005,
-            most_travel_m: 0.3,
-        };
+        track.end_steady(0.005, 0.3);
         let base = track.averages().sinkage_m;
-        track.enter(catalogue("slip_digging"), &[0.01]);
+        track.enter_named("slip_digging", &[0.01]);
         track.averages().sinkage_m - base
     };
-    let by_slip = [0.05, 0.2, 0.6].map(|slip| deeper(slip, 1));
+    let [low, middle, high] = [0.05, 0.2, 0.6].map(|slip| deeper(slip, 1));
     assert!(
-        by_slip[0] > 0.0 && by_slip[1] > 3.0 * by_slip[0] && by_slip[2] > 3.0 * by_slip[1],
-        "{by_slip:?}"
+        low > 0.0 && middle > 3.0 * low && high > 3.0 * middle,
+        "{low} {middle} {high}"
     );
-    assert!(deeper(0.2, 2) > 1.5 * by_slip[1], "what was dug stays dug");
+    assert!(deeper(0.2, 2) > 1.5 * middle, "what was dug stays dug");
 }
 
 #[test]
 fn soil_is_stiffer_near_the_ends_of_its_bin() {
     let mut track = smooth(0.2, 100.0, 30.0).for_a_travel_of(0.7, 0.1);
     let base = track.roll().history;
-    track.enter(catalogue("end_wall"), &[0.3, 0.1]);
-    let message = rejection(&track).to_string();
-    assert!(
-        message.starts_with("invalid parameter: bin_length_m = NaN m must be known"),
-        "{message}"
-    );
+    track.enter_named("end_wall", &[0.3, 0.1]);
+    assert_invalid(&track, "bin_length_m = NaN m must be known");
     track.site.bin_length_m = Some(0.95);
     let walls = track.roll().history;
     // the settled wheel sinks less at either end than in the middle
@@ -319,28 +296,22 @@ fn soil_is_stiffer_near_the_ends_of_its_bin() {
         base.sinkage_m[step] - walls.sinkage_m[step]
     };
     let [rear, middle, front] = [0.05, 0.5, 1.0].map(lifted);
+    assert!(middle < 3e-5, "{middle}");
     assert!(
-        middle < 3e-5 && rear > 2.0 * middle && front > 4.0 * middle,
+        rear > 2.0 * middle && front > 4.0 * middle,
         "{rear} {middle} {front}"
     );
     track.site.bin_length_m = Some(0.9);
-    let message = rejection(&track).to_string();
-    assert!(
-        message.contains("bin_length_m = 0.9 m must be long enough"),
-        "{message}"
-    );
+    assert_invalid(&track, "bin_length_m = 0.9 m must be long enough");
 }
 
 #[test]
 fn formulas_see_the_number_of_every_pass() {
     let mut track = smooth(0.2, 100.0, 30.0);
     track.case.condition.pass = 2;
-    track.settings.protocol = Protocol::Steady {
-        tolerance: 0.005,
-        most_travel_m: 0.3,
-    };
+    track.end_steady(0.005, 0.3);
     let base = track.averages();
-    track.enter(catalogue("multipass_hardening"), &[0.3]);
+    track.enter_named("multipass_hardening", &[0.3]);
     let harder = track.averages();
     assert!(harder.sinkage_m < base.sinkage_m - 1e-4, "{harder:?} {base:?}");
     track.case.condition.pass = 1;
@@ -354,11 +325,7 @@ fn all_effects_at_once_are_finite_and_repeat() {
     for grousers in [false, true] {
         let mut track = short_smooth();
         if grousers {
-            track.shape = Shape::Rim(Grousers {
-                count: 12,
-                height_m: 0.009,
-                thickness_m: 0.002,
-            });
+            track.shape = Shape::Rim(bars(12, 0.009, 0.002));
         }
         track.site.density_kg_m3 = Some(1400.0);
         track.site.bin_length_m = Some(2.0);
@@ -368,12 +335,7 @@ fn all_effects_at_once_are_finite_and_repeat() {
         }
         let run = track.roll();
         assert_eq!(run, track.roll());
-        assert!(
-            run.history
-                .channels()
-                .iter()
-                .all(|c| c.iter().all(|x| x.is_finite()))
-        );
+        assert!(run.history.channels().concat().iter().all(|x| x.is_finite()));
     }
 }
 
@@ -381,10 +343,7 @@ fn all_effects_at_once_are_finite_and_repeat() {
 fn formulas_see_the_slip_across_the_heading() {
     let mut track = short_smooth();
     track.case.condition.slip_angle_rad = 10_f64.to_radians();
-    let text =
-        "name = \"e\"\nsummary = \"s\"\nsource = \"s\"\nlateral_force = \"wheel_load * lateral_slip\"\n";
-    let effect = Effect::read(text).expect("a formula");
-    track.enter(&effect, &[]);
+    track.enter(&law("lateral_force = \"wheel_load * lateral_slip\""), &[]);
     let condition = track.case.condition;
     let lateral_slip = formula::slip::variables(condition.slip, condition.slip_angle_rad)[3].1;
     let expected = condition.wheel_load_n * lateral_slip;
@@ -394,25 +353,23 @@ fn formulas_see_the_slip_across_the_heading() {
 #[test]
 fn a_measurement_offset_moves_no_soil() {
     // 10 degrees of slip angle and a light load settle late
-    let mut track = crate::scene::smooth(0.4, 60.0, 30.0);
+    let mut track = smooth(0.4, 60.0, 30.0);
     track.case.condition.slip_angle_rad = 10_f64.to_radians();
     let without = track.roll().averages;
     for offset in [1e-3, -without.sinkage_m] {
         let mut with = track.clone();
-        with.enter(catalogue("sinkage_offset"), &[offset]);
+        with.enter_named("sinkage_offset", &[offset]);
         let with = with.roll().averages;
-        assert_eq!(with.drawbar_pull_n.to_bits(), without.drawbar_pull_n.to_bits());
-        assert_eq!(
-            with.simulated_travel_m.to_bits(),
-            without.simulated_travel_m.to_bits()
-        );
+        let bits =
+            |averages: &Averages| [averages.drawbar_pull_n, averages.simulated_travel_m].map(f64::to_bits);
+        assert_eq!(bits(&with), bits(&without));
     }
 }
 
 #[test]
 fn a_sinkage_exponent_beyond_its_bound_is_refused() {
     let mut track = short_smooth();
-    track.enter(catalogue("slip_sinkage"), &[1e6]);
+    track.enter_named("slip_sinkage", &[1e6]);
     assert_eq!(rejection(&track).kind(), "formula");
 }
 
@@ -421,6 +378,6 @@ fn a_hardened_track_stiffens_from_the_second_pass_on() {
     let mut track = short_smooth();
     track.case.condition.pass = 2;
     let without = track.roll().averages;
-    track.enter(catalogue("multipass_hardening"), &[0.3]);
+    track.enter_named("multipass_hardening", &[0.3]);
     assert!(track.roll().averages.sinkage_m < without.sinkage_m);
 }

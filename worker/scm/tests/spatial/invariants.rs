@@ -1,9 +1,9 @@
 //! Invariants that hold for all parameters.
 
-use crate::scene::Track;
+use crate::scene::{Track, bars};
 use crate::support::Draws;
 use scm::Rejection;
-use scm::spatial::{Displacement, Grousers, Protocol, Shape};
+use scm::spatial::{Displacement, Shape};
 
 const RUNS: u64 = 120;
 
@@ -14,11 +14,9 @@ fn random(seed: u64) -> Track {
     let mut track = Track::smooth(case);
     let radius = case.wheel.radius_m;
     if draws.uniform(0.0, 1.0) < 0.5 {
-        track.shape = Shape::Rim(Grousers {
-            count: draws.uniform(6.0, 24.0) as u32,
-            height_m: radius * draws.uniform(0.02, 0.1),
-            thickness_m: radius * draws.uniform(0.01, 0.05),
-        });
+        let (count, height) = (draws.uniform(6.0, 24.0) as u32, draws.uniform(0.02, 0.1));
+        let thickness = draws.uniform(0.01, 0.05);
+        track.shape = Shape::Rim(bars(count, radius * height, radius * thickness));
     }
     track.ground.flow_fraction = draws.uniform(0.0, 0.5);
     track.ground.bearing_credit = draws.uniform(0.0, 0.5);
@@ -30,10 +28,7 @@ fn random(seed: u64) -> Track {
         }
     }
     track.settings.dem_spacing_m = case.wheel.width_m / 16.0;
-    track.settings.protocol = Protocol::Steady {
-        tolerance: 0.02,
-        most_travel_m: 1.5 * radius,
-    };
+    track.end_steady(0.02, 1.5 * radius);
     track
 }
 
@@ -59,11 +54,8 @@ fn random_cases_put_power_into_the_soil_carry_the_load_and_are_finite() {
         };
         answered += 1;
         let got = &run.averages;
-        assert!(
-            run.dissipated_power_w >= 0.0,
-            "{} W: {track:?}",
-            run.dissipated_power_w
-        );
+        let power = run.dissipated_power_w;
+        assert!(power >= 0.0, "{power} W: {track:?}");
         assert!(got.residual_load_n <= 0.025 * load, "{got:?}: {track:?}");
         for history in run.history.channels() {
             assert_eq!(history.len(), run.history.len());

@@ -1,11 +1,11 @@
 //! A wheel of triangles agrees with the wheel that the triangles describe.
 
 use super::surfaces::{Surface, across};
+use crate::scene::{bars, max_abs};
 use crate::support::{Case, base};
 use scm::effects::{Active, Site};
 use scm::spatial::{
-    Footprint, Ground, Grousers, Normals, Protocol, RunSettings, Scene, Shape, SpatialRun, SurfaceMesh,
-    simulate,
+    Footprint, Ground, Normals, Protocol, RunSettings, Scene, Shape, SpatialRun, SurfaceMesh,
 };
 
 const R: f64 = 0.125;
@@ -24,7 +24,8 @@ fn roll(case: &Case, shape: &Shape, settings: RunSettings) -> SpatialRun {
         effects: &Active::default(),
         site: Site::default(),
     };
-    simulate(&scene, &case.condition, &settings).unwrap_or_else(|rejection| panic!("{rejection}"))
+    scm::spatial::simulate(&scene, &case.condition, &settings)
+        .unwrap_or_else(|rejection| panic!("{rejection}"))
 }
 
 /// A window of 0.3 m after a transient of 0.2 m.
@@ -41,20 +42,16 @@ fn fixed(case: &Case) -> RunSettings {
     }
 }
 
-fn mesh(surface: SurfaceMesh, normals: Normals) -> Shape {
+fn mesh(surface: SurfaceMesh, repeats_per_turn: Option<u32>, normals: Normals) -> Shape {
     Shape::Mesh {
         surface,
-        repeats_per_turn: None,
+        repeats_per_turn,
         normals,
     }
 }
 
 fn rim(grousers: u32) -> Shape {
-    Shape::Rim(Grousers {
-        count: grousers,
-        height_m: 0.009,
-        thickness_m: 0.002,
-    })
+    Shape::Rim(bars(grousers, 0.009, 0.002))
 }
 
 /// Differences of F, T and z, relative to W, W R and z.
@@ -86,7 +83,7 @@ fn a_faceted_cylinder_is_the_analytic_rim_to_second_order_in_its_facets() {
     for normals in [Normals::Surface, Normals::Radial] {
         let mut last: Option<f64> = None;
         for facets in [45, 90, 180, 360] {
-            let got = roll(&case, &mesh(cylinder(facets), normals), settings);
+            let got = roll(&case, &mesh(cylinder(facets), None, normals), settings);
             let [f, t, z] = differences(&case, &got, &expected);
             println!("{normals:?}, {facets} facets: F {f:+.5} W, T {t:+.5} W R, z {z:+.5} z");
             // chords lie above the arc by R (π/N)²/3 on average, 0.2 mm of 5 mm for 45 facets
@@ -132,11 +129,7 @@ fn boxes_on_a_rim_are_the_analytic_grousers_but_for_the_thrust_of_their_flanks()
             ..fixed(&case)
         };
         let expected = roll(&case, &rim(12), settings);
-        let shape = |normals| Shape::Mesh {
-            surface: with_boxes(360),
-            repeats_per_turn: Some(12),
-            normals,
-        };
+        let shape = |normals| mesh(with_boxes(360), Some(12), normals);
         let got = roll(&case, &shape(Normals::Radial), settings);
         let deviations = differences(&case, &got, &expected);
         println!("{dem_spacing_m} m, radial: {deviations:.5?}");
@@ -155,15 +148,9 @@ fn boxes_on_a_rim_are_the_analytic_grousers_but_for_the_thrust_of_their_flanks()
 fn the_period_is_found_from_the_vertices() {
     let case = case();
     let settings = RunSettings::default();
-    let given = |repeats_per_turn| Shape::Mesh {
-        surface: with_boxes(360),
-        repeats_per_turn,
-        normals: Normals::Surface,
-    };
-    assert_eq!(
-        roll(&case, &given(None), settings),
-        roll(&case, &given(Some(12)), settings)
-    );
+    let [found, given] = [None, Some(12)]
+        .map(|repeats| roll(&case, &mesh(with_boxes(360), repeats, Normals::Surface), settings));
+    assert_eq!(found, given);
 }
 
 /// A barrel: 3 mm lower at the sides than in the middle, with grousers.
@@ -183,11 +170,7 @@ fn a_symmetric_mesh_feels_no_lateral_force_and_half_of_it_stands_for_both() {
     };
     let shape = Shape::from(barrel());
     let (halved, got) = (roll(&case, &shape, half), roll(&case, &shape, whole));
-    let largest = got
-        .history
-        .lateral_force_n
-        .iter()
-        .fold(0.0_f64, |largest, f| largest.max(f.abs()));
+    let largest = max_abs(&got.history.lateral_force_n);
     println!("largest lateral force {largest:e} N");
     assert!(largest < 1e-9 * case.condition.wheel_load_n, "{largest:e} N");
     let [f, t, z] = differences(&case, &halved, &got);
@@ -207,11 +190,7 @@ fn a_barrel_sinks_deeper_than_the_cylinder() {
     let surface = Surface::default().rim(R, 360, &across(B, 32), round).0;
     let barrel = roll(&case, &Shape::from(surface), settings).averages;
     let cylinder = roll(&case, &Shape::from(cylinder(360)), settings).averages;
-    println!(
-        "z {:.2} mm, {:.2} mm",
-        1e3 * barrel.sinkage_m,
-        1e3 * cylinder.sinkage_m
-    );
+    println!("{barrel:?}\n{cylinder:?}");
     assert!(barrel.sinkage_m > 1.2 * cylinder.sinkage_m);
 }
 
@@ -239,12 +218,8 @@ fn two_narrow_rims_are_two_wheels_of_half_the_load() {
     assert!(near(two.torque_n_m, 2.0 * single.torque_n_m, 0.02), "torque");
     assert!(near(two.b_eff_m, single.b_eff_m, 0.05), "effective width");
     assert!(single.b_eff_m < NARROW && two.b_eff_m < NARROW);
-    let area = |length: f64, width: f64| length * width;
-    let (areas, expected) = (
-        area(two.contact_length_m, B),
-        2.0 * area(single.contact_length_m, NARROW),
-    );
-    assert!(near(areas, expected, 0.03), "no soil touches the gap");
+    let (area, expected) = (two.contact_length_m * B, 2.0 * single.contact_length_m * NARROW);
+    assert!(near(area, expected, 0.03), "no soil touches the gap");
     // in one hull they are a wheel of their joint width
     let length = joint.contact_length_m * B / (2.0 * NARROW);
     let hull = length * 2.0 * NARROW / (length + 2.0 * NARROW);
@@ -289,11 +264,7 @@ fn invalid_meshes_are_rejected() {
             .expect_err("a rejection");
         assert_eq!(rejection.to_string(), format!("invalid parameter: {message}"));
     }
-    let never = Shape::Mesh {
-        surface: good(),
-        repeats_per_turn: Some(0),
-        normals: Normals::Surface,
-    };
+    let never = mesh(good(), Some(0), Normals::Surface);
     let rejection = never.checked(&case().wheel).expect_err("a rejection").to_string();
     assert_eq!(
         rejection,
@@ -305,9 +276,6 @@ fn invalid_meshes_are_rejected() {
 #[test]
 fn a_mesh_gives_the_same_bits_again() {
     let case = case();
-    let shape = Shape::from(barrel());
-    assert_eq!(
-        roll(&case, &shape, fixed(&case)),
-        roll(&case, &shape, fixed(&case))
-    );
+    let [once, again] = [(); 2].map(|()| roll(&case, &Shape::from(barrel()), fixed(&case)));
+    assert_eq!(once, again);
 }

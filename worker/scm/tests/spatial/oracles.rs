@@ -1,19 +1,16 @@
 //! Every row of the validation table holds, oracle by oracle.
 
-use crate::validation::{self, ORACLES, Rows};
+use crate::validation::{self, ORACLES, Row, Rows};
 
 fn holds(add: fn(&mut Rows)) {
     let rows = validation::rows(add);
-    let failed: Vec<String> = rows
-        .iter()
-        .filter(|row| !row.passes())
-        .map(|row| {
-            format!(
-                "{}: {} {} ± {}, not {}",
-                row.case, row.quantity, row.expected, row.tolerance, row.got
-            )
-        })
-        .collect();
+    let show = |r: &Row| {
+        format!(
+            "{}: {} {} ± {}, not {}",
+            r.case, r.quantity, r.expected, r.tolerance, r.got
+        )
+    };
+    let failed: Vec<String> = rows.iter().filter(|row| !row.passes()).map(show).collect();
     assert!(!rows.is_empty() && failed.is_empty(), "{failed:#?}");
 }
 
@@ -89,15 +86,12 @@ fn another_implementation_is_reproduced() {
 
 #[test]
 fn no_oracle_is_left_out_and_a_wrong_figure_fails() {
-    assert_eq!(
-        ORACLES.len(),
-        15,
-        "one test for each, above and in `effects::signatures`"
-    );
+    // there is one test for each, above and in `effects::signatures`
+    assert_eq!(ORACLES.len(), 15);
     let mut rows = Rows::default();
     rows.add("off by more than allowed", "F [N]", 1.0, 1.2, 0.1);
     rows.add("not a number", "F [N]", 1.0, f64::NAN, 0.1);
     rows.add("as expected", "F [N]", 1.0, 1.05, 0.1);
-    let verdicts: Vec<bool> = rows.into_rows().iter().map(validation::Row::passes).collect();
+    let verdicts: Vec<bool> = rows.into_rows().iter().map(Row::passes).collect();
     assert_eq!(verdicts, [false, false, true]);
 }

@@ -1,51 +1,59 @@
 //! Grousers in rows, oblique, V-shaped and bent.
 
 use super::surfaces::{Surface, across};
-use crate::scene::Track;
-use crate::support::base;
+use crate::scene::{Track, bars, grousered};
 use scm::Averages;
-use scm::spatial::{Grousers, Normals, Shape, SurfaceMesh, Tread};
+use scm::spatial::{Grousers, Normals, Shape, Tread};
 
 const R: f64 = 0.125;
 const B: f64 = 0.112;
-const BARS: Grousers = Grousers {
-    count: 12,
-    height_m: 0.009,
-    thickness_m: 0.002,
-};
+const BARS: Grousers = bars(12, 0.009, 0.002);
 
 fn straight() -> Tread {
     Tread::straight(BARS)
 }
 
-/// Two rows, each half a pitch behind the other.
+/// Rows, each shifted against the one before by a share of the pitch.
+fn rows(rows: u32, stagger: f64) -> Tread {
+    Tread {
+        rows,
+        stagger,
+        ..straight()
+    }
+}
+
 fn staggered() -> Tread {
+    rows(2, 0.5)
+}
+
+/// Grousers at an angle to the axle, a V of another angle, and with ends in front `[m]`.
+fn bent(angle_rad: f64, chevron_rad: f64, bow_m: f64) -> Tread {
     Tread {
-        rows: 2,
-        stagger: 0.5,
+        angle_rad,
+        chevron_rad,
+        bow_m,
         ..straight()
     }
 }
 
-/// A V of 20 degrees.
 fn chevron() -> Tread {
-    Tread {
-        chevron_rad: 20f64.to_radians(),
-        ..straight()
-    }
+    bent(0.0, 20f64.to_radians(), 0.0)
 }
 
-/// Grousers 20 degrees off the axle, with ends 6 mm in front.
 fn oblique() -> Tread {
+    bent(20f64.to_radians(), 0.0, 0.006)
+}
+
+/// Gives the grousers of each row a width `[m]`.
+fn with_width(tread: Tread, width_m: f64) -> Tread {
     Tread {
-        angle_rad: 20f64.to_radians(),
-        bow_m: 0.006,
-        ..straight()
+        width_m: Some(width_m),
+        ..tread
     }
 }
 
 fn track(shape: Shape) -> Track {
-    let mut track = Track::with_grousers(base(0.2, 100.0, 30.0)).for_a_travel_of(0.5, 0.3);
+    let mut track = grousered(0.2).for_a_travel_of(0.5, 0.3);
     track.shape = shape;
     track
 }
@@ -62,26 +70,15 @@ fn differences(got: &Averages, expected: &Averages) -> [f64; 3] {
 fn assert_near(got: &Averages, expected: &Averages, bounds: [f64; 3], what: &str) {
     let deviations = differences(got, expected);
     println!("{what}: {deviations:.5?}");
-    let near = deviations
-        .iter()
-        .zip(bounds)
-        .all(|(difference, bound)| difference.abs() < bound);
+    let mut pairs = deviations.iter().zip(bounds);
+    let near = pairs.all(|(difference, bound)| difference.abs() < bound);
     assert!(near, "{what}: {deviations:?}");
 }
 
 #[test]
 fn bars_across_the_whole_wheel_are_straight_grousers_bit_for_bit() {
     let expected = track(Shape::Rim(BARS)).roll();
-    let rows = Tread {
-        rows: 4,
-        width_m: Some(0.25 * B),
-        ..straight()
-    };
-    let unshifted = Tread {
-        stagger: 0.5,
-        ..straight()
-    };
-    for tread in [straight(), rows, unshifted] {
+    for tread in [straight(), with_width(rows(4, 0.0), 0.25 * B), rows(1, 0.5)] {
         assert_eq!(track(Shape::Tread(tread)).roll(), expected, "{tread:?}");
     }
 }
@@ -92,45 +89,13 @@ fn little_stagger_and_small_angles_join_on_to_straight_grousers() {
     let mut whole = track(Shape::Rim(BARS));
     whole.settings.both_halves = true;
     println!("both halves: {:.5?}", differences(&whole.averages(), &expected));
-    let treads = [
-        (
-            "stagger",
-            Tread {
-                rows: 2,
-                stagger: 1e-6,
-                ..straight()
-            },
-        ),
-        (
-            "angle",
-            Tread {
-                angle_rad: 1e-6,
-                ..straight()
-            },
-        ),
-        (
-            "chevron",
-            Tread {
-                chevron_rad: 1e-6,
-                ..straight()
-            },
-        ),
-        (
-            "bow",
-            Tread {
-                bow_m: 1e-8,
-                ..straight()
-            },
-        ),
-        (
-            "width",
-            Tread {
-                width_m: Some(B - 1e-7),
-                ..straight()
-            },
-        ),
-    ];
-    for (what, tread) in treads {
+    for (what, tread) in [
+        ("stagger", rows(2, 1e-6)),
+        ("angle", bent(1e-6, 0.0, 0.0)),
+        ("chevron", bent(0.0, 1e-6, 0.0)),
+        ("bow", bent(0.0, 0.0, 1e-8)),
+        ("width", with_width(straight(), B - 1e-7)),
+    ] {
         let got = track(Shape::Tread(tread)).averages();
         // a search with both halves may end at a different trial, see `symmetry`
         assert_near(&got, &expected, [5e-3, 5e-3, 1e-2], what);
@@ -155,9 +120,8 @@ fn mesh(tread: Tread) -> Shape {
         };
         surface = surface.bent_grousers(R, 12, 0.009, 0.002, &ys, ahead);
     }
-    let surface: SurfaceMesh = surface.0;
     Shape::Mesh {
-        surface,
+        surface: surface.0,
         repeats_per_turn: Some(12),
         normals: Normals::Radial,
     }
@@ -165,17 +129,11 @@ fn mesh(tread: Tread) -> Shape {
 
 #[test]
 fn every_tread_is_the_mesh_of_the_same_wheel() {
-    let narrow = Tread {
-        rows: 2,
-        stagger: 0.5,
-        width_m: Some(0.04),
-        ..straight()
-    };
     // the mesh's samples break an oblique bar into patches: it converges from 5.61 mm at 4 mm to 5.45 mm at 2 mm, the tread
     // from 5.37 mm to 5.40 mm
     for (what, tread, dem_spacing_m) in [
         ("staggered", staggered(), 0.004),
-        ("narrow", narrow, 0.004),
+        ("narrow", with_width(staggered(), 0.04), 0.004),
         ("chevron", chevron(), 0.004),
         ("oblique", oblique(), 0.002),
     ] {
@@ -191,20 +149,11 @@ fn every_tread_is_the_mesh_of_the_same_wheel() {
 
 #[test]
 fn a_mirrored_tread_at_the_opposite_slip_angle_has_the_opposite_lateral_force() {
-    let quarter = Tread {
-        rows: 2,
-        stagger: 0.25,
-        ..straight()
-    };
-    let back = Tread {
-        stagger: 0.75,
-        ..quarter
-    };
-    let other = Tread {
-        angle_rad: -oblique().angle_rad,
-        ..oblique()
-    };
-    for (what, tread, mirrored) in [("stagger", quarter, back), ("angle", oblique(), other)] {
+    let other = bent(-oblique().angle_rad, 0.0, 0.006);
+    for (what, tread, mirrored) in [
+        ("stagger", rows(2, 0.25), rows(2, 0.75)),
+        ("angle", oblique(), other),
+    ] {
         let roll = |tread, slip_angle_rad| {
             let mut track = track(Shape::Tread(tread));
             track.case.condition.slip_angle_rad = slip_angle_rad;
@@ -221,14 +170,9 @@ fn a_mirrored_tread_at_the_opposite_slip_angle_has_the_opposite_lateral_force() 
 
 #[test]
 fn half_of_a_symmetric_tread_stands_for_both_and_no_other_is_halved() {
-    let three = Tread {
-        rows: 3,
-        stagger: 0.5,
-        ..straight()
-    };
     for (what, tread, symmetric) in [
         ("chevron", chevron(), true),
-        ("three rows", three, true),
+        ("three rows", rows(3, 0.5), true),
         ("two rows", staggered(), false),
         ("oblique", oblique(), false),
     ] {
@@ -237,20 +181,21 @@ fn half_of_a_symmetric_tread_stands_for_both_and_no_other_is_halved() {
         track.settings.both_halves = true;
         let whole = track.roll();
         assert_eq!(halved == whole, !symmetric, "{what}");
-        assert_near(&halved.averages, &whole.averages, [1e-3, 1e-3, 1e-3], what);
+        assert_near(&halved.averages, &whole.averages, [1e-3; 3], what);
     }
 }
 
 #[test]
 fn it_does_not_matter_where_on_the_grid_a_row_ends() {
     // widths of 48 mm to 56 mm end anywhere in lanes of 4 mm
-    let runs: Vec<Averages> = (0..=8)
-        .map(|mm| Tread {
-            width_m: Some(0.048 + 1e-3 * f64::from(mm)),
-            ..staggered()
-        })
-        .map(|tread| track(Shape::Tread(tread)).averages())
-        .collect();
+    let run = |mm: u32| {
+        track(Shape::Tread(with_width(
+            staggered(),
+            0.048 + 1e-3 * f64::from(mm),
+        )))
+        .averages()
+    };
+    let runs: Vec<Averages> = (0..=8).map(run).collect();
     for quantity in [
         |a: &Averages| a.drawbar_pull_n / 100.0,
         |a: &Averages| a.torque_n_m / (100.0 * R),

@@ -2,22 +2,13 @@
 
 use super::Rows;
 use super::row::Bounds;
-use crate::scene::{Track, smooth};
-use crate::support::base;
+use crate::scene::{Track, grousered, smooth};
 
 /// Bounds against the finest grid: a smooth wheel changes by its ends of contact, grousers by the columns that they shape.
-const GRID: Bounds = Bounds {
-    pull: 0.015,
-    torque: 0.01,
-    sinkage: 0.03,
-};
+const GRID: Bounds = [0.015, 0.01, 0.03];
 /// Soil behind the axle must keep its height for any number of steps: a wheel that dug into it at every step would sink 7 %
 /// deeper in 50 times as many steps.
-const STEP: Bounds = Bounds {
-    pull: 0.01,
-    torque: 0.005,
-    sinkage: 0.03,
-};
+const STEP: Bounds = [0.01, 0.005, 0.03];
 
 fn figures(track: &Track) -> [f64; 3] {
     let got = track.averages();
@@ -25,16 +16,10 @@ fn figures(track: &Track) -> [f64; 3] {
 }
 
 pub(crate) fn add(rows: &mut Rows) {
-    let tracks = [
+    for (name, track, finest, shortest) in [
         ("smooth", smooth(0.2, 100.0, 30.0), 1e-3, 1e-5),
-        (
-            "grousers",
-            Track::with_grousers(base(0.2, 100.0, 30.0)),
-            2e-3,
-            6.25e-5,
-        ),
-    ];
-    for (name, track, finest, shortest) in tracks {
+        ("grousers", grousered(0.2), 2e-3, 6.25e-5),
+    ] {
         let mut track = track.for_a_travel_of(0.3, 0.16);
         let on_grid = |track: &Track, spacing: f64| {
             let mut track = track.clone();

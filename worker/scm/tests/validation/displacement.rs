@@ -8,11 +8,7 @@ use super::row::Bounds;
 use crate::scene::smooth;
 use scm::spatial::Displacement;
 
-const BOUNDS: Bounds = Bounds {
-    pull: 0.015,
-    torque: 0.01,
-    sinkage: 0.04,
-};
+const BOUNDS: Bounds = [0.015, 0.01, 0.04];
 
 pub(crate) fn add(rows: &mut Rows) {
     // K mm, keeper, F N, T N m, z mm: s 0.2, 100 N

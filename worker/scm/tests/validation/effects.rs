@@ -4,11 +4,11 @@
 
 use formula::Effect;
 use formula::catalogue::find;
-use scm::effects::{CompiledEffects, ModelForm, Site};
-use scm::{Averages, quasi_static};
+use scm::Averages;
+use scm::effects::Site;
 
 use super::Rows;
-use crate::support::{Case, base};
+use crate::support::{Case, base, compiled};
 
 const SIGNATURES: &str = include_str!("../reference/signatures.csv");
 
@@ -58,9 +58,8 @@ pub(crate) fn values(effect: &Effect, strength: &str, value: f64) -> Vec<f64> {
 pub(crate) fn with_effect(case: &Case, name: &str, strength: &str, value: f64, site: &Site) -> Averages {
     let effect = find(name).expect("an effect of the catalogue");
     assert!(effect.parameter(strength).is_some(), "{name} has no {strength}");
-    let effects = CompiledEffects::compile(ModelForm::QuasiStatic, [effect]).expect("a form in this model");
-    let mut active = effects.activate([values(effect, strength, value)]);
-    quasi_static::simulate_with(&case.soil, &case.wheel, &case.condition, &mut active, site)
+    let effects = compiled([effect]);
+    case.simulate_with(&mut effects.activate([values(effect, strength, value)]), site)
         .unwrap_or_else(|rejection| panic!("{name}: {rejection}"))
 }
 
@@ -87,13 +86,8 @@ pub(crate) fn add(rows: &mut Rows) {
                 let exception = EXCEPTIONS.iter().find(|e| (e.0, e.1, e.2) == (name, column, i));
                 let slack = exception.map_or(0.0, |e| e.3);
                 let tolerance = 1.02 * ROUNDING[i] + RELATIVE * expected.abs() + slack;
-                rows.add(
-                    &format!("{name}, {column}"),
-                    quantity,
-                    expected,
-                    after[i] - before[i],
-                    tolerance,
-                );
+                let case = format!("{name}, {column}");
+                rows.add(&case, quantity, expected, after[i] - before[i], tolerance);
             }
         }
     }
@@ -114,22 +108,11 @@ fn add_equivalents(rows: &mut Rows) {
         ..SITE
     };
     let mean = |stiffening: f64| 1.0 + 2.0 * stiffening * 0.1 / 1.5 * (1.0 - libm::exp(-15.0));
+    let (weaker, softer) = ((1.62_f64 / 9.81).powf(0.7), libm::exp(-0.1));
     for (name, strength, value, site, factor) in [
-        (
-            "gravity_scaling",
-            "gravity_exponent",
-            0.7,
-            moon,
-            (1.62_f64 / 9.81).powf(0.7),
-        ),
+        ("gravity_scaling", "gravity_exponent", 0.7, moon, weaker),
         ("end_wall", "wall_stiffening", 0.3, SITE, mean(0.3)),
-        (
-            "slip_softened_pressure",
-            "softening_per_slip",
-            0.5,
-            SITE,
-            libm::exp(-0.1),
-        ),
+        ("slip_softened_pressure", "softening_per_slip", 0.5, SITE, softer),
     ] {
         let case = reference(0.2, 100.0, 0.01);
         let mut equivalent = case;
@@ -137,13 +120,8 @@ fn add_equivalents(rows: &mut Rows) {
         let expected = channels(&equivalent.simulate());
         let got = channels(&with_effect(&case, name, strength, value, &site));
         for (i, quantity) in ["F [N]", "T [N m]", "z [mm]"].into_iter().enumerate() {
-            rows.add(
-                &format!("{name}, other soil"),
-                quantity,
-                expected[i],
-                got[i],
-                1e-6 * expected[i].abs(),
-            );
+            let (case, tolerance) = (format!("{name}, other soil"), 1e-6 * expected[i].abs());
+            rows.add(&case, quantity, expected[i], got[i], tolerance);
         }
     }
 }

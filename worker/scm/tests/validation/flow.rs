@@ -1,7 +1,7 @@
 //! The lift of the wheel by soil that flows to the border, compared with the prototype for grousers.
 
 use super::Rows;
-use super::grousers::of_the_prototype;
+use super::grousers::prototype;
 
 #[expect(clippy::approx_constant, reason = "3.14 mm is a sinkage")]
 pub(crate) fn add(rows: &mut Rows) {
@@ -12,7 +12,7 @@ pub(crate) fn add(rows: &mut Rows) {
         (0.25, 1.0, 4.24, 0.15),
         (0.5, 1.0, 3.14, 0.35),
     ] {
-        let got = of_the_prototype(0.2, flow, credit).averages();
+        let got = prototype(0.2, flow, credit).averages();
         let case = format!("flow {flow}, credit {credit}");
         rows.add(&case, "z [mm]", expected, 1e3 * got.sinkage_m, tolerance);
     }

@@ -4,25 +4,16 @@
 
 use super::Rows;
 use super::row::Bounds;
-use crate::scene::Track;
-use crate::support::base;
-use scm::spatial::{Grousers, Shape, SpatialRun};
+use crate::scene::{Track, bars, grousered, range};
+use scm::spatial::{Shape, SpatialRun};
 
 /// Differences found: 1.8 N, 0.01 N m, 0.9 %. This model ends contacts between nodes, the prototype at whole cells; it is
 /// not shown that this causes the 1.8 N.
-const BOUNDS: Bounds = Bounds {
-    pull: 0.025,
-    torque: 0.005,
-    sinkage: 0.03,
-};
+const BOUNDS: Bounds = [0.025, 0.005, 0.03];
 
-pub(super) fn of_the_prototype(slip: f64, flow_fraction: f64, bearing_credit: f64) -> Track {
-    let mut track = Track::with_grousers(base(slip, 100.0, 30.0));
-    track.shape = Shape::Rim(Grousers {
-        count: 12,
-        height_m: 0.009,
-        thickness_m: 0.004,
-    });
+pub(super) fn prototype(slip: f64, flow_fraction: f64, bearing_credit: f64) -> Track {
+    let mut track = grousered(slip);
+    track.shape = Shape::Rim(bars(12, 0.009, 0.004));
     track.ground.elastic_stiffness_pa_m = 2e8;
     track.ground.flow_fraction = flow_fraction;
     track.ground.bearing_credit = bearing_credit;
@@ -32,10 +23,7 @@ pub(super) fn of_the_prototype(slip: f64, flow_fraction: f64, bearing_credit: f6
 /// Half of the peak-to-peak swing over the last half of a run.
 fn amplitude(history: &[f64]) -> f64 {
     let steady = &history[history.len() / 2..];
-    let (low, high) = steady
-        .iter()
-        .fold((f64::MAX, f64::MIN), |(low, high), &x| (low.min(x), high.max(x)));
-    0.5 * (high - low)
+    0.5 * range(steady)
 }
 
 /// Period of the oscillation `[s]`, from the greatest Fourier amplitude between 3 and 12 s. The peaks of the autocorrelation
@@ -62,17 +50,15 @@ fn period_s(run: &SpatialRun, history: &[f64]) -> f64 {
 }
 
 pub(crate) fn add(rows: &mut Rows) {
-    let run = of_the_prototype(0.2, 0.0, 1.0).roll();
+    let run = prototype(0.2, 0.0, 1.0).roll();
     rows.add_run("s 0.2", 100.0, [37.8, 6.39, 5.17e-3], &run.averages, BOUNDS);
     // slip-sinkage caused by grousers alone
-    let steep = of_the_prototype(0.6, 0.0, 1.0).averages();
+    let steep = prototype(0.6, 0.0, 1.0).averages();
     rows.add("s 0.6", "z [mm]", 9.5, 1e3 * steep.sinkage_m, 0.06 * 9.5);
 
     // The prototype's oscillation depends on its grid: 13 / 0.96 / 0.83 at 4 mm, these figures at 2 mm, where a grouser is a
     // column of 2 mm.
-    let thin = Track::with_grousers(base(0.2, 100.0, 30.0))
-        .for_a_travel_of(0.6, 0.36)
-        .roll();
+    let thin = grousered(0.2).for_a_travel_of(0.6, 0.36).roll();
     for (quantity, expected, got) in [
         ("F swing [N]", 9.1, amplitude(&thin.history.drawbar_pull_n)),
         ("T swing [N m]", 0.38, amplitude(&thin.history.torque_n_m)),
@@ -83,20 +69,12 @@ pub(crate) fn add(rows: &mut Rows) {
 
     // twelve per turn at omega = 0.01 / 0.125 rad/s; sixteen periods resolve 1 %
     let period = core::f64::consts::TAU / 12.0 / (0.01 / 0.125);
-    let long = Track::with_grousers(base(0.2, 100.0, 30.0))
-        .for_a_travel_of(0.8, 0.36)
-        .roll();
+    let long = grousered(0.2).for_a_travel_of(0.8, 0.36).roll();
     for (quantity, history) in [
         ("period of F [s]", &long.history.drawbar_pull_n),
         ("period of z [s]", &long.history.sinkage_m),
     ] {
-        let got = period_s(&long, history);
-        rows.add(
-            "s 0.2, 2 mm thick",
-            quantity,
-            period,
-            got,
-            0.5 * long.history.step_s,
-        );
+        let (got, half_step) = (period_s(&long, history), 0.5 * long.history.step_s);
+        rows.add("s 0.2, 2 mm thick", quantity, period, got, half_step);
     }
 }

@@ -5,9 +5,8 @@
 
 use super::Rows;
 use super::profile::Profile;
-use crate::scene::{Track, smooth};
-use crate::support::base;
-use scm::spatial::{Footprint, Grousers, Shape};
+use crate::scene::{Track, bars, grousered, smooth};
+use scm::spatial::{Footprint, Shape};
 
 /// kappa from the plates on CMU's sand.
 const KAPPA: f64 = -0.66;
@@ -20,12 +19,8 @@ fn with_kappa(mut track: Track) -> Track {
 
 /// 24 grousers of 5 mm at a slip.
 fn grousers(slip: f64) -> Track {
-    let mut track = Track::with_grousers(base(slip, 100.0, 30.0));
-    track.shape = Shape::Rim(Grousers {
-        count: 24,
-        height_m: 0.005,
-        thickness_m: 0.002,
-    });
+    let mut track = grousered(slip);
+    track.shape = Shape::Rim(bars(24, 0.005, 0.002));
     track
 }
 
@@ -40,13 +35,7 @@ pub(crate) fn add(rows: &mut Rows) {
     let mut on_paper = track.clone();
     on_paper.case.soil.k_phi += on_paper.case.soil.k_c / b_eff;
     let sinkage = Profile::in_balance(&on_paper).sinkage;
-    rows.add(
-        "smooth",
-        "z [mm]",
-        1e3 * sinkage,
-        1e3 * got.sinkage_m,
-        0.03 * 1e3 * sinkage,
-    );
+    rows.add_sinkage("smooth", sinkage, got.sinkage_m, 0.03);
 
     // z computed for the nodes of a rolled footprint under one b_eff; patches would give 16 and 40 mm and 123 and 174 N of 100
     for (slip, expected) in [(0.05, 6.4), (0.4, 7.9)] {
@@ -55,13 +44,7 @@ pub(crate) fn add(rows: &mut Rows) {
         let carried = &run.history.wheel_load_n[run.history.len() / 2..];
         let mean = carried.iter().sum::<f64>() / carried.len() as f64;
         rows.add(&case, "W [N]", 100.0, mean, 0.5);
-        rows.add(
-            &case,
-            "z [mm]",
-            expected,
-            1e3 * run.averages.sinkage_m,
-            0.05 * expected,
-        );
+        rows.add_sinkage(&case, 1e-3 * expected, run.averages.sinkage_m, 0.05);
     }
 
     // without k_c the effective width has no effect
@@ -69,11 +52,6 @@ pub(crate) fn add(rows: &mut Rows) {
     let mut track = grousers(0.2);
     track.settings.footprint = Footprint::Patches;
     let patches = track.averages();
-    for (quantity, expected, got) in [
-        ("F [N]", patches.drawbar_pull_n, hull.drawbar_pull_n),
-        ("T [N m]", patches.torque_n_m, hull.torque_n_m),
-        ("z [mm]", 1e3 * patches.sinkage_m, 1e3 * hull.sinkage_m),
-    ] {
-        rows.add("kappa 0, of patches", quantity, expected, got, 0.0);
-    }
+    let expected = [patches.drawbar_pull_n, patches.torque_n_m, patches.sinkage_m];
+    rows.add_run("kappa 0, of patches", 100.0, expected, &hull, [0.0; 3]);
 }

@@ -25,12 +25,6 @@ pub(crate) fn add(rows: &mut Rows) {
         let run = track.roll();
         let got = run.history.sinkage_m[0];
         // small angles neglect z/4R of the chord, 1 % here; the trial load adds 0.1 %, the grid's ends the rest
-        rows.add(
-            &format!("lowered wheel, {load} N"),
-            "z [mm]",
-            1e3 * expected,
-            1e3 * got,
-            0.02 * 1e3 * expected,
-        );
+        rows.add_sinkage(&format!("lowered wheel, {load} N"), expected, got, 0.02);
     }
 }

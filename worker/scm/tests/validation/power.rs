@@ -2,8 +2,7 @@
 
 use super::Rows;
 use super::profile::Profile;
-use crate::scene::{Track, smooth};
-use crate::support::base;
+use crate::scene::{grousered, smooth};
 
 pub(crate) fn add(rows: &mut Rows) {
     // A frictionless wheel only compacts: P = R_c v, to the grid's 2 % of the resistance.
@@ -24,19 +23,14 @@ pub(crate) fn add(rows: &mut Rows) {
 
     // The power of motor and sled from the means; the hub's vertical motion has no mean power in the steady state. The bound
     // is the tolerance of settled means: 0.5 % of load times speed.
-    for (name, track) in [
-        ("smooth", smooth(0.2, 100.0, 30.0)),
-        ("grousers", Track::with_grousers(base(0.2, 100.0, 30.0))),
-    ] {
+    for (name, track) in [("smooth", smooth(0.2, 100.0, 30.0)), ("grousers", grousered(0.2))] {
         let run = track.for_a_travel_of(0.4, 0.21).roll();
-        let (motor, sled) = (
-            run.averages.torque_n_m * 0.01 / 0.125,
-            run.averages.drawbar_pull_n * speed,
-        );
+        let motor = run.averages.torque_n_m * 0.01 / 0.125;
+        let input = motor - run.averages.drawbar_pull_n * speed;
         rows.add(
             name,
             "P [W]",
-            motor - sled,
+            input,
             run.dissipated_power_w,
             0.005 * 100.0 * speed,
         );

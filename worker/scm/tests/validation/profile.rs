@@ -50,7 +50,7 @@ impl Profile {
     }
 
     /// Pressure under the axle `[Pa]`.
-    fn greatest(&self) -> f64 {
+    fn max_pressure(&self) -> f64 {
         self.modulus * self.sinkage.powf(self.exponent)
     }
 
@@ -61,7 +61,10 @@ impl Profile {
 
     /// Sum, from the front to the rear, over pieces of the contact: place `[m]` and force of the pressure `[N]`.
     pub(super) fn sum(&self, mut piece: impl FnMut(f64, f64) -> f64) -> f64 {
-        let (front, rear) = (self.end(self.sinkage), self.end(self.greatest() / self.elastic));
+        let (front, rear) = (
+            self.end(self.sinkage),
+            self.end(self.max_pressure() / self.elastic),
+        );
         let mut total = 0.0;
         let share = |i: u32| (f64::from(i) + 0.5) / f64::from(POINTS);
         for i in 0..POINTS {
@@ -71,7 +74,7 @@ impl Profile {
         }
         for i in 0..POINTS {
             let x = -rear * share(i);
-            let p = self.greatest() - self.elastic * self.height(x);
+            let p = self.max_pressure() - self.elastic * self.height(x);
             total += piece(x, p * self.width * rear / f64::from(POINTS));
         }
         total
@@ -80,7 +83,7 @@ impl Profile {
     /// Compaction resistance: the work of pressing less the recovered work, per length of the track `[N]`.
     pub(super) fn resistance(&self) -> f64 {
         let pressed = self.modulus * self.sinkage.powf(self.exponent + 1.0) / (self.exponent + 1.0);
-        let given_back = self.greatest() * self.greatest() / (2.0 * self.elastic);
+        let given_back = self.max_pressure() * self.max_pressure() / (2.0 * self.elastic);
         self.width * (pressed - given_back)
     }
 
@@ -89,7 +92,7 @@ impl Profile {
         let end = if x > 0.0 {
             self.end(self.sinkage)
         } else {
-            self.end(self.greatest() / self.elastic)
+            self.end(self.max_pressure() / self.elastic)
         };
         end / f64::from(POINTS)
     }

@@ -21,12 +21,7 @@ impl Row {
 }
 
 /// Largest differences of drawbar pull, torque and sinkage: relative to load, to load times radius, to the sinkage.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Bounds {
-    pub(crate) pull: f64,
-    pub(crate) torque: f64,
-    pub(crate) sinkage: f64,
-}
+pub(crate) type Bounds = [f64; 3];
 
 /// Rows under construction.
 #[derive(Debug, Default)]
@@ -44,13 +39,20 @@ impl Rows {
         got: f64,
         tolerance: f64,
     ) {
+        let case = case.to_owned();
         self.rows.push(Row {
-            case: case.to_owned(),
+            case,
             quantity,
             expected,
             got,
             tolerance,
         });
+    }
+
+    /// Adds a sinkage of which both figures are in metres, with a relative tolerance.
+    pub(crate) fn add_sinkage(&mut self, case: &str, expected: f64, got: f64, tolerance: f64) {
+        let (expected, got) = (1e3 * expected, 1e3 * got);
+        self.add(case, "z [mm]", expected, got, tolerance * expected.abs());
     }
 
     /// Drawbar pull `[N]`, torque \[N m\] and sinkage `[m]` of a wheel of 125 mm under a load `[N]`.
@@ -63,21 +65,9 @@ impl Rows {
         bounds: Bounds,
     ) {
         let [pull, torque, sinkage] = expected;
-        self.add(case, "F [N]", pull, got.drawbar_pull_n, bounds.pull * load);
-        self.add(
-            case,
-            "T [N m]",
-            torque,
-            got.torque_n_m,
-            bounds.torque * load * 0.125,
-        );
-        self.add(
-            case,
-            "z [mm]",
-            1e3 * sinkage,
-            1e3 * got.sinkage_m,
-            1e3 * bounds.sinkage * sinkage.abs(),
-        );
+        self.add(case, "F [N]", pull, got.drawbar_pull_n, bounds[0] * load);
+        self.add(case, "T [N m]", torque, got.torque_n_m, bounds[1] * load * 0.125);
+        self.add_sinkage(case, sinkage, got.sinkage_m, bounds[2]);
     }
 
     pub(crate) fn into_rows(self) -> Vec<Row> {

@@ -2,28 +2,16 @@
 
 use super::Rows;
 use super::row::Bounds;
-use crate::scene::{Track, smooth};
-use crate::support::base;
+use crate::scene::{grousered, smooth};
 
 /// A power of two changes no digit, so the search takes the same trials.
-const EXACT: Bounds = Bounds {
-    pull: 1e-9,
-    torque: 1e-9,
-    sinkage: 1e-9,
-};
+const EXACT: Bounds = [1e-9, 1e-9, 1e-9];
 
 /// Rounding may end the search at another trial, within 0.1 % of the load, which the soil remembers.
-const SEARCH: Bounds = Bounds {
-    pull: 2e-3,
-    torque: 2e-3,
-    sinkage: 5e-3,
-};
+const SEARCH: Bounds = [2e-3, 2e-3, 5e-3];
 
 pub(crate) fn add(rows: &mut Rows) {
-    for (name, track) in [
-        ("smooth", smooth(0.2, 100.0, 30.0)),
-        ("grousers", Track::with_grousers(base(0.2, 100.0, 30.0))),
-    ] {
+    for (name, track) in [("smooth", smooth(0.2, 100.0, 30.0)), ("grousers", grousered(0.2))] {
         let unscaled = track.averages();
         for (factor, bounds) in [(4.0, EXACT), (0.3, SEARCH)] {
             let mut scaled = track.clone();
@@ -48,12 +36,7 @@ pub(crate) fn add(rows: &mut Rows) {
         by_model.case.condition.slip = 1.0 - 0.8 * 0.125 / 0.15;
         let by_model = by_model.averages();
         let expected = [by_model.drawbar_pull_n, by_model.torque_n_m, by_model.sinkage_m];
-        rows.add_run(
-            &format!("{name}, R_s 125, R 150 mm"),
-            100.0,
-            expected,
-            &by_rig.averages(),
-            SEARCH,
-        );
+        let case = format!("{name}, R_s 125, R 150 mm");
+        rows.add_run(&case, 100.0, expected, &by_rig.averages(), SEARCH);
     }
 }

@@ -7,8 +7,7 @@ use crate::scene::{Track, smooth};
 
 /// Adds the effect with a strength and a friction.
 pub(crate) fn entered(mut track: Track, scale: f64, friction: f64) -> Track {
-    let effect = formula::catalogue::find("buried_side_wall").expect("in the catalogue");
-    track.enter(effect, &[scale, friction]);
+    track.enter_named("buried_side_wall", &[scale, friction]);
     track
 }
 
@@ -19,9 +18,8 @@ pub(crate) fn closed_form(track: &Track, sinkage_m: f64) -> f64 {
     let half = (r * r - hub * hub).sqrt();
     let segment = r * r * (half / r).asin() + half * hub;
     let squares = 2.0 * (r * r * half - half.powi(3) / 3.0) - 2.0 * hub * segment + 2.0 * hub * hub * half;
-    let rankine = (0.25 * core::f64::consts::PI + 0.5 * track.case.soil.friction_angle_rad)
-        .tan()
-        .powi(2);
+    let half_angle = 0.25 * core::f64::consts::PI + 0.5 * track.case.soil.friction_angle_rad;
+    let rankine = half_angle.tan().powi(2);
     let unit_weight = track.site.density_kg_m3.expect("a density") * track.site.gravity_m_s2;
     let across = track.case.condition.slip_angle_rad.sin();
     across * rankine * 0.5 * unit_weight * squares

@@ -26,13 +26,7 @@ pub(crate) fn add(rows: &mut Rows) {
             let got = track.averages();
             let case = format!("n {n}, {load} N, rigid-plastic");
             let expected = bekker_sinkage(&track.case, integral);
-            rows.add(
-                &case,
-                "z [mm]",
-                1e3 * expected,
-                1e3 * got.sinkage_m,
-                0.03 * 1e3 * expected,
-            );
+            rows.add_sinkage(&case, expected, got.sinkage_m, 0.03);
 
             // with the usual stiffness, compared with the integrated profile
             let track = frictionless(n, load, 1e9);
@@ -40,25 +34,13 @@ pub(crate) fn add(rows: &mut Rows) {
             let case = format!("n {n}, {load} N, K_e 1e9");
             let paper = Profile::in_balance(&track);
             let resistance = paper.resistance();
-            rows.add(
-                &case,
-                "z [mm]",
-                1e3 * paper.sinkage,
-                1e3 * got.sinkage_m,
-                0.03 * 1e3 * paper.sinkage,
-            );
+            rows.add_sinkage(&case, paper.sinkage, got.sinkage_m, 0.03);
             rows.add(&case, "F [N]", -resistance, got.drawbar_pull_n, 0.05 * resistance);
             // F follows from the simulated sinkage, with its grid error
             let mut simulated = paper;
             simulated.sinkage = got.sinkage_m;
-            let of_sinkage = simulated.resistance();
-            rows.add(
-                &case,
-                "F(z) [N]",
-                -of_sinkage,
-                got.drawbar_pull_n,
-                0.015 * of_sinkage,
-            );
+            let force = simulated.resistance();
+            rows.add(&case, "F(z) [N]", -force, got.drawbar_pull_n, 0.015 * force);
             rows.add(&case, "T [N m]", 0.0, got.torque_n_m, 1e-9);
         }
     }

@@ -4,22 +4,17 @@
 //! `(n / pi) (r sin(pi / n) + t/2 (1 - cos(pi / n)))`.
 
 use super::Rows;
-use crate::scene::Track;
-use crate::support::base;
+use crate::scene::{bars, grousered};
 use scm::spatial::{Grousers, Shape, Tread};
 
-const GROUSERS: Grousers = Grousers {
-    count: 12,
-    height_m: 0.009,
-    thickness_m: 0.002,
-};
+const GROUSERS: Grousers = bars(12, 0.009, 0.002);
 
 /// Elastic ground, into which a tip of half the width goes 0.09 mm `[Pa/m]`.
 const STIFFNESS_PA_M: f64 = 1e10;
 
 pub(crate) fn add(rows: &mut Rows) {
     for (case, number, stagger) in [("1 row", 1, 0.0), ("2 rows", 2, 0.5), ("3 rows", 3, 1.0 / 3.0)] {
-        let mut track = Track::with_grousers(base(0.0, 100.0, 30.0)).for_a_travel_of(0.2, 2.0 * pitch());
+        let mut track = grousered(0.0).for_a_travel_of(0.2, 2.0 * pitch());
         track.case.soil.k_phi = 1e13;
         track.ground.elastic_stiffness_pa_m = STIFFNESS_PA_M;
         track.shape = Shape::Tread(Tread {

@@ -37,7 +37,7 @@ impl Frame {
             Self::NormalScores => {
                 let pairs = prior.marginals().iter().zip(&coordinates);
                 pairs
-                    .map(|(marginal, &z)| marginal.coordinate(marginal.of_normal_score(z)))
+                    .map(|(marginal, &z)| marginal.coordinate(marginal.from_normal_score(z)))
                     .collect()
             }
         }

@@ -28,7 +28,8 @@ impl Contact {
         }
     }
 
-    /// Length of the ends of a strip's lanes towards a neighbouring strip in which these lanes are not in contact.
+    /// Returns the length of the ends of a strip's lanes towards a neighbouring strip in which these lanes are not in
+    /// contact.
     fn ends(&self, terrain: &Terrain, row: usize, mut ending: u64, neighbour: usize) -> f64 {
         let mut length = 0.0;
         while ending != 0 {
@@ -64,7 +65,7 @@ impl Contact {
         length
     }
 
-    /// Distance from a strip's middle to the end of a lane's contact towards a neighbouring strip `[m]`.
+    /// Returns the distance from a strip's middle to the end of a lane's contact towards a neighbouring strip `[m]`.
     fn end_of(&self, row: usize, lane: usize, neighbour: usize) -> f64 {
         let quad = self.quad(row, lane);
         let end = if neighbour > row {

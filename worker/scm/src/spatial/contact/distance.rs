@@ -1,6 +1,6 @@
 //! The geometry of a footprint: ends of the contact between nodes, areas, distances to the border.
 
-use super::super::pack::{LANES, PACK, Pack, greater, lanes_of, lesser, max_lane, min_lane, splat, sum};
+use super::super::pack::{LANES, PACK, Pack, lanes_of, max, max_lane, min, min_lane, splat, sum};
 use super::super::terrain::Terrain;
 use super::Contact;
 use super::laws::Laws;
@@ -58,7 +58,7 @@ impl Contact {
 
     /// Finds the front ends of a strip's contact from the strip ahead, and the quantities that depend on both ends.
     ///
-    /// Returns the difference of the squares of the strip's greatest and least distance along the travel.
+    /// Returns the difference of the squares of the strip's maximum and minimum distance along the travel.
     fn find_front_ends(&mut self, row: usize, hub: f64) -> f64 {
         let packs = self.across.packs();
         let (zero, far) = (splat(0.0), splat(FAR));
@@ -102,15 +102,15 @@ impl Contact {
             (begins, ceases) = (begins >> PACK, ceases >> PACK);
             quad.area = touching.select(covered * width, zero);
             let place = middle + quad.offset;
-            let nearer = lesser(place - quad.rear_end, quad.front_end - place);
+            let nearer = min(place - quad.rear_end, quad.front_end - place);
             let near = touching.select(nearer, far);
-            nearest = lesser(nearest, near);
-            farthest = greater(farthest, touching.select(nearer, zero));
+            nearest = min(nearest, near);
+            farthest = max(farthest, touching.select(nearer, zero));
             *along = near.to_array();
-            *distance = greater(lesser(near, from_side), zero).to_array();
+            *distance = max(min(near, from_side), zero).to_array();
         }
-        let (least, greatest) = (min_lane(nearest), max_lane(farthest));
-        greatest * greatest - least * least
+        let (nearest, farthest) = (min_lane(nearest), max_lane(farthest));
+        farthest * farthest - nearest * nearest
     }
 
     /// Turns distances to ends and sides into Euclidean distances to the border, for any shape of the contact.
@@ -141,7 +141,7 @@ impl Contact {
 
     /// Limits distances by those of neighbouring lanes, where the ends of the contact are oblique.
     ///
-    /// `spread` is the difference of the squares of the greatest and the least distance along the travel: a neighbour k
+    /// `spread` is the difference of the squares of the maximum and the minimum distance along the travel: a neighbour k
     /// lanes away matters only if (k dy)² is less.
     fn look_across(&mut self, terrain: &Terrain, spread: f64) {
         let lanes = self.across.packs() * PACK;
@@ -164,8 +164,8 @@ impl Contact {
             let right = self.squares[lanes - step..2 * lanes - step].as_chunks().0;
             let left = self.squares[lanes + step..2 * lanes + step].as_chunks().0;
             for ((square, right), left) in self.distance.iter_mut().zip(right).zip(left) {
-                let nearer = lesser(Pack::new(*right), Pack::new(*left));
-                *square = lesser(Pack::new(*square), nearer + across).to_array();
+                let nearer = min(Pack::new(*right), Pack::new(*left));
+                *square = min(Pack::new(*square), nearer + across).to_array();
             }
         }
         for distance in &mut self.distance {
@@ -187,10 +187,10 @@ impl Contact {
         let Patches {
             runs,
             patches,
-            of_strip,
+            by_strip,
             ..
         } = &mut self.patches;
-        let runs = &runs[of_strip[row - self.first].clone()];
+        let runs = &runs[by_strip[row - self.first].clone()];
         if let [run] = runs {
             patches[run.patch].areas += areas;
             patches[run.patch].shapes += shapes;

@@ -1,31 +1,31 @@
 //! The hull of a footprint: the rectangle that its patches span together.
 
-use super::super::pack::{PACK, Pack, greater, lanes_of, lesser, max_lane, splat, sum};
+use super::super::pack::{PACK, Pack, lanes_of, max, max_lane, min, splat, sum};
 use super::super::terrain::Terrain;
 use super::Contact;
 use super::laws::Laws;
 use super::span::Span;
 use crate::footprint::rectangle_effective_width;
 
-/// A run of nodes counts in full if its pressure reaches this share of the footprint's greatest pressure `[–]`.
+/// A run of nodes counts in full if its pressure reaches this share of the footprint's largest pressure `[–]`.
 const SHARE: f64 = 0.05;
 
 impl Contact {
-    /// Effective width of the hull `[m]`, 0 without contact.
+    /// Returns the effective width of the hull `[m]`, 0 without contact.
     ///
     /// The hull is a rectangle along the heading. Its width b is that of the lanes in contact. Its area A extends, lane by
     /// lane, from the rear end of the contact to its front end, with the gaps between patches; its length is l = A / b, and
     /// `b_eff = 2 A / L` with `L = 2 (l + b)`. Without gaps, A is the area in contact.
     ///
-    /// A run of nodes in a lane counts by `w = min(1, p / (SHARE p_max))`, where p is its greatest pressure under
-    /// `k* = k_phi`, and a gap by the lesser of the greatest w before and behind it: a grouser's tip that begins or ends to
+    /// A run of nodes in a lane counts by `w = min(1, p / (SHARE p_max))`, where p is its largest pressure under
+    /// `k* = k_phi`, and a gap by the smaller of the largest w before and behind it: a grouser's tip that begins or ends to
     /// touch must not change the hull by a pitch at once.
     pub(crate) fn hull_width(&mut self, terrain: &Terrain, laws: &Laws) -> f64 {
         let packs = self.across.packs();
-        let greatest = self.find_spans(laws);
+        let max_pressure = self.find_spans(laws);
         let weight = |pressure: Pack| {
-            if greatest > 0.0 {
-                lesser(pressure / splat(SHARE * greatest), splat(1.0))
+            if max_pressure > 0.0 {
+                min(pressure / splat(SHARE * max_pressure), splat(1.0))
             } else {
                 // without pressure all runs have equal weight
                 splat(1.0)
@@ -41,8 +41,8 @@ impl Contact {
                 run = lanes_of(ends >> (pack * PACK)).select(weight(span.run), run);
                 let counted = lanes_of(self.masks[row] >> (pack * PACK)).select(run, splat(0.0));
                 area += counted * self.quads[place].area;
-                ahead = greater(ahead, counted);
-                gaps += span.gap * lesser(weight(span.behind), ahead);
+                ahead = max(ahead, counted);
+                gaps += span.gap * min(weight(span.behind), ahead);
             }
             area += gaps * self.across.width[pack];
             width += ahead * self.across.width[pack];
@@ -56,7 +56,7 @@ impl Contact {
         }
     }
 
-    /// Follows the lanes from the rear, and returns the greatest pressure `[Pa]`.
+    /// Follows the lanes from the rear, and returns the largest pressure `[Pa]`.
     fn find_spans(&mut self, laws: &Laws) -> f64 {
         let (zero, packs) = (splat(0.0), self.across.packs());
         let blank = Span {
@@ -71,7 +71,7 @@ impl Contact {
         } else {
             1.0
         });
-        let mut greatest = zero;
+        let mut max_pressure = zero;
         for pack in 0..packs {
             let (mut ended, mut behind, mut run) = (zero, zero, zero);
             let mut met = 0;
@@ -81,18 +81,18 @@ impl Contact {
                 let begins = mask & !(self.masks[row - 1] >> (pack * PACK));
                 let touching = lanes_of(mask);
                 let pressure = touching.select(laws.bounded(modulus * quad.depth_power, quad.pressed), zero);
-                run = greater(lanes_of(begins).select(zero, run), pressure);
+                run = max(lanes_of(begins).select(zero, run), pressure);
                 self.spans[(row - self.first) * packs + pack] = Span {
                     gap: lanes_of(begins & met).select(quad.rear_end - ended, zero),
                     behind,
                     run,
                 };
                 ended = touching.select(quad.front_end, ended);
-                behind = greater(behind, pressure);
+                behind = max(behind, pressure);
                 met |= mask;
             }
-            greatest = greater(greatest, behind);
+            max_pressure = max(max_pressure, behind);
         }
-        max_lane(greatest)
+        max_lane(max_pressure)
     }
 }

@@ -1,6 +1,6 @@
 //! The constitutive laws, prepared for many nodes.
 
-use super::super::pack::{Pack, greater, lesser, splat};
+use super::super::pack::{Pack, max, min, splat};
 use super::power::Power;
 use crate::Soil;
 use crate::pressure_distribution::PressureDistribution;
@@ -39,7 +39,7 @@ impl Laws {
         }
     }
 
-    /// Shape g of the pressure distribution at a distance to the border, up to a constant factor.
+    /// Returns the shape g of the pressure distribution at a distance to the border, up to a constant factor.
     #[inline]
     pub(crate) fn shape(&self, distance: Pack) -> Pack {
         match (self.distribution, &self.distance_power) {
@@ -51,7 +51,7 @@ impl Laws {
         }
     }
 
-    /// z^n of Bekker's plastic pressure `gamma k* z^n`, z below the reference.
+    /// Returns z^n of Bekker's plastic pressure `gamma k* z^n`, z below the reference.
     #[inline]
     pub(crate) fn depth_power(&self, depth: Pack) -> Pack {
         self.sinkage_power.raise(depth)
@@ -61,6 +61,6 @@ impl Laws {
     #[inline]
     pub(crate) fn bounded(&self, plastic: Pack, penetration: Pack) -> Pack {
         let elastic = splat(self.elastic_stiffness) * penetration;
-        greater(lesser(plastic, elastic), splat(0.0))
+        max(min(plastic, elastic), splat(0.0))
     }
 }

@@ -121,7 +121,7 @@ impl Contact {
                 under.meet(quads, |pack| {
                     let facet = envelope.facets[pack * rows + row];
                     let lanes = &self.tractions[(row * packs + pack) * PACK..][..PACK];
-                    let shear = Traction::of_lanes(lanes, |t| t.shear_z);
+                    let shear = Traction::from_lanes(lanes, |t| t.shear_z);
                     (facet.rise, facet.slope_x, shear)
                 })
             };
@@ -158,7 +158,7 @@ impl Contact {
         }
     }
 
-    /// Vertical force of the soil on the wheel with its hub at a height `[N]`.
+    /// Returns the vertical force of the soil on the wheel with its hub at a height `[N]`.
     pub(crate) fn press(&mut self, terrain: &Terrain, laws: &Laws, hub: f64) -> f64 {
         let cohesive = laws.soil.k_c.abs() > 0.0;
         self.find_patches(terrain, laws, hub, cohesive);
@@ -232,7 +232,7 @@ impl Contact {
         let (cohesion, tan_phi) = (splat(laws.soil.cohesion_pa), splat(laws.tan_friction_angle));
         let mut force = splat(0.0);
         let quads = self.quads[self.first * packs..self.end * packs].chunks_exact_mut(packs);
-        for (quads, runs) in quads.zip(&self.patches.of_strip) {
+        for (quads, runs) in quads.zip(&self.patches.by_strip) {
             let runs = &self.patches.runs[runs.clone()];
             if runs.is_empty() {
                 continue;
@@ -257,25 +257,26 @@ impl Contact {
         sum(force)
     }
 
-    /// Height of the hub above the wheel's surface over four lanes `[m]`, of the quad at `place` in strip `row`.
+    /// Returns the height of the hub above the wheel's surface over four lanes `[m]`, of the quad at `place` in strip
+    /// `row`.
     pub(crate) fn rise(&self, place: usize, row: usize) -> Pack {
         if self.lanes_differ {
-            Traction::of_lanes(&self.tractions[place * PACK..][..PACK], |t| t.rise)
+            Traction::from_lanes(&self.tractions[place * PACK..][..PACK], |t| t.rise)
         } else {
             splat(self.strips[row].rise)
         }
     }
 
-    /// Slip velocity of four lanes `[m/s]`, of the quad at `place` in strip `row`.
+    /// Returns the slip velocity of four lanes `[m/s]`, of the quad at `place` in strip `row`.
     pub(crate) fn slip_speed(&self, place: usize, row: usize) -> Pack {
         if self.lanes_differ {
-            Traction::of_lanes(&self.tractions[place * PACK..][..PACK], |t| t.slip_speed)
+            Traction::from_lanes(&self.tractions[place * PACK..][..PACK], |t| t.slip_speed)
         } else {
             splat(self.tractions[row].slip_speed)
         }
     }
 
-    /// A quad by strip and lane.
+    /// Returns a quad by strip and lane.
     #[inline]
     pub(crate) fn quad(&self, row: usize, lane: usize) -> &Quad {
         &self.quads[row * self.across.packs() + lane / PACK]

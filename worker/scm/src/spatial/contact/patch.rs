@@ -46,13 +46,13 @@ pub(crate) struct Patches {
     pub(crate) runs: Vec<Run>,
     pub(crate) patches: Vec<Patch>,
     /// The runs of each strip, from the first strip in contact on.
-    pub(crate) of_strip: Vec<core::ops::Range<usize>>,
+    pub(crate) by_strip: Vec<core::ops::Range<usize>>,
     /// The labelled strips: the first strip in contact, and the masks from there on.
     first: usize,
     masks: Vec<u64>,
 }
 
-/// First lanes, and lanes after the last, of a mask's runs.
+/// Returns the first lanes, and lanes after the last, of a mask's runs.
 pub(crate) fn lanes_in_runs(mut mask: u64) -> impl Iterator<Item = (usize, usize)> {
     core::iter::from_fn(move || {
         (mask != 0).then(|| {
@@ -103,7 +103,7 @@ impl Patches {
     /// Finds the runs of lanes, and joins each to those of the preceding strip that it touches.
     fn find_runs(&mut self) {
         self.runs.clear();
-        self.of_strip.clear();
+        self.by_strip.clear();
         let mut before = 0..0;
         for (offset, &mask) in self.masks.iter().enumerate() {
             let begin = self.runs.len();
@@ -123,7 +123,7 @@ impl Patches {
                 });
             }
             before = begin..self.runs.len();
-            self.of_strip.push(before.clone());
+            self.by_strip.push(before.clone());
         }
     }
 }

@@ -4,7 +4,7 @@ use super::super::pack::{Pack, splat};
 
 /// Number of sub-intervals of an octave.
 const STEPS: usize = 256;
-/// The least power of two that has a table entry; a shallower sinkage counts as 2^−40 m (1e-12 m).
+/// The smallest power of two that has a table entry; a shallower sinkage counts as 2^−40 m (1e-12 m).
 const MIN_EXPONENT: i32 = -40;
 const OCTAVES: usize = 64;
 /// Number of entries of the table: a power of two, so that a mask keeps an index in range.
@@ -48,12 +48,12 @@ impl Power {
         Self { powers, series }
     }
 
-    /// z^n lane by lane; a negative z counts as zero.
+    /// Returns z^n lane by lane; a negative z counts as zero.
     #[inline]
     pub(crate) fn raise(&self, z: Pack) -> Pack {
-        const LEAST: f64 = 1.0 / (1_u64 << -MIN_EXPONENT) as f64;
+        const MIN_DEPTH: f64 = 1.0 / (1_u64 << -MIN_EXPONENT) as f64;
         const FIRST: usize = ((1023 + MIN_EXPONENT) as usize) * STEPS;
-        let z = z.fast_max(splat(LEAST));
+        let z = z.fast_max(splat(MIN_DEPTH));
         let power = |z: f64| {
             let place = (z.to_bits() >> SHIFT) as usize;
             self.powers[place.wrapping_sub(FIRST) & (SIZE - 1)]

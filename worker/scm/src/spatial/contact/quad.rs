@@ -1,6 +1,6 @@
 //! Four neighbouring nodes under the wheel.
 
-use super::super::pack::{PACK, Pack, greater, max_lane, splat};
+use super::super::pack::{PACK, Pack, max, max_lane, splat};
 use super::super::wheel::envelope::NOWHERE;
 
 /// The state of four neighbouring nodes under the wheel, in a step and at a trial height.
@@ -89,7 +89,7 @@ impl Under<'_> {
             quad.reference = Pack::new(*loose) * self.credit + rise;
             quad.slope = slope;
             quad.shear_z = shear_z;
-            highest = greater(highest, quad.surface);
+            highest = max(highest, quad.surface);
         }
         max_lane(highest)
     }

@@ -22,8 +22,8 @@ pub(crate) struct Reaction {
 }
 
 impl Contact {
-    /// The soil's force and torque at the last trial height. `strengths` are those of every quad, if formulas have changed
-    /// them `[Pa]`.
+    /// Returns the soil's force and torque at the last trial height. `strengths` are those of every quad, if formulas
+    /// have changed them `[Pa]`.
     pub(crate) fn react(&mut self, terrain: &Terrain, laws: &Laws, strengths: Option<&[Pack]>) -> Reaction {
         let packs = self.across.packs();
         let (cohesion, tan_phi) = (splat(laws.soil.cohesion_pa), splat(laws.tan_friction_angle));
@@ -35,21 +35,31 @@ impl Contact {
             let strip = &self.strips[row];
             let (mut normal, mut shear) = (splat(0.0), splat(0.0));
             for (pack, quad) in self.quads[row * packs..(row + 1) * packs].iter().enumerate() {
-                let own_normal = quad.area * quad.pressure;
-                let own_shear = match strengths {
-                    None => quad.area * cohesion + own_normal * tan_phi,
+                let quad_normal = quad.area * quad.pressure;
+                let quad_shear = match strengths {
+                    None => quad.area * cohesion + quad_normal * tan_phi,
                     Some(strengths) => quad.area * strengths[row * packs + pack],
                 };
                 if self.lanes_differ {
                     let tractions = &self.tractions[(row * packs + pack) * PACK..][..PACK];
-                    sums.add(strip.ahead, &Along::of_lanes(tractions), own_normal, own_shear);
+                    sums.add(
+                        strip.ahead,
+                        &Along::from_lanes(tractions),
+                        quad_normal,
+                        quad_shear,
+                    );
                 } else {
-                    normal += own_normal;
-                    shear += own_shear;
+                    normal += quad_normal;
+                    shear += quad_shear;
                 }
             }
             if !self.lanes_differ {
-                sums.add(strip.ahead, &Along::of_strip(&self.tractions[row]), normal, shear);
+                sums.add(
+                    strip.ahead,
+                    &Along::from_strip(&self.tractions[row]),
+                    normal,
+                    shear,
+                );
             }
         }
         let Sums {
@@ -77,13 +87,13 @@ impl Contact {
         reaction
     }
 
-    /// Effective width of the hull, or mean of the patches weighted by area `[m]`.
+    /// Returns the effective width of the hull, or mean of the patches weighted by area `[m]`.
     pub(crate) fn effective_width(&mut self, terrain: &Terrain, laws: &Laws) -> f64 {
         self.find_effective_widths(terrain, laws);
         self.mean_of(|patch| patch.b_eff)
     }
 
-    /// Mean modulus k* of the patches, weighted by area `[N/m^(n+2)]`.
+    /// Returns the mean modulus k* of the patches, weighted by area `[N/m^(n+2)]`.
     pub(crate) fn modulus(&self) -> f64 {
         self.mean_of(|patch| patch.modulus)
     }
@@ -97,7 +107,7 @@ impl Contact {
         if area > 0.0 { weighted / area } else { 0.0 }
     }
 
-    /// Area of the footprint `[m²]`.
+    /// Returns the area of the footprint `[m²]`.
     pub(crate) fn area(&self, terrain: &Terrain) -> f64 {
         let double = if terrain.mirrored { 2.0 } else { 1.0 };
         double * self.patches.patches.iter().map(|p| p.area).sum::<f64>()
@@ -136,7 +146,7 @@ struct Along {
 }
 
 impl Along {
-    fn of_strip(t: &Traction) -> Self {
+    fn from_strip(t: &Traction) -> Self {
         Self {
             rise: splat(t.rise),
             pressure_x: splat(t.pressure_x),
@@ -147,8 +157,8 @@ impl Along {
         }
     }
 
-    fn of_lanes(t: &[Traction]) -> Self {
-        let pack = |quantity| Traction::of_lanes(t, quantity);
+    fn from_lanes(t: &[Traction]) -> Self {
+        let pack = |quantity| Traction::from_lanes(t, quantity);
         Self {
             rise: pack(|t| t.rise),
             pressure_x: pack(|t| t.pressure_x),

@@ -7,7 +7,7 @@ use super::super::pack::Pack;
 pub(crate) struct Span {
     /// The gap behind a run that begins in the strip `[m]`.
     pub(crate) gap: Pack,
-    /// The greatest pressure behind that gap, and in the run so far `[Pa]`.
+    /// The largest pressure behind that gap, and in the run so far `[Pa]`.
     pub(crate) behind: Pack,
     pub(crate) run: Pack,
 }

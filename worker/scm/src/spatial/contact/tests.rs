@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::Soil;
-use crate::spatial::fixture::{CONDITION, SOIL, WHEEL};
+use crate::fixture::{CONDITION, SOIL, WHEEL};
 
 const SPACING: f64 = 0.004;
 /// Number of strips in contact, between two guards.
@@ -12,7 +12,7 @@ const LENGTH: f64 = STRIPS as f64 * SPACING;
 const DEPTH: f64 = 0.006;
 const RISE: f64 = 0.1;
 
-/// A flat underside, 40 mm by 112 mm.
+/// Returns a flat underside, 40 mm by 112 mm.
 fn flat() -> Envelope {
     let strips = (0..STRIPS + 2).map(|i| {
         let middle = (i as f64 - 5.5) * SPACING;
@@ -34,7 +34,7 @@ fn flat() -> Envelope {
     }
 }
 
-/// The flat underside pressed 6 mm into soil: its load, and the contact.
+/// Returns the flat underside pressed 6 mm into soil: its load, and the contact.
 fn pressed(soil: &Soil, mirrored: bool) -> (f64, Contact, Terrain) {
     pressed_into(level(mirrored), soil, Footprint::Hull)
 }
@@ -67,20 +67,17 @@ fn soil(gamma_exponent: f64, k_c: f64) -> Soil {
 fn a_flat_contact_carries_its_area_times_bekkers_pressure_with_any_distribution() {
     for gamma_exponent in [0.0, 0.5, 0.8, 1.0] {
         for k_c in [0.0, 2e5, -1e5] {
-            for (footprint, mirrored) in [
-                (Footprint::Hull, false),
-                (Footprint::Hull, true),
-                (Footprint::Patches, false),
-                (Footprint::Patches, true),
-            ] {
+            let footprints = [Footprint::Hull, Footprint::Patches];
+            for (footprint, mirrored) in footprints.into_iter().flat_map(|f| [(f, false), (f, true)]) {
                 let soil = soil(gamma_exponent, k_c);
                 let (load, mut contact, terrain) = pressed_into(level(mirrored), &soil, footprint);
                 // b_eff = l b / (l + b) of a rectangle
                 let k_star = 1e7 + k_c * (LENGTH + WIDTH) / (LENGTH * WIDTH);
                 let expected = LENGTH * WIDTH * k_star * libm::pow(DEPTH, 1.1);
+                let ratio = load / expected;
                 assert!(
-                    (load / expected - 1.0).abs() < 1e-12,
-                    "m {gamma_exponent} k_c {k_c} {footprint:?} mirrored {mirrored}: {load} of {expected}"
+                    (ratio - 1.0).abs() < 1e-12,
+                    "{soil:?} {footprint:?} {mirrored}: {ratio}"
                 );
                 let width = contact.effective_width(&terrain, &Laws::new(&soil, 1e12, 0.0));
                 assert!((width / (LENGTH * WIDTH / (LENGTH + WIDTH)) - 1.0).abs() < 1e-12);
@@ -89,7 +86,7 @@ fn a_flat_contact_carries_its_area_times_bekkers_pressure_with_any_distribution(
     }
 }
 
-/// Flat soil with a ditch under three strips of the wheel; returns the effective width of the contact.
+/// Presses the wheel onto flat soil with a ditch under three of its strips; returns the effective width of the contact.
 fn over_a_ditch(footprint: Footprint, depth_beyond: f64) -> f64 {
     let mut terrain = level(false);
     let lanes = terrain.lanes;
@@ -116,15 +113,13 @@ fn the_hull_spans_the_gap_between_patches_as_far_as_both_bear() {
     let near = |got: f64, expected: f64| assert!((got / expected - 1.0).abs() < 1e-10, "{got} {expected}");
     let depth_at = |share: f64| DEPTH * libm::pow(share, 1.0 / 1.1);
     near(over_a_ditch(Footprint::Hull, DEPTH), rectangle(10.0));
-    // weighted by area: 4 strips and 3
+    // The mean over the patches, of 4 and 3 strips, is weighted by area.
     let by_patch = (4.0 * rectangle(4.0) + 3.0 * rectangle(3.0)) / 7.0;
     near(over_a_ditch(Footprint::Patches, DEPTH), by_patch);
-    // with 1/20 of the greatest pressure a patch counts in full
+    // with 1/20 of the largest pressure a patch counts in full
     near(over_a_ditch(Footprint::Hull, depth_at(0.051)), rectangle(10.0));
-    near(
-        over_a_ditch(Footprint::Hull, depth_at(0.025)),
-        rectangle(4.0 + 0.5 * 6.0),
-    );
+    let half = over_a_ditch(Footprint::Hull, depth_at(0.025));
+    near(half, rectangle(4.0 + 0.5 * 6.0));
     let touching = over_a_ditch(Footprint::Hull, 1e-9);
     assert!((touching / rectangle(4.0) - 1.0).abs() < 1e-4, "{touching}");
 }
@@ -134,7 +129,7 @@ fn pressure_grows_from_the_border_with_the_power_of_the_distance() {
     let (_, contact, _) = pressed(&soil(0.5, 0.0), false);
     let at = |row: usize, lane: usize| contact.quad(row, lane).pressure.to_array()[lane % PACK];
     let lanes = contact.across.lanes;
-    // half a cell, one and a half, two and a half from the rear end; the sides are far
+    // The nodes are 0.5, 1.5, 2.5 and 4.5 cells from the rear end; the sides are farther away.
     for (row, cells) in [(1, 0.5), (2, 1.5), (3, 2.5), (5, 4.5)] {
         let expected = (cells / 4.5_f64).sqrt();
         let got = at(row, lanes / 2) / at(5, lanes / 2);
@@ -179,17 +174,14 @@ fn distances_from_a_border_at_an_angle_are_euclidean() {
                 let aside = other.abs_diff(lane) as f64;
                 square = square.min(cells * cells + aside * aside);
             }
-            // the side of the wheel, and the end of the strip's contact at greater y
+            // The border is the side of the wheel, or the end of the strip's contact at larger y.
             let last = (0..lanes)
                 .rfind(|&other| begins(other) <= row)
                 .expect("this lane");
             let side = lane.min(last - lane) as f64 + 0.5;
             let expected = SPACING * side.min(square.sqrt());
             let got = contact.quad(row, lane).shape.to_array()[lane % PACK];
-            assert!(
-                (got / expected - 1.0).abs() < 1e-12,
-                "{row} {lane}: {got} {expected}"
-            );
+            assert!((got / expected - 1.0).abs() < 1e-12, "{row} {lane}: {got}");
             nodes += 1;
         }
     }

@@ -28,7 +28,8 @@ pub(crate) struct Balance {
     pub(crate) residual: f64,
 }
 
-/// The height at which `excess(height)`, the carried load less the wheel load, is zero; `None` if there is none above `lowest`.
+/// Finds the height at which `excess(height)`, the carried load less the wheel load, is zero; `None` if there is none
+/// above `lowest`.
 pub(crate) fn balance(
     search: Search,
     wheel_load: f64,
@@ -100,7 +101,7 @@ pub(crate) fn balance(
 mod tests {
     use super::*;
 
-    /// Soil with a stiffness of 1 kN/m that meets the wheel at 100 mm.
+    /// Returns the load on soil with a stiffness of 1 kN/m that meets the wheel at 100 mm.
     fn spring(height: f64) -> f64 {
         1e3 * (0.1 - height)
     }
@@ -116,8 +117,8 @@ mod tests {
     #[test]
     fn the_load_is_met_within_its_tolerance_from_above_and_below() {
         for guess in [0.099, 0.05, 0.001, -0.01] {
-            let balanced =
-                balance(search(guess), 30.0, 0.0, |height| spring(height) - 30.0).expect("support");
+            let balanced = balance(search(guess), 30.0, 0.0, |height| spring(height) - 30.0);
+            let balanced = balanced.expect("support");
             assert!((balanced.height - 0.07).abs() < 0.031e-3, "{balanced:?}");
             assert!((spring(balanced.height) - 30.0 - balanced.residual).abs() < 1e-12);
         }

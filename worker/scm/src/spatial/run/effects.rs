@@ -91,7 +91,7 @@ impl<'a> RunEffects<'a> {
         Ok(())
     }
 
-    /// The load of the next step `[N]`, if it depends on pull and torque of this one.
+    /// Returns the load of the next step `[N]`, if it depends on pull and torque of this one.
     pub(super) fn next_load(&self, reaction: &Reaction) -> Result<Option<f64>, Rejection> {
         if !self.load_follows {
             return Ok(None);
@@ -100,7 +100,7 @@ impl<'a> RunEffects<'a> {
         self.active.wheel_load(self.case, pull, torque).map(Some)
     }
 
-    /// Depth that the wheel digs per distance slid over a whole contact `[m]`, if it digs.
+    /// Returns the depth that the wheel digs per distance slid over a whole contact `[m]`, if it digs.
     pub(super) fn digging_m(&self) -> Option<f64> {
         (self.digging_m > 0.0).then_some(self.digging_m)
     }
@@ -151,9 +151,9 @@ impl EndWall {
         )?;
         require(reach_m > 0.0, "reach_m", reach_m, "m", "above 0")?;
         let bin_length_m = case.variables[Variable::BinLength as usize];
-        let least = 2.0 * case.wheel.radius_m;
+        let min_length = 2.0 * case.wheel.radius_m;
         require(
-            bin_length_m > least,
+            bin_length_m > min_length,
             "bin_length_m",
             bin_length_m,
             "m",
@@ -166,7 +166,7 @@ impl EndWall {
         }))
     }
 
-    /// Factor of the soil's stiffness for a wheel of a radius after a travel from the rear wall `[m]`.
+    /// Returns the factor of the soil's stiffness for a wheel of a radius after a travel from the rear wall `[m]`.
     fn factor(&self, radius: f64, travelled: f64) -> Result<f64, Rejection> {
         let behind = radius + travelled;
         let ahead = self.bin_length_m - behind;
@@ -219,7 +219,7 @@ pub(super) fn elastic_stiffness(active: &Active, ground: &Ground) -> Result<f64,
     Ok(1.0 / (1.0 / stiffness + compliance))
 }
 
-/// Deflection of the rim by the load `[m]`.
+/// Returns the deflection of the rim by the load `[m]`.
 pub(super) fn deflection(scene: &Scene, wheel_load_n: f64) -> Result<f64, Rejection> {
     let Some(&[per_load]) = scene.effects.mechanism(Mechanism::FlatPatch) else {
         return Ok(0.0);

@@ -18,7 +18,7 @@ pub struct History {
 }
 
 impl History {
-    /// Number of steps.
+    /// Returns the number of steps.
     pub fn len(&self) -> usize {
         self.sinkage_m.len()
     }
@@ -28,7 +28,7 @@ impl History {
         self.sinkage_m.is_empty()
     }
 
-    /// The channels in the order drawbar pull, torque, sinkage, lateral force, wheel load.
+    /// Returns the channels in the order drawbar pull, torque, sinkage, lateral force, wheel load.
     pub fn channels(&self) -> [&[f64]; 5] {
         [
             &self.drawbar_pull_n,

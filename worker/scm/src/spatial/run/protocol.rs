@@ -99,7 +99,7 @@ fn steady(
             .iter()
             .zip(scales)
             .map(|(series, scale)| series.left() / scale);
-        // converted to a contact length, if the windows begin closer together
+        // The remaining change is scaled to a contact length if the windows begin closer together.
         let left = left.fold(0.0, f64::max) * (contact / shift);
         let means = measured.map(|series| series.limit());
         let first_step = first as usize;
@@ -117,7 +117,8 @@ fn steady(
     })
 }
 
-/// Length of a window in steps, from a contact and a grouser period in steps: long enough that the grid's ripple cancels.
+/// Returns the length of a window in steps, from a contact and a grouser period in steps: long enough that the grid's
+/// ripple cancels.
 fn window(contact: f64, period: Option<f64>, to_column: usize, max_steps: usize) -> f64 {
     let whole = match period {
         Some(period) if 4.0 * period <= max_steps as f64 => 2.0 * period,
@@ -128,7 +129,7 @@ fn window(contact: f64, period: Option<f64>, to_column: usize, max_steps: usize)
     whole * libm::ceil(contact / whole).max(1.0).min(max_count)
 }
 
-/// The means of the four channels over three windows, channel by channel.
+/// Returns the means of the four channels over three windows, channel by channel.
 fn series(means: [Result<[f64; 4], Rejection>; 3]) -> Result<[Series; 4], Rejection> {
     let [first, second, last] = means;
     let (first, second, last) = (first?, second?, last?);
@@ -138,7 +139,7 @@ fn series(means: [Result<[f64; 4], Rejection>; 3]) -> Result<[Series; 4], Reject
     }))
 }
 
-/// Averages of histories at 10 Hz, filtered, with their transients cut.
+/// Averages histories at 10 Hz, filtered, with their transients cut.
 fn fixed(rolling: &Rolling, record: &Record, cut_s: [f64; 2], lowpass_hz: f64) -> Result<Windows, Rejection> {
     let filter = LowPass::unless_zero(lowpass_hz, 1.0 / INTERVAL_S)?;
     let step = rolling.steps.time;

@@ -28,7 +28,7 @@ pub(super) struct Windows {
 /// The results of a run, step by step.
 pub(super) struct Record {
     pub(super) history: History,
-    /// Drawbar pull, torque, sinkage and lateral force of the soil, if the measured ones differ.
+    /// Drawbar pull, torque, sinkage and lateral force by the soil's forces, if the measured channels differ.
     soil_channels: [Vec<f64>; 4],
     contact_length_m: Vec<f64>,
     /// Sum of the contact lengths `[m]`.
@@ -118,7 +118,7 @@ impl Record {
         Ok(())
     }
 
-    /// Mean length of the contact so far `[m]`.
+    /// Returns the mean length of the contact so far `[m]`.
     pub(super) fn contact_length(&self) -> f64 {
         self.contact_lengths / self.contact_length_m.len() as f64
     }
@@ -128,7 +128,7 @@ impl Record {
         !self.soil_channels[0].is_empty()
     }
 
-    /// Drawbar pull, torque and lateral force of the soil from a step on, if they are measured as `means`.
+    /// Returns the drawbar pull, torque and lateral force of the soil from a step on, if they are measured as `means`.
     fn forces(&self, means: [f64; 4], first: usize) -> [f64; 3] {
         [0, 1, 3].map(|i| {
             let channel = &self.soil_channels[i];
@@ -141,13 +141,13 @@ impl Record {
         })
     }
 
-    /// Means of the four measured channels, between two places counted in steps of travel.
+    /// Returns the means of the four measured channels, between two places counted in steps of travel.
     pub(super) fn means(&self, from: f64, to: f64) -> Result<[f64; 4], Rejection> {
         let [pull, torque, sinkage, lateral, _] = self.history.channels();
         means([pull, torque, sinkage, lateral], from, to)
     }
 
-    /// Means of the soil's channels: a measurement offset must not decide when a run has settled.
+    /// Returns the means of the soil's channels: a measurement offset must not decide when a run has settled.
     pub(super) fn soil_means(&self, from: f64, to: f64) -> Result<[f64; 4], Rejection> {
         if !self.measured_otherwise() {
             return self.means(from, to);
@@ -249,10 +249,11 @@ fn means(channels: [&[f64]; 4], from: f64, to: f64) -> Result<[f64; 4], Rejectio
 mod tests {
     use super::*;
     use crate::effects::Active;
-    use crate::spatial::fixture::{CONDITION, scene};
+    use crate::fixture::CONDITION;
+    use crate::spatial::fixture::scene;
     use crate::spatial::{Ground, Grousers, RunSettings, Shape};
 
-    /// The result of finishing a short run after a change of its record.
+    /// Returns the result of finishing a short run after a change of its record.
     fn finished(change: fn(&mut Record)) -> Result<SpatialRun, Rejection> {
         let (ground, shape) = (Ground::default(), Shape::Rim(Grousers::default()));
         let none = Active::default();
@@ -266,11 +267,8 @@ mod tests {
             record.push(&mut rolling, &step)?;
         }
         change(&mut record);
-        let means = record.means(20.0, 50.0)?;
-        let windows = Windows {
-            means,
-            first_step: 20,
-        };
+        let (means, first_step) = (record.means(20.0, 50.0)?, 20);
+        let windows = Windows { means, first_step };
         record.finish(&rolling, &CONDITION, windows, None)
     }
 
@@ -281,32 +279,22 @@ mod tests {
     #[test]
     fn a_run_that_gains_energy_is_rejected() {
         assert_eq!(kind(|_| ()), "none");
-        assert_eq!(
-            kind(|record| record.power_w.iter_mut().for_each(|p| *p = -*p)),
-            "energy_gained"
-        );
+        let reversed = kind(|record| record.power_w.iter_mut().for_each(|p| *p = -*p));
         // 2 % of 100 N that move at 10 mm/s
-        assert_eq!(
-            kind(|record| record.power_w.iter_mut().for_each(|p| *p = -2e-2)),
-            "energy_gained"
-        );
+        let slight = kind(|record| record.power_w.fill(-2e-2));
+        assert_eq!([reversed, slight], ["energy_gained"; 2]);
     }
 
     #[test]
     fn a_run_out_of_balance_is_rejected() {
         // one step in a hundred may miss the whole load, but not one in ten
         assert_eq!(kind(|record| record.residual_n[40] = 50.0), "none");
-        assert_eq!(
-            kind(|record| record.residual_n.iter_mut().for_each(|r| *r = -3.0)),
-            "no_convergence"
-        );
+        assert_eq!(kind(|record| record.residual_n.fill(-3.0)), "no_convergence");
     }
 
     #[test]
     fn a_mean_that_is_no_number_is_rejected() {
-        assert_eq!(
-            kind(|record| record.history.torque_n_m[30] = f64::NAN),
-            "not_finite"
-        );
+        let kind = kind(|record| record.history.torque_n_m[30] = f64::NAN);
+        assert_eq!(kind, "not_finite");
     }
 }

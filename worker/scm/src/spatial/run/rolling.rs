@@ -358,7 +358,7 @@ impl<'a> Rolling<'a> {
         }
     }
 
-    /// The height of the hub in balance with load, inertia and damping.
+    /// Returns the height of the hub in balance with load, inertia and damping.
     fn find_height(&mut self, time: f64) -> Result<super::balance::Balance, Rejection> {
         let (load, surplus) = (self.load, self.surplus);
         let (hub, rising) = (self.hub, self.rising);
@@ -420,12 +420,12 @@ impl<'a> Rolling<'a> {
         }
     }
 
-    /// Time from one grouser to the next `[s]`; `None` if nothing repeats.
+    /// Returns the time from one grouser to the next `[s]`; `None` if nothing repeats.
     pub(crate) fn grouser_period_s(&self) -> Option<f64> {
         self.period
     }
 
-    /// The load of the condition `[N]`.
+    /// Returns the load of the condition `[N]`.
     pub(crate) fn nominal_load(&self) -> f64 {
         self.condition.wheel_load_n
     }
@@ -438,12 +438,12 @@ impl<'a> Rolling<'a> {
         self.underside.width(self.wheel)
     }
 
-    /// Effective width 2 A / L of the footprint at the last height `[m]`.
+    /// Returns the effective width 2 A / L of the footprint at the last height `[m]`.
     pub(crate) fn effective_width(&mut self) -> f64 {
         self.contact.effective_width(&self.terrain, &self.laws)
     }
 
-    /// Sinkage at a hub height, with reference to the rim under its load `[m]`.
+    /// Returns the sinkage at a hub height, with reference to the rim under its load `[m]`.
     pub(crate) fn sinkage(&self, hub: f64) -> f64 {
         self.loaded_radius - hub
     }
@@ -453,7 +453,8 @@ impl<'a> Rolling<'a> {
 mod tests {
     use super::*;
     use crate::effects::{Active, CompiledEffects, ModelForm};
-    use crate::spatial::fixture::{CONDITION, scene};
+    use crate::fixture::CONDITION;
+    use crate::spatial::fixture::{BARS, scene};
     use crate::spatial::{Grousers, Shape};
 
     fn condition(slip_angle_rad: f64) -> Condition {
@@ -475,11 +476,7 @@ mod tests {
             flow_fraction,
             ..Ground::default()
         };
-        let shape = Shape::Rim(Grousers {
-            count: 12,
-            height_m: 0.009,
-            thickness_m: 0.002,
-        });
+        let shape = Shape::Rim(BARS);
         let scene = scene(&ground, &shape, effects);
         let settings = RunSettings {
             both_halves,
@@ -518,10 +515,8 @@ mod tests {
                 let rounding = 1e-12 * flow.pressed;
                 let risen: f64 = terrain.surface.iter().sum();
                 let loose: f64 = terrain.loose.iter().sum();
-                assert!(
-                    (risen + (1.0 - fraction) * flow.pressed).abs() < rounding,
-                    "{risen}"
-                );
+                let compacted = (1.0 - fraction) * flow.pressed;
+                assert!((risen + compacted).abs() < rounding, "{risen}");
                 assert!((loose - fraction * flow.pressed).abs() < rounding, "{loose}");
                 assert!((flow.flowed - fraction * flow.pressed).abs() < rounding);
                 pressed = flow.pressed;
@@ -550,30 +545,20 @@ mod tests {
             rolling.step().expect("support");
         }
         let steepest = |terrain: &Terrain| {
-            let across = terrain.surface.chunks_exact(terrain.lanes);
-            across
-                .flat_map(|column| column.windows(2))
-                .fold(0.0_f64, |steepest, pair| {
-                    steepest.max((pair[1] - pair[0]).abs() / terrain.dy)
-                })
+            let columns = terrain.surface.chunks_exact(terrain.lanes);
+            let pairs = columns.flat_map(|column| column.windows(2));
+            let slopes = pairs.map(|pair| (pair[1] - pair[0]).abs() / terrain.dy);
+            slopes.fold(0.0_f64, f64::max)
         };
         let deepest = |terrain: &Terrain| terrain.surface.iter().fold(0.0_f64, |low, &z| low.min(z));
         let repose = libm::tan(ground.repose_angle_rad);
         let (slope, depth) = (steepest(&rolling.terrain), deepest(&rolling.terrain));
         assert!(slope > 1.2 * repose, "{slope}: nothing to slide");
         rolling.start_again();
-        assert!(
-            steepest(&rolling.terrain) < 1.02 * repose,
-            "{}",
-            steepest(&rolling.terrain)
-        );
+        let slope = steepest(&rolling.terrain);
+        assert!(slope < 1.02 * repose, "{slope}");
         assert!((deepest(&rolling.terrain) - depth).abs() < 1e-4, "{depth}");
-        assert!(
-            rolling
-                .terrain
-                .sheared
-                .iter()
-                .all(|j| j.abs() < f64::MIN_POSITIVE)
-        );
+        let mut sheared = rolling.terrain.sheared.iter();
+        assert!(sheared.all(|j| j.abs() < f64::MIN_POSITIVE));
     }
 }

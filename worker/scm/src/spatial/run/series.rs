@@ -11,7 +11,8 @@ pub(super) struct Series {
 }
 
 impl Series {
-    /// Remaining distance of a geometric series to its limit: `d r / (1 − r)` after a change d that was r times the preceding one.
+    /// Returns the remaining distance of a geometric series to its limit: `d r / (1 − r)` after a change d that was r
+    /// times the preceding one.
     fn remainder(&self) -> Option<f64> {
         let [before, last] = self.changes;
         let ratio = last / before;
@@ -20,12 +21,12 @@ impl Series {
             .then(|| last * ratio / (1.0 - ratio))
     }
 
-    /// The limit of a geometric series, else its last term.
+    /// Returns the limit of a geometric series, else its last term.
     pub(super) fn limit(&self) -> f64 {
         self.last + self.remainder().unwrap_or(0.0)
     }
 
-    /// Distance of the last term from the limit; its last change if the limit is unknown.
+    /// Returns the distance of the last term from the limit; its last change if the limit is unknown.
     pub(super) fn left(&self) -> f64 {
         self.remainder().unwrap_or(self.changes[1]).abs()
     }

@@ -40,7 +40,7 @@ pub(crate) struct Steps {
     pub(crate) to_slide: usize,
 }
 
-/// Spacing along travel: the given one, or an eighth of a smooth wheel's contact if that is finer `[m]`.
+/// Returns the spacing along travel: the given one, or an eighth of a smooth wheel's contact if that is finer `[m]`.
 ///
 /// The contact is that of the quasi-static model or, on soil that hardly yields, that on the elastic layer alone. If the
 /// quasi-static model has no contact, because the soil does not carry a smooth wheel, the given spacing is used. Checked by
@@ -61,7 +61,7 @@ pub(crate) fn spacing_along(
     })
 }
 
-/// The widest spacing up to a given one at which a grouser's pitch is a half-integer number of columns `[m]`.
+/// Returns the widest spacing up to a given one at which a grouser's pitch is a half-integer number of columns `[m]`.
 ///
 /// Then two successive grousers meet the columns half a column apart, the third like the first: the grid's ripple repeats in
 /// two periods and nearly cancels in their mean. At any other spacing it repeats in many periods, and no mean over few of
@@ -73,7 +73,7 @@ pub(crate) fn fit_to_pitch(dx: f64, pitch: f64) -> f64 {
     pitch / (libm::ceil(pitch / dx - 0.5) + 0.5)
 }
 
-/// Length of a smooth wheel's contact on independent springs of a stiffness `[Pa/m]` on rigid ground `[m]`.
+/// Returns the length of a smooth wheel's contact on independent springs of a stiffness `[Pa/m]` on rigid ground `[m]`.
 ///
 /// They carry `W = K b int (d - x^2 / 2R) dx = 4/3 K b d sqrt(2 R d)` over `2 sqrt(2 R d)`, d the depth of the rim.
 fn elastic_contact(stiffness: f64, wheel: &Wheel, condition: &Condition) -> f64 {
@@ -82,7 +82,7 @@ fn elastic_contact(stiffness: f64, wheel: &Wheel, condition: &Condition) -> f64 
     2.0 * root * libm::sqrt(diameter)
 }
 
-/// The steps of a run on a terrain of some spacing.
+/// Returns the steps of a run on a terrain of some spacing.
 pub(crate) fn steps(
     wheel: &Wheel,
     condition: &Condition,
@@ -90,7 +90,7 @@ pub(crate) fn steps(
     settings: &RunSettings,
     dx: f64,
 ) -> Steps {
-    // a whole number of steps per column, so that the effect of the grid repeats
+    // A column takes a whole number of steps, so that the effect of the grid repeats.
     let along = motion.forward.abs() / condition.sled_speed_m_s;
     let wanted = settings.travel_step_m.min(dx);
     let rim_per_travel = motion.rotation.abs() * wheel.radius_m / condition.sled_speed_m_s;
@@ -113,7 +113,7 @@ pub(crate) fn steps(
     }
 }
 
-/// The number of whole steps in a travel; an error if it exceeds the maximum over all passes.
+/// Returns the number of whole steps in a travel; an error if it exceeds the maximum over all passes.
 pub(crate) fn count(travel: f64, steps: &Steps, condition: &Condition) -> Result<usize, Rejection> {
     let whole = libm::floor(travel / steps.travel);
     let all = whole * f64::from(condition.pass);
@@ -127,8 +127,8 @@ pub(crate) fn count(travel: f64, steps: &Steps, condition: &Condition) -> Result
     Ok(whole as usize)
 }
 
-/// Undisturbed terrain for a wheel of a width that travels a distance, and the hub's place at the start; an error if the
-/// wheel covers more lanes than a mask holds, or the terrain has too many nodes.
+/// Returns undisturbed terrain for a wheel of a width that travels a distance, and the hub's place at the start; an
+/// error if the wheel covers more lanes than a mask holds, or the terrain has too many nodes.
 pub(crate) fn terrain(
     width: f64,
     motion: &Motion,
@@ -138,7 +138,7 @@ pub(crate) fn terrain(
     travel: f64,
     mirrored: bool,
 ) -> Result<(Terrain, f64), Rejection> {
-    // an even number of lanes that fits the width
+    // The number of lanes is even and fits the width.
     let half_lanes = libm::round(0.5 * width / settings.dem_spacing_m).max(1.0);
     let covered = if mirrored {
         half_lanes

@@ -2,7 +2,7 @@
 
 use super::super::contact::Contact;
 use super::super::contact::laws::Laws;
-use super::super::pack::{LANES, PACK, Pack, greater, lanes_of, load, splat, store, sum};
+use super::super::pack::{LANES, PACK, Pack, lanes_of, load, max, splat, store, sum};
 use super::super::wheel::motion::Motion;
 use super::Terrain;
 
@@ -19,7 +19,7 @@ pub(crate) struct Flow {
     backwards: Vec<Pack>,
 }
 
-/// Weights of the directions out of the footprint.
+/// Weights of the directions in which soil leaves the footprint.
 struct Ways {
     forward: Pack,
     backward: Pack,
@@ -43,7 +43,7 @@ impl Flow {
         let whole = u64::MAX >> (u64::BITS as usize - across.lanes);
         let (stiffness, compliance) = (splat(laws.elastic_stiffness), splat(1.0 / laws.elastic_stiffness));
         let fraction = splat(flow_fraction);
-        let own_width = splat(0.4999 * terrain.dy);
+        let min_width = splat(0.4999 * terrain.dy);
         let (mut pressed, mut flowed) = (zero, 0.0);
         self.forwards.clear();
         self.forwards.resize(packs, zero);
@@ -71,11 +71,11 @@ impl Flow {
             for ((((quad, surface), &width), (forward, backward)), (&per_left, &per_right)) in
                 quads.iter().zip(under).zip(&across.width).zip(passing).zip(sides)
             {
-                let sunk = greater(quad.surface - hub - quad.pressure * compliance, zero);
+                let sunk = max(quad.surface - hub - quad.pressure * compliance, zero);
                 // Soil on its elastic line keeps its height. Without this test a partly covered cell, whose pressure is not
                 // evaluated at its node, would sink at every step, however short.
                 let yields = quad.pressure.simd_lt(stiffness * quad.pressed);
-                let sunk = (width.simd_gt(own_width) & yields).select(sunk, zero);
+                let sunk = (width.simd_gt(min_width) & yields).select(sunk, zero);
                 let moves = sunk.simd_gt(zero);
                 *backward = zero;
                 if moves.none() {
@@ -144,7 +144,8 @@ fn leave(terrain: &mut Terrain, start: usize, mask: u64, passing: &mut [Pack]) -
     left
 }
 
-/// Directions of the soil's flow: pushed ahead where the wheel's surface moves into the soil, dragged along by its sliding.
+/// Returns the directions of the soil's flow: pushed ahead where the wheel's surface moves into the soil, dragged along
+/// by its sliding.
 fn ways(motion: &Motion, ahead: f64, rise: f64) -> Ways {
     let per_radius = 1.0 / (ahead * ahead + rise * rise).sqrt();
     let (sin, cos) = (ahead * per_radius, rise * per_radius);
@@ -181,7 +182,7 @@ fn add(terrain: &mut Terrain, at: usize, heights: Pack) -> f64 {
 mod tests {
     use super::*;
 
-    /// Weights forward, backward, left and right at a place ahead of the axle.
+    /// Returns the weights forward, backward, left and right at a place ahead of the axle.
     fn weights(motion: &Motion, ahead: f64) -> [f64; 4] {
         let rise = (0.125 * 0.125 - ahead * ahead).sqrt();
         let ways = ways(motion, ahead, rise);

@@ -65,13 +65,13 @@ impl Terrain {
         }
     }
 
-    /// x of a column `[m]`.
+    /// Returns x of a column `[m]`.
     #[inline]
     pub(crate) fn x(&self, column: usize) -> f64 {
         (column as f64 + 0.5) * self.dx
     }
 
-    /// y of a lane `[m]`.
+    /// Returns y of a lane `[m]`.
     #[inline]
     pub(crate) fn y(&self, lane: usize) -> f64 {
         self.first_y + lane as f64 * self.dy

@@ -1,7 +1,7 @@
 //! Relaxation: slopes steeper than the angle of repose slide.
 
 use super::super::contact::Contact;
-use super::super::pack::{PACK, Pack, greater, lesser, splat};
+use super::super::pack::{PACK, Pack, max, min, splat};
 use super::{BERM_LANES, Terrain};
 
 /// Share of an edge's excess height that moves in one sweep; above 1/4 a checkerboard pattern would grow.
@@ -35,7 +35,7 @@ impl Window {
         (self.lanes[1] - self.lanes[0]) / PACK
     }
 
-    /// Number of lanes of a column in a buffer, with padding behind the last.
+    /// Returns the number of lanes of a column in a buffer, with padding behind the last.
     fn stride(&self) -> usize {
         self.lanes[1] - self.lanes[0] + PACK
     }
@@ -109,7 +109,7 @@ impl Relaxation {
             {
                 let rise = contact.rise(row * across.packs() + pack, row);
                 let height = splat(hub) - rise - *bias - Pack::new(*surface);
-                *room = greater(height, splat(0.0)).to_array();
+                *room = max(height, splat(0.0)).to_array();
             }
         }
     }
@@ -164,13 +164,13 @@ impl Relaxation {
     }
 }
 
-/// The next lanes of four.
+/// Returns the next lanes of four.
 #[inline]
 fn beside(lanes: [f64; PACK], after: [f64; PACK]) -> Pack {
     Pack::new([lanes[1], lanes[2], lanes[3], after[0]])
 }
 
-/// A row of lanes in packs.
+/// Returns a row of lanes in packs.
 #[inline]
 fn packs(row: &[f64], start: usize, lanes: usize) -> &[[f64; PACK]] {
     row[start..start + lanes].as_chunks().0
@@ -181,12 +181,13 @@ fn packs_mut(row: &mut [f64], start: usize, lanes: usize) -> &mut [[f64; PACK]] 
     row[start..start + lanes].as_chunks_mut().0
 }
 
-/// Height that moves over an edge, > 0 towards the second node; never more than a quarter of the room at its target.
+/// Returns the height that moves over an edge, > 0 towards the second node; never more than a quarter of the room at
+/// its target.
 #[inline]
 fn edge(drop: Pack, steepest: Pack, room: Pack, next_room: Pack) -> Pack {
     let (rate, quarter, zero) = (splat(RATE), splat(0.25), splat(0.0));
-    let down = greater(lesser(rate * (drop - steepest), quarter * next_room), zero);
-    let up = greater(lesser(rate * (zero - drop - steepest), quarter * room), zero);
+    let down = max(min(rate * (drop - steepest), quarter * next_room), zero);
+    let up = max(min(rate * (zero - drop - steepest), quarter * room), zero);
     down - up
 }
 
@@ -196,7 +197,7 @@ mod tests {
 
     const SPACING: f64 = 0.004;
 
-    /// A heap of a given height in the middle of flat soil.
+    /// Returns a heap of a given height in the middle of flat soil.
     fn heap(height: f64) -> Terrain {
         let mut terrain = Terrain::new(SPACING, SPACING, -12.0 * SPACING, 24, 24, false);
         terrain.deposit(12, 12, height);
@@ -271,16 +272,9 @@ mod tests {
         for _ in 0..200 {
             relaxation.sweep(&mut terrain, window);
         }
-        let highest = |column: usize| {
-            (0..24).fold(0.0_f64, |highest, j| {
-                highest.max(terrain.surface[column * 24 + j])
-            })
-        };
-        assert!(
-            highest(13) < 2e-3 + 1e-15 && highest(13) > 1.9e-3,
-            "{}",
-            highest(13)
-        );
+        let lanes = |column: usize| &terrain.surface[column * 24..(column + 1) * 24];
+        let highest = |column: usize| lanes(column).iter().copied().fold(0.0_f64, f64::max);
+        assert!((1.9e-3..2e-3 + 1e-15).contains(&highest(13)), "{}", highest(13));
         assert!(highest(11) > 2e-3, "behind the heap nothing is in the way");
         assert!((terrain.surface.iter().sum::<f64>() - 0.05).abs() < 1e-15);
     }

@@ -1,6 +1,6 @@
 //! The lanes of the terrain that the wheel covers.
 
-use super::super::pack::{PACK, Pack, greater, max_lane, splat};
+use super::super::pack::{PACK, Pack, max, max_lane, splat};
 use super::super::terrain::Terrain;
 use super::envelope::NOWHERE;
 
@@ -14,10 +14,10 @@ pub(crate) struct Across {
     pub(crate) width: Vec<Pack>,
     /// 0 under the wheel, [`NOWHERE`] in the padding lanes `[m]`.
     pub(crate) bias: Vec<Pack>,
-    /// Distance of the middle of the covered width from the wheel's side at greater y, and at lesser y `[m]`.
+    /// Distance of the middle of the covered width from the wheel's side at greater y, and at smaller y `[m]`.
     pub(crate) from_left: Vec<Pack>,
     pub(crate) from_right: Vec<Pack>,
-    /// The lesser of the two distances.
+    /// The smaller of the two distances.
     pub(crate) from_side: Vec<Pack>,
     /// One over the distances from either side `[1/m]`.
     pub(crate) per_left: Vec<Pack>,
@@ -31,13 +31,13 @@ impl Across {
         self.width.len()
     }
 
-    /// Width of the wheel `[m]`.
+    /// Returns the width of the wheel `[m]`.
     pub(crate) fn wheel_width(&self) -> f64 {
         let whole = |packs: &[Pack]| packs.first().map_or(0.0, |pack| pack.to_array()[0]);
         whole(&self.from_left) + whole(&self.from_right)
     }
 
-    /// The part of a lane that the wheel covers: from y to y from its middle plane `[m]`.
+    /// Returns the part of a lane that the wheel covers: from y to y from its middle plane `[m]`.
     pub(crate) fn covered(&self, lane: usize) -> [f64; 2] {
         let value = |packs: &[Pack]| packs[lane / PACK].to_array()[lane % PACK];
         let middle = 0.5 * (value(&self.from_right) - value(&self.from_left));
@@ -45,16 +45,14 @@ impl Across {
         [middle - half, middle + half]
     }
 
-    /// The highest surface of a column of the terrain under the wheel `[m]`.
+    /// Returns the highest surface of a column of the terrain under the wheel `[m]`.
     pub(crate) fn highest(&self, terrain: &Terrain, column: usize) -> f64 {
         let start = column * terrain.lanes + self.first_lane;
         let under = terrain.surface[start..start + self.bias.len() * PACK]
             .as_chunks()
             .0;
         let lanes = under.iter().zip(&self.bias);
-        max_lane(lanes.fold(splat(NOWHERE), |high, (z, &bias)| {
-            greater(high, Pack::new(*z) + bias)
-        }))
+        max_lane(lanes.fold(splat(NOWHERE), |high, (z, &bias)| max(high, Pack::new(*z) + bias)))
     }
 
     /// Places a wheel of a width around y over the lanes, along their borders. In a mirrored terrain the right side is the

@@ -31,7 +31,7 @@ pub(super) struct Piece {
 }
 
 impl Piece {
-    /// Rise at a place between its ends `[m]`.
+    /// Returns the rise at a place between its ends `[m]`.
     pub(super) fn rise(&self, ahead: f64) -> f64 {
         let share = (ahead - self.rear) / (self.front - self.rear);
         self.rear_rise + share * (self.front_rise - self.rear_rise)
@@ -63,17 +63,17 @@ impl Cylinder {
         self.radius
     }
 
-    /// Angle from one grouser to the next `[rad]`.
+    /// Returns the angle from one grouser to the next `[rad]`.
     pub(super) fn pitch(&self) -> f64 {
         core::f64::consts::TAU / f64::from(self.grouser_count)
     }
 
-    /// Number of grousers, if there are any.
+    /// Returns the number of grousers, if there are any.
     pub(crate) fn grousers(&self) -> Option<u32> {
         (self.grouser_count > 0).then_some(self.grouser_count)
     }
 
-    /// Greatest distance of a point from the axle `[m]`.
+    /// Returns the largest distance of a point from the axle `[m]`.
     pub(crate) fn reach(&self) -> f64 {
         if self.grouser_count == 0 {
             self.radius
@@ -152,8 +152,8 @@ impl Cylinder {
             range.start = range.start.min(column(rear).saturating_sub(1));
             range.end = range.end.max(column(front) + 2);
         }
-        let least = min_rise.max(0.0);
-        let half = (self.radius * self.radius - least * least).max(0.0).sqrt();
+        let min_rise = min_rise.max(0.0);
+        let half = (self.radius * self.radius - min_rise * min_rise).max(0.0).sqrt();
         let column = |ahead: f64| (((pose.x + ahead) / terrain.dx) as usize).min(terrain.columns - 1);
         let touches = |c: &usize| {
             let ahead = ((terrain.x(*c) - pose.x).abs() - 0.5 * terrain.dx).max(0.0);
@@ -186,7 +186,7 @@ impl Cylinder {
         }
     }
 
-    /// Rise and slope of the rim at a place.
+    /// Returns the rise and slope of the rim at a place.
     pub(super) fn rim(&self, ahead: f64) -> (f64, f64) {
         let square = self.radius * self.radius;
         let square_rise = square - ahead * ahead;
@@ -198,7 +198,8 @@ impl Cylinder {
         self.surface(ahead, rise)
     }
 
-    /// Rise and slope at a place, from the rise of the unloaded wheel less the part of the rim that the load cuts off there.
+    /// Returns the rise and slope at a place, from the rise of the unloaded wheel less the part of the rim that the
+    /// load cuts off there.
     pub(super) fn surface(&self, ahead: f64, rise: f64) -> (f64, f64) {
         if self.loaded_radius < self.radius {
             let square_rise = self.radius * self.radius - ahead * ahead;
@@ -236,9 +237,9 @@ impl Cylinder {
         let widest = libm::acos((min_rise / reach).max(-1.0)).min(0.5 * core::f64::consts::PI);
         let phase = (pose.turned - row.angle) / pitch;
         let phase = phase - libm::floor(phase); // of a pitch
-        let greatest = libm::floor(widest / pitch + phase) as i64;
-        let least = libm::ceil(-widest / pitch + phase) as i64;
-        for number in least..=greatest {
+        let last = libm::floor(widest / pitch + phase) as i64;
+        let first = libm::ceil(-widest / pitch + phase) as i64;
+        for number in first..=last {
             let angle = (number as f64 - phase) * pitch;
             let deepest = reach * libm::cos(angle);
             let tip = pose.x + reach * libm::sin(angle);
@@ -286,7 +287,7 @@ impl Cylinder {
     }
 }
 
-/// Square of the least rise of the rim, relative to its radius, at which it counts as an underside.
+/// Square of the minimum rise of the rim, relative to its radius, at which it counts as an underside.
 const STEEPEST: f64 = 1e-4;
 
 fn push(out: &mut Envelope, column: usize, node: f64, rear: f64, front: f64, whole: bool) {

@@ -36,7 +36,7 @@ pub(crate) enum Underside {
 }
 
 impl Underside {
-    /// A wheel whose rim is flattened by a deflection `[m]`; a mesh stays rigid.
+    /// Returns a wheel whose rim is flattened by a deflection `[m]`; a mesh stays rigid.
     pub(crate) fn new(wheel: &Wheel, shape: &Shape, deflection: f64) -> Self {
         match shape {
             Shape::Rim(grousers) => Self::Cylinder(Cylinder::new(wheel.radius_m, grousers, deflection)),
@@ -52,7 +52,7 @@ impl Underside {
         }
     }
 
-    /// Greatest distance of a point from the axle `[m]`.
+    /// Returns the largest distance of a point from the axle `[m]`.
     pub(crate) fn reach(&self) -> f64 {
         match self {
             Self::Cylinder(cylinder) => cylinder.reach(),
@@ -61,7 +61,7 @@ impl Underside {
         }
     }
 
-    /// Width about the middle plane that holds the whole wheel `[m]`; nominally that of `wheel`.
+    /// Returns the width about the middle plane that holds the whole wheel `[m]`; nominally that of `wheel`.
     pub(crate) fn width(&self, wheel: &Wheel) -> f64 {
         match self {
             Self::Cylinder(_) | Self::Treaded(_) => wheel.width_m,
@@ -69,7 +69,7 @@ impl Underside {
         }
     }
 
-    /// Number of identical sectors in one turn; `None` if turning changes nothing.
+    /// Returns the number of identical sectors in one turn; `None` if turning changes nothing.
     pub(crate) fn repeats_per_turn(&self) -> Option<u32> {
         match self {
             Self::Cylinder(cylinder) => cylinder.grousers(),

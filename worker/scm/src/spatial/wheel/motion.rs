@@ -33,7 +33,7 @@ pub(crate) struct Traction {
 impl Traction {
     /// Packs one number of four lanes.
     #[inline]
-    pub(crate) fn of_lanes(lanes: &[Traction], field: fn(&Traction) -> f64) -> Pack {
+    pub(crate) fn from_lanes(lanes: &[Traction], field: fn(&Traction) -> f64) -> Pack {
         Pack::new([
             field(&lanes[0]),
             field(&lanes[1]),
@@ -53,7 +53,7 @@ impl Motion {
         }
     }
 
-    /// Velocity of a point of the wheel's surface over the soil, with the hub at constant height `[m/s]`.
+    /// Returns the velocity of a point of the wheel's surface over the soil, with the hub at constant height `[m/s]`.
     #[inline]
     pub(crate) fn surface_velocity(&self, ahead: f64, rise: f64) -> [f64; 3] {
         [
@@ -63,8 +63,8 @@ impl Motion {
         ]
     }
 
-    /// Velocity into the soil along the normal of four lanes of the wheel's surface, with the hub at constant height;
-    /// negative if the surface leaves the soil `[m/s]`.
+    /// Returns the velocity into the soil along the normal of four lanes of the wheel's surface, with the hub at
+    /// constant height; negative if the surface leaves the soil `[m/s]`.
     pub(crate) fn entry_velocity(&self, ahead: f64, facet: &Facet) -> Pack {
         let (rise, one) = (facet.rise, splat(1.0));
         let x = splat(self.forward) - splat(self.rotation) * rise;
@@ -73,8 +73,8 @@ impl Motion {
         -out / stretch
     }
 
-    /// Directions of pressure and shear at a point `ahead` of the hub and `rise` below it, where the wheel's surface has
-    /// slopes (dh/dx, dh/dy).
+    /// Returns the directions of pressure and shear at a point `ahead` of the hub and `rise` below it, where the
+    /// wheel's surface has slopes (dh/dx, dh/dy).
     #[inline]
     pub(crate) fn traction(&self, law: &ShearVelocity, ahead: f64, rise: f64, slope: [f64; 2]) -> Traction {
         let [slope_x, slope_y] = slope;

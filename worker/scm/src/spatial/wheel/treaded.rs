@@ -8,9 +8,9 @@ use super::cylinder::{Cylinder, Piece, Row};
 use super::envelope::{Envelope, Facet, NOWHERE, Strip};
 use super::pose::{Pose, Range};
 
-/// Distance of borders that rounding can cause `[m]`.
+/// Distance of two borders that differ by rounding `[m]`.
 const SAME: f64 = 1e-12;
-/// Share of a lane that rounding can cause.
+/// Share of a lane below which a cover is due to rounding.
 const NOTHING: f64 = 1e-9;
 
 /// A rim with the grousers of a [`Tread`].
@@ -52,7 +52,7 @@ impl Treaded {
         }
     }
 
-    /// The rim with one row of its grousers.
+    /// Returns the rim with one row of its grousers.
     pub(crate) fn one_row(&self) -> &Cylinder {
         &self.cylinder
     }
@@ -100,7 +100,7 @@ impl Treaded {
                 let bend = self.tread.bend(0.5 * (from + to), width);
                 let angle = bend / radius + shift * pitch;
                 match self.places[first..].last_mut() {
-                    // bars that continue from row to row are one grouser, in the middle of both
+                    // Bars that continue from row to row are one grouser, with its middle between them.
                     Some(last) if (shift - self.tread.shift(row - 1)).abs() < NOTHING => {
                         let whole = last.row.share + share;
                         last.row.angle += share / whole * (angle - last.row.angle);
@@ -227,17 +227,12 @@ fn blank(column: usize, node: f64, rear: f64, front: f64) -> Strip {
 
 #[cfg(test)]
 mod tests {
-    use super::super::super::grousers::Grousers;
+    use super::super::super::fixture::BARS;
     use super::*;
 
     const WIDTH: f64 = 0.112;
-    const BARS: Grousers = Grousers {
-        count: 12,
-        height_m: 0.009,
-        thickness_m: 0.002,
-    };
 
-    /// A number of lanes under a wheel in the middle of a terrain.
+    /// Returns a number of lanes under a wheel in the middle of a terrain.
     fn under(lanes: u32) -> (Terrain, Across) {
         let dy = WIDTH / f64::from(lanes);
         let terrain = Terrain::new(0.004, dy, -0.5 * WIDTH - 6.5 * dy, 100, 60, false);
@@ -267,10 +262,7 @@ mod tests {
                     };
                     let covered: f64 = wheel.places.iter().map(width).sum();
                     let expected = width_m.map_or(WIDTH, |width| width * f64::from(rows));
-                    assert!(
-                        (covered - expected).abs() < 1e-12,
-                        "{rows} rows: {covered} {expected}"
-                    );
+                    assert!((covered - expected).abs() < 1e-12, "{rows} rows: {covered}");
                 }
             }
         }
@@ -279,11 +271,8 @@ mod tests {
     #[test]
     fn lane_by_lane_straight_grousers_are_those_of_the_cylinder() {
         let (terrain, across) = under(28);
-        let pose = Pose {
-            x: 0.2013,
-            y: 0.0,
-            turned: 0.37,
-        };
+        let (x, y, turned) = (0.2013, 0.0, 0.37);
+        let pose = Pose { x, y, turned };
         let range = Range { start: 35, end: 66 };
         let (mut expected, mut got) = (Envelope::default(), Envelope::default());
         Cylinder::new(0.125, &BARS, 0.0).lay(&terrain, pose, range, 0.1, &across, &mut expected);
@@ -292,11 +281,8 @@ mod tests {
         assert_eq!(got.strips.len(), expected.strips.len());
         for (row, (strip, reference)) in expected.strips.iter().zip(&got.strips).enumerate() {
             assert_eq!((reference.column, reference.smooth), (strip.column, strip.smooth));
-            assert!(
-                near(reference.rear, strip.rear)
-                    && near(reference.front, strip.front)
-                    && near(reference.ahead, strip.ahead)
-            );
+            assert!(near(reference.rear, strip.rear) && near(reference.front, strip.front));
+            assert!(near(reference.ahead, strip.ahead));
             assert!(near(reference.rise, strip.rise) && near(reference.slope, strip.slope));
             for facet in got.facets[row..].iter().step_by(got.strips.len()) {
                 assert!(facet.rise.to_array().iter().all(|&rise| near(rise, strip.rise)));

@@ -11,7 +11,7 @@ mod trial;
 use formula::variable::Variables;
 use formula::{Hook, Variable};
 
-use super::super::pack::{PACK, Pack, greater, splat, store};
+use super::super::pack::{PACK, Pack, max, splat, store};
 use super::super::terrain::Terrain;
 use super::super::wheel::envelope::Envelope;
 use super::super::wheel::motion::Motion;
@@ -88,9 +88,9 @@ struct Point {
 
 impl<'a> NodeFormulas<'a> {
     pub(crate) fn new(laws: NodeLaws<'a>, variables: [f64; Variable::COUNT], width: f64) -> Self {
-        let of_step = Variables::new(&[Variable::Vn, Variable::Vt, Variable::J]);
+        let step_variables = Variables::new(&[Variable::Vn, Variable::Vt, Variable::J]);
         Self {
-            may_scale: laws.only_scale_stress_by(of_step),
+            may_scale: laws.only_scale_stress_by(step_variables),
             scales: false,
             scaled_down_to: f64::INFINITY,
             laws,
@@ -147,7 +147,7 @@ impl<'a> NodeFormulas<'a> {
                 };
                 self.nodes.push(Node {
                     slips: contact.slip_speed(row * packs + pack, row),
-                    enters: greater(enters, zero),
+                    enters: max(enters, zero),
                     share: zero,
                     per_share: zero,
                     scale: one,
@@ -176,7 +176,8 @@ impl<'a> NodeFormulas<'a> {
         }
     }
 
-    /// Vertical force of the soil on the wheel with its hub at a height `[N]`; NaN if a formula gives an inadmissible value.
+    /// Returns the vertical force of the soil on the wheel with its hub at a height `[N]`; NaN if a formula gives an
+    /// inadmissible value.
     pub(crate) fn press(&mut self, contact: &mut Contact, terrain: &Terrain, laws: &Laws, hub: f64) -> f64 {
         self.settle();
         if self.scales {
@@ -206,7 +207,7 @@ impl<'a> NodeFormulas<'a> {
         }
     }
 
-    /// The acting strengths at the last trial height, by quad `[Pa]`.
+    /// Returns the acting strengths at the last trial height, by quad `[Pa]`.
     pub(crate) fn strengths(&mut self, contact: &Contact, laws: &Laws) -> &[Pack] {
         if self.scales {
             let packs = contact.across.packs();
@@ -238,7 +239,7 @@ impl<'a> NodeFormulas<'a> {
     }
 }
 
-/// The base's strength of four nodes `[Pa]`.
+/// Returns the base's strength of four nodes `[Pa]`.
 fn strength(laws: &Laws, quad: &Quad) -> Pack {
     splat(laws.soil.cohesion_pa) + quad.pressure * splat(laws.tan_friction_angle)
 }

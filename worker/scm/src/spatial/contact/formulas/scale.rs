@@ -62,7 +62,7 @@ impl Contact {
         let packs = self.across.packs();
         for (place, quad) in self.quads.iter_mut().enumerate() {
             quad.shear_z = if self.lanes_differ {
-                Traction::of_lanes(&self.tractions[place * PACK..][..PACK], |t| t.shear_z)
+                Traction::from_lanes(&self.tractions[place * PACK..][..PACK], |t| t.shear_z)
             } else {
                 splat(self.tractions[place / packs].shear_z)
             };

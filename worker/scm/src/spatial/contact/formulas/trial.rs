@@ -3,9 +3,7 @@
 use formula::block::BLOCK;
 use formula::{Hook, Variable};
 
-use super::super::super::pack::{
-    LANES, PACK, Pack, greater, lanes_of, lesser, load, max_lane, splat, store, sum,
-};
+use super::super::super::pack::{LANES, PACK, Pack, lanes_of, load, max, max_lane, min, splat, store, sum};
 use super::super::Contact;
 use super::super::laws::Laws;
 use super::super::patch::Patch;
@@ -38,14 +36,14 @@ impl NodeFormulas<'_> {
         Ok(sum(force))
     }
 
-    /// Puts four nodes into the block, with the base's pressure.
+    /// Writes four nodes into the block, with the base's pressure.
     fn see(&mut self, contact: &mut Contact, laws: &Laws, row: usize, pack: usize, lanes: u64) {
         let place = row * contact.across.packs() + pack;
         let at = self.points.len() * PACK;
         self.see_motion(place, at);
-        let runs = &contact.patches.runs[contact.patches.of_strip[row - contact.first].clone()];
+        let runs = &contact.patches.runs[contact.patches.by_strip[row - contact.first].clone()];
         let patches = &contact.patches.patches;
-        let of_patch = |quantity: fn(&Patch) -> f64| match runs {
+        let patch_value = |quantity: fn(&Patch) -> f64| match runs {
             [run] => splat(quantity(&patches[run.patch])),
             _ => runs.iter().fold(splat(0.0), |rest, run| {
                 let value = splat(quantity(&patches[run.patch]));
@@ -53,7 +51,7 @@ impl NodeFormulas<'_> {
             }),
         };
         let quad = &mut contact.quads[place];
-        let plastic = of_patch(|patch| patch.stiffness) * quad.shape * quad.depth_power;
+        let plastic = patch_value(|patch| patch.stiffness) * quad.shape * quad.depth_power;
         quad.pressure = laws.bounded(plastic, quad.pressed);
         let bears = u64::from(quad.pressure.simd_gt(splat(0.0)).to_bitmask()) & lanes;
         self.points.push(Point { quad: place, bears });
@@ -61,28 +59,28 @@ impl NodeFormulas<'_> {
         let changes_pressure = self.laws.enter(Hook::Pressure);
         let block = &mut self.laws.block;
         if uses.contains(Variable::Z) {
-            let depth = greater(quad.depth, splat(MIN_DEPTH));
+            let depth = max(quad.depth, splat(MIN_DEPTH));
             store(block.column_mut(Variable::Z), at, depth);
         }
         if uses.contains(Variable::Position) {
             let place = splat(contact.strips[row].middle) + quad.offset;
             let [rear, length] = self.footprint;
             let position = (place - splat(rear)) / splat(length);
-            let position = lesser(greater(position, splat(0.0)), splat(1.0));
+            let position = min(max(position, splat(0.0)), splat(1.0));
             store(block.column_mut(Variable::Position), at, position);
         }
         if uses.contains(Variable::KStar) {
             store(
                 block.column_mut(Variable::KStar),
                 at,
-                of_patch(|patch| patch.modulus),
+                patch_value(|patch| patch.modulus),
             );
         }
         if uses.contains(Variable::BEff) {
             store(
                 block.column_mut(Variable::BEff),
                 at,
-                of_patch(|patch| patch.b_eff),
+                patch_value(|patch| patch.b_eff),
             );
         }
         if changes_pressure {
@@ -164,7 +162,7 @@ impl NodeFormulas<'_> {
 }
 
 impl Contact {
-    /// Rear end and length of the footprint, ahead of the hub `[m]`.
+    /// Returns the rear end and length of the footprint, ahead of the hub `[m]`.
     pub(super) fn extent(&self) -> [f64; 2] {
         if self.end == self.first {
             return [0.0, 1.0];
@@ -172,8 +170,8 @@ impl Contact {
         let packs = self.across.packs();
         let farthest = |row: usize, end: fn(&Quad) -> Pack| {
             let quads = &self.quads[row * packs..(row + 1) * packs];
-            max_lane(quads.iter().fold(splat(f64::MIN), |greatest, quad| {
-                greater(greatest, quad.touching(self.hub).select(end(quad), greatest))
+            max_lane(quads.iter().fold(splat(f64::MIN), |farthest, quad| {
+                max(farthest, quad.touching(self.hub).select(end(quad), farthest))
             }))
         };
         let rear = -farthest(self.first, |quad| -quad.rear_end);

@@ -37,9 +37,9 @@ pub(crate) struct Mesh {
     triangles: Vec<Triangle>,
     /// The triangles that span too great an angle.
     wide: Vec<Triangle>,
-    /// Greatest half angle of one of `triangles` `[rad]`.
+    /// Largest half angle of one of `triangles` `[rad]`.
     half_span: f64,
-    /// Greatest distance from the axle in each sector `[m]`; see [`sectors`].
+    /// Largest distance from the axle in each sector `[m]`; see [`sectors`].
     sectors: Vec<f64>,
     reach: f64,
     width: f64,
@@ -82,17 +82,17 @@ impl Mesh {
         }
     }
 
-    /// Greatest distance of a point from the axle `[m]`.
+    /// Returns the largest distance of a point from the axle `[m]`.
     pub(crate) fn reach(&self) -> f64 {
         self.reach
     }
 
-    /// Width about the plane y = 0 that holds the surface `[m]`.
+    /// Returns the width about the plane y = 0 that holds the surface `[m]`.
     pub(crate) fn width(&self) -> f64 {
         self.width
     }
 
-    /// Number of identical sectors in one turn.
+    /// Returns the number of identical sectors in one turn.
     pub(crate) fn repeats_per_turn(&self) -> u32 {
         self.repeats
     }
@@ -118,8 +118,8 @@ impl Mesh {
         out: &mut Envelope,
     ) {
         let range = self.widen(terrain, pose, range, min_rise, across);
-        let least = (min_rise - COLUMNS_BEYOND * terrain.dx).max(0.0);
-        self.place(terrain, pose, range, least);
+        let lowest = (min_rise - COLUMNS_BEYOND * terrain.dx).max(0.0);
+        self.place(terrain, pose, range, lowest);
         let samples = 2 * libm::ceil(0.5 * (terrain.dx / COARSEST - 1.0)).max(1.0) as usize + 1;
         self.raster.clear(terrain, pose, range, samples, across);
         for placed in &self.placed {
@@ -136,18 +136,18 @@ impl Mesh {
         );
     }
 
-    /// Turns the triangles that may be lowest somewhere over the columns of a range, with a rise of more than `least`.
-    fn place(&mut self, terrain: &Terrain, pose: Pose, range: Range, least: f64) {
+    /// Turns the triangles that may be lowest somewhere over the columns of a range, with a rise of more than `min_rise`.
+    fn place(&mut self, terrain: &Terrain, pose: Pose, range: Range, min_rise: f64) {
         self.placed.clear();
-        if least >= self.reach {
+        if min_rise >= self.reach {
             return;
         }
         let rear = terrain.x(range.start) - pose.x - terrain.dx;
         let front = terrain.x(range.end) - pose.x;
-        // among points less than `rear` behind the hub, the highest lies at the greatest angle; likewise in front
-        let widest = libm::acos(least / self.reach).min(FRAC_PI_2);
-        let from = libm::atan2(rear, if rear < 0.0 { least } else { self.reach }).max(-widest);
-        let to = libm::atan2(front, if front > 0.0 { least } else { self.reach }).min(widest);
+        // among points less than `rear` behind the hub, the highest lies at the largest angle; likewise in front
+        let widest = libm::acos(min_rise / self.reach).min(FRAC_PI_2);
+        let from = libm::atan2(rear, if rear < 0.0 { min_rise } else { self.reach }).max(-widest);
+        let to = libm::atan2(front, if front > 0.0 { min_rise } else { self.reach }).min(widest);
         let from = from - self.half_span + pose.turned;
         let length = (to + self.half_span + pose.turned - from).clamp(0.0, TAU);
         let from = from - TAU * libm::floor(from / TAU);
@@ -155,20 +155,20 @@ impl Mesh {
         let at = |angle: f64| self.triangles.partition_point(|t| t.angle < angle);
         let (first, second) = (at(from)..at(to), 0..at(to - TAU).min(at(from)));
         let near = self.triangles[first].iter().chain(&self.triangles[second]);
-        let modelled = |t: &&Triangle| t.reach > least && (t.left > 0.0 || !terrain.mirrored);
+        let modelled = |t: &&Triangle| t.reach > min_rise && (t.left > 0.0 || !terrain.mirrored);
         let (sin, cos) = (libm::sin(pose.turned), libm::cos(pose.turned));
         let placed = near.chain(&self.wide).filter(modelled);
         let placed = placed.filter_map(|t| t.turn(sin, cos));
         self.placed
-            .extend(placed.filter(|p| p.greatest_rise > least && p.rear() <= front && p.front() >= rear));
+            .extend(placed.filter(|p| p.max_rise > min_rise && p.rear() <= front && p.front() >= rear));
     }
 
     /// Widens `range` by the columns where some part of the wheel may touch the soil, and by one more on either side.
     fn widen(&self, terrain: &Terrain, pose: Pose, range: Range, min_rise: f64, across: &Across) -> Range {
         let mut widened = range;
-        let least = min_rise.max(0.0);
-        if least < self.reach {
-            let widest = libm::acos(least / self.reach).min(FRAC_PI_2);
+        let min_rise = min_rise.max(0.0);
+        if min_rise < self.reach {
+            let widest = libm::acos(min_rise / self.reach).min(FRAC_PI_2);
             let sector = TAU / SECTORS as f64;
             let number = |angle: f64| libm::floor((angle + pose.turned) / sector) as i64;
             let column = |ahead: f64| {
@@ -181,12 +181,12 @@ impl Mesh {
                 let end = begin + sector;
                 let nearest = 0.0_f64.max(begin).min(end);
                 let deepest = far * libm::cos(nearest);
-                if deepest <= least {
+                if deepest <= min_rise {
                     continue;
                 }
                 let (rear, front) = (
-                    column(self.min_ahead(begin, least, far)),
-                    column(-self.min_ahead(-end, least, far)),
+                    column(self.min_ahead(begin, min_rise, far)),
+                    column(-self.min_ahead(-end, min_rise, far)),
                 );
                 if rear >= widened.start && front < widened.end {
                     continue;
@@ -202,19 +202,19 @@ impl Mesh {
         widened
     }
 
-    /// The rearmost possible place `[m]` of a point at an angle or in front of it, with a rise of at least `least` and at
-    /// most `far` from the axle.
-    fn min_ahead(&self, angle: f64, least: f64, far: f64) -> f64 {
+    /// Returns the rearmost possible place `[m]` of a point at an angle or in front of it, with a rise of at least
+    /// `min_rise` and at most `far` from the axle.
+    fn min_ahead(&self, angle: f64, min_rise: f64, far: f64) -> f64 {
         let (sin, cos) = (libm::sin(angle), libm::cos(angle));
         if sin < 0.0 {
             far * sin
         } else {
-            least * sin / cos.max(least / far)
+            min_rise * sin / cos.max(min_rise / far)
         }
     }
 }
 
-/// Greatest distance from the axle in each of [`SECTORS`] equal sectors, from straight down forwards.
+/// Returns the largest distance from the axle in each of [`SECTORS`] equal sectors, from straight down forwards.
 fn sectors(triangles: &[Triangle]) -> Vec<f64> {
     let mut sectors = vec![0.0_f64; SECTORS];
     let per_angle = SECTORS as f64 / TAU;

@@ -7,7 +7,7 @@ use super::super::envelope::NOWHERE;
 use super::super::pose::{Pose, Range};
 use super::triangle::Placed;
 
-/// Part of a sample or lane by which rounding may misplace one.
+/// Displacement by rounding, in samples or lanes.
 const ROUNDING: f64 = 1e-6;
 /// Difference of rises `[m]` or squared slopes that rounding can cause.
 const SAME: f64 = 1e-12;
@@ -30,7 +30,7 @@ pub(super) struct Raster {
     middles: Vec<f64>,
     /// Number of lanes per length across `[1/m]`.
     per_dy: f64,
-    /// For each sample and lane, the greatest rise `[m]`, or [`NOWHERE`], and the slopes dh/dx, dh/dy there.
+    /// For each sample and lane, the largest rise `[m]`, or [`NOWHERE`], and the slopes dh/dx, dh/dy there.
     pub(super) rise: Vec<f64>,
     pub(super) slope_x: Vec<f64>,
     pub(super) slope_y: Vec<f64>,
@@ -73,7 +73,7 @@ impl Raster {
         }
     }
 
-    /// Place of a sample ahead of the hub `[m]`.
+    /// Returns the place of a sample ahead of the hub `[m]`.
     #[inline]
     pub(super) fn ahead(&self, sample: usize) -> f64 {
         self.first + sample as f64 * self.spacing
@@ -109,7 +109,7 @@ impl Raster {
         };
         let [per_x, per_y] = placed.descent;
         let row = sample * self.stride;
-        // the outermost lanes may be narrower, so this may be a lane too early
+        // The outermost lanes may be narrower, so the guess may be one lane too low.
         let guess = ((low - bottom) * self.per_dy - ROUNDING).max(0.0) as usize;
         for lane in guess..self.lanes {
             let y = self.middles[lane];
@@ -121,7 +121,7 @@ impl Raster {
             }
             let rise = a[2] + per_x * (x - a[0]) + per_y * (y - a[1]);
             // rounding on a steep plane must not leave the triangle
-            let rise = rise.max(placed.min_rise).min(placed.greatest_rise);
+            let rise = rise.max(placed.min_rise).min(placed.max_rise);
             let place = row + lane;
             let lower = rise - self.rise[place];
             if lower > SAME {
@@ -135,7 +135,7 @@ impl Raster {
 }
 
 impl Raster {
-    /// On an edge, keeps the slopes of the less steep triangle; for equal slopes, the mean. A mirror image gives the same.
+    /// Keeps on an edge the slopes of the less steep triangle; for equal slopes, the mean. A mirror image gives the same.
     #[cold]
     fn share(&mut self, place: usize, slopes: [f64; 2]) {
         let (x, y) = (self.slope_x[place], self.slope_y[place]);

@@ -6,7 +6,7 @@ use super::super::envelope::{Envelope, Facet, NOWHERE, Strip};
 use super::super::pose::{Pose, Range};
 use super::raster::Raster;
 
-/// Greatest change of the slope dh/dx within a smooth surface; half of it is the steepest step that counts as part of one.
+/// Largest change of the slope dh/dx within a smooth surface; half of it is the steepest step that counts as part of one.
 const KINK: f64 = 0.5;
 
 /// Difference of rises `[m]` or slopes that rounding can cause.
@@ -119,7 +119,7 @@ fn goes_on(raster: &Raster, from: usize, to: usize) -> bool {
     goes_on
 }
 
-/// Rise and slope of the lane that reaches deepest.
+/// Returns the rise and slope of the lane that reaches deepest.
 fn deepest(raster: &Raster, source: [usize; 2]) -> (f64, f64) {
     let mut best = (NOWHERE, 0.0);
     for lane in 0..raster.lanes {
@@ -143,7 +143,7 @@ fn flat(raster: &Raster, sample: usize) -> bool {
     lanes.iter().all(|slope| slope.abs() <= ROUNDING)
 }
 
-/// Mean of two samples of one smooth surface.
+/// Returns the mean of two samples of one smooth surface.
 fn mean(values: &[f64], stride: usize, source: [usize; 2], lane: usize) -> f64 {
     0.5 * (values[source[0] * stride + lane] + values[source[1] * stride + lane])
 }
@@ -160,7 +160,7 @@ fn facet(raster: &Raster, source: [usize; 2], lane: usize) -> Facet {
     }
 }
 
-/// Slope of a surface whose normal points to the axle; 0 at the axle's height and beside the wheel.
+/// Returns the slope of a surface whose normal points to the axle; 0 at the axle's height and beside the wheel.
 fn radial_slope(ahead: f64, rise: f64) -> f64 {
     if rise > 0.0 { ahead / rise } else { 0.0 }
 }

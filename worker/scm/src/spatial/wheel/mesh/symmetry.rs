@@ -5,7 +5,7 @@ use core::f64::consts::TAU;
 /// Distance at which two points count as one, relative to the wheel's reach, because coordinates in files are rounded.
 const TOLERANCE: f64 = 1e-5;
 
-/// Returns the number of equal sectors of the points, ≥ 1: the greatest number k such that a turn by 2π/k maps every point
+/// Returns the number of equal sectors of the points, ≥ 1: the largest number k such that a turn by 2π/k maps every point
 /// onto a point. Triangles between them are not compared.
 pub(super) fn repeats_per_turn(points: &[[f64; 3]], reach: f64) -> u32 {
     let tolerance = TOLERANCE * reach;
@@ -25,10 +25,10 @@ pub(super) fn repeats_per_turn(points: &[[f64; 3]], reach: f64) -> u32 {
         return 1;
     };
     let repeats = |sectors: usize| angles.iter().all(|ring| turns_onto_itself(ring, sectors));
-    let greatest = (1..=fewest)
+    let sectors = (1..=fewest)
         .rev()
         .find(|&k| fewest.is_multiple_of(k) && repeats(k));
-    greatest.map_or(1, |k| k as u32)
+    sectors.map_or(1, |k| k as u32)
 }
 
 /// Returns whether every point has its mirror image at −y. Triangles between them are not compared.
@@ -45,7 +45,7 @@ pub(super) fn mirrors(points: &[[f64; 3]], reach: f64) -> bool {
     })
 }
 
-/// Points whose first two coordinates agree, each group sorted by the third.
+/// Groups points whose first two coordinates agree, each group sorted by the third.
 fn grouped(points: &mut [[f64; 3]], tolerance: f64) -> Vec<&[[f64; 3]]> {
     let mut groups = Vec::new();
     points.sort_by(|a, b| a[0].total_cmp(&b[0]));
@@ -59,7 +59,7 @@ fn grouped(points: &mut [[f64; 3]], tolerance: f64) -> Vec<&[[f64; 3]]> {
     groups
 }
 
-/// The third coordinates without duplicates.
+/// Returns the third coordinates without duplicates.
 fn without_doubles(group: &[[f64; 3]], tolerance: f64) -> Vec<f64> {
     let mut thirds: Vec<f64> = group.iter().map(|p| p[2]).collect();
     thirds.dedup_by(|b, a| *b - *a <= tolerance);

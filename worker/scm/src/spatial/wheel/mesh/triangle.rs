@@ -4,7 +4,7 @@ use core::f64::consts::{PI, TAU};
 
 /// Component of a unit normal below which a triangle counts as vertical, or a surface has no normal.
 const VERTICAL: f64 = 1e-9;
-/// Greatest slope with which a triangle presses; see `Normals::Surface`.
+/// Largest slope with which a triangle presses; see `Normals::Surface`.
 const STEEPEST: f64 = 10.0;
 
 /// A triangle that faces down at some angle of rotation.
@@ -14,9 +14,9 @@ pub(super) struct Triangle {
     pub(super) corners: [[f64; 3]; 3],
     /// Unit normal with the wheel at rest.
     normal: [f64; 3],
-    /// Greatest distance from the axle `[m]`.
+    /// Largest distance from the axle `[m]`.
     pub(super) reach: f64,
-    /// Greatest y `[m]`.
+    /// Largest y `[m]`.
     pub(super) left: f64,
     /// Middle of the angles about the axle from straight down, positive forward, in [0, 2π), and half their extent `[rad]`.
     pub(super) angle: f64,
@@ -33,7 +33,7 @@ pub(super) struct Placed {
     /// Slopes dh/dx and dh/dy with which it presses.
     pub(super) slopes: [f64; 2],
     pub(super) min_rise: f64,
-    pub(super) greatest_rise: f64,
+    pub(super) max_rise: f64,
 }
 
 impl Triangle {
@@ -103,13 +103,13 @@ impl Triangle {
             descent: [-x, -y],
             slopes: [share * x, share * y],
             min_rise: a[2].min(b[2]).min(c[2]),
-            greatest_rise: a[2].max(b[2]).max(c[2]),
+            max_rise: a[2].max(b[2]).max(c[2]),
         })
     }
 }
 
 impl Placed {
-    /// Rearmost and foremost place ahead of the hub `[m]`.
+    /// Returns the rearmost and foremost place ahead of the hub `[m]`.
     pub(super) fn rear(&self) -> f64 {
         self.corners[0][0]
     }
