@@ -1,20 +1,21 @@
-//! Every reader of files and messages, fed damaged inputs by the million.
+//! Every reader of files and messages, fed a million damaged inputs.
 //!
-//! `cargo bench -p benchmark --bench fuzz [-- N [SEED] | one SEED NUMBER]`: a million inputs from seed 1 where nothing is said, or one
-//! input with what its reader says. Exits with 1 where a reader panics, refuses without the name of the file, with a control character or
-//! at length, takes longer than a second, or where the program holds more than 256 MiB.
+//! `cargo bench -p benchmark --bench fuzz [-- N [SEED] | one SEED NUMBER]`: N inputs (default: a million, seed 1), or one input with the
+//! answer of its reader. Exits with 1 if a reader panics; if a refusal does not name the file, has a control character or is too long; if
+//! an input takes longer than a second; or if the program holds more than 256 MiB.
 
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
 use benchmark::damaged_input::corpus::Corpus;
 use benchmark::damaged_input::tally::Tally;
+use benchmark::process::memory_kb;
 
-/// Inputs where nothing is said.
+/// The default number of inputs.
 const INPUTS: u64 = 1_000_000;
-/// Longest time for an input.
+/// The longest time for an input.
 const MAX_TIME: Duration = Duration::from_secs(1);
-/// Most memory that the program may have held `[MiB]`.
+/// The largest memory of the program `[MiB]`.
 const MAX_MIB: u64 = 256;
 
 fn main() -> ExitCode {
@@ -38,17 +39,15 @@ fn main() -> ExitCode {
         _ => return failed("expected N [SEED], or one SEED NUMBER"),
     };
     if !is_one {
-        // A panic is counted; its place is printed where its input is asked for alone.
+        // A panic is counted here; its place is printed when its input is read alone.
         std::panic::set_hook(Box::new(|_| {}));
     }
     let began = Instant::now();
-    let tally = Tally::of(&corpus, seed, range);
+    let tally = Tally::new(&corpus, seed, range);
     print!("{tally}");
     let peak_mib = peak_mib();
-    println!(
-        "{:.0} s, at most {peak_mib} MiB held",
-        began.elapsed().as_secs_f64()
-    );
+    let seconds = began.elapsed().as_secs_f64();
+    println!("{seconds:.0} s, at most {peak_mib} MiB held");
     for (number, broken) in tally.broken.iter().take(20) {
         println!("one {seed} {number}: {broken}");
     }
@@ -66,10 +65,7 @@ fn failed(message: &str) -> ExitCode {
     ExitCode::FAILURE
 }
 
-/// Most memory that this program has held; 0 where the system does not say.
+/// The largest memory of this program so far; 0 if the system does not provide it.
 fn peak_mib() -> u64 {
-    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
-    let peak = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));
-    let kib = peak.and_then(|line| line.trim().trim_end_matches(" kB").parse::<u64>().ok());
-    kib.unwrap_or(0) / 1024
+    memory_kb("self", "VmHWM").unwrap_or(0) / 1024
 }

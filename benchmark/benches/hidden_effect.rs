@@ -1,56 +1,52 @@
 //! How well the missing effect is found, on experiments whose truth is known.
 //!
-//! `cargo bench -p benchmark --bench hidden_effect [-- KIND [COUNT [SEED]]]`, a line for each experiment and then the targets of
-//! the project beside what came out. KIND is
-//! - `one`: one effect of the catalogue, each in turn; `none`: nothing; `two`, `three`: several, each worth 10 nats beside the others.
-//! - `outside`: one of the laws of `laws/`, which are in nobody's library.
-//! - `one+none`, or another list: COUNT of each. `all`: of each of these.
-//! - `scm`: one effect, of the three-dimensional model on a coarse grid.
-//! - `ambiguous`: one effect, at one load and one speed: how many further runs tell what it is, proposed ones made one at a time or
-//!   two at once, random ones, and ones that fill the space of conditions.
-//! - `drift`: nothing, but the soil stiffens and the force sensor's zero moves over the series, with the runs sorted by slip or in random
-//!   order, and `order` stated or not. `preparations`: nothing, but each load and speed has a soil preparation of its own, with
-//!   `prepared` stated or not. `understated`: nothing, with noise 1.5 times larger than declared.
-//! - `untryable`: one effect that needs what the experiment does not state.
-//! - `reference`: one effect, after a reference campaign on the same soil without it, whose posterior is the prior; of every fourth
-//!   nothing. Beside it the search without the reference.
-//! - `steady`: as `scm`, one experiment after the other as a study searches them: the answer, its reason and its time.
-//! - `node`: as `steady`, with Janosi and Hanamoto's law hidden whose displacement the nodes of the soil keep.
-//! - `rolling`: as `steady`, with the model's own grid and 24 runs.
+//! `cargo bench -p benchmark --bench hidden_effect [-- KIND [COUNT [SEED]]]` prints a line for each experiment, and then the measured values
+//! beside the targets of the project. KIND is
+//! - `one`: each effect of the catalogue in turn; `none`: no effect; `two`, `three`: several effects, each worth 10 nats beside the others.
+//! - `outside`: a law of `laws/`, none of which is in a library.
+//! - `one+none`, or another list: COUNT of each. `all`: COUNT of each of these kinds.
+//! - `scm`: one effect of the three-dimensional model on a coarse grid.
+//! - `ambiguous`: one effect at one load and one speed, and the number of further runs that identify it: proposed runs made one at a time
+//!   or two at once, random runs, and runs that fill the space of conditions.
+//! - `drift`: no effect, but the soil stiffens and the zero of the force sensor moves over the series, with the runs sorted by slip or in
+//!   random order, and `order` stated or not. `preparations`: no effect, but a soil preparation for each load and speed, with `prepared`
+//!   stated or not. `understated`: no effect, with noise 1.5 times larger than declared.
+//! - `untryable`: one effect that needs a property which the experiment does not state.
+//! - `reference`: one effect after a reference campaign on the same soil without it, whose posterior is the prior; every fourth campaign
+//!   has no effect. The same campaign is also searched without the reference.
+//! - `steady`: as `scm`, with the experiments searched one after another as in a study, and the answer, reason and time of each search.
+//! - `node`: as `steady`, with Janosi and Hanamoto's law hidden, whose displacement the nodes of the soil keep.
+//! - `rolling`: as `steady`, with the default grid of the model and 24 runs.
 //! - `changes`: the three-dimensional model as an unknown rig, whose soil has no cohesion and does not flow. A reference campaign is
-//!   calibrated and searched; its posterior is the prior of three more, in which the soil has a cohesion of 500 Pa, flows to the border of
-//!   the footprint, or both, and the job holds both at zero. `changes-rolling`: with the model's own grid and 24 runs in place of 16.
-//! - `tmcmc`: one effect of the catalogue, each in turn; the search's log Bayes factor of it beside that of full evidences by the
-//!   sampler.
-//! - `data`: the experiments of `tests/data`.
+//!   calibrated and searched. Its posterior is the prior of three more campaigns, in which the soil has a cohesion of 500 Pa, or flows to
+//!   the border of the footprint, or both, while the job fixes both at zero. `changes-rolling`: with the default grid and 24 runs.
+//! - `tmcmc`: each effect of the catalogue in turn, and its log Bayes factor by the search beside that of full evidences by the sampler.
 //!
-//! A truth is drawn from the priors of the job and of the effect's file, and run at the conditions of a plan; noise of 3 % of each
-//! channel's root mean square is added, and the search is given the texts of job and experiment, nothing else. Rates count where,
-//! without noise, the best rival outside the truth's class falls short by 10 nats. The held-out error is that of 16 runs in between
-//! and a little beyond, against the truth without noise.
+//! A truth is drawn from the priors of the job and of the effect's file, and run at the conditions of a plan. Noise of 3 % of each
+//! channel's root mean square is added, and the search gets only the texts of job and experiment. Rates count the trials in which the best
+//! rival outside the class of the truth falls short by 10 nats for noise-free data. The held-out error is that of 16 runs between the
+//! fitted ones and slightly beyond, against the truth without noise.
 
 use std::process::ExitCode;
 
+use benchmark::error::StudyError;
 use benchmark::hidden_effect::rig::{self, Flaw};
 use benchmark::hidden_effect::study::design::Plan;
-use benchmark::hidden_effect::study::error::StudyError;
 use benchmark::hidden_effect::study::kind::HiddenKind;
-use benchmark::hidden_effect::study::parallel::each;
 use benchmark::hidden_effect::study::score::TrialScore;
 use benchmark::hidden_effect::study::tally::Tally;
 use benchmark::hidden_effect::study::trial::{draw, search};
-use benchmark::hidden_effect::{ambiguous, changes, data, reference, steady, tmcmc};
+use benchmark::hidden_effect::{ambiguous, changes, reference, steady, tmcmc};
+use benchmark::parallel::each;
 
 /// Default number of trials of a kind.
-const USUAL: u64 = 100;
+const COUNT: u64 = 100;
 
 fn main() -> ExitCode {
-    let arguments: Vec<String> = std::env::args()
-        .skip(1)
-        .filter(|a| !a.starts_with("--"))
-        .collect();
-    let number = |k: usize, usual: u64| arguments.get(k).map_or(Ok(usual), |a| a.parse::<u64>());
-    let (Ok(count), Ok(seed)) = (number(1, USUAL), number(2, 1)) else {
+    let arguments = std::env::args().skip(1).filter(|a| !a.starts_with("--"));
+    let arguments: Vec<String> = arguments.collect();
+    let number = |k: usize, default: u64| arguments.get(k).map_or(Ok(default), |a| a.parse::<u64>());
+    let (Ok(count), Ok(seed)) = (number(1, COUNT), number(2, 1)) else {
         eprintln!("error: COUNT and SEED are whole numbers");
         return ExitCode::FAILURE;
     };
@@ -67,7 +63,6 @@ fn main() -> ExitCode {
         "tmcmc" => tmcmc::run(count, seed),
         "understated" => rig::run(&[Flaw::Understated], count, seed),
         "untryable" => rig::untryable::run(count, seed),
-        "data" => data::run(),
         "all" => tables("one+none+outside+two+three", count, seed),
         kinds => tables(kinds, count, seed),
     };
@@ -85,17 +80,14 @@ fn tables(kinds: &str, count: u64, seed: u64) -> Result<(), StudyError> {
     let mut all = Vec::new();
     for name in kinds.split('+') {
         let kind = HiddenKind::ALL.into_iter().find(|kind| kind.name() == name);
-        all.extend(scores(
-            kind.ok_or(format!("unknown kind \"{name}\""))?,
-            count,
-            seed,
-        )?);
+        let kind = kind.ok_or(format!("unknown kind \"{name}\""))?;
+        all.extend(scores(kind, count, seed)?);
     }
     println!("{}", Tally(&all));
     Ok(())
 }
 
-/// The scores of trials of a kind, each printed when it ends.
+/// Runs trials of a kind, and prints each score.
 fn scores(kind: HiddenKind, count: u64, seed: u64) -> Result<Vec<TrialScore>, StudyError> {
     let one = |number: u64| {
         let score = draw(kind, seed, number).and_then(|case| search(kind, &case, number));
@@ -106,5 +98,5 @@ fn scores(kind: HiddenKind, count: u64, seed: u64) -> Result<Vec<TrialScore>, St
         }
         score
     };
-    each(count, one)?.into_iter().collect()
+    each(count, one)
 }

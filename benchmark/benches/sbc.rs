@@ -1,17 +1,18 @@
 //! Simulation-based calibration of the whole chain: priors, likelihood, sampler and the quasi-static model.
 //!
-//! `cargo bench -p benchmark --bench sbc [-- SETS [PARTICLES [SEED]]]`: 1000 data sets and 500 particles where nothing is said, about
-//! four minutes of CPU time. Exits with 1 where ranks are not uniform or intervals do not hold what they promise. `study` says how.
+//! `cargo bench -p benchmark --bench sbc [-- SETS [PARTICLES [SEED]]]`. The default of 1000 data sets and 500 particles takes about four
+//! minutes of CPU time. Exits with 1 if ranks are not uniform, or if 90 % intervals contain the truth too often or too rarely.
 
 use std::process::ExitCode;
 
+use benchmark::error::StudyError;
 use benchmark::sbc::{Study, judge};
 
-/// Bins of the ranks, a rank each.
+/// The number of bins, one for each rank.
 const BINS: usize = 20;
-/// No parameter's chi-square, and no coverage, may be less probable than this.
+/// The smallest probability of a parameter's chi-square and of its coverage.
 const MIN_P: f64 = 1e-3;
-/// The least of all chi-square probabilities, times their number (Bonferroni).
+/// The smallest product of the least chi-square probability and the number of parameters (Bonferroni).
 const MIN_P_TOGETHER: f64 = 1e-2;
 
 fn main() -> ExitCode {
@@ -24,7 +25,7 @@ fn main() -> ExitCode {
         eprintln!("error: SETS, PARTICLES and SEED are whole numbers");
         return ExitCode::FAILURE;
     };
-    let number = |i: usize, usual: u64| numbers.get(i).copied().unwrap_or(usual);
+    let number = |i: usize, default: u64| numbers.get(i).copied().unwrap_or(default);
     let study = Study {
         sets: number(0, 1000) as usize,
         particles: number(1, 500) as usize,
@@ -41,38 +42,35 @@ fn main() -> ExitCode {
     }
 }
 
-/// Prints what came out; whether every threshold holds.
-fn report(study: &Study) -> Result<bool, String> {
+/// Prints the verdicts; returns whether every threshold holds.
+fn report(study: &Study) -> Result<bool, StudyError> {
     let parameters = study.parameters()?;
-    let fates = study.run()?;
-    let flagged = fates.iter().filter(|f| !f.equilibrated).count();
-    let refused: u64 = fates.iter().map(|f| f.refused).sum();
+    let rankings = study.run()?;
+    let flagged = rankings.iter().filter(|f| !f.equilibrated).count();
+    let rejected: u64 = rankings.iter().map(|f| f.rejected).sum();
     println!(
-        "{} data sets of 3 runs, {} particles, seed {}: {flagged} calibrations flagged as not equilibrated, {refused} draws of \
-         the prior refused by the model and drawn again",
+        "{} data sets of 3 runs, {} particles, seed {}: {flagged} calibrations flagged as not equilibrated, {rejected} draws of \
+         the prior rejected by the model and drawn again",
         study.sets, study.particles, study.seed
     );
     println!(
         "{:<24} {:>10} {:>10} {:>10}  ranks of the truth",
         "parameter", "p uniform", "in 90 %", "p of that"
     );
-    let verdicts = judge(&parameters, &fates, BINS);
+    let verdicts = judge(&parameters, &rankings, BINS);
     for v in &verdicts {
         let counts: Vec<String> = v.counts.iter().map(usize::to_string).collect();
+        let (name, p, counts) = (&v.parameter, v.p, counts.join(" "));
         println!(
-            "{:<24} {:>10.4} {:>10.3} {:>10.4}  {}",
-            v.parameter,
-            v.p,
-            v.coverage,
-            v.coverage_p,
-            counts.join(" ")
+            "{name:<24} {p:>10.4} {:>10.3} {:>10.4}  {counts}",
+            v.coverage, v.coverage_p
         );
     }
     let least = verdicts.iter().map(|v| v.p).fold(1.0, f64::min);
-    let of_all = (least * verdicts.len() as f64).min(1.0);
-    println!("least p times the number of parameters: {of_all:.4}");
+    let together = (least * verdicts.len() as f64).min(1.0);
+    println!("least p times the number of parameters: {together:.4}");
     let each = verdicts.iter().all(|v| v.p > MIN_P && v.coverage_p > MIN_P);
-    let good = each && of_all > MIN_P_TOGETHER;
+    let good = each && together > MIN_P_TOGETHER;
     println!("{}", if good { "calibrated" } else { "NOT CALIBRATED" });
     Ok(good)
 }

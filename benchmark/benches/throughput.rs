@@ -1,54 +1,44 @@
 //! Leased and durably completed evaluations per second, through real HTTP, with a model that costs nothing.
 //!
-//! `cargo bench -p benchmark --bench throughput`; with `-- postgres://USER@HOST:PORT` in a database of that server, which is made anew.
-//! A real `coordinator serve` on a real store; 32 connected workers in this process, each of which exchanges the results of its last
-//! batch for the next one; with and without verification on a second worker, by turns. At the end a swarm of a thousand workers.
+//! `cargo bench -p benchmark --bench throughput`, or with `-- postgres://USER@HOST:PORT` in a database of that server, which is created
+//! anew. A real `coordinator serve` runs on a real store. Each of 32 connected workers in this process exchanges the results of its last
+//! batch for the next one. Turns with verification by a second worker alternate with turns without it. The last farm has a thousand
+//! workers.
 
-use std::error::Error;
 use std::path::Path;
 use std::process::{Child, Stdio};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
-use farm_tests::programs::coordinator;
+use benchmark::error::StudyError;
+use benchmark::farm_load::{EXPERIMENT, RUNS, job, quantile, request, results};
+use benchmark::process::{cpu_s, memory_kb};
+use farm_tests::programs::line;
 use reqwest::Client;
 use serde_json::{Value, json};
-use shared::exchange::{ExchangeRequest, ExchangeResponse, PROTOCOL_VERSION, WorkResult};
+use shared::exchange::{ExchangeResponse, WorkResult};
 use shared::outcome::{Observables, Outcome};
 use sqlx::{Connection, Executor, PgConnection};
-
-type Anyhow<T> = Result<T, Box<dyn Error + Send + Sync>>;
 
 const WORKERS: usize = 32;
 const SWARM: usize = 1_000;
 const SECONDS: u64 = 8;
-/// The first round alone lasts longer than the measurement, so that no sampler's step is measured.
-const PARTICLES: usize = 50_000;
-/// Several calibrations at once, so that the work does not run out and none waits for another's sampler.
+/// The number of calibrations, so that the work does not run out while a sampler computes its next step.
 const CALIBRATIONS: usize = 16;
 
-/// (batch, goal in evaluations per second) on two cores that the workers share.
+/// Each batch with its goal in evaluations per second, on two cores that coordinator and workers share.
 const BATCHES: [(u32, f64); 3] = [(1, 2_000.0), (16, 20_000.0), (64, 20_000.0)];
 const GOAL_P99_MS: f64 = 50.0;
 const GOAL_CPU_US: f64 = 40.0;
 const GOAL_SWARM_CPU_US: f64 = 60.0;
 const GOAL_SWARM_MB: f64 = 150.0;
-/// Verification costs at most so much of the throughput at batch 16 `[%]`.
+/// The largest share of the throughput at batch 16 that verification costs `[%]`.
 const GOAL_VERIFICATION_PERCENT: f64 = 5.0;
 /// Shares of the evaluations that are verified `[%]`: none, and the default.
 const VERIFIED_PERCENT: [&str; 2] = ["0", "1"];
-/// So often each is measured, by turns.
+/// The number of alternating turns of each.
 const TURNS: usize = 3;
-
-const EXPERIMENT: &str = "runs = \"runs.csv\"\n[wheel.w]\nradius_m = 0.125\nwidth_m = 0.112\n[soil.s]\n[noise]\ndrawbar_pull_n = 1.0\n";
-const RUNS: &str = "run,wheel,soil,slip,wheel_load_n,sled_speed_m_s,drawbar_pull_n\na,w,s,0.2,100,0.008,30\n";
-
-fn job() -> String {
-    format!(
-        "accept = [\"data_few\"]\n[model]\nkind = \"quasi_static\"\n[priors]\nlog10_p_ref = {{ uniform = [4.0, 5.6] }}\nkappa = 0.0\nn = {{ uniform = [0.8, 1.4] }}\nfriction_angle_deg = {{ uniform = [11.5, 37.3] }}\n[sampler]\nparticles = {PARTICLES}\n"
-    )
-}
 
 struct Server(Child);
 
@@ -60,28 +50,14 @@ impl Drop for Server {
 }
 
 impl Server {
-    /// CPU time of the process so far `[s]`.
-    fn cpu_s(&self) -> Anyhow<f64> {
-        let stat = std::fs::read_to_string(format!("/proc/{}/stat", self.0.id()))?;
-        let fields: Vec<&str> = stat.rsplit(')').next().unwrap_or("").split_whitespace().collect();
-        let ticks: f64 = fields[11].parse::<f64>()? + fields[12].parse::<f64>()?;
-        Ok(ticks / 100.0)
-    }
-
-    /// Most memory that the process has held so far `[MB]`.
-    fn max_resident_mb(&self) -> Anyhow<f64> {
-        let status = std::fs::read_to_string(format!("/proc/{}/status", self.0.id()))?;
-        let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));
-        let kb = line
-            .and_then(|line| line.split_whitespace().next())
-            .ok_or("no VmHWM")?;
-        Ok(kb.parse::<f64>()? / 1000.0)
+    fn id(&self) -> String {
+        self.0.id().to_string()
     }
 }
 
 #[tokio::main]
-async fn main() -> Anyhow<()> {
-    // A client names its cryptography even where it speaks plain HTTP.
+async fn main() -> Result<(), StudyError> {
+    // A client needs a provider of cryptography even for plain HTTP.
     let _ = rustls::crypto::ring::default_provider().install_default();
     let place = Place(std::env::args().find(|word| word.starts_with("postgres")));
     println!(
@@ -124,11 +100,11 @@ struct Measured {
     p50_ms: f64,
     p99_ms: f64,
     cpu_us: f64,
-    /// Most memory that the coordinator held.
+    /// The largest memory of the coordinator.
     resident_mb: f64,
 }
 
-/// Where stores are: files, or databases of a server.
+/// The place of the stores: files, or databases of a server.
 struct Place(Option<String>);
 
 impl Place {
@@ -137,60 +113,45 @@ impl Place {
     }
 
     /// An empty store.
-    async fn store(&self, folder: &Path) -> Anyhow<String> {
+    async fn store(&self, folder: &Path) -> Result<String, StudyError> {
         let Some(server) = &self.0 else {
             return Ok(format!("sqlite://{}", folder.join("bench.db").display()));
         };
         let mut connection = PgConnection::connect(&format!("{server}/postgres")).await?;
-        connection
-            .execute("DROP DATABASE IF EXISTS grouser_bench WITH (FORCE)")
-            .await?;
+        let drop = "DROP DATABASE IF EXISTS grouser_bench WITH (FORCE)";
+        connection.execute(drop).await?;
         connection.execute("CREATE DATABASE grouser_bench").await?;
         Ok(format!("{server}/grouser_bench"))
     }
 }
 
-async fn measure(place: &Place, connected: usize, batch: u32, verify_percent: &str) -> Anyhow<Measured> {
+async fn measure(
+    place: &Place,
+    connected: usize,
+    batch: u32,
+    verify_percent: &str,
+) -> Result<Measured, StudyError> {
     let folder = tempfile::tempdir()?;
     let port = std::net::TcpListener::bind("127.0.0.1:0")?.local_addr()?.port();
-    let url = format!("http://127.0.0.1:{port}");
+    let address = format!("127.0.0.1:{port}");
+    let url = format!("http://{address}");
     let store = place.store(folder.path()).await?;
-    let server = Server(
-        coordinator([
-            "serve",
-            "--listen",
-            &format!("127.0.0.1:{port}"),
-            "--store",
-            &store,
-            "--verify-percent",
-            verify_percent,
-        ])
-        .stderr(Stdio::null())
-        .spawn()?,
-    );
+    let words = "coordinator serve --listen {} --store {} --verify-percent {}";
+    let mut serve = line(words, &[&address, &store, &verify_percent]);
+    let server = Server(serve.stderr(Stdio::null()).spawn()?);
     let client = Client::new();
     while client.get(format!("{url}/health")).send().await.is_err() {
         tokio::time::sleep(Duration::from_millis(20)).await;
     }
-    let experiment = post(
-        &client,
-        &url,
-        "experiments",
-        json!({"toml": EXPERIMENT, "files": {"runs.csv": RUNS}}),
-    )
-    .await?;
+    let new = json!({"toml": EXPERIMENT, "files": {"runs.csv": RUNS}});
+    let experiment = post(&client, &url, "experiments", new).await?;
     for _ in 0..CALIBRATIONS {
-        post(
-            &client,
-            &url,
-            "calibrations",
-            json!({"experiment": experiment["id"], "toml": job()}),
-        )
-        .await?;
+        let new = json!({"experiment": experiment["id"], "toml": job()});
+        post(&client, &url, "calibrations", new).await?;
     }
 
     let completed = Arc::new(AtomicU64::new(0));
-    let cpu_before = server.cpu_s()?;
+    let cpu_before = cpu_s(&server.id())?;
     let began = Instant::now();
     let until = began + Duration::from_secs(SECONDS);
     let workers: Vec<_> = (0..connected)
@@ -215,22 +176,21 @@ async fn measure(place: &Place, connected: usize, batch: u32, verify_percent: &s
     let seconds = began.elapsed().as_secs_f64();
     let evaluations = completed.load(Ordering::Relaxed) as f64;
     latencies_ms.sort_by(f64::total_cmp);
-    let quantile = |p: f64| latencies_ms[((latencies_ms.len() - 1) as f64 * p) as usize];
     Ok(Measured {
         per_second: evaluations / seconds,
-        p50_ms: quantile(0.5),
-        p99_ms: quantile(0.99),
-        cpu_us: 1e6 * (server.cpu_s()? - cpu_before) / evaluations,
-        resident_mb: server.max_resident_mb()?,
+        p50_ms: quantile(&latencies_ms, 0.5),
+        p99_ms: quantile(&latencies_ms, 0.99),
+        cpu_us: 1e6 * (cpu_s(&server.id())? - cpu_before) / evaluations,
+        resident_mb: memory_kb(&server.id(), "VmHWM")? as f64 / 1000.0,
     })
 }
 
-async fn post(client: &Client, url: &str, what: &str, body: Value) -> Anyhow<Value> {
+async fn post(client: &Client, url: &str, what: &str, body: Value) -> Result<Value, StudyError> {
     let response = client.post(format!("{url}/v1/{what}")).json(&body).send().await?;
     Ok(response.error_for_status()?.json().await?)
 }
 
-/// A worker whose model costs nothing; the times of its exchanges `[ms]`.
+/// Plays a worker whose model costs nothing; returns the times of its exchanges `[ms]`.
 async fn work(
     client: Client,
     url: String,
@@ -238,7 +198,7 @@ async fn work(
     batch: u32,
     until: Instant,
     completed: Arc<AtomicU64>,
-) -> Anyhow<Vec<f64>> {
+) -> Result<Vec<f64>, StudyError> {
     let outcome = Outcome::Evaluated(Observables {
         drawbar_pull_n: vec![29.5],
         torque_n_m: vec![5.0],
@@ -251,49 +211,28 @@ async fn work(
         simulated_travel_m: vec![0.0],
         ..Observables::default()
     });
-    let (mut results, mut received): (Vec<WorkResult>, u64) = (Vec::new(), 0);
+    let (mut done, mut received): (Vec<WorkResult>, u64) = (Vec::new(), 0);
     let mut latencies_ms = Vec::new();
     while Instant::now() < until {
-        let done = results.len() as u64;
-        let request = ExchangeRequest {
-            worker: format!("bench-{number}"),
-            protocol: PROTOCOL_VERSION,
-            model_version: "bench".into(),
-            models: Default::default(),
-            queue_job: None,
-            threads: 1,
-            evaluation_s: None,
-            results: std::mem::take(&mut results),
-            holding: Vec::new(),
-            returned: Vec::new(),
-            started: Vec::new(),
+        let count = done.len() as u64;
+        let message = request(
+            format!("bench-{number}"),
+            std::mem::take(&mut done),
             received,
-            want: batch,
-            wait_ms: 1000,
-        };
+            batch,
+            1000,
+        );
         let sent = Instant::now();
         let response = client
             .post(format!("{url}/v1/work/exchange"))
-            .json(&request)
+            .json(&message)
             .send()
             .await?;
         let response: ExchangeResponse = response.error_for_status()?.json().await?;
         latencies_ms.push(sent.elapsed().as_secs_f64() * 1e3);
-        completed.fetch_add(done, Ordering::Relaxed);
+        completed.fetch_add(count, Ordering::Relaxed);
         received = response.leases.iter().map(|l| l.lease).max().unwrap_or(received);
-        results = response
-            .leases
-            .into_iter()
-            .map(|l| WorkResult {
-                lease: l.lease,
-                calibration: l.calibration,
-                evaluation: l.evaluation,
-                seal: l.seal,
-                end: None,
-                outcome: Some(outcome.clone()),
-                repeated: None,
-            })
-            .collect();
+        done = results(response.leases, &outcome);
     }
     Ok(latencies_ms)
 }

@@ -1,34 +1,31 @@
-//! Some trials of the bench `hidden_effect`: a hidden effect is found, and without one nothing is claimed.
+//! Some trials of the bench `hidden_effect`: a hidden effect is found, and without a hidden effect nothing is claimed.
 
 use discovery::SearchVerdict;
 
 use benchmark::hidden_effect::reference;
-use benchmark::hidden_effect::rig::untryable::{self, Said};
+use benchmark::hidden_effect::rig::untryable::{self, Answer};
 use benchmark::hidden_effect::rig::{self, Flaw};
-use benchmark::hidden_effect::study::error::StudyError;
 use benchmark::hidden_effect::study::kind::HiddenKind;
 use benchmark::hidden_effect::study::noise_free::MIN_SEPARATION;
-use benchmark::hidden_effect::study::parallel::each;
 use benchmark::hidden_effect::study::score::TrialScore;
 use benchmark::hidden_effect::study::tally::Tally;
 use benchmark::hidden_effect::study::trial::{draw, search};
+use benchmark::parallel::each;
 
 const SEED: u64 = 1;
-/// Slip-sinkage, pressure by rate, displacement of shear, hardening by passes, the sled's tare, its drag.
+/// The numbers of slip-sinkage, rate-dependent pressure, shear displacement, multi-pass hardening, the sled's tare and its drag.
 const ONE: [u64; 6] = [2, 4, 21, 45, 113, 34];
-/// Air in the pores, a wave over slip, a peak of shear over slip.
+/// The numbers of air in the pores, a wave over slip, and a peak of shear over slip.
 const OUTSIDE: [u64; 3] = [2, 5, 10];
-/// A reference velocity with slip-softened pressure, and the pressure's peak with the rim's friction.
+/// The numbers of a reference velocity with slip-softened pressure, and of a peak of the pressure with friction of the rim.
 const TWO: [u64; 2] = [3, 15];
 
 fn scores(kind: HiddenKind, numbers: &[u64]) -> Vec<TrialScore> {
     let one = |place: u64| {
         let number = numbers[place as usize];
-        let case = draw(kind, SEED, number)?;
-        search(kind, &case, number)
+        search(kind, &draw(kind, SEED, number)?, number)
     };
-    let scores = each(numbers.len() as u64, one).expect("no thread panics");
-    let scores: Result<Vec<TrialScore>, StudyError> = scores.into_iter().collect();
+    let scores = each(numbers.len() as u64, one);
     scores.expect("every experiment is searched")
 }
 
@@ -50,7 +47,7 @@ fn an_effect_is_named_and_the_error_falls() {
     );
     for score in &scores {
         assert!(score.held_out.after < 0.5 * score.held_out.before, "{score}");
-        // The mean is two thirds of it; sampling doubtful evidences costs most where several effects are.
+        // The mean is two thirds of these bounds. Sampling doubtful evidences is most expensive with several effects.
         assert!(score.to_name <= 900 && score.to_confirm <= 4000, "{score}");
     }
 }
@@ -60,10 +57,8 @@ fn where_nothing_is_missing_nothing_is_claimed() {
     let scores = scores(HiddenKind::None, &[0, 1, 2, 3, 4, 5]);
     let shown = Tally(&scores).to_string();
     assert_eq!(count(&scores, |f| f.is_claimed), 0, "{shown}");
-    assert!(
-        count(&scores, |f| f.verdict == SearchVerdict::NothingDetectable) >= 5,
-        "{shown}"
-    );
+    let open = count(&scores, |f| f.verdict == SearchVerdict::NothingDetectable);
+    assert!(open >= 5, "{shown}");
 }
 
 #[test]
@@ -93,21 +88,16 @@ fn of_two_effects_both_are_named() {
 #[test]
 fn a_truth_that_is_swapped_for_another_is_not_found() {
     let mut case = draw(HiddenKind::One, SEED, ONE[0]).expect("the model takes a draw");
-    case.hidden = draw(HiddenKind::One, SEED, ONE[1])
-        .expect("the model takes a draw")
-        .hidden;
+    let other = draw(HiddenKind::One, SEED, ONE[1]).expect("the model takes a draw");
+    case.hidden = other.hidden;
     let score = search(HiddenKind::One, &case, ONE[0]).expect("it is searched");
     assert!(!score.is_right && !score.claim_is_right, "{score}");
 }
 
 #[test]
 fn a_rig_that_states_its_order_and_preparations_is_not_taken_for_physics() {
-    for flaw in [
-        Flaw::SortedDrift,
-        Flaw::RandomDrift,
-        Flaw::Preparations,
-        Flaw::Understated,
-    ] {
+    let [sorted, random] = Flaw::DRIFTS;
+    for flaw in [sorted, random, Flaw::Preparations, Flaw::Understated] {
         let tally = rig::stated(flaw, 0..2, SEED).expect("every campaign is searched");
         assert_eq!(tally.false_claims(), 0, "{tally}");
     }
@@ -116,19 +106,19 @@ fn a_rig_that_states_its_order_and_preparations_is_not_taken_for_physics() {
 #[test]
 fn where_the_truth_cannot_be_tried_no_stand_in_is_named() {
     for number in 0..2 {
-        let (said, line) = untryable::one(SEED, number).expect("it is searched");
-        assert_ne!(said, Said::StandIn, "{line}");
+        let (answer, line) = untryable::one(SEED, number).expect("it is searched");
+        assert_ne!(answer, Answer::StandIn, "{line}");
     }
 }
 
 #[test]
 fn what_changed_since_a_reference_campaign_is_named_and_nothing_else() {
-    let said = |number| {
+    let answer = |number| {
         let compared = reference::one(SEED, number).expect("both campaigns are searched");
         (compared.is_right(), compared.line(number))
     };
-    let (changed, line) = said(1);
+    let (changed, line) = answer(1);
     assert_eq!(changed, Some(true), "{line}");
-    let (unchanged, line) = said(3);
+    let (unchanged, line) = answer(3);
     assert_eq!(unchanged, None, "{line}");
 }

@@ -1,8 +1,8 @@
-//! A slice of the bench `sbc`: ranks of the truth are uniform, and a mistake in the noise shows.
+//! A part of the bench `sbc`: ranks of the truth are uniform, and a mistake in the noise is found.
 
 use benchmark::sbc::{Study, Verdict, binomial_p, judge};
 
-/// Twenty ranks fill no more bins.
+/// More bins would be nearly empty with twenty ranks.
 const BINS: usize = 4;
 const MIN_P: f64 = 1e-3;
 
@@ -13,12 +13,12 @@ fn verdicts(noise_factor: f64) -> Vec<Verdict> {
         seed: 7,
         noise_factor,
     };
-    let fates = study.run().expect("every data set is calibrated");
-    assert_eq!(fates.len(), study.sets);
-    let flagged = fates.iter().filter(|f| !f.equilibrated).count();
+    let rankings = study.run().expect("every data set is calibrated");
+    assert_eq!(rankings.len(), study.sets);
+    let flagged = rankings.iter().filter(|f| !f.equilibrated).count();
     assert!(flagged <= 4, "{flagged} flagged");
-    assert!(fates.iter().all(|f| f.refused < 10));
-    judge(&study.parameters().expect("the job is valid"), &fates, BINS)
+    assert!(rankings.iter().all(|f| f.rejected < 10));
+    judge(&study.parameters().expect("the job is valid"), &rankings, BINS)
 }
 
 #[test]
@@ -34,7 +34,7 @@ fn the_truth_is_one_more_draw_of_its_posterior() {
 }
 
 #[test]
-fn noise_that_the_likelihood_does_not_know_of_shows() {
+fn noise_that_the_likelihood_understates_is_found() {
     let verdicts = verdicts(4.0);
     let found = verdicts.iter().any(|v| v.p < MIN_P || v.coverage_p < MIN_P);
     assert!(found, "{verdicts:?}");
@@ -42,7 +42,7 @@ fn noise_that_the_likelihood_does_not_know_of_shows() {
 
 #[test]
 fn tails_have_their_tabulated_values() {
-    // ten of ten: 0.9^10; with what is rarer, 0.9^10 is not the mode, so counts of 7 and fewer come along
+    // Nine of ten is the most probable count, so that every count is at most as probable. For seven of ten the sum has the counts up to 7.
     let all = binomial_p(9, 10, 0.9);
     assert!((all - 1.0).abs() < 1e-9, "{all}");
     let seven = binomial_p(7, 10, 0.9);

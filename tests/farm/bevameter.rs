@@ -2,6 +2,8 @@
 
 use std::path::Path;
 
+use farm_tests::assert_contains;
+use farm_tests::json::float;
 use farm_tests::programs::{coordinator, run, worker};
 use farm_tests::workspace::{root, text};
 
@@ -133,10 +135,7 @@ fn effects_that_plates_and_rings_do_not_feel_are_named() {
     let ended = run(command);
     let notes: Vec<&str> = ended.stderr.lines().collect();
     assert_eq!(notes.len(), 1, "{notes:?}");
-    assert!(
-        notes[0].contains("does not act on plates and rings effect=\"sled_tare\""),
-        "{notes:?}"
-    );
+    assert_contains!(notes[0], "does not act on plates and rings effect=\"sled_tare\"");
     ended.success();
 }
 
@@ -179,7 +178,7 @@ algorithm = "lm"
     let summary = text(&folder.path().join("out/summary.json"));
     let summary: serde_json::Value = serde_json::from_str(&summary).expect("JSON");
     let estimate = &summary["point_estimates"][0];
-    let number = |of: &str| estimate[of]["friction_angle_deg"].as_f64().expect("a number");
+    let number = |key: &str| float(&estimate[key]["friction_angle_deg"]);
     (number("parameters"), number("sd"))
 }
 
@@ -207,9 +206,7 @@ fn a_draw_without_noise_is_impossible_and_fails_no_calibration() {
     let summary = text(&folder.path().join("out/summary.json"));
     let summary: serde_json::Value = serde_json::from_str(&summary).expect("JSON");
     let calibration = &summary["calibrations"][0];
-    let evidence = calibration["log_evidence"].as_f64().expect("a number");
-    assert!(
-        (evidence - 118.29).abs() < 0.1 && calibration["equilibrated"] == true,
-        "{calibration}"
-    );
+    let evidence = float(&calibration["log_evidence"]);
+    assert!((evidence - 118.29).abs() < 0.1, "{calibration}");
+    assert!(calibration["equilibrated"] == true, "{calibration}");
 }

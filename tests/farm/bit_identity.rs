@@ -1,22 +1,24 @@
-//! The posterior is a function of the job alone: the same bytes whoever computes it, whatever dies meanwhile.
+//! The posterior is a function of the job alone: it has the same bytes on any workers, and after any kill of a program.
 
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 use std::time::Duration;
 
+use farm_tests::assert_contains;
 use farm_tests::job::Job;
+use farm_tests::json::whole;
 use farm_tests::process::{Process, Signal};
 use farm_tests::programs;
 use farm_tests::random::Random;
 use farm_tests::service::{Service, free_address};
 use farm_tests::text::same;
-use farm_tests::wait::until;
+use farm_tests::wait::{until, until_true};
 use farm_tests::workspace::text;
 
-/// How often something is killed.
+/// The number of kills.
 const KILLS: u64 = 24;
 
-/// Large enough that the kills fall into many stages, small enough to be computed again and again.
+/// A job with many stages, so that the kills fall into different ones, and of a few seconds.
 fn job() -> Job {
     Job::small().sampler(1000, [4, 10], 3)
 }
@@ -29,10 +31,8 @@ fn reference() -> &'static (String, u64, usize) {
         let id = service.submit(&job());
         let _worker = service.worker("worker", 1);
         service.wait_for(id, "finished");
-        let summary = service.client.json(&format!("/v1/calibrations/{id}/summary"));
-        let evaluations = summary["calibrations"][0]["evaluations"]
-            .as_u64()
-            .expect("a count");
+        let summary = service.result(id, "summary");
+        let evaluations = whole(&summary["calibrations"][0]["evaluations"]);
         let stages = summary["calibrations"][0]["stages"]
             .as_array()
             .expect("stages")
@@ -55,12 +55,11 @@ fn three_workers_of_two_threads_give_the_bytes_of_one_worker_of_one_thread() {
 #[test]
 fn another_seed_gives_other_bytes() {
     let service = Service::start(&["--local-workers", "2"]);
-    let id = service.submit(&Job::small().sampler(200, [4, 10], 4));
-    service.wait_for(id, "finished");
+    let id = service.calibrate(&Job::small().sampler(200, [4, 10], 4));
     assert!(service.posterior_csv(id) != reference().0);
 }
 
-/// The program that dies.
+/// The program that is killed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Victim {
     Coordinator,
@@ -80,12 +79,12 @@ fn killing_coordinator_and_workers_at_random_moments_changes_no_byte() {
     let mut moments: Vec<u64> = (0..KILLS)
         .map(|_| total / 50 + random.below(total * 24 / 25))
         .collect();
-    // The last one falls among the final draws, behind the sampler's evaluations.
+    // The last kill falls among the final draws, after the evaluations of the sampler.
     moments.push(total + 40);
     moments.sort_unstable();
     let mut kills: Vec<(Victim, u64, u64)> = Vec::new();
     for moment in moments {
-        // The progress since the last kill, so that no two of them hit the same state.
+        // There must be progress since the last kill, so that no two kills hit the same state.
         let least = kills
             .last()
             .map_or(moment, |&(_, evaluations, _)| moment.max(evaluations + 1));
@@ -141,10 +140,10 @@ struct Run {
 
 impl Run {
     fn new() -> Run {
-        Run::of(&job())
+        Run::with_job(&job())
     }
 
-    fn of(job: &Job) -> Run {
+    fn with_job(job: &Job) -> Run {
         let folder = tempfile::tempdir().expect("a folder");
         let job = job.write(&folder.path().join("job"));
         Run { folder, job }
@@ -171,7 +170,7 @@ impl Run {
         Process::start(quiet(&self.arguments()), &self.folder.path().join("run.log"))
     }
 
-    /// Stages that the run's log has shown.
+    /// The number of stages in the log of the run.
     fn stages_begun(process: &Process) -> usize {
         process
             .log()
@@ -180,7 +179,7 @@ impl Run {
             .count()
     }
 
-    /// Runs to the end; what stands on the terminal.
+    /// Runs to the end; returns the standard output.
     fn finish(&self) -> String {
         programs::run(programs::coordinator(self.arguments())).success()
     }
@@ -198,23 +197,23 @@ fn quiet(arguments: &[String]) -> std::process::Command {
 
 #[test]
 fn a_run_stopped_by_interrupt_or_kill_goes_on_to_the_same_bytes() {
-    // Each of its six stages takes several looks of the progress display, which looks every 100 ms and may see none of a shorter one.
+    // The progress display is updated every 100 ms, and each of the six stages must last for several updates to be shown.
     let slow = Job::small().sampler(3000, [4, 10], 3);
-    let whole = Run::of(&slow);
-    whole.finish();
+    let undisturbed = Run::with_job(&slow);
+    undisturbed.finish();
     for signal in [Signal::Interrupt, Signal::Terminate, Signal::Kill] {
-        let run = Run::of(&slow);
-        // The first stop is in stage 2, the second as soon as the run shows where it goes on, mostly in the next: well before its end.
+        let run = Run::with_job(&slow);
+        // The first stop is in stage 2, and the second as soon as the resumed run shows its stage, well before the end.
         for (stop, stages) in [(1, 2), (2, 1)] {
             let mut process = run.start();
             let shown = Run::stages_begun(&process);
-            until("a stage of the run", || {
+            until_true("a stage of the run", || {
                 assert!(
                     process.is_running(),
                     "the run ended too early:\n{}",
                     process.log()
                 );
-                (Run::stages_begun(&process) >= shown + stages).then_some(())
+                Run::stages_begun(&process) >= shown + stages
             });
             process.signal(signal);
             let ended = process.wait();
@@ -235,8 +234,8 @@ fn a_run_stopped_by_interrupt_or_kill_goes_on_to_the_same_bytes() {
             );
         }
         let table = run.finish();
-        assert!(table.contains("root mean sq. error"), "{table}");
-        same(&run.posterior(), &whole.posterior());
+        assert_contains!(table, "root mean sq. error");
+        same(&run.posterior(), &undisturbed.posterior());
     }
 }
 
@@ -280,11 +279,12 @@ fn a_finished_run_prints_its_result_again_and_a_changed_job_is_refused() {
     ] {
         changed.write(run.job.parent().expect("the job's folder"));
         let message = programs::run(programs::coordinator(run.arguments())).refusal();
-        assert!(
-            message.contains("another job") && message.contains("has changed since"),
-            "{message}"
+        assert_contains!(
+            message,
+            "another job",
+            "has changed since",
+            run.out().display().to_string()
         );
-        assert!(message.contains(&run.out().display().to_string()), "{message}");
         same(&run.posterior(), &written);
     }
 }

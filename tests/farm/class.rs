@@ -1,5 +1,7 @@
-//! A campaign whose runs cannot tell which of two effects is missing: what is said before one of them is added, and after it.
+//! A campaign whose runs cannot distinguish two effects: the printed conclusion before and after one of them is added.
 
+use farm_tests::assert_contains;
+use farm_tests::json::word;
 use farm_tests::programs::{coordinator, run};
 use farm_tests::service::Service;
 use farm_tests::wait::until;
@@ -24,22 +26,20 @@ fn the_rival_of_an_added_effect_and_the_run_that_decides_are_said_until_it_is_de
     let out = folder.path().join("out").display().to_string();
     let go = |words: &[&str]| run(coordinator(words.iter().copied().chain(["--out", &out]))).success();
     let before = joined(&go(&["run", &job]));
-    for words in [
+    assert_contains!(
+        before,
         "missing: one of slip_sinkage (0.58), slip_softened_pressure (0.42) is missing",
-        "coordinator add-runs 1 new-runs.csv",
-    ] {
-        assert!(before.contains(words), "{words} in {before}");
-    }
+        "coordinator add-runs 1 new-runs.csv"
+    );
     let after = joined(&go(&["extend", "1", "--effect", "slip_sinkage"]));
-    for words in [
+    assert_contains!(
+        after,
         "missing: slip_sinkage (P 0.58) is added: held-out error from 1.5 to 1.1 times the noise",
         RIVAL,
         "beyond that, nothing that these data can show",
         "next: run the wheel at slip 0.80 under 280 N at 5.80 mm/s, which tells",
-        "coordinator add-runs 1 new-runs.csv",
-    ] {
-        assert!(after.contains(words), "{words} in {after}");
-    }
+        "coordinator add-runs 1 new-runs.csv"
+    );
     assert!(!after.contains("by hand"), "{after}");
     let report = text(&folder.path().join("out/report.html"));
     assert!(report.contains(RIVAL) && report.contains(RUN));
@@ -51,8 +51,11 @@ fn the_rival_of_an_added_effect_and_the_run_that_decides_are_said_until_it_is_de
     for verdict in [listed, service.client.json("/v1/studies/1")["verdict"].clone()] {
         assert_eq!(verdict["verdict"], "nothing_detectable", "of the extended model");
         for key in ["open", "text"] {
-            let told = verdict[key].as_str().unwrap_or_default();
-            assert!(told.contains(RIVAL) && told.contains(RUN), "{key}: {told}");
+            let reported = word(&verdict[key]);
+            assert!(
+                reported.contains(RIVAL) && reported.contains(RUN),
+                "{key}: {reported}"
+            );
         }
     }
 }

@@ -1,6 +1,8 @@
-//! How a study grows: extended by effects, by further runs; what is refused; what a restart makes of it.
+//! The growth of a study by effects and by further runs, refused extensions, and restarts meanwhile.
 
+use farm_tests::assert_contains;
 use farm_tests::job::{GAIN, Job};
+use farm_tests::json::{item_count, items};
 use farm_tests::programs::{coordinator, run};
 use farm_tests::random::Random;
 use farm_tests::service::Service;
@@ -9,7 +11,7 @@ use farm_tests::wait::until;
 use farm_tests::workspace::text;
 use serde_json::{Value, json};
 
-/// Two runs more, a column fewer than the experiment has.
+/// Two further runs, without one column of the experiment.
 const MORE: &str = "run,wheel,soil,slip,wheel_load_n,sled_speed_m_s,drawbar_pull_n,torque_n_m,use
 later-1,WHEEL,SOIL,0.25,100,0.01,30.0,6.0,fit
 later-2,WHEEL,SOIL,0.35,100,0.01,33.0,6.4,holdout
@@ -24,7 +26,7 @@ fn more() -> String {
 }
 
 fn summary(service: &Service, id: i64) -> Value {
-    let mut summary = service.client.json(&format!("/v1/calibrations/{id}/summary"));
+    let mut summary = service.result(id, "summary");
     for calibration in summary["calibrations"].as_array_mut().expect("a list") {
         calibration["wall_s"] = Value::Null;
     }
@@ -38,9 +40,9 @@ fn created(service: &Service, path: &str, body: &Value) -> i64 {
     response.json()["id"].as_i64().expect("an id")
 }
 
-/// Effects of each line of the ledger.
+/// The effects of each line of the ledger.
 fn ledger(summary: &Value) -> Vec<String> {
-    let calibrations = summary["calibrations"].as_array().into_iter().flatten();
+    let calibrations = items(&summary["calibrations"]);
     calibrations.map(|c| c["effects"].to_string()).collect()
 }
 
@@ -82,18 +84,14 @@ fn a_study_grows_by_effects_and_by_runs() {
         })
         .collect();
     assert_eq!(data, ["1: 24 + 16", "1: 24 + 16", "1: 24 + 16", "2: 25 + 17"]);
-    assert_eq!(
-        summary["point_estimates"].as_array().map(Vec::len),
-        Some(1),
-        "the submitted job's"
-    );
+    assert_eq!(item_count(&summary["point_estimates"]), 1, "the submitted job's");
     assert_eq!(summary["discovery"], Value::Null, "nobody has searched");
     let experiments: Vec<Value> = [base, both, enlarged]
         .map(|id| service.status(id)["experiment"].clone())
         .to_vec();
     assert!(experiments[0] == experiments[1] && experiments[0] != experiments[2]);
     let ledger = service.client.json("/v1/studies/1");
-    assert_eq!(ledger["ledger"].as_array().map(Vec::len), Some(4));
+    assert_eq!(item_count(&ledger["ledger"]), 4);
 }
 
 #[test]
@@ -101,7 +99,7 @@ fn a_parameter_that_the_job_holds_is_freed_as_an_effect_is_added() {
     let service = Service::start(&["--local-workers", "2"]);
     let base = service.submit(&Job::small());
     let path = format!("/v1/calibrations/{base}/extend");
-    // the job holds the velocity under [model], the cohesion in silence
+    // The job fixes the velocity under [model], and leaves the cohesion at its default.
     let freed = created(&service, &path, &json!({"effect": "shear_velocity_m_s"}));
     let path = format!("/v1/calibrations/{freed}/extend");
     let both = created(&service, &path, &json!({"effect": "cohesion_pa"}));
@@ -115,11 +113,8 @@ fn a_parameter_that_the_job_holds_is_freed_as_an_effect_is_added() {
     assert!(cohesion["sd"].as_f64() > Some(0.0), "{cohesion}");
     let path = format!("/v1/calibrations/{both}/extend");
     let again = service.client.post(&path, &json!({"effect": "cohesion_pa"}));
-    assert!(
-        again.status == 422 && again.body.contains("already under [priors]"),
-        "{}",
-        again.body
-    );
+    assert!(again.status == 422, "{}", again.body);
+    assert!(again.body.contains("already under [priors]"), "{}", again.body);
 }
 
 #[test]
@@ -154,8 +149,7 @@ fn killed_behind_the_answer_an_extension_goes_on_to_the_same_bits() {
     let base = service.submit(&Job::small());
     let path = format!("/v1/calibrations/{base}/extend");
     let extended = created(&service, &path, &json!({"effect": "torque_gain"}));
-    service.kill();
-    service.restart();
+    service.crash();
     let mut worker = service.worker("worker", 1);
     service.wait_for(base, "finished");
     service.kill();
@@ -245,7 +239,7 @@ fn what_cannot_be_added_says_why() {
         "runs.csv line 2: run \"later-1\" is in the study already",
     );
 
-    let discovery = service.client.get(&format!("/v1/calibrations/{id}/discovery"));
+    let discovery = service.part(id, "discovery");
     assert_eq!(discovery.status, 404, "{}", discovery.body);
     assert!(
         discovery
@@ -255,11 +249,7 @@ fn what_cannot_be_added_says_why() {
         discovery.body
     );
     let list = service.client.json("/v1/calibrations");
-    assert_eq!(
-        list.as_array().map(Vec::len),
-        Some(3),
-        "what was refused left nothing behind"
-    );
+    assert_eq!(item_count(&list), 3, "what was refused left nothing behind");
 }
 
 #[test]
@@ -275,26 +265,13 @@ fn a_folder_grows_and_its_run_knows_it_again() {
     let go = |words: &[&str]| run(coordinator(words.iter().copied().chain(["--out", &out])));
     go(&["run", &path]).success();
     let refusal = go(&["extend", "--effect", "bulldosing"]).refusal();
-    assert!(
-        refusal.contains("the nearest known is \"bulldozing\""),
-        "{refusal}"
-    );
+    assert_contains!(refusal, "the nearest known is \"bulldozing\"");
     let printed = go(&["extend", "--effect", "torque_gain", "--verbose"]).success();
-    assert!(
-        printed.contains("model quasi_static with torque_gain"),
-        "{printed}"
-    );
+    assert_contains!(printed, "model quasi_static with torque_gain");
     let again = go(&["extend", "1", "--effect", "torque_gain"]);
-    assert!(
-        again.stderr.contains("calibration 2 has it already"),
-        "{}",
-        again.stderr
-    );
+    assert_contains!(again.stderr, "calibration 2 has it already");
     let enlarged = go(&["add-runs", "2", &runs.display().to_string()]).success();
-    assert!(
-        enlarged.contains("with torque_gain, 25 fitted runs"),
-        "{enlarged}"
-    );
+    assert_contains!(enlarged, "with torque_gain, 25 fitted runs");
     assert_eq!(
         go(&["run", &path]).success(),
         enlarged,
@@ -304,13 +281,10 @@ fn a_folder_grows_and_its_run_knows_it_again() {
     let summary: Value = serde_json::from_str(&file).expect("JSON");
     assert_eq!(ledger(&summary), ["[]", "[\"torque_gain\"]", "[\"torque_gain\"]"]);
     let report = text(&folder.path().join("out/report.html"));
-    assert!(
-        report.contains("\"/v1/calibrations/3/comparison\"") && report.contains("\"ledger\":["),
-        "the ledger stands in the report"
-    );
+    assert_contains!(report, "\"/v1/calibrations/3/comparison\"", "\"ledger\":[");
 }
 
-/// A study that finds something and goes on by itself.
+/// A study that finds an effect and extends its model automatically.
 fn hidden() -> Job {
     Job::hidden_shear().sampler(120, [2, 6], 1)
 }
@@ -343,7 +317,7 @@ fn killing_coordinator_and_workers_while_a_study_is_searched_changes_nothing() {
     let expected = over(&quiet);
     let chosen = &expected["discovery"]["chosen"];
     assert_eq!(chosen, &json!(["janosi_hanamoto"]), "{expected:#}");
-    assert_eq!(expected["calibrations"].as_array().map(Vec::len), Some(2));
+    assert_eq!(item_count(&expected["calibrations"]), 2);
     let explanations = expected["discovery"]["effects"].as_array().expect("a list");
     let named = explanations
         .iter()
@@ -362,7 +336,7 @@ fn killing_coordinator_and_workers_while_a_study_is_searched_changes_nothing() {
         let reached = until("the search", || {
             let open = in_progress(&service)?;
             let search = open.iter().find(|(_, name, _)| name.ends_with("(discovery)"));
-            // The first search, or what comes after it.
+            // The moment falls into the first search, or the search is over and the extended model is calibrated.
             match search {
                 Some((_, _, evaluations)) if *evaluations >= moment => Some(true),
                 None if open.iter().any(|(_, name, _)| name.contains('+')) => Some(false),
@@ -374,8 +348,7 @@ fn killing_coordinator_and_workers_while_a_study_is_searched_changes_nothing() {
             worker.kill();
             worker = service.worker("worker", 2);
         }
-        service.kill();
-        service.restart();
+        service.crash();
     }
     assert!(kills >= 2, "{kills} kills fell within a search");
     let found = over(&service);

@@ -2,8 +2,10 @@
 
 use std::path::Path;
 
+use farm_tests::assert_contains;
 use farm_tests::job::{GAIN, Job};
-use farm_tests::programs::{Ended, coordinator, run, worker};
+use farm_tests::json::{item_count, items, word};
+use farm_tests::programs::{Ended, call, coordinator, run, worker};
 use farm_tests::service::Service;
 use farm_tests::text::same;
 use farm_tests::workspace::{data, text};
@@ -13,7 +15,7 @@ fn path(path: &Path) -> String {
     path.display().to_string()
 }
 
-/// `worker simulate` in a folder that has experiment and runs; the table.
+/// Runs `worker simulate` in a folder with experiment and runs.
 fn simulate(folder: &Path, model: &str, theta: &str) -> Ended {
     let at = |name: &str| path(&folder.join(name));
     std::fs::write(folder.join("model.toml"), model).expect("a file");
@@ -60,25 +62,23 @@ fn job() -> Job {
 fn local_and_remote_workers_fit_effects_to_the_same_bytes() {
     let folder = tempfile::tempdir().unwrap();
     let (file, out) = (job().write(&folder.path().join("job")), folder.path().join("out"));
-    let said = run(coordinator([
-        "run",
-        &path(&file),
-        "--out",
-        &path(&out),
-        "--local-workers",
-        "2",
-        "--verbose",
-    ]))
+    let output = call(
+        "coordinator run {} --out {} --local-workers 2 --verbose",
+        &[&path(&file), &path(&out)],
+    )
     .success();
-    assert!(
-        said.contains("model quasi_static with sled_tare, torque_gain, my_gain\n"),
-        "{said}"
+    assert_contains!(
+        output,
+        "model quasi_static with sled_tare, torque_gain, my_gain\n"
     );
     let local = text(&out.join("posterior.csv"));
     let header = local.lines().next().unwrap();
-    for name in ["sled_tare.tare_n", "torque_gain.gain_error", "my_gain.gain"] {
-        assert!(header.contains(name), "{header}");
-    }
+    assert_contains!(
+        header,
+        "sled_tare.tare_n",
+        "torque_gain.gain_error",
+        "my_gain.gain"
+    );
     assert!(!header.contains("shift_n"), "{header}");
 
     let service = Service::start(&[]);
@@ -95,15 +95,10 @@ fn local_and_remote_workers_fit_effects_to_the_same_bytes() {
     let version = summary["model_version"].as_str().unwrap();
     let (_, effects) = version.split_once("+effects.").unwrap();
     assert_eq!(version, service.status(id)["model_version"]);
-    assert!(
-        effects.len() == 8 && effects.bytes().all(|b| b.is_ascii_hexdigit()),
-        "{version}"
-    );
+    assert!(effects.len() == 8, "{version}");
+    assert!(effects.bytes().all(|b| b.is_ascii_hexdigit()), "{version}");
     let report = text(&out.join("report.html"));
-    assert!(
-        report.contains("my_gain.gain") && report.contains(version),
-        "the report"
-    );
+    assert_contains!(report, "my_gain.gain", version);
 }
 
 #[test]
@@ -114,7 +109,7 @@ fn a_file_of_the_command_line_is_fitted_and_belongs_to_the_job() {
         .in_experiment("sinkage_m = 0.0004", "sinkage_m = 0.0004\nlateral_force_n = 1.0")
         .beside("gain.toml", GAIN);
     let file = fit.write(folder.path());
-    // what the farm measures: the pull with a gain of 0.15, without noise
+    // The measured pull has a gain of 0.15 and no noise.
     let model = "kind = \"quasi_static\"\neffect_files = [\"gain.toml\"]\n";
     let measured = simulated(
         folder.path(),
@@ -142,13 +137,13 @@ fn a_file_of_the_command_line_is_fitted_and_belongs_to_the_job() {
     same(&command(&["--effect-file", &gain]).success(), &first);
     for other in [&[][..], &["--effect", "sled_tare", "--effect-file", &gain]] {
         let message = command(other).refusal();
-        assert!(message.contains("the calibration of another job"), "{message}");
+        assert_contains!(message, "the calibration of another job");
     }
     std::fs::write(at("gain.toml"), GAIN.replace("0.2]", "0.3]")).unwrap();
     let message = command(&["--effect-file", &gain]).refusal();
-    assert!(
-        message.contains("the calibration of another job: the effect file gain.toml has changed since"),
-        "{message}"
+    assert_contains!(
+        message,
+        "the calibration of another job: the effect file gain.toml has changed since"
     );
 }
 
@@ -198,7 +193,7 @@ fn at_its_neutral_strength_no_effect_of_the_catalogue_changes_a_byte() {
         .write(folder.path());
     let model = "kind = \"quasi_static\"\n";
     let base = simulated(folder.path(), model, &truth());
-    // the side of the wheel needs a terrain beside it
+    // This effect needs terrain beside the wheel, which the model does not have.
     let has_form = |effect: &&formula::Effect| effect.name != "buried_side_wall";
     let catalogue: Vec<_> = formula::catalogue::catalogue().iter().filter(has_form).collect();
     for some in catalogue.chunks(10) {
@@ -209,7 +204,7 @@ fn at_its_neutral_strength_no_effect_of_the_catalogue_changes_a_byte() {
         let theta = format!("{}\n{}", truth(), strengths.collect::<String>());
         same(&simulated(folder.path(), model, &theta), &base);
     }
-    // and a strength that is not neutral does
+    // A strength that is not neutral changes the table.
     let theta = format!("{}\n\"sled_tare.tare_n\" = 1e-3\n", truth());
     assert_ne!(simulated(folder.path(), model, &theta), base);
 }
@@ -246,14 +241,12 @@ fn the_catalogue_is_listed_and_shown() {
     let list = run(coordinator(["effects"])).success();
     assert!(list.lines().count() > 100 && list.lines().all(|l| l.chars().count() <= 100));
     let shown = run(coordinator(["effects", "slip_sinkage"])).success();
-    assert!(
-        shown.contains("sinkage_exponent = \"n + exponent_per_slip * abs(slip) * cos(slip_angle)\""),
-        "{shown}"
+    assert_contains!(
+        shown,
+        "sinkage_exponent = \"n + exponent_per_slip * abs(slip) * cos(slip_angle)\""
     );
-    assert!(
-        shown.contains("at exponent_per_slip = 0.3\n") && shown.contains('█'),
-        "{shown}"
-    );
+    assert!(shown.contains("at exponent_per_slip = 0.3\n"), "{shown}");
+    assert!(shown.contains('█'), "{shown}");
     assert_eq!(
         run(coordinator(["effects", "slip_sinkge"])).refusal(),
         "unknown effect \"slip_sinkge\"; the nearest known is \"slip_sinkage\""
@@ -262,11 +255,9 @@ fn the_catalogue_is_listed_and_shown() {
     let file = folder.path().join("gain.toml");
     std::fs::write(&file, GAIN).unwrap();
     let shown = run(coordinator(["effects", "--file", &path(&file)])).success();
-    assert!(
-        shown.starts_with(GAIN) && shown.contains("at gain = 0.2\n"),
-        "{shown}"
-    );
-    // what a job refuses is refused here, in the same words
+    assert!(shown.starts_with(GAIN), "{shown}");
+    assert!(shown.contains("at gain = 0.2\n"), "{shown}");
+    // This command refuses the same files as a job, with the same messages.
     for (old, new, message) in [
         (
             "(1 + gain)",
@@ -315,20 +306,11 @@ fn the_catalogue_is_listed_and_shown() {
 fn the_catalogue_is_there_over_rest() {
     let service = Service::start(&[]);
     let list = service.client.json("/v1/effects");
-    assert_eq!(list.as_array().map(Vec::len), Some(50));
+    assert_eq!(item_count(&list), 50);
     let one = service.client.json("/v1/effects/sled_tare");
-    let listed = list
-        .as_array()
-        .into_iter()
-        .flatten()
-        .find(|e| e["name"] == "sled_tare");
+    let listed = items(&list).find(|e| e["name"] == "sled_tare");
     assert_eq!(Some(&one["effect"]), listed);
-    assert!(
-        one["text"]
-            .as_str()
-            .unwrap_or_default()
-            .starts_with("name = \"sled_tare\"")
-    );
+    assert!(word(&one["text"]).starts_with("name = \"sled_tare\""));
     let pull = &one["signature"]["strengths"][0]["channels"][0];
     assert_eq!(pull["channel"], "drawbar_pull");
     assert!(
@@ -336,8 +318,6 @@ fn the_catalogue_is_there_over_rest() {
         "{pull}"
     );
     let unknown = service.client.get("/v1/effects/sled_tar");
-    assert_eq!(
-        (unknown.status, &unknown.json()["error"]["type"]),
-        (404, &"not_found".into())
-    );
+    assert_eq!(unknown.status, 404);
+    assert_eq!(unknown.json()["error"]["type"], "not_found");
 }

@@ -1,12 +1,14 @@
-//! A user's day: serve, submit, workers, a crash, a result; and the buttons in between.
+//! The work of a user: serve, submit, workers, a crash, results, and the controls of a calibration.
 
 use std::collections::BTreeMap;
 
+use farm_tests::assert_contains;
 use farm_tests::job::Job;
+use farm_tests::json::{item_count, items, whole, word};
 use farm_tests::programs::{coordinator, run};
 use farm_tests::service::Service;
 use farm_tests::text::same;
-use farm_tests::wait::until;
+use farm_tests::wait::{until, until_true};
 use serde_json::{Value, json};
 
 /// A verb of the command line against a service.
@@ -30,16 +32,13 @@ fn two_jobs_outlive_a_crash_of_the_coordinator_and_give_results() {
     assert_eq!((experiment.status, experiment.json()), (201, json!({"id": 2})));
     let new = json!({"experiment": 2, "toml": other.job, "name": "by hand"});
     let created = service.client.post("/v1/calibrations", &new);
-    assert_eq!(
-        (created.status, created.json()),
-        (201, json!({"id": 2, "study": 2}))
-    );
+    assert_eq!(created.status, 201);
+    assert_eq!(created.json(), json!({"id": 2, "study": 2}));
     assert_eq!(created.header("location"), Some("/v1/calibrations/2"));
     let list = verb(&service, &["list"]);
-    assert!(
-        list.contains("sand") && list.contains("by hand") && list.matches("queued").count() == 2,
-        "{list}"
-    );
+    assert!(list.contains("sand"), "{list}");
+    assert!(list.contains("by hand"), "{list}");
+    assert!(list.matches("queued").count() == 2, "{list}");
 
     let mut workers = [service.worker("first", 1), service.worker("second", 1)];
     let moved = |service: &Service, from: u64| {
@@ -49,7 +48,7 @@ fn two_jobs_outlive_a_crash_of_the_coordinator_and_give_results() {
     };
     let before = moved(&service, 300);
     let status = verb(&service, &["status", "1"]);
-    assert!(status.contains("running"), "{status}");
+    assert_contains!(status, "running");
 
     service.kill();
     assert!(workers.iter_mut().all(|w| w.is_running()));
@@ -75,24 +74,26 @@ fn two_jobs_outlive_a_crash_of_the_coordinator_and_give_results() {
 
     // Results, by verbs and over HTTP.
     let compared = verb(&service, &["compare", "1"]);
-    for word in ["r00", "r39", "holdout measurements", "pull N", "90 % interval"] {
-        assert!(compared.contains(word), "{word} in\n{compared}");
-    }
+    assert_contains!(
+        compared,
+        "r00",
+        "r39",
+        "holdout measurements",
+        "pull N",
+        "90 % interval"
+    );
     let diagnosed = verb(&service, &["diagnose", "1"]);
-    for word in [
+    assert_contains!(
+        diagnosed,
         "effective sample size",
         "information",
         "contraction",
         "largest residuals",
-        "chi-square",
-    ] {
-        assert!(diagnosed.contains(word), "{word} in\n{diagnosed}");
-    }
-    let report = verb(&service, &["report", "1"]);
-    assert!(
-        report.to_lowercase().starts_with("<!doctype html>") && report.contains("sand"),
-        "{report}"
+        "chi-square"
     );
+    let report = verb(&service, &["report", "1"]);
+    assert!(report.to_lowercase().starts_with("<!doctype html>"), "{report}");
+    assert!(report.contains("sand"), "{report}");
     let file = service.folder().join("report.html");
     assert_eq!(
         verb(
@@ -108,11 +109,8 @@ fn two_jobs_outlive_a_crash_of_the_coordinator_and_give_results() {
     let exported: Value =
         serde_json::from_str(&verb(&service, &["export", "1", "--format", "json"])).unwrap();
     assert_eq!(exported["summary"]["status"], "finished");
-    assert_eq!(exported["posterior"]["rows"].as_array().map(Vec::len), Some(150));
-    assert_eq!(
-        exported["comparison"]["rows"].as_array().map(Vec::len),
-        Some(40 * 3)
-    );
+    assert_eq!(item_count(&exported["posterior"]["rows"]), 150);
+    assert_eq!(item_count(&exported["comparison"]["rows"]), 40 * 3);
     for part in [
         "stages",
         "samples",
@@ -126,17 +124,15 @@ fn two_jobs_outlive_a_crash_of_the_coordinator_and_give_results() {
         assert!(answer.is_object() || answer.is_array(), "{part}: {answer}");
     }
     let part = service.client.json("/v1/calibrations/2/samples?most=10");
-    let whole = service.client.json("/v1/calibrations/2/samples");
+    let all_samples = service.result(2, "samples");
+    assert_eq!(part["of"].as_u64(), Some(100));
+    assert_eq!(all_samples["of"].as_u64(), Some(100));
     assert_eq!(
-        (part["of"].as_u64(), whole["of"].as_u64()),
-        (Some(100), Some(100))
-    );
-    assert_eq!(
-        whole["parameters"],
+        all_samples["parameters"],
         json!(["log10_p_ref", "n", "friction_angle_deg", "wheel_radius_m"])
     );
-    assert_eq!(whole["units"], json!(["log10 Pa", "1", "deg", "m"]));
-    let spaced = (0..10).map(|k| whole["samples"][10 * k + 9].clone());
+    assert_eq!(all_samples["units"], json!(["log10 Pa", "1", "deg", "m"]));
+    let spaced = (0..10).map(|k| all_samples["samples"][10 * k + 9].clone());
     assert_eq!(part["samples"], spaced.collect::<Value>());
     let studies = service.client.json("/v1/studies");
     for (key, value) in [
@@ -159,7 +155,7 @@ fn two_jobs_outlive_a_crash_of_the_coordinator_and_give_results() {
         exported["summary"]["calibrations"][0]["evaluations"]
     );
 
-    // The store alone says the same, the coordinator gone.
+    // Without the coordinator, the commands give the same results from the store.
     assert!(service.terminate());
     let folder = service.folder().display().to_string();
     let alone = run(coordinator(["export", "1", "--out", &folder])).success();
@@ -177,29 +173,20 @@ fn pausing_resuming_and_cancelling_do_what_they_say() {
     let id = service.submit(&job);
     until("progress", || service.evaluations(id).filter(|&n| n > 100));
     assert_eq!(verb(&service, &["pause", "1"]), "calibration 1 is paused\n");
-    // Leased evaluations are completed, then nothing moves, also after a restart.
-    until("no lease", || {
-        (service.metric("grouser_leases_out") == 0).then_some(())
-    });
+    // Leased evaluations are completed; after that the calibration does not progress, even after a restart.
+    until_true("no lease", || service.metric("grouser_leases_out") == 0);
     let paused = service.status(id);
-    assert_eq!(
-        (paused["state"].as_str(), paused["message"].as_str()),
-        (Some("paused"), Some("paused by a user"))
-    );
+    assert_eq!(paused["state"].as_str(), Some("paused"));
+    assert_eq!(paused["message"].as_str(), Some("paused by a user"));
     let given = service.metric("grouser_leases_given_total");
-    assert_eq!(
-        service.client.post("/v1/calibrations/1/pause", &json!({})).status,
-        409
-    );
-    let other = service.submit(&Job::small());
-    service.wait_for(other, "finished");
+    assert_eq!(service.act(1, "pause").status, 409);
+    let other = service.calibrate(&Job::small());
     assert_eq!(
         service.evaluations(id),
         paused["progress"]["evaluations"].as_u64()
     );
     assert!(service.metric("grouser_leases_given_total") > given);
-    service.kill();
-    service.restart();
+    service.crash();
     assert_eq!(service.status(id)["state"], "paused");
     assert_eq!(
         service.evaluations(id),
@@ -214,17 +201,10 @@ fn pausing_resuming_and_cancelling_do_what_they_say() {
     });
     assert_eq!(verb(&service, &["cancel", "1"]), "calibration 1 is cancelled\n");
     assert_eq!(service.status(id)["state"], "cancelled");
-    service.kill();
-    service.restart();
+    service.crash();
     assert_eq!(service.status(id)["state"], "cancelled");
     assert_eq!(service.metric("grouser_calibrations_in_hand"), 0);
-    assert_eq!(
-        service
-            .client
-            .post("/v1/calibrations/1/resume", &json!({}))
-            .status,
-        409
-    );
+    assert_eq!(service.act(1, "resume").status, 409);
     assert_eq!(service.status(other)["state"], "finished");
 }
 
@@ -232,7 +212,7 @@ fn pausing_resuming_and_cancelling_do_what_they_say() {
 fn events_tell_every_stage_once_and_end_with_the_calibration() {
     let service = Service::start(&[]);
     let id = service.submit(&Job::small());
-    let mut told: Vec<u64> = Vec::new();
+    let mut reported: Vec<u64> = Vec::new();
     let mut states: Vec<String> = Vec::new();
     std::thread::scope(|scope| {
         let workers = scope.spawn(|| {
@@ -244,8 +224,8 @@ fn events_tell_every_stage_once_and_end_with_the_calibration() {
             .events(&format!("/v1/calibrations/{id}/events"), |event, data| {
                 let data: Value = serde_json::from_str(data).expect("JSON in an event");
                 match event {
-                    "stage" => told.push(data["stage"].as_u64().expect("a stage")),
-                    "status" => states.push(data["state"].as_str().expect("a state").to_owned()),
+                    "stage" => reported.push(whole(&data["stage"])),
+                    "status" => states.push(word(&data["state"]).to_owned()),
                     other => panic!("event {other}"),
                 }
                 true
@@ -253,17 +233,12 @@ fn events_tell_every_stage_once_and_end_with_the_calibration() {
         assert!(ended);
         workers.join().expect("the calibration finishes");
     });
-    let stages = service.client.json(&format!("/v1/calibrations/{id}/stages"));
-    let stages: Vec<u64> = stages
-        .as_array()
-        .into_iter()
-        .flatten()
-        .filter_map(|s| s["stage"].as_u64())
-        .collect();
+    let stages = service.result(id, "stages");
+    let stages: Vec<u64> = items(&stages).filter_map(|s| s["stage"].as_u64()).collect();
     assert!(stages.len() > 3, "{stages:?}");
-    assert_eq!(told, stages);
+    assert_eq!(reported, stages);
     assert_eq!(states.last().map(String::as_str), Some("finished"));
-    // A late listener is told the same at once.
+    // A late listener gets the same events at once.
     let mut again = Vec::new();
     service
         .client
@@ -342,11 +317,11 @@ fn the_openapi_document_lists_every_route_of_the_contract() {
     for (path, methods) in &paths {
         for method in methods {
             let operation = &document["paths"][path][method];
-            let said = operation["summary"]
+            let output = operation["summary"]
                 .as_str()
                 .or(operation["description"].as_str())
                 .unwrap_or_default();
-            assert!(!said.is_empty(), "{method} {path} says nothing");
+            assert!(!output.is_empty(), "{method} {path} says nothing");
         }
     }
 }
@@ -357,10 +332,8 @@ fn the_metrics_page_counts_what_happened() {
     let id = service.submit(&Job::small());
     let _worker = service.worker("worker", 2);
     service.wait_for(id, "finished");
-    let summary = service.client.json(&format!("/v1/calibrations/{id}/summary"));
-    let sampled = summary["calibrations"][0]["evaluations"]
-        .as_u64()
-        .expect("a count");
+    let summary = service.result(id, "summary");
+    let sampled = whole(&summary["calibrations"][0]["evaluations"]);
     // The final draws, the best particle and the 60 of the population, each on fitted and on holdout runs; and the
     // likeliest one on the fitted ones.
     let completed = service.metric("grouser_evaluations_completed_total");
@@ -380,9 +353,7 @@ fn the_metrics_page_counts_what_happened() {
             .iter()
             .find_map(|part| name.strip_suffix(part))
             .unwrap_or(name);
-        assert!(
-            page.contains(&format!("# HELP {bare} ")) && page.contains(&format!("# TYPE {bare} ")),
-            "{name}"
-        );
+        assert!(page.contains(&format!("# HELP {bare} ")), "{name}");
+        assert!(page.contains(&format!("# TYPE {bare} ")), "{name}");
     }
 }

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeSet;
 
+use farm_tests::json::items;
 use farm_tests::programs::{coordinator, run};
 use farm_tests::workspace::{files, root, text};
 use serde::Deserialize;
@@ -15,7 +16,7 @@ struct List {
     example: Vec<Example>,
 }
 
-/// A run and what a README says of it.
+/// A run and the figures that a README states for it.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Example {
@@ -102,7 +103,7 @@ fn value(summary: &Value, place: &str) -> Option<f64> {
     };
     let step = |found: &'_ Value, part: &str| -> Option<Value> {
         match (found, part.split_once('=')) {
-            (Value::Array(list), Some((key, name))) => list.iter().find(|own| own[key] == name).cloned(),
+            (Value::Array(list), Some((key, name))) => list.iter().find(|item| item[key] == name).cloned(),
             (Value::Array(list), None) => list.get(part.parse::<usize>().ok()?).cloned(),
             _ => found.get(part).cloned(),
         }
@@ -141,7 +142,7 @@ fn contradictions(example: &Example, readme: &str, summary: &Value) -> Vec<Strin
         }
     }
     if let Some(expected) = &example.verdicts {
-        let rounds = summary["discovery"]["rounds"].as_array().into_iter().flatten();
+        let rounds = items(&summary["discovery"]["rounds"]);
         let verdicts: Vec<&str> = rounds.filter_map(|round| round["verdict"].as_str()).collect();
         if verdicts != *expected {
             found.push(format!("verdicts {expected:?}, the program {verdicts:?}"));
@@ -150,7 +151,7 @@ fn contradictions(example: &Example, readme: &str, summary: &Value) -> Vec<Strin
     found
 }
 
-/// Runs the jobs of a README and compares.
+/// Runs the jobs of a README, and compares their results with its figures.
 #[track_caller]
 fn hold(readme: &str) {
     let examples = root().join("examples");
@@ -221,8 +222,8 @@ fn every_job_of_the_examples_is_held_or_listed_as_not_held() {
         })
         .collect();
     let held = list.example.iter().map(|example| example.job.clone());
-    let known: BTreeSet<String> = list.not_held.iter().cloned().chain(held).collect();
-    assert_eq!(jobs, known);
+    let listed: BTreeSet<String> = list.not_held.iter().cloned().chain(held).collect();
+    assert_eq!(jobs, listed);
 }
 
 #[test]

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use farm_tests::assert_contains;
 use farm_tests::job::Job;
 use farm_tests::programs::{self, Ended};
 use farm_tests::workspace::{data, text};
@@ -136,7 +137,7 @@ fn simulated_runs_are_read_by_their_own_experiment() {
         line => format!("{line},,2,bed 2"),
     };
     let runs: String = small.runs.lines().map(|line| more(line) + "\n").collect();
-    // Once as it is, once with the noise of a channel in one row alone, and with preparations.
+    // The second job has the noise of a channel in one row alone, and preparations.
     let prepared = "sinkage_m = 0.0004\npreparation_scatter = 0.05";
     let jobs = [
         Job::small(),
@@ -152,8 +153,8 @@ fn simulated_runs_are_read_by_their_own_experiment() {
         }
         command.arg("--out").arg(at("runs.csv"));
         programs::run(command).success();
-        let said = programs::run(programs::coordinator(["check", &job.display().to_string()])).success();
-        assert!(said.contains("24 fit runs with 7"), "{said}");
+        let output = programs::run(programs::coordinator(["check", &job.display().to_string()])).success();
+        assert_contains!(output, "24 fit runs with 7");
         let lateral: Vec<String> = text(&folder.join("runs.csv"))
             .lines()
             .skip(1)

@@ -1,7 +1,8 @@
-//! Grousers that the quasi-static model rolls: from the key of a job to the likelihood of a farm's draws.
+//! Grousers that the quasi-static model rolls, from the key of the job to the likelihoods of the draws.
 
 use std::f64::consts::TAU;
 
+use farm_tests::assert_contains;
 use farm_tests::job::Job;
 use farm_tests::programs::{coordinator, run};
 use farm_tests::service::Service;
@@ -55,16 +56,16 @@ fn rows(csv: &str) -> Vec<impl Fn(&str) -> Option<f64> + use<>> {
     lines.map(row).collect()
 }
 
-/// Log-likelihood of a draw, by the physics itself.
+/// The log-likelihood of a draw, computed with the crate of the physics.
 fn log_likelihood(draw: &impl Fn(&str) -> Option<f64>, grousers: &StraightGrousers) -> f64 {
-    let of = |name: &str| draw(name).expect("a number");
-    let (k_c, k_phi) = bekker_moduli(of("log10_p_ref"), 0.0, of("n"));
+    let value = |name: &str| draw(name).expect("a number");
+    let (k_c, k_phi) = bekker_moduli(value("log10_p_ref"), 0.0, value("n"));
     let soil = Soil {
         k_c,
         k_phi,
-        n: of("n"),
+        n: value("n"),
         cohesion_pa: 0.0,
-        friction_angle_rad: of("friction_angle_deg").to_radians(),
+        friction_angle_rad: value("friction_angle_deg").to_radians(),
         shear_velocity_m_s: 0.001,
         gamma_exponent: 0.5,
     };
@@ -107,7 +108,7 @@ fn log_likelihood(draw: &impl Fn(&str) -> Option<f64>, grousers: &StraightGrouse
 
 #[test]
 fn a_farm_rolls_grousers_as_the_physics_does_when_a_job_says_so() {
-    for (key, own, other) in [
+    for (key, used, other) in [
         ("grousers = \"rolled\"", GROUSERS, SMOOTH),
         ("grousers = \"ignored\"", SMOOTH, GROUSERS),
     ] {
@@ -119,7 +120,7 @@ fn a_farm_rolls_grousers_as_the_physics_does_when_a_job_says_so() {
         assert_eq!(draws.len(), 30);
         for draw in &draws {
             let got = draw("log_likelihood").expect("a number");
-            let expected = log_likelihood(draw, &own);
+            let expected = log_likelihood(draw, &used);
             assert!(
                 (got - expected).abs() < 1e-6 * expected.abs(),
                 "{key}: {got} {expected}"
@@ -158,6 +159,6 @@ fn what_does_not_roll_is_refused_before_anything_is_simulated() {
         ),
     ] {
         let error = refused(job);
-        assert!(error.contains(message), "{error}");
+        assert_contains!(error, message);
     }
 }

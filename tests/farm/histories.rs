@@ -3,6 +3,7 @@
 
 use std::fmt::Write;
 
+use farm_tests::assert_contains;
 use farm_tests::job::Job;
 use farm_tests::programs::{coordinator, run, worker};
 use farm_tests::service::Service;
@@ -31,7 +32,7 @@ fn job(channels: &str, history: &str) -> Job {
     Job { runs, ..small }
 }
 
-/// A minute at 10 Hz of a wheel that digs in, then swings as grousers come and go.
+/// A minute at 10 Hz of a wheel that digs in and then oscillates with the passing grousers.
 fn recording() -> String {
     let mut text = "t_s,drawbar_pull_n,torque_n_m,sinkage_m\n".to_owned();
     for k in 1..=600 {
@@ -75,7 +76,7 @@ fn a_run_with_a_history_is_calibrated_as_with_its_averages_typed_in() {
     let expected = posterior(&typed);
     assert!(expected.lines().count() > 50);
     assert_eq!(posterior(&recorded), expected);
-    // and the history counts: other averages give another posterior
+    // Other averages give another posterior.
     let other = job(&format!("{},{torque},{sinkage},", pull + 5.0), "");
     assert_ne!(posterior(&other), expected);
 }
@@ -87,13 +88,12 @@ fn check_says_what_was_cut_and_averaged() {
     let path = job.write(folder.path()).display().to_string();
     let text = run(coordinator(["check", &path])).success();
     // 2 pi 0.125 m / 12 at 9.5 mm/s / 0.95 = 10 mm/s: 6.545 s; seven of them fit into 48 s
-    for line in [
+    assert_contains!(
+        text,
         "run r00: 600 samples of 0.100 s in r00.csv; low-pass 0.5 Hz, the first 120 (12 s) cut",
         "over 7 grouser periods of the last 45.81 s",
-        "24 fit runs with 72 measurements",
-    ] {
-        assert!(text.contains(line), "{line} in\n{text}");
-    }
+        "24 fit runs with 72 measurements"
+    );
 }
 
 #[test]
@@ -106,7 +106,7 @@ fn a_wrong_history_is_refused_with_its_place() {
         .display()
         .to_string();
     let error = run(coordinator(["check", &path])).refusal();
-    assert!(error.contains("r00.csv line 4: t_s 0.35 s comes"), "{error}");
+    assert_contains!(error, "r00.csv line 4: t_s 0.35 s comes");
 }
 
 fn numbers(values: &Value) -> Vec<f64> {
@@ -130,7 +130,7 @@ fn the_likeliest_parameters_of_a_rolling_wheel_leave_their_histories() {
     let id = service.submit(&job);
     let _worker = service.worker("a", 2);
     service.wait_for(id, "finished");
-    let histories = service.client.json(&format!("/v1/calibrations/{id}/histories"));
+    let histories = service.result(id, "histories");
     let histories = histories.as_array().expect("a list");
     let named: Vec<String> = histories
         .iter()
@@ -139,10 +139,8 @@ fn the_likeliest_parameters_of_a_rolling_wheel_leave_their_histories() {
     let expected = "drawbar_pull/r00 drawbar_pull/r01 torque/r00 torque/r01 sinkage/r00 sinkage/r01";
     assert_eq!(named.join(" "), expected);
     let pull = &histories[0];
-    assert_eq!(
-        (&pull["unit"], &pull["model"][0]["label"]),
-        (&"N".into(), &"maximum likelihood".into())
-    );
+    assert_eq!(pull["unit"], "N");
+    assert_eq!(pull["model"][0]["label"], "maximum likelihood");
     let recorded = column(&recording(), "drawbar_pull_n");
     assert_eq!(numbers(&pull["measured"]["raw"]), recorded);
     let filtered = numbers(&pull["measured"]["value"]);
@@ -150,7 +148,7 @@ fn the_likeliest_parameters_of_a_rolling_wheel_leave_their_histories() {
     assert!((numbers(&pull["measured"]["t_s"])[599] - 60.0).abs() < 1e-9);
     assert!(histories[1]["measured"].is_null());
 
-    // what a forward run at the likeliest parameters gives, bit for bit
+    // The histories have the bits of a forward run with the likeliest parameters.
     let csv = service.posterior_csv(id);
     let log_likelihood = column(&csv, "log_likelihood");
     let best = (0..log_likelihood.len()).fold(0, |a, b| {
@@ -190,17 +188,14 @@ fn the_likeliest_parameters_of_a_rolling_wheel_leave_their_histories() {
     assert_eq!(numbers(&torque["raw"]), column(&forward, "torque_n_m"));
     assert_eq!(numbers(&torque["t_s"]).len(), numbers(&torque["value"]).len());
 
-    // the steady state alone: no histories, and the service says so
-    let still = service.submit(&Job::small());
-    service.wait_for(still, "finished");
-    let none = service
-        .client
-        .json(&format!("/v1/calibrations/{still}/histories"));
+    // A model with a steady state alone has no histories.
+    let still = service.calibrate(&Job::small());
+    let none = service.result(still, "histories");
     assert!(none.is_null(), "{none}");
     same(&service.posterior_csv(id), &csv);
 }
 
-/// The last simulation covers what the likelihood takes beside the averages: rings, and derivatives by the soil's stiffness.
+/// The last simulation also computes the readings of rings and the derivatives by the soil's stiffness, which the likelihood needs.
 #[test]
 fn histories_do_not_replace_readings_of_rings_or_derivatives() {
     let job = Job::rolling()
@@ -221,7 +216,7 @@ fn histories_do_not_replace_readings_of_rings_or_derivatives() {
     let id = service.submit(&job);
     let _worker = service.worker("a", 2);
     service.wait_for(id, "finished");
-    let diagnostics = service.client.json(&format!("/v1/calibrations/{id}/diagnostics"));
+    let diagnostics = service.result(id, "diagnostics");
     let data = diagnostics["residuals"].as_array().map_or(0, Vec::len);
     assert_eq!(data, 7, "{diagnostics}");
 }

@@ -4,8 +4,10 @@ use std::path::{Path, PathBuf};
 
 use base64::Engine as _;
 use base64::prelude::BASE64_STANDARD;
+use farm_tests::assert_contains;
 use farm_tests::job::Job;
-use farm_tests::programs::{coordinator, run};
+use farm_tests::json::{items, word};
+use farm_tests::programs::{call, coordinator, run};
 use farm_tests::service::Service;
 use farm_tests::workspace::{data, root};
 use serde_json::{Value, json};
@@ -24,21 +26,17 @@ fn import(map: &Path, folder: &Path) -> farm_tests::programs::Ended {
         shown(&example("Messung_Sand.xlsx")),
         shown(&folder.join("runs.csv")),
     );
-    run(coordinator([
-        "import",
-        &file,
-        "--map",
-        &shown(map),
-        "--output",
-        &output,
-    ]))
+    call(
+        "coordinator import {} --map {} --output {}",
+        &[&file, &shown(map), &output],
+    )
 }
 
 fn text(path: &Path) -> String {
     std::fs::read_to_string(path).expect("a text")
 }
 
-/// Compares the numbers of runs with those of the data that a table was made from, run by run; how many there are.
+/// Compares the numbers of runs with those of the data that a table was made from; returns how many are compared.
 #[track_caller]
 fn same_numbers(runs: &str, made_from: &str, share: f64) -> usize {
     let rows = |text: &str| -> Vec<Vec<String>> {
@@ -78,11 +76,11 @@ fn same_numbers(runs: &str, made_from: &str, share: f64) -> usize {
 #[test]
 fn a_german_spreadsheet_becomes_the_runs_that_it_was_made_from() {
     let folder = tempfile::tempdir().expect("a folder");
-    let said = import(&example("map.toml"), folder.path()).success();
-    assert!(said.ends_with("runs.csv: 40 runs\n"), "{said}");
-    assert!(
-        said.contains("kept as notes, no columns of runs.csv: Drehzahl [U/min], Bediener, Bemerkung"),
-        "{said}"
+    let output = import(&example("map.toml"), folder.path()).success();
+    assert!(output.ends_with("runs.csv: 40 runs\n"), "{output}");
+    assert_contains!(
+        output,
+        "kept as notes, no columns of runs.csv: Drehzahl [U/min], Bediener, Bemerkung"
     );
     let runs = text(&folder.path().join("runs.csv"));
     assert_eq!(
@@ -106,7 +104,7 @@ fn a_german_spreadsheet_becomes_the_runs_that_it_was_made_from() {
     let job = text(&folder.path().join("job.toml")).replace("[sampler]", "[sampler]\nalgorithm = \"lm\"");
     std::fs::write(folder.path().join("job.toml"), job).expect("written");
     let checked = run(coordinator(["check", &shown(&folder.path().join("job.toml"))])).success();
-    assert!(checked.contains("24 fit runs with 72 measurements"), "{checked}");
+    assert_contains!(checked, "24 fit runs with 72 measurements");
 }
 
 #[test]
@@ -124,16 +122,17 @@ fn a_german_text_with_a_row_of_means_becomes_a_calibration_with_held_out_runs() 
     );
     let proposed = guessed.success();
     assert!(proposed.ends_with('\n'), "{proposed}");
-    assert!(
-        proposed.contains("words = { \"Kontrolle\" = \"holdout\", \"neu geharkt\" = \"fit\" }"),
-        "{proposed}"
+    assert_contains!(
+        proposed,
+        "words = { \"Kontrolle\" = \"holdout\", \"neu geharkt\" = \"fit\" }"
     );
     let import = |map: &str| {
         std::fs::write(at("map.toml"), map).expect("written");
         let (map, output) = (shown(&at("map.toml")), shown(&at("runs.csv")));
-        run(coordinator([
-            "import", &table, "--map", &map, "--output", &output,
-        ]))
+        call(
+            "coordinator import {} --map {} --output {}",
+            &[&table, &map, &output],
+        )
     };
     let answered =
         proposed
@@ -149,9 +148,9 @@ fn a_german_text_with_a_row_of_means_becomes_a_calibration_with_held_out_runs() 
     );
     assert!(!refused.stderr.contains("fill_down"), "{}", refused.stderr);
     assert!(refused.refusal().starts_with("1 mistake; "));
-    let said = import(&format!("skip = [44]\n{answered}")).success();
-    assert!(said.contains("left out, as the map says: 44\n"), "{said}");
-    assert!(said.ends_with("runs.csv: 40 runs\n"), "{said}");
+    let output = import(&format!("skip = [44]\n{answered}")).success();
+    assert_contains!(output, "left out, as the map says: 44\n");
+    assert!(output.ends_with("runs.csv: 40 runs\n"), "{output}");
     let job = Job::small();
     let runs = text(&at("runs.csv"));
     assert_eq!(same_numbers(&runs, &job.runs, 1e-9), 240);
@@ -171,22 +170,20 @@ fn a_german_text_with_a_row_of_means_becomes_a_calibration_with_held_out_runs() 
 fn what_is_guessed_is_refused_until_its_questions_are_answered() {
     let folder = tempfile::tempdir().expect("a folder");
     let map = folder.path().join("map.toml");
-    let guessed = run(coordinator([
-        "import",
-        &shown(&example("Messung_Sand.xlsx")),
-        "--guess",
-    ]))
+    let guessed = call(
+        "coordinator import {} --guess",
+        &[&shown(&example("Messung_Sand.xlsx"))],
+    )
     .success();
     std::fs::write(&map, &guessed).expect("written");
     let refused = import(&map, folder.path());
-    for part in [
+    assert_contains!(
+        refused.stderr,
         "wheel: value = \"?\" asks for an answer",
         "soil: value = \"?\" asks for an answer",
         "r: value = \"?\" asks for an answer",
-        "error: 3 mistakes; ",
-    ] {
-        assert!(refused.stderr.contains(part), "{part} in\n{}", refused.stderr);
-    }
+        "error: 3 mistakes; "
+    );
     assert!(!folder.path().join("runs.csv").exists());
     refused.refusal();
     let answered = guessed
@@ -209,13 +206,12 @@ fn every_mistake_is_printed_with_its_cell_and_nothing_is_written() {
         .replace("\"Zugkraft [N]\"", "\"Bemerkung\"");
     std::fs::write(&map, wrong).expect("written");
     let ended = import(&map, folder.path());
-    for part in [
+    assert_contains!(
+        ended.stderr,
         "no column has the title \"Schlupf\"; did you mean \"Schlupf [%]\"",
         "unknown unit \"KN\"; did you mean \"kN\"",
-        "Messung_Sand.xlsx, sheet \"Messung\", cell J5, column \"Bemerkung\": \"Sand neu aufbereitet\" is no number",
-    ] {
-        assert!(ended.stderr.contains(part), "{part} in\n{}", ended.stderr);
-    }
+        "Messung_Sand.xlsx, sheet \"Messung\", cell J5, column \"Bemerkung\": \"Sand neu aufbereitet\" is no number"
+    );
     assert!(!folder.path().join("runs.csv").exists());
     ended.refusal();
     let absent = run(coordinator(["import", "nowhere.csv", "--guess"])).refusal();
@@ -232,35 +228,29 @@ fn a_service_imports_and_guesses_and_its_examples_hold() {
     );
     assert_eq!(guess.status, 200, "{}", guess.json());
     let guess = guess.json();
-    assert_eq!(
-        (&guess["sheet"], &guess["decimal"]),
-        (&json!("Messung"), &json!(","))
-    );
+    assert_eq!(guess["sheet"], "Messung");
+    assert_eq!(guess["decimal"], ",");
     let ask = |map: &str| {
-        let asked = json!({"name": "Messung_Sand.xlsx", "content_base64": content, "map": map});
-        let answer = service.client.post("/v1/import", &asked);
+        let requested = json!({"name": "Messung_Sand.xlsx", "content_base64": content, "map": map});
+        let answer = service.client.post("/v1/import", &requested);
         assert_eq!(answer.status, 200);
         answer.json()
     };
-    let open = ask(guess["map"].as_str().expect("a map"));
+    let open = ask(word(&guess["map"]));
     assert_eq!(open["runs"], Value::Null);
-    let fields: Vec<&str> = open["complaints"]
-        .as_array()
-        .expect("a list")
-        .iter()
+    let fields: Vec<&str> = items(&open["complaints"])
         .filter_map(|c| c["field"].as_str())
         .collect();
-    assert!(fields.contains(&"wheel") && fields.contains(&"r"), "{fields:?}");
+    assert!(fields.contains(&"wheel"), "{fields:?}");
+    assert!(fields.contains(&"r"), "{fields:?}");
     let right = ask(&text(&example("map.toml")));
     assert_eq!(right["runs"].as_str(), Some(text(&example("runs.csv")).as_str()));
     let bad = service.client.post(
         "/v1/import",
         &json!({"name": "a", "content_base64": "*", "map": ""}),
     );
-    assert_eq!(
-        (bad.status, &bad.json()["error"]["type"]),
-        (422, &json!("invalid_file"))
-    );
+    assert_eq!(bad.status, 422);
+    assert_eq!(bad.json()["error"]["type"], "invalid_file");
     // The examples of the document are requests that work, and every route says what it does.
     let document = service.client.json("/openapi.json");
     for (path, id) in [
@@ -268,14 +258,10 @@ fn a_service_imports_and_guesses_and_its_examples_hold() {
         ("/v1/import/guess", "guess_import_map"),
     ] {
         let operation = &document["paths"][path]["post"];
-        assert_eq!(
-            (&operation["operationId"], &operation["tags"]),
-            (&json!(id), &json!(["import"]))
-        );
-        assert!(
-            operation["summary"].is_string() && operation["description"].is_string(),
-            "{operation}"
-        );
+        assert_eq!(operation["operationId"], json!(id));
+        assert_eq!(operation["tags"], json!(["import"]));
+        assert!(operation["summary"].is_string(), "{operation}");
+        assert!(operation["description"].is_string(), "{operation}");
         let body = &operation["requestBody"]["content"]["application/json"]["example"];
         let answer = service.client.post(path, body);
         assert_eq!(answer.status, 200, "{}", answer.json());

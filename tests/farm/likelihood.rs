@@ -1,5 +1,6 @@
 //! Error models through the whole farm: heavy tails, discrepancy, scatter of the soil, plates and rings.
 
+use farm_tests::assert_contains;
 use farm_tests::job::Job;
 use farm_tests::programs::study;
 use farm_tests::service::Service;
@@ -66,11 +67,11 @@ fn each_error_model_is_said_and_widens_the_intervals() {
     }
     let (_, summary) = study(&scatter("\"unknown\""));
     let scatter = &summary["calibrations"][0]["parameters"]["noise.run_scatter"];
-    // The data have none: far below the prior's mean of 0.16.
+    // The data have no scatter, so that the posterior mean is far below the prior mean of 0.16.
     assert!(scatter["mean"].as_f64().is_some_and(|m| m < 0.05), "{scatter}");
 }
 
-/// A fit is told derivatives as well; they come back from the store.
+/// A fit also needs derivatives, which are read back from the store.
 #[test]
 fn killing_the_coordinator_amid_a_fit_with_scatter_changes_no_byte() {
     let job = fit().in_experiment("[noise]", "[noise]\nrun_scatter = 0.05");
@@ -82,22 +83,20 @@ fn killing_the_coordinator_amid_a_fit_with_scatter_changes_no_byte() {
         ..job
     };
     let result = |service: &Service, id: i64| {
-        let mut summary = service.client.json(&format!("/v1/calibrations/{id}/summary"));
+        let mut summary = service.result(id, "summary");
         summary["point_estimates"][0]["wall_s"] = Value::Null;
         format!("{summary:#}")
     };
     let expected = {
         let service = Service::start(&["--local-workers", "1"]);
-        let id = service.submit(&job);
-        service.wait_for(id, "finished");
+        let id = service.calibrate(&job);
         result(&service, id)
     };
     let mut service = Service::start(&[]);
     let id = service.submit(&job);
     let _worker = service.worker("worker", 1);
     until("progress", || service.evaluations(id).filter(|&n| n >= 5));
-    service.kill();
-    service.restart();
+    service.crash();
     service.wait_for(id, "finished");
     same(&result(&service, id), &expected);
     assert_eq!(service.metric("grouser_determinism_faults_total"), 0);
@@ -162,16 +161,15 @@ fn plates_and_rings_alone_are_fitted_without_a_wheel() {
         experiment: "plates = \"plates.csv\"\nshear = \"shear.csv\"\n[soil.s]\n".into(),
         job: BEVAMETER.into(),
         runs: String::new(),
-        others: Vec::new(),
+        attached: Vec::new(),
     };
     let job = job.beside("plates.csv", plates()).beside("shear.csv", shear());
     let (text, summary) = study(&job);
-    for words in [
+    assert_contains!(
+        text,
         "48 readings in 6 tests of plates",
-        "30 readings in 3 tests of rings",
-    ] {
-        assert!(text.contains(words), "{words} in\n{text}");
-    }
+        "30 readings in 3 tests of rings"
+    );
     let estimate = &summary["point_estimates"][0];
     for (name, truth) in [
         // (2e4 / 0.03 + 1e7) 0.01; 2e4 / (1e7 0.03)
@@ -189,7 +187,7 @@ fn plates_and_rings_alone_are_fitted_without_a_wheel() {
             "{name} = {value} +- {sd}, not {truth}"
         );
     }
-    // Sampled, with every scatter unknown.
+    // The same readings are sampled with every scatter unknown.
     let sampled = job
         .in_job("algorithm = \"lm\"", "particles = 80\nmoves = [3, 6]")
         .in_experiment(
@@ -197,7 +195,7 @@ fn plates_and_rings_alone_are_fitted_without_a_wheel() {
             "[soil.s]\n[noise]\nplate_scatter = \"unknown\"\nplate_noise = \"unknown\"\nring_scatter = \"unknown\"\nring_noise = \"unknown\"",
         );
     let (text, summary) = study(&sampled);
-    assert!(text.contains("relative sd unknown from test to test"), "{text}");
+    assert_contains!(text, "relative sd unknown from test to test");
     let noise = &summary["calibrations"][0]["parameters"]["noise.plate_noise"]["mean"];
     assert!(
         noise.as_f64().is_some_and(|x| (0.005..0.03).contains(&x)),
@@ -206,7 +204,7 @@ fn plates_and_rings_alone_are_fitted_without_a_wheel() {
     assert_eq!(summary["calibrations"][0]["error"]["fit"], Value::Null);
 }
 
-/// The transfer is a parameter of its own beside wheel runs, and a ring that disagrees with the wheel moves it.
+/// Beside wheel runs the transfer is a free parameter, which a ring that disagrees with the wheel shifts.
 #[test]
 fn a_ring_beside_wheels_has_a_transfer() {
     let job = Job::small().in_experiment(
@@ -219,7 +217,7 @@ fn a_ring_beside_wheels_has_a_transfer() {
         .map(|line| format!("{line}\n"))
         .collect();
     let (text, summary) = study(&job.beside("shear.csv", csv));
-    assert!(text.contains("3 readings in 3 tests of rings"), "{text}");
+    assert_contains!(text, "3 readings in 3 tests of rings");
     let transfer = &summary["calibrations"][0]["parameters"]["bevameter.ln_transfer"];
     let (mean, sd) = (&transfer["mean"], &transfer["sd"]);
     // tan 27.87 deg is 0.53 on the wheel's side; the rings say tan 30 deg and a cohesion on top.

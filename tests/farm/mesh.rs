@@ -42,10 +42,13 @@ fn ascii_and_binary_stl_and_obj_are_the_same_surface() {
     assert_eq!(obj.triangles.len(), expected.len());
     for (t, corners) in expected.iter().enumerate() {
         for (c, corner) in corners.iter().enumerate() {
-            let of = |mesh: &WheelMesh| mesh.vertices_m[mesh.triangles[t][c] as usize];
-            assert_eq!(of(&obj).map(f64::to_bits), corner.map(|x| (x + 0.0).to_bits()));
+            let vertex = |mesh: &WheelMesh| mesh.vertices_m[mesh.triangles[t][c] as usize];
             assert_eq!(
-                of(&ascii).map(|x| (x as f32).to_bits()),
+                vertex(&obj).map(f64::to_bits),
+                corner.map(|x| (x + 0.0).to_bits())
+            );
+            assert_eq!(
+                vertex(&ascii).map(|x| (x as f32).to_bits()),
                 corner.map(|x| (x as f32).to_bits()),
                 "triangle {t}"
             );

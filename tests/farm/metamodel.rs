@@ -1,6 +1,8 @@
-//! A metamodel's moves are part of a calibration like any other: the same bytes whoever takes them, whatever dies.
+//! The moves of a metamodel give the same bytes on any workers, and after any kill of the coordinator.
 
+use farm_tests::assert_contains;
 use farm_tests::job::Job;
+use farm_tests::json::whole;
 use farm_tests::programs;
 use farm_tests::service::Service;
 use farm_tests::text::same;
@@ -17,10 +19,10 @@ fn job() -> Job {
 /// The posterior, and what the summary says of metamodel and evaluations.
 fn finished(service: &Service, id: i64) -> (String, [Value; 2]) {
     service.wait_for(id, "finished");
-    let summary = service.client.json(&format!("/v1/calibrations/{id}/summary"));
+    let summary = service.result(id, "summary");
     let calibration = &summary["calibrations"][0];
-    let told = ["metamodel", "evaluations"].map(|key| calibration[key].clone());
-    (service.posterior_csv(id), told)
+    let counts = ["metamodel", "evaluations"].map(|key| calibration[key].clone());
+    (service.posterior_csv(id), counts)
 }
 
 #[test]
@@ -28,16 +30,14 @@ fn subchains_give_the_same_bytes_on_any_worker_and_over_a_restart() {
     let alone = Service::start(&[]);
     let id = alone.submit(&job());
     let _worker = alone.worker("alone", 1);
-    let (expected, told) = finished(&alone, id);
-    let [metamodel, evaluations] = told.each_ref();
-    let count = |key: &str| metamodel[key].as_u64().expect("a count");
+    let (expected, counts) = finished(&alone, id);
+    let [metamodel, evaluations] = counts.each_ref();
+    let count = |key: &str| whole(&metamodel[key]);
     assert!(count("moved") > 50, "{metamodel}");
     assert!(count("moved") < count("subchains"), "none stayed: {metamodel}");
-    // eight moves to a subchain, unless it starts where the quasi-static model has no answer
-    assert!(
-        count("moves") > 7 * count("subchains") && count("moves") <= 8 * count("subchains"),
-        "{metamodel}"
-    );
+    // A subchain has eight moves, unless it starts where the quasi-static model has no solution.
+    assert!(count("moves") > 7 * count("subchains"), "{metamodel}");
+    assert!(count("moves") <= 8 * count("subchains"), "{metamodel}");
     assert!(
         count("moved") < evaluations.as_u64().expect("a count"),
         "{evaluations}"
@@ -52,12 +52,11 @@ fn subchains_give_the_same_bytes_on_any_worker_and_over_a_restart() {
             (status["progress"]["evaluations"].as_u64()? >= evaluations || status["state"] == "finished")
                 .then_some(())
         });
-        service.kill();
-        service.restart();
+        service.crash();
     }
     let (posterior, again) = finished(&service, id);
     same(&posterior, &expected);
-    assert_eq!(again, told);
+    assert_eq!(again, counts);
 }
 
 #[test]
@@ -66,9 +65,9 @@ fn the_quasi_static_model_needs_no_metamodel_and_is_told_so() {
     let moves = "moves = [2, 4]\nmetamodel_moves = 8";
     let path = Job::small().in_job("moves = [2, 4]", moves).write(folder.path());
     let error = programs::run(programs::coordinator(["check".as_ref(), path.as_os_str()])).refusal();
-    assert!(
-        error.contains("metamodel_moves under [sampler]: the metamodel is made of quasi_static"),
-        "{error}"
+    assert_contains!(
+        error,
+        "metamodel_moves under [sampler]: the metamodel is made of quasi_static"
     );
 }
 
@@ -78,8 +77,5 @@ fn what_the_quasi_static_model_cannot_express_is_named() {
     let prior = "[priors]\nflow_fraction = { uniform = [0.1, 0.4] }";
     let path = job().in_job("[priors]", prior).write(folder.path());
     let error = programs::run(programs::coordinator(["check".as_ref(), path.as_os_str()])).refusal();
-    assert!(
-        error.contains("flow_fraction: quasi_static has no terrain that deforms"),
-        "{error}"
-    );
+    assert_contains!(error, "flow_fraction: quasi_static has no terrain that deforms");
 }

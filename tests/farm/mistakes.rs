@@ -1,8 +1,9 @@
-//! Questions about implausible values: how they are asked, and how they are accepted.
+//! Questions about implausible values, and the options that accept the values.
 
 use std::collections::BTreeMap;
 use std::path::Path;
 
+use farm_tests::assert_contains;
 use farm_tests::job::Job;
 use farm_tests::programs::{coordinator, run};
 use farm_tests::service::Service;
@@ -29,11 +30,11 @@ fn what_is_accepted_is_calibrated_and_kept() {
     let path = few.write(folder.path()).display().to_string();
     let out = folder.path().join("out").display().to_string();
     let message = run(coordinator(["run", &path, "--out", &out])).refusal();
-    assert!(message.contains("--accept data_few"), "{message}");
+    assert_contains!(message, "--accept data_few");
     run(coordinator(["run", &path, "--out", &out, "--accept", "data_few"])).success();
     let report = std::fs::read_to_string(Path::new(&out).join("report.html")).unwrap();
     assert!(report.contains("accepted as meant: data_few"));
-    // The calibration that is there already is the same, with the answer in the job or on the command line.
+    // The stored calibration is the same with the answer in the job and on the command line.
     run(coordinator(["run", &path, "--out", &out, "--accept", "data_few"])).success();
     let job = format!("accept = [\"data_few\"]\n{}", few.job);
     std::fs::write(&path, job).unwrap();
@@ -54,13 +55,12 @@ fn a_pull_of_the_wrong_sign_is_asked_about_by_the_service_and_accepted_on_demand
     };
     let refused = submit(&turned.job);
     assert_eq!(refused.status, 422);
-    for words in [
+    assert_contains!(
+        refused.body,
         "drawbar_pull_n has the opposite sign",
         "run r06",
-        "--accept drawbar_pull_sign",
-    ] {
-        assert!(refused.body.contains(words), "{words} in {}", refused.body);
-    }
+        "--accept drawbar_pull_sign"
+    );
     let accepted = format!("accept = [\"drawbar_pull_sign\"]\n{}", turned.job);
     assert_eq!(submit(&accepted).status, 201);
     let path = turned.write(folder.path()).display().to_string();
@@ -90,7 +90,7 @@ fn every_algorithm_that_the_schema_offers_can_be_submitted() {
     let names = sampler["point_estimates"]["items"]["enum"].to_string();
     let submitted = submit(&format!("point_estimates = {names}"));
     assert_eq!(submitted.status, 201, "{names}: {}", submitted.body);
-    // The search is none of them, and no message offers it.
+    // The search is not among the algorithms, and no message offers it.
     let refused = submit("algorithm = \"discoveri\"");
     assert_eq!(refused.status, 422);
     assert!(!refused.body.contains("discovery"), "{}", refused.body);
@@ -109,7 +109,7 @@ fn a_name_that_is_no_question_is_refused() {
 
 #[test]
 fn the_examples_raise_no_question() {
-    let mut asked = BTreeMap::new();
+    let mut raised = BTreeMap::new();
     for job in [
         "hidden-effect/job.toml",
         "paper/sharp.toml",
@@ -141,7 +141,7 @@ fn the_examples_raise_no_question() {
         let open = questions(&spec)
             .into_iter()
             .filter(|q| !spec.accepted.contains(&q.name));
-        asked.extend(open.map(|question| (job, question.words)));
+        raised.extend(open.map(|question| (job, question.words)));
     }
-    assert_eq!(asked, BTreeMap::new());
+    assert_eq!(raised, BTreeMap::new());
 }

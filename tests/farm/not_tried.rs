@@ -1,8 +1,10 @@
-//! Effects that the experiment cannot test are listed, and no other effect is named in their place.
+//! Effects that the experiment cannot test are listed, and no other effect is claimed in their place.
 
 use std::fmt::Write as _;
 use std::path::Path;
 
+use farm_tests::assert_contains;
+use farm_tests::json::items;
 use farm_tests::programs::{coordinator, run, worker};
 use farm_tests::workspace::text;
 use serde_json::Value;
@@ -67,7 +69,7 @@ fn discovery(folder: &Path, experiment: &str, out: &str) -> Value {
 
 /// Effects with a probability above 0.8, and the names of those that were not tried.
 fn certain(discovery: &Value) -> (Vec<&str>, Vec<&str>) {
-    let list = |key: &str| discovery[key].as_array().into_iter().flatten();
+    let list = |key: &str| items(&discovery[key]);
     let probable = list("effects").filter(|e| e["probability"].as_f64() > Some(0.8));
     assert!(list("not_tried").all(|e| e["name"].is_string() && e["why"].is_string()));
     (
@@ -99,10 +101,10 @@ fn without_a_density_bulldozing_is_said_to_need_it_and_with_it_named() {
     assert_eq!(without["not_tried"][1]["needs"], "density_kg_m3 under [soil.s]");
     let mut check = coordinator(["check"]);
     check.arg(folder.join("job.toml"));
-    let said = run(check).success();
+    let output = run(check).success();
     let line =
         "density_kg_m3 under [soil.s] would add to the candidates of a search: reece_pressure, bulldozing";
-    assert!(said.contains(line), "{said}");
+    assert_contains!(output, line);
     let with = discovery(folder, &EXPERIMENT.replace("[soil.s]\n", DENSITY), "with");
     assert_eq!(with["verdict"], "named", "{with:#}");
     assert_eq!(certain(&with), (vec!["bulldozing"], SIDEWAYS.to_vec()));

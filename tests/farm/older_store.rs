@@ -54,10 +54,10 @@ fn same_numbers(summary: &str) {
 fn a_finished_one_is_shown_before_and_after_its_tables_are_brought_up_to_date() {
     let (_temporary, job, out) = folder("store-8", "finished.store");
     let posterior = text(&data("store-8/posterior.csv"));
-    // Commands that only read do not migrate.
+    // Commands that only read do not migrate the store.
     same(&command(&["export", "1", "--format", "csv"], &out), &posterior);
     let report = command(&["report", "1"], &out);
-    // Without the likeliest draw's values, which are found among those of every evaluation, this mark would be missing.
+    // The figure has this mark only if the predictions of the likeliest draw are found among the stored evaluations.
     assert!(report.contains("maximum likelihood"));
     let rerun = command(&["run", &job.display().to_string()], &out);
     same_numbers(&text(&out.join("summary.json")));
@@ -108,14 +108,14 @@ fn same_study(summary: &str) {
         ("/discovery/rounds", ["given", "verdict"].as_slice()),
     ];
     for (list, keys) in lists {
-        let of = |summary: &Value| {
+        let list_of = |summary: &Value| {
             summary
                 .pointer(list)
                 .and_then(Value::as_array)
                 .cloned()
                 .expect("a list")
         };
-        let (given, kept) = (of(&given), of(&kept));
+        let (given, kept) = (list_of(&given), list_of(&kept));
         assert_eq!(given.len(), kept.len(), "{list}");
         for (given, kept) in given.iter().zip(&kept) {
             for key in keys {
@@ -165,7 +165,7 @@ async fn a_store_whose_new_columns_are_still_empty_can_be_read() {
     let (_temporary, _, out) = folder("store-19", "finished.store");
     let url = format!("sqlite://{}", out.join("grouser.db").display());
     let mut connection = sqlx::SqliteConnection::connect(&url).await.expect("a store");
-    // A coordinator that is killed between the columns and their values leaves this.
+    // This is the state after a kill between the creation of the columns and the computation of their values.
     let columns = sqlx::raw_sql(include_str!("../../migrations/0020_members.sql"));
     columns.execute(&mut connection).await.expect("new columns");
     connection.close().await.expect("closed");

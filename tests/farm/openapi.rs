@@ -2,6 +2,7 @@
 
 use std::collections::BTreeSet;
 
+use farm_tests::json::{items, word};
 use farm_tests::service::Service;
 use farm_tests::workspace::{data, text};
 use serde_json::{Value, json};
@@ -10,16 +11,16 @@ use serde_json::{Value, json};
 struct Operation {
     method: String,
     path: String,
-    says: Value,
+    description: Value,
 }
 
 impl Operation {
     fn id(&self) -> &str {
-        self.says["operationId"].as_str().unwrap_or_default()
+        word(&self.description["operationId"])
     }
 
     fn example(&self) -> &Value {
-        &self.says["requestBody"]["content"]["application/json"]["example"]
+        &self.description["requestBody"]["content"]["application/json"]["example"]
     }
 }
 
@@ -28,10 +29,10 @@ fn operations(document: &Value) -> Vec<Operation> {
     let of_path = |(path, methods): (&String, &Value)| {
         let methods = methods.as_object().cloned().unwrap_or_default();
         let path = path.clone();
-        methods.into_iter().map(move |(method, says)| Operation {
+        methods.into_iter().map(move |(method, description)| Operation {
             method: method.to_uppercase(),
             path: path.clone(),
-            says,
+            description,
         })
     };
     paths.iter().flat_map(of_path).collect()
@@ -69,22 +70,22 @@ fn every_operation_says_everything() {
     assert!(tags.iter().all(|tag| words(&tag["description"])));
     let mut silent = Vec::new();
     for operation in operations(&document) {
-        let says = &operation.says;
+        let description = &operation.description;
         let mut lacks = |what: &str| silent.push(format!("{} {}: {what}", operation.method, operation.path));
         for key in ["summary", "description"] {
-            if !words(&says[key]) {
+            if !words(&description[key]) {
                 lacks(key);
             }
         }
-        if !tags.iter().any(|tag| says["tags"] == json!([tag["name"]])) {
+        if !tags.iter().any(|tag| description["tags"] == json!([tag["name"]])) {
             lacks("one tag of the list");
         }
-        for parameter in says["parameters"].as_array().into_iter().flatten() {
+        for parameter in items(&description["parameters"]) {
             if !words(&parameter["description"]) {
                 lacks(&format!("parameter {}", parameter["name"]));
             }
         }
-        let responses = says["responses"].as_object().expect("responses");
+        let responses = description["responses"].as_object().expect("responses");
         for (status, response) in responses {
             if !words(&response["description"]) {
                 lacks(&format!("response {status}"));
@@ -94,7 +95,7 @@ fn every_operation_says_everything() {
         if !is_answered('2') || !is_answered('4') {
             lacks("an answer that accepts or refuses");
         }
-        if says.get("requestBody").is_some() && operation.example().is_null() {
+        if description.get("requestBody").is_some() && operation.example().is_null() {
             lacks("an example");
         }
     }

@@ -1,10 +1,12 @@
 //! Effects that users add to a service's catalogue: `POST /v1/effects`, and the jobs that name them.
 
+use farm_tests::assert_contains;
 use farm_tests::http::Response;
 use farm_tests::job::{GAIN, Job};
+use farm_tests::json::item_count;
 use farm_tests::programs;
 use farm_tests::service::Service;
-use farm_tests::wait::until;
+use farm_tests::wait::until_true;
 use serde_json::{Value, json};
 
 /// The effect with another fixed shift `[N]`.
@@ -57,25 +59,19 @@ fn each_text_of_a_name_is_a_version_and_survives_a_restart() {
     let again = add(&service, GAIN);
     assert_eq!((again.status, again.json()), (200, first.json()));
     let second = add(&service, &gain("0.5"));
-    assert_eq!(
-        (second.status, &second.json()["version"]["version"]),
-        (201, &2.into())
-    );
+    assert_eq!(second.status, 201);
+    assert_eq!(second.json()["version"]["version"], 2);
     assert_eq!(add(&service, GAIN).json(), first.json());
 
-    service.kill();
-    service.restart();
+    service.crash();
     let list = service.client.json("/v1/effects");
     let last = list.as_array().and_then(|list| list.last()).expect("effects");
-    assert_eq!(list.as_array().map(Vec::len), Some(51));
-    assert_eq!(
-        (&last["name"], &last["origin"], &last["version"]),
-        (&"my_gain".into(), &"own".into(), &2.into())
-    );
-    assert_eq!(
-        (&list[0]["origin"], &list[0]["version"]),
-        (&"library".into(), &Value::Null)
-    );
+    assert_eq!(item_count(&list), 51);
+    assert_eq!(last["name"], "my_gain");
+    assert_eq!(last["origin"], "own");
+    assert_eq!(last["version"], 2);
+    assert_eq!(list[0]["origin"], "library");
+    assert_eq!(list[0]["version"], Value::Null);
     let page = service.client.json("/v1/effects/my_gain");
     assert_eq!((&page["text"], &page["effect"]), (&gain("0.5").into(), last));
     assert_eq!(
@@ -107,9 +103,7 @@ fn a_study_keeps_the_version_that_it_began_with() {
     for id in [old, new, named] {
         service.wait_for(id, "finished");
     }
-    let effects = |id: i64| {
-        service.client.json(&format!("/v1/calibrations/{id}/summary"))["calibrations"][0]["effects"].clone()
-    };
+    let effects = |id: i64| service.result(id, "summary")["calibrations"][0]["effects"].clone();
     assert_eq!(effects(old), json!(["torque_gain", "my_gain"]));
     assert_eq!(effects(new), json!(["my_gain"]));
     // A job on disk is submitted with the effect that it names, which the program itself does not know.
@@ -120,16 +114,12 @@ fn a_study_keeps_the_version_that_it_began_with() {
     assert_eq!(stored(&service, 4, "my_gain@1.toml"), GAIN);
     job("[\"my_gian\"]").write(&folder);
     let refusal = submit().refusal();
-    assert!(
-        refusal.contains("job.toml: [model] effects: unknown effect \"my_gian\""),
-        "{refusal}"
-    );
+    assert_contains!(refusal, "job.toml: [model] effects: unknown effect \"my_gian\"");
     // A job with the file beside it gives the same bits.
     let beside = job("[]")
         .in_job("effects = []", "effect_files = [\"gain.toml\"]")
         .beside("gain.toml", GAIN);
-    let beside = service.submit(&beside);
-    service.wait_for(beside, "finished");
+    let beside = service.calibrate(&beside);
     assert_eq!(service.posterior_csv(beside), service.posterior_csv(named));
     assert_ne!(service.posterior_csv(beside), service.posterior_csv(new));
 
@@ -183,10 +173,8 @@ fn what_is_no_effect_of_one_s_own_is_refused_with_the_reason() {
     says(&taken, 409, "conflict", message);
     for body in [json!({}), json!({"text": GAIN, "effect": {}})] {
         let response = service.client.post("/v1/effects", &body);
-        assert_eq!(
-            (response.status, &response.json()["error"]["type"]),
-            (400, &"invalid_body".into())
-        );
+        assert_eq!(response.status, 400);
+        assert_eq!(response.json()["error"]["type"], "invalid_body");
     }
     let long = add(&service, &format!("{GAIN}#{}", "x".repeat(64 << 10)));
     says(
@@ -195,10 +183,7 @@ fn what_is_no_effect_of_one_s_own_is_refused_with_the_reason() {
         "too_large",
         "the body is above the limit of 65536 bytes for this route",
     );
-    assert_eq!(
-        service.client.json("/v1/effects").as_array().map(Vec::len),
-        Some(50)
-    );
+    assert_eq!(item_count(&service.client.json("/v1/effects")), 50);
 
     add(&service, GAIN);
     let experiment = service
@@ -219,10 +204,7 @@ fn what_is_no_effect_of_one_s_own_is_refused_with_the_reason() {
         + 1;
     let new = json!({"experiment": experiment.json()["id"], "toml": wrong.job});
     let refused = service.client.post("/v1/calibrations", &new).body;
-    assert!(
-        refused.contains(&format!("job.toml line {line}: unknown")),
-        "{refused}"
-    );
+    assert_contains!(refused, &format!("job.toml line {line}: unknown"));
     let message = "job.toml: effect my_gain has no version \"2\"; the last one is 1";
     says(&submit("[\"my_gain@2\"]"), 422, "invalid_file", message);
     let message = "job.toml: effect_files: \"my_gain@1.toml\" appears twice";
@@ -253,9 +235,7 @@ fn only_who_may_submit_adds_an_effect_and_the_store_says_who_did() {
             .client
             .post_bytes("/v1/effects", &head, json!({"text": GAIN}).to_string().as_bytes())
     };
-    until("a token asked for", || {
-        (add(&service, GAIN).status == 401).then_some(())
-    });
+    until_true("a token asked for", || add(&service, GAIN).status == 401);
     assert_eq!(send(&read).status, 403);
     let added = send(&submit);
     assert!([200, 201].contains(&added.status), "{}", added.body);

@@ -1,7 +1,7 @@
 //! The page as a service serves it, and the report, which carries what the service answers.
 
 use farm_tests::job::Job;
-use farm_tests::programs::{coordinator, run};
+use farm_tests::programs::{call, coordinator, run};
 use farm_tests::service::Service;
 use serde_json::{Map, Value};
 
@@ -23,8 +23,8 @@ fn the_page_needs_no_token_and_nothing_from_elsewhere() {
         service.store_name(),
     ];
     run(coordinator(added)).success();
-    farm_tests::wait::until("tokens are asked for", || {
-        (service.client.get("/v1/studies").status == 401).then_some(())
+    farm_tests::wait::until_true("tokens are asked for", || {
+        service.client.get("/v1/studies").status == 401
     });
     for document in ["/", "/docs"] {
         let document = service.client.get(document);
@@ -68,28 +68,25 @@ fn answers(report: &str) -> Map<String, Value> {
 #[test]
 fn a_report_carries_the_answers_of_the_service() {
     let service = Service::start(&["--local-workers", "2"]);
-    let id = service.submit(&Job::small());
-    service.wait_for(id, "finished");
+    let id = service.calibrate(&Job::small());
     let extension = serde_json::json!({"effect": "slip_sinkage"});
     let extended = service
         .client
         .post(&format!("/v1/calibrations/{id}/extend"), &extension);
     let extended = extended.json()["id"].as_i64().expect("an id");
     service.wait_for(extended, "finished");
-    let report = run(coordinator([
-        "report",
-        &extended.to_string(),
-        "--url",
-        &service.url(),
-    ]))
+    let report = call(
+        "coordinator report {} --url {}",
+        &[&extended.to_string(), &service.url()],
+    )
     .success();
     let answers = answers(&report);
     assert_eq!(answers.len(), 1 + 2 * 6, "{:?}", answers.keys());
     for (path, answer) in &answers {
         assert_eq!(&service.client.json(path), answer, "{path}");
     }
-    // Each calibration has its own: they differ in what they show first.
+    // The reports of the calibrations of a study differ in the calibration that they show first.
     assert!(report.contains(&format!("{{\"calibration\":{extended},\"study\":1}}")));
-    let first = service.client.get(&format!("/v1/calibrations/{id}/report")).body;
+    let first = service.part(id, "report").body;
     assert!(first.contains(&format!("{{\"calibration\":{id},\"study\":1}}")));
 }

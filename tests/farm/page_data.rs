@@ -1,6 +1,8 @@
 //! The data that a page needs besides results: examples, experiments, studies without some runs, curves of effects.
 
+use farm_tests::assert_contains;
 use farm_tests::job::Job;
+use farm_tests::json::items;
 use farm_tests::service::Service;
 use farm_tests::text::same;
 use farm_tests::wait::until;
@@ -18,10 +20,7 @@ fn created(service: &Service, path: &str, body: &Value) -> Value {
 fn an_example_is_submitted_with_its_files_as_they_come() {
     let service = Service::start(&[]);
     let listed = service.client.json("/v1/examples");
-    let names: Vec<&str> = listed
-        .as_array()
-        .into_iter()
-        .flatten()
+    let names: Vec<&str> = items(&listed)
         .filter_map(|example| example["name"].as_str())
         .collect();
     assert_eq!(names, ["hidden-effect", "cmu-sand", "cmu-sand-discover"]);
@@ -72,12 +71,7 @@ fn what_a_study_says_without_some_runs_is_what_the_edited_file_says() {
     for id in [first, id, by_hand] {
         service.wait_for(id, "finished");
     }
-    let posterior = |id: i64| {
-        service
-            .client
-            .get(&format!("/v1/calibrations/{id}/posterior"))
-            .body
-    };
+    let posterior = |id: i64| service.part(id, "posterior").body;
     same(&posterior(id), &posterior(by_hand));
     assert!(posterior(id) != posterior(first));
     let search = until("the search of the new study", || {
@@ -101,15 +95,14 @@ fn what_a_study_says_without_some_runs_is_what_the_edited_file_says() {
     ] {
         let refused = service.client.post(&path, &json!({ "without": without }));
         assert_eq!(refused.status, 422, "{}", refused.body);
-        assert!(refused.body.contains(&words), "{}", refused.body);
+        assert_contains!(refused.body, words);
     }
 }
 
 #[test]
 fn a_search_says_what_every_effect_predicts_and_the_summary_leaves_it_out() {
     let service = Service::start(&["--local-workers", "2"]);
-    let id = service.submit(&Job::hidden_shear());
-    service.wait_for(id, "finished");
+    let id = service.calibrate(&Job::hidden_shear());
     let found = until("the search", || {
         let response = service
             .client
@@ -120,10 +113,7 @@ fn a_search_says_what_every_effect_predicts_and_the_summary_leaves_it_out() {
     let curves = &found["curves"];
     let count = curves["data"].as_array().map(Vec::len);
     assert!(count > Some(0));
-    let judged: Vec<&str> = found["effects"]
-        .as_array()
-        .into_iter()
-        .flatten()
+    let judged: Vec<&str> = items(&found["effects"])
         .filter_map(|effect| effect["name"].as_str())
         .filter(|name| *name != "none")
         .collect();

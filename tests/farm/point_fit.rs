@@ -1,7 +1,9 @@
-//! A fit of the most probable parameters through real processes: few evaluations, the truth found, and the same bytes
-//! whatever dies meanwhile.
+//! A fit of the most probable parameters through real processes: it needs few evaluations, finds the truth, and gives the same bytes after
+//! any kill of a program.
 
+use farm_tests::assert_contains;
 use farm_tests::job::{FIT_RUNS, Job};
+use farm_tests::json::{float, item_count, whole};
 use farm_tests::programs::{coordinator, run};
 use farm_tests::service::Service;
 use farm_tests::text::same;
@@ -28,9 +30,9 @@ const TRUTH: [(&str, f64); 4] = [
 
 /// Everything that a finished fit says but its wall time.
 fn result(service: &Service, id: i64) -> String {
-    let mut summary = service.client.json(&format!("/v1/calibrations/{id}/summary"));
+    let mut summary = service.result(id, "summary");
     summary["point_estimates"][0]["wall_s"] = Value::Null;
-    let comparison = service.client.json(&format!("/v1/calibrations/{id}/comparison"));
+    let comparison = service.result(id, "comparison");
     format!("{summary:#}\n{comparison:#}\n{}", service.posterior_csv(id))
 }
 
@@ -40,18 +42,18 @@ fn a_fit_finds_the_truth_with_few_evaluations() {
     let id = service.submit(&fit());
     let _worker = service.worker("worker", 2);
     service.wait_for(id, "finished");
-    let summary = service.client.json(&format!("/v1/calibrations/{id}/summary"));
+    let summary = service.result(id, "summary");
     let estimate = &summary["point_estimates"][0];
-    let evaluations = estimate["evaluations"].as_u64().expect("a count");
+    let evaluations = whole(&estimate["evaluations"]);
     assert!(evaluations <= 200, "{estimate}");
-    // The point itself on fitted and on holdout runs comes on top: holdout runs are simulated there alone.
+    // Two further evaluations simulate the fitted and the held-out runs at the optimum.
     assert_eq!(
         service.metric("grouser_evaluations_completed_total"),
         evaluations + 2
     );
     for (name, truth) in TRUTH {
-        let value = estimate["parameters"][name].as_f64().expect("a value");
-        let sd = estimate["sd"][name].as_f64().expect("an sd");
+        let value = float(&estimate["parameters"][name]);
+        let sd = float(&estimate["sd"][name]);
         assert!(
             (value - truth).abs() < 4.0 * sd,
             "{name} = {value} +- {sd}, not {truth}"
@@ -65,15 +67,15 @@ fn a_fit_finds_the_truth_with_few_evaluations() {
         );
     }
     let page = run(coordinator(["report", "1", "--url", &service.url()])).success();
-    assert!(page.contains("lm with at most 200 evaluations"), "{page}");
+    assert_contains!(page, "lm with at most 200 evaluations");
     let ledger = service.client.json("/v1/studies/1");
-    assert_eq!(ledger["ledger"].as_array().map(Vec::len), Some(0));
+    assert_eq!(item_count(&ledger["ledger"]), 0);
     assert_eq!(ledger["point_estimates"][0], *estimate);
 }
 
 #[test]
 fn killing_coordinator_and_worker_amid_a_fit_changes_no_byte() {
-    // Every run forty times, so that an evaluation takes long enough to be interrupted.
+    // Every run occurs forty times, so that an evaluation takes long enough to be interrupted.
     let job = fit();
     let (head, rows): (Vec<&str>, Vec<&str>) = job
         .runs
@@ -87,8 +89,7 @@ fn killing_coordinator_and_worker_amid_a_fit_changes_no_byte() {
     };
     let expected = {
         let service = Service::start(&["--local-workers", "2"]);
-        let id = service.submit(&job);
-        service.wait_for(id, "finished");
+        let id = service.calibrate(&job);
         result(&service, id)
     };
     let mut service = Service::start(&[]);
@@ -117,18 +118,17 @@ fn a_run_of_a_fit_prints_it_again_and_check_says_what_it_costs() {
     let out = folder.path().join("out").display().to_string();
     let command = || run(coordinator(["run", &path, "--out", &out, "--verbose"])).success();
     let first = command();
-    for words in [
+    assert_contains!(
+        first,
         "lm stopped by",
         "log-posterior",
         "best",
         "root mean square error",
-        "holdout",
-    ] {
-        assert!(first.contains(words), "{words} in\n{first}");
-    }
+        "holdout"
+    );
     assert!(!first.contains("90 % intervals contain"), "{first}");
     same(&command(), &first);
-    // A point is no draw.
+    // A point estimate has no draws.
     let csv = std::fs::read_to_string(folder.path().join("out/posterior.csv")).expect("posterior.csv");
     assert_eq!(
         csv,
@@ -136,29 +136,26 @@ fn a_run_of_a_fit_prints_it_again_and_check_says_what_it_costs() {
     );
     let check = run(coordinator(["check", &path])).success();
     let line = format!("(one evaluation: {FIT_RUNS} runs)");
-    assert!(
-        check.contains("lm with at most 200 evaluations") && check.contains(&line),
-        "{check}"
-    );
+    assert_contains!(check, "lm with at most 200 evaluations", &line);
 }
 
 #[test]
 fn keys_of_another_algorithm_are_refused_by_name() {
     let small = Job::small;
-    let own = "lm takes particles, starts, max_evaluations, difference_step, seed";
+    let accepted = "lm takes particles, starts, max_evaluations, difference_step, seed";
     let message = refusal(&small().in_job("\"tmcmc\"", "\"lm\""));
-    assert!(
-        message.contains("[sampler] moves belongs to algorithm tmcmc and ching-chen-2007")
-            && message.contains(own),
-        "{message}"
+    assert_contains!(
+        message,
+        "[sampler] moves belongs to algorithm tmcmc and ching-chen-2007",
+        accepted
     );
     for key in ["starts = 3", "max_evaluations = 100", "difference_step = 0.01"] {
         let message = refusal(&small().in_job("seed = 1", &format!("seed = 1\n{key}")));
         let name = key.split(' ').next().unwrap_or_default();
-        assert!(
-            message.contains(&format!("[sampler] {name} belongs to algorithm lm"))
-                && message.contains("; tmcmc takes"),
-            "{message}"
+        assert_contains!(
+            message,
+            &format!("[sampler] {name} belongs to algorithm lm"),
+            "; tmcmc takes"
         );
     }
     refused(

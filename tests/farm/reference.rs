@@ -1,7 +1,8 @@
-//! A reference campaign as the base of the next: its posterior is the prior, and what changed is named.
+//! A reference campaign whose posterior is the prior of the next one: the effect that appears in between is named.
 
 use std::path::Path;
 
+use farm_tests::assert_contains;
 use farm_tests::job::Job;
 use farm_tests::programs::{coordinator, run, worker};
 use farm_tests::workspace::{data, text};
@@ -15,10 +16,10 @@ const PRIORS: &str = "log10_p_ref = { uniform = [4.0, 5.6] }\nkappa = 0.0\nn = {
 /// Runs of the experiment with these effects, at the parameters of the reference campaign and of the effects.
 fn campaign(folder: &Path, effects: &str, strengths: &str) -> String {
     let (model, parameters) = (folder.join("model.toml"), folder.join("parameters.toml"));
-    let own = text(&data("nothing-hidden/model.toml"));
-    std::fs::write(&model, format!("{own}effects = {effects}\n")).expect("a model");
-    let own = text(&data("nothing-hidden/parameters.toml"));
-    std::fs::write(&parameters, format!("{own}{strengths}\n")).expect("parameters");
+    let original = text(&data("nothing-hidden/model.toml"));
+    std::fs::write(&model, format!("{original}effects = {effects}\n")).expect("a model");
+    let original = text(&data("nothing-hidden/parameters.toml"));
+    std::fs::write(&parameters, format!("{original}{strengths}\n")).expect("parameters");
     let out = folder.join("campaign.csv");
     let mut command = worker(["simulate", "--noise-seed", "7"]);
     command.arg(data("nothing-hidden/experiment.toml"));
@@ -55,14 +56,10 @@ fn what_changed_since_a_reference_campaign_is_named() {
     let at = |name: &str| folder.path().join(name);
     let (reference, posterior) = calibrated(&Job::small().in_job(SAMPLER, FIT), &at("reference"));
     let line = &reference["calibrations"][0];
-    assert_eq!(
-        (&line["algorithm"], &line["normal_approximation"]),
-        (&"lm".into(), &true.into())
-    );
-    assert!(
-        line["log_evidence"].is_f64() && line["log_evidence_se"].is_null(),
-        "{line}"
-    );
+    assert_eq!(line["algorithm"], "lm");
+    assert_eq!(line["normal_approximation"], true);
+    assert!(line["log_evidence"].is_f64(), "{line}");
+    assert!(line["log_evidence_se"].is_null(), "{line}");
     assert!(
         line["coverage90"]["holdout"]
             .as_f64()
@@ -93,17 +90,15 @@ fn what_changed_since_a_reference_campaign_is_named() {
         [0, 1].map(|i| changed["calibrations"][i]["error"]["holdout"]["all"]["rmse_sigma"].as_f64());
     assert!(base > Some(2.0) && with < Some(1.3), "{base:?}, {with:?}");
 
-    // The strength of the effect is part of the next prior where the next job has the effect.
+    // If the next job has the effect, its strength is part of the prior.
     let third = next(Job::small().runs, &posterior).in_job(
         "kind = \"quasi_static\"",
         "kind = \"quasi_static\"\neffects = [\"janosi_hanamoto\"]",
     );
     let path = third.write(&at("third")).display().to_string();
     let check = run(coordinator(["check", &path])).success();
-    assert!(
-        check.contains(
-            "wheel_radius_m, janosi_hanamoto.shear_modulus_m: jointly normal as 1000 draws of reference.csv"
-        ),
-        "{check}"
+    assert_contains!(
+        check,
+        "wheel_radius_m, janosi_hanamoto.shear_modulus_m: jointly normal as 1000 draws of reference.csv"
     );
 }

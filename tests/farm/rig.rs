@@ -1,40 +1,22 @@
-//! The rig as a suspect: nothing is missing from the model, but the soil drifts, sensors drift, and preparations differ.
+//! Rigs with a drift or uneven preparations, where no effect is missing from the model.
 
 use farm_tests::job::Job;
+use farm_tests::json::{float, items, word};
 use farm_tests::programs::{coordinator, run, study};
 use serde_json::Value;
 
 /// The soil stiffens by 20 % and the zero of the pull moves by 2.4 sds, over runs made in the order of their slip.
 fn drifting() -> Job {
-    Job {
-        experiment: include_str!("../data/drift-in-slip-order/experiment.toml").into(),
-        runs: include_str!("../data/drift-in-slip-order/runs.csv").into(),
-        job: include_str!("../data/drift-in-slip-order/job.toml").into(),
-        others: Vec::new(),
-    }
-}
-
-/// Six preparations that differ by 10 % in stiffness and 1 degree in friction.
-fn uneven() -> Job {
-    Job {
-        experiment: include_str!("../data/uneven-preparations/experiment.toml").into(),
-        runs: include_str!("../data/uneven-preparations/runs.csv").into(),
-        job: include_str!("../data/uneven-preparations/job.toml").into(),
-        others: Vec::new(),
-    }
+    Job::data("drift-in-slip-order")
 }
 
 /// The job without some of the last columns of its runs.
 fn without(job: Job, columns: &[&str]) -> Job {
-    let mut lines = job.runs.lines();
-    let header: Vec<&str> = lines.next().expect("a header").split(',').collect();
+    let header: Vec<&str> = job.runs.lines().next().expect("a header").split(',').collect();
     let kept = |line: &str| {
         let fields = header.iter().zip(line.split(','));
-        let fields: Vec<&str> = fields
-            .filter(|(c, _)| !columns.contains(c))
-            .map(|(_, f)| f)
-            .collect();
-        fields.join(",") + "\n"
+        let fields = fields.filter(|(column, _)| !columns.contains(column));
+        fields.map(|(_, field)| field).collect::<Vec<_>>().join(",") + "\n"
     };
     Job {
         runs: job.runs.lines().map(kept).collect(),
@@ -56,58 +38,59 @@ fn summary(job: &Job) -> Value {
 
 /// The explanations with their probabilities.
 fn effects(summary: &Value) -> Vec<(&str, f64)> {
-    let effects = summary["discovery"]["effects"].as_array().expect("a list").iter();
+    let effects = items(&summary["discovery"]["effects"]);
     effects
-        .map(|e| {
-            let probability = e["probability"].as_f64().expect("a number");
-            (e["name"].as_str().expect("a name"), probability)
-        })
+        .map(|effect| (word(&effect["name"]), float(&effect["probability"])))
         .collect()
 }
 
 fn flags<'a>(summary: &'a Value, kind: &str) -> Vec<&'a str> {
-    let flags = summary["flags"].as_array().expect("a list").iter();
-    let own = flags.filter(|flag| flag["kind"] == kind);
-    own.map(|flag| flag["text"].as_str().expect("a text")).collect()
+    let flags = items(&summary["flags"]);
+    let flags = flags.filter(|flag| flag["kind"] == kind);
+    flags.map(|flag| word(&flag["text"])).collect()
 }
 
 #[test]
 fn a_drift_is_blamed_where_the_order_of_the_runs_is_stated() {
-    let told = summary(&drifting());
-    let physical: f64 = effects(&told)
+    let stated = summary(&drifting());
+    let found = effects(&stated);
+    let physical = found
         .iter()
-        .filter(|(name, _)| *name != "none" && !name.starts_with("drift_"))
-        .map(|(_, p)| p)
-        .sum();
-    assert!(physical < 0.2, "{:?}", effects(&told));
+        .filter(|(name, _)| *name != "none" && !name.starts_with("drift_"));
+    let physical: f64 = physical.map(|(_, probability)| probability).sum();
+    assert!(physical < 0.2, "{found:?}");
     let words = "the runs were made in the order of their slip (rank correlation 1.00): no effect that changes with slip can be told from a drift";
-    let [flag] = flags(&told, "order")[..] else {
-        panic!("{:?}", told["flags"])
+    let [flag] = flags(&stated, "order")[..] else {
+        panic!("{:?}", stated["flags"])
     };
     assert!(flag.starts_with(words), "{flag}");
     assert!(checked(&drifting()).contains(&format!("warning: {words}")));
-    let untold = summary(&without(drifting(), &["order", "prepared"]));
-    let physical = effects(&untold);
-    assert!(physical.iter().all(|(name, _)| !name.starts_with("drift_")));
-    assert!(flags(&untold, "order").is_empty());
+    let unstated = summary(&without(drifting(), &["order", "prepared"]));
+    assert!(
+        effects(&unstated)
+            .iter()
+            .all(|(name, _)| !name.starts_with("drift_"))
+    );
+    assert!(flags(&unstated, "order").is_empty());
 }
 
 #[test]
 fn preparations_that_differ_are_no_missing_effect() {
-    let told = summary(&uneven());
-    let verdict = told["discovery"]["verdict"].as_str().expect("a verdict");
+    // Six preparations differ by 10 % in stiffness and 1 degree in friction.
+    let summary = summary(&Job::data("uneven-preparations"));
+    let verdict = word(&summary["discovery"]["verdict"]);
     assert!(
         ["nothing_detectable", "undecided"].contains(&verdict),
         "{verdict}"
     );
-    for (name, probability) in effects(&told) {
+    for (name, probability) in effects(&summary) {
         assert!(name == "none" || probability < 0.8, "{name} {probability}");
     }
-    let parameters = &told["calibrations"][0]["parameters"];
+    let parameters = &summary["calibrations"][0]["parameters"];
     let stiffness = parameters["noise.preparation_scatter"]["mean"].as_f64();
     assert!(
         stiffness.is_some_and(|sd| (0.02..0.3).contains(&sd)),
         "{parameters}"
     );
-    assert!(flags(&told, "chi2").is_empty(), "{:?}", told["flags"]);
+    assert!(flags(&summary, "chi2").is_empty(), "{:?}", summary["flags"]);
 }

@@ -1,15 +1,16 @@
-//! `coordinator scale`, with programs that play Slurm: jobs are processes of this machine. `tests/engines` has the real one.
+//! `coordinator scale` with programs that play Slurm, whose jobs are processes of this machine. `tests/engines` uses the real Slurm.
 
 use std::fs;
 use std::os::unix::fs::PermissionsExt;
 use std::path::Path;
 use std::process::Command;
 
+use farm_tests::assert_contains;
 use farm_tests::job::Job;
 use farm_tests::process::{Process, Signal};
 use farm_tests::programs;
 use farm_tests::service::Service;
-use farm_tests::wait::until;
+use farm_tests::wait::until_true;
 
 /// Each job of the array is a process; its file has its number.
 const SBATCH: &str = r#"#!/bin/sh
@@ -47,7 +48,7 @@ impl Scaled {
             fs::set_permissions(&file, fs::Permissions::from_mode(0o755)).expect("permissions");
         }
         let url = format!("http://{}", service.client.0);
-        let own = [
+        let words_before = [
             "scale",
             "slurm",
             "--url",
@@ -59,7 +60,7 @@ impl Scaled {
             "--finish-within",
             "0.01",
         ];
-        let mut command = programs::coordinator(own.into_iter().chain(more.iter().copied()));
+        let mut command = programs::coordinator(words_before.into_iter().chain(more.iter().copied()));
         with(&mut command, queue.path());
         let process = Process::start(command, &queue.path().join("scale.log"));
         Scaled { process, queue }
@@ -73,7 +74,7 @@ impl Scaled {
     }
 }
 
-/// Our queue comes first in PATH, and our program is the worker.
+/// Puts the test's queue first in PATH, and sets the tested program as the worker.
 fn with(command: &mut Command, queue: &Path) {
     let worker = programs::worker([] as [&str; 0]);
     let path = std::env::var("PATH").unwrap_or_default();
@@ -88,11 +89,9 @@ fn pilots_come_with_the_work_and_go_when_it_is_done() {
     let service = Service::start(&[]);
     let mut scaled = Scaled::start(&service, &["--max-idle", "0.5"]);
     let id = service.submit(&Job::rolling());
-    until("two pilots", || (scaled.jobs() == 2).then_some(()));
-    until("the end", || {
-        (service.status(id)["state"] == "finished").then_some(())
-    });
-    until("no pilot", || (scaled.jobs() == 0).then_some(()));
+    until_true("two pilots", || scaled.jobs() == 2);
+    until_true("the end", || service.status(id)["state"] == "finished");
+    until_true("no pilot", || scaled.jobs() == 0);
     scaled.process.signal(Signal::Terminate);
     assert!(scaled.process.wait().success(), "{}", scaled.process.log());
 }
@@ -101,29 +100,25 @@ fn pilots_come_with_the_work_and_go_when_it_is_done() {
 fn the_cap_of_cost_ends_all_pilots() {
     let service = Service::start(&[]);
     service.submit(&Job::rolling().sampler(5000, [2, 4], 1));
-    // three seconds of a thread
+    // The cap is three seconds of a thread.
     let mut scaled = Scaled::start(&service, &["--cost-cap-thread-h", "0.00083"]);
     assert!(scaled.process.wait().success(), "{}", scaled.process.log());
     let log = scaled.process.log();
-    assert!(log.contains("of 0.00083 thread-hours: all are ended"), "{log}");
-    until("no pilot", || (scaled.jobs() == 0).then_some(()));
+    assert_contains!(log, "of 0.00083 thread-hours: all are ended");
+    until_true("no pilot", || scaled.jobs() == 0);
 }
 
 #[test]
 fn pilots_that_end_without_a_word_are_not_started_again_and_again() {
-    // A worker of somebody else computes meanwhile.
+    // A local worker computes meanwhile.
     let service = Service::start(&["--local-workers", "1"]);
     service.submit(&Job::rolling().sampler(5000, [2, 4], 1));
     let mut scaled = Scaled::start(&service, &["--worker", "/bin/false"]);
-    until("the warning", || {
+    until_true("the warning", || {
         let log = scaled.process.log();
-        log.contains("and none has sent a result").then_some(())
+        log.contains("and none has sent a result")
     });
-    assert!(
-        scaled.process.log().contains("started in 10 s"),
-        "{}",
-        scaled.process.log()
-    );
+    assert_contains!(scaled.process.log(), "started in 10 s");
     assert!(scaled.process.is_running());
 }
 
@@ -132,16 +127,13 @@ fn what_cannot_be_done_is_said() {
     let service = Service::start(&[]);
     let url = format!("http://{}", service.client.0);
     let refusal = |words: &[&str]| {
-        let own = ["scale", "--url", &url, "--once"];
-        let mut command = programs::coordinator(own.into_iter().chain(words.iter().copied()));
+        let words_before = ["scale", "--url", &url, "--once"];
+        let mut command = programs::coordinator(words_before.into_iter().chain(words.iter().copied()));
         command.env("PATH", "/nowhere");
         programs::run(command).refusal()
     };
     let missing = refusal(&["slurm", "--max", "2"]);
-    assert!(
-        missing.contains("squeue: cannot be run; is it installed, and in PATH?"),
-        "{missing}"
-    );
+    assert_contains!(missing, "squeue: cannot be run; is it installed, and in PATH?");
     let bounds = refusal(&["slurm", "--min", "3", "--max", "2"]);
     assert_eq!(bounds, "--min 3 must be at most --max 2");
     let script = refusal(&["hyperqueue", "--max", "2", "--script", "x"]);

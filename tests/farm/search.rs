@@ -1,7 +1,9 @@
-//! Searches by generations, and BASIS, through real processes: the optimum found, the contract kept, and the same bytes
-//! whatever dies meanwhile.
+//! Evolutionary searches and BASIS through real processes: they find the optimum, keep the contract, and give the same bytes after any
+//! kill of a program.
 
+use farm_tests::assert_contains;
 use farm_tests::job::Job;
+use farm_tests::json::float;
 use farm_tests::programs::{coordinator, run};
 use farm_tests::service::Service;
 use farm_tests::text::same;
@@ -26,7 +28,7 @@ pub(super) fn searches() -> [Job; 2] {
 
 /// The summary of a finished calibration without its wall time.
 fn summary(service: &Service, id: i64) -> Value {
-    let mut summary = service.client.json(&format!("/v1/calibrations/{id}/summary"));
+    let mut summary = service.result(id, "summary");
     summary["point_estimates"][0]["wall_s"] = Value::Null;
     summary
 }
@@ -35,8 +37,7 @@ fn summary(service: &Service, id: i64) -> Value {
 fn searches_find_what_the_fit_finds_and_keep_how_they_came_there() {
     let service = Service::start(&["--local-workers", "2"]);
     let finished = |job: &Job| {
-        let id = service.submit(job);
-        service.wait_for(id, "finished");
+        let id = service.calibrate(job);
         summary(&service, id)["point_estimates"][0].clone()
     };
     let fit = finished(&job("algorithm = \"lm\""));
@@ -45,14 +46,12 @@ fn searches_find_what_the_fit_finds_and_keep_how_they_came_there() {
         assert_eq!(found["algorithm"], name);
         assert_eq!(found["sd"], Value::Null, "{found}");
         assert!(found["stop"] == "stagnation", "{name}: {}", found["stop"]);
-        let best = |estimate: &Value| estimate["log_posterior"].as_f64().expect("a number");
+        let best = |estimate: &Value| float(&estimate["log_posterior"]);
         assert!((best(&found) - best(&fit)).abs() < 0.1, "{name}: {found} {fit}");
         let history = found["history"].as_array().expect("a history");
         let last = history.last().expect("a generation");
-        assert_eq!(
-            (&last["best"], &last["evaluations"]),
-            (&found["log_posterior"], &found["evaluations"])
-        );
+        assert_eq!(last["best"], found["log_posterior"]);
+        assert_eq!(last["evaluations"], found["evaluations"]);
         let bests: Vec<f64> = history.iter().filter_map(|g| g["best"].as_f64()).collect();
         assert!(bests.len() > 10 && bests.is_sorted(), "{bests:?}");
     }
@@ -63,8 +62,7 @@ fn killing_coordinator_and_worker_amid_a_search_changes_no_byte() {
     for job in searches() {
         let expected = {
             let service = Service::start(&["--local-workers", "2"]);
-            let id = service.submit(&job);
-            service.wait_for(id, "finished");
+            let id = service.calibrate(&job);
             summary(&service, id)
         };
         let mut service = Service::start(&[]);
@@ -90,19 +88,20 @@ fn a_run_of_a_search_says_how_it_ended_and_check_what_it_costs() {
         .to_string();
     let out = folder.path().join("out").display().to_string();
     let printed = run(coordinator(["run", &path, "--out", &out])).success();
-    assert!(printed.contains("cma-es stopped by stagnation"), "{printed}");
+    assert_contains!(printed, "cma-es stopped by stagnation");
     let check = run(coordinator(["check", &path])).success();
-    for words in ["cma-es with at most 1200 evaluations", "The search itself took"] {
-        assert!(check.contains(words), "{words} in\n{check}");
-    }
+    assert_contains!(
+        check,
+        "cma-es with at most 1200 evaluations",
+        "The search itself took"
+    );
 }
 
 #[test]
 fn basis_samples_and_is_flagged() {
     let service = Service::start(&["--local-workers", "2"]);
-    let id = service.submit(&job("algorithm = \"basis\"\nparticles = 60"));
-    service.wait_for(id, "finished");
-    let summary = service.client.json(&format!("/v1/calibrations/{id}/summary"));
+    let id = service.calibrate(&job("algorithm = \"basis\"\nparticles = 60"));
+    let summary = service.result(id, "summary");
     let calibration = &summary["calibrations"][0];
     assert_eq!(calibration["algorithm"], "basis");
     assert_eq!(calibration["equilibrated"], false);
@@ -134,7 +133,7 @@ fn keys_of_other_algorithms_are_refused_by_name() {
     ];
     for (algorithm, key, message) in refusals {
         let given = refusal(&job(&format!("algorithm = \"{algorithm}\"\n{key}")));
-        assert!(given.contains(message), "{given}");
+        assert_contains!(given, message);
     }
     for (sampler, message) in [
         (

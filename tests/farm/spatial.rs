@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use farm_tests::assert_contains;
 use farm_tests::cylinder::Cylinder;
 use farm_tests::job::Job;
 use farm_tests::programs::{self, Ended};
@@ -46,13 +47,13 @@ fn the_papers_rig_gives_averages_and_histories_of_fifty_seconds_at_10_hz() {
     let time = column(&history, "t_s");
     assert_eq!(time.len(), 500);
     assert!((time[0] - 0.1).abs() < 1e-12 && (time[499] - 50.0).abs() < 1e-9);
-    // The wheel load is carried at every moment, within the tolerance of the balance.
+    // The soil carries the wheel load at every time within the tolerance of the balance.
     assert!(
         column(&history, "wheel_load_n")
             .iter()
             .all(|w| (w - 100.0).abs() < 5.0)
     );
-    // 2 pi / 12 / omega = 6.545 s from grouser to grouser: the pull repeats after it, and not after half of it.
+    // The time from grouser to grouser is 2 pi / 12 / omega = 6.545 s: the pull repeats after this time, and not after half of it.
     let pull = column(&history, "drawbar_pull_n");
     let after = |lag: usize| {
         let settled = &pull[200..];
@@ -78,9 +79,9 @@ fn a_model_without_time_refuses_histories_and_leaves_no_file() {
     let model = folder.path().join("model.toml");
     std::fs::write(&model, "kind = \"quasi_static\"\n").unwrap();
     let error = simulate(folder.path(), &model).refusal();
-    assert!(
-        error.contains("--histories: quasi_static has only a steady state; use kind = \"scm\""),
-        "{error}"
+    assert_contains!(
+        error,
+        "--histories: quasi_static has only a steady state; use kind = \"scm\""
     );
     assert!(!folder.path().join("runs.csv").exists());
 }
@@ -112,7 +113,7 @@ fn a_wheel_from_an_stl_file_rolls_like_the_rim_it_is_the_surface_of() {
     let rim = averages(&wheel(""), None);
     let stl = Cylinder::smooth(180, 0.125, 0.112).binary_stl();
     let mesh = averages(&wheel("mesh = \"wheel.stl\"\n"), Some(stl));
-    // 180 facets: within 1 % (the physics' own tests have the order of convergence)
+    // With 180 facets the results agree within 1 %; the tests of the physics check the order of convergence.
     for (mesh, rim) in mesh.iter().zip(rim) {
         assert!((mesh / rim - 1.0).abs() < 0.01, "{mesh} {rim}");
     }

@@ -1,10 +1,11 @@
 //! The results of a finished study are computed once, and again when the study has changed.
 
 use farm_tests::job::Job;
+use farm_tests::json::item_count;
 use farm_tests::programs::{coordinator, run};
 use farm_tests::service::Service;
 use farm_tests::text::same;
-use farm_tests::wait::until;
+use farm_tests::wait::until_true;
 use farm_tests::workspace::text;
 use serde_json::Value;
 
@@ -26,7 +27,7 @@ fn a_rerun_shows_the_same_and_a_study_that_has_grown_shows_what_was_added() {
     let first = command(&["run", &job]);
     let (summary, report) = (file("summary.json"), file("report.html"));
     let diagnosed = command(&["diagnose", "1"]);
-    // Results that a user has lost are written again.
+    // The command writes lost results again.
     std::fs::remove_file(temporary.path().join("out").join("summary.json")).expect("a file");
     same(&command(&["run", &job]), &first);
     same(&file("summary.json"), &summary);
@@ -38,7 +39,7 @@ fn a_rerun_shows_the_same_and_a_study_that_has_grown_shows_what_was_added() {
     let grown = file("report.html");
     assert!(grown != report && grown.contains("slip_sinkage"));
     same(&command(&["report"]), &grown);
-    // The calibration itself has not changed, nor what is said of it alone.
+    // The first calibration and its diagnostics have not changed.
     same(&command(&["diagnose", "1"]), &diagnosed);
     assert!(command(&["diagnose", "2"]) != diagnosed);
 }
@@ -64,17 +65,16 @@ fn a_service_shows_a_study_while_it_runs_and_what_it_has_become() {
         .post(&format!("/v1/calibrations/{id}/extend"), &extension)
         .json();
     let added = created["id"].as_i64().expect("an id");
-    // While the addition is on its way the study is not over, and nothing stored is shown as its end.
+    // Until the addition is finished, the study is unfinished and its stored end is not shown.
     let between = service.client.json(&summary);
     assert!(between["status"] != "finished" || between["calibrations"].as_array().map(Vec::len) == Some(2));
     service.wait_for(added, "finished");
     let grown = service.client.json(&summary);
-    assert_eq!(grown["calibrations"].as_array().map(Vec::len), Some(2));
-    service.kill();
-    service.restart();
+    assert_eq!(item_count(&grown["calibrations"]), 2);
+    service.crash();
     assert_eq!(service.client.json(&summary), grown);
-    let flags = service.client.json(&format!("/v1/calibrations/{id}/flags"));
-    let diagnostics = service.client.json(&format!("/v1/calibrations/{id}/diagnostics"));
+    let flags = service.result(id, "flags");
+    let diagnostics = service.result(id, "diagnostics");
     assert_eq!(diagnostics["flags"], flags);
 }
 
@@ -90,10 +90,10 @@ fn stored_diagnostics_and_flags_are_handed_on_as_they_stand() {
     let mut database = service.database();
     let stored = format!("SELECT body FROM results WHERE name = 'diagnostics-{id}.json'");
     assert_eq!(database.text(&stored), first.body);
-    // The stored text stays from now on: it was computed for a request, and perhaps for the overview of the study at the same time.
+    // A restart ends a concurrent computation of the overview, which could replace the stored text.
     assert!(service.terminate());
     service.restart();
-    // A text that this program would not write shows whose text it is.
+    // The program would not write this text itself, so that the answer must be the stored text.
     let marked = r#"{"flags": [ {"marked": 1.50} ], "more": 2}"#;
     database.execute(&format!(
         "UPDATE results SET body = '{marked}' WHERE name = 'diagnostics-{id}.json'"
@@ -107,14 +107,13 @@ fn stored_diagnostics_and_flags_are_handed_on_as_they_stand() {
 #[test]
 fn the_list_of_studies_reads_the_lines_that_are_stored() {
     let mut service = Service::start(&["--local-workers", "2"]);
-    let id = service.submit(&Job::small());
-    service.wait_for(id, "finished");
-    until("the line of the study", || {
+    service.calibrate(&Job::small());
+    until_true("the line of the study", || {
         let error = service.client.json("/v1/studies")[0]["error"].clone();
-        (!error.is_null()).then_some(())
+        !error.is_null()
     });
     assert!(service.terminate());
-    // The program would not write this line itself, so that it shows whose text is listed.
+    // The program would not write this line itself, so that the list must show the stored line.
     let marked = r#"replace(body, '"effects":[]', '"effects":["marked"]')"#;
     service.database().execute(&format!(
         "UPDATE results SET body = {marked} WHERE name = 'list_item.json'"
@@ -130,9 +129,7 @@ fn the_list_of_studies_reads_the_lines_that_are_stored() {
 fn what_was_cancelled_has_no_results_and_says_so() {
     let service = Service::start(&[]);
     let id = service.submit(&Job::small());
-    let cancel = service
-        .client
-        .post(&format!("/v1/calibrations/{id}/cancel"), &serde_json::json!({}));
+    let cancel = service.act(id, "cancel");
     assert_eq!(cancel.status, 200);
     for result in ["summary", "report", "diagnostics", "flags"] {
         let answer = service.client.get(&format!("/v1/calibrations/{id}/{result}"));

@@ -1,6 +1,8 @@
-//! A study of several calibrations: a sample with point estimates beside it, each one like the same job alone.
+//! A study of a sample and point estimates, each of which equals the result of its job alone.
 
+use farm_tests::assert_contains;
 use farm_tests::job::Job;
+use farm_tests::json::{item_count, items};
 use farm_tests::programs::{coordinator, run};
 use farm_tests::service::Service;
 use farm_tests::text::same;
@@ -31,10 +33,10 @@ fn timeless(mut summary: Value) -> Value {
 }
 
 fn summary(service: &Service, id: i64) -> Value {
-    timeless(service.client.json(&format!("/v1/calibrations/{id}/summary")))
+    timeless(service.result(id, "summary"))
 }
 
-/// Submits the job; ids of the sample and of what stands beside it.
+/// Submits the job; returns the ids of the sample and of the point estimates.
 fn submit(service: &Service) -> Vec<i64> {
     let first = service.submit(&job());
     let studies = service.client.json("/v1/studies");
@@ -53,7 +55,7 @@ fn each_calibration_of_a_study_is_what_the_same_job_gives_alone() {
     }
     let study = summary(&service, ids[0]);
     assert_eq!(study["status"], "finished");
-    // whichever calibration is asked, the summary is of its study
+    // The summary of every calibration is that of its study.
     assert_eq!(summary(&service, ids[2]), study);
     let mut alone = Vec::new();
     for sampler in [
@@ -61,8 +63,7 @@ fn each_calibration_of_a_study_is_what_the_same_job_gives_alone() {
         "algorithm = \"lm\"\nparticles = 0",
         "algorithm = \"cma-es\"",
     ] {
-        let id = service.submit(&Job::small().in_job(SAMPLER, sampler));
-        service.wait_for(id, "finished");
+        let id = service.calibrate(&Job::small().in_job(SAMPLER, sampler));
         alone.push(summary(&service, id));
     }
     assert_eq!(study["calibrations"], alone[0]["calibrations"]);
@@ -75,10 +76,7 @@ fn each_calibration_of_a_study_is_what_the_same_job_gives_alone() {
         .client
         .json(&format!("/v1/calibrations/{}/figures", ids[0]));
     assert_eq!(figures["searches"][0]["algorithm"], "cma-es");
-    let labels: Vec<&str> = figures["errors"][0]["marks"]
-        .as_array()
-        .into_iter()
-        .flatten()
+    let labels: Vec<&str> = items(&figures["errors"][0]["marks"])
         .filter_map(|mark| mark["label"].as_str())
         .collect();
     assert_eq!(
@@ -88,8 +86,8 @@ fn each_calibration_of_a_study_is_what_the_same_job_gives_alone() {
         figures["errors"][0]["marks"]
     );
     let ledger = service.client.json("/v1/studies/1");
-    assert_eq!(ledger["ledger"].as_array().map(Vec::len), Some(1));
-    assert_eq!(ledger["point_estimates"].as_array().map(Vec::len), Some(2));
+    assert_eq!(item_count(&ledger["ledger"]), 1);
+    assert_eq!(item_count(&ledger["point_estimates"]), 2);
 }
 
 #[test]
@@ -127,30 +125,26 @@ fn a_run_prints_the_whole_study_and_knows_its_folder_again() {
     let out = folder.path().join("out");
     let go = || coordinator(["run", &path, "--out", &out.display().to_string()]);
     let printed = run(go()).success();
-    for words in [
+    assert_contains!(
+        printed,
         "root mean sq. error",
         "lm stopped by",
         "cma-es stopped by",
         "\nwrong:",
         "\nmissing:",
-        "\nnext:",
-    ] {
-        assert!(printed.contains(words), "{words} in\n{printed}");
-    }
+        "\nnext:"
+    );
     let summary: Value = serde_json::from_str(&text(&out.join("summary.json"))).expect("JSON");
     let counts = ["calibrations", "point_estimates"].map(|part| summary[part].as_array().map(Vec::len));
     assert_eq!(counts, [Some(1), Some(2)]);
     assert_eq!(run(go()).success(), printed, "a finished study is printed again");
-    // a folder of one study needs no id
+    // The command needs no id in a folder with one study.
     let report = run(coordinator(["report", "--out", &out.display().to_string()])).success();
     assert!(report.contains("\"kind\":\"fit\""));
     let other = job().in_job(", \"cma-es\"", "");
     other.write(&folder.path().join("job"));
     let refusal = run(go()).refusal();
-    assert!(
-        refusal.contains("the job or its experiment has changed"),
-        "{refusal}"
-    );
+    assert_contains!(refusal, "the job or its experiment has changed");
 }
 
 #[test]
@@ -158,12 +152,11 @@ fn check_says_what_the_point_estimates_may_cost() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = job().write(&folder.path().join("job")).display().to_string();
     let check = run(coordinator(["check", &path])).success();
-    for words in [
+    assert_contains!(
+        check,
         "point estimate lm with at most 200 evaluations",
-        "point estimate cma-es with",
-    ] {
-        assert!(check.contains(words), "{words} in\n{check}");
-    }
+        "point estimate cma-es with"
+    );
 }
 
 #[test]
@@ -174,14 +167,11 @@ fn the_papers_jobs_are_studies_of_a_sample_and_searches() {
             .join(format!("examples/paper/{job}.toml"))
             .display()
             .to_string();
-        let said = run(coordinator(["submit", &path, "--url", &service.url()])).success();
-        assert!(said.contains("beside it"), "{said}");
+        let output = run(coordinator(["submit", &path, "--url", &service.url()])).success();
+        assert_contains!(output, "beside it");
     }
     let studies = service.client.json("/v1/studies");
-    let sizes: Vec<usize> = studies
-        .as_array()
-        .into_iter()
-        .flatten()
+    let sizes: Vec<usize> = items(&studies)
         .map(|study| study["calibrations"].as_array().map_or(0, Vec::len))
         .collect();
     assert_eq!(sizes, [2, 3, 2], "sharp.toml asks for cma-es as well");

@@ -2,8 +2,10 @@
 
 use std::path::Path;
 
+use farm_tests::assert_contains;
 use farm_tests::job::Job;
-use farm_tests::programs::{coordinator, run};
+use farm_tests::json::{float, whole};
+use farm_tests::programs::{call, coordinator, run};
 use serde_json::Value;
 
 /// Runs the small job; its folder.
@@ -26,10 +28,8 @@ fn every_level_is_predicted_from_the_others_and_a_second_call_prints_what_is_the
     let out = calibrated(folder.path());
     let text = validate(&out, "slip", &["--format", "json"]).success();
     let validation: Value = serde_json::from_str(&text).expect("JSON");
-    assert_eq!(
-        (&validation["calibration"], &validation["leave_out"]),
-        (&1.into(), &"slip".into())
-    );
+    assert_eq!(validation["calibration"], 1);
+    assert_eq!(validation["leave_out"], "slip");
     assert_eq!(validation["algorithm"], "lm");
     let levels = validation["levels"].as_array().expect("levels");
     assert!(levels.len() >= 2, "{text}");
@@ -49,33 +49,30 @@ fn every_level_is_predicted_from_the_others_and_a_second_call_prints_what_is_the
     }
     let total = &validation["total"];
     assert_eq!(total["model"]["drawbar_pull"]["runs"], 24);
-    // Nothing is hidden in these runs, so the model predicts a slip that it has not seen to within its noise; interpolation does not.
-    let noise = |of: &str| total[of]["all"]["rmse_fixed_sigma"].as_f64().expect("a number");
+    // These runs have no hidden effect, so that the model predicts an unseen slip to within the noise. Interpolation does not.
+    let noise = |key: &str| float(&total[key]["all"]["rmse_fixed_sigma"]);
     assert!((0.7..1.5).contains(&noise("model")), "{total}");
     assert!(noise("interpolation") > 2.0 * noise("model"), "{total}");
-    let inside = total["inside"].as_u64().expect("a count");
+    let inside = whole(&total["inside"]);
     assert!((58..=72).contains(&inside), "{inside} of 72");
 
-    // In a folder of its own: the study of the run has no further member.
+    // The validation has a separate folder, and the study of the run has no further member.
     let list = |at: &str| run(coordinator(["list", "--out", at])).success().lines().count();
     let (of_run, of_validation) = (list(&out), list(&format!("{out}/validation-1")));
     assert_eq!(of_validation, 1 + levels.len(), "a line for each, and the title");
     let file = Path::new(&out).join("validation-1").join("slip.json");
     assert_eq!(std::fs::read_to_string(&file).expect("the file"), text);
     let again = validate(&out, "slip", &["--format", "json"]).success();
-    assert_eq!(
-        (again, list(&format!("{out}/validation-1"))),
-        (text, of_validation)
-    );
+    assert_eq!(again, text);
+    assert_eq!(list(&format!("{out}/validation-1")), of_validation);
     assert_eq!(list(&out), of_run);
     let table = validate(&out, "slip", &[]).success();
-    for words in [
+    assert_contains!(
+        table,
         "slip left out in turn, calibrated by lm on the rest",
         "\nleft out ",
-        "\nall  ",
-    ] {
-        assert!(table.contains(words), "{words} in {table}");
-    }
+        "\nall  "
+    );
 }
 
 #[test]
@@ -92,17 +89,13 @@ fn what_cannot_be_left_out_says_why() {
             "all 24 fitted runs are at slip angle 0.0 deg: nothing is left to predict it from",
         ),
     ] {
-        let said = validate(&out, factor, &[]).refusal();
-        assert!(said.contains(reason), "{said}");
+        let output = validate(&out, factor, &[]).refusal();
+        assert_contains!(output, reason);
     }
-    let said = run(coordinator([
-        "validate",
-        "1",
-        "--leave-out",
-        "slip",
-        "--url",
-        "http://127.0.0.1:9",
-    ]))
+    let output = call(
+        "coordinator validate 1 --leave-out slip --url http://127.0.0.1:9",
+        &[],
+    )
     .refusal();
-    assert!(said.contains("validate needs --out"), "{said}");
+    assert_contains!(output, "validate needs --out");
 }

@@ -1,12 +1,14 @@
-//! A job with several models: the one that made the data is named, whatever dies meanwhile, and none where none explains them.
+//! A job with several models: the model that made the data is named, also after kills, and no model is named if none explains the data.
 
 use std::path::Path;
 
+use farm_tests::assert_contains;
 use farm_tests::job::Job;
+use farm_tests::json::float;
 use farm_tests::programs::{coordinator, run, study};
 use farm_tests::service::Service;
 use farm_tests::text::same;
-use farm_tests::wait::until;
+use farm_tests::wait::until_true;
 use serde_json::Value;
 
 const MODELS: [&str; 3] = ["quasi_static", "wong_reece", "rft"];
@@ -40,26 +42,20 @@ fn the_model_that_made_the_data_is_named_with_its_probability() {
         assert_eq!(model["left_out_by"], "holdout");
         assert!(model["left_out"]["drawbar_pull"]["rmse"].as_f64().is_some());
     }
-    assert!(
-        printed.contains("model:   wong_reece is the most probable of 3 models"),
-        "{printed}"
-    );
-    assert!(
-        printed.contains("P from equal prior odds; errors of held-out runs"),
-        "{printed}"
-    );
-    // the true parameters: c1 0.4, K 10 mm
+    assert_contains!(printed, "model:   wong_reece is the most probable of 3 models");
+    assert_contains!(printed, "P from equal prior odds; errors of held-out runs");
+    // The true parameters are c1 = 0.4 and K = 10 mm.
     let parameters = &ledger[0]["parameters"];
     for (name, truth) in [("c1", 0.4), ("shear_modulus_m", 0.01)] {
-        let of = |key: &str| parameters[name][key].as_f64().expect("a number");
+        let value = |key: &str| float(&parameters[name][key]);
         assert!(
-            (of("mean") - truth).abs() < 4.0 * of("sd"),
+            (value("mean") - truth).abs() < 4.0 * value("sd"),
             "{name}: {parameters}"
         );
     }
 }
 
-/// Smaller, to be computed twice.
+/// A smaller job, which is computed twice.
 fn small() -> Job {
     example().in_job("particles = 500", "particles = 150\nmoves = [2, 4]")
 }
@@ -70,7 +66,7 @@ fn posteriors(service: &Service, first: i64) -> Vec<String> {
 
 #[test]
 fn a_comparison_that_is_killed_ends_with_the_same_bits() {
-    let whole = {
+    let undisturbed = {
         let service = Service::start(&["--local-workers", "2"]);
         let id = service.submit(&small());
         for id in id..id + 3 {
@@ -82,12 +78,12 @@ fn a_comparison_that_is_killed_ends_with_the_same_bits() {
     let id = service.submit(&small());
     let mut worker = service.worker("a", 1);
     for model in id..id + 3 {
-        until("progress of a model", || {
+        until_true("progress of a model", || {
             let status = service.status(model);
             let begun = status["progress"]["evaluations"]
                 .as_u64()
                 .is_some_and(|n| n > 200);
-            (begun || status["state"] == "finished").then_some(())
+            begun || status["state"] == "finished"
         });
         service.kill();
         worker.kill();
@@ -97,14 +93,14 @@ fn a_comparison_that_is_killed_ends_with_the_same_bits() {
     for id in id..id + 3 {
         service.wait_for(id, "finished");
     }
-    for (killed, whole) in posteriors(&service, id).iter().zip(&whole) {
-        same(killed, whole);
+    for (killed, undisturbed) in posteriors(&service, id).iter().zip(&undisturbed) {
+        same(killed, undisturbed);
     }
 }
 
 #[test]
 fn data_that_no_model_explains_are_none_of_these() {
-    // pull that alternates from run to run follows from no model
+    // No model predicts a pull that alternates from run to run.
     let job = small();
     let mut lines = job.runs.lines().map(str::to_owned).collect::<Vec<_>>();
     let head = lines
@@ -124,7 +120,7 @@ fn data_that_no_model_explains_are_none_of_these() {
     let runs = lines.join("\n") + "\n";
     let (printed, summary) = study(&Job { runs, ..job });
     assert_eq!(summary["models"]["none_of_these"], true, "{}", summary["models"]);
-    assert!(printed.contains("none of these"), "{printed}");
+    assert_contains!(printed, "none of these");
 }
 
 #[test]
@@ -136,26 +132,20 @@ fn check_costs_every_model_and_names_the_line_of_a_mistake() {
     };
     let printed = check(&small(), "right").success();
     for kind in MODELS {
-        assert!(printed.contains(&format!("\n{kind}:")), "{printed}");
+        assert_contains!(printed, format!("\n{kind}:"));
     }
-    assert!(
-        printed.contains("model 3 of 3") && printed.contains("all models: "),
-        "{printed}"
-    );
+    assert_contains!(printed, "model 3 of 3", "all models: ");
     let wrong = small().in_job(
         "kind = \"rft\"\n[models.priors]",
         "kind = \"rft\"\nn = 1.1\n[models.priors]",
     );
     let refusal = check(&wrong, "wrong").refusal();
-    assert!(
-        refusal.contains("job.toml line 10: [[models]] rft: n is a parameter of"),
-        "{refusal}"
-    );
+    assert_contains!(refusal, "job.toml line 10: [[models]] rft: n is a parameter of");
 }
 
 #[test]
 fn the_search_goes_on_with_the_most_probable_model() {
-    // wong_reece against quasi_static alone, and the user is asked
+    // The job compares wong_reece with quasi_static only, and its search does not extend the model.
     let job = small()
         .in_job(
             "[[models]]\nkind = \"rft\"\n[models.priors]\nxi_n_pa_m = { loguniform = [1e5, 1e8] }\n",

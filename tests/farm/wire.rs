@@ -1,4 +1,4 @@
-//! The two forms of an exchange, byte by byte: what is taken, what is refused, and that both give the same calibration.
+//! The two forms of an exchange, byte by byte: accepted and refused messages, and the same calibration with both.
 
 use farm_tests::fake_worker::PROTOCOL;
 use farm_tests::http::Response;
@@ -105,7 +105,7 @@ fn only_what_is_fitted_is_asked_for_while_sampling() {
         variant.channels,
         [Channel::DrawbarPull, Channel::Torque, Channel::Sinkage]
     );
-    // without one of them the evaluation is not answered: the lease has failed
+    // A result without one of the channels fails its lease.
     let short = Observables {
         torque_n_m: Vec::new(),
         ..fitted()
@@ -153,7 +153,7 @@ fn a_wrong_body_in_either_form_is_refused_and_the_service_goes_on() {
     }
     let more = [packed.as_slice(), &[0xc0]].concat();
     assert_eq!(post(of_packed, &more), bad);
-    // an array, a map, a string and bytes that say they hold four billion things, and endless nesting
+    // An array, a map, a string and bytes that declare four billion items, and deep nesting.
     for head in [0xdd, 0xdf, 0xdb, 0xc6] {
         assert_eq!(post(of_packed, &[head, 0xff, 0xff, 0xff, 0xff, 0x01]), bad);
     }

@@ -1,4 +1,4 @@
-//! Surface of a wheel as a mesh file: a cylinder of flat facets, with straight grousers or without.
+//! The surface of a wheel as a mesh file: a cylinder of flat facets, with or without straight grousers.
 
 use std::f64::consts::TAU;
 use std::fmt::Write;

@@ -1,9 +1,9 @@
-//! A store opened beside the program, as any client of SQLite or PostgreSQL opens it.
+//! A store, opened by a client of SQLite or PostgreSQL beside the program.
 
-use sqlx::{AnyConnection, AssertSqlSafe, Connection};
+use sqlx::{Any, AnyConnection, AssertSqlSafe, Connection, Decode, Type};
 use tokio::runtime::Runtime;
 
-/// A connection of its own to a store.
+/// A connection to a store.
 #[derive(Debug)]
 pub struct Database {
     runtime: Runtime,
@@ -11,17 +11,12 @@ pub struct Database {
 }
 
 impl Database {
-    /// Opens a store by the name that `--store` takes.
-    ///
-    /// # Panics
-    /// It is no database.
+    /// Opens a store by its value of `--store`.
     #[track_caller]
     pub fn open(store: &str) -> Database {
         sqlx::any::install_default_drivers();
-        let runtime = tokio::runtime::Builder::new_current_thread()
-            .enable_all()
-            .build()
-            .expect("a runtime");
+        let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
+        let runtime = runtime.expect("a runtime");
         let connection = runtime.block_on(AnyConnection::connect(store));
         Database {
             runtime,
@@ -30,9 +25,6 @@ impl Database {
     }
 
     /// Executes statements.
-    ///
-    /// # Panics
-    /// The database refuses.
     #[track_caller]
     pub fn execute(&mut self, sql: &str) {
         let statements = sqlx::raw_sql(AssertSqlSafe(sql));
@@ -40,25 +32,25 @@ impl Database {
         done.unwrap_or_else(|e| panic!("{sql}: {e}"));
     }
 
-    /// The number that a query gives.
-    ///
-    /// # Panics
-    /// The database refuses, or there is none.
+    /// The number that a query returns.
     #[track_caller]
     pub fn number(&mut self, sql: &str) -> i64 {
-        let query = sqlx::query_scalar(AssertSqlSafe(sql));
-        let number = self.runtime.block_on(query.fetch_one(&mut self.connection));
-        number.unwrap_or_else(|e| panic!("{sql}: {e}"))
+        self.scalar(sql)
     }
 
-    /// The text that a query gives.
-    ///
-    /// # Panics
-    /// The database refuses, or there is none.
+    /// The text that a query returns.
     #[track_caller]
     pub fn text(&mut self, sql: &str) -> String {
+        self.scalar(sql)
+    }
+
+    #[track_caller]
+    fn scalar<T>(&mut self, sql: &str) -> T
+    where
+        T: for<'r> Decode<'r, Any> + Type<Any> + Send + Unpin,
+    {
         let query = sqlx::query_scalar(AssertSqlSafe(sql));
-        let text = self.runtime.block_on(query.fetch_one(&mut self.connection));
-        text.unwrap_or_else(|e| panic!("{sql}: {e}"))
+        let value = self.runtime.block_on(query.fetch_one(&mut self.connection));
+        value.unwrap_or_else(|e| panic!("{sql}: {e}"))
     }
 }

@@ -1,4 +1,4 @@
-//! A worker that a test plays by hand, over plain HTTP.
+//! A worker whose every message is written by a test, over plain HTTP.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -6,10 +6,10 @@ use serde_json::{Value, json};
 
 use crate::http::{Client, Response};
 
-/// Version of the protocol.
+/// Version of the protocol of exchanges.
 pub const PROTOCOL: u32 = 12;
 
-/// A worker by name; it does what a test says and nothing else.
+/// A named worker that sends only the messages of a test.
 #[derive(Debug)]
 pub struct FakeWorker {
     client: Client,
@@ -19,7 +19,7 @@ pub struct FakeWorker {
 }
 
 impl FakeWorker {
-    /// A worker that has not said anything yet.
+    /// A worker of the model version `fake-1` that has sent no message yet.
     pub fn new(client: &Client, name: &str) -> Self {
         FakeWorker {
             client: client.clone(),
@@ -29,7 +29,7 @@ impl FakeWorker {
         }
     }
 
-    /// Lets the worker say that it computes another version of the equations than `fake-1`.
+    /// The worker with another version of the equations than `fake-1`.
     pub fn computing(self, model_version: &str) -> Self {
         FakeWorker {
             model_version: model_version.into(),
@@ -46,15 +46,12 @@ impl FakeWorker {
         })
     }
 
-    /// Sends an exchange, whatever the answer.
+    /// Sends an exchange, with any answer.
     pub fn send(&self, request: &Value) -> Response {
         self.client.post("/v1/work/exchange", request)
     }
 
     /// Sends an exchange that must succeed.
-    ///
-    /// # Panics
-    /// It is refused.
     #[track_caller]
     pub fn exchange(&self, request: &Value) -> Value {
         let response = self.send(request);
@@ -68,23 +65,15 @@ impl FakeWorker {
     }
 
     /// Takes up to so many leases.
-    ///
-    /// # Panics
-    /// The exchange is refused.
     #[track_caller]
     pub fn take(&self, want: u32) -> Vec<Value> {
         let mut request = self.request();
         request["want"] = want.into();
-        self.exchange(&request)["leases"]
-            .as_array()
-            .cloned()
-            .unwrap_or_default()
+        let answer = self.exchange(&request);
+        answer["leases"].as_array().cloned().unwrap_or_default()
     }
 
-    /// Says that the evaluation of leases has begun.
-    ///
-    /// # Panics
-    /// The exchange is refused.
+    /// Reports that the evaluation of leases has begun.
     #[track_caller]
     pub fn start(&self, leases: &[Value]) {
         let mut request = self.request();
@@ -92,10 +81,7 @@ impl FakeWorker {
         self.exchange(&request);
     }
 
-    /// Answers leases with one outcome each; the whole answer.
-    ///
-    /// # Panics
-    /// The exchange is refused.
+    /// Sends an outcome for each lease; returns the answer of the service.
     #[track_caller]
     pub fn answer(&self, leases: &[Value], outcome: impl Fn(&Value) -> Value) -> Value {
         let mut request = self.request();
@@ -112,7 +98,7 @@ pub fn result(lease: &Value, outcome: Value) -> Value {
     })
 }
 
-/// Plausible averages of so many runs that differ from one parameter vector to the next.
+/// Plausible averages of a number of runs, which differ from one parameter vector to the next.
 pub fn evaluated(lease: &Value, runs: usize) -> Value {
     let theta = lease["theta"].as_array().cloned().unwrap_or_default();
     let sum: f64 = theta.iter().filter_map(Value::as_f64).sum();

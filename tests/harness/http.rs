@@ -1,4 +1,4 @@
-//! A small blocking HTTP client: HTTP/1.0, so an answer ends where its connection does.
+//! A small blocking HTTP client. It speaks HTTP/1.0, so that an answer ends where its connection ends.
 
 use std::io::{BufRead, BufReader, Read, Write};
 use std::net::TcpStream;
@@ -15,23 +15,18 @@ pub struct Response {
     pub head: Vec<(String, String)>,
     /// Body, as text.
     pub body: String,
-    /// The body as it came.
+    /// Body, as bytes.
     pub bytes: Vec<u8>,
 }
 
 impl Response {
     /// The value of a head line.
     pub fn header(&self, name: &str) -> Option<&str> {
-        self.head
-            .iter()
-            .find(|(n, _)| n == name)
-            .map(|(_, value)| value.as_str())
+        let line = self.head.iter().find(|(n, _)| n == name);
+        line.map(|(_, value)| value.as_str())
     }
 
     /// The body as JSON.
-    ///
-    /// # Panics
-    /// It is none.
     #[track_caller]
     pub fn json(&self) -> Value {
         serde_json::from_str(&self.body).unwrap_or_else(|e| panic!("{e} in {}", self.body))
@@ -43,27 +38,18 @@ impl Response {
 pub struct Client(pub String);
 
 impl Client {
-    /// `GET path`, whatever the status.
-    ///
-    /// # Errors
-    /// No connection, or one that broke.
+    /// `GET path` with any status; an error means that there was no connection, or that it broke.
     pub fn try_get(&self, path: &str) -> std::io::Result<Response> {
         self.send("GET", path, None)
     }
 
-    /// `GET path`, whatever the status.
-    ///
-    /// # Panics
-    /// No answer.
+    /// `GET path`, with any status.
     #[track_caller]
     pub fn get(&self, path: &str) -> Response {
         self.try_get(path).unwrap_or_else(|e| panic!("GET {path}: {e}"))
     }
 
     /// The JSON of `GET path` that must succeed.
-    ///
-    /// # Panics
-    /// No answer, or another status than 200.
     #[track_caller]
     pub fn json(&self, path: &str) -> Value {
         let response = self.get(path);
@@ -71,39 +57,27 @@ impl Client {
         response.json()
     }
 
-    /// `POST path` with a JSON body, whatever the status.
-    ///
-    /// # Panics
-    /// No answer.
+    /// `POST path` with a JSON body, with any status.
     #[track_caller]
     pub fn post(&self, path: &str, body: &Value) -> Response {
         self.post_text(path, &body.to_string())
     }
 
-    /// `POST path` with any body said to be JSON, whatever the status.
-    ///
-    /// # Panics
-    /// No answer.
+    /// `POST path` with a text that is declared to be JSON, with any status.
     #[track_caller]
     pub fn post_text(&self, path: &str, body: &str) -> Response {
         self.send("POST", path, Some(body))
             .unwrap_or_else(|e| panic!("POST {path}: {e}"))
     }
 
-    /// `POST path` with a body and head lines that say what it is and what is accepted, whatever the status.
-    ///
-    /// # Panics
-    /// No answer.
+    /// `POST path` with a body and these head lines, with any status.
     #[track_caller]
     pub fn post_bytes(&self, path: &str, head: &[(&str, &str)], body: &[u8]) -> Response {
         self.exchange("POST", path, head, Some(body))
             .unwrap_or_else(|e| panic!("POST {path}: {e}"))
     }
 
-    /// Any request; a body is said to be JSON.
-    ///
-    /// # Errors
-    /// No connection, or one that broke.
+    /// Sends a request; a body is declared to be JSON. An error means that there was no connection, or that it broke.
     pub fn send(&self, method: &str, path: &str, body: Option<&str>) -> std::io::Result<Response> {
         let head: &[(&str, &str)] = match body {
             Some(_) => &[("Content-Type", "application/json")],
@@ -112,10 +86,7 @@ impl Client {
         self.exchange(method, path, head, body.map(str::as_bytes))
     }
 
-    /// Any request with these head lines; one that names a host takes the place of ours.
-    ///
-    /// # Errors
-    /// No connection, or one that broke.
+    /// Sends a request with these head lines; a `Host` among them replaces the address of the client.
     pub fn exchange(
         &self,
         method: &str,
@@ -126,10 +97,8 @@ impl Client {
         let (status, head, mut reader) = self.open(method, path, head, body)?;
         let mut text = Vec::new();
         reader.read_to_end(&mut text)?;
-        let length = head
-            .iter()
-            .find(|(name, _)| name == "content-length")
-            .and_then(|(_, v)| v.parse().ok());
+        let length = head.iter().find(|(name, _)| name == "content-length");
+        let length = length.and_then(|(_, value)| value.parse().ok());
         if length.is_some_and(|length: usize| length != text.len()) {
             return Err(std::io::ErrorKind::UnexpectedEof.into());
         }
@@ -141,11 +110,8 @@ impl Client {
         })
     }
 
-    /// Opens a stream of server-sent events and hands each (event, data) to `take` until that says to stop or
-    /// the stream ends; whether it ended by itself.
-    ///
-    /// # Panics
-    /// No stream.
+    /// Opens a stream of server-sent events and hands each event with its data to `take`, until that returns `false` or the stream
+    /// ends. Returns whether the stream ended.
     pub fn events(&self, path: &str, mut take: impl FnMut(&str, &str) -> bool) -> bool {
         let (status, _, mut reader) = self.open("GET", path, &[], None).expect("a stream of events");
         assert_eq!(status, 200, "GET {path}");
@@ -167,7 +133,7 @@ impl Client {
 
     #[expect(
         clippy::type_complexity,
-        reason = "status, head and what follows, for two callers here"
+        reason = "status, head and reader of the body, for two callers here"
     )]
     fn open(
         &self,
@@ -190,7 +156,7 @@ impl Client {
         request += "\r\n";
         stream.write_all(request.as_bytes())?;
         if let Some(body) = body {
-            // A server that has heard enough answers and hangs up; its answer can still be read.
+            // A server may answer and close the connection before it has read the whole body; its answer can still be read.
             let _ = stream.write_all(body);
         }
         let mut reader = BufReader::new(stream);

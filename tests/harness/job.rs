@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use serde_json::{Value, json};
 
-use crate::workspace::{root, text};
+use crate::workspace::{data, root, text};
 
 /// An experiment and a job, as text.
 #[derive(Debug, Clone)]
@@ -15,63 +15,71 @@ pub struct Job {
     pub runs: String,
     /// `job.toml`.
     pub job: String,
-    /// Other files that experiment or job name: name and content.
-    pub others: Vec<(String, Vec<u8>)>,
+    /// The name and content of each further file that the experiment or the job names.
+    pub attached: Vec<(String, Vec<u8>)>,
 }
 
 /// Fitted runs of [`Job::small`].
 pub const FIT_RUNS: usize = 24;
 
 impl Job {
-    /// The experiment `nothing-hidden`: four free parameters, 24 fitted runs and 16 others.
+    /// The experiment `nothing-hidden`: four free parameters, 24 fitted runs and 16 held-out ones.
     pub fn small() -> Job {
+        let folder = data("nothing-hidden");
         Job {
-            experiment: include_str!("../data/nothing-hidden/experiment.toml").into(),
-            runs: include_str!("../data/nothing-hidden/runs.csv").into(),
+            experiment: text(&folder.join("experiment.toml")),
+            runs: text(&folder.join("runs.csv")),
             job: SMALL.into(),
-            others: Vec::new(),
+            attached: Vec::new(),
         }
     }
 
     /// The job of a folder of `examples`.
-    ///
-    /// # Panics
-    /// A file is not there.
     pub fn example(name: &str) -> Job {
-        let folder = root().join("examples").join(name);
-        let read = |file: &str| text(&folder.join(file));
+        Job::read(&root().join("examples").join(name))
+    }
+
+    /// The job of a folder of `tests/data`.
+    pub fn data(name: &str) -> Job {
+        Job::read(&data(name))
+    }
+
+    fn read(folder: &Path) -> Job {
+        let file = |name: &str| text(&folder.join(name));
         Job {
-            experiment: read("experiment.toml"),
-            runs: read("runs.csv"),
-            job: read("job.toml"),
-            others: Vec::new(),
+            experiment: file("experiment.toml"),
+            runs: file("runs.csv"),
+            job: file("job.toml"),
+            attached: Vec::new(),
         }
     }
 
     /// Two runs and a coarse terrain: a calibration of the three-dimensional model in seconds.
     pub fn rolling() -> Job {
         let small = Job::small();
-        let few: Vec<&str> = small
-            .runs
-            .lines()
-            .filter(|line| !line.starts_with('#'))
-            .take(3)
-            .collect();
-        let runs = few.join("\n") + "\n";
+        let lines = small.runs.lines().filter(|line| !line.starts_with('#')).take(3);
+        let runs = lines.map(|line| format!("{line}\n")).collect();
         Job { runs, ..small }.in_job(
             "kind = \"quasi_static\"",
             "kind = \"scm\"\ndem_spacing_m = 0.008\ntravel_step_m = 0.001\nsteady_travel_m = 0.2",
         )
     }
 
-    /// Runs whose soil yields only after some shear displacement, to be searched and extended by itself.
+    /// [`Job::rolling`] with moves of a metamodel.
+    pub fn metamodel() -> Job {
+        let rolling = Job::rolling().sampler(40, [2, 4], 5);
+        rolling.in_job("moves = [2, 4]", "moves = [2, 4]\nmetamodel_moves = 8")
+    }
+
+    /// Runs on soil that yields only after some shear displacement, with a narrow prior of the friction angle.
+    pub fn late_shear() -> Job {
+        let runs = text(&data("shear-mobilisation/runs.csv"));
+        Job { runs, ..Job::small() }.in_job("normal = [30.0, 5.7]", "normal = [30.0, 1.5]")
+    }
+
+    /// [`Job::late_shear`] as a study that searches and extends its model automatically.
     pub fn hidden_shear() -> Job {
-        let job = Job {
-            runs: include_str!("../data/shear-mobilisation/runs.csv").into(),
-            ..Job::small()
-        };
-        job.in_job("normal = [30.0, 5.7]", "normal = [30.0, 1.5]")
-            .in_job("[sampler]", "[discovery]\napply = \"auto\"\n[sampler]")
+        Job::late_shear().in_job("[sampler]", "[discovery]\napply = \"auto\"\n[sampler]")
     }
 
     /// Changes the settings of the sampler.
@@ -80,10 +88,7 @@ impl Job {
         self.in_job("particles = 60\nmoves = [2, 4]\nseed = 1", &sampler)
     }
 
-    /// Changes a passage of `job.toml`.
-    ///
-    /// # Panics
-    /// It is not there exactly once.
+    /// Changes a passage of `job.toml`, which must occur exactly once.
     #[track_caller]
     pub fn in_job(self, old: &str, new: &str) -> Job {
         Job {
@@ -92,10 +97,7 @@ impl Job {
         }
     }
 
-    /// Changes a passage of `experiment.toml`.
-    ///
-    /// # Panics
-    /// It is not there exactly once.
+    /// Changes a passage of `experiment.toml`, which must occur exactly once.
     #[track_caller]
     pub fn in_experiment(self, old: &str, new: &str) -> Job {
         Job {
@@ -104,10 +106,7 @@ impl Job {
         }
     }
 
-    /// Changes a passage of `runs.csv`.
-    ///
-    /// # Panics
-    /// It is not there exactly once.
+    /// Changes a passage of `runs.csv`, which must occur exactly once.
     #[track_caller]
     pub fn in_runs(self, old: &str, new: &str) -> Job {
         Job {
@@ -118,37 +117,30 @@ impl Job {
 
     /// Puts another file beside the experiment.
     pub fn beside(mut self, name: &str, content: impl Into<Vec<u8>>) -> Job {
-        self.others.push((name.to_owned(), content.into()));
+        self.attached.push((name.to_owned(), content.into()));
         self
     }
 
-    /// The small job with a surface in place of the rim of its wheel; the file itself is still to be put beside it.
+    /// The small job with a surface mesh in place of the rim of its wheel. [`Job::beside`] adds the file of the mesh.
     pub fn with_mesh(file: &str) -> Job {
         let small = Job::small();
-        let lines = small
-            .experiment
-            .lines()
-            .filter(|line| !line.starts_with("grouser_"));
+        let lines = small.experiment.lines();
+        let lines = lines.filter(|line| !line.starts_with("grouser_"));
         let experiment = lines.map(|line| format!("{line}\n")).collect();
         Job { experiment, ..small }
             .in_experiment("width_m = 0.112", &format!("width_m = 0.112\nmesh = \"{file}\""))
     }
 
-    /// The files that the job itself names: name and text of each.
+    /// The name and text of each attached file that `job.toml` names.
     pub fn effect_files(&self) -> Value {
-        let named = self
-            .others
-            .iter()
-            .filter(|(name, _)| self.job.contains(name.as_str()));
+        let named = self.attached.iter();
+        let named = named.filter(|(name, _)| self.job.contains(name.as_str()));
         named
             .map(|(name, content)| (name.clone(), Value::from(String::from_utf8_lossy(content))))
             .collect()
     }
 
-    /// Writes the files into a folder; the path of the job.
-    ///
-    /// # Panics
-    /// They cannot be written.
+    /// Writes the files into a folder; returns the path of `job.toml`.
     pub fn write(&self, folder: &Path) -> PathBuf {
         std::fs::create_dir_all(folder).expect("the folder of a job");
         let texts = [
@@ -156,8 +148,8 @@ impl Job {
             ("runs.csv", self.runs.as_bytes()),
             ("job.toml", self.job.as_bytes()),
         ];
-        let others = self.others.iter().map(|(name, content)| (&**name, &**content));
-        for (name, content) in texts.into_iter().chain(others) {
+        let attached = self.attached.iter().map(|(name, content)| (&**name, &**content));
+        for (name, content) in texts.into_iter().chain(attached) {
             std::fs::write(folder.join(name), content).expect("a file of a job");
         }
         folder.join("job.toml")
@@ -166,7 +158,7 @@ impl Job {
     /// The body of `POST /v1/experiments`.
     pub fn experiment_json(&self) -> Value {
         let mut files = json!({"runs.csv": self.runs});
-        for (name, content) in &self.others {
+        for (name, content) in &self.attached {
             files[name] = String::from_utf8_lossy(content).into();
         }
         json!({"toml": self.experiment, "files": files})
@@ -199,7 +191,7 @@ moves = [2, 4]
 seed = 1
 "#;
 
-/// An effect file: a gain of the pull that the data do not have.
+/// An effect file with a gain of the drawbar pull, which the data of [`Job::small`] do not have.
 pub const GAIN: &str = r#"name = "my_gain"
 summary = "the sensor reads too much"
 source = "a guess"

@@ -1,11 +1,11 @@
-//! A proxy that makes a liar of an honest worker: it changes a digit of some results on their way.
+//! A proxy that falsifies a digit of some results of a worker on their way to the coordinator.
 
 use std::io::{BufRead, BufReader, Read, Write};
 use std::net::{TcpListener, TcpStream};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// The bytes before the value that is changed.
+/// The bytes before the falsified value.
 const BEFORE: &[u8] = b"\"drawbar_pull_n\":[";
 
 /// A proxy between workers that speak JSON and a coordinator; it lives as long as the test's process.
@@ -16,15 +16,12 @@ pub struct LyingProxy {
 }
 
 impl LyingProxy {
-    /// Starts a proxy in front of an address that lets the first results pass and changes every so-manyth after them.
-    ///
-    /// # Panics
-    /// No port is free.
+    /// Starts a proxy in front of an address. It forwards the first `honest` results unchanged, then falsifies one in `one_in`.
     pub fn start(target: &str, honest: usize, one_in: usize) -> LyingProxy {
         let listener = TcpListener::bind("127.0.0.1:0").expect("a free port");
         let address = listener.local_addr().expect("an address").to_string();
         let (results, lies) = (Arc::new(AtomicUsize::new(0)), Arc::new(AtomicUsize::new(0)));
-        let (target, told) = (target.to_owned(), lies.clone());
+        let (target, count) = (target.to_owned(), lies.clone());
         std::thread::spawn(move || {
             for client in listener.incoming().flatten() {
                 let (target, results, lies) = (target.clone(), results.clone(), lies.clone());
@@ -35,12 +32,12 @@ impl LyingProxy {
                         lies.fetch_add(usize::from(is_lie), Ordering::Relaxed);
                         is_lie
                     };
-                    // A connection that breaks is opened again by the worker.
+                    // The worker opens a broken connection again.
                     let _ = forward(&client, &target, lie);
                 });
             }
         });
-        LyingProxy { address, lies: told }
+        LyingProxy { address, lies: count }
     }
 
     /// URL for workers.
@@ -48,13 +45,13 @@ impl LyingProxy {
         format!("http://{}", self.address)
     }
 
-    /// How many results it has changed.
+    /// The number of falsified results.
     pub fn lies(&self) -> usize {
         self.lies.load(Ordering::Relaxed)
     }
 }
 
-/// Forwards the requests of a connection one by one, and the answers as they come.
+/// Forwards the requests of a connection one by one, and the bytes of the answers at once.
 fn forward(client: &TcpStream, target: &str, lie: impl Fn() -> bool) -> std::io::Result<()> {
     let mut server = TcpStream::connect(target)?;
     let (mut answers, mut back) = (server.try_clone()?, client.try_clone()?);

@@ -1,4 +1,4 @@
-//! A program that is running: its log, signals, its end.
+//! A running program: its log, its signals and its end.
 
 use std::fs::File;
 use std::path::{Path, PathBuf};
@@ -9,17 +9,17 @@ use crate::wait::until;
 /// A signal.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Signal {
-    /// Ends at once, unseen.
+    /// SIGKILL, which the process cannot handle.
     Kill,
-    /// Asks to end.
+    /// SIGTERM.
     Terminate,
-    /// The signal of ^C.
+    /// SIGINT, which a terminal sends at ^C.
     Interrupt,
-    /// Halts.
+    /// SIGSTOP, which halts the process.
     Stop,
-    /// Goes on.
+    /// SIGCONT, which resumes a halted process.
     Continue,
-    /// The signal that a queue may send before it ends a job, SIGUSR1.
+    /// SIGUSR1, which a queue may send before it ends a job.
     User,
 }
 
@@ -31,10 +31,7 @@ pub struct Process {
 }
 
 impl Process {
-    /// Starts a command; what it says on standard error is appended to the file `log`.
-    ///
-    /// # Panics
-    /// The operating system refuses.
+    /// Starts a command; its standard error is appended to the file `log`.
     pub fn start(mut command: Command, log: &Path) -> Process {
         let file = File::options()
             .create(true)
@@ -54,15 +51,12 @@ impl Process {
         Process::start(command, log)
     }
 
-    /// Its number.
+    /// The number of the process.
     pub fn id(&self) -> u32 {
         self.child.id()
     }
 
     /// Sends a signal.
-    ///
-    /// # Panics
-    /// There is no such process any more.
     #[track_caller]
     pub fn signal(&self, signal: Signal) {
         let name = match signal {
@@ -74,19 +68,16 @@ impl Process {
             Signal::User => "USR1",
         };
         let line = format!("kill -{name} {}", self.child.id());
-        let sent = Command::new("sh")
-            .args(["-c", &line])
-            .status()
-            .expect("there is a shell");
-        assert!(sent.success(), "{line}");
+        let sent = Command::new("sh").args(["-c", &line]).status();
+        assert!(sent.expect("there is a shell").success(), "{line}");
     }
 
-    /// Memory that it holds `[kB]`; `None` where it has ended.
+    /// The resident memory of the process `[kB]`; `None` after its end.
     pub fn resident_kb(&self) -> Option<u64> {
         self.memory_kb("VmRSS:")
     }
 
-    /// The largest memory that it ever held `[kB]`; `None` where it has ended.
+    /// The largest resident memory so far `[kB]`; `None` after the end of the process.
     pub fn peak_kb(&self) -> Option<u64> {
         self.memory_kb("VmHWM:")
     }
@@ -98,28 +89,19 @@ impl Process {
         value.trim_end_matches("kB").trim().parse().ok()
     }
 
-    /// Whether it has not ended.
-    ///
-    /// # Panics
-    /// The operating system refuses to say.
+    /// Whether the process has not ended.
     pub fn is_running(&mut self) -> bool {
         self.child.try_wait().expect("a child can be asked").is_none()
     }
 
-    /// Kills it and waits for its end.
-    ///
-    /// # Panics
-    /// The operating system refuses.
+    /// Kills the process and waits for its end.
     pub fn kill(&mut self) {
-        // Fails only where it has ended already, which is as good.
+        // The call fails only for a process that has ended already.
         let _ = self.child.kill();
         self.child.wait().expect("a child can be waited for");
     }
 
-    /// Waits for its end.
-    ///
-    /// # Panics
-    /// It does not end in time.
+    /// Waits for the end of the process.
     #[track_caller]
     pub fn wait(&mut self) -> ExitStatus {
         until("the end of a process", || {
@@ -127,10 +109,7 @@ impl Process {
         })
     }
 
-    /// The log of it and of its predecessors with the same file: standard error.
-    ///
-    /// # Panics
-    /// The log is gone.
+    /// The log, which also has the standard error of earlier processes with the same file.
     pub fn log(&self) -> String {
         String::from_utf8_lossy(&std::fs::read(&self.log).expect("the log can be read")).into_owned()
     }

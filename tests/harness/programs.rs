@@ -1,12 +1,15 @@
 //! Builds the two programs once and runs them.
 
+use std::ffi::{OsStr, OsString};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::sync::OnceLock;
 
 use serde_json::Value;
+use tempfile::TempDir;
 
 use crate::job::Job;
+use crate::workspace::text;
 
 /// The exit code and the output of a program that has ended.
 #[derive(Debug)]
@@ -21,9 +24,6 @@ pub struct Ended {
 
 impl Ended {
     /// The output of a program that must have succeeded.
-    ///
-    /// # Panics
-    /// It did not.
     #[track_caller]
     pub fn success(self) -> String {
         assert_eq!(self.code, Some(0), "{}\n{}", self.stderr, self.stdout);
@@ -31,9 +31,6 @@ impl Ended {
     }
 
     /// The message of a program that must have refused: the line behind `error: `, with what follows.
-    ///
-    /// # Panics
-    /// It succeeded, died of a signal, panicked, or gave no message.
     #[track_caller]
     pub fn refusal(self) -> String {
         let Ended { code, stdout, stderr } = self;
@@ -53,19 +50,41 @@ impl Ended {
 }
 
 /// A command of the program `coordinator`.
-pub fn coordinator<S: AsRef<std::ffi::OsStr>>(arguments: impl IntoIterator<Item = S>) -> Command {
-    command("coordinator", arguments)
+pub fn coordinator<S: AsRef<OsStr>>(arguments: impl IntoIterator<Item = S>) -> Command {
+    command("coordinator".as_ref(), arguments)
 }
 
 /// A command of the program `worker`.
-pub fn worker<S: AsRef<std::ffi::OsStr>>(arguments: impl IntoIterator<Item = S>) -> Command {
-    command("worker", arguments)
+pub fn worker<S: AsRef<OsStr>>(arguments: impl IntoIterator<Item = S>) -> Command {
+    command("worker".as_ref(), arguments)
+}
+
+/// Runs a command line; see [`line`].
+pub fn call(template: &str, arguments: &[&dyn AsRef<OsStr>]) -> Ended {
+    run(line(template, arguments))
+}
+
+/// A command of `coordinator` or `worker` from a template of words, as `coordinator list --url {}`: each `{}` stands for the next
+/// argument, which may contain blanks.
+#[track_caller]
+pub fn line(template: &str, arguments: &[&dyn AsRef<OsStr>]) -> Command {
+    let mut arguments = arguments.iter();
+    let mut words = template.split(' ').map(|word| {
+        let mut parts = word.split("{}");
+        let mut whole = OsString::from(parts.next().unwrap_or_default());
+        for part in parts {
+            whole.push(arguments.next().expect("an argument for each placeholder"));
+            whole.push(part);
+        }
+        whole
+    });
+    let program = words.next().unwrap_or_default();
+    let words: Vec<OsString> = words.collect();
+    assert!(arguments.next().is_none(), "too many arguments for {template}");
+    command(&program, words)
 }
 
 /// Runs a command to its end.
-///
-/// # Panics
-/// The operating system refuses to start it.
 pub fn run(mut command: Command) -> Ended {
     let output = command.output().expect("the program starts");
     Ended {
@@ -75,31 +94,14 @@ pub fn run(mut command: Command) -> Ended {
     }
 }
 
-fn command<S: AsRef<std::ffi::OsStr>>(name: &str, arguments: impl IntoIterator<Item = S>) -> Command {
+fn command<S: AsRef<OsStr>>(name: &OsStr, arguments: impl IntoIterator<Item = S>) -> Command {
     let mut command = Command::new(built().join(name));
     command.args(arguments).stdin(Stdio::null()).env("NO_COLOR", "1");
-    // settings of the user's environment must not affect the tests
-    for variable in [
-        "GROUSER_HOST",
-        "GROUSER_LISTEN",
-        "GROUSER_STORE",
-        "GROUSER_LOCAL_WORKERS",
-        "GROUSER_LEASE_MS",
-        "GROUSER_URL",
-        "GROUSER_COORDINATOR",
-        "GROUSER_THREADS",
-        "GROUSER_WIRE",
-        "GROUSER_TOKEN",
-        "GROUSER_CA_CERTIFICATE",
-        "GROUSER_KEEP_DAYS",
-        "GROUSER_TLS_CERTIFICATE",
-        "GROUSER_TLS_KEY",
-        "GROUSER_VERIFY_PERCENT",
-        "GROUSER_WEBHOOK_HOST",
-        "GROUSER_ALLOW_MODEL",
-        "RUST_LOG",
-    ] {
-        command.env_remove(variable);
+    // The settings of the user's environment must not affect the tests.
+    for (name, _) in std::env::vars_os() {
+        if name.to_string_lossy().starts_with("GROUSER_") || name == "RUST_LOG" {
+            command.env_remove(name);
+        }
     }
     command
 }
@@ -130,23 +132,14 @@ fn built() -> &'static Path {
         let folder = test.ancestors().nth(2).expect("tests stand in deps").to_owned();
         let target = folder
             .parent()
-            .expect("a profile's folder stands in the target folder");
+            .expect("a profile's folder lies in the target folder");
         let mut build = Command::new(env!("CARGO"));
-        build
-            .args([
-                "build",
-                "--quiet",
-                "-p",
-                "coordinator",
-                "-p",
-                "worker",
-                "--target-dir",
-            ])
-            .arg(target);
+        let words = "build --quiet -p coordinator -p worker --target-dir";
+        build.args(words.split(' ')).arg(target);
         if folder.ends_with("release") {
             build.arg("--release");
         }
-        // The variables that cargo sets for a test would make the build script of ring run again, and rebuild all that use it.
+        // With the variables that cargo sets for a test, the build script of ring would run again and cargo would rebuild its users.
         for (name, _) in std::env::vars_os() {
             let is_of_package = |prefix| name.to_string_lossy().starts_with(prefix);
             if is_of_package("CARGO_PKG_") || is_of_package("CARGO_MANIFEST_") {
@@ -162,25 +155,49 @@ fn built() -> &'static Path {
     built.as_deref().expect("the programs build")
 }
 
-/// Runs a job in a fresh folder: the text that `coordinator run` prints, and the summary.
-///
-/// # Panics
-/// It fails, or writes no report.
+/// A job that was calibrated by `coordinator run` in a folder of its own.
+#[derive(Debug)]
+pub struct Study {
+    folder: TempDir,
+    /// The standard output of the run.
+    pub printed: String,
+    /// `summary.json`.
+    pub summary: Value,
+}
+
+impl Study {
+    /// Runs a job in a fresh folder.
+    #[track_caller]
+    pub fn new(job: &Job) -> Study {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = job.write(&folder.path().join("job"));
+        let out = folder.path().join("out");
+        let printed = call("coordinator run {} --out {} --verbose", &[&path, &out]).success();
+        assert!(out.join("report.html").exists());
+        let summary = serde_json::from_str(&text(&out.join("summary.json")));
+        let summary = summary.expect("JSON, in which every number is finite");
+        Study {
+            folder,
+            printed,
+            summary,
+        }
+    }
+
+    /// A file or folder below the output folder.
+    pub fn out(&self, name: &str) -> PathBuf {
+        self.folder.path().join("out").join(name)
+    }
+
+    /// `posterior.csv`.
+    #[track_caller]
+    pub fn posterior(&self) -> String {
+        text(&self.out("posterior.csv"))
+    }
+}
+
+/// Runs a job in a fresh folder; returns the standard output of `coordinator run`, and the summary.
 #[track_caller]
 pub fn study(job: &Job) -> (String, Value) {
-    let folder = tempfile::tempdir().expect("a folder");
-    let path = job.write(&folder.path().join("job")).display().to_string();
-    let out = folder.path().join("out");
-    let text = run(coordinator([
-        "run",
-        &path,
-        "--out",
-        &out.display().to_string(),
-        "--verbose",
-    ]))
-    .success();
-    assert!(out.join("report.html").exists());
-    let summary = std::fs::read_to_string(out.join("summary.json")).expect("summary.json");
-    let summary = serde_json::from_str(&summary).expect("JSON, which has no form for what is no number");
-    (text, summary)
+    let study = Study::new(job);
+    (study.printed, study.summary)
 }

@@ -1,6 +1,6 @@
-//! Seeded numbers: the same moments are drawn in every run of the tests.
+//! Seeded pseudo-random numbers, which are the same in every run of the tests.
 
-/// A counter whose values are mixed (splitmix64).
+/// The generator splitmix64.
 #[derive(Debug)]
 pub struct Random(u64);
 

@@ -1,13 +1,13 @@
-//! Databases of a PostgreSQL server, one for each store, where the tests are told of a server.
+//! Databases of a PostgreSQL server, one for each store, when an environment variable names a server.
 
 use std::sync::atomic::{AtomicU32, Ordering};
 
 use crate::database::Database;
 
-/// The variable with the server, as `postgres://USER@HOST:PORT`; its user may create databases.
+/// The environment variable with the server, as `postgres://USER@HOST:PORT`. The user must be able to create databases.
 const VARIABLE: &str = "GROUSER_TEST_POSTGRES";
 
-/// A database that is deleted with this value.
+/// A database that is deleted when this value is dropped.
 #[derive(Debug)]
 pub struct ServerDatabase {
     server: String,
@@ -15,18 +15,12 @@ pub struct ServerDatabase {
 }
 
 impl ServerDatabase {
-    /// An empty database; `None` where the tests are told of no server.
-    ///
-    /// # Panics
-    /// The server refuses.
+    /// Creates an empty database; `None` if no server is named.
     pub fn new() -> Option<ServerDatabase> {
         static NEXT: AtomicU32 = AtomicU32::new(0);
         let server = std::env::var(VARIABLE).ok()?;
-        let name = format!(
-            "grouser_{}_{}",
-            std::process::id(),
-            NEXT.fetch_add(1, Ordering::Relaxed)
-        );
+        let number = NEXT.fetch_add(1, Ordering::Relaxed);
+        let name = format!("grouser_{}_{number}", std::process::id());
         let database = ServerDatabase { server, name };
         database.administer(&format!("CREATE DATABASE {}", database.name));
         Some(database)
@@ -37,10 +31,7 @@ impl ServerDatabase {
         format!("{}/{}", self.server, self.name)
     }
 
-    /// Ends every connection to it, as a server does that is started again.
-    ///
-    /// # Panics
-    /// The server refuses.
+    /// Ends every connection to it, as a restart of the server does.
     pub fn end_connections(&self) {
         let name = &self.name;
         self.administer(&format!(

@@ -1,4 +1,4 @@
-//! `coordinator serve` on a port and a store that outlive its process: a file, or a database where the tests are told of a server.
+//! `coordinator serve` on a port and a store that outlive its process: a file, or a database where the tests are given a server.
 
 use std::net::TcpListener;
 use std::path::{Path, PathBuf};
@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 use tempfile::TempDir;
 
 use crate::database::Database;
-use crate::http::Client;
+use crate::http::{Client, Response};
 use crate::job::Job;
 use crate::process::{Process, Signal};
 use crate::programs;
@@ -29,16 +29,13 @@ pub struct Service {
 }
 
 impl Service {
-    /// Starts a service on an empty store; `more` are arguments such as `--lease-ms`. It verifies nothing unless `--verify-percent` is
-    /// among them: what workers played by hand answer is nothing that a second one would.
+    /// Starts a service on an empty store; `more` are arguments such as `--lease-ms`. It verifies no evaluation unless `--verify-percent`
+    /// is among them, because a second worker would not repeat the invented answers of a [`FakeWorker`](crate::fake_worker::FakeWorker).
     pub fn start(more: &[&str]) -> Service {
         Service::start_at(free_address(), more)
     }
 
     /// Starts a service on an empty store that may have so many files and connections open.
-    ///
-    /// # Panics
-    /// It does not start.
     pub fn start_with_descriptors(max_descriptors: u32) -> Service {
         let mut service = Service::start(&[]);
         service.kill();
@@ -48,9 +45,6 @@ impl Service {
     }
 
     /// Starts a service on an empty store at an address.
-    ///
-    /// # Panics
-    /// It does not start.
     pub fn start_at(address: String, more: &[&str]) -> Service {
         let folder = tempfile::tempdir().expect("a folder for the store");
         let database = ServerDatabase::new();
@@ -58,19 +52,16 @@ impl Service {
             Some(database) => database.url(),
             None => format!("sqlite://{}", folder.path().join("grouser.db").display()),
         };
-        Service::of(address, folder, database, store_name, more)
+        Service::launch(address, folder, database, store_name, more)
     }
 
-    /// Starts a service on a store that is there.
-    ///
-    /// # Panics
-    /// It does not start.
+    /// Starts a service on an existing store.
     pub fn start_on(store_name: &str, more: &[&str]) -> Service {
         let folder = tempfile::tempdir().expect("a folder for the log");
-        Service::of(free_address(), folder, None, store_name.to_owned(), more)
+        Service::launch(free_address(), folder, None, store_name.to_owned(), more)
     }
 
-    fn of(
+    fn launch(
         address: String,
         folder: TempDir,
         database: Option<ServerDatabase>,
@@ -97,17 +88,19 @@ impl Service {
         service
     }
 
-    /// Starts it again, on the same store and port.
-    ///
-    /// # Panics
-    /// It runs, or does not start.
+    /// Kills it and starts it again on the same store and port.
+    pub fn crash(&mut self) {
+        self.kill();
+        self.restart();
+    }
+
+    /// Starts it again on the same store and port.
     pub fn restart(&mut self) {
         assert!(self.process.is_none(), "the service is running");
-        let command = programs::coordinator(&self.arguments);
-        let command = match self.max_descriptors {
-            Some(count) => programs::with_descriptors(count, &command),
-            None => command,
-        };
+        let mut command = programs::coordinator(&self.arguments);
+        if let Some(count) = self.max_descriptors {
+            command = programs::with_descriptors(count, &command);
+        }
         let mut process = Process::start(command, &self.folder.path().join("coordinator.log"));
         until("an answer of the service", || {
             assert!(process.is_running(), "the service ended:\n{}", process.log());
@@ -117,34 +110,25 @@ impl Service {
     }
 
     /// Kills it with SIGKILL.
-    ///
-    /// # Panics
-    /// It is not running.
     pub fn kill(&mut self) {
         self.process.take().expect("the service is running").kill();
     }
 
-    /// Sends SIGTERM and waits for its end; whether that was orderly.
-    ///
-    /// # Panics
-    /// It is not running.
+    /// Sends SIGTERM and waits for the end; returns whether the service exited with status 0.
     pub fn terminate(&mut self) -> bool {
-        let mut process = self.process.take().expect("the service is running");
-        process.signal(Signal::Terminate);
-        process.wait().success()
+        self.process().signal(Signal::Terminate);
+        self.wait()
     }
 
-    /// Waits for its end; whether that was orderly.
-    ///
-    /// # Panics
-    /// It is not running, or does not end in time.
+    /// Waits for the end; returns whether the service exited with status 0.
     #[track_caller]
     pub fn wait(&mut self) -> bool {
-        self.process
-            .take()
-            .expect("the service is running")
-            .wait()
-            .success()
+        let process = self.process.take();
+        process.expect("the service is running").wait().success()
+    }
+
+    fn process(&self) -> &Process {
+        self.process.as_ref().expect("the service is running")
     }
 
     /// URL for workers and verbs.
@@ -153,91 +137,62 @@ impl Service {
     }
 
     /// Memory that its process holds `[kB]`.
-    ///
-    /// # Panics
-    /// It is not running.
     pub fn resident_kb(&self) -> u64 {
-        self.process
-            .as_ref()
-            .expect("the service is running")
-            .resident_kb()
-            .expect("the service is running")
+        self.process().resident_kb().expect("the service is running")
     }
 
-    /// What the operating system keeps of answers that their clients have not taken `[bytes]`, and the number of connections that
-    /// are open, proc(5).
-    ///
-    /// # Panics
-    /// The system does not say.
-    pub fn untaken(&self) -> (u64, usize) {
-        let port = self
-            .client
-            .0
-            .rsplit_once(':')
-            .and_then(|(_, port)| port.parse().ok());
-        let port: u16 = port.expect("an address has a port");
+    /// The largest memory that it ever held `[kB]`.
+    pub fn peak_kb(&self) -> u64 {
+        self.process().peak_kb().expect("the service is running")
+    }
+
+    /// The bytes of answers that the operating system holds because their clients have not read them, and the number of open
+    /// connections, from proc(5).
+    pub fn unread(&self) -> (u64, usize) {
+        let port = self.client.0.rsplit(':').next();
+        let port: u16 = port
+            .and_then(|port| port.parse().ok())
+            .expect("an address has a port");
         let table = std::fs::read_to_string("/proc/net/tcp").expect("a table of connections");
-        let ours = format!(":{port:04X}");
+        let local_end = format!(":{port:04X}");
         let (mut bytes, mut open) = (0, 0);
         for line in table.lines() {
             let words: Vec<&str> = line.split_whitespace().collect();
             let [_, local, _, state, queues, ..] = words[..] else {
                 continue;
             };
-            let queue = queues
-                .split(':')
-                .next()
-                .and_then(|text| u64::from_str_radix(text, 16).ok());
-            if local.ends_with(&ours) && state != "0A" {
-                bytes += queue.unwrap_or_default();
+            if local.ends_with(&local_end) && state != "0A" {
+                let queue = queues.split(':').next().unwrap_or_default();
+                bytes += u64::from_str_radix(queue, 16).unwrap_or_default();
                 open += usize::from(state == "01");
             }
         }
         (bytes, open)
     }
 
-    /// The largest memory that it ever held `[kB]`.
-    ///
-    /// # Panics
-    /// It is not running.
-    pub fn peak_kb(&self) -> u64 {
-        self.process
-            .as_ref()
-            .expect("the service is running")
-            .peak_kb()
-            .expect("the service is running")
-    }
-
     /// The file of its store.
-    ///
-    /// # Panics
-    /// Its store is in a server.
     #[track_caller]
     pub fn store(&self) -> PathBuf {
         let file = self.store_name.strip_prefix("sqlite://");
         file.expect("this test is of stores in files").into()
     }
 
-    /// Its store, as `--store` takes it.
+    /// The value of `--store` for its store.
     pub fn store_name(&self) -> &str {
         &self.store_name
     }
 
-    /// Its store, opened beside it.
+    /// Opens its store with another client.
     #[track_caller]
     pub fn database(&self) -> Database {
         Database::open(&self.store_name)
     }
 
     /// The database of its store.
-    ///
-    /// # Panics
-    /// Its store is a file.
     #[track_caller]
     pub fn server_database(&self) -> &ServerDatabase {
-        self.database
-            .as_ref()
-            .expect("GROUSER_TEST_POSTGRES names a server")
+        let database = self.database.as_ref();
+        database.expect("GROUSER_TEST_POSTGRES names a server")
     }
 
     /// Starts another coordinator on the same store and address, which waits for the end of this one.
@@ -249,60 +204,92 @@ impl Service {
         Process::start(programs::coordinator(&arguments), &log)
     }
 
-    /// A folder for whatever a test writes.
+    /// A folder for the files of a test.
     pub fn folder(&self) -> &Path {
         self.folder.path()
     }
 
-    /// Starts a worker of this service with a log of its own.
+    /// Starts a worker with a log of its own.
     pub fn worker(&self, name: &str, threads: usize) -> Process {
-        Process::worker(
-            &self.url(),
-            threads,
+        self.worker_with(name, threads, &[])
+    }
+
+    /// Starts a worker that may run an external model: the file of a program, or the URL of a server.
+    pub fn worker_of(&self, name: &str, threads: usize, model: &str) -> Process {
+        self.worker_with(name, threads, &["--allow-model", model])
+    }
+
+    /// Starts a worker with further arguments.
+    pub fn worker_with(&self, name: &str, threads: usize, more: &[&str]) -> Process {
+        let (url, threads) = (self.url(), threads.to_string());
+        let words = [&["--coordinator", &url, "--threads", &threads], more].concat();
+        Process::start(
+            programs::worker(words),
             &self.folder.path().join(format!("{name}.log")),
         )
     }
 
-    /// Starts a worker that runs a model that is not ours: the file of a program, or the URL of a server.
-    pub fn worker_of(&self, name: &str, threads: usize, model: &str) -> Process {
-        let (url, threads) = (self.url(), threads.to_string());
-        let arguments = [
-            "--coordinator",
-            &url,
-            "--threads",
-            &threads,
-            "--allow-model",
-            model,
-        ];
-        let log = self.folder.path().join(format!("{name}.log"));
-        Process::start(crate::programs::worker(arguments), &log)
-    }
-
-    /// Starts a worker of one thread that says JSON.
+    /// Starts a worker of one thread that sends JSON.
     pub fn json_worker(&self, name: &str) -> Process {
         self.json_worker_at(&self.url(), name)
     }
 
-    /// Starts a worker that talks to a proxy in front of the service.
+    /// Starts a worker of one thread that sends JSON to a proxy in front of the service.
     pub fn json_worker_at(&self, url: &str, name: &str) -> Process {
-        let mut command = crate::programs::worker(["--coordinator", url, "--threads", "1"]);
+        let mut command = programs::worker(["--coordinator", url, "--threads", "1"]);
         command.env("GROUSER_WIRE", "json");
         Process::start(command, &self.folder.path().join(format!("{name}.log")))
     }
 
-    /// Submits a job by plain HTTP; its id.
-    ///
-    /// # Panics
-    /// It is refused.
+    /// Posts a document that must be created; returns the answer.
+    #[track_caller]
+    pub fn create(&self, path: &str, body: &Value) -> Value {
+        let response = self.client.post(path, body);
+        assert_eq!(response.status, 201, "{path}: {}", response.body);
+        response.json()
+    }
+
+    /// Submits a job by plain HTTP; returns its id.
     #[track_caller]
     pub fn submit(&self, job: &Job) -> i64 {
-        let experiment = self.client.post("/v1/experiments", &job.experiment_json());
-        assert_eq!(experiment.status, 201, "{}", experiment.body);
-        let new =
-            json!({"experiment": experiment.json()["id"], "toml": job.job, "files": job.effect_files()});
-        let created = self.client.post("/v1/calibrations", &new);
-        assert_eq!(created.status, 201, "{}", created.body);
-        created.json()["id"].as_i64().expect("an id")
+        let experiment = self.create("/v1/experiments", &job.experiment_json())["id"].take();
+        let new = json!({"experiment": experiment, "toml": job.job, "files": job.effect_files()});
+        id(&self.create("/v1/calibrations", &new))
+    }
+
+    /// Submits a job and waits until its calibration is finished; returns its id.
+    #[track_caller]
+    pub fn calibrate(&self, job: &Job) -> i64 {
+        let id = self.submit(job);
+        self.wait_for(id, "finished");
+        id
+    }
+
+    /// Extends a calibration by an effect; returns the id of the new calibration.
+    #[track_caller]
+    pub fn extend(&self, calibration: i64, effect: &str) -> i64 {
+        let path = format!("/v1/calibrations/{calibration}/extend");
+        id(&self.create(&path, &json!({ "effect": effect })))
+    }
+
+    /// Posts to a verb of a calibration, such as `pause`.
+    #[track_caller]
+    pub fn act(&self, calibration: i64, verb: &str) -> Response {
+        self.client
+            .post(&format!("/v1/calibrations/{calibration}/{verb}"), &json!({}))
+    }
+
+    /// The answer to `GET` of a part of a calibration, such as `report`.
+    #[track_caller]
+    pub fn part(&self, calibration: i64, part: &str) -> Response {
+        self.client.get(&format!("/v1/calibrations/{calibration}/{part}"))
+    }
+
+    /// The JSON of a result of a calibration, such as `summary`, which must be there.
+    #[track_caller]
+    pub fn result(&self, calibration: i64, part: &str) -> Value {
+        self.client
+            .json(&format!("/v1/calibrations/{calibration}/{part}"))
     }
 
     /// The status of a calibration.
@@ -311,16 +298,13 @@ impl Service {
         self.client.json(&format!("/v1/calibrations/{id}"))
     }
 
-    /// Evaluations done so far; `None` where the service does not say (it is away, or the calibration is over).
+    /// The number of evaluations so far; `None` while the service does not answer or the calibration is not in progress.
     pub fn evaluations(&self, id: i64) -> Option<u64> {
         let response = self.client.try_get(&format!("/v1/calibrations/{id}")).ok()?;
         (response.status == 200).then(|| response.json()["progress"]["evaluations"].as_u64())?
     }
 
-    /// Waits until a calibration is in a state.
-    ///
-    /// # Panics
-    /// It ends in another one, or does not get there.
+    /// Waits until a calibration is in a state; fails where it ends or pauses in another one.
     #[track_caller]
     pub fn wait_for(&self, id: i64, state: &str) -> Value {
         until(&format!("calibration {id} {state}"), || {
@@ -336,33 +320,20 @@ impl Service {
     /// The posterior of a finished calibration, as `export --format csv` writes it.
     #[track_caller]
     pub fn posterior_csv(&self, id: i64) -> String {
-        programs::run(programs::coordinator([
-            "export",
-            &id.to_string(),
-            "--url",
-            &self.url(),
-        ]))
-        .success()
+        programs::call("coordinator export {} --url {}", &[&id.to_string(), &self.url()]).success()
     }
 
     /// A figure of the metrics page.
-    ///
-    /// # Panics
-    /// There is no such figure.
     #[track_caller]
     pub fn metric(&self, name: &str) -> u64 {
         let page = self.client.get("/metrics").body;
-        let line = page
-            .lines()
-            .find_map(|line| line.strip_prefix(name)?.strip_prefix(' '));
-        line.and_then(|value| value.parse().ok())
-            .unwrap_or_else(|| panic!("no {name} in\n{page}"))
+        let mut lines = page.lines();
+        let value = lines.find_map(|line| line.strip_prefix(name)?.strip_prefix(' '));
+        let value = value.and_then(|value| value.parse().ok());
+        value.unwrap_or_else(|| panic!("no {name} in\n{page}"))
     }
 
-    /// The record of the only worker, once it has been heard of.
-    ///
-    /// # Panics
-    /// There are several.
+    /// The record of the only worker; `None` before its first exchange.
     #[track_caller]
     pub fn only_worker(&self) -> Option<Value> {
         let workers = self.client.json("/v1/workers");
@@ -371,30 +342,32 @@ impl Service {
         records.values().next().cloned()
     }
 
-    /// The version of the equations that the program `worker` computes, as it says to this service.
+    /// The version of the equations that the program `worker` states to this service.
     #[track_caller]
     pub fn model_version(&self) -> String {
         let worker = self.worker("version", 1);
-        let record = until("a word of a worker", || self.only_worker());
+        let record = until("an exchange of a worker", || self.only_worker());
         drop(worker);
         record["model_version"].as_str().unwrap_or_default().to_owned()
     }
 
-    /// The service's standard error, over all its starts.
-    ///
-    /// # Panics
-    /// The log is gone.
+    /// The standard error of the service since its first start.
     pub fn log(&self) -> String {
         let log = std::fs::read(self.folder.path().join("coordinator.log")).expect("the log can be read");
         String::from_utf8_lossy(&log).into_owned()
     }
 }
 
+/// The number under `id` in an answer.
+#[track_caller]
+pub fn id(answer: &Value) -> i64 {
+    answer["id"]
+        .as_i64()
+        .unwrap_or_else(|| panic!("no id in {answer}"))
+}
+
 /// An address on which nothing listens, outside the range that the system gives to outgoing connections: it stays
 /// free while its service is down.
-///
-/// # Panics
-/// Every port is taken.
 pub fn free_address() -> String {
     static NEXT: AtomicU16 = AtomicU16::new(0);
     let start = (std::process::id() % 10_000) as u16;

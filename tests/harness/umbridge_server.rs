@@ -1,4 +1,4 @@
-//! A UM-Bridge server that does what a test says.
+//! A UM-Bridge server whose replies a test chooses.
 
 use std::io::{BufRead, BufReader, Read, Write};
 use std::net::{TcpListener, TcpStream};
@@ -15,7 +15,7 @@ pub enum Reply {
     Output(String),
     /// A status and its body.
     Status(u16, String),
-    /// Nothing, for so long.
+    /// An empty reply after this time.
     Hang(Duration),
 }
 
@@ -33,7 +33,7 @@ pub struct Question {
     pub run: Vec<f64>,
     /// The second input.
     pub parameters: Vec<f64>,
-    /// How many were asked before.
+    /// The number of earlier questions.
     pub number: u64,
 }
 
@@ -53,9 +53,6 @@ struct State {
 
 impl UmbridgeServer {
     /// Starts a server on a free port; it ends with the test.
-    ///
-    /// # Panics
-    /// There is no port.
     pub fn start(answer: impl Fn(&Question) -> Reply + Send + Sync + 'static) -> UmbridgeServer {
         let listener = TcpListener::bind("127.0.0.1:0").expect("a free port");
         let address = listener.local_addr().expect("an address");
@@ -73,12 +70,12 @@ impl UmbridgeServer {
         }
     }
 
-    /// How often the model was asked.
+    /// The number of evaluations so far.
     pub fn evaluations(&self) -> u64 {
         self.state.evaluations.load(Ordering::SeqCst)
     }
 
-    /// Says that it is another model from now on.
+    /// Reports another version of the model from now on.
     pub fn change_version(&self) {
         self.state.version.fetch_add(1, Ordering::SeqCst);
     }
@@ -87,7 +84,7 @@ impl UmbridgeServer {
 /// Answers requests until the client hangs up.
 fn converse(stream: &TcpStream, state: &State, answer: &dyn Fn(&Question) -> Reply) {
     let mut reader = BufReader::new(stream);
-    // A client that is gone needs no answer.
+    // The call fails only for a client that has gone, which needs no answer.
     let _ = stream.set_nodelay(true);
     while let Some((path, body)) = request(&mut reader) {
         let (status, text) = respond(&path, &body, state, answer);

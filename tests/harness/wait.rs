@@ -1,15 +1,13 @@
-//! Waiting with a deadline; nothing sleeps in the hope that it was long enough.
+//! Waiting with a deadline; no test sleeps for a fixed time instead.
 
 use std::time::{Duration, Instant};
 
-/// Patience for whatever should happen soon, on a machine that has other things to do: the longest wait, for a program that is held to
-/// its limits, takes half a minute on two idle cores.
-pub const PATIENCE: Duration = Duration::from_secs(300);
+/// The longest wait for an event that should happen soon on a busy machine. On two idle cores the longest wait, for a program that is
+/// held to its limits, takes half a minute.
+const PATIENCE: Duration = Duration::from_secs(300);
 
-/// Asks again and again until there is an answer.
-///
-/// # Panics
-/// Nothing came within [`PATIENCE`]; `what` says what was waited for.
+/// Asks again and again until there is an answer; `what` says in a failure what was waited for.
+#[track_caller]
 pub fn until<T>(what: &str, mut answer: impl FnMut() -> Option<T>) -> T {
     let deadline = Instant::now() + PATIENCE;
     loop {
@@ -19,4 +17,10 @@ pub fn until<T>(what: &str, mut answer: impl FnMut() -> Option<T>) -> T {
         assert!(Instant::now() < deadline, "waited {PATIENCE:?} in vain: {what}");
         std::thread::sleep(Duration::from_millis(5));
     }
+}
+
+/// Asks again and again until a condition holds.
+#[track_caller]
+pub fn until_true(what: &str, mut condition: impl FnMut() -> bool) {
+    until(what, || condition().then_some(()));
 }

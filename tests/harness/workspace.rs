@@ -15,29 +15,20 @@ pub fn data(name: &str) -> PathBuf {
 }
 
 /// The text of a file.
-///
-/// # Panics
-/// It cannot be read.
 #[track_caller]
 pub fn text(path: &Path) -> String {
     std::fs::read_to_string(path).unwrap_or_else(|e| panic!("{}: {e}", path.display()))
 }
 
-/// Every file below a folder of the workspace whose name ends so, build outputs left out, in order.
-///
-/// # Panics
-/// A folder cannot be read.
+/// Every file below a folder of the workspace whose name ends with a suffix, sorted, without build outputs.
 pub fn files(folder: &str, suffix: &str) -> Vec<PathBuf> {
     let mut found = Vec::new();
     let mut folders = vec![root().join(folder)];
     while let Some(folder) = folders.pop() {
         for entry in std::fs::read_dir(&folder).unwrap_or_else(|e| panic!("{}: {e}", folder.display())) {
-            let path = entry.expect("an entry of a folder").path();
-            let name = path
-                .file_name()
-                .unwrap_or_default()
-                .to_string_lossy()
-                .into_owned();
+            let entry = entry.expect("an entry of a folder");
+            let path = entry.path();
+            let name = entry.file_name().to_string_lossy().into_owned();
             if path.is_dir() && name != "target" && !name.starts_with('.') {
                 folders.push(path);
             } else if path.is_file() && name.ends_with(suffix) {

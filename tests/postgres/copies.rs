@@ -1,8 +1,9 @@
 //! Stores that move from a file to a server and back.
 
+use farm_tests::assert_contains;
 use farm_tests::database::Database;
 use farm_tests::job::Job;
-use farm_tests::programs::{coordinator, run};
+use farm_tests::programs::{call, coordinator, run};
 use farm_tests::server::ServerDatabase;
 use farm_tests::service::Service;
 use farm_tests::workspace::{data, text};
@@ -30,22 +31,16 @@ fn rows(store: &str) -> Vec<(String, String)> {
 /// A finished study and one in progress, with a token, in a store of this run's kind.
 fn filled() -> Service {
     let mut service = Service::start(&["--local-workers", "2"]);
-    let done = service.submit(&Job::small());
-    service.wait_for(done, "finished");
+    service.calibrate(&Job::small());
     service.client.get("/v1/studies/1/summary");
     let begun = service.submit(&Job::small());
     farm_tests::wait::until("some evaluations", || {
         service.evaluations(begun).filter(|&count| count >= 64)
     });
-    run(coordinator([
-        "token",
-        "add",
-        "anna",
-        "--role",
-        "read",
-        "--store",
-        service.store_name(),
-    ]))
+    call(
+        "coordinator token add anna --role read --store {}",
+        &[&service.store_name()],
+    )
     .success();
     service.terminate();
     service
@@ -60,29 +55,27 @@ fn a_store_goes_to_a_file_to_a_server_and_to_a_file_with_every_bit_and_goes_on_t
     let service = filled();
     let file = |name: &str| format!("sqlite://{}", service.folder().join(name).display());
     let (first, second) = (file("first.db"), file("second.db"));
-    let said = copy(service.store_name(), &first);
-    assert!(
-        said.contains("evaluations") && said.contains("tables: 18\n"),
-        "{said}"
-    );
+    let output = copy(service.store_name(), &first);
+    assert_contains!(output, "evaluations", "tables: 18\n");
     let server = ServerDatabase::new().expect("GROUSER_TEST_POSTGRES names a server");
     let there = copy(&first, &server.url());
-    let table_lines = |said: &str| {
-        said.lines()
+    let table_lines = |output: &str| {
+        output
+            .lines()
             .filter(|line| !line.contains("tables:"))
             .map(str::to_owned)
             .collect::<Vec<_>>()
     };
-    assert_eq!(table_lines(&said), table_lines(&there));
+    assert_eq!(table_lines(&output), table_lines(&there));
     copy(&server.url(), &second);
     assert_eq!(rows(&first), rows(&second));
-    // The finished study is on every copy as it was where it was made.
+    // Every copy has the finished study unchanged.
     let original = Service::start_on(service.store_name(), &["--read-only", "--insecure"]).posterior_csv(1);
     for copy in [&first, &server.url()] {
         let copied = Service::start_on(copy, &["--read-only", "--insecure"]).posterior_csv(1);
         assert_eq!(copied, original, "{copy}");
     }
-    // A coordinator on either copy goes on with what had begun, and numbers new rows on from the old ones.
+    // A coordinator on either copy continues the unfinished study, and numbers new rows after the old ones.
     let posterior = |store: &str| {
         let service = Service::start_on(store, &["--local-workers", "2", "--insecure"]);
         service.wait_for(2, "finished");
@@ -101,7 +94,7 @@ fn a_store_of_an_old_version_goes_to_a_server_and_back_with_the_posterior_that_i
     let store = |name: &str| format!("sqlite://{}", folder.path().join(name).display());
     std::fs::copy(data("store-8/finished.store"), folder.path().join("grouser.db"))
         .expect("the store is copied");
-    // Brings its tables up to date; its rows stay as they are.
+    // The service migrates the tables and leaves the rows unchanged.
     let posterior = |store: &str| {
         let mut service = Service::start_on(store, &["--insecure"]);
         let posterior = service.posterior_csv(1);
@@ -124,7 +117,7 @@ fn a_copy_needs_an_empty_place_of_the_other_kind() {
     let file = format!("sqlite://{}", service.folder().join("copy.db").display());
     let refused = |from: &str, to: &str, reason: &str| {
         let refusal = run(coordinator(["copy-store", from, to])).refusal();
-        assert!(refusal.contains(reason), "{refusal}");
+        assert_contains!(refusal, reason);
     };
     copy(store, &file);
     refused(store, &file, "has rows; a store is copied to an empty one");

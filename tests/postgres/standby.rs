@@ -3,18 +3,17 @@
 use std::time::{Duration, Instant};
 
 use farm_tests::job::Job;
-use farm_tests::programs::{coordinator, run};
+use farm_tests::programs::{call, coordinator, run};
 use farm_tests::service::Service;
-use farm_tests::wait::until;
+use farm_tests::wait::{until, until_true};
 
-/// Within this, a calibration goes on after the death of its coordinator.
+/// The longest time until a calibration goes on after the end of its coordinator.
 const TAKE_OVER: Duration = Duration::from_secs(10);
 
-/// The posterior of the job where nothing happens.
+/// The posterior of the job without disturbance.
 fn undisturbed() -> String {
     let service = Service::start(&["--local-workers", "2"]);
-    let id = service.submit(&Job::small());
-    service.wait_for(id, "finished");
+    let id = service.calibrate(&Job::small());
     service.posterior_csv(id)
 }
 
@@ -29,15 +28,15 @@ fn a_standby_goes_on_with_the_same_bits_within_ten_seconds_of_a_kill() {
         until("some evaluations", || {
             service.evaluations(id).filter(|&done| done >= least)
         });
-        until("coordinators that stand by", || {
+        until_true("coordinators that stand by", || {
             let is_waiting =
                 |standby: &mut farm_tests::process::Process| standby.log().contains("standing by");
-            standbys.iter_mut().all(is_waiting).then_some(())
+            standbys.iter_mut().all(is_waiting)
         });
         let before = service.evaluations(id).expect("a count");
         match least {
             100 => service.kill(),
-            // The standby that serves now is the one of the two that no longer only waits.
+            // The standby that serves now is one of the two.
             _ => {
                 let serving = standbys
                     .iter()
@@ -60,24 +59,13 @@ fn a_standby_goes_on_with_the_same_bits_within_ten_seconds_of_a_kill() {
 fn a_second_coordinator_is_turned_away_and_the_password_is_not_shown() {
     let service = Service::start(&[]);
     let store = service.store_name().replacen("@", ":secret@", 1);
-    let refusal = run(coordinator([
-        "serve",
-        "--listen",
-        "127.0.0.1:0",
-        "--store",
-        &store,
-    ]))
-    .refusal();
+    let refusal = call("coordinator serve --listen 127.0.0.1:0 --store {}", &[&store]).refusal();
     assert!(refusal.ends_with("another coordinator is using it"), "{refusal}");
-    assert!(
-        refusal.contains("store postgres://") && !refusal.contains("secret"),
-        "{refusal}"
-    );
+    assert!(refusal.contains("store postgres://"), "{refusal}");
+    assert!(!refusal.contains("secret"), "{refusal}");
     let blank = farm_tests::server::ServerDatabase::new().expect("a server");
     let store = blank.url().replacen("@", ":secret@", 1);
     let refusal = run(coordinator(["serve", "--listen", "0.0.0.0:0", "--store", &store])).refusal();
-    assert!(
-        refusal.contains("has no token") && !refusal.contains("secret"),
-        "{refusal}"
-    );
+    assert!(refusal.contains("has no token"), "{refusal}");
+    assert!(!refusal.contains("secret"), "{refusal}");
 }

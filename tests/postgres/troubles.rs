@@ -1,8 +1,9 @@
 //! A server that goes away, and databases that are no store.
 
+use farm_tests::assert_contains;
 use farm_tests::database::Database;
 use farm_tests::job::Job;
-use farm_tests::programs::{coordinator, run};
+use farm_tests::programs::{call, coordinator, run};
 use farm_tests::server::ServerDatabase;
 use farm_tests::service::Service;
 use farm_tests::wait::until;
@@ -10,8 +11,7 @@ use farm_tests::wait::until;
 #[test]
 fn a_coordinator_that_loses_its_connection_ends_with_the_reason_and_another_goes_on_with_the_same_bits() {
     let mut service = Service::start(&["--local-workers", "2"]);
-    let first = service.submit(&Job::small());
-    service.wait_for(first, "finished");
+    let first = service.calibrate(&Job::small());
     let expected = service.posterior_csv(first);
     let second = service.submit(&Job::small());
     until("some evaluations", || {
@@ -20,7 +20,7 @@ fn a_coordinator_that_loses_its_connection_ends_with_the_reason_and_another_goes
     service.server_database().end_connections();
     assert!(!service.wait());
     let log = service.log();
-    assert!(log.contains("the store can no longer be written"), "{log}");
+    assert_contains!(log, "the store can no longer be written");
     service.restart();
     service.wait_for(second, "finished");
     assert_eq!(service.posterior_csv(second), expected);
@@ -32,7 +32,7 @@ fn an_idle_coordinator_that_loses_its_connection_ends_too() {
     service.server_database().end_connections();
     assert!(!service.wait());
     let log = service.log();
-    assert!(log.contains("the store can no longer be written"), "{log}");
+    assert_contains!(log, "the store can no longer be written");
 }
 
 #[test]
@@ -60,41 +60,24 @@ fn a_database_of_others_and_one_of_a_later_version_are_refused_and_left_alone() 
         service.store_name(),
     ];
     let refusal = run(coordinator(words)).refusal();
-    assert!(refusal.contains("tables have version 900"), "{refusal}");
+    assert_contains!(refusal, "tables have version 900");
 }
 
 #[test]
 fn the_doctor_and_backup_say_what_to_do_with_a_server() {
     let service = Service::start(&[]);
     service.submit(&Job::small());
-    let doctor = |store: &str| {
-        run(coordinator([
-            "doctor",
-            "--listen",
-            "127.0.0.1:0",
-            "--store",
-            store,
-        ]))
-    };
-    let said = doctor(service.store_name()).success();
-    assert!(
-        said.contains("ok    store       postgres://") && said.contains(": 1 calibrations"),
-        "{said}"
-    );
+    let doctor = |store: &str| call("coordinator doctor --listen 127.0.0.1:0 --store {}", &[&store]);
+    let output = doctor(service.store_name()).success();
+    assert_contains!(output, "ok    store       postgres://", ": 1 calibrations");
     let blank = ServerDatabase::new().expect("a server");
-    let said = doctor(&blank.url()).success();
-    assert!(said.contains("has no tables yet; serve makes them"), "{said}");
+    let output = doctor(&blank.url()).success();
+    assert_contains!(output, "has no tables yet; serve makes them");
     let absent = "postgres://nobody:secret@127.0.0.1:1/none";
     let ended = doctor(absent);
-    assert!(
-        ended.stdout.contains("start the server") && !ended.stdout.contains("secret"),
-        "{}",
-        ended.stdout
-    );
+    assert!(ended.stdout.contains("start the server"), "{}", ended.stdout);
+    assert!(!ended.stdout.contains("secret"), "{}", ended.stdout);
     let file = service.folder().join("copy.db").display().to_string();
     let refusal = run(coordinator(["backup", &file, "--store", service.store_name()])).refusal();
-    assert!(
-        refusal.contains("pg_dump") && refusal.contains("copy-store"),
-        "{refusal}"
-    );
+    assert_contains!(refusal, "pg_dump", "copy-store");
 }

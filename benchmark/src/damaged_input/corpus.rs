@@ -1,4 +1,4 @@
-//! What is damaged: the jobs of `examples/` and `tests/data/`, the catalogue, a wheel as a mesh, messages of workers.
+//! The undamaged inputs: the jobs of `examples/` and `tests/data/`, the catalogue, a wheel as a mesh, messages of workers.
 
 use std::path::{Path, PathBuf};
 
@@ -10,14 +10,14 @@ use shared::file::{FileError, FileSet};
 use shared::outcome::{Fault, Observables, Outcome};
 use shared::text_file::{read_beside, read_text, sibling};
 
-/// A job with its experiment, and every file that they name.
+/// A job with its experiment and all files that they name.
 #[derive(Debug, Clone)]
 pub struct Campaign {
     pub job: FileSet,
     pub experiment: FileSet,
 }
 
-/// Everything that is damaged.
+/// All undamaged inputs.
 #[derive(Debug)]
 pub struct Corpus {
     pub campaigns: Vec<Campaign>,
@@ -38,7 +38,7 @@ pub const MESHES: [(&str, &str); 2] = [
 ];
 
 impl Corpus {
-    /// Reads it from the workspace.
+    /// Reads the inputs from the workspace.
     pub fn read() -> Result<Corpus, FileError> {
         let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
         let mut files = Vec::new();
@@ -47,26 +47,27 @@ impl Corpus {
         }
         files.sort();
         let campaigns = files.iter().map(|file| campaign(file));
-        // A folder also has models and parameters of forward runs, and a job may name a posterior that another one makes.
+        // Other files are models and parameters of forward runs, and jobs whose prior is the posterior of another job.
         let campaigns: Vec<Campaign> = campaigns.filter_map(Result::ok).collect();
         Ok(Corpus {
             campaigns,
-            effects: catalogue().iter().map(|effect| as_own(&effect.text)).collect(),
+            effects: catalogue()
+                .iter()
+                .map(|effect| as_user_effect(&effect.text))
+                .collect(),
             messages: messages(),
         })
     }
 }
 
-/// An effect of the catalogue as a user's: under another name, and without the mechanism that only the library has.
-fn as_own(text: &str) -> String {
+/// An effect of the catalogue as an effect of a user: with another name, and without the mechanism, which is reserved for the library.
+fn as_user_effect(text: &str) -> String {
     let lines = text.replacen("name = \"", "name = \"my_", 1);
-    let lines = lines
-        .split_inclusive('\n')
-        .filter(|line| !line.starts_with("mechanism"));
-    lines.collect()
+    let lines = lines.split_inclusive('\n');
+    lines.filter(|line| !line.starts_with("mechanism")).collect()
 }
 
-/// The TOML files of a folder and of those in it.
+/// Finds the TOML files below a folder.
 fn jobs(folder: &Path, found: &mut Vec<PathBuf>) {
     for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {
         let path = entry.path();
@@ -90,6 +91,7 @@ fn campaign(path: &Path) -> Result<Campaign, FileError> {
     })
 }
 
+/// A message with every field, and one without results.
 fn messages() -> Vec<ExchangeRequest> {
     let mut observables = Observables::with_capacity(2);
     for channel in [

@@ -1,77 +1,32 @@
-//! How a text or bytes are damaged.
+//! Random damages of texts and bytes.
 
 use statistics::rng::Stream;
 
-/// What takes the place of a number.
-const NUMBERS: [&str; 20] = [
-    "0",
-    "-0.0",
-    "-1",
-    "1",
-    "2",
-    "1e308",
-    "-1e308",
-    "1e-320",
-    "nan",
-    "inf",
-    "-inf",
-    "99999",
-    "100001",
-    "4294967296",
-    "9223372036854775807",
-    "-9223372036854775808",
-    "18446744073709551616",
-    "0.1e1e1",
-    "0,5",
-    "",
-];
-/// What is put in between.
-const BITS: [&str; 24] = [
-    "\"",
-    "'",
-    "\"\"\"",
-    "#",
-    "=",
-    ",",
-    ".",
-    "..",
-    "\n",
-    "\r\n",
-    "\t",
-    "\0",
-    "\u{7}",
-    "\u{1b}[31m",
-    "\u{85}",
-    "\u{202e}",
-    "\u{feff}",
-    "é",
-    "\u{1f6de}",
-    "\u{e000}",
-    "[[",
-    "}}",
-    "\\u0000",
-    "= {",
-];
-/// Deepest nesting that is put in.
-const DEEPEST: usize = 4000;
-/// So often a part is repeated at most.
+/// The replacements of a number, separated by blanks; the last one is empty.
+const NUMBERS: &str = "0 -0.0 -1 1 2 1e308 -1e308 1e-320 nan inf -inf 99999 100001 4294967296 9223372036854775807 -9223372036854775808 \
+                       18446744073709551616 0.1e1e1 0,5 ";
+/// The fragments that are inserted, separated by blanks.
+const FRAGMENTS: &str = "\" ' \"\"\" # = , . .. \n \r\n \t \0 \u{7} \u{1b}[31m \u{85} \u{202e} \u{feff} é \u{1f6de} \u{e000} [[ }} \\u0000 ={";
+/// The deepest nesting that is inserted.
+const MAX_DEPTH: usize = 4000;
+/// One more than the largest number of repeats of a part.
 const REPEATS: usize = 300;
-/// A damaged text has at most this length `[bytes]`: what is longer is refused for its length alone, and slow to make.
-const LONGEST: usize = 200_000;
+/// The largest length of a damaged text `[bytes]`. A longer text would be refused for its length alone, and is slow to make.
+const MAX_LENGTH: usize = 200_000;
 
 /// A text with one to four damages.
 pub fn damaged(text: &str, dice: &mut Stream) -> String {
     let mut text = text.to_owned();
     for _ in 0..=dice.below(6).saturating_sub(2) {
         text = once(&text, dice);
-        if text.len() > LONGEST {
-            text.truncate(text.floor_char_boundary(LONGEST));
+        if text.len() > MAX_LENGTH {
+            text.truncate(text.floor_char_boundary(MAX_LENGTH));
         }
     }
     text
 }
 
-/// Bytes with one to four damages, of which some leave no text.
+/// Bytes with one to four damages, after which they may not be UTF-8.
 pub fn damaged_bytes(bytes: &[u8], dice: &mut Stream) -> Vec<u8> {
     let mut bytes = bytes.to_vec();
     for _ in 0..=dice.below(6).saturating_sub(2) {
@@ -103,7 +58,7 @@ fn once(text: &str, dice: &mut Stream) -> String {
             let (from, to) = boundaries(text, dice);
             let times = dice.below(REPEATS);
             let part = &text[from..to];
-            let times = times.min(LONGEST / part.len().max(1));
+            let times = times.min(MAX_LENGTH / part.len().max(1));
             [&text[..from], &part.repeat(times), &text[from..]].concat()
         }
         7 => {
@@ -113,12 +68,12 @@ fn once(text: &str, dice: &mut Stream) -> String {
         }
         _ => {
             let (place, _) = boundaries(text, dice);
-            [&text[..place], BITS[dice.below(BITS.len())], &text[place..]].concat()
+            [&text[..place], choice(FRAGMENTS, dice), &text[place..]].concat()
         }
     }
 }
 
-/// A line lost, doubled, or in another place.
+/// A text with a line removed, repeated or moved.
 fn lines(text: &str, dice: &mut Stream) -> String {
     let mut lines: Vec<&str> = text.split_inclusive('\n').collect();
     if lines.is_empty() {
@@ -133,16 +88,16 @@ fn lines(text: &str, dice: &mut Stream) -> String {
     lines.concat()
 }
 
-/// Another number in the place of one.
+/// A text with a number replaced by another number.
 fn number(text: &str, dice: &mut Stream) -> String {
     let is_inside = |c: char| c.is_ascii_digit() || matches!(c, '.' | '-' | '+' | 'e');
     let tokens = tokens(text, is_inside, |token| {
         token.contains(|c: char| c.is_ascii_digit())
     });
-    replaced(text, &tokens, NUMBERS[dice.below(NUMBERS.len())], dice)
+    replaced(text, &tokens, choice(NUMBERS, dice), dice)
 }
 
-/// A word of the text in the place of another.
+/// A text with a word replaced by another word of it.
 fn word(text: &str, dice: &mut Stream) -> String {
     let tokens = tokens(text, |c| c.is_alphanumeric() || c == '_', |_| true);
     let Some(&(from, to)) = tokens.get(dice.below(tokens.len())) else {
@@ -151,26 +106,27 @@ fn word(text: &str, dice: &mut Stream) -> String {
     replaced(text, &tokens, &text[from..to], dice)
 }
 
-/// Brackets within brackets.
+/// A text with inserted nested brackets.
 fn nested(text: &str, dice: &mut Stream) -> String {
     let (place, _) = boundaries(text, dice);
-    let (open, close) = [
+    let brackets = [
         ("[", "]"),
         ("{a=", "}"),
         ("(", ")"),
         ("-", ""),
         ("{\"a\":", "}"),
         ("a.", ""),
-    ][dice.below(6)];
-    let depth = [1, 2, 15, 17, 120, DEEPEST][dice.below(6)];
-    [
-        &text[..place],
-        &open.repeat(depth),
-        "1",
-        &close.repeat(depth),
-        &text[place..],
-    ]
-    .concat()
+    ];
+    let (open, close) = brackets[dice.below(6)];
+    let depth = [1, 2, 15, 17, 120, MAX_DEPTH][dice.below(6)];
+    let inserted = open.repeat(depth) + "1" + &close.repeat(depth);
+    [&text[..place], &inserted, &text[place..]].concat()
+}
+
+/// One of several words that are separated by blanks.
+fn choice<'a>(words: &'a str, dice: &mut Stream) -> &'a str {
+    let words: Vec<&str> = words.split(' ').collect();
+    words[dice.below(words.len())]
 }
 
 fn replaced(text: &str, tokens: &[(usize, usize)], by: &str, dice: &mut Stream) -> String {
@@ -180,11 +136,11 @@ fn replaced(text: &str, tokens: &[(usize, usize)], by: &str, dice: &mut Stream) 
     }
 }
 
-/// The longest parts of which every character is inside.
+/// The ends of the longest parts of a text whose characters are all `is_inside` and that are `is_wanted`.
 fn tokens(
     text: &str,
     is_inside: impl Fn(char) -> bool,
-    is_meant: impl Fn(&str) -> bool,
+    is_wanted: impl Fn(&str) -> bool,
 ) -> Vec<(usize, usize)> {
     let mut tokens = Vec::new();
     let mut start = None;
@@ -193,7 +149,7 @@ fn tokens(
             (None, true) => start = Some(place),
             (Some(from), false) => {
                 start = None;
-                if is_meant(&text[from..place]) {
+                if is_wanted(&text[from..place]) {
                     tokens.push((from, place));
                 }
             }
@@ -203,7 +159,7 @@ fn tokens(
     tokens
 }
 
-/// Ends of a part of a text, mostly of a short one.
+/// The ends of a random part of a text, which is usually short.
 fn boundaries(text: &str, dice: &mut Stream) -> (usize, usize) {
     let (from, to) = part(text.len(), dice);
     (text.floor_char_boundary(from), text.floor_char_boundary(to))
@@ -211,6 +167,6 @@ fn boundaries(text: &str, dice: &mut Stream) -> (usize, usize) {
 
 fn part(length: usize, dice: &mut Stream) -> (usize, usize) {
     let from = dice.below(length + 1);
-    let most = if dice.below(3) == 0 { length } else { 40 };
-    (from, (from + dice.below(most + 1)).min(length))
+    let max = if dice.below(3) == 0 { length } else { 40 };
+    (from, (from + dice.below(max + 1)).min(length))
 }

@@ -1,4 +1,4 @@
-//! A damaged input and the reader that takes it.
+//! A damaged input and its reader.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -15,32 +15,33 @@ use statistics::rng::Stream;
 
 use super::corpus::{Campaign, Corpus, MESHES};
 use super::damage::{damaged, damaged_bytes};
+use crate::error::StudyError;
 
 const JOB: &str = "job.toml";
 const EXPERIMENT: &str = "experiment.toml";
 const EFFECT: &str = "effect.toml";
-/// A sampler, which draws a population, is begun of one in so many jobs.
-const BEGUN: usize = 16;
+/// The sampler of one job in this number is started, which draws a population.
+const STARTED: usize = 16;
 
 /// A damaged input.
 #[derive(Debug)]
 pub enum Input {
-    /// A job with its experiment, of which a file is damaged; whether its sampler is begun.
+    /// A job with its experiment, one file of which is damaged, and whether its sampler is started.
     Campaign(Campaign, bool),
     /// Further runs for an experiment.
     MoreRuns(FileSet, String),
     /// An effect file.
     Effect(String),
-    /// A wheel as a mesh, by the name of its file.
+    /// The name and the text of a mesh file.
     Mesh(&'static str, String),
-    /// What a worker posts.
+    /// A message of a worker.
     Message(WireForm, Vec<u8>),
-    /// What stands in a token's file.
+    /// The text of a token file.
     Token(String),
 }
 
 impl Input {
-    /// The input of a number.
+    /// Draws the input of a number.
     pub fn new(corpus: &Corpus, seed: u64, number: u64) -> Input {
         let dice = &mut Stream::new(seed, 0, number, 0);
         let campaign = || &corpus.campaigns;
@@ -52,16 +53,13 @@ impl Input {
                     0 => &mut one.job.toml,
                     1 => &mut one.experiment.toml,
                     n => {
-                        let mut named = one
-                            .job
-                            .files
-                            .values_mut()
-                            .chain(one.experiment.files.values_mut());
-                        named.nth(n - 2).expect("counted above")
+                        let files = one.job.files.values_mut();
+                        let mut files = files.chain(one.experiment.files.values_mut());
+                        files.nth(n - 2).expect("counted above")
                     }
                 };
                 *text = damaged(text, dice);
-                Input::Campaign(one, dice.below(BEGUN) == 0)
+                Input::Campaign(one, dice.below(STARTED) == 0)
             }
             11..=12 => {
                 let one = &campaign()[dice.below(campaign().len())];
@@ -86,7 +84,7 @@ impl Input {
         }
     }
 
-    /// Which reader takes it.
+    /// The name of the reader.
     pub fn reader(&self) -> &'static str {
         match self {
             Input::Campaign(..) => "job and experiment",
@@ -118,39 +116,29 @@ impl Input {
         }
     }
 
-    /// Reads it; what the reader says where it refuses.
-    pub fn read(&self) -> Result<(), String> {
-        let said = |error: &dyn std::fmt::Display| error.to_string();
+    /// Reads the input; an error is the refusal of the reader.
+    pub fn read(&self) -> Result<(), StudyError> {
         match self {
-            Input::Campaign(one, is_begun) => {
+            Input::Campaign(one, is_started) => {
                 foreign_effects(&one.job.toml);
-                Experiment::parse(EXPERIMENT, &one.experiment).map_err(|e| said(&e))?;
-                let spec = Spec::new(JOB, &one.job, EXPERIMENT, &one.experiment).map_err(|e| said(&e))?;
-                if *is_begun {
+                Experiment::parse(EXPERIMENT, &one.experiment)?;
+                let spec = Spec::new(JOB, &one.job, EXPERIMENT, &one.experiment)?;
+                if *is_started {
                     let identity = CalibrationIdentity {
                         id: 1,
                         name: "fuzz".into(),
                         study: 1,
                         experiment: 1,
                     };
-                    Calibration::new(identity, Arc::new(spec)).map_err(|e| said(&e))?;
+                    Calibration::new(identity, Arc::new(spec))?;
                 }
-                Ok(())
             }
-            Input::MoreRuns(experiment, csv) => Experiment::with_runs(EXPERIMENT, experiment, csv)
-                .map_err(|e| said(&e))
-                .map(drop),
-            Input::Effect(text) => {
-                let effect = read_user_effect(EFFECT, text).map_err(|e| said(&e))?;
-                check_effect(EFFECT, &effect).map_err(|e| said(&e))
-            }
-            Input::Mesh(name, text) => WheelMesh::parse(name, text).map_err(|e| said(&e)).map(drop),
-            Input::Message(form, bytes) => ExchangeRequest::from_bytes(bytes, *form)
-                .map_err(|e| said(&e))
-                .map(drop),
-            Input::Token(text) => BearerToken::find(None, Some(text.clone()))
-                .map_err(|e| said(&e))
-                .map(drop),
+            Input::MoreRuns(experiment, csv) => drop(Experiment::with_runs(EXPERIMENT, experiment, csv)?),
+            Input::Effect(text) => check_effect(EFFECT, &read_user_effect(EFFECT, text)?)?,
+            Input::Mesh(name, text) => drop(WheelMesh::parse(name, text)?),
+            Input::Message(form, bytes) => drop(ExchangeRequest::from_bytes(bytes, *form)?),
+            Input::Token(text) => drop(BearerToken::find(None, Some(text.clone()))?),
         }
+        Ok(())
     }
 }

@@ -1,11 +1,11 @@
-//! Damaged inputs of every reader, each a function of a seed and its number alone.
+//! Damaged inputs of every reader, each of which is a function of a seed and its number.
 //!
 //! # Layout
-//! - `corpus`: what is damaged: the jobs of `examples/` and `tests/data/`, the catalogue, a wheel as a mesh, messages of workers.
-//! - `damage`: how a text or bytes are damaged.
-//! - `input`: a damaged input and the reader that takes it.
-//! - `verdict`: what a reader must keep: no panic, one line that names the file, a bound on time.
-//! - `tally`: what came of many.
+//! - `corpus`: the undamaged inputs: jobs of `examples/` and `tests/data/`, the catalogue, a wheel as a mesh, messages of workers.
+//! - `damage`: random damages of texts and bytes.
+//! - `input`: a damaged input and its reader.
+//! - `verdict`: the promises of a reader: no panic, one line that names the file, a bound on time.
+//! - `tally`: counts over many inputs.
 
 pub mod corpus;
 pub mod damage;

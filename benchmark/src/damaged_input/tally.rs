@@ -1,4 +1,4 @@
-//! What came of many inputs.
+//! Counts over many inputs.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -8,7 +8,7 @@ use std::time::Duration;
 use super::corpus::Corpus;
 use super::verdict::verdict;
 
-/// What came of the inputs of one reader.
+/// Counts over the inputs of one reader.
 #[derive(Debug, Default)]
 pub struct ReaderTally {
     pub inputs: u64,
@@ -17,17 +17,17 @@ pub struct ReaderTally {
     slowest_input: u64,
 }
 
-/// What came of all inputs.
+/// Counts over all inputs.
 #[derive(Debug, Default)]
 pub struct Tally {
     pub readers: BTreeMap<&'static str, ReaderTally>,
-    /// Number of an input and what its reader did not keep.
+    /// The number of each input that broke a promise, with the promise.
     pub broken: Vec<(u64, String)>,
 }
 
 impl Tally {
     /// Reads the inputs of these numbers.
-    pub fn of(corpus: &Corpus, seed: u64, numbers: Range<u64>) -> Tally {
+    pub fn new(corpus: &Corpus, seed: u64, numbers: Range<u64>) -> Tally {
         let mut tally = Tally::default();
         for number in numbers {
             let verdict = verdict(corpus, seed, number);
@@ -35,28 +35,24 @@ impl Tally {
             reader.inputs += 1;
             reader.accepted += u64::from(verdict.is_accepted);
             if verdict.took > reader.slowest {
-                // Again: the machine may have been busy.
+                // The input is read again, because the machine may have been busy.
                 let took = verdict.took.min(self::verdict(corpus, seed, number).took);
                 if took > reader.slowest {
                     (reader.slowest, reader.slowest_input) = (took, number);
                 }
             }
-            tally.broken.extend(
-                verdict
-                    .broken
-                    .map(|broken| (number, format!("{}: {broken}", verdict.reader))),
-            );
+            let broken = verdict
+                .broken
+                .map(|broken| format!("{}: {broken}", verdict.reader));
+            tally.broken.extend(broken.map(|broken| (number, broken)));
         }
         tally
     }
 
     /// The longest time that an input took.
     pub fn slowest(&self) -> Duration {
-        self.readers
-            .values()
-            .map(|reader| reader.slowest)
-            .max()
-            .unwrap_or_default()
+        let times = self.readers.values().map(|reader| reader.slowest);
+        times.max().unwrap_or_default()
     }
 }
 

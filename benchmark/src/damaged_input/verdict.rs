@@ -1,4 +1,4 @@
-//! What a reader must keep: no panic, and a refusal in one short line that names the file.
+//! The promises of a reader: no panic, and a refusal in one short line that names the file.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::time::{Duration, Instant};
@@ -6,20 +6,20 @@ use std::time::{Duration, Instant};
 use super::corpus::Corpus;
 use super::input::Input;
 
-/// Longest refusal `[bytes]`.
-const LONGEST: usize = 2000;
+/// The largest length of a refusal `[bytes]`.
+const MAX_LENGTH: usize = 2000;
 
-/// What a reader made of an input.
+/// The verdict on the reading of an input.
 #[derive(Debug)]
 pub struct Verdict {
     pub reader: &'static str,
     pub is_accepted: bool,
     pub took: Duration,
-    /// What it did not keep.
+    /// The broken promise.
     pub broken: Option<String>,
 }
 
-/// Reads the input of a number.
+/// Reads the input of a number, and judges its reader.
 pub fn verdict(corpus: &Corpus, seed: u64, number: u64) -> Verdict {
     let input = Input::new(corpus, seed, number);
     let began = Instant::now();
@@ -29,13 +29,14 @@ pub fn verdict(corpus: &Corpus, seed: u64, number: u64) -> Verdict {
         Err(_) => Some("a panic".to_owned()),
         Ok(Ok(())) => None,
         Ok(Err(message)) => {
+            let message = message.to_string();
             let names_one = input
                 .files()
                 .iter()
                 .any(|file| message.starts_with(file.as_str()));
             let wrong = if message.chars().any(char::is_control) {
                 Some("a control character")
-            } else if message.len() >= LONGEST {
+            } else if message.len() >= MAX_LENGTH {
                 Some("a long refusal")
             } else if !names_one {
                 Some("a refusal that names no file")

@@ -1,45 +1,47 @@
-//! The three-dimensional model as an unknown rig: its soil is calibrated, then something changes that the job holds still.
+//! The three-dimensional model as an unknown rig: its soil is calibrated, and then a parameter changes that the job holds fixed.
 
-use record::{ChiSquare, Discovery, NONE, Verdict};
+use record::{ChiSquare, Discovery, JudgedEffect, NONE, Verdict};
 use search::candidate::extended;
 use shared::file::FileSet;
 use statistics::rng::Stream;
 
+use crate::error::StudyError;
 use crate::hidden_effect::study::case::{blank, run as measured, spec};
-use crate::hidden_effect::study::cpu::cpu_s;
-use crate::hidden_effect::study::design::{CHANNELS, Plan, experiment};
-use crate::hidden_effect::study::error::StudyError;
-use crate::hidden_effect::study::noise_free::{MIN_SEPARATION, shortfall_of};
-use crate::hidden_effect::study::parallel::threads;
+use crate::hidden_effect::study::design::{Plan, experiment};
+use crate::hidden_effect::study::noise::{add_noise, noise_sds};
+use crate::hidden_effect::study::noise_free::{MIN_SEPARATION, job_shortfall};
 use crate::hidden_effect::study::posterior::{PosteriorSample, sample};
 use crate::hidden_effect::study::rate::Rate;
-use crate::hidden_effect::study::record::{is_right, record};
+use crate::hidden_effect::study::record::{class, is_right, record};
+use crate::parallel::threads;
+use crate::process::cpu_s;
 
-/// Random streams of truths and noise.
+/// The first random stream of truths and noise.
 const STAGE: u64 = 1 << 49;
-/// Noise sd of a channel over the root mean square of its values in the reference. Pulls of a good rig repeat to a hundredth,
-/// and at three hundredths few soils show a cohesion of 500 Pa.
+/// Noise sd of a channel over the root mean square of its values in the reference. The pulls of a good rig repeat to a hundredth, and
+/// with a noise of three hundredths few soils show a cohesion of 500 Pa.
 const NOISE: f64 = 0.01;
-/// Draws of the prior until the model takes all campaigns and each change is detectable.
+/// The largest number of draws of the prior until the model accepts all campaigns and each change is detectable.
 const MAX_DRAWN: u64 = 100;
-/// Most effects in a combination of the search.
+/// The largest number of effects in a combination of the search.
 const MAX_EFFECTS: usize = 2;
-/// On a coarse grid a run may jump between two ruts as the soil changes by a thousandth: a fit ends on either side, a sample on the right one.
+/// On a coarse grid a run may jump between two ruts as the soil changes by a thousandth. A fit may end on either side of the jump, and a
+/// sampler covers both.
 const SAMPLER: &str = "[sampler]\nparticles = 500\n";
 const FILE: &str = "reference.csv";
-/// Factor of the covariance of the reference's posterior as the prior of the next campaigns: twice the sds, because the soil was
-/// prepared anew and the model scatters.
+/// Factor of the covariance of the reference's posterior when it becomes the prior of the next campaigns. It doubles the sds, because the
+/// soil was prepared anew and the model scatters.
 const TRANSFER: f64 = 4.0;
-/// Most explanations that are printed.
+/// The largest number of explanations that are printed.
 const PRINTED: usize = 3;
 
-/// The soil of a campaign, as far as the job holds it still.
+/// The parameters of a campaign's soil that the job holds fixed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Soil {
     name: &'static str,
     cohesion_pa: f64,
     flow_fraction: f64,
-    /// What the search should name.
+    /// The effects that the search should name.
     changed: &'static [&'static str],
 }
 
@@ -57,7 +59,7 @@ const COHESIVE: Soil = Soil {
     ..REFERENCE
 };
 
-/// The share that flows is the model's own.
+/// The fraction that flows is the default of the model.
 const FLOWING: Soil = Soil {
     name: "flow",
     flow_fraction: 0.25,
@@ -78,26 +80,26 @@ const CAMPAIGNS: [Soil; 4] = [REFERENCE, COHESIVE, FLOWING, BOTH];
 struct Rig {
     truth: Vec<f64>,
     experiments: Vec<FileSet>,
-    /// Nats by which the job falls short of each but the first, without noise.
+    /// Nats by which the job falls short of each campaign except the first, for noise-free data.
     shortfalls: Vec<f64>,
-    /// Chi-square of the noise of each.
+    /// Chi-square of the noise of each campaign.
     chi_squares: Vec<f64>,
 }
 
-/// What a search says of a campaign.
+/// The verdict on the search of a campaign.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Answer {
-    /// What changed or its class leads, and the best set has all of it; or that nothing is missing where nothing is.
+    /// The class of a change leads and the best set has all changes, or nothing is claimed for an unchanged soil.
     Right,
-    /// What leads is a part of what changed, and the best set has not all of it.
+    /// The class of a change leads, and the best set lacks another change.
     Part,
     /// No claim is made.
     Open,
-    /// Something else leads.
+    /// Another class leads.
     Wrong,
 }
 
-/// Searches the four campaigns of so many rigs one after the other, each on all threads.
+/// Searches the four campaigns of a number of rigs one after another, each on all threads.
 pub fn run(plan: Plan, count: u64, seed: u64) -> Result<(), StudyError> {
     let mut answers = vec![Vec::new(); CAMPAIGNS.len()];
     for number in 0..count {
@@ -108,75 +110,58 @@ pub fn run(plan: Plan, count: u64, seed: u64) -> Result<(), StudyError> {
         let next = after(&base, &posterior)?;
         for (k, (soil, answers)) in CAMPAIGNS.iter().zip(&mut answers).enumerate() {
             let job = if *soil == REFERENCE { &base } else { &next };
-            let (record, answer) = searched(
-                job,
-                &rig.experiments[k],
-                soil.changed,
-                &format!("{number} {}", soil.name),
-            )?;
-            // As a study goes on: what is named is added, and the rest is looked for.
+            let (name, experiment) = (format!("{number} {}", soil.name), &rig.experiments[k]);
+            let (record, answer) = searched(job, experiment, soil.changed, &name)?;
+            // As in a study, the named effect is added and the search is repeated.
             if let (Answer::Part, Some(added)) = (answer, &record.extension) {
-                let rest: Vec<&str> = soil
-                    .changed
-                    .iter()
-                    .copied()
-                    .filter(|name| *name != record.effects[0].name)
-                    .collect();
+                let mut rest = soil.changed.to_vec();
+                rest.retain(|name| *name != record.effects[0].name);
                 let job = extended("job.toml", job, &[added])?;
-                searched(
-                    &job,
-                    &rig.experiments[k],
-                    &rest,
-                    &format!("{number} {} with it", soil.name),
-                )?;
+                searched(&job, experiment, &rest, &format!("{name} with it"))?;
             }
             answers.push(answer);
         }
     }
     for (soil, answers) in CAMPAIGNS.iter().zip(&answers) {
-        let rate = |wanted| Rate::new(answers.iter().map(|own| *own == wanted));
+        let rate = |wanted| Rate::new(answers.iter().map(|answer| *answer == wanted));
+        let (right, part, wrong) = (rate(Answer::Right), rate(Answer::Part), rate(Answer::Wrong));
         println!(
-            "{}: right {}, part {}, wrong {} (goal 0)",
-            soil.name,
-            rate(Answer::Right),
-            rate(Answer::Part),
-            rate(Answer::Wrong)
+            "{}: right {right}, part {part}, wrong {wrong} (goal 0)",
+            soil.name
         );
     }
     Ok(())
 }
 
-/// Searches a campaign, and prints what comes out.
+/// Searches a campaign, and prints the result.
 fn searched(
     job: &FileSet,
     experiment: &FileSet,
     changed: &[&str],
     name: &str,
 ) -> Result<(Discovery, Answer), StudyError> {
-    let cpu = cpu_s();
+    let cpu_before_s = cpu_s("self")?;
     let record = record(job, experiment, MAX_EFFECTS, threads())?;
     let answer = answer(&record, changed);
     println!(
         "changes {name}: {answer:?}, {:?}, {:.1} CPU-s, {}",
         record.verdict,
-        cpu_s() - cpu,
-        said(&record, changed)
+        cpu_s("self")? - cpu_before_s,
+        summary(&record, changed)
     );
     Ok((record, answer))
 }
 
-/// The job of a model that has a soil's values; the wheel is what the experiment says.
+/// The job of a plan with the parameters of a soil and the radius of the experiment's wheel.
 fn job(plan: Plan, soil: Soil) -> FileSet {
     let mut job = plan.job();
     let lines = job
         .toml
         .lines()
         .filter(|line| !line.starts_with("wheel_radius_m"));
-    let of_soil = format!(
-        "cohesion_pa = {:?}\nflow_fraction = {:?}\n[priors]",
-        soil.cohesion_pa, soil.flow_fraction
-    );
-    let lines = lines.map(|line| if line == "[priors]" { &of_soil } else { line });
+    let (cohesion_pa, flow_fraction) = (soil.cohesion_pa, soil.flow_fraction);
+    let priors = format!("cohesion_pa = {cohesion_pa:?}\nflow_fraction = {flow_fraction:?}\n[priors]");
+    let lines = lines.map(|line| if line == "[priors]" { &priors } else { line });
     job.toml = lines.flat_map(|line| [line, "\n"]).collect();
     job
 }
@@ -191,9 +176,9 @@ fn after(job: &FileSet, posterior: &PosteriorSample) -> Result<FileSet, StudyErr
 }
 
 impl Rig {
-    /// Draws a truth from the priors with which each change is detectable, and measures it.
+    /// Draws a truth from the priors until each change is detectable, and measures it.
     ///
-    /// The noise of a channel is a share of its root mean square in the reference, the same in all campaigns.
+    /// The noise sds are the same in all campaigns.
     fn new(plan: Plan, seed: u64, number: u64) -> Result<Self, StudyError> {
         let mut rows = plan.rows();
         rows.retain(|row| !row.is_holdout);
@@ -207,21 +192,19 @@ impl Rig {
                 let Some(mut values) = measured(&job(plan, soil), &rows, &truth)? else {
                     continue 'draws;
                 };
-                let sds = *sds.get_or_insert_with(|| noise_sds(&values));
+                let sds = *sds.get_or_insert_with(|| noise_sds(NOISE, values.iter()));
                 if soil != REFERENCE {
                     let noise_free = experiment(&rows, &values, sds);
-                    let nats = shortfall_of(&base, &noise_free, truth.clone())?;
+                    let nats = job_shortfall(&base, &noise_free, truth.clone())?;
                     if nats < MIN_SEPARATION {
                         continue 'draws;
                     }
                     shortfalls.push(nats);
                 }
-                let normals = Stream::new(seed, STAGE + 1, number, k).normals(CHANNELS * rows.len());
+                let noise = || Stream::new(seed, STAGE + 1, number, k);
+                let normals = noise().normals(values.as_flattened().len());
                 chi_squares.push(normals.iter().map(|z| z * z).sum());
-                let sd = sds.into_iter().cycle();
-                for ((x, sd), z) in values.as_flattened_mut().iter_mut().zip(sd).zip(normals) {
-                    *x += sd * z;
-                }
+                add_noise(&mut values, sds, &mut noise());
                 experiments.push(experiment(&rows, &values, sds));
             }
             return Ok(Self {
@@ -238,20 +221,13 @@ impl Rig {
     }
 }
 
-fn noise_sds(values: &[[f64; CHANNELS]]) -> [f64; CHANNELS] {
-    std::array::from_fn(|channel| {
-        let squares: f64 = values.iter().map(|own| own[channel] * own[channel]).sum();
-        NOISE * (squares / values.len() as f64).sqrt()
-    })
-}
-
-/// A posterior beside the truth, and what the changes are worth.
+/// A posterior beside the truth, and the nats by which the job falls short after each change.
 fn calibrated(posterior: &PosteriorSample, rig: &Rig) -> String {
     let parameters = posterior.moments().zip(&rig.truth);
     let parameters =
         parameters.map(|((name, mean, sd), truth)| format!("{name} {mean:.4} ± {sd:.4} (truth {truth:.4})"));
     let shortfalls = rig.shortfalls.iter().map(|nats| format!("{nats:.0}"));
-    let chi_squares = rig.chi_squares.iter().map(|own| format!("{own:.0}"));
+    let chi_squares = rig.chi_squares.iter().map(|value| format!("{value:.0}"));
     format!(
         "calibrated: {}; without noise the job then falls short by {} nats; chi-square of the noise {}",
         parameters.collect::<Vec<_>>().join(", "),
@@ -260,23 +236,18 @@ fn calibrated(posterior: &PosteriorSample, rig: &Rig) -> String {
     )
 }
 
-/// What a search says, of what changed between the campaigns.
+/// The verdict on a search, given the changes between the campaigns.
 fn answer(record: &Discovery, changed: &[&str]) -> Answer {
-    let class = |name: &str| record.effects.iter().find(|e| e.name == name).map(|e| e.class);
     let claims: Vec<Option<bool>> = match changed {
         [] => vec![is_right(record, None)],
         _ => changed.iter().map(|name| is_right(record, Some(name))).collect(),
     };
     if claims.contains(&Some(true)) {
         let best = record.sets.iter().find(|set| set.members != [NONE]);
-        let named: Vec<_> = best
-            .iter()
-            .flat_map(|set| set.members.iter().map(|name| class(name)))
-            .collect();
-        match changed.iter().all(|name| named.contains(&class(name))) {
-            true => Answer::Right,
-            false => Answer::Part,
-        }
+        let members = best.iter().flat_map(|set| &set.members);
+        let named: Vec<_> = members.map(|name| class(record, name)).collect();
+        let has_all = changed.iter().all(|name| named.contains(&class(record, name)));
+        if has_all { Answer::Right } else { Answer::Part }
     } else if claims.contains(&Some(false)) {
         Answer::Wrong
     } else if changed.is_empty() && record.verdict == Verdict::NothingDetectable {
@@ -286,26 +257,27 @@ fn answer(record: &Discovery, changed: &[&str]) -> Answer {
     }
 }
 
-/// The best explanations, what is said of what changed, and how well all that fits.
-fn said(record: &Discovery, changed: &[&str]) -> String {
-    let best = record.effects.iter().take(PRINTED).map(|own| (own, ""));
-    let own = record
-        .effects
-        .iter()
-        .filter(|own| changed.contains(&own.name.as_str()));
-    let judged = best.chain(own.map(|own| (own, "changed: "))).map(|(own, what)| {
-        let values: Vec<String> = own
+/// The best explanations, those of the changes, and the misfit.
+fn summary(record: &Discovery, changed: &[&str]) -> String {
+    let effects = record.effects.iter();
+    let is_changed = |effect: &&JudgedEffect| changed.contains(&effect.name.as_str());
+    let changes = effects
+        .clone()
+        .filter(is_changed)
+        .map(|effect| ("changed: ", effect));
+    let best = effects.take(PRINTED).map(|effect| ("", effect));
+    let judged = best.chain(changes).map(|(label, effect)| {
+        let values = effect
             .parameters
             .iter()
-            .map(|(name, value)| format!("{name} {value:.3e}"))
-            .collect();
+            .map(|(name, value)| format!("{name} {value:.3e}"));
         format!(
-            "{what}{} P {:.4} ln BF {:.1} c{} [{}]",
-            own.name,
-            own.probability,
-            own.log_bayes_factor,
-            own.class,
-            values.join(" ")
+            "{label}{} P {:.4} ln BF {:.1} c{} [{}]",
+            effect.name,
+            effect.probability,
+            effect.log_bayes_factor,
+            effect.class,
+            values.collect::<Vec<_>>().join(" ")
         )
     });
     let sets = record.sets.iter().take(PRINTED).map(|set| {
@@ -324,7 +296,7 @@ fn said(record: &Discovery, changed: &[&str]) -> String {
         .map(|(channel, sd)| format!("{channel} {sd:.1e}"))
         .collect();
     let fit = |chi: &ChiSquare| {
-        let [value, p] = [chi.value, chi.p].map(|own| own.unwrap_or(f64::NAN));
+        let [value, p] = [chi.value, chi.p].map(|value| value.unwrap_or(f64::NAN));
         format!("{value:.1} of {:.0} (p {p:.1e})", chi.degrees_of_freedom)
     };
     format!(

@@ -2,13 +2,12 @@
 //!
 //! # Layout
 //! - [`study`]: one trial: an experiment with a hidden effect, drawn, searched and scored.
-//! - [`ambiguous`]: how many further runs tell what the effect is. [`rig`]: rigs with a flaw, where no effect is missing.
-//! - [`mod@reference`], [`changes`]: a reference campaign on the same soil, whose posterior is the prior. [`steady`]: one experiment after the other.
-//! - [`tmcmc`]: the evidences of the search beside those of the sampler. [`data`]: the experiments of `tests/data`.
+//! - [`ambiguous`]: the number of further runs that identify the effect. [`rig`]: rigs with a flaw, where no effect is missing.
+//! - [`mod@reference`], [`changes`]: the posterior of a reference campaign on the same soil as the prior.
+//! - [`steady`]: experiments one after another, as a study searches them. [`tmcmc`]: the evidences of the search beside the sampler's.
 
 pub mod ambiguous;
 pub mod changes;
-pub mod data;
 pub mod reference;
 pub mod rig;
 pub mod steady;

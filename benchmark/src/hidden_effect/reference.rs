@@ -1,56 +1,56 @@
-//! What changed since a reference campaign: its posterior as the prior of the next one, in which an effect acts.
+//! Changes since a reference campaign, whose posterior is the prior of the next campaign, in which an effect acts.
 
 use record::Discovery;
 use shared::file::FileSet;
 use statistics::rng::Stream;
 
 use super::study::case::SyntheticCase;
-use super::study::error::StudyError;
 use super::study::kind::HiddenKind;
-use super::study::parallel::each;
 use super::study::posterior::sample;
 use super::study::rate::Rate;
-use super::study::record::{is_right, record};
+use super::study::record::{is_right, leader, record, word};
 use super::study::trial::draw;
+use crate::error::StudyError;
+use crate::parallel::each;
 
-/// The truths are others than those of the other kinds.
+/// The number of the first truth, which no other kind uses.
 const FIRST: u64 = 4_000_000;
-/// Random streams of the noise of reference campaigns.
+/// The random stream of the noise of reference campaigns.
 const STAGE: u64 = 1 << 48;
-/// Every so many campaigns nothing has changed.
+/// One campaign in this number is unchanged.
 const UNCHANGED: u64 = 4;
-/// Draws of the prior until the model takes it with the effect and without.
+/// The largest number of draws of the prior until the model accepts both campaigns.
 const MAX_DRAWN: u64 = 20;
-/// Most effects in a combination of the search.
+/// The largest number of effects in a combination of the search.
 const MAX_EFFECTS: usize = 3;
 const SAMPLER: &str = "[sampler]\nparticles = 500\n";
 const FILE: &str = "reference.csv";
 
-/// Two searches of one campaign, and its truth.
+/// Two searches of one campaign, with its truth.
 pub struct Compared {
     truth: Option<String>,
-    /// With the reference's posterior as the prior, and with the priors of the job.
+    /// The search with the posterior of the reference as the prior.
     with: Discovery,
+    /// The search with the priors of the job.
     without: Discovery,
 }
 
-/// What came out of so many campaigns.
+/// The claims of one kind of search on all campaigns.
 pub struct Tally {
     what: &'static str,
-    /// Of campaigns in which something changed: whether the claim is right; `None` without one.
+    /// For each changed campaign, whether the claim is right; `None` without a claim.
     changed: Vec<Option<bool>>,
-    /// Of the others: whether something is claimed.
+    /// For each unchanged campaign, whether something is claimed.
     claimed: Vec<bool>,
 }
 
-/// Searches so many campaigns with and without their reference, and prints how often the change is named.
+/// Searches a number of campaigns with and without their reference, and prints how often the change is named.
 pub fn run(count: u64, seed: u64) -> Result<(), StudyError> {
     let compared = each(count, |number| {
         let compared = one(seed, number)?;
         println!("{}", compared.line(number));
         Ok::<_, StudyError>(compared)
     })?;
-    let compared: Vec<Compared> = compared.into_iter().collect::<Result<_, StudyError>>()?;
     for tally in [
         Tally::new("with the reference", &compared, |c| &c.with),
         Tally::new("without", &compared, |c| &c.without),
@@ -81,7 +81,7 @@ pub fn one(seed: u64, number: u64) -> Result<Compared, StudyError> {
     })
 }
 
-/// A campaign, and one on the same soil before.
+/// A campaign, with an earlier campaign on the same soil.
 fn campaigns(seed: u64, number: u64) -> Result<(SyntheticCase, FileSet), StudyError> {
     let kind = if number % UNCHANGED == UNCHANGED - 1 {
         HiddenKind::None
@@ -89,7 +89,7 @@ fn campaigns(seed: u64, number: u64) -> Result<(SyntheticCase, FileSet), StudyEr
         HiddenKind::One
     };
     for attempt in 0..MAX_DRAWN {
-        // An attempt keeps the effect whose turn it is.
+        // The effect depends on the number alone, so that every attempt has the same one.
         let case = draw(kind, seed + attempt, FIRST + number)?;
         if let Some(reference) = case.reference(Stream::new(seed, STAGE, number, attempt))? {
             return Ok((case, reference));
@@ -99,44 +99,33 @@ fn campaigns(seed: u64, number: u64) -> Result<(SyntheticCase, FileSet), StudyEr
 }
 
 impl Compared {
-    /// Whether the claim of the search with the reference is right; `None` without one.
+    /// Whether the claim of the search with the reference is right; `None` without a claim.
     pub fn is_right(&self) -> Option<bool> {
         is_right(&self.with, self.truth.as_deref())
     }
 
     pub fn line(&self, number: u64) -> String {
-        let said = |record: &Discovery| {
-            let said = match is_right(record, self.truth.as_deref()) {
-                Some(true) => "right",
-                Some(false) => "WRONG",
-                None => "open",
-            };
-            let first = record.effects.first();
+        let answer = |record: &Discovery| {
+            let (answer, leader) = (word(is_right(record, self.truth.as_deref())), leader(record));
             format!(
-                "{said} ({:?}, {} P {:.3}, {} evaluations)",
-                record.verdict,
-                first.map_or("", |effect| effect.name.as_str()),
-                first.map_or(0.0, |effect| effect.probability),
-                record.evaluations
+                "{answer} ({:?}, {leader}, {} evaluations)",
+                record.verdict, record.evaluations
             )
         };
-        format!(
-            "reference {number} {}: with {}; without {}",
-            self.truth.as_deref().unwrap_or("none"),
-            said(&self.with),
-            said(&self.without)
-        )
+        let truth = self.truth.as_deref().unwrap_or("none");
+        let (with, without) = (answer(&self.with), answer(&self.without));
+        format!("reference {number} {truth}: with {with}; without {without}")
     }
 }
 
 impl Tally {
-    fn new(what: &'static str, compared: &[Compared], of: fn(&Compared) -> &Discovery) -> Self {
+    fn new(what: &'static str, compared: &[Compared], search: fn(&Compared) -> &Discovery) -> Self {
         let changed = compared.iter().filter(|c| c.truth.is_some());
         let unchanged = compared.iter().filter(|c| c.truth.is_none());
         Self {
             what,
-            changed: changed.map(|c| is_right(of(c), c.truth.as_deref())).collect(),
-            claimed: unchanged.map(|c| is_right(of(c), None).is_some()).collect(),
+            changed: changed.map(|c| is_right(search(c), c.truth.as_deref())).collect(),
+            claimed: unchanged.map(|c| is_right(search(c), None).is_some()).collect(),
         }
     }
 }

@@ -1,26 +1,26 @@
-//! Searches with the three-dimensional model as a study runs them: the answer of each, its reason, and its time.
+//! Searches with the three-dimensional model as a study runs them, with the answer, the reason and the time of each.
 
 use std::time::Instant;
 
 use record::Extension;
 
-use crate::hidden_effect::study::cpu::cpu_s;
+use crate::error::StudyError;
 use crate::hidden_effect::study::design::Plan;
-use crate::hidden_effect::study::error::StudyError;
-use crate::hidden_effect::study::parallel::threads;
 use crate::hidden_effect::study::rate::Rate;
-use crate::hidden_effect::study::record::{is_right, record};
-use crate::hidden_effect::study::trial::{draw_detectable, draw_of};
+use crate::hidden_effect::study::record::{is_right, record, word};
+use crate::hidden_effect::study::trial::{draw_detectable, draw_from};
+use crate::parallel::threads;
+use crate::process::cpu_s;
 
-/// The truths are others than those of the other kinds.
+/// The number of the first truth, which no other kind uses.
 const FIRST: u64 = 3_000_000;
-/// Most seconds of a search.
+/// The largest time of a search `[s]`.
 const MAX_S: f64 = 60.0;
 
-/// Searches so many experiments one after the other, each on all threads.
+/// Searches a number of experiments one after another, each on all threads.
 ///
 /// # Arguments
-/// - `hidden`: the effect that is hidden; `None`: any of the catalogue.
+/// - `hidden`: the hidden effect; `None` draws one from the catalogue.
 pub fn run(plan: Plan, hidden: Option<&str>, count: u64, seed: u64) -> Result<(), StudyError> {
     let mut times = Vec::new();
     let mut right = Vec::new();
@@ -29,25 +29,21 @@ pub fn run(plan: Plan, hidden: Option<&str>, count: u64, seed: u64) -> Result<()
         let case = match hidden {
             None => draw_detectable(plan, 1, seed, FIRST + number)?,
             Some(name) => {
-                let own = (name.to_owned(), Extension::Effect(name.to_owned()));
-                draw_of(plan, &[own], 1, seed, FIRST + number)?
+                let effect = (name.to_owned(), Extension::Effect(name.to_owned()));
+                draw_from(plan, &[effect], 1, seed, FIRST + number)?
             }
         };
         let begin = Instant::now();
-        let cpu = cpu_s();
+        let cpu_before_s = cpu_s("self")?;
         let record = record(&case.plan.job(), &case.experiment(), 1, threads())?;
         let seconds = begin.elapsed().as_secs_f64();
         let is_right = is_right(&record, case.hidden.first().map(String::as_str));
         println!(
             "steady {number} {}: {seconds:.1} s, {:.1} CPU-s, {} evaluations, {}: {}",
             case.hidden[0],
-            cpu_s() - cpu,
+            cpu_s("self")? - cpu_before_s,
             record.evaluations,
-            match is_right {
-                Some(true) => "right",
-                Some(false) => "WRONG",
-                None => "open",
-            },
+            word(is_right),
             record.text
         );
         times.push(seconds);

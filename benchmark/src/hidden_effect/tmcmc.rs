@@ -1,4 +1,4 @@
-//! The search's log Bayes factors beside those of full evidences by the sampler.
+//! The log Bayes factors of the search beside those of full evidences by the sampler.
 
 use coordinator::embedded::Evaluate;
 use record::Extension;
@@ -6,35 +6,35 @@ use search::candidate::extended;
 use shared::file::FileSet;
 use shared::outcome::Outcome;
 
+use crate::error::StudyError;
 use crate::hidden_effect::study::case::{SyntheticCase, spec};
-use crate::hidden_effect::study::error::StudyError;
 use crate::hidden_effect::study::kind::HiddenKind;
 use crate::hidden_effect::study::local_search::LocalSearch;
-use crate::hidden_effect::study::parallel::each;
 use crate::hidden_effect::study::posterior::{PosteriorSample, sample};
 use crate::hidden_effect::study::rate::{mean, median};
 use crate::hidden_effect::study::trial::draw;
+use crate::parallel::each;
 
-/// Fewer particles or moves scatter from seed to seed by more than the differences that the bench reads.
+/// With fewer particles or moves, evidences differ between seeds by more than between search and sampler.
 const SAMPLER: &str = "[sampler]\nparticles = 1000\nmoves = [5, 10]\n";
-/// Largest difference that counts as none \[nats\], and the least share of such.
+/// The largest difference that counts as agreement \[nats\].
 const CLOSE: f64 = 1.0;
+/// The smallest share of experiments that must agree.
 const MIN_SHARE: f64 = 0.97;
-/// No truth may fall short by more \[nats\].
+/// The largest amount by which the search may fall short of the sampler \[nats\].
 const MAX_SHORT: f64 = 3.0;
-/// The truths are others than those of the other kinds.
+/// The number of the first truth, which no other kind uses.
 const FIRST: u64 = 2_000_000;
 
-/// The truth of one experiment, and what both say of it: nats.
+/// The log Bayes factors of the truth of one experiment \[nats\].
 struct Compared {
     search: f64,
     sampler: f64,
 }
 
-/// Compares so many, every effect in turn, and prints the differences.
+/// Compares a number of experiments, with each effect in turn, and prints the differences.
 pub fn run(count: u64, seed: u64) -> Result<(), StudyError> {
     let compared = each(count, |number| one(seed, number))?;
-    let compared: Vec<Compared> = compared.into_iter().collect::<Result<_, StudyError>>()?;
     let differences: Vec<f64> = compared.iter().map(|c| c.search - c.sampler).collect();
     let [bias, error] = mean(&differences);
     let sd = error * (differences.len() as f64).sqrt();
@@ -58,10 +58,11 @@ fn one(seed: u64, number: u64) -> Result<Compared, StudyError> {
     let conclusion = local.run()?;
     let task = local.models.task();
     let truth = task.library.iter().position(|c| c.name == *name);
+    let truth = truth.ok_or("the truth is no candidate")?;
     let truth = conclusion
         .ranking
-        .effect(Some(truth.ok_or("the truth is no candidate")?));
-    let truth = truth.ok_or("the model rejected the truth")?;
+        .effect(Some(truth))
+        .ok_or("the model rejected the truth")?;
     let base = sampled(&case, &case.plan.job(), seed)?;
     let added = Extension::Effect(name.clone());
     let job = extended("job.toml", &case.plan.job(), &[&added])?;
@@ -89,7 +90,7 @@ fn sampled(case: &SyntheticCase, job: &FileSet, seed: u64) -> Result<PosteriorSa
     sample(job, &case.experiment(), SAMPLER, seed)
 }
 
-/// ln p(data | theta) where the search ended; NaN where it ended elsewhere.
+/// ln p(data | theta); NaN without a parameter vector or if the model rejects it.
 fn log_likelihood(case: &SyntheticCase, job: &FileSet, theta: Option<&Vec<f64>>) -> Result<f64, StudyError> {
     let spec = spec(job, &case.experiment())?;
     let Some(theta) = theta else {
@@ -98,8 +99,6 @@ fn log_likelihood(case: &SyntheticCase, job: &FileSet, theta: Option<&Vec<f64>>)
     let Outcome::Evaluated(seen) = Evaluate::new(&spec.fit_variant)?.evaluate(spec.model_theta(theta)) else {
         return Ok(f64::NAN);
     };
-    let scored = spec
-        .likelihood
-        .log_likelihood(&spec.predicted_values(&seen), theta);
-    Ok(scored?.value())
+    let values = spec.predicted_values(&seen);
+    Ok(spec.likelihood.log_likelihood(&values, theta)?.value())
 }

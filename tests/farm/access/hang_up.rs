@@ -9,7 +9,7 @@ use base64::prelude::BASE64_STANDARD;
 use farm_tests::service::Service;
 use serde_json::json;
 
-/// A post of two million cells: 5 MB, and some hundred while they are read.
+/// A request with two million cells, which has 5 MB and takes some hundred MB while it is read.
 fn post(service: &Service) -> Vec<u8> {
     let row = "1;".repeat(999) + "1\n";
     let table = "a;".repeat(999) + "a\n" + &row.repeat(2000);
@@ -44,14 +44,14 @@ fn tables_whose_clients_hang_up_take_the_memory_of_one() {
     let one = service.peak_kb() - before;
     for _ in 0..6 {
         let stream = send(&service, &post);
-        // Hangs up when the table is being read, or after it has waited for its turn a while.
+        // The client hangs up while the table is read, or after a wait for its turn.
         let (patience, begun) = (Instant::now() + Duration::from_millis(500), before + one / 2);
         while service.resident_kb() < begun && Instant::now() < patience {
             std::thread::yield_now();
         }
         drop(stream);
     }
-    // Turns are taken in order: when this one has its answer, those before it are over.
+    // Tables are read in order, so that all earlier ones are done when this one is answered.
     answered(&service, &post);
     let all = service.peak_kb() - before;
     assert!(

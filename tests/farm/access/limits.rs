@@ -1,9 +1,10 @@
-//! Limits: nobody who reaches the port can fill the memory, the descriptors or the lists.
+//! Limits of what a client may fill: memory, descriptors and lists.
 
 use std::io::{Read, Write};
 use std::net::TcpStream;
 use std::time::Duration;
 
+use farm_tests::assert_contains;
 use farm_tests::fake_worker::FakeWorker;
 use farm_tests::http::Response;
 use farm_tests::job::Job;
@@ -19,7 +20,7 @@ fn refused(response: &Response, status: u16, part: &str) {
         .unwrap_or_default()
         .to_owned();
     assert_eq!(response.status, status, "{message}");
-    assert!(message.contains(part), "{message}");
+    assert_contains!(message, part);
 }
 
 #[test]
@@ -210,10 +211,8 @@ fn the_log_has_a_line_for_each_turn_of_a_calibration_and_a_list_escapes_its_name
         );
     }
     let list = programs::run(programs::coordinator(["list", "--url", &service.url()])).success();
-    assert!(
-        list.contains("red \\u{1b}[31m") && !list.contains('\u{1b}'),
-        "{list}"
-    );
+    assert!(list.contains("red \\u{1b}[31m"), "{list}");
+    assert!(!list.contains('\u{1b}'), "{list}");
     let _worker = service.worker("worker", 1);
     service.wait_for(1, "finished");
     let log = service.log();
@@ -228,5 +227,5 @@ fn the_log_has_a_line_for_each_turn_of_a_calibration_and_a_list_escapes_its_name
         let count = log.lines().filter(|l| l.contains(line)).count();
         assert!(count >= 1, "{line}: {count} lines in\n{log}");
     }
-    assert!(log.contains("by=no token"), "{log}");
+    assert_contains!(log, "by=no token");
 }

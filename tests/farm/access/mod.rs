@@ -1,4 +1,4 @@
-//! Who may do what: pages of other sites, tokens and roles, listening where others reach the service, how much, how slowly, and who hangs up.
+//! Access to the service: pages of other sites, tokens and roles, addresses that others reach, limits, slow clients and hang-ups.
 
 mod foreign_page;
 mod hang_up;

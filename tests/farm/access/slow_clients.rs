@@ -1,24 +1,24 @@
-//! Clients that take their time: they do not read their answers, or stop in the middle of what they send.
+//! Slow clients, which do not read their answers or stop in the middle of a request.
 
 use std::io::{Read, Write};
 use std::net::{Shutdown, TcpStream};
 use std::time::Duration;
 
+use farm_tests::assert_contains;
 use farm_tests::fake_worker::FakeWorker;
 use farm_tests::job::Job;
 use farm_tests::service::Service;
-use farm_tests::wait::until;
-use serde_json::json;
+use farm_tests::wait::until_true;
 
-/// Descriptors of a service that then has room for 256 connections.
+/// The number of descriptors with which a service has room for 256 connections.
 const DESCRIPTORS: u32 = 320;
 
-/// A client that asks again and again and reads nothing.
+/// A client that sends requests and reads no answer.
 fn asker(service: &Service) -> TcpStream {
     let mut stream = TcpStream::connect(&service.client.0).expect("a connection");
-    let asked = "GET /page/vendor/d3.js HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n".repeat(40);
-    // It may have had to make place for another one already.
-    let _ = stream.write_all(asked.as_bytes());
+    let requested = "GET /page/vendor/d3.js HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n".repeat(40);
+    // The service may already have closed the connection in favour of another one.
+    let _ = stream.write_all(requested.as_bytes());
     stream
 }
 
@@ -30,11 +30,11 @@ fn clients_that_read_nothing_shut_nobody_out_and_cost_little() {
     for _ in 0..5 {
         assert_eq!(service.client.get("/health").status, 200);
     }
-    let (untaken, open) = service.untaken();
+    let (unread, open) = service.unread();
     assert!(open > 200, "{open} connections are open");
     assert!(
-        untaken < 64 << 20,
-        "{untaken} bytes wait for {open} clients, a quarter of a megabyte for each at most"
+        unread < 64 << 20,
+        "{unread} bytes wait for {open} clients, a quarter of a megabyte for each at most"
     );
     let grown = service.resident_kb().saturating_sub(before);
     assert!(grown < 50_000, "{open} connections take {grown} kB");
@@ -49,21 +49,19 @@ fn a_client_that_reads_nothing_is_hung_up_on_and_one_that_waits_is_not() {
         format!("GET /v1/calibrations/{id}/events HTTP/1.1\r\nHost: 127.0.0.1\r\nConnection: close\r\n\r\n");
     watcher.write_all(watched.as_bytes()).expect("a request");
     let _asker = asker(&service);
-    until("two connections", || (service.untaken().1 == 2).then_some(()));
-    until("the end of the one that reads nothing", || {
-        let (untaken, open) = service.untaken();
-        (untaken == 0 && open == 1).then_some(())
+    until_true("two connections", || service.unread().1 == 2);
+    until_true("the end of the one that reads nothing", || {
+        let (unread, open) = service.unread();
+        unread == 0 && open == 1
     });
-    let cancelled = service
-        .client
-        .post(&format!("/v1/calibrations/{id}/cancel"), &json!({}));
+    let cancelled = service.act(id, "cancel");
     assert_eq!(cancelled.status, 200);
     let mut events = String::new();
     watcher.read_to_string(&mut events).expect("a stream of events");
-    assert!(events.contains("\"state\":\"cancelled\""), "{events}");
+    assert_contains!(events, "\"state\":\"cancelled\"");
 }
 
-/// A body of 63 MiB of which half is sent; what the service answers, if it does within 20 s.
+/// Sends half of a body of 63 MiB; returns the connection, and the answer if it comes within 20 s.
 fn half_sent(service: &Service) -> (TcpStream, String) {
     let size = 63 << 20;
     let mut stream = TcpStream::connect(&service.client.0).expect("a connection");
@@ -71,7 +69,7 @@ fn half_sent(service: &Service) -> (TcpStream, String) {
         "POST /v1/experiments HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Type: application/json\r\nContent-Length: {size}\r\n\r\n"
     );
     stream.write_all(head.as_bytes()).expect("a head");
-    // The service hangs up after it has refused.
+    // The service closes the connection after a refusal.
     let _ = stream.write_all(&vec![b' '; size / 2]);
     stream
         .set_read_timeout(Some(Duration::from_secs(20)))
@@ -117,8 +115,8 @@ fn half_sent_bodies_fill_no_memory_and_keep_no_worker_from_posting() {
     for (sender, _) in senders {
         let _ = sender.shutdown(Shutdown::Both);
     }
-    until("memory given back", || {
-        (service.resident_kb().saturating_sub(before) < 50_000).then_some(())
+    until_true("memory given back", || {
+        service.resident_kb().saturating_sub(before) < 50_000
     });
     let large = " ".repeat(63 << 20) + &Job::small().experiment_json().to_string();
     assert_eq!(service.client.post_text("/v1/experiments", &large).status, 201);
@@ -135,8 +133,5 @@ fn a_body_that_breaks_the_rules_of_http_is_not_called_too_large() {
     let _ = stream.read_to_end(&mut answer);
     let answer = String::from_utf8_lossy(&answer);
     assert!(answer.starts_with("HTTP/1.1 400"), "{answer}");
-    assert!(
-        answer.contains("the body cannot be read: ") && answer.contains("extension"),
-        "{answer}"
-    );
+    assert_contains!(answer, "the body cannot be read: ", "extension");
 }

@@ -1,17 +1,18 @@
-//! Tokens: who has which role, what an address that others reach demands, and what the log says.
+//! Tokens: roles, the demands on addresses that others reach, and the lines of the log.
 
 use std::io::{BufRead, BufReader, Read, Write};
 use std::net::TcpStream;
 
+use farm_tests::assert_contains;
 use farm_tests::fake_worker::FakeWorker;
 use farm_tests::http::Client;
 use farm_tests::job::Job;
 use farm_tests::process::Process;
 use farm_tests::programs;
 use farm_tests::service::{Service, free_address};
-use farm_tests::wait::until;
+use farm_tests::wait::{until, until_true};
 
-/// A token as the command line makes it.
+/// Makes a token by the command line.
 fn add(service: &Service, name: &str, role: &str) -> String {
     let store = service.store_name().to_owned();
     let command = programs::coordinator(["token", "add", name, "--role", role, "--store", &store]);
@@ -34,8 +35,8 @@ fn each_role_does_its_own_and_no_more() {
     let mut service = Service::start(&[]);
     let id = service.submit(&Job::small());
     let tokens = ["read", "submit", "work"].map(|role| add(&service, &format!("anna-{role}"), role));
-    until("a token asked for", || {
-        (status(&service.client, "GET", "/v1/calibrations", None) == 401).then_some(())
+    until_true("a token asked for", || {
+        status(&service.client, "GET", "/v1/calibrations", None) == 401
     });
     let [read, submit, work] = tokens.each_ref().map(String::as_str);
     let pause = format!("/v1/calibrations/{id}/pause");
@@ -67,7 +68,7 @@ fn each_role_does_its_own_and_no_more() {
         );
     }
 
-    // Our own programs: a file for one, the environment for the other.
+    // One of our programs reads the token from a file, the other from the environment.
     let file = service.folder().join("token");
     std::fs::write(&file, format!("{submit}\n")).expect("a file");
     let file = file.display().to_string();
@@ -79,29 +80,23 @@ fn each_role_does_its_own_and_no_more() {
     let mut command = programs::worker(["--coordinator", &url, "--threads", "1"]);
     command.env("GROUSER_TOKEN", work);
     let worker = Process::start(command, &service.folder().join("worker.log"));
-    until("a result of the worker", || {
+    until_true("a result of the worker", || {
         let mut command = programs::coordinator(["list", "--url", &url]);
         command.env("GROUSER_TOKEN", read);
-        programs::run(command)
-            .success()
-            .contains("finished")
-            .then_some(())
+        programs::run(command).success().contains("finished")
     });
 
     let store = service.store_name().to_owned();
     let revoke = programs::coordinator(["token", "revoke", "anna-read", "--store", &store]);
     programs::run(revoke).success();
-    until("a token revoked", || {
-        (status(&service.client, "GET", "/v1/calibrations", Some(read)) == 401).then_some(())
+    until_true("a token revoked", || {
+        status(&service.client, "GET", "/v1/calibrations", Some(read)) == 401
     });
     let listed = programs::run(programs::coordinator(["token", "list", "--store", &store])).success();
-    assert!(
-        listed.contains("anna-read") && listed.contains("revoked"),
-        "{listed}"
-    );
+    assert_contains!(listed, "anna-read", "revoked");
 
     let log = service.log() + &worker.log();
-    assert!(log.contains("by=anna-submit"), "{log}");
+    assert_contains!(log, "by=anna-submit");
     let kept = std::fs::read(service.store()).expect("the store");
     for token in [read, submit, work] {
         assert!(!log.contains(token), "a token in the log");
@@ -112,19 +107,15 @@ fn each_role_does_its_own_and_no_more() {
         );
         assert!(!listed.contains(token), "a token in the list");
     }
-    // A store that has had a token does not open again when the last one goes.
+    // A store that has had a token still demands one after the last token is revoked.
     for name in ["anna-submit", "anna-work"] {
-        programs::run(programs::coordinator([
-            "token", "revoke", name, "--store", &store,
-        ]))
-        .success();
+        programs::call("coordinator token revoke {} --store {}", &[&name, &store]).success();
     }
-    service.kill();
-    service.restart();
+    service.crash();
     assert_eq!(status(&service.client, "GET", "/v1/calibrations", None), 401);
 }
 
-/// A stream of a calibration's events of which the first has arrived.
+/// Opens the stream of a calibration's events, and waits for the first event.
 fn watch(service: &Service, id: i64, token: &str) -> BufReader<TcpStream> {
     let mut stream = TcpStream::connect(&service.client.0).expect("a connection");
     let head = format!(
@@ -147,8 +138,8 @@ fn a_revoked_token_ends_the_streams_and_polls_that_it_began() {
     let client = &service.client;
     let id = service.submit(&Job::small());
     let [read, work, submit] = ["read", "work", "submit"].map(|role| add(&service, role, role));
-    until("a token asked for", || {
-        (status(client, "GET", "/v1/calibrations", None) == 401).then_some(())
+    until_true("a token asked for", || {
+        status(client, "GET", "/v1/calibrations", None) == 401
     });
     let pause = format!("/v1/calibrations/{id}/pause");
     assert_eq!(status(client, "POST", &pause, Some(&submit)), 200);
@@ -167,12 +158,12 @@ fn a_revoked_token_ends_the_streams_and_polls_that_it_began() {
         poller.exchange("POST", "/v1/work/exchange", &head, Some(body.as_bytes()))
     });
     let bearer = format!("Bearer {submit}");
-    until("a parked poll", || {
+    until_true("a parked poll", || {
         let head = [("Authorization", bearer.as_str())];
         let workers = client
             .exchange("GET", "/v1/workers", &head, None)
             .expect("an answer");
-        workers.body.contains("parked").then_some(())
+        workers.body.contains("parked")
     });
 
     for name in ["read", "work"] {
@@ -181,16 +172,16 @@ fn a_revoked_token_ends_the_streams_and_polls_that_it_began() {
         programs::run(revoke).success();
     }
     for (path, token) in [("/v1/calibrations", &read), ("/v1/work/variants/0", &work)] {
-        until("a token revoked", || {
-            (status(client, "GET", path, Some(token)) == 401).then_some(())
+        until_true("a token revoked", || {
+            status(client, "GET", path, Some(token)) == 401
         });
     }
     let resume = format!("/v1/calibrations/{id}/resume");
     assert_eq!(status(client, "POST", &resume, Some(&submit)), 200);
     let answer = poll.join().expect("a poll").expect("an answer");
     assert_eq!(answer.status, 401, "{}", answer.body);
-    assert!(answer.body.contains("unknown or revoked"), "{}", answer.body);
-    until("the end of the stream", || events.is_finished().then_some(()));
+    assert_contains!(answer.body, "unknown or revoked");
+    until_true("the end of the stream", || events.is_finished());
 }
 
 #[test]
@@ -200,11 +191,9 @@ fn an_address_that_others_reach_demands_a_token_or_says_what_insecure_means() {
     let address = free_address().replace("127.0.0.1", "0.0.0.0");
     let serve = ["serve", "--listen", &address, "--store", &store];
     let refusal = programs::run(programs::coordinator(serve)).refusal();
-    assert!(
-        refusal.contains(&format!(
-            "coordinator token add NAME --role submit --store {store}"
-        )),
-        "{refusal}"
+    assert_contains!(
+        refusal,
+        &format!("coordinator token add NAME --role submit --store {store}")
     );
 
     let client = Client(address.replace("0.0.0.0", "127.0.0.1"));
@@ -213,11 +202,7 @@ fn an_address_that_others_reach_demands_a_token_or_says_what_insecure_means() {
     let process = Process::start(insecure, &log);
     until("an answer", || client.try_get("/health").ok());
     assert_eq!(status(&client, "GET", "/v1/calibrations", None), 200);
-    assert!(
-        process.log().contains("nobody is asked for a token"),
-        "{}",
-        process.log()
-    );
+    assert_contains!(process.log(), "nobody is asked for a token");
     drop(process);
 
     let add = programs::coordinator(["token", "add", "w", "--role", "work", "--store", &store]);
@@ -240,7 +225,7 @@ fn a_token_has_one_holder_and_a_plain_name() {
     };
     let first = run(&["add", "anna", "--role", "read"]).success();
     let again = run(&["add", "anna", "--role", "submit"]).refusal();
-    assert!(again.contains("has a token anna already"), "{again}");
+    assert_contains!(again, "has a token anna already");
     let odd = run(&["add", "an na", "--role", "read"]).refusal();
     assert!(odd.starts_with("name \"an na\" must have"), "{odd}");
     let absent = run(&["revoke", "bert"]).refusal();
@@ -287,22 +272,16 @@ fn a_token_that_was_made_elsewhere_is_taken_once_and_again() {
     };
     std::fs::write(&file, "short\n").expect("a file");
     let refused = add("work").refusal();
-    assert!(
-        refused.contains("a token of 5 characters must have at least 32"),
-        "{refused}"
-    );
+    assert_contains!(refused, "a token of 5 characters must have at least 32");
     std::fs::write(&file, format!("{secret}\n")).expect("a file");
     assert_eq!(add("work").success(), "");
     assert_eq!(add("work").success(), "", "as when a pod starts again");
     let refused = add("submit").refusal();
-    assert!(
-        refused.contains("has this token already, as farm with the role work"),
-        "{refused}"
-    );
+    assert_contains!(refused, "has this token already, as farm with the role work");
     let becomes = |secret: &str, expected: u16| {
-        until("the token", || {
-            let known = status(&service.client, "GET", "/v1/work/demand", Some(secret));
-            (known == expected).then_some(())
+        until_true("the token", || {
+            let listed = status(&service.client, "GET", "/v1/work/demand", Some(secret));
+            listed == expected
         });
     };
     becomes(secret, 200);
@@ -311,10 +290,7 @@ fn a_token_that_was_made_elsewhere_is_taken_once_and_again() {
     assert_eq!(add("work").success(), "", "as when a secret is changed");
     becomes(other, 200);
     becomes(secret, 401);
-    programs::run(programs::coordinator([
-        "token", "revoke", "farm", "--store", &store,
-    ]))
-    .success();
+    programs::call("coordinator token revoke farm --store {}", &[&store]).success();
     becomes(other, 401);
     assert!(add("work").stderr.contains("was revoked, and stays so"));
     becomes(other, 401);

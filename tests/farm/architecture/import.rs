@@ -23,7 +23,7 @@ struct Module {
     imported: BTreeMap<String, Vec<String>>,
     /// Modules that it brings into scope as a whole.
     globs: Vec<Vec<String>>,
-    /// Every path of two or more words that its code has.
+    /// Every path of two or more words in its code.
     named: BTreeSet<Vec<String>>,
 }
 
@@ -56,7 +56,7 @@ impl Crate {
         Self(files(folder, ".rs").into_iter().map(module).collect())
     }
 
-    /// Whom each file imports.
+    /// The files that each file imports.
     pub(super) fn imports(&self) -> BTreeMap<&str, BTreeSet<&str>> {
         let edges = self.0.iter().map(|(path, module)| {
             let imported = module.imported.values();
@@ -64,18 +64,15 @@ impl Crate {
             let named = module.named.iter();
             let named = named.filter_map(|relative| self.definition(path, relative, DEPTH));
             let globs = module.globs.iter().filter(|glob| self.0.contains_key(*glob));
-            let own = &module.file;
-            let targets = imported
-                .chain(named)
-                .chain(globs.cloned())
-                .map(|target| &self.0[&target].file);
-            let targets = targets.filter(|target| *target != own).map(String::as_str);
-            (own.as_str(), targets.collect())
+            let targets = imported.chain(named).chain(globs.cloned());
+            let targets = targets.map(|target| self.0[&target].file.as_str());
+            let file = module.file.as_str();
+            (file, targets.filter(|target| *target != file).collect())
         });
         edges.collect()
     }
 
-    /// The module that defines what a path means in another one; `None` for other crates, and for a module itself.
+    /// The module that defines the item of a path in another module; `None` for items of other crates and for modules.
     fn definition(&self, at: &[String], path: &[String], depth: usize) -> Option<Vec<String>> {
         let (first, rest) = path.split_first()?;
         let depth = depth.checked_sub(1)?;
@@ -104,9 +101,9 @@ impl Crate {
 }
 
 impl Module {
-    fn take(&mut self, item: &Item, own: &[String]) {
+    fn take(&mut self, item: &Item, at: &[String]) {
         let name = match item {
-            Item::Use(import) => return self.import(&import.tree, &mut Vec::new(), own),
+            Item::Use(import) => return self.import(&import.tree, &mut Vec::new(), at),
             Item::Struct(item) => Some(&item.ident),
             Item::Enum(item) => Some(&item.ident),
             Item::Trait(item) => Some(&item.ident),
@@ -120,28 +117,26 @@ impl Module {
         self.paths(item.to_token_stream());
     }
 
-    /// Takes the leaves of a `use`, as paths from the crate's root; those of other crates lead nowhere.
-    fn import(&mut self, tree: &UseTree, before: &mut Vec<String>, own: &[String]) {
+    /// Takes the leaves of a `use` as paths from the crate's root; no module has the paths of other crates.
+    fn import(&mut self, tree: &UseTree, before: &mut Vec<String>, at: &[String]) {
         match tree {
             UseTree::Path(path) => {
                 before.push(path.ident.to_string());
-                self.import(&path.tree, before, own);
+                self.import(&path.tree, before, at);
                 before.pop();
             }
             UseTree::Group(group) => {
                 for tree in &group.items {
-                    self.import(tree, before, own);
+                    self.import(tree, before, at);
                 }
             }
-            UseTree::Glob(_) => self.globs.extend(absolute(before, own)),
-            UseTree::Name(name) => self.leaf(&name.ident.to_string(), &name.ident.to_string(), before, own),
-            UseTree::Rename(name) => {
-                self.leaf(&name.ident.to_string(), &name.rename.to_string(), before, own)
-            }
+            UseTree::Glob(_) => self.globs.extend(absolute(before, at)),
+            UseTree::Name(name) => self.leaf(&name.ident.to_string(), &name.ident.to_string(), before, at),
+            UseTree::Rename(name) => self.leaf(&name.ident.to_string(), &name.rename.to_string(), before, at),
         }
     }
 
-    fn leaf(&mut self, name: &str, scope: &str, before: &[String], own: &[String]) {
+    fn leaf(&mut self, name: &str, scope: &str, before: &[String], at: &[String]) {
         let mut path = before.to_vec();
         let mut scope = scope.to_owned();
         if name == "self" {
@@ -149,12 +144,12 @@ impl Module {
         } else {
             path.push(name.to_owned());
         }
-        if let Some(path) = absolute(&path, own) {
+        if let Some(path) = absolute(&path, at) {
             self.imported.insert(scope, path);
         }
     }
 
-    /// Takes every path of two or more words out of code, that in macros included.
+    /// Takes every path of two or more words out of code, including the code in macro calls.
     fn paths(&mut self, tokens: TokenStream) {
         let mut path: Vec<String> = Vec::new();
         let mut colons = 0;
@@ -190,26 +185,24 @@ impl Module {
     }
 }
 
-/// A path from the crate's root; `None` where it begins with another crate, or with a name that is in scope already.
-fn absolute(path: &[String], own: &[String]) -> Option<Vec<String>> {
-    let mut at = own.to_vec();
+/// The path from the crate's root that a path in the module `at` means; `None` for an empty path.
+fn absolute(path: &[String], at: &[String]) -> Option<Vec<String>> {
+    let mut absolute = at.to_vec();
     let mut words = path.iter().peekable();
     match words.next()?.as_str() {
-        "crate" => at.clear(),
+        "crate" => absolute.clear(),
         "self" => {}
-        "super" => {
-            at.pop();
-        }
-        first => at.push(first.to_owned()),
+        "super" => drop(absolute.pop()),
+        first => absolute.push(first.to_owned()),
     }
     while words.next_if(|word| *word == "super").is_some() {
-        at.pop();
+        absolute.pop();
     }
-    at.extend(words.cloned());
-    Some(at)
+    absolute.extend(words.cloned());
+    Some(absolute)
 }
 
-/// The path of a module; a file of one of the names `roots` is its folder's module.
+/// The path of a module; a file with one of the names `roots` is the module of its folder.
 fn module_path(relative: &Path, roots: &[&str]) -> Vec<String> {
     let words = relative.with_extension("");
     let words = words.iter().map(|word| word.to_string_lossy().into_owned());
@@ -228,7 +221,6 @@ fn is_test(item: &Item) -> bool {
         Item::Struct(item) => &item.attrs,
         _ => return false,
     };
-    let text = attributes.iter().map(|a| a.to_token_stream().to_string());
-    text.into_iter()
-        .any(|text| text.contains("cfg") && text.contains("test"))
+    let mut texts = attributes.iter().map(|a| a.to_token_stream().to_string());
+    texts.any(|text| text.contains("cfg") && text.contains("test"))
 }

@@ -10,96 +10,102 @@ use std::path::{Path, PathBuf};
 
 use farm_tests::workspace::{files, root, text};
 
-const CRATES: [&str; 21] = [
-    "shared",
-    "shared/formula",
-    "shared/signal",
-    "shared/statistics",
-    "coordinator",
-    "coordinator/inference",
-    "coordinator/discovery",
-    "coordinator/export",
-    "coordinator/farm",
-    "coordinator/import",
-    "coordinator/job",
-    "coordinator/page",
-    "coordinator/record",
-    "coordinator/report",
-    "coordinator/result",
-    "coordinator/search",
-    "coordinator/store",
-    "benchmark",
-    "worker",
-    "worker/scm",
-    "tests",
+/// The folder and the name of every crate of the workspace.
+const CRATES: [(&str, &str); 21] = [
+    ("shared", "shared"),
+    ("shared/formula", "formula"),
+    ("shared/signal", "signal"),
+    ("shared/statistics", "statistics"),
+    ("coordinator", "coordinator"),
+    ("coordinator/inference", "inference"),
+    ("coordinator/discovery", "discovery"),
+    ("coordinator/export", "export"),
+    ("coordinator/farm", "farm"),
+    ("coordinator/import", "import"),
+    ("coordinator/job", "job"),
+    ("coordinator/page", "page"),
+    ("coordinator/record", "record"),
+    ("coordinator/report", "report"),
+    ("coordinator/result", "result"),
+    ("coordinator/search", "search"),
+    ("coordinator/store", "store"),
+    ("benchmark", "benchmark"),
+    ("worker", "worker"),
+    ("worker/scm", "scm"),
+    ("tests", "farm-tests"),
 ];
-const OURS: [&str; 21] = [
-    "shared",
-    "formula",
-    "signal",
-    "statistics",
-    "coordinator",
-    "inference",
-    "discovery",
-    "export",
-    "farm",
-    "import",
-    "job",
-    "page",
-    "record",
-    "report",
-    "result",
-    "search",
-    "store",
-    "benchmark",
-    "worker",
-    "scm",
-    "farm-tests",
+
+/// The dependencies that each crate may have on other crates of the workspace.
+const DIRECTION: [(&str, &str); 19] = [
+    ("shared/formula", ""),
+    ("shared/signal", ""),
+    ("shared/statistics", ""),
+    ("shared", "formula signal statistics"),
+    ("worker/scm", "formula signal"),
+    ("coordinator/inference", "statistics"),
+    ("coordinator/discovery", "inference statistics"),
+    ("coordinator/import", "formula shared"),
+    ("coordinator/job", "formula inference shared statistics"),
+    ("coordinator/page", ""),
+    ("coordinator/record", "inference job shared statistics"),
+    (
+        "coordinator/report",
+        "formula inference job page record result shared statistics",
+    ),
+    (
+        "coordinator/result",
+        "inference job record shared signal statistics",
+    ),
+    (
+        "coordinator/export",
+        "inference job record result shared statistics",
+    ),
+    (
+        "coordinator/search",
+        "discovery formula inference job record shared statistics",
+    ),
+    (
+        "coordinator/farm",
+        "inference job record search shared statistics",
+    ),
+    ("coordinator/store", "inference job record shared statistics"),
+    ("worker", "formula scm shared signal statistics"),
+    (
+        "coordinator",
+        "discovery export farm formula import inference job page record report result search shared signal statistics store worker",
+    ),
 ];
 
 /// The dependencies of a crate that its products are built from.
 fn dependencies(krate: &str) -> BTreeSet<String> {
     let manifest = text(&root().join(krate).join("Cargo.toml"));
     let manifest: toml::Table = manifest.parse().expect("a manifest");
-    let mut names = BTreeSet::new();
-    for table in ["dependencies", "build-dependencies"] {
-        names.extend(
-            manifest
-                .get(table)
-                .and_then(toml::Value::as_table)
-                .into_iter()
-                .flat_map(|t| t.keys().cloned()),
-        );
-    }
-    names
+    let tables = ["dependencies", "build-dependencies"].into_iter();
+    let tables = tables.filter_map(|table| manifest.get(table)?.as_table());
+    tables.flat_map(|table| table.keys().cloned()).collect()
 }
 
-fn set(names: &[&str]) -> BTreeSet<String> {
-    names.iter().map(|&n| n.to_owned()).collect()
-}
-
-/// The lines of a source file that are code, with their numbers; what stands below `#[cfg(test)]` is left out.
+/// The lines of a source file that are code, with their numbers, without comments, quoted text and the part below `#[cfg(test)]`.
 fn code(path: &Path) -> Vec<(usize, String)> {
     let source = text(path);
-    let lines = source
-        .lines()
-        .enumerate()
-        .take_while(|(_, line)| !line.trim_start().starts_with("#[cfg(test)]"));
+    let lines = source.lines().enumerate();
     lines
+        .take_while(|(_, line)| !line.trim_start().starts_with("#[cfg(test)]"))
         .filter(|(_, line)| !line.trim_start().starts_with("//"))
-        // Quoted text is no code.
         .map(|(i, line)| (i + 1, line.split('"').step_by(2).collect()))
         .collect()
 }
 
-fn relative(path: &Path) -> String {
-    path.strip_prefix(root())
-        .expect("a file of the workspace")
-        .display()
-        .to_string()
+fn set(names: &str) -> BTreeSet<String> {
+    names.split_whitespace().map(str::to_owned).collect()
 }
 
-/// Whether `word` stands in `line` as a word of its own, so that `scm::` is not found in `my_scm::`.
+fn relative(path: &Path) -> String {
+    let path = path.strip_prefix(root()).expect("a file of the workspace");
+    path.display().to_string()
+}
+
+/// Whether `line` has `word` at the start of a path, so that `scm::` is not found in `my_scm::`.
 fn names(line: &str, word: &str) -> bool {
     line.match_indices(word).any(|(at, _)| {
         let before = line[..at].chars().next_back();
@@ -107,17 +113,15 @@ fn names(line: &str, word: &str) -> bool {
     })
 }
 
-/// Every place below `folders` where one of the words is named, outside the files that may.
+/// Every line below `folders` with one of the words, except in the allowed files.
 fn strays(folders: &[&str], words: &[&str], allowed: &[&str]) -> Vec<String> {
     let mut found = Vec::new();
     let sources: Vec<PathBuf> = folders.iter().flat_map(|folder| files(folder, ".rs")).collect();
     assert!(!sources.is_empty(), "no source in {folders:?}");
     for path in sources {
         let name = relative(&path);
-        if allowed
-            .iter()
-            .any(|a| name == *a || (a.ends_with('/') && name.starts_with(a)))
-        {
+        let is_in = |file: &&str| name == **file || (file.ends_with('/') && name.starts_with(*file));
+        if allowed.iter().any(is_in) {
             continue;
         }
         for (number, line) in code(&path) {
@@ -140,7 +144,7 @@ fn nowhere(folders: &[&str], words: &[&str], allowed: &[&str]) {
 }
 
 #[test]
-fn the_search_finds_what_is_there_and_only_that() {
+fn the_search_finds_paths_and_nothing_else() {
     assert!(names("use scm::Soil;", "scm::") && names("    scm::simulate()", "scm::"));
     assert!(!names("use my_scm::Soil;", "scm::") && !names("crate::scm::Soil", "scm::"));
     assert!(!strays(&["coordinator/src"], &["axum::"], &[]).is_empty());
@@ -150,141 +154,35 @@ fn the_search_finds_what_is_there_and_only_that() {
 
 #[test]
 fn manifests_keep_the_direction_of_dependencies() {
-    let ours = |krate: &str| -> BTreeSet<String> {
-        dependencies(krate)
-            .into_iter()
-            .filter(|d| OURS.contains(&d.as_str()))
-            .collect()
-    };
-    assert_eq!(ours("shared/formula"), set(&[]));
-    assert_eq!(ours("shared/signal"), set(&[]));
-    assert_eq!(ours("shared/statistics"), set(&[]));
-    assert_eq!(ours("shared"), set(&["formula", "signal", "statistics"]));
-    assert_eq!(ours("worker/scm"), set(&["formula", "signal"]));
-    assert_eq!(ours("coordinator/inference"), set(&["statistics"]));
-    assert_eq!(ours("coordinator/discovery"), set(&["inference", "statistics"]));
-    assert_eq!(ours("coordinator/import"), set(&["formula", "shared"]));
-    assert_eq!(
-        ours("coordinator/job"),
-        set(&["formula", "inference", "shared", "statistics"])
-    );
-    assert_eq!(ours("coordinator/page"), set(&[]));
-    assert_eq!(
-        ours("coordinator/record"),
-        set(&["inference", "job", "shared", "statistics"])
-    );
-    assert_eq!(
-        ours("coordinator/report"),
-        set(&[
-            "formula",
-            "inference",
-            "job",
-            "page",
-            "record",
-            "result",
-            "shared",
-            "statistics"
-        ])
-    );
-    assert_eq!(
-        ours("coordinator/result"),
-        set(&["inference", "job", "record", "shared", "signal", "statistics"])
-    );
-    assert_eq!(
-        ours("coordinator/export"),
-        set(&["inference", "job", "record", "result", "shared", "statistics"])
-    );
-    assert_eq!(
-        ours("coordinator/search"),
-        set(&[
-            "discovery",
-            "formula",
-            "inference",
-            "job",
-            "record",
-            "shared",
-            "statistics"
-        ])
-    );
-    assert_eq!(
-        ours("coordinator/farm"),
-        set(&["inference", "job", "record", "search", "shared", "statistics"])
-    );
-    assert_eq!(
-        ours("coordinator/store"),
-        set(&["inference", "job", "record", "shared", "statistics"])
-    );
-    assert_eq!(
-        ours("worker"),
-        set(&["formula", "scm", "shared", "signal", "statistics"])
-    );
-    assert_eq!(
-        ours("coordinator"),
-        set(&[
-            "discovery",
-            "export",
-            "farm",
-            "formula",
-            "import",
-            "inference",
-            "job",
-            "page",
-            "record",
-            "report",
-            "result",
-            "search",
-            "shared",
-            "signal",
-            "statistics",
-            "store",
-            "worker"
-        ])
-    );
-    for krate in CRATES {
-        assert!(!ours(krate).contains("farm-tests"), "{krate} imports the tests");
-        assert!(!ours(krate).contains("benchmark"), "{krate} imports the studies");
+    let names: BTreeSet<String> = CRATES.iter().map(|(_, name)| (*name).to_owned()).collect();
+    let internal = |krate: &str| &dependencies(krate) & &names;
+    for (krate, allowed) in DIRECTION {
+        assert_eq!(internal(krate), set(allowed), "{krate}");
+    }
+    for (krate, _) in CRATES {
+        assert!(
+            !internal(krate).contains("farm-tests"),
+            "{krate} imports the tests"
+        );
+        assert!(
+            !internal(krate).contains("benchmark"),
+            "{krate} imports the studies"
+        );
     }
 }
 
 #[test]
 fn pure_crates_know_no_runtime_network_database_or_chance() {
-    let impure = [
-        "tokio",
-        "axum",
-        "sqlx",
-        "reqwest",
-        "rayon",
-        "tracing",
-        "anyhow",
-        "clap",
-        "indicatif",
-    ];
-    for krate in [
-        "shared",
-        "shared/formula",
-        "shared/signal",
-        "shared/statistics",
-        "worker/scm",
-        "coordinator/inference",
-        "coordinator/discovery",
-        "coordinator/export",
-        "coordinator/import",
-        "coordinator/job",
-        "coordinator/page",
-        "coordinator/record",
-        "coordinator/report",
-        "coordinator/result",
-    ] {
-        let dependencies = dependencies(krate);
-        let found: Vec<&str> = impure.into_iter().filter(|d| dependencies.contains(*d)).collect();
+    let impure = set("tokio axum sqlx reqwest rayon tracing anyhow clap indicatif");
+    let pure = "shared shared/formula shared/signal shared/statistics worker/scm coordinator/inference coordinator/discovery \
+        coordinator/export coordinator/import coordinator/job coordinator/page coordinator/record coordinator/report coordinator/result";
+    for krate in set(pure) {
+        let found = &dependencies(&krate) & &impure;
         assert!(found.is_empty(), "{krate} imports {found:?}");
     }
     for krate in ["shared", "shared/formula", "shared/signal", "worker/scm"] {
-        let dependencies = dependencies(krate);
-        assert!(
-            !dependencies.iter().any(|d| d.starts_with("rand")),
-            "{krate} draws random numbers"
-        );
+        let draws = dependencies(krate).iter().any(|d| d.starts_with("rand"));
+        assert!(!draws, "{krate} draws random numbers");
     }
     nowhere(
         &[
@@ -311,7 +209,7 @@ fn the_coordinator_knows_no_physics_and_the_worker_in_one_file() {
         &["coordinator/src/embedded.rs"],
     );
     nowhere(&["worker/src"], &["coordinator::"], &[]);
-    // A worker takes the moves of a metamodel; nothing else that is statistical is its business.
+    // A worker takes the moves of a metamodel, and needs nothing else of the statistics.
     nowhere(
         &["worker/src"],
         &["statistics::"],
@@ -329,7 +227,7 @@ fn the_coordinator_knows_no_physics_and_the_worker_in_one_file() {
 }
 
 #[test]
-fn axum_sql_and_http_clients_stay_in_their_rooms() {
+fn axum_sql_and_http_clients_stay_in_their_modules() {
     nowhere(
         &["coordinator/src"],
         &["axum::", "utoipa_axum::", "tower_http::"],
@@ -376,7 +274,7 @@ fn the_rules_of_leases_know_nothing_else() {
 }
 
 #[test]
-fn pure_rooms_read_no_clock() {
+fn pure_modules_read_no_clock() {
     let pure = [
         "worker/scm/src",
         "coordinator/inference/src",
@@ -406,26 +304,20 @@ fn pure_rooms_read_no_clock() {
         "coordinator/farm/src/verification.rs",
         "coordinator/farm/src/progress.rs",
     ] {
-        let found = code(&root().join(file))
-            .into_iter()
-            .filter(|(_, l)| clocks.iter().any(|c| l.contains(c)))
-            .count();
-        assert_eq!(found, 0, "{file} reads a clock");
+        let mut lines = code(&root().join(file)).into_iter();
+        let reads = lines.any(|(_, line)| clocks.iter().any(|clock| line.contains(clock)));
+        assert!(!reads, "{file} reads a clock");
     }
 }
 
 #[test]
 fn files_are_small() {
-    let mut sizes: Vec<(usize, String)> = CRATES
+    let sources: BTreeSet<PathBuf> = CRATES.iter().flat_map(|(krate, _)| files(krate, ".rs")).collect();
+    let sizes = sources
         .iter()
-        .filter(|krate| !["coordinator", "worker"].contains(krate))
-        .chain(&["coordinator/src", "worker/src"])
-        .filter(|folder| root().join(folder).is_dir())
-        .flat_map(|folder| files(folder, ".rs"))
-        .map(|path| (text(&path).lines().count(), relative(&path)))
-        .collect();
+        .map(|path| (text(path).lines().count(), relative(path)));
+    let mut sizes: Vec<(usize, String)> = sizes.collect();
     sizes.sort();
-    sizes.dedup();
     let (longest, name) = sizes.last().cloned().unwrap_or_default();
     assert!(longest <= 600, "{name} has {longest} lines");
     let median = sizes[sizes.len() / 2].0;
@@ -435,17 +327,15 @@ fn files_are_small() {
 
 #[test]
 fn every_crate_takes_the_lints_of_the_workspace() {
-    for krate in CRATES {
+    for (krate, _) in CRATES {
         let manifest = text(&root().join(krate).join("Cargo.toml"));
         assert!(manifest.contains("[lints]\nworkspace = true"), "{krate}");
     }
     let workspace = text(&root().join("Cargo.toml"));
     assert!(workspace.contains("unsafe_code = \"forbid\""));
-    let code = CRATES.iter().flat_map(|krate| files(krate, ".rs"));
-    let allows: Vec<String> = code
-        .filter(|p| text(p).contains(concat!("#[", "allow(")))
-        .map(|p| relative(&p))
-        .collect();
+    let code = CRATES.iter().flat_map(|(krate, _)| files(krate, ".rs"));
+    let allows = code.filter(|path| text(path).contains(concat!("#[", "allow(")));
+    let allows: Vec<String> = allows.map(|path| relative(&path)).collect();
     assert!(
         allows.is_empty(),
         "expect, with a reason, instead of allow in {allows:?}"

@@ -8,10 +8,10 @@ use farm_tests::workspace::{files, root, text};
 /// The files of a folder by their paths below it, with their texts.
 pub(super) type Sources = BTreeMap<String, String>;
 
-/// Whom each file imports.
+/// The files that each file imports.
 pub(super) type Imports = BTreeMap<String, BTreeSet<String>>;
 
-/// Every source of a folder of the workspace whose name ends so.
+/// Every source of a folder of the workspace whose name ends with a suffix.
 pub(super) fn sources(folder: &str, suffix: &str) -> Sources {
     let below = root().join(folder);
     let named = |path: PathBuf| {
@@ -21,12 +21,9 @@ pub(super) fn sources(folder: &str, suffix: &str) -> Sources {
     files(folder, suffix).into_iter().map(named).collect()
 }
 
-/// Imports of ES modules, static and dynamic, by relative paths.
-///
-/// # Panics
-/// A module of the folder is imported that is not there.
+/// The static and dynamic imports of ES modules by relative paths, which must name files of the folder.
 #[track_caller]
-pub(super) fn of_modules(sources: &Sources) -> Imports {
+pub(super) fn module_imports(sources: &Sources) -> Imports {
     let edges = sources.iter().map(|(file, text)| {
         let code = without_comments(text);
         let named = ["from \"", "import \"", "import(\""].into_iter();
@@ -40,7 +37,7 @@ pub(super) fn of_modules(sources: &Sources) -> Imports {
         for target in &targets {
             assert!(
                 sources.contains_key(target),
-                "{file} imports {target}, which is not there"
+                "{file} imports {target}, which does not exist"
             );
         }
         (file.clone(), targets)
@@ -48,7 +45,7 @@ pub(super) fn of_modules(sources: &Sources) -> Imports {
     edges.collect()
 }
 
-/// The path of a module that a file names relative to itself; `None` of one outside the folder.
+/// The path of a module that a file names relative to itself; `None` for a module outside the folder.
 fn below(file: &str, path: &str) -> Option<String> {
     if !path.starts_with('.') {
         return None;
@@ -67,7 +64,7 @@ fn below(file: &str, path: &str) -> Option<String> {
     Some(parts.join("/"))
 }
 
-/// The code of a module: comments may name types of other modules, which are gone when it runs.
+/// The code of a module without its comments, which may name types of other modules that are not imported at run time.
 fn without_comments(text: &str) -> String {
     let mut code = String::new();
     let mut rest = text;
@@ -80,9 +77,9 @@ fn without_comments(text: &str) -> String {
     lines.collect::<Vec<_>>().join("\n")
 }
 
-/// Imports of a Python package by relative names, those in functions and for types alone included: `from . import A, B` means the
-/// modules, and the package itself where a name is none.
-pub(super) fn of_package(sources: &Sources) -> Imports {
+/// The imports of a Python package by relative names, including those inside functions and those for types alone. `from . import A, B`
+/// imports the modules A and B, or the package itself where a name is not a module.
+pub(super) fn package_imports(sources: &Sources) -> Imports {
     let module = |name: &str| {
         let file = format!("{}.py", name.replace('.', "/"));
         sources.contains_key(&file).then_some(file)
@@ -112,7 +109,7 @@ pub(super) fn of_package(sources: &Sources) -> Imports {
     edges.collect()
 }
 
-/// A text whose imports in parentheses stand on one line each.
+/// A text with each parenthesised import on one line.
 fn on_one_line(text: &str) -> String {
     let mut joined = String::new();
     let mut is_open = false;

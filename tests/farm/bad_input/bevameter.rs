@@ -1,12 +1,13 @@
-//! Forward runs of a bevameter that cannot be given, through `worker simulate`.
+//! Forward runs of a bevameter that `worker simulate` refuses.
 
+use farm_tests::assert_contains;
 use farm_tests::job::Job;
 use farm_tests::programs::{run, worker};
 use farm_tests::workspace::data;
 
 use super::{PLATES, SHEAR};
 
-/// The message of `worker simulate` on the small job with plates and shear; no table is left behind.
+/// The refusal of `worker simulate` for a job, which leaves no table behind.
 #[track_caller]
 fn simulate(job: Job, theta: &str, tables: &[&str]) -> String {
     let folder = tempfile::tempdir().expect("a folder");
@@ -42,9 +43,7 @@ fn forward_runs_refuse_tables_and_parameters_that_they_cannot_give() {
             .beside("shear.csv", SHEAR)
     };
     let nothing = simulate(both(), &theta, &[]);
-    for flag in ["--out", "--plates", "--shear"] {
-        assert!(nothing.contains(flag), "{nothing}");
-    }
+    assert_contains!(nothing, "--out", "--plates", "--shear");
     assert_eq!(
         simulate(Job::small(), &theta, &["out", "plates"]),
         "experiment.toml: --plates: the experiment names no plates: add plates = \"plates.csv\""
@@ -58,7 +57,7 @@ fn forward_runs_refuse_tables_and_parameters_that_they_cannot_give() {
         simulate(both(), &with_modulus("-0.01"), &["shear"]),
         "theta.toml: janosi_hanamoto.shear_modulus_m = -0.01 m lies outside [0, inf] m"
     );
-    // k_c = −1e9 leaves a plate of 40 mm without support.
+    // With k_c = −1e9 the soil does not support a plate of 40 mm.
     let lines = theta.lines().filter(|line| !line.starts_with("k_c"));
     let stiff: String = lines.map(|line| format!("{line}\n")).collect();
     let message = simulate(both(), &(stiff + "k_c = -1e9\n"), &["plates", "shear"]);

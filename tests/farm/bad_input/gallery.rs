@@ -114,8 +114,8 @@ pub(in super::super) fn scaled(good: &str, column: &str, times: f64) -> String {
     lines
 }
 
-/// The message of the good job with changes.
-fn told(changes: &[&str]) -> String {
+/// The refusal of the good job with changes.
+fn refusal_of(changes: &[&str]) -> String {
     let temporary = tempfile::tempdir().expect("a folder");
     let folder = temporary.path();
     good(changes).write(folder);
@@ -130,42 +130,42 @@ fn told(changes: &[&str]) -> String {
     refusal_in(&folder.join("job.toml"), folder)
 }
 
-/// Every mistake of a list is told by its message.
+/// Asserts that every mistake of a list is refused with its message.
 #[track_caller]
-fn all_are_told(list: &str, count: usize) {
+fn all_are_refused(list: &str, count: usize) {
     let mistakes = mistakes(list);
     assert_eq!(mistakes.len(), count);
-    let told = mistakes
+    let found = mistakes
         .iter()
-        .map(|(changes, message)| (changes, message, told(changes)));
-    let wrong = told.filter(|(_, message, told)| told != *message);
+        .map(|(changes, message)| (changes, message, refusal_of(changes)));
+    let wrong = found.filter(|(_, message, found)| found != *message);
     let wrong: Vec<String> = wrong
-        .map(|(changes, message, told)| format!("{changes:#?}:\n  {told}\n  {message}"))
+        .map(|(changes, message, found)| format!("{changes:#?}:\n  {found}\n  {message}"))
         .collect();
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
 #[test]
 fn no_mistake_of_a_user_is_silent() {
-    all_are_told(include_str!("../../data/mistakes/users.txt"), 70);
+    all_are_refused(include_str!("../../data/mistakes/users.txt"), 70);
 }
 
 #[test]
 fn wrong_jobs_are_refused() {
-    all_are_told(include_str!("../../data/mistakes/jobs.txt"), 48);
+    all_are_refused(include_str!("../../data/mistakes/jobs.txt"), 48);
 }
 
 #[test]
 fn wrong_effects_are_refused() {
-    all_are_told(include_str!("../../data/mistakes/effects.txt"), 24);
+    all_are_refused(include_str!("../../data/mistakes/effects.txt"), 24);
 }
 
 #[test]
 fn wrong_experiments_are_refused() {
-    all_are_told(include_str!("../../data/mistakes/experiments.txt"), 29);
+    all_are_refused(include_str!("../../data/mistakes/experiments.txt"), 29);
 }
 
 #[test]
 fn wrong_readings_are_refused() {
-    all_are_told(include_str!("../../data/mistakes/readings.txt"), 12);
+    all_are_refused(include_str!("../../data/mistakes/readings.txt"), 12);
 }

@@ -63,10 +63,8 @@ fn files_that_are_no_surface_name_face_or_line() {
         "wheel.stl",
         RIM.ascii_stl(1.0).replacen("vertex", "vortex", 5),
     ));
-    assert!(
-        message.starts_with("wheel.stl: face 1: ") && message.contains("vortex"),
-        "{message}"
-    );
+    assert!(message.starts_with("wheel.stl: face 1: "), "{message}");
+    assert!(message.contains("vortex"), "{message}");
     refused(
         with("wheel.obj", "v 0 0 0\nv 0.1 0 0\nv 0 0 0.1\nf 1 2 4\n"),
         "wheel.obj line 4: face vertex \"4\" is not among the 3 vertices",

@@ -1,4 +1,4 @@
-//! A gallery of wrong inputs: each gives one clear message, another exit code than 0, and leaves nothing behind.
+//! Wrong inputs, each of which gives one clear message and a nonzero exit code, and leaves nothing behind.
 
 mod bevameter;
 mod experiments;
@@ -17,7 +17,7 @@ const PLATES: &str = "test,plate_radius_m,sinkage_m,pressure_pa\np1,0.04,0.002,9
 /// A small `shear.csv`.
 const SHEAR: &str = "test,normal_stress_pa,shear_displacement_m,shear_stress_pa\nr1,20000,0.012,\n";
 
-/// The message of a job that must be refused, by `check` and by `run` alike; `run` leaves no folder.
+/// The message with which both `check` and `run` refuse a job; `run` must leave no folder behind.
 #[track_caller]
 pub(super) fn refusal(job: &Job) -> String {
     let folder = tempfile::tempdir().expect("a folder");
@@ -37,7 +37,7 @@ pub(super) fn refusal_in(path: &Path, folder: &Path) -> String {
     ran.replace(&format!("{}/", folder.display()), "")
 }
 
-/// Every case is a change of a good job and the whole message.
+/// Asserts the whole message with which a job is refused.
 #[track_caller]
 pub(super) fn refused(job: Job, message: &str) {
     assert_eq!(refusal(&job), message);

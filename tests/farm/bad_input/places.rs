@@ -3,19 +3,17 @@
 use std::net::TcpListener;
 use std::path::Path;
 
+use farm_tests::assert_contains;
 use farm_tests::job::Job;
-use farm_tests::programs::{Ended, coordinator, run, worker};
+use farm_tests::programs::{Ended, call, coordinator, line, run, worker};
 use farm_tests::service::{Service, free_address};
 use farm_tests::workspace::data;
 
 fn serve(store: &str) -> Ended {
-    run(coordinator([
-        "serve",
-        "--listen",
-        &free_address(),
-        "--store",
-        store,
-    ]))
+    call(
+        "coordinator serve --listen {} --store {}",
+        &[&free_address(), &store],
+    )
 }
 
 fn text(path: &Path) -> String {
@@ -44,10 +42,7 @@ fn a_store_that_is_not_sqlite_is_refused_and_untouched() {
         std::fs::create_dir_all(&out).unwrap();
         std::fs::copy(&store, out.join("grouser.db")).unwrap();
         let message = run(coordinator([verb, "--out", &text(&out)])).refusal();
-        assert!(
-            message.contains("grouser.db") && message.contains("not an SQLite database"),
-            "{message}"
-        );
+        assert_contains!(message, "grouser.db", "not an SQLite database");
     }
 }
 
@@ -56,10 +51,7 @@ fn a_store_in_a_place_that_cannot_be_written_is_refused() {
     let folder = tempfile::tempdir().unwrap();
     let missing = folder.path().join("missing").join("grouser.db");
     let message = serve(&format!("sqlite://{}", missing.display())).refusal();
-    assert!(
-        message.contains(&text(&missing)) && message.contains("No such file"),
-        "{message}"
-    );
+    assert_contains!(message, &text(&missing), "No such file");
     assert!(!missing.parent().unwrap().exists());
 
     let directory = folder.path().join("directory");
@@ -71,10 +63,7 @@ fn a_store_in_a_place_that_cannot_be_written_is_refused() {
     std::fs::write(&file, "not a folder").unwrap();
     let job = text(&Job::small().write(&folder.path().join("job")));
     let message = run(coordinator(["run", &job, "--out", &text(&file)])).refusal();
-    assert!(
-        message.contains(&format!("--out {}", file.display())),
-        "{message}"
-    );
+    assert_contains!(message, &format!("--out {}", file.display()));
     assert_eq!(std::fs::read_to_string(&file).unwrap(), "not a folder");
 }
 
@@ -83,11 +72,11 @@ fn a_second_coordinator_on_a_store_is_turned_away() {
     let service = Service::start(&[]);
     let id = service.submit(&Job::small());
     let message = serve(&format!("sqlite://{}", service.store().display())).refusal();
-    assert!(
-        message.contains("another coordinator is using this file"),
-        "{message}"
+    assert_contains!(
+        message,
+        "another coordinator is using this file",
+        text(&service.store())
     );
-    assert!(message.contains(&text(&service.store())), "{message}");
     assert_eq!(service.status(id)["state"], "queued");
 }
 
@@ -97,30 +86,21 @@ fn a_port_in_use_is_named_and_nothing_is_written() {
     let address = taken.local_addr().unwrap().to_string();
     let folder = tempfile::tempdir().unwrap();
     let store = folder.path().join("grouser.db");
-    let served = coordinator([
-        "serve",
-        "--listen",
-        &address,
-        "--store",
-        &format!("sqlite://{}", store.display()),
-    ]);
-    let message = run(served).refusal();
-    assert!(
-        message.starts_with(&format!("--listen {address}: ")) && message.contains("in use"),
-        "{message}"
+    let served = line(
+        "coordinator serve --listen {} --store {}",
+        &[&address, &format!("sqlite://{}", store.display())],
     );
+    let message = run(served).refusal();
+    assert!(message.starts_with(&format!("--listen {address}: ")), "{message}");
+    assert!(message.contains("in use"), "{message}");
     assert!(!store.exists());
 
     let job = text(&Job::small().write(&folder.path().join("job")));
     let out = folder.path().join("out");
-    let message = run(coordinator([
-        "run",
-        &job,
-        "--listen",
-        &address,
-        "--out",
-        &text(&out),
-    ]))
+    let message = call(
+        "coordinator run {} --listen {} --out {}",
+        &[&job, &address, &text(&out)],
+    )
     .refusal();
     assert!(message.starts_with(&format!("--listen {address}: ")), "{message}");
     assert!(!out.exists());
@@ -130,15 +110,15 @@ fn a_port_in_use_is_named_and_nothing_is_written() {
 fn a_url_that_leads_nowhere_is_named() {
     let nobody = format!("http://{}", free_address());
     let message = run(coordinator(["list", "--url", &nobody])).refusal();
-    assert!(message.contains(&format!("no answer from {nobody}")), "{message}");
+    assert_contains!(message, format!("no answer from {nobody}"));
     for (url, what) in [
         ("not a url", "not a url"),
         ("ftp://127.0.0.1:7070", "scheme ftp is not http"),
     ] {
         let message = run(coordinator(["status", "1", "--url", url])).refusal();
-        assert!(message.contains(what), "{message}");
+        assert_contains!(message, what);
         let message = run(worker(["--coordinator", url])).refusal();
-        assert!(message.contains(what), "{message}");
+        assert_contains!(message, what);
     }
 }
 
@@ -147,10 +127,7 @@ fn an_address_of_something_else_is_told_from_a_coordinator() {
     let service = Service::start(&[]);
     let elsewhere = format!("{}/elsewhere", service.url());
     let message = run(worker(["--coordinator", &elsewhere])).refusal();
-    assert!(
-        message.contains("is not a Grouser coordinator") && message.contains(&elsewhere),
-        "{message}"
-    );
+    assert_contains!(message, "is not a Grouser coordinator", &elsewhere);
 }
 
 #[test]
@@ -181,10 +158,7 @@ fn a_calibration_that_is_not_there_or_not_ready_is_named() {
     assert_eq!(service.status(id)["state"], "queued");
     let folder = tempfile::tempdir().unwrap();
     let message = run(coordinator(["status", "--out", &text(folder.path())])).refusal();
-    assert!(
-        message.contains("grouser.db") && message.contains("no such file"),
-        "{message}"
-    );
+    assert_contains!(message, "grouser.db", "no such file");
 }
 
 #[test]
@@ -193,8 +167,8 @@ fn a_job_that_is_refused_is_not_half_submitted() {
     let folder = tempfile::tempdir().unwrap();
     let path = text(&Job::small().sampler(9, [2, 4], 1).write(folder.path()));
     let message = run(coordinator(["submit", &path, "--url", &service.url()])).refusal();
-    assert!(message.contains("9 particles are too few"), "{message}");
-    // The next experiment is the first.
+    assert_contains!(message, "9 particles are too few");
+    // The refused job has stored no experiment, so that the next one is the first.
     let created = service
         .client
         .post("/v1/experiments", &Job::small().experiment_json());
@@ -215,8 +189,8 @@ fn output_that_nobody_reads_any_more_is_no_panic() {
         let mut child = command.spawn().unwrap();
         drop(child.stdout.take());
         let ended = child.wait_with_output().unwrap();
-        let said = String::from_utf8_lossy(&ended.stderr);
-        assert!(!said.contains("panicked"), "{words:?}: {said}");
+        let output = String::from_utf8_lossy(&ended.stderr);
+        assert!(!output.contains("panicked"), "{words:?}: {output}");
     }
 }
 
@@ -288,14 +262,14 @@ fn forward_runs_refuse_wrong_models_and_parameters() {
         simulate(model, &(theta.clone() + "kapa = 1.0\n")),
         "theta.toml: unknown parameter \"kapa\"; the nearest known is \"kappa\""
     );
-    let said = simulate(model, &with("n = \"one\""));
-    assert!(said.starts_with("theta.toml line 8: "), "{said}");
-    // Soil that cannot carry the wheel is refused by the model, with the run's name.
+    let output = simulate(model, &with("n = \"one\""));
+    assert!(output.starts_with("theta.toml line 8: "), "{output}");
+    // The model rejects soil that cannot carry the wheel, and the message names the run.
     let soft = without("k_phi") + "k_phi = 1.0\n";
-    let said = simulate(model, &soft);
+    let output = simulate(model, &soft);
     assert!(
-        said.starts_with("run r00: the model rejects these parameters: "),
-        "{said}"
+        output.starts_with("run r00: the model rejects these parameters: "),
+        "{output}"
     );
 }
 
@@ -312,15 +286,12 @@ fn noise_of_an_unknown_sd_and_histories_are_refused() {
         run(command).refusal()
     };
     let message = simulate(&["--noise-seed", "1"]);
-    assert!(
-        message.contains("experiment.toml: --noise-seed needs a number for [noise] torque_n_m"),
-        "{message}"
+    assert_contains!(
+        message,
+        "experiment.toml: --noise-seed needs a number for [noise] torque_n_m"
     );
     let message = simulate(&["--histories", &text(folder.path())]);
-    assert!(
-        message.contains("--histories: quasi_static has only a steady state"),
-        "{message}"
-    );
+    assert_contains!(message, "--histories: quasi_static has only a steady state");
     assert!(!folder.path().join("out.csv").exists());
 }
 
@@ -330,23 +301,14 @@ fn settings_in_the_environment_do_not_forbid_other_choices() {
     let mut command = coordinator(["list", "--out", &text(folder.path())]);
     command.env("GROUSER_URL", "http://127.0.0.1:7070");
     let message = run(command).refusal();
-    assert!(
-        message.contains("grouser.db") && message.contains("no such file"),
-        "{message}"
-    );
-    // Both on the command line contradict each other.
-    let message = run(coordinator([
-        "list",
-        "--out",
-        &text(folder.path()),
-        "--url",
-        "http://127.0.0.1:7070",
-    ]))
+    assert_contains!(message, "grouser.db", "no such file");
+    // The two options exclude each other on the command line.
+    let message = call(
+        "coordinator list --out {} --url http://127.0.0.1:7070",
+        &[&text(folder.path())],
+    )
     .refusal();
-    assert!(
-        message.contains("--out") && message.contains("--url"),
-        "{message}"
-    );
+    assert_contains!(message, "--out", "--url");
 }
 
 #[test]

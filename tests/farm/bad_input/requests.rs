@@ -1,13 +1,15 @@
 //! Wrong requests to the service: 4xx with a type and a message, and nothing is stored.
 
+use farm_tests::assert_contains;
 use farm_tests::http::Response;
 use farm_tests::job::{GAIN, Job};
+use farm_tests::json::word;
 use farm_tests::service::Service;
 use serde_json::json;
 
 fn error(response: &Response) -> (u16, String, String) {
     let body = response.json();
-    let text = |key: &str| body["error"][key].as_str().unwrap_or_default().to_owned();
+    let text = |key: &str| word(&body["error"][key]).to_owned();
     (response.status, text("type"), text("message"))
 }
 
@@ -94,11 +96,8 @@ fn bodies_that_are_not_the_expected_json_are_400() {
         ("/v1/work/exchange", "[]", "invalid"),
     ] {
         let (status, kind, message) = error(&service.client.post_text(path, body));
-        assert_eq!(
-            (status, kind.as_str()),
-            (400, "invalid_body"),
-            "{path} {body}: {message}"
-        );
+        assert_eq!(status, 400, "{path} {body}: {message}");
+        assert_eq!(kind.as_str(), "invalid_body", "{path} {body}: {message}");
         assert!(message.contains(what), "{path} {body}: {message}");
     }
 }
@@ -109,7 +108,7 @@ fn an_oversized_body_is_413_and_the_service_goes_on() {
     let body = format!("{{\"toml\": \"{}\"}}", "x".repeat(64 << 20));
     let (status, kind, message) = error(&service.client.post_text("/v1/experiments", &body));
     assert_eq!((status, kind.as_str()), (413, "too_large"), "{message}");
-    assert!(message.contains("limit"), "{message}");
+    assert_contains!(message, "limit");
     assert_eq!(service.submit(&Job::small()), 1);
 }
 

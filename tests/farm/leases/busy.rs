@@ -1,17 +1,15 @@
-//! Workers in the middle of a long evaluation: asked to stop, or with an answer that hangs.
+//! Workers in the middle of a long evaluation that are asked to stop, or whose connection halts.
 
-use std::io::{Read, Write};
-use std::net::{SocketAddr, TcpListener, TcpStream};
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
+use farm_tests::assert_contains;
 use farm_tests::job::Job;
 use farm_tests::process::{Process, Signal};
+use farm_tests::proxy::Proxy;
 use farm_tests::service::Service;
 use farm_tests::wait::until;
 
-/// A job of which an evaluation takes tens of seconds.
+/// A job whose evaluations take tens of seconds.
 pub(super) fn long() -> Job {
     Job::small().in_job(
         "kind = \"quasi_static\"",
@@ -19,13 +17,13 @@ pub(super) fn long() -> Job {
     )
 }
 
-/// Waits until the only worker holds a lease that it has begun.
+/// Waits until the only worker has begun the evaluation of a lease.
 pub(super) fn begun(service: &Service) {
     until("a lease in hand", || {
         let holds = service.only_worker().and_then(|w| w["holds"].as_u64());
         holds.filter(|&holds| holds > 0)
     });
-    // The evaluation begins with the answer.
+    // The evaluation begins as soon as the worker has the answer.
     std::thread::sleep(Duration::from_millis(200));
 }
 
@@ -35,86 +33,34 @@ fn a_worker_that_is_asked_to_stop_gives_a_long_evaluation_back() {
     let id = service.submit(&long());
     let mut worker = service.worker("busy", 1);
     begun(&service);
-    let asked = Instant::now();
+    let signalled = Instant::now();
     worker.signal(Signal::Terminate);
     assert!(worker.wait().success(), "{}", worker.log());
-    assert!(asked.elapsed() < Duration::from_secs(10), "{:?}", asked.elapsed());
-    assert!(worker.log().contains("unfinished=1"), "{}", worker.log());
+    assert!(
+        signalled.elapsed() < Duration::from_secs(10),
+        "{:?}",
+        signalled.elapsed()
+    );
+    assert_contains!(worker.log(), "unfinished=1");
     assert_eq!(service.metric("grouser_leases_out"), 0);
     assert_eq!(service.metric("grouser_leases_failed_total"), 0);
     assert_eq!(service.status(id)["state"], "running");
-}
-
-/// A proxy whose connections of the moment can be halted; later ones pass.
-struct HaltingProxy {
-    address: SocketAddr,
-    /// Connections so far; those below the second number are halted.
-    connections: Arc<AtomicUsize>,
-    halted: Arc<AtomicUsize>,
-}
-
-impl HaltingProxy {
-    fn start(to: String) -> HaltingProxy {
-        let listener = TcpListener::bind("127.0.0.1:0").expect("a port");
-        let address = listener.local_addr().expect("an address");
-        let (connections, halted) = (Arc::new(AtomicUsize::new(0)), Arc::new(AtomicUsize::new(0)));
-        let (count, below) = (connections.clone(), halted.clone());
-        std::thread::spawn(move || {
-            for client in listener.incoming().flatten() {
-                let number = count.fetch_add(1, Ordering::AcqRel);
-                let server = TcpStream::connect(&to).expect("the service answers");
-                let ended = Arc::new(AtomicBool::new(false));
-                for (from, into) in [(&client, &server), (&server, &client)] {
-                    let (mut from, mut into) = (
-                        from.try_clone().expect("a socket"),
-                        into.try_clone().expect("a socket"),
-                    );
-                    let (below, ended) = (below.clone(), ended.clone());
-                    std::thread::spawn(move || {
-                        let mut bytes = [0; 65_536];
-                        while let Ok(count @ 1..) = from.read(&mut bytes) {
-                            while number < below.load(Ordering::Acquire) && !ended.load(Ordering::Acquire) {
-                                std::thread::sleep(Duration::from_millis(20));
-                            }
-                            if into.write_all(&bytes[..count]).is_err() {
-                                break;
-                            }
-                        }
-                        ended.store(true, Ordering::Release);
-                        let _ = into.shutdown(std::net::Shutdown::Both);
-                    });
-                }
-            }
-        });
-        HaltingProxy {
-            address,
-            connections,
-            halted,
-        }
-    }
-
-    /// Halts every connection that there is now.
-    fn halt(&self) {
-        let now = self.connections.load(Ordering::Acquire);
-        self.halted.store(now, Ordering::Release);
-    }
 }
 
 #[test]
 fn leases_are_renewed_while_an_answer_hangs() {
     let service = Service::start(&["--lease-ms", "1500"]);
     let id = service.submit(&long());
-    let proxy = HaltingProxy::start(service.client.0.clone());
-    let url = format!("http://{}", proxy.address);
+    let (proxy, url) = Proxy::start(&service.client.0);
     let _worker = Process::worker(&url, 1, &service.folder().join("busy.log"));
     begun(&service);
-    proxy.halt();
-    let before = proxy.connections.load(Ordering::Acquire);
-    // Four times as long as a lease lasts.
+    proxy.network().halt();
+    let before = proxy.network().connections;
+    // This is four times the time of a lease.
     std::thread::sleep(Duration::from_secs(6));
     assert!(
-        proxy.connections.load(Ordering::Acquire) > before,
-        "nothing was sent beside"
+        proxy.network().connections > before,
+        "the worker opened no other connection"
     );
     assert_eq!(service.metric("grouser_leases_out"), 1);
     assert_eq!(service.metric("grouser_leases_failed_total"), 0);

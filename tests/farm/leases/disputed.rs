@@ -1,9 +1,10 @@
 //! Two different answers to one evaluation.
 
+use farm_tests::assert_contains;
 use farm_tests::fake_worker::{FakeWorker, evaluated, rejected};
 use farm_tests::job::{FIT_RUNS, Job};
 use farm_tests::service::Service;
-use farm_tests::wait::until;
+use farm_tests::wait::until_true;
 use serde_json::Value;
 
 use super::worker_flags;
@@ -17,8 +18,8 @@ fn an_answer_that_differs_leaves_a_flag_before_and_after_the_end_and_over_restar
     let leases = first.take(3);
     first.answer(&leases, |l| evaluated(l, FIT_RUNS));
     let faults = |count: u64| {
-        until("differing answers noticed", || {
-            (service.metric("grouser_determinism_faults_total") == count).then_some(())
+        until_true("differing answers noticed", || {
+            service.metric("grouser_determinism_faults_total") == count
         });
     };
     first.answer(&leases[..1], |_| rejected());
@@ -28,24 +29,15 @@ fn an_answer_that_differs_leaves_a_flag_before_and_after_the_end_and_over_restar
     drop(real);
     let flags = worker_flags(&service, id);
     assert_eq!(flags.len(), 1, "{flags:?}");
-    assert!(
-        flags[0].contains("evaluation 0 was answered by worker first twice"),
-        "{flags:?}"
-    );
+    assert_contains!(flags[0], "evaluation 0 was answered by worker first twice");
     // The summary is stored by now; an answer after the end still reaches it.
     first.answer(&leases[1..2], |_| rejected());
     faults(2);
     let flags = worker_flags(&service, id);
-    assert!(flags[0].contains("and 1 more"), "{flags:?}");
-    service.kill();
-    service.restart();
+    assert_contains!(flags[0], "and 1 more");
+    service.crash();
     assert_eq!(worker_flags(&service, id), flags);
-    let shown: Vec<Value> = service
-        .client
-        .json(&format!("/v1/calibrations/{id}/flags"))
-        .as_array()
-        .cloned()
-        .unwrap();
+    let shown: Vec<Value> = service.result(id, "flags").as_array().cloned().unwrap();
     assert_eq!(
         shown[0]["kind"], "worker",
         "it casts doubt on all others: {shown:?}"

@@ -20,8 +20,7 @@ fn acknowledged_results_outlive_a_kill() {
             }
         };
         assert_eq!(worker.answer(&leases, outcome)["duplicates"], 0);
-        service.kill();
-        service.restart();
+        service.crash();
         let progress = service.status(id)["progress"].clone();
         assert_eq!(
             progress["evaluations"].as_u64(),
@@ -37,20 +36,16 @@ fn acknowledged_jobs_and_commands_outlive_a_kill() {
     let mut service = Service::start(&[]);
     for id in 1..=5 {
         assert_eq!(service.submit(&Job::small()), id);
-        service.kill();
-        service.restart();
+        service.crash();
         assert_eq!(service.status(id)["state"], "queued");
         for (verb, state) in [
             ("pause", "paused"),
             ("resume", "running"),
             ("cancel", "cancelled"),
         ] {
-            let answer = service
-                .client
-                .post(&format!("/v1/calibrations/{id}/{verb}"), &json!({}));
+            let answer = service.act(id, verb);
             assert_eq!(answer.json(), json!({"state": state}));
-            service.kill();
-            service.restart();
+            service.crash();
             // Nothing has been leased, so what runs is queued again.
             let expected = if state == "running" { "queued" } else { state };
             assert_eq!(service.status(id)["state"], expected, "{verb}");

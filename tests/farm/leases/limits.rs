@@ -1,24 +1,17 @@
-//! Workers that end by themselves, as those do that a queue has started.
+//! Workers that end without being asked to, as pilots of a queue do.
 
-use std::process::Command;
-
+use farm_tests::assert_contains;
 use farm_tests::job::Job;
 use farm_tests::process::{Process, Signal};
-use farm_tests::programs;
+use farm_tests::programs::line;
 use farm_tests::service::Service;
 use farm_tests::wait::until;
 
 use super::busy::{begun, long};
 
 /// A worker of one thread with limits.
-fn worker(service: &Service, more: &[&str]) -> Command {
-    let url = format!("http://{}", service.client.0);
-    let words = ["--coordinator", &url, "--threads", "1"];
-    programs::worker(words.into_iter().chain(more.iter().copied()))
-}
-
 fn start(service: &Service, more: &[&str]) -> Process {
-    Process::start(worker(service, more), &service.folder().join("limited.log"))
+    service.worker_with("limited", 1, more)
 }
 
 #[test]
@@ -26,7 +19,7 @@ fn one_that_has_nothing_to_do_ends_after_its_time() {
     let service = Service::start(&[]);
     let mut idle = start(&service, &["--max-idle", "0.5"]);
     assert!(idle.wait().success(), "{}", idle.log());
-    assert!(idle.log().contains("--max-idle"), "{}", idle.log());
+    assert_contains!(idle.log(), "--max-idle");
 }
 
 #[test]
@@ -39,7 +32,7 @@ fn one_whose_coordinator_does_not_come_back_ends_with_what_it_has_computed() {
     });
     service.kill();
     assert!(left.wait().success(), "{}", left.log());
-    assert!(left.log().contains("--max-idle"), "{}", left.log());
+    assert_contains!(left.log(), "--max-idle");
 }
 
 #[test]
@@ -49,11 +42,7 @@ fn one_that_serves_once_ends_when_nothing_is_left() {
     let mut once = start(&service, &["--once"]);
     assert!(once.wait().success(), "{}", once.log());
     assert_eq!(service.status(id)["state"], "finished");
-    assert!(
-        once.log().contains("no calibration wants workers"),
-        "{}",
-        once.log()
-    );
+    assert_contains!(once.log(), "no calibration wants workers");
 }
 
 #[test]
@@ -79,23 +68,23 @@ fn a_queue_learns_from_the_status_whether_to_start_another() {
     let service = Service::start(&[]);
     let mut large = start(&service, &["--max-memory-mb", "1"]);
     assert_eq!(large.wait().code(), Some(75), "{}", large.log());
-    let nowhere = format!("http://{}/nowhere", service.client.0);
-    let refused = programs::worker(["--coordinator", &nowhere, "--threads", "1"]);
-    let mut refused = Process::start(refused, &service.folder().join("refused.log"));
+    let mut refused = Process::worker(
+        &format!("{}/nowhere", service.url()),
+        1,
+        &service.folder().join("refused.log"),
+    );
     assert_eq!(refused.wait().code(), Some(69), "{}", refused.log());
 }
 
 #[test]
 fn the_job_of_the_queue_stands_in_the_list_of_workers() {
     let service = Service::start(&[]);
-    let mut command = worker(&service, &[]);
+    let mut command = line("worker --coordinator {} --threads 1", &[&service.url()]);
     command
         .env("SLURM_ARRAY_JOB_ID", "1234")
         .env("SLURM_ARRAY_TASK_ID", "5");
     let _worker = Process::start(command, &service.folder().join("queued.log"));
-    let known = until("the worker", || service.only_worker());
-    assert_eq!(
-        (&known["queue_job"], &known["threads"]),
-        (&"slurm 1234_5".into(), &1.into())
-    );
+    let record = until("the worker", || service.only_worker());
+    assert_eq!(record["queue_job"], "slurm 1234_5");
+    assert_eq!(record["threads"], 1);
 }

@@ -2,20 +2,21 @@
 
 use std::time::Duration;
 
+use farm_tests::assert_contains;
 use farm_tests::fake_worker::FakeWorker;
 use farm_tests::job::Job;
 use farm_tests::process::{Process, Signal};
 use farm_tests::service::Service;
 use farm_tests::text::same;
-use farm_tests::wait::until;
+use farm_tests::wait::{until, until_true};
 use serde_json::json;
 
-/// Halts a worker at a moment at which it holds leases; how many.
+/// Halts a worker at a moment at which it holds leases; returns their number.
 fn halt_with_leases(service: &Service, worker: &Process) -> u64 {
     let holds = || service.only_worker().and_then(|w| w["holds"].as_u64());
     until("a worker halted with leases in hand", || {
         worker.signal(Signal::Stop);
-        // what it sent before it halted may still arrive
+        // Messages that it sent before the halt may still arrive.
         let before = holds();
         std::thread::sleep(Duration::from_millis(50));
         let holds = holds().filter(|&holds| holds > 0 && before == Some(holds));
@@ -30,22 +31,21 @@ fn halt_with_leases(service: &Service, worker: &Process) -> u64 {
 fn a_halted_worker_loses_its_leases_and_its_late_results_change_nothing() {
     let job = Job::small().sampler(120, [2, 4], 5);
     let undisturbed = Service::start(&["--local-workers", "2"]);
-    let expected = undisturbed.submit(&job);
-    undisturbed.wait_for(expected, "finished");
+    let expected = undisturbed.calibrate(&job);
     let expected = undisturbed.posterior_csv(expected);
-    // A worker that was halted while it asked never learns of its leases, and has nothing to send late.
+    // A worker that is halted while it requests leases never receives them, and has no late results.
     let tried = (0..5).any(|_| late_results_change_nothing(&job, &expected));
     assert!(tried, "no worker was halted with leases it knew of");
 }
 
-/// Halts a worker until its calibration is finished without it; whether it then had results to send.
+/// Halts a worker until its calibration is finished without it; returns whether the worker then sent results.
 fn late_results_change_nothing(job: &Job, expected: &str) -> bool {
     let service = Service::start(&["--lease-ms", "500"]);
     let id = service.submit(job);
     let mut halted = service.worker("halted", 2);
-    // One that has not yet fetched what it is to simulate gives its leases back when it finds it gone.
+    // A worker that has not fetched its model variant yet would give its leases back.
     let evaluations = || service.status(id)["progress"]["evaluations"].as_u64();
-    until("first results", || (evaluations() > Some(0)).then_some(()));
+    until_true("first results", || evaluations() > Some(0));
     let held = halt_with_leases(&service, &halted);
     assert!(evaluations() < Some(5000));
     let _other = service.worker("other", 2);
@@ -71,7 +71,7 @@ fn late_results_change_nothing(job: &Job, expected: &str) -> bool {
 
 #[test]
 fn sigterm_gives_leases_back_at_once() {
-    // Leases last a minute: whatever comes back sooner was given back.
+    // Leases last a minute, so that those which end sooner were given back.
     let service = Service::start(&["--lease-ms", "60000"]);
     let id = service.submit(&Job::small().sampler(400, [4, 10], 5));
     let mut worker = service.worker("leaving", 1);
@@ -82,7 +82,7 @@ fn sigterm_gives_leases_back_at_once() {
     assert_eq!(service.only_worker().unwrap()["holds"], 0);
     assert_eq!(service.metric("grouser_leases_out"), 0);
     assert_eq!(service.metric("grouser_leases_failed_total"), 0);
-    assert!(worker.log().contains("stopped"), "{}", worker.log());
+    assert_contains!(worker.log(), "stopped");
     assert_eq!(service.status(id)["state"], "running");
 }
 
@@ -94,10 +94,10 @@ fn leases_are_renewed_by_holding_and_returned_without_cost() {
     let leases = worker.take(2);
     let mut request = worker.request();
     request["holding"] = json!([leases[0]["lease"]]);
-    // The lease that is not held expires; the other one, renewed all the time, does not.
-    until("an expired lease", || {
+    // The lease that is not held expires, and the renewed one does not.
+    until_true("an expired lease", || {
         worker.exchange(&request);
-        (service.metric("grouser_leases_failed_total") > 0).then_some(())
+        service.metric("grouser_leases_failed_total") > 0
     });
     assert_eq!(service.metric("grouser_leases_out"), 1);
     request["holding"] = json!([]);

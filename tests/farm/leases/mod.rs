@@ -1,4 +1,4 @@
-//! Leases: what a worker that halts, leaves, lies or poisons costs, and whom.
+//! Leases of workers that halt, leave, lie or are killed by an evaluation.
 
 mod busy;
 mod disputed;
@@ -11,6 +11,7 @@ mod tokens;
 mod verification;
 mod workers;
 
+use farm_tests::json::{items, whole, word};
 use farm_tests::service::Service;
 use serde_json::{Value, json};
 
@@ -19,18 +20,15 @@ fn fault() -> Value {
 }
 
 fn numbers(leases: &[Value], key: &str) -> Vec<u64> {
-    leases
-        .iter()
-        .map(|lease| lease[key].as_u64().expect("a number"))
-        .collect()
+    leases.iter().map(|lease| whole(&lease[key])).collect()
 }
 
 /// The texts of the flags of kind `worker` in the summary of a finished calibration.
 fn worker_flags(service: &Service, id: i64) -> Vec<String> {
-    let summary = service.client.json(&format!("/v1/calibrations/{id}/summary"));
-    let flags = summary["flags"].as_array().expect("flags").iter();
+    let summary = service.result(id, "summary");
+    let flags = items(&summary["flags"]);
     flags
         .filter(|flag| flag["kind"] == "worker")
-        .map(|flag| flag["text"].as_str().expect("a text").to_owned())
+        .map(|flag| word(&flag["text"]).to_owned())
         .collect()
 }

@@ -1,9 +1,11 @@
-//! Stores that were put back from a backup or copied: a result counts only for the question that it answers.
+//! Stores that were restored from a backup or copied: a result counts only for the question that it answers.
 
 use std::path::Path;
 
+use farm_tests::assert_contains;
 use farm_tests::fake_worker::{FakeWorker, evaluated};
 use farm_tests::job::{FIT_RUNS, Job};
+use farm_tests::json::whole;
 use farm_tests::service::Service;
 use serde_json::Value;
 
@@ -11,7 +13,7 @@ use serde_json::Value;
 fn copy(from: &Path, to: &Path) {
     for end in ["", "-wal"] {
         let at = |store: &Path| format!("{}{end}", store.display());
-        // Without a log beside it the file is whole.
+        // A store without a log is complete.
         if std::fs::copy(at(from), at(to)).is_err() {
             std::fs::remove_file(at(to)).ok();
         }
@@ -25,7 +27,7 @@ fn other_job() -> Job {
 
 fn answer(worker: &FakeWorker, leases: &[Value]) -> u64 {
     let answer = worker.answer(leases, |l| evaluated(l, FIT_RUNS));
-    answer["duplicates"].as_u64().expect("a count")
+    whole(&answer["duplicates"])
 }
 
 fn evaluations(service: &Service, id: i64) -> u64 {
@@ -37,7 +39,7 @@ fn evaluations(service: &Service, id: i64) -> u64 {
 #[test]
 fn late_results_of_a_job_do_not_enter_the_job_that_gets_its_number_after_a_restore() {
     let mut service = Service::start(&[]);
-    // Copied from under the living coordinator: the backup knows the start that gives out the leases.
+    // The backup is made while the coordinator runs, so that it has the start of the coordinator that gives out the leases.
     let backup = service.folder().join("backup.db");
     copy(&service.store(), &backup);
     let first = service.submit(&Job::small());
@@ -49,17 +51,15 @@ fn late_results_of_a_job_do_not_enter_the_job_that_gets_its_number_after_a_resto
     service.restart();
     let second = service.submit(&other_job());
     assert_eq!(second, first, "the number is given out again");
-    let own = FakeWorker::new(&service.client, "own").take(1);
-    assert_ne!(own[0]["theta"], leases[0]["theta"]);
+    let fresh = FakeWorker::new(&service.client, "own").take(1);
+    assert_ne!(fresh[0]["theta"], leases[0]["theta"]);
     assert_eq!(answer(&worker, &leases), 40);
     assert_eq!(evaluations(&service, second), 0);
     assert_eq!(service.metric("grouser_evaluations_refused_total"), 40);
     let log = service.log();
     let line = log.lines().find(|line| line.contains("results refused"));
     let line = line.unwrap_or_else(|| panic!("no line in\n{log}"));
-    for part in ["late", &leases[0]["lease"].to_string(), "40"] {
-        assert!(line.contains(part), "{line} lacks {part}");
-    }
+    assert_contains!(line, "late", &leases[0]["lease"].to_string(), "40");
 }
 
 #[test]
@@ -108,7 +108,7 @@ fn two_copies_of_a_store_take_nothing_of_each_others_new_jobs() {
     wanderer.take(1);
     assert_eq!(answer(&wanderer, &leases), 5);
     assert_eq!(evaluations(&other, there), 0);
-    // A move changes nothing.
+    // Moving the store changes nothing.
     original.kill();
     let moved = original.folder().join("moved.db");
     copy(&original.store(), &moved);
@@ -126,7 +126,7 @@ fn one_lease_answers_one_evaluation_and_only_from_its_own_worker() {
     let spent = liar.take(1);
     assert_eq!(answer(&liar, &spent), 0);
     let leases = honest.take(10);
-    // One spent number for ten evaluations, with the seal of the number and with those that others hold.
+    // The liar uses one spent lease number for ten evaluations, with its own seal and with the seals of the other worker.
     let forged: Vec<Value> = leases
         .iter()
         .flat_map(|lease| {
@@ -139,7 +139,7 @@ fn one_lease_answers_one_evaluation_and_only_from_its_own_worker() {
         .collect();
     assert_eq!(answer(&liar, &forged), 30);
     assert_eq!(evaluations(&service, id), 1);
-    // Nor are leases of others renewed or returned.
+    // A worker cannot return the leases of another worker.
     let mut request = liar.request();
     request["returned"] = leases.iter().map(|lease| lease["lease"].clone()).collect();
     liar.exchange(&request);

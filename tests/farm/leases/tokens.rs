@@ -1,11 +1,12 @@
-//! Lease numbers: none is given out twice, and a result counts once, where it belongs.
+//! Lease numbers: no number is given out twice, and a result counts once, for its own lease.
 
 use std::time::{SystemTime, UNIX_EPOCH};
 
+use farm_tests::assert_contains;
 use farm_tests::fake_worker::{FakeWorker, evaluated, rejected};
 use farm_tests::job::{FIT_RUNS, Job};
 use farm_tests::service::{Service, free_address};
-use farm_tests::wait::until;
+use farm_tests::wait::until_true;
 
 use super::numbers;
 
@@ -18,8 +19,7 @@ fn fencing_tokens_never_repeat_across_restarts() {
     for _ in 0..3 {
         tokens.extend(numbers(&worker.take(5), "lease"));
         tokens.extend(numbers(&worker.take(5), "lease"));
-        service.kill();
-        service.restart();
+        service.crash();
     }
     assert_eq!(tokens.len(), 30);
     assert!(tokens.windows(2).all(|pair| pair[0] < pair[1]), "{tokens:?}");
@@ -31,8 +31,7 @@ fn a_late_result_from_before_a_restart_counts() {
     let id = service.submit(&Job::small());
     let worker = FakeWorker::new(&service.client, "patient");
     let leases = worker.take(4);
-    service.kill();
-    service.restart();
+    service.crash();
     assert_eq!(
         worker.answer(&leases, |l| evaluated(l, FIT_RUNS))["duplicates"],
         0
@@ -57,14 +56,10 @@ fn a_result_sent_twice_counts_once() {
     assert_eq!(service.status(id)["progress"]["evaluations"], 3);
     assert_eq!(service.metric("grouser_determinism_faults_total"), 0);
     worker.answer(&leases[..1], |_| rejected());
-    until("a differing duplicate noticed", || {
-        (service.metric("grouser_determinism_faults_total") == 1).then_some(())
+    until_true("a differing duplicate noticed", || {
+        service.metric("grouser_determinism_faults_total") == 1
     });
-    assert!(
-        service.log().contains("two workers returned different results"),
-        "{}",
-        service.log()
-    );
+    assert_contains!(service.log(), "two workers returned different results");
 }
 
 #[test]
@@ -83,7 +78,7 @@ fn a_result_for_another_store_is_not_taken() {
             .map_or(0, |d| d.as_secs())
     };
     let now = second_of();
-    until("the next second", || (second_of() > now).then_some(()));
+    until_true("the next second", || second_of() > now);
     let second = Service::start_at(address, &[]);
     let id = second.submit(&Job::small().sampler(60, [2, 4], 2));
     let answer = worker.answer(&leases, |l| evaluated(l, FIT_RUNS));

@@ -1,11 +1,13 @@
 //! Results that a second worker computes as well.
 
+use farm_tests::assert_contains;
 use farm_tests::fake_worker::{FakeWorker, evaluated, rejected};
 use farm_tests::job::{FIT_RUNS, Job};
+use farm_tests::json::whole;
 use farm_tests::lying_proxy::LyingProxy;
 use farm_tests::service::Service;
 use farm_tests::text::same;
-use farm_tests::wait::until;
+use farm_tests::wait::{until, until_true};
 
 use super::worker_flags;
 
@@ -23,13 +25,12 @@ fn metamodel_job() -> Job {
 /// The results of honest workers.
 fn honest(job: &Job) -> String {
     let service = Service::start(&["--local-workers", "2"]);
-    let id = service.submit(job);
-    service.wait_for(id, "finished");
+    let id = service.calibrate(job);
     service.posterior_csv(id)
 }
 
-/// A calibration with a worker that begins to lie after some results, and with others that do not: each ends with the bytes of
-/// honest workers, and says who lied.
+/// Calibrates with a worker that begins to lie after some results, and with two honest workers. The posterior must have the bytes of honest
+/// workers, and the flags must name the liar.
 fn survives_a_liar(job: &Job, honest_results: usize, verify_percent: &str) {
     let service = Service::start(&["--verify-percent", verify_percent]);
     let proxy = LyingProxy::start(&service.client.0, honest_results, 3);
@@ -45,10 +46,10 @@ fn survives_a_liar(job: &Job, honest_results: usize, verify_percent: &str) {
     same(&service.posterior_csv(id), &honest(job));
     let flags = worker_flags(&service, id);
     assert_eq!(flags.len(), 1, "{flags:?}");
-    assert!(
-        flags[0].contains("computes wrongly and was quarantined")
-            && flags[0].contains("computed again by others"),
-        "{flags:?}"
+    assert_contains!(
+        flags[0],
+        "computes wrongly and was quarantined",
+        "computed again by others"
     );
     assert_eq!(service.metric("grouser_workers_quarantined"), 1);
     assert!(service.metric("grouser_evaluations_confirmed_total") > 20);
@@ -66,10 +67,8 @@ fn survives_a_liar(job: &Job, honest_results: usize, verify_percent: &str) {
         "it is told why it gets nothing:\n{}",
         liar.log()
     );
-    until("a refusal in the liar's log", || {
-        liar.log()
-            .contains("computes wrongly and is quarantined")
-            .then_some(())
+    until_true("a refusal in the liar's log", || {
+        liar.log().contains("computes wrongly and is quarantined")
     });
 }
 
@@ -93,8 +92,9 @@ fn two_workers_that_disagree_leave_a_flag_where_there_is_no_third() {
     let _real = service.worker("real", 2);
     service.wait_for(id, "finished");
     let flags = worker_flags(&service, id);
+    assert!(flags.len() == 1, "{flags:?}");
     assert!(
-        flags.len() == 1 && flags[0].contains("no number of this calibration can be trusted"),
+        flags[0].contains("no number of this calibration can be trusted"),
         "{flags:?}"
     );
 }
@@ -127,14 +127,14 @@ fn with_one_worker_nothing_is_verified_and_that_is_said() {
     let worker = service.worker("only", 2);
     service.wait_for(id, "finished");
     let verification = |service: &Service, id: i64| {
-        let diagnostics = service.client.json(&format!("/v1/calibrations/{id}/diagnostics"));
-        ["confirmed", "workers"].map(|key| diagnostics["verification"][key].as_u64().expect("a count"))
+        let diagnostics = service.result(id, "diagnostics");
+        ["confirmed", "workers"].map(|key| whole(&diagnostics["verification"][key]))
     };
     assert_eq!(verification(&service, id), [0, 1]);
     assert!(service.metric("grouser_evaluations_unconfirmed_total") > 5);
     drop(worker);
 
-    // A result of one worker waits for a second worker, over a restart too.
+    // A result of one worker waits for a second worker, even over a restart.
     let id = service.submit(&job());
     let worker = service.worker("first", 1);
     until("some results", || (service.evaluations(id)? > 300).then_some(()));
@@ -155,6 +155,6 @@ fn what_a_slow_worker_holds_at_the_end_of_a_round_goes_to_another_as_well() {
     let slow = FakeWorker::new(&service.client, "slow").computing(&version);
     slow.start(&slow.take(1));
     let _real = service.worker("real", 1);
-    // Without a second lease the first round ends after ten minutes.
+    // Without a second lease the first round would end after ten minutes.
     service.wait_for(id, "finished");
 }

@@ -1,9 +1,9 @@
-//! Who gets a lease: protocol, model version, patience.
+//! The conditions for a lease: protocol, model version and waiting time.
 
 use farm_tests::fake_worker::{FakeWorker, PROTOCOL, evaluated};
 use farm_tests::job::{FIT_RUNS, Job};
 use farm_tests::service::Service;
-use farm_tests::wait::until;
+use farm_tests::wait::until_true;
 use serde_json::json;
 
 #[test]
@@ -45,16 +45,15 @@ fn a_worker_of_another_model_version_gets_no_lease_and_is_told_why() {
     let other = FakeWorker::new(&service.client, "other").computing("fake-2");
     for restarted in [false, true] {
         if restarted {
-            service.kill();
-            service.restart();
+            service.crash();
         }
         let mut request = other.request();
         request["want"] = 5.into();
         request["wait_ms"] = 30_000.into();
         let response = other.exchange(&request);
         assert_eq!(response["leases"], json!([]));
-        let told = "calibration 1 was begun with model version fake-1, worker other computes fake-2";
-        assert_eq!(response["refused"], told, "restarted: {restarted}");
+        let reported = "calibration 1 was begun with model version fake-1, worker other computes fake-2";
+        assert_eq!(response["refused"], reported, "restarted: {restarted}");
     }
     assert_eq!(first.take(1).len(), 1);
 }
@@ -70,8 +69,8 @@ fn a_waiting_worker_is_served_when_work_arrives() {
             request["wait_ms"] = 30_000.into();
             worker.exchange(&request)["leases"].as_array().map(Vec::len)
         });
-        until("the waiting worker", || {
-            (service.metric("grouser_workers_connected") == 1).then_some(())
+        until_true("the waiting worker", || {
+            service.metric("grouser_workers_connected") == 1
         });
         assert!(!poll.is_finished());
         service.submit(&Job::small());

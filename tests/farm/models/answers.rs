@@ -1,7 +1,8 @@
-//! Models without an answer: a rejection if the parameters are at fault, else a fault.
+//! Models that fail: a rejection if the parameters are the cause, and otherwise a fault.
 
 use std::time::Duration;
 
+use farm_tests::json::{whole, word};
 use farm_tests::service::Service;
 use farm_tests::umbridge_server::{Reply, UmbridgeServer};
 use farm_tests::wait::until;
@@ -12,9 +13,9 @@ use super::{RUNS, answer, honest, job, program, program_job, short, write_progra
 /// The rejections by kind and the flags of a finished calibration.
 fn finished(service: &Service, id: i64) -> (u64, String) {
     service.wait_for(id, "finished");
-    let summary = service.client.json(&format!("/v1/calibrations/{id}/summary"));
-    let rejected = summary["calibrations"][0]["rejected"].as_u64().expect("a count");
-    let flags = service.client.get(&format!("/v1/calibrations/{id}/flags")).body;
+    let summary = service.result(id, "summary");
+    let rejected = whole(&summary["calibrations"][0]["rejected"]);
+    let flags = service.part(id, "flags").body;
     (rejected, flags)
 }
 
@@ -40,16 +41,16 @@ fn what_is_no_number_and_what_breaks_down_rejects_the_parameters() {
         let (service, id, server) = with(reply);
         let _worker = service.worker_of("worker", 2, &server.url);
         let (rejected, _) = finished(&service, id);
-        // A quarter of the prior, at the least of the first 60.
+        // The reply affects a quarter of the prior, so that at least some of the first 60 draws are rejected.
         assert!(rejected >= 5, "{kind}: {rejected}");
-        let table = service.client.get(&format!("/v1/calibrations/{id}/flags")).body;
+        let table = service.part(id, "flags").body;
         assert!(!table.contains("not deterministic"), "{table}");
     }
 }
 
 #[test]
 fn a_run_that_takes_too_long_rejects_the_parameters() {
-    // Six draws of the first 60 lie there or so: each costs half a second, and the probe's answer.
+    // About six of the first 60 draws hang. Each takes half a second, and the time of the probe.
     let server = UmbridgeServer::start(|question| match question.parameters[0] > 0.95 {
         true => Reply::Hang(Duration::from_secs(2)),
         false => answer(question),
@@ -81,7 +82,7 @@ fn what_no_parameters_can_cure_is_a_fault_and_pauses_with_its_reason() {
             assert_ne!(status["state"], "finished", "{status}");
             (status["state"] == "paused").then_some(status)
         });
-        let message = status["message"].as_str().unwrap_or_default();
+        let message = word(&status["message"]);
         assert!(message.contains(reason), "{reason}: {message}");
     }
 }
@@ -90,14 +91,14 @@ fn what_no_parameters_can_cure_is_a_fault_and_pauses_with_its_reason() {
 fn a_program_is_held_to_its_limits() {
     let service = Service::start(&["--lease-ms", "2000"]);
     let limited = short(program_job()).in_job("time_s = 20", "time_s = 0.5\nmemory_mb = 500");
-    // Above 0.9 it hangs, with a child of its own; between 0.65 and 0.9 it takes too much memory.
+    // Above 0.9 the program and a child process hang; between 0.65 and 0.9 the program takes too much memory.
     let before = "grip = runs[0][\"grip\"]\nif grip > 0.9:\n    os.system(\"sleep 60 & sleep 60\")\n\
         if 0.65 < grip < 0.9:\n    x = bytearray(10**9)";
     let path = write_program(service.folder(), &program(before));
     let id = service.submit(&limited);
     let _worker = service.worker_of("worker", 4, &path);
     let (rejected, _) = finished(&service, id);
-    // About four in ten of the first draws lie there, and the medians do not.
+    // About four in ten of the first draws exceed the limits, and the medians of the priors do not.
     assert!(rejected >= 5, "{rejected}");
     let mut store = service.database();
     for count in [
@@ -127,10 +128,8 @@ fn a_model_that_answers_in_two_ways_is_said_once_with_the_size_of_it() {
         1,
         "{flags}"
     );
-    assert!(
-        flags.contains("N m of torque") && !flags.contains("N of drawbar pull"),
-        "{flags}"
-    );
+    assert!(flags.contains("N m of torque"), "{flags}");
+    assert!(!flags.contains("N of drawbar pull"), "{flags}");
     assert_eq!(service.metric("grouser_workers_quarantined"), 0);
 }
 
@@ -142,11 +141,12 @@ fn one_in_twenty_evaluations_is_asked_for_twice_and_equal_answers_are_no_news() 
     let _worker = service.worker_of("worker", 1, &server.url);
     let (_, flags) = finished(&service, id);
     assert!(!flags.contains("deterministic"), "{flags}");
-    let summary: Value = service.client.json(&format!("/v1/calibrations/{id}/summary"));
-    let evaluations = summary["calibrations"][0]["evaluations"]
-        .as_u64()
-        .expect("a count");
-    let asked = server.evaluations() / RUNS;
-    // Final draws are evaluated besides.
-    assert!(asked > evaluations + evaluations / 25, "{asked} of {evaluations}");
+    let summary: Value = service.result(id, "summary");
+    let evaluations = whole(&summary["calibrations"][0]["evaluations"]);
+    let requested = server.evaluations() / RUNS;
+    // The final draws are further evaluations.
+    assert!(
+        requested > evaluations + evaluations / 25,
+        "{requested} of {evaluations}"
+    );
 }

@@ -39,8 +39,7 @@ fn one_worker_and_three_that_are_killed_give_the_same_bits_by_both_kinds() {
             worker.kill();
             *worker = service.worker_of(&format!("again-{victim}"), 1, allowed);
             if victim == 1 {
-                service.kill();
-                service.restart();
+                service.crash();
             }
         }
         same(&posterior(&service, id), &expected);

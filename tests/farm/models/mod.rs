@@ -1,4 +1,4 @@
-//! Models that are not ours: programs and UM-Bridge servers.
+//! External models: programs and UM-Bridge servers.
 
 mod answers;
 mod bits;
@@ -21,7 +21,7 @@ fn job(url: &str) -> Job {
         job: format!(
             "experiment = \"experiment.toml\"\n[model]\nkind = \"umbridge\"\nurl = \"{url}\"\nmodel = \"wheel\"\n{LAYOUT}"
         ),
-        others: Vec::new(),
+        attached: Vec::new(),
     }
 }
 
@@ -111,7 +111,7 @@ fn measured() -> String {
 fn write_program(folder: &std::path::Path, text: &str) -> String {
     use std::os::unix::fs::PermissionsExt;
     let path = folder.join("wheel.py");
-    // A new file, so that a process that still runs the old one is not in its way.
+    // The file is replaced by a rename, because a file that is being executed cannot be written.
     let new = folder.join("wheel.py.new");
     std::fs::write(&new, text).expect("a program");
     std::fs::set_permissions(&new, std::fs::Permissions::from_mode(0o755)).expect("a program");

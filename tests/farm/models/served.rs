@@ -64,7 +64,7 @@ fn quasi_static_served_and_called_gives_the_bits_of_quasi_static() {
             served.url
         ),
     );
-    // The rig's radius is no input: it must be the rim's.
+    // The rig's radius is not among the inputs, so that it must equal the radius of the rim.
     let own_radius = |job: Job| job.in_job("wheel_radius_m = { uniform = [0.125, 0.155] }\n", "");
     same(
         &posterior(&own_radius(theirs), Some(&served.url)),

@@ -1,8 +1,9 @@
-//! `coordinator doctor`: what it sees where all is well, and where store, address, token or workers are not.
+//! `coordinator doctor` on a sound machine, and with faults of store, address, token or workers.
 
 use std::net::TcpListener;
 
-use farm_tests::programs::{Ended, coordinator, run};
+use farm_tests::assert_contains;
+use farm_tests::programs::{Ended, call, coordinator, run};
 use farm_tests::service::Service;
 
 /// The doctor on a store and an address, with further arguments.
@@ -31,7 +32,7 @@ fn a_machine_without_a_store_is_well() {
         assert!(line(&text, subject).0.starts_with("ok "), "{text}");
     }
     assert!(!text.contains("fail"), "{text}");
-    // It leaves nothing behind.
+    // The command leaves nothing behind.
     assert_eq!(std::fs::read_dir(folder.path()).expect("the folder").count(), 0);
 }
 
@@ -44,22 +45,14 @@ fn a_foreign_store_and_a_taken_address_fail_with_what_to_do() {
     let address = taken.local_addr().expect("an address").to_string();
     let ended = doctor(&file.display().to_string(), &address, &[]);
     assert_eq!(ended.code, Some(1));
-    assert!(
-        ended.stderr.contains("error: 2 of 8 checks failed"),
-        "{}",
-        ended.stderr
-    );
+    assert_contains!(ended.stderr, "error: 2 of 8 checks failed");
     let (store, remedy) = line(&ended.stdout, "store");
-    assert!(
-        store.starts_with("fail ") && store.contains("letters.db"),
-        "{store}"
-    );
+    assert!(store.starts_with("fail "), "{store}");
+    assert!(store.contains("letters.db"), "{store}");
     assert!(remedy.is_some_and(|remedy| remedy.contains("backup")));
     let (seen, remedy) = line(&ended.stdout, "address");
-    assert!(
-        seen.starts_with("fail ") && seen.contains("another program"),
-        "{seen}"
-    );
+    assert!(seen.starts_with("fail "), "{seen}");
+    assert!(seen.contains("another program"), "{seen}");
     assert!(remedy.is_some_and(|remedy| remedy.contains("--listen")));
 }
 
@@ -82,32 +75,28 @@ fn a_service_is_asked_for_its_version_its_token_and_its_workers() {
         "{text}"
     );
     let (workers, remedy) = line(&text, "workers");
+    assert!(workers.starts_with("warn "), "{text}");
     assert!(
-        workers.starts_with("warn ") && remedy.is_some_and(|r| r.contains("worker --coordinator")),
+        remedy.is_some_and(|r| r.contains("worker --coordinator")),
         "{text}"
     );
     let worker = service.worker("one", 1);
-    farm_tests::wait::until("a worker", || {
-        seen(&[]).success().contains("1 in the last minute").then_some(())
+    farm_tests::wait::until_true("a worker", || {
+        seen(&[]).success().contains("1 in the last minute")
     });
     drop(worker);
 
     let file = service.folder().join("token");
-    let added = run(coordinator([
-        "token", "add", "reader", "--role", "read", "--store", &store,
-    ]))
-    .success();
+    let added = call("coordinator token add reader --role read --store {}", &[&store]).success();
     std::fs::write(&file, added.trim()).expect("a file");
-    farm_tests::wait::until("the token is asked for", || {
-        (service.client.get("/v1/studies").status == 401).then_some(())
+    farm_tests::wait::until_true("the token is asked for", || {
+        service.client.get("/v1/studies").status == 401
     });
     let ended = seen(&[]);
     assert_eq!(ended.code, Some(1));
     let (token, remedy) = line(&ended.stdout, "token");
-    assert!(
-        token.starts_with("fail ") && remedy.is_some_and(|r| r.contains("token add")),
-        "{token}"
-    );
+    assert!(token.starts_with("fail "), "{token}");
+    assert!(remedy.is_some_and(|r| r.contains("token add")), "{token}");
     let text = seen(&["--token-file", &file.display().to_string()]).success();
     assert!(line(&text, "token").0.starts_with("ok "), "{text}");
 }

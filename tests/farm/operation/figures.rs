@@ -1,12 +1,13 @@
-//! `/metrics`, and what the dashboard and the alerts of `deploy/` ask of it.
+//! `/metrics`, and the figures of it that the dashboard and the alerts of `deploy/` use.
 
 use std::collections::BTreeSet;
 
+use farm_tests::assert_contains;
 use farm_tests::fake_worker::FakeWorker;
 use farm_tests::job::Job;
 use farm_tests::service::Service;
 use farm_tests::workspace::{root, text};
-use serde_json::{Value, json};
+use serde_json::Value;
 
 /// Names of our figures in a text.
 fn names(text: &str) -> BTreeSet<&str> {
@@ -21,28 +22,26 @@ fn every_figure_of_the_dashboard_and_of_the_alerts_exists() {
     let service = Service::start(&[]);
     service.client.get("/health");
     let page = service.client.get("/metrics").body;
-    let known: BTreeSet<&str> = page
+    let listed: BTreeSet<&str> = page
         .lines()
         .filter(|line| !line.starts_with('#'))
         .filter_map(|line| line.split(['{', ' ']).next())
         .collect();
     for file in ["deploy/grafana.json", "deploy/alerts.yml"] {
         let text = text(&root().join(file));
-        let asked = names(&text);
-        assert!(asked.len() >= 5, "{file}: {asked:?}");
-        for name in asked {
+        let requested = names(&text);
+        assert!(requested.len() >= 5, "{file}: {requested:?}");
+        for name in requested {
             assert!(
-                known.contains(name),
+                listed.contains(name),
                 "{file} asks for {name}, which is not in\n{page}"
             );
         }
     }
     let dashboard: Value = serde_json::from_str(&text(&root().join("deploy/grafana.json"))).expect("JSON");
     for panel in dashboard["panels"].as_array().expect("panels") {
-        assert!(
-            panel["title"].is_string() && panel["targets"][0]["expr"].is_string(),
-            "{panel}"
-        );
+        assert!(panel["title"].is_string(), "{panel}");
+        assert!(panel["targets"][0]["expr"].is_string(), "{panel}");
     }
 }
 
@@ -54,17 +53,11 @@ fn queue_states_store_and_requests_are_counted() {
     // With two calibrations, each would have one lease.
     assert_eq!(worker.take(2).len(), 2);
     let second = service.submit(&Job::small());
-    service
-        .client
-        .post(&format!("/v1/calibrations/{second}/cancel"), &json!({}));
+    service.act(second, "cancel");
     assert_eq!(service.metric("grouser_calibrations{state=\"running\"}"), 1);
     assert_eq!(service.metric("grouser_calibrations{state=\"cancelled\"}"), 1);
     assert_eq!(service.metric("grouser_calibrations{state=\"failed\"}"), 0);
-    assert!(
-        service.log().contains("cancelled calibration=2"),
-        "{}",
-        service.log()
-    );
+    assert_contains!(service.log(), "cancelled calibration=2");
     assert_eq!(service.metric("grouser_leases_out"), 2);
     assert_eq!(service.metric("grouser_evaluations_queued"), 58);
     assert!(service.metric("grouser_store_bytes") + service.metric("grouser_store_log_bytes") > 10_000);

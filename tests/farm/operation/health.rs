@@ -1,9 +1,9 @@
-//! `/health`: whoever restarts what does not answer must not be misled by a service that is busy.
+//! `/health` answers while the service is busy, so that it is not restarted.
 
 use farm_tests::fake_worker::{FakeWorker, evaluated};
 use farm_tests::job::{FIT_RUNS, Job};
 use farm_tests::service::Service;
-use farm_tests::wait::until;
+use farm_tests::wait::until_true;
 
 #[test]
 fn health_is_answered_in_the_middle_of_a_long_step_of_the_farm() {
@@ -19,10 +19,10 @@ fn health_is_answered_in_the_middle_of_a_long_step_of_the_farm() {
     worker.answer(&worker.take(10_000), outcome);
     let last = worker.take(10_000);
     assert_eq!(last.len(), 10_000);
-    // Its answer comes when the sampler has proposed the next round.
+    // The exchange is answered after the sampler has proposed the next round.
     std::thread::scope(|scope| {
         let exchange = scope.spawn(|| worker.answer(&last, outcome));
-        until("an answer in the middle of a step", || {
+        until_true("an answer in the middle of a step", || {
             let is_over = exchange.is_finished();
             let step_s = step_s();
             let is_in_the_middle = step_s > 0.2 && !exchange.is_finished();
@@ -30,8 +30,8 @@ fn health_is_answered_in_the_middle_of_a_long_step_of_the_farm() {
                 is_in_the_middle || !is_over,
                 "the step is over, and nobody was told"
             );
-            is_in_the_middle.then_some(())
+            is_in_the_middle
         });
     });
-    until("rest", || (step_s() < 0.1).then_some(()));
+    until_true("rest", || step_s() < 0.1);
 }

@@ -1,14 +1,13 @@
 //! Completions and man pages of both programs.
 
+use farm_tests::assert_contains;
 use farm_tests::programs::{coordinator, run, worker};
 
 #[test]
 fn every_shell_is_given_completions_that_name_the_commands() {
     for shell in ["bash", "zsh", "fish", "elvish", "powershell"] {
         let text = run(coordinator(["completions", shell])).success();
-        for verb in ["add-runs", "doctor", "export"] {
-            assert!(text.contains(verb), "{shell} lacks {verb}");
-        }
+        assert_contains!(text, "add-runs", "doctor", "export");
         assert!(run(worker(["completions", shell])).success().contains("simulate"));
     }
 }
@@ -42,5 +41,5 @@ fn every_command_has_a_man_page() {
         );
     }
     let page = std::fs::read_to_string(format!("{name}/coordinator-export.1")).expect("a page");
-    assert!(page.contains(".TH") && page.contains("netcdf"), "{page}");
+    assert_contains!(page, ".TH", "netcdf");
 }

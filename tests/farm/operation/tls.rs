@@ -5,11 +5,12 @@ use std::net::TcpStream;
 use std::path::PathBuf;
 use std::time::Duration;
 
+use farm_tests::assert_contains;
 use farm_tests::job::Job;
 use farm_tests::process::Process;
-use farm_tests::programs::{Ended, coordinator, run, worker};
+use farm_tests::programs::{Ended, call, coordinator, run, worker};
 use farm_tests::service::free_address;
-use farm_tests::wait::until;
+use farm_tests::wait::until_true;
 use farm_tests::workspace::data;
 use tempfile::TempDir;
 
@@ -34,9 +35,9 @@ impl Encrypted {
         let mut words = vec!["serve", "--listen", &address, "--store", &store];
         words.extend(["--tls-certificate", &certificate, "--tls-key", &key]);
         let mut process = Process::start(coordinator(words), &folder.path().join("log"));
-        until("the service", || {
+        until_true("the service", || {
             assert!(process.is_running(), "{}", process.log());
-            process.log().contains("serving").then_some(())
+            process.log().contains("serving")
         });
         Encrypted {
             folder,
@@ -79,12 +80,8 @@ fn a_calibration_runs_through_tls_and_ends_as_it_does_without() {
     ];
     let log = service.folder.path().join("worker.log");
     let working = Process::start(worker(words), &log);
-    until("the end of the calibration", || {
-        service
-            .verb(&["list"])
-            .success()
-            .contains("finished")
-            .then_some(())
+    until_true("the end of the calibration", || {
+        service.verb(&["list"]).success().contains("finished")
     });
     drop(working);
     let out: PathBuf = service.folder.path().join("out");
@@ -97,7 +94,7 @@ fn a_calibration_runs_through_tls_and_ends_as_it_does_without() {
 fn an_unknown_authority_plain_http_and_silence_are_refused() {
     let mut service = Encrypted::start();
     let refused = run(coordinator(["list", "--url", &service.url()])).refusal();
-    assert!(refused.contains("certificate"), "{refused}");
+    assert_contains!(refused, "certificate");
     let mut plain = TcpStream::connect(&service.address).expect("a connection");
     plain
         .write_all(b"GET /health HTTP/1.0\r\n\r\n")
@@ -134,29 +131,21 @@ fn files_that_are_no_certificate_and_no_key_are_named() {
         "{message}"
     );
     let message = serve(&certificate, &certificate);
-    assert!(
-        message.contains("certificate.pem: no private key in PEM form"),
-        "{message}"
-    );
+    assert_contains!(message, "certificate.pem: no private key in PEM form");
     let message = serve(&pem("authority.pem"), &key);
-    assert!(message.contains("authority.pem with key"), "{message}");
-    let listed = run(coordinator([
-        "list",
-        "--url",
-        "https://127.0.0.1:1",
-        "--ca-certificate",
-        &key,
-    ]))
+    assert_contains!(message, "authority.pem with key");
+    let listed = call(
+        "coordinator list --url https://127.0.0.1:1 --ca-certificate {}",
+        &[&key],
+    )
     .refusal();
-    assert!(listed.contains("key.pem: no certificate in PEM form"), "{listed}");
-    let worked = run(worker([
-        "--coordinator",
-        "https://127.0.0.1:1",
-        "--ca-certificate",
-        &key,
-    ]))
+    assert_contains!(listed, "key.pem: no certificate in PEM form");
+    let worked = call(
+        "worker --coordinator https://127.0.0.1:1 --ca-certificate {}",
+        &[&key],
+    )
     .refusal();
-    assert!(worked.contains("key.pem: none in PEM form"), "{worked}");
+    assert_contains!(worked, "key.pem: none in PEM form");
     let command = coordinator(["serve", "--tls-certificate", &certificate]);
     assert!(run(command).refusal().contains("--tls-key"));
 }

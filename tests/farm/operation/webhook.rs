@@ -1,13 +1,14 @@
-//! Web hooks: told of pauses and ends, tried again, to listed hosts alone, and never in the farm's way.
+//! Web hooks: calls at pauses and ends, retries, allowed hosts, and hosts that do not answer.
 
 use std::io::{BufRead, BufReader, Read, Write};
 use std::net::{TcpListener, TcpStream};
 use std::sync::mpsc;
 
+use farm_tests::assert_contains;
 use farm_tests::job::Job;
-use farm_tests::programs::{coordinator, run};
+use farm_tests::programs::call;
 use farm_tests::service::Service;
-use farm_tests::wait::until;
+use farm_tests::wait::until_true;
 use serde_json::{Value, json};
 
 /// Reads a POST and answers it with a status; its body.
@@ -27,7 +28,7 @@ fn take(mut stream: TcpStream, status: &str) -> Value {
     serde_json::from_slice(&body).expect("JSON")
 }
 
-/// A server on a free port; the first POST fails, all are handed over.
+/// A server on a free port that fails the first POST and hands over the bodies of all.
 fn server() -> (String, mpsc::Receiver<Value>) {
     let listener = TcpListener::bind("127.0.0.1:0").expect("a port");
     let url = format!(
@@ -53,14 +54,10 @@ fn submit(service: &Service, webhook: &str) -> farm_tests::programs::Ended {
         .write(&service.folder().join("job"))
         .display()
         .to_string();
-    run(coordinator([
-        "submit",
-        &job,
-        "--url",
-        &service.url(),
-        "--webhook",
-        webhook,
-    ]))
+    call(
+        "coordinator submit {} --url {} --webhook {}",
+        &[&job, &service.url(), &webhook],
+    )
 }
 
 #[test]
@@ -68,7 +65,7 @@ fn the_pause_and_the_end_of_a_job_are_posted_and_tried_again() {
     let service = Service::start(&["--webhook-host", "127.0.0.1"]);
     let (url, bodies) = server();
     submit(&service, &url).success();
-    service.client.post("/v1/calibrations/1/pause", &json!({}));
+    service.act(1, "pause");
     let next = || {
         bodies
             .recv_timeout(std::time::Duration::from_secs(60))
@@ -77,13 +74,13 @@ fn the_pause_and_the_end_of_a_job_are_posted_and_tried_again() {
     let paused = json!({"study": 1, "calibration": 1, "name": "job", "state": "paused", "message": "paused by a user"});
     assert_eq!(next(), paused);
     assert_eq!(next(), paused, "the first answer was 500");
-    service.client.post("/v1/calibrations/1/resume", &json!({}));
+    service.act(1, "resume");
     let worker = service.worker("worker", 2);
     service.wait_for(1, "finished");
     drop(worker);
     assert_eq!(next()["state"], "finished");
-    until("a line of the log", || {
-        service.log().contains("told its web hook").then_some(())
+    until_true("a line of the log", || {
+        service.log().contains("told its web hook")
     });
     assert!(!service.log().contains("key=1"), "{}", service.log());
 }
@@ -92,14 +89,11 @@ fn the_pause_and_the_end_of_a_job_are_posted_and_tried_again() {
 fn a_host_that_is_not_listed_is_refused_and_a_silent_one_keeps_nobody_waiting() {
     let service = Service::start(&["--webhook-host", "127.0.0.1", "--local-workers", "2"]);
     let refused = submit(&service, "http://localhost:1/").refusal();
-    assert!(refused.contains("--webhook-host"), "{refused}");
+    assert_contains!(refused, "--webhook-host");
     let refused = submit(&service, "file:///etc/passwd").refusal();
-    assert!(
-        refused.contains("scheme file is neither http nor https"),
-        "{refused}"
-    );
+    assert_contains!(refused, "scheme file is neither http nor https");
     assert_eq!(service.client.json("/v1/calibrations"), json!([]));
-    // Takes connections and never answers.
+    // This server accepts connections and never answers.
     let silent = TcpListener::bind("127.0.0.1:0").expect("a port");
     let url = format!("http://{}/", silent.local_addr().expect("an address"));
     submit(&service, &url).success();

@@ -1,9 +1,11 @@
-//! A row that cannot be read stops its own calibration, by name, and no other.
+//! An unreadable row stops its own calibration with a message, and no other calibration.
 
+use farm_tests::assert_contains;
 use farm_tests::job::Job;
+use farm_tests::json::{item_count, word};
 use farm_tests::programs::{coordinator, run};
 use farm_tests::service::Service;
-use serde_json::{Value, json};
+use serde_json::Value;
 
 /// Two calibrations, of which the first is spoilt by a statement while the service is away.
 fn spoilt(sql: &'static str) -> (Service, Value) {
@@ -18,14 +20,14 @@ fn spoilt(sql: &'static str) -> (Service, Value) {
     drop(worker);
     let status = service.status(bad);
     let list = service.client.json("/v1/calibrations");
-    assert_eq!(list.as_array().map(Vec::len), Some(2), "{list}");
+    assert_eq!(item_count(&list), 2, "{list}");
     assert_eq!(list[0], status);
     (service, status)
 }
 
 #[track_caller]
 fn says(status: &Value, part: &str) {
-    let message = status["message"].as_str().unwrap_or_default();
+    let message = word(&status["message"]);
     assert!(message.contains(part), "{status} lacks {part:?}");
 }
 
@@ -39,16 +41,11 @@ fn an_evaluation_without_a_whole_parameter_vector_pauses_its_calibration_with_it
     says(&status, "calibration 1, evaluation 3: ");
     says(&status, "5 bytes");
     let log = service.log();
-    assert!(
-        log.contains("not resumed") && log.contains("evaluation 3"),
-        "{log}"
-    );
+    assert_contains!(log, "not resumed", "evaluation 3");
     for verb in ["resume", "pause"] {
-        let answer = service
-            .client
-            .post(&format!("/v1/calibrations/1/{verb}"), &json!({}));
+        let answer = service.act(1, verb);
         assert_eq!(answer.status, 409);
-        assert!(answer.body.contains("evaluation 3"), "{}", answer.body);
+        assert_contains!(answer.body, "evaluation 3");
     }
 }
 
@@ -58,7 +55,7 @@ fn a_value_of_another_type_is_a_bad_row_and_no_panic() {
     says(&status, "busy_ms");
     assert!(!service.log().contains("panicked"), "{}", service.log());
     let list = run(coordinator(["list", "--url", &service.url()])).success();
-    assert!(list.contains("busy_ms"), "{list}");
+    assert_contains!(list, "busy_ms");
 }
 
 #[test]

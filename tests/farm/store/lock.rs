@@ -1,11 +1,12 @@
-//! One coordinator to a file, whatever it is called; what others lock is waited for.
+//! One coordinator for each file under any name, and waiting for the locks of other programs.
 
 use std::os::unix::fs::{MetadataExt, symlink};
 use std::time::Duration;
 
+use farm_tests::assert_contains;
 use farm_tests::job::Job;
 use farm_tests::service::Service;
-use farm_tests::wait::until;
+use farm_tests::wait::until_true;
 
 use super::serve;
 
@@ -19,10 +20,7 @@ fn a_symlink_to_a_store_in_use_starts_no_second_coordinator() {
     symlink(service.folder(), &folder).expect("a symlink");
     for name in [link, folder.join("grouser.db")] {
         let message = serve(&name).refusal();
-        assert!(
-            message.contains("another coordinator is using this file"),
-            "{message}"
-        );
+        assert_contains!(message, "another coordinator is using this file");
     }
 }
 
@@ -44,7 +42,7 @@ fn a_store_with_two_names_is_refused_before_it_loses_its_write_ahead_log() {
     let link = service.folder().join("hard.db");
     std::fs::hard_link(service.store(), &link).expect("a hard link");
     let message = serve(&link).refusal();
-    assert!(message.contains("hard.db: the file has 2 names"), "{message}");
+    assert_contains!(message, "hard.db: the file has 2 names");
     assert!(!service.folder().join("hard.db-wal").exists());
 }
 
@@ -55,21 +53,18 @@ fn a_foreign_lock_is_waited_for_and_nothing_is_lost() {
     foreign.execute("BEGIN IMMEDIATE");
     std::thread::scope(|scope| {
         let submitted = scope.spawn(|| service.submit(&Job::small()));
-        until("a word about the lock", || {
-            service
-                .log()
-                .contains("another program holds a lock")
-                .then_some(())
+        until_true("a word about the lock", || {
+            service.log().contains("another program holds a lock")
         });
         assert_eq!(service.client.get("/health").status, 200);
         foreign.execute("COMMIT");
         assert_eq!(submitted.join().expect("an answer"), 1);
     });
-    // While it is locked, a stop is still obeyed, and the next start says what it waits for.
+    // The service can be stopped while the store is locked, and the next start reports the lock.
     foreign.execute("BEGIN IMMEDIATE");
     assert!(service.terminate());
     let message = serve(&service.store()).refusal();
-    assert!(message.contains("another program holds a lock"), "{message}");
+    assert_contains!(message, "another program holds a lock");
     std::thread::scope(|scope| {
         scope.spawn(|| {
             std::thread::sleep(Duration::from_secs(1));

@@ -1,5 +1,5 @@
-//! The store under fire: bad rows, foreign locks, damage, other names for its file, other versions; what is copied and
-//! removed; reading where nothing can be written.
+//! The store: bad rows, locks of other programs, damage, other names of its file, other versions, backups, removal of studies, and read-only
+//! use.
 
 mod backup;
 mod bad_row;
@@ -10,17 +10,14 @@ mod removal;
 
 use std::path::Path;
 
-use farm_tests::programs::{Ended, coordinator, run};
+use farm_tests::programs::{Ended, call};
 use farm_tests::service::free_address;
 
-/// The message of a service that is refused a store.
+/// Starts a service on a store that it should refuse.
 fn serve(store: &Path) -> Ended {
     let store = format!("sqlite://{}", store.display());
-    run(coordinator([
-        "serve",
-        "--listen",
-        &free_address(),
-        "--store",
-        &store,
-    ]))
+    call(
+        "coordinator serve --listen {} --store {}",
+        &[&free_address(), &store],
+    )
 }

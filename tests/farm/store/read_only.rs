@@ -1,12 +1,14 @@
-//! Reading works where nothing can be written.
+//! Reading a store in a folder that cannot be written.
 
 use std::fs::{File, Permissions};
 use std::os::unix::fs::{MetadataExt, PermissionsExt};
 use std::path::Path;
 use std::process::Command;
 
+use farm_tests::assert_contains;
 use farm_tests::http::Client;
 use farm_tests::job::Job;
+use farm_tests::json::item_count;
 use farm_tests::process::Process;
 use farm_tests::programs::{coordinator, run, worker};
 use farm_tests::service::{Service, free_address};
@@ -17,12 +19,11 @@ use tempfile::TempDir;
 /// A service with a finished calibration.
 fn finished() -> Service {
     let service = Service::start(&["--local-workers", "2"]);
-    let id = service.submit(&Job::small());
-    service.wait_for(id, "finished");
+    service.calibrate(&Job::small());
     service
 }
 
-/// Who may do what with a file or in a folder.
+/// Sets the permissions of a file or a folder.
 fn set_mode(path: &Path, mode: u32) {
     std::fs::set_permissions(path, Permissions::from_mode(mode)).expect("a mode is set");
 }
@@ -31,12 +32,12 @@ fn set_mode(path: &Path, mode: u32) {
 struct Closed(TempDir);
 
 impl Closed {
-    fn of(service: &Service) -> Closed {
+    fn copy_of(service: &Service) -> Closed {
         let folder = tempfile::tempdir().expect("a folder");
         for end in ["", "-wal"] {
             let from = format!("{}{end}", service.store().display());
             let to = folder.path().join(format!("grouser.db{end}"));
-            // Without a log beside it the file is whole. A store is its owner's alone until the owner lets others read it.
+            // A store without a log is complete. By default only its owner can read it.
             if std::fs::copy(from, &to).is_ok() {
                 set_mode(&to, 0o644);
             }
@@ -47,9 +48,10 @@ impl Closed {
         Closed(folder)
     }
 
-    /// A command of the program; no mode keeps the superuser out, so it becomes somebody else.
+    /// A command of the program. Permissions do not bind the superuser, so that the command switches to another user.
     fn command(&self, words: &[&str]) -> Command {
-        let is_superuser = std::fs::metadata("/proc/self").is_ok_and(|own| own.uid() == 0);
+        let is_superuser =
+            std::fs::metadata("/proc/self").is_ok_and(|process_folder| process_folder.uid() == 0);
         let program = self.0.path().join("coordinator");
         let mut command = match is_superuser {
             true => {
@@ -89,7 +91,7 @@ fn serving(command: impl FnOnce(&[&str]) -> Command, store: &Path, log: &Path) -
 fn a_folder_that_takes_no_file_can_be_read() {
     let mut service = finished();
     service.terminate();
-    let closed = Closed::of(&service);
+    let closed = Closed::copy_of(&service);
     let folder = closed.0.path().display().to_string();
     for verb in ["list", "compare", "diagnose", "report", "export"] {
         let shown = run(closed.command(&[verb, "--out", &folder])).success();
@@ -107,13 +109,10 @@ fn a_log_that_cannot_be_read_is_not_passed_over() {
     let mut service = Service::start(&[]);
     service.submit(&Job::small());
     service.kill();
-    let closed = Closed::of(&service);
+    let closed = Closed::copy_of(&service);
     let folder = closed.0.path().display().to_string();
     let message = run(closed.command(&["list", "--out", &folder])).refusal();
-    assert!(
-        message.contains("grouser.db-wal has what the file lacks"),
-        "{message}"
-    );
+    assert_contains!(message, "grouser.db-wal has what the file lacks");
 }
 
 #[test]
@@ -124,7 +123,7 @@ fn a_reading_service_shows_what_another_writes_and_takes_nothing() {
     let summary = "/v1/calibrations/1/summary";
     assert_eq!(client.json(summary), service.client.json(summary));
     let second = service.submit(&Job::small());
-    assert_eq!(client.json("/v1/calibrations").as_array().map(Vec::len), Some(2));
+    assert_eq!(item_count(&client.json("/v1/calibrations")), 2);
     for path in [
         "/v1/experiments",
         "/v1/effects",
@@ -133,7 +132,7 @@ fn a_reading_service_shows_what_another_writes_and_takes_nothing() {
     ] {
         let refused = client.post(path, &json!({}));
         assert_eq!(refused.status, 403, "{path}");
-        assert!(refused.body.contains("--read-only"), "{}", refused.body);
+        assert_contains!(refused.body, "--read-only");
     }
     assert_eq!(
         client

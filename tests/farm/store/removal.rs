@@ -1,10 +1,11 @@
 //! Studies that are archived, restored, deleted, and deleted by age.
 
+use farm_tests::assert_contains;
 use farm_tests::fake_worker::{FakeWorker, rejected};
 use farm_tests::job::Job;
 use farm_tests::programs::{Ended, coordinator, run};
 use farm_tests::service::Service;
-use farm_tests::wait::until;
+use farm_tests::wait::until_true;
 use serde_json::{Value, json};
 
 fn verb(service: &Service, verb: &str, study: &str) -> Ended {
@@ -24,10 +25,10 @@ fn a_deleted_study_is_gone_with_its_rows_and_its_numbers_are_not_given_out_again
     for id in [kept, deleted] {
         service.wait_for(id, "finished");
     }
-    service.client.get(&format!("/v1/calibrations/{deleted}/report"));
-    let said = verb(&service, "delete", "2").success();
-    assert_eq!(said, "study 2 is deleted, with its calibrations: 2\n");
-    assert!(service.log().contains("deleted study=2"), "{}", service.log());
+    service.part(deleted, "report");
+    let output = verb(&service, "delete", "2").success();
+    assert_eq!(output, "study 2 is deleted, with its calibrations: 2\n");
+    assert_contains!(service.log(), "deleted study=2");
     assert_eq!(numbers(&service.client.json("/v1/calibrations")), [kept]);
     for path in [
         "/v1/studies/2",
@@ -37,7 +38,7 @@ fn a_deleted_study_is_gone_with_its_rows_and_its_numbers_are_not_given_out_again
         assert_eq!(service.client.get(path).status, 404, "{path}");
     }
     assert_eq!(verb(&service, "delete", "2").refusal(), "there is no study 2");
-    assert_eq!(service.client.get("/v1/calibrations/1/summary").status, 200);
+    assert_eq!(service.part(1, "summary").status, 200);
     assert_eq!(service.submit(&Job::small()), 3);
     service.wait_for(3, "finished");
     service.terminate();
@@ -56,15 +57,15 @@ fn a_deletion_that_was_cut_short_is_finished_at_the_next_start() {
     service.submit(&Job::small());
     service.wait_for(1, "finished");
     service.terminate();
-    // As the first part of a deletion leaves it; a model that is not ours was asked twice.
+    // This is the state after the first part of a deletion, with a row of an external model that was asked twice.
     service.database().execute(
         "INSERT INTO repeats VALUES (1, 1, 1, false, 0, 0, 0, 0);
          INSERT INTO deletions VALUES (1, 1, 1, 0); UPDATE studies SET archived_at_ms = 0;
          DELETE FROM evaluations WHERE evaluation < 50",
     );
     service.restart();
-    until("the rest of the deletion", || {
-        (service.client.get("/v1/studies/1").status == 404).then_some(())
+    until_true("the rest of the deletion", || {
+        service.client.get("/v1/studies/1").status == 404
     });
     assert_eq!(service.submit(&Job::small()), 2);
 }
@@ -90,7 +91,7 @@ fn a_study_in_progress_is_neither_deleted_nor_archived_and_late_results_of_a_del
             .status,
         409
     );
-    service.client.post("/v1/calibrations/1/cancel", &json!({}));
+    service.act(1, "cancel");
     verb(&service, "delete", "1").success();
     worker.answer(&leases, |_| rejected());
     assert_eq!(service.submit(&Job::small()), 2);
@@ -117,16 +118,12 @@ fn an_archived_study_is_out_of_the_lists_readable_and_does_not_grow() {
         |more: &[&str]| run(coordinator([&["list", "--url", &service.url()], more].concat())).success();
     assert!(!list(&[]).contains("finished"));
     assert!(list(&["--archived"]).contains("finished"));
-    assert_eq!(service.client.get("/v1/calibrations/1/report").status, 200);
+    assert_eq!(service.part(1, "report").status, 200);
     let grown = service
         .client
         .post("/v1/calibrations/1/extend", &json!({"effect": "janosi_hanamoto"}));
     assert_eq!(grown.status, 409);
-    assert!(
-        grown.body.contains("study 1 is archived: restore it first"),
-        "{}",
-        grown.body
-    );
+    assert_contains!(grown.body, "study 1 is archived: restore it first");
     verb(&service, "restore", "1").success();
     assert_eq!(numbers(&service.client.json("/v1/studies")), [1]);
 }
@@ -146,13 +143,9 @@ fn archived_studies_are_deleted_by_age_where_the_operator_says_so_and_others_nev
         .database()
         .execute("UPDATE studies SET archived_at_ms = archived_at_ms - 2678400000 WHERE id = 1");
     service.restart();
-    until("the deletion of what is too old", || {
-        (service.client.get("/v1/studies/1").status == 404).then_some(())
+    until_true("the deletion of what is too old", || {
+        service.client.get("/v1/studies/1").status == 404
     });
     assert_eq!(numbers(&service.client.json("/v1/studies?archived=true")), [2, 3]);
-    assert!(
-        service.log().contains("archived 30 days ago"),
-        "{}",
-        service.log()
-    );
+    assert_contains!(service.log(), "archived 30 days ago");
 }

@@ -1,4 +1,4 @@
-//! The disk of the store: one that can be filled and emptied.
+//! The disk of the store, which can be filled and emptied.
 
 use std::fs::File;
 use std::io::Write;
@@ -12,14 +12,14 @@ const SIZE_MIB: usize = 96;
 #[derive(Debug)]
 pub(super) struct Disk {
     folder: PathBuf,
-    /// Whether a tmpfs is mounted there, which only a superuser may do. Another disk is never filled.
+    /// Whether a tmpfs is mounted there, which needs a superuser. The disk is never filled without one.
     is_mounted: bool,
     pub(super) is_full: bool,
 }
 
 impl Disk {
-    /// A disk at a folder, which is made.
-    pub(super) fn at(folder: PathBuf) -> Disk {
+    /// Creates a folder and mounts the disk there.
+    pub(super) fn new(folder: PathBuf) -> Disk {
         std::fs::create_dir(&folder).expect("a folder for the store");
         let size = format!("size={SIZE_MIB}m");
         let mut mount = Command::new("mount");
@@ -37,7 +37,7 @@ impl Disk {
         self.folder.join("grouser.db")
     }
 
-    /// Fills the disk but for a number of bytes.
+    /// Fills the disk except for a number of bytes.
     pub(super) fn fill(&mut self, free: usize) {
         self.is_full = self.is_mounted;
         if self.is_mounted {
@@ -56,11 +56,11 @@ impl Disk {
         }
     }
 
-    /// Puts a copy of a store in place of the store.
-    pub(super) fn put_back(&self, copy: &Path) {
+    /// Replaces the store by a copy.
+    pub(super) fn restore(&self, copy: &Path) {
         let store = self.store();
         for end in ["-wal", "-shm"] {
-            // They are gone where the coordinator has closed the store.
+            // The call fails if the coordinator has closed the store, which removes these files.
             let _ = std::fs::remove_file(format!("{}{end}", store.display()));
         }
         std::fs::copy(copy, store).expect("the backup is put back");
@@ -70,7 +70,7 @@ impl Disk {
 impl Drop for Disk {
     fn drop(&mut self) {
         if self.is_mounted {
-            // Lazily, because a process that is about to end may still use it.
+            // The option defers the unmount until the last process with an open file has ended.
             let _ = Command::new("umount").arg("--lazy").arg(&self.folder).status();
         }
     }

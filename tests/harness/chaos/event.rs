@@ -1,4 +1,4 @@
-//! Events: each follows from a seed and its number alone.
+//! Events, each of which is a function of a seed and its number.
 
 use std::fmt::{Display, Formatter, Result};
 use std::time::Duration;
@@ -10,7 +10,7 @@ pub(super) const LEASE_MS: usize = 1_000;
 /// The number of workers of the farm.
 pub(super) const WORKERS: usize = 2;
 
-/// A fault. A killed program starts again after a while; a halted one goes on.
+/// A fault. A killed program is started again later, and a halted one resumed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Fault {
     CoordinatorKilled,
@@ -25,7 +25,7 @@ pub(super) enum Fault {
     BackupPutBack,
 }
 
-/// Every fault, its words, and its frequency relative to the others.
+/// Every fault with its name and its relative frequency.
 pub(super) const FAULTS: [(Fault, &str, usize); 10] = [
     (Fault::CoordinatorKilled, "coordinator killed", 4),
     (Fault::WorkerKilled, "worker killed", 4),
@@ -39,31 +39,31 @@ pub(super) const FAULTS: [(Fault, &str, usize); 10] = [
     (Fault::BackupPutBack, "backup put back", 1),
 ];
 
-/// One event. A fault uses the numbers that it needs.
+/// One event, with the numbers for every kind of fault.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Event {
     pub(super) number: u64,
     /// The time since the event before.
     pub(super) wait: Duration,
     pub(super) fault: Fault,
-    /// The duration of the fault; a dead program starts again after it.
+    /// The duration of the fault; a killed program starts again after it.
     pub(super) lasting: Duration,
-    /// The worker that is hit.
+    /// The number of the worker for faults of one worker.
     pub(super) worker: usize,
-    /// Bytes that still pass, or that the disk still takes.
+    /// The number of bytes that a cut connection still passes, or that a full disk still takes.
     pub(super) bytes: usize,
-    /// The backup that is put back, counted from the newest.
+    /// The backup that is restored, counted from the newest.
     pub(super) age: usize,
 }
 
 impl Event {
-    /// The event of a number.
+    /// Draws the event of a number.
     pub(super) fn draw(seed: u64, number: u64) -> Event {
         let mut stream = Stream::new(seed, 0, number, 0);
-        let by_weight = FAULTS.iter().flat_map(|(fault, _, weight)| vec![*fault; *weight]);
-        let by_weight: Vec<Fault> = by_weight.collect();
-        let fault = by_weight[stream.below(by_weight.len())];
-        // A third outlasts the leases.
+        let weighted = FAULTS.iter().flat_map(|(fault, _, weight)| vec![*fault; *weight]);
+        let weighted: Vec<Fault> = weighted.collect();
+        let fault = weighted[stream.below(weighted.len())];
+        // One fault in three outlasts the leases.
         let lasting = match stream.below(3) {
             0 => LEASE_MS + stream.below(2_000),
             _ => stream.below(400),
@@ -79,20 +79,19 @@ impl Event {
         }
     }
 
-    /// The words of its fault.
-    pub(super) fn words(&self) -> &'static str {
-        let words = FAULTS.iter().find(|(fault, ..)| *fault == self.fault);
-        words.expect("every fault has words").1
+    /// The name of its fault.
+    pub(super) fn name(&self) -> &'static str {
+        let entry = FAULTS.iter().find(|(fault, ..)| *fault == self.fault);
+        entry.expect("every fault has a name").1
     }
 }
 
 impl Display for Event {
     fn fmt(&self, f: &mut Formatter<'_>) -> Result {
-        let (number, seconds) = (self.number, self.lasting.as_secs_f64());
+        let (number, seconds, name) = (self.number, self.lasting.as_secs_f64(), self.name());
         write!(
             f,
-            "event {number}: {} ({seconds:.1} s, worker {}, ",
-            self.words(),
+            "event {number}: {name} ({seconds:.1} s, worker {}, ",
             self.worker
         )?;
         write!(f, "{} bytes, {} before the newest backup)", self.bytes, self.age)

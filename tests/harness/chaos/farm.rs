@@ -1,4 +1,4 @@
-//! The farm: one coordinator on a disk, workers behind a proxy, backups.
+//! The farm: one coordinator on a disk, workers behind a proxy, and backups.
 
 use std::collections::VecDeque;
 use std::path::PathBuf;
@@ -9,25 +9,25 @@ use tempfile::TempDir;
 use super::disk::Disk;
 use super::event::{Event, Fault, LEASE_MS, WORKERS};
 use super::program::Program;
-use super::proxy::{Proxy, Toward};
 use super::tally::Tally;
 use crate::http::Client;
 use crate::programs;
+use crate::proxy::{Proxy, Toward};
 use crate::service::free_address;
 
 /// The number of events between two backups.
 const BACKUP_EVERY: u64 = 6;
 /// The number of backups that are kept.
 const KEPT: usize = 3;
-/// The time after which a program that ended by itself starts again.
-const AGAIN: Duration = Duration::from_millis(200);
+/// The time after which a program that ended without being killed is started again.
+const RESTART: Duration = Duration::from_millis(200);
 /// The largest memory of a program `[MB]`.
 const MAX_MB: f64 = 300.0;
 
 /// The farm.
 pub(super) struct Farm {
     pub(super) client: Client,
-    /// The coordinator, then the workers, with the names of their kinds.
+    /// The coordinator, then the workers, each with its kind.
     programs: Vec<(&'static str, Program)>,
     proxy: Proxy,
     disk: Disk,
@@ -35,25 +35,23 @@ pub(super) struct Farm {
     backups: VecDeque<PathBuf>,
     /// The time at which the disk is emptied.
     disk_due: Option<Instant>,
-    /// Whether the disk has been full since the coordinator started: it may end, and say that it cannot.
-    is_excused: bool,
-    // Last, so that it outlives what writes to it.
+    /// Whether the disk has been full since the coordinator started, so that the coordinator may fail or end.
+    may_fail: bool,
+    // The last field, so that it is dropped after the programs that write to it.
     folder: TempDir,
 }
 
 impl Farm {
-    /// A farm with an empty store.
+    /// Starts a farm with an empty store.
     pub(super) fn start() -> Farm {
         let folder = tempfile::tempdir().expect("a folder");
-        let disk = Disk::at(folder.path().join("disk"));
+        let disk = Disk::new(folder.path().join("disk"));
         let address = free_address();
         let (proxy, url) = Proxy::start(&address);
         let store = format!("sqlite://{}", disk.store().display());
         let (at, lease) = (address.clone(), LEASE_MS.to_string());
-        let serve = move || {
-            let words = ["serve", "--listen", &at, "--store", &store, "--lease-ms", &lease];
-            programs::coordinator(words)
-        };
+        let words = "coordinator serve --listen {} --store {} --lease-ms {}";
+        let serve = move || programs::line(words, &[&at, &store, &lease]);
         let coordinator = Program::start(folder.path().join("coordinator.log"), serve);
         let workers = (0..WORKERS).map(|worker| {
             let url = url.clone();
@@ -63,14 +61,15 @@ impl Farm {
         });
         Farm {
             client: Client(address),
-            programs: std::iter::once(("coordinator", coordinator))
+            programs: [("coordinator", coordinator)]
+                .into_iter()
                 .chain(workers)
                 .collect(),
             proxy,
             disk,
             backups: VecDeque::new(),
             disk_due: None,
-            is_excused: false,
+            may_fail: false,
             folder,
         }
     }
@@ -79,18 +78,18 @@ impl Farm {
         &mut self.programs[0].1
     }
 
-    /// Whether a failure of the service is the disk's.
-    pub(super) fn is_excused(&self) -> bool {
-        self.is_excused
+    /// Whether a full disk excuses a failure of the service.
+    pub(super) fn may_fail(&self) -> bool {
+        self.may_fail
     }
 
-    /// Whether the coordinator can be asked.
+    /// Whether the coordinator is running and not halted.
     pub(super) fn answers(&self) -> bool {
         self.programs[0].1.is_awake()
     }
 
-    /// Lets an event happen; whether it put a backup back.
-    pub(super) fn suffer(&mut self, event: &Event) -> bool {
+    /// Applies an event; returns whether it restored a backup.
+    pub(super) fn apply(&mut self, event: &Event) -> bool {
         if event.number.is_multiple_of(BACKUP_EVERY) {
             self.make_backup(event.number);
         }
@@ -109,7 +108,7 @@ impl Farm {
             Fault::AnswerCut => self.proxy.network().cut_after = Some((Toward::Workers, event.bytes)),
             Fault::DiskFull => {
                 self.disk.fill(event.bytes);
-                self.is_excused = true;
+                self.may_fail = true;
                 self.disk_due = Some(Instant::now() + lasting);
             }
             Fault::BackupPutBack => {
@@ -119,19 +118,21 @@ impl Farm {
                 };
                 self.coordinator().kill(lasting);
                 self.disk.empty();
-                self.disk.put_back(&copy);
+                self.disk.restore(&copy);
                 return true;
             }
         }
         false
     }
 
-    /// Copies the store while it may be in use, unless its disk does not let the program.
+    /// Copies the store, which may be in use. A full disk may prevent the copy.
     fn make_backup(&mut self, number: u64) {
         let copy = self.folder.path().join(format!("backup-{number}.db"));
-        let store = format!("sqlite://{}", self.disk.store().display());
-        let words = ["backup", &copy.display().to_string(), "--store", &store];
-        if programs::run(programs::coordinator(words)).code == Some(0) {
+        let made = programs::call(
+            "coordinator backup {} --store sqlite://{}",
+            &[&copy, &self.disk.store()],
+        );
+        if made.code == Some(0) {
             self.backups.push_front(copy);
         }
         for old in self.backups.drain(self.backups.len().min(KEPT)..) {
@@ -139,23 +140,21 @@ impl Farm {
         }
     }
 
-    /// Ends what is over and starts what is due.
-    ///
-    /// # Errors
-    /// A program has ended by itself, or holds too much memory.
-    pub(super) fn tend(&mut self, tally: &mut Tally) -> Result<(), String> {
+    /// Ends faults whose time is over, and starts programs that are due. An error means that a program has ended without being killed, or
+    /// holds too much memory.
+    pub(super) fn update(&mut self, tally: &mut Tally) -> Result<(), String> {
         let now = Instant::now();
         if self.disk_due.take_if(|due| *due <= now).is_some() {
             self.disk.empty();
         }
         for (name, program) in &mut self.programs {
             let is_coordinator = *name == "coordinator";
-            if program.come_back(now) && is_coordinator {
-                self.is_excused = self.disk.is_full;
+            if program.recover(now) && is_coordinator {
+                self.may_fail = self.disk.is_full;
             }
-            if let Some(status) = program.ended(AGAIN) {
-                if !is_coordinator || !self.is_excused || status.code() != Some(1) {
-                    return Err(format!("a {name} ended by itself, {status}:\n{}", program.log()));
+            if let Some(status) = program.ended(RESTART) {
+                if !is_coordinator || !self.may_fail || status.code() != Some(1) {
+                    return Err(format!("a {name} ended, {status}:\n{}", program.log()));
                 }
                 tally.ends_on_full_disk += 1;
             }
@@ -169,28 +168,27 @@ impl Farm {
         Ok(())
     }
 
-    /// Empties the disk; dead or halted programs come back at their time.
-    pub(super) fn heal(&mut self) {
+    /// Empties the disk. Killed and halted programs recover when they are due.
+    pub(super) fn empty_disk(&mut self) {
         self.disk.empty();
     }
 
-    /// No log tells of a panic.
-    ///
-    /// # Errors
-    /// The line that does.
+    /// Checks that no log has a panic; the error is the line of the first one.
     pub(super) fn check_logs(&self) -> Result<(), String> {
-        let logs = self.programs.iter().map(|(_, program)| program.log());
-        let panics = logs.flat_map(|log| log.lines().map(str::to_owned).collect::<Vec<_>>());
-        let mut panics = panics.filter(|line| line.contains("panicked"));
-        panics.next().map_or(Ok(()), Err)
+        for (_, program) in &self.programs {
+            if let Some(line) = program.log().lines().find(|line| line.contains("panicked")) {
+                return Err(line.to_owned());
+            }
+        }
+        Ok(())
     }
 
-    /// Ends everything and keeps the logs and the store in a folder.
+    /// Kills the coordinator and keeps the logs and the store in a folder.
     pub(super) fn keep(mut self) -> PathBuf {
         self.coordinator().kill(Duration::ZERO);
         let store = self.disk.store();
         for name in ["grouser.db", "grouser.db-wal"] {
-            // There is no log of a store that the coordinator has closed.
+            // A closed store has no write-ahead log.
             let _ = std::fs::copy(store.with_file_name(name), self.folder.path().join(name));
         }
         self.folder.keep()

@@ -1,19 +1,18 @@
 //! Chaos: real programs, files and connections suffer faults, and studies must still end with the same bits.
 //!
-//! Events follow from a seed and their numbers; what they hit depends on the machine. Several may last at the same time.
+//! The events are a function of a seed and their numbers; their effects depend on the machine. Several faults may last at the same time.
 //!
 //! # Layout
 //! - `event`: the faults, drawn at random.
-//! - `farm`: coordinator, workers and backups, which suffer the events; `program`, `proxy`, `disk` are its parts.
-//! - `user`: submits, compares, deletes; `outcome`: what a study gives, as text.
-//! - `tally`: what happened, in numbers.
+//! - `farm`: coordinator, workers and backups, to which the events apply; `program` and `disk` are its parts.
+//! - `user`: submits, compares and deletes studies; `outcome`: the results of a study as text.
+//! - `tally`: counts of events and their consequences.
 
 mod disk;
 mod event;
 mod farm;
 mod outcome;
 mod program;
-mod proxy;
 mod tally;
 mod user;
 
@@ -27,65 +26,65 @@ use user::User;
 
 /// The number of events after which the farm may finish its studies.
 const BLOCK: u64 = 100;
-/// The time between two looks of the user.
-const LOOK: Duration = Duration::from_millis(30);
-/// The number of events that are told with a broken promise.
+/// The time between two checks of the user.
+const INTERVAL: Duration = Duration::from_millis(30);
+/// The number of events that are reported with a broken promise.
 const LAST: usize = 12;
 
-/// Every fault.
+/// The names of all faults.
 pub fn faults() -> impl Iterator<Item = &'static str> {
-    FAULTS.iter().map(|(_, words, _)| *words)
+    FAULTS.iter().map(|(_, name, _)| *name)
 }
 
-/// Lets a number of events happen to a farm, and tells each as it happens.
+/// Applies a number of events to a farm, and reports each one.
 ///
 /// The farm may finish its studies after every hundred events. Returns the tally, and the promise that was broken, with the last events.
-pub fn soak(events: u64, seed: u64, mut tell: impl FnMut(&str)) -> (Tally, Option<String>) {
+pub fn run(events: u64, seed: u64, mut report: impl FnMut(&str)) -> (Tally, Option<String>) {
     let farm = Farm::start();
     let user = User::new(farm.client.clone());
     let tally = Tally::default();
-    let mut soak = Soak { farm, user, tally };
+    let mut chaos = Chaos { farm, user, tally };
     let began = Instant::now();
-    let mut told: Vec<String> = Vec::new();
-    let mut run = || {
+    let mut lines: Vec<String> = Vec::new();
+    let mut apply = || {
         for number in 1..=events {
             let event = Event::draw(seed, number);
-            soak.live(event.wait)?;
+            chaos.live(event.wait)?;
             let line = format!("{:8.2} s  {event}", began.elapsed().as_secs_f64());
-            tell(&line);
-            told.push(line);
-            *soak.tally.events.entry(event.words()).or_default() += 1;
-            if soak.farm.suffer(&event) {
-                soak.user.expect_a_backup();
+            report(&line);
+            lines.push(line);
+            *chaos.tally.events.entry(event.name()).or_default() += 1;
+            if chaos.farm.apply(&event) {
+                chaos.user.expect_backup();
             }
             if number.is_multiple_of(BLOCK) || number == events {
-                soak.finish()?;
+                chaos.finish()?;
             }
         }
-        soak.farm.check_logs()
+        chaos.farm.check_logs()
     };
-    let done: Result<(), String> = run();
-    soak.tally.note("s in all", began.elapsed().as_secs_f64());
+    let done: Result<(), String> = apply();
+    chaos.tally.note("s in all", began.elapsed().as_secs_f64());
     let broken = done.err().map(|promise| {
-        let kept = soak.farm.keep();
+        let kept = chaos.farm.keep();
         format!(
             "seed {seed}, after event {}: {promise}\nlogs and store: {}\n{}",
-            told.len(),
+            lines.len(),
             kept.display(),
-            told[told.len().saturating_sub(LAST)..].join("\n")
+            lines[lines.len().saturating_sub(LAST)..].join("\n")
         )
     });
-    (soak.tally, broken)
+    (chaos.tally, broken)
 }
 
-struct Soak {
+struct Chaos {
     farm: Farm,
     user: User,
     tally: Tally,
 }
 
-impl Soak {
-    /// Goes on for a time.
+impl Chaos {
+    /// Runs the farm for a time.
     fn live(&mut self, time: Duration) -> Result<(), String> {
         let end = Instant::now() + time;
         self.step(true)?;
@@ -95,26 +94,26 @@ impl Soak {
         self.farm.check_logs()
     }
 
-    /// Heals the farm and lets it finish its studies.
+    /// Empties the disk and runs the farm until its studies are finished.
     fn finish(&mut self) -> Result<(), String> {
-        self.farm.heal();
+        self.farm.empty_disk();
         while !self.user.is_done() {
             self.step(false)?;
         }
         Ok(())
     }
 
-    /// Tends the farm, and lets its user look.
+    /// Updates the farm, and lets its user act.
     fn step(&mut self, submits: bool) -> Result<(), String> {
-        self.farm.tend(&mut self.tally)?;
+        self.farm.update(&mut self.tally)?;
         if self.farm.answers() {
-            match self.user.look(&mut self.tally, submits) {
-                Ok(()) | Err(Trouble::Away) => {}
-                Err(Trouble::Failing(_)) if self.farm.is_excused() => {}
+            match self.user.act(&mut self.tally, submits) {
+                Ok(()) | Err(Trouble::Unreachable) => {}
+                Err(Trouble::Failing(_)) if self.farm.may_fail() => {}
                 Err(Trouble::Failing(message) | Trouble::Broken(message)) => return Err(message),
             }
         }
-        std::thread::sleep(LOOK);
+        std::thread::sleep(INTERVAL);
         Ok(())
     }
 }

@@ -1,31 +1,26 @@
-//! Questions to the service, and the outcome of a study as text.
+//! Requests to the service, and the outcome of a study as text.
 
 use serde_json::Value;
 
 use crate::http::{Client, Response};
 
-/// Why the user got no further.
+/// A reason why the user did not get an answer.
 #[derive(Debug)]
 pub(super) enum Trouble {
-    /// Nobody answers at present.
-    Away,
-    /// The service says that it cannot, as on a full disk.
+    /// No coordinator answers at present.
+    Unreachable,
+    /// The service fails with a status 5xx, as it does on a full disk.
     Failing(String),
     /// A promise is broken.
     Broken(String),
 }
 
-/// Sends a request; the answer, unless it is the service's own failure.
-pub(super) fn ask(
-    client: &Client,
-    method: &str,
-    path: &str,
-    body: Option<&Value>,
-) -> Result<Response, Trouble> {
+/// Sends a request; returns the answer unless its status is 5xx.
+fn send(client: &Client, method: &str, path: &str, body: Option<&Value>) -> Result<Response, Trouble> {
     let body = body.map(Value::to_string);
     let answer = client
         .send(method, path, body.as_deref())
-        .map_err(|_| Trouble::Away)?;
+        .map_err(|_| Trouble::Unreachable)?;
     match answer.status {
         500.. => Err(Trouble::Failing(format!(
             "{path}: {} {}",
@@ -37,17 +32,17 @@ pub(super) fn ask(
 
 /// `GET path`.
 pub(super) fn get(client: &Client, path: &str) -> Result<Response, Trouble> {
-    ask(client, "GET", path, None)
+    send(client, "GET", path, None)
 }
 
-/// A request that must not be refused; its answer.
-pub(super) fn done(
+/// Sends a request that must not be refused.
+pub(super) fn succeed(
     client: &Client,
     method: &str,
     path: &str,
     body: Option<&Value>,
 ) -> Result<Value, Trouble> {
-    let answer = ask(client, method, path, body)?;
+    let answer = send(client, method, path, body)?;
     match answer.status {
         200 | 201 => Ok(answer.json()),
         status => Err(Trouble::Broken(format!(
@@ -63,18 +58,15 @@ pub(super) fn members(study: &Value) -> Vec<i64> {
     members.filter_map(Value::as_i64).collect()
 }
 
-/// Everything that a finished study gives but its wall times: summary, stages, populations, draws, the result of a search. Equal texts
-/// are equal bits, since a number is written with as many digits as it has. `None` while the study is not finished.
+/// The results of a finished study without its wall times: summary, stages, populations, draws and the result of a search. Equal texts mean
+/// equal bits, because each number has all its digits. `None` before the study is finished.
 pub(super) fn outcome(client: &Client, study: &Value) -> Result<Option<String>, Trouble> {
     let ids = members(study);
     let answer = get(client, &format!("/v1/calibrations/{}/summary", ids[0]))?;
-    if answer.status != 200 {
+    if answer.status != 200 || answer.json()["status"] != "finished" {
         return Ok(None);
     }
     let mut summary = answer.json();
-    if summary["status"] != "finished" {
-        return Ok(None);
-    }
     for part in ["calibrations", "point_estimates"] {
         for calibration in summary[part].as_array_mut().into_iter().flatten() {
             calibration["wall_s"] = Value::Null;
@@ -89,7 +81,7 @@ pub(super) fn outcome(client: &Client, study: &Value) -> Result<Option<String>, 
         let parts = ["stages", "posterior", "discovery"].map(str::to_owned);
         for part in parts.into_iter().chain(samples) {
             let answer = get(client, &format!("/v1/calibrations/{id}/{part}"))?;
-            // The reason why there is none names the number of the calibration.
+            // The message of another status names the calibration, whose number differs.
             let body = match answer.status {
                 200 => format!("{:#}", answer.json()),
                 status => format!("none ({status})"),

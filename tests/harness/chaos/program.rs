@@ -1,4 +1,4 @@
-//! A program of the farm that is killed and halted, and comes back.
+//! A program of the farm that is killed and halted, and then started or resumed.
 
 use std::path::PathBuf;
 use std::process::{Command, ExitStatus};
@@ -6,13 +6,13 @@ use std::time::{Duration, Instant};
 
 use crate::process::{Process, Signal};
 
-/// A program, whether it runs or not.
+/// A program, which need not be running.
 pub(super) struct Program {
     command: Box<dyn Fn() -> Command>,
     log: PathBuf,
     pub(super) process: Option<Process>,
     is_halted: bool,
-    /// The time at which it starts again, or goes on.
+    /// The time at which it is started or resumed.
     due: Option<Instant>,
 }
 
@@ -29,25 +29,25 @@ impl Program {
         }
     }
 
-    /// Whether it runs and is not halted.
+    /// Whether the program is running and not halted.
     pub(super) fn is_awake(&self) -> bool {
         self.process.is_some() && !self.is_halted
     }
 
-    /// Takes its process, which ends; another starts after a while.
+    /// Takes the process out, and plans the start of another one.
     fn take(&mut self, down: Duration) -> Option<Process> {
         self.is_halted = false;
         self.due = Some(Instant::now() + down);
         self.process.take()
     }
 
-    /// Kills it.
+    /// Kills the program for a time.
     pub(super) fn kill(&mut self, down: Duration) {
         // A process is killed when it is dropped.
         drop(self.take(down));
     }
 
-    /// Halts it for a while.
+    /// Halts the program for a time.
     pub(super) fn halt(&mut self, time: Duration) {
         if let Some(process) = self.process.as_mut().filter(|_| !self.is_halted)
             && process.is_running()
@@ -58,8 +58,8 @@ impl Program {
         }
     }
 
-    /// Starts it again or lets it go on where this is due; whether it was started.
-    pub(super) fn come_back(&mut self, now: Instant) -> bool {
+    /// Starts or resumes the program if that is due; returns whether it was started.
+    pub(super) fn recover(&mut self, now: Instant) -> bool {
         if self.due.take_if(|due| *due <= now).is_none() {
             return false;
         }
@@ -75,14 +75,15 @@ impl Program {
         is_dead
     }
 
-    /// Its end, where it ended by itself; it starts again after a while.
+    /// The exit status of a program that ended without being killed; it is started again after `down`.
     pub(super) fn ended(&mut self, down: Duration) -> Option<ExitStatus> {
-        let is_running = self.process.as_mut()?.is_running();
-        let ended = if is_running { None } else { self.take(down) };
-        ended.map(|mut process| process.wait())
+        if self.process.as_mut()?.is_running() {
+            return None;
+        }
+        self.take(down).map(|mut process| process.wait())
     }
 
-    /// Its log, over all its starts.
+    /// The log since the first start.
     pub(super) fn log(&self) -> String {
         String::from_utf8_lossy(&std::fs::read(&self.log).expect("the log can be read")).into_owned()
     }

@@ -1,18 +1,18 @@
-//! The events and their consequences, in numbers.
+//! Counts of the events and of their consequences.
 
 use std::collections::BTreeMap;
 use std::fmt::{Display, Formatter, Result};
 
-/// Counts of a soak.
+/// Counts of one run of the chaos.
 #[derive(Debug, Default)]
 pub struct Tally {
     /// Events by fault.
     pub events: BTreeMap<&'static str, u64>,
-    /// Studies whose outcome had the bits of an undisturbed one, by job.
+    /// The number of studies whose outcome had the bits of an undisturbed study, by job.
     pub compared: BTreeMap<&'static str, u64>,
-    /// Pauses by reason; each was resumed.
+    /// The number of pauses by reason; each was resumed.
     pub pauses: BTreeMap<String, u64>,
-    /// The number of times that the coordinator ended by itself on a full disk.
+    /// How often the coordinator ended because its disk was full.
     pub ends_on_full_disk: u64,
     /// The largest value of each quantity, by its unit and name.
     pub largest: BTreeMap<String, f64>,

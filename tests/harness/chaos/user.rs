@@ -1,11 +1,11 @@
-//! A user of the farm: submits three jobs again and again, and compares and deletes finished studies.
+//! A user of the farm, who submits three jobs again and again, and compares and deletes finished studies.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::time::{Duration, Instant};
 
 use serde_json::{Value, json};
 
-use super::outcome::{Trouble, done, get, members, outcome};
+use super::outcome::{Trouble, get, members, outcome, succeed};
 use super::tally::Tally;
 use crate::http::Client;
 use crate::job::Job;
@@ -15,7 +15,7 @@ use crate::wait::until;
 /// The longest time without progress.
 const PATIENCE: Duration = Duration::from_secs(300);
 
-/// A job and what it gives undisturbed.
+/// A job and its outcome without disturbance.
 #[derive(Debug)]
 struct Reference {
     name: &'static str,
@@ -24,7 +24,7 @@ struct Reference {
 }
 
 impl Reference {
-    /// Computes the outcome of a job that nothing disturbs.
+    /// Computes the outcome of a job without disturbance.
     fn new(name: &'static str, job: Job) -> Reference {
         let service = Service::start(&["--local-workers", "2"]);
         let mut reference = Reference {
@@ -35,21 +35,17 @@ impl Reference {
         reference.submit(&service.client).expect("the job is accepted");
         reference.outcome = until("the outcome of an undisturbed job", || {
             let studies = service.client.json("/v1/studies");
-            outcome(&service.client, &studies[0]).expect("nothing is in the way")
+            outcome(&service.client, &studies[0]).expect("the service answers")
         });
         reference
     }
 
-    /// Submits the job; the number of the study.
+    /// Submits the job; returns the number of the study.
     fn submit(&self, client: &Client) -> Result<i64, Trouble> {
-        let experiment = done(
-            client,
-            "POST",
-            "/v1/experiments",
-            Some(&self.job.experiment_json()),
-        )?;
+        let experiment = self.job.experiment_json();
+        let experiment = succeed(client, "POST", "/v1/experiments", Some(&experiment))?;
         let new = json!({"experiment": experiment["id"], "toml": self.job.job, "name": self.name});
-        let created = done(client, "POST", "/v1/calibrations", Some(&new))?;
+        let created = succeed(client, "POST", "/v1/calibrations", Some(&new))?;
         Ok(created["study"].as_i64().unwrap_or_default())
     }
 }
@@ -58,52 +54,47 @@ impl Reference {
 #[derive(Debug)]
 pub(super) struct User {
     client: Client,
-    /// A sampler on a fast model, one with a metamodel on a slow model, and a study that grows by itself.
+    /// A sampler on a fast model, a sampler with a metamodel on a slow model, and a study that extends its model automatically.
     references: [Reference; 3],
-    /// The numbers of the studies that must be there, with the names of their jobs.
+    /// The numbers of the studies that must exist, with the names of their jobs.
     submitted: BTreeMap<i64, String>,
     deleted: BTreeSet<i64>,
-    /// Whether a list has been seen since a backup was put back.
-    has_seen: bool,
-    /// The calibrations as they were when something last moved.
-    seen: String,
-    moved: Instant,
+    /// Whether the studies have been listed since a backup was restored.
+    has_listed: bool,
+    /// The last change of the calibrations: their states and evaluations, and the time.
+    progress: (String, Instant),
 }
 
 impl User {
     pub(super) fn new(client: Client) -> User {
-        let metamodel = Job::rolling()
-            .sampler(40, [2, 4], 5)
-            .in_job("moves = [2, 4]", "moves = [2, 4]\nmetamodel_moves = 8");
         User {
             client,
             references: [
                 Reference::new("tmcmc", Job::small().sampler(1000, [4, 10], 3)),
-                Reference::new("metamodel", metamodel),
+                Reference::new("metamodel", Job::metamodel()),
                 Reference::new("auto", Job::hidden_shear().sampler(50, [1, 2], 1)),
             ],
             submitted: BTreeMap::new(),
             deleted: BTreeSet::new(),
-            has_seen: false,
-            seen: String::new(),
-            moved: Instant::now(),
+            has_listed: false,
+            progress: (String::new(), Instant::now()),
         }
     }
 
-    /// A backup was put back: what was acknowledged since is gone, and what was deleted may be there again.
-    pub(super) fn expect_a_backup(&mut self) {
+    /// Expects the state of a restored backup, which lacks later submissions and may have studies that were deleted later.
+    pub(super) fn expect_backup(&mut self) {
         self.submitted.clear();
         self.deleted.clear();
-        self.has_seen = false;
+        self.has_listed = false;
     }
 
-    /// Whether there is no study any more.
+    /// Whether no study is left.
     pub(super) fn is_done(&self) -> bool {
-        self.has_seen && self.submitted.is_empty()
+        self.has_listed && self.submitted.is_empty()
     }
 
-    /// Looks after the studies; with `submits`, jobs that are not there are submitted.
-    pub(super) fn look(&mut self, tally: &mut Tally, submits: bool) -> Result<(), Trouble> {
+    /// Checks the studies, resumes pauses and compares finished studies; with `submits`, submits each job that has no study.
+    pub(super) fn act(&mut self, tally: &mut Tally, submits: bool) -> Result<(), Trouble> {
         let list = |path| match get(&self.client, path)?.json() {
             Value::Array(list) => Ok(list),
             other => Err(Trouble::Broken(format!("{path}: {other}"))),
@@ -115,9 +106,8 @@ impl User {
             self.resume(calibration, tally)?;
         }
         let is_finished = |id: &i64| {
-            calibrations
-                .iter()
-                .any(|c| c["id"] == *id && c["state"] == "finished")
+            let mut calibrations = calibrations.iter();
+            calibrations.any(|c| c["id"] == *id && c["state"] == "finished")
         };
         for study in &studies {
             if members(study).iter().all(is_finished) {
@@ -133,31 +123,30 @@ impl User {
         Ok(())
     }
 
-    /// Something moves, and no two answers to one evaluation differ.
+    /// Checks that a calibration has progressed recently, and that no two answers to one evaluation differ.
     fn check_progress(&mut self, calibrations: &[Value], tally: &mut Tally) -> Result<(), Trouble> {
         let line = |c: &Value| format!("{} {} {};", c["id"], c["state"], c["progress"]["evaluations"]);
         let now: String = calibrations.iter().map(line).collect();
-        if now != self.seen {
-            (self.seen, self.moved) = (now, Instant::now());
+        if now != self.progress.0 {
+            self.progress = (now, Instant::now());
         }
-        let still = self.moved.elapsed();
+        let still = self.progress.1.elapsed();
         tally.note("s without progress at most", still.as_secs_f64());
         if still > PATIENCE {
             return Err(Trouble::Broken(format!("no progress for {still:?}")));
         }
         let metrics = get(&self.client, "/metrics")?.body;
         let mut lines = metrics.lines();
-        let disputes = lines.find_map(|line| line.strip_prefix("grouser_determinism_faults_total "));
-        match disputes {
+        match lines.find_map(|line| line.strip_prefix("grouser_determinism_faults_total ")) {
             Some("0") => Ok(()),
-            other => Err(Trouble::Broken(format!(
-                "answers to one evaluation that differ: {other:?}"
+            count => Err(Trouble::Broken(format!(
+                "answers to one evaluation that differ: {count:?}"
             ))),
         }
     }
 
-    /// Compares what was acknowledged with the lists of the service. A study that was submitted without an answer, or came back with a
-    /// backup, counts from now on.
+    /// Compares the acknowledged submissions and deletions with the lists of the service. A study whose submission was not answered, or
+    /// that a backup restored, counts as submitted from now on.
     fn check_acknowledged(&mut self, studies: &[Value], calibrations: &[Value]) -> Result<(), Trouble> {
         // A study has the name of its first calibration.
         let named = studies.iter().filter_map(|study| {
@@ -166,50 +155,47 @@ impl User {
                 .find(|c| c["id"] == study["calibrations"][0])?;
             Some((study["id"].as_i64()?, first["name"].as_str()?.to_owned()))
         });
-        let there: BTreeMap<i64, String> = named.collect();
-        let mut missing = self
-            .submitted
-            .iter()
-            .filter(|(id, name)| there.get(id) != Some(name));
-        if let Some((id, name)) = missing.next() {
-            let words = format!("study {id} ({name}) was submitted, but there are {there:?}");
-            return Err(Trouble::Broken(words));
+        let listed: BTreeMap<i64, String> = named.collect();
+        let mut submitted = self.submitted.iter();
+        if let Some((id, name)) = submitted.find(|(id, name)| listed.get(id) != Some(name)) {
+            let message = format!("study {id} ({name}) was submitted, but there are {listed:?}");
+            return Err(Trouble::Broken(message));
         }
-        if let Some(id) = self.deleted.iter().find(|id| there.contains_key(id)) {
+        if let Some(id) = self.deleted.iter().find(|id| listed.contains_key(id)) {
             return Err(Trouble::Broken(format!(
                 "study {id} was deleted and is there again"
             )));
         }
-        (self.submitted, self.has_seen) = (there, true);
+        (self.submitted, self.has_listed) = (listed, true);
         Ok(())
     }
 
-    /// Resumes a paused calibration, and counts it; none fails, is cancelled, or cannot be replayed.
+    /// Resumes and counts a paused calibration. Failed, cancelled and unreplayable calibrations break a promise.
     fn resume(&self, calibration: &Value, tally: &mut Tally) -> Result<(), Trouble> {
         let message = calibration["message"].as_str().unwrap_or_default();
         match calibration["state"].as_str().unwrap_or_default() {
             "paused" if !message.starts_with("cannot be resumed") => {
                 *tally.pauses.entry(message.to_owned()).or_default() += 1;
                 let path = format!("/v1/calibrations/{}/resume", calibration["id"]);
-                done(&self.client, "POST", &path, Some(&json!({}))).map(drop)
+                succeed(&self.client, "POST", &path, Some(&json!({}))).map(drop)
             }
             "paused" | "failed" | "cancelled" => Err(Trouble::Broken(calibration.to_string())),
             _ => Ok(()),
         }
     }
 
-    /// Compares a finished study with what its job gives undisturbed, then deletes it.
+    /// Compares a finished study with the undisturbed outcome of its job, then deletes the study.
     fn compare(&mut self, study: &Value, tally: &mut Tally) -> Result<(), Trouble> {
         let Some(found) = outcome(&self.client, study)? else {
             return Ok(());
         };
         let id = study["id"].as_i64().unwrap_or_default();
-        let broken = |words: String| Trouble::Broken(format!("study {id}: {words}"));
-        let name = self.submitted.get(&id);
+        let broken = |message: String| Trouble::Broken(format!("study {id}: {message}"));
+        let name = self.submitted.get(&id).map(String::as_str);
         let reference = self
             .references
             .iter()
-            .find(|reference| Some(reference.name) == name.map(String::as_str));
+            .find(|reference| Some(reference.name) == name);
         let reference = reference.ok_or_else(|| broken(format!("nobody submitted {name:?}")))?;
         if found != reference.outcome {
             let mut lines = found.lines().zip(reference.outcome.lines());
@@ -220,9 +206,9 @@ impl User {
             )));
         }
         *tally.compared.entry(reference.name).or_default() += 1;
-        // Without an answer to the deletion the study may be gone.
+        // The deletion may succeed although its answer is lost.
         self.submitted.remove(&id);
-        done(&self.client, "DELETE", &format!("/v1/studies/{id}"), None)?;
+        succeed(&self.client, "DELETE", &format!("/v1/studies/{id}"), None)?;
         self.deleted.insert(id);
         Ok(())
     }

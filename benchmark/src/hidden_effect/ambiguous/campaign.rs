@@ -6,17 +6,19 @@ use discovery::{Conclusion, QueriedModel, Query, SearchVerdict};
 use shared::model::RunCondition;
 use statistics::rng::Stream;
 
+use crate::error::StudyError;
 use crate::hidden_effect::study::case::{SyntheticCase, run as run_truth};
-use crate::hidden_effect::study::design::{CHANNELS, Plan, PlannedRun};
-use crate::hidden_effect::study::error::StudyError;
+use crate::hidden_effect::study::design::{Plan, PlannedRun};
 use crate::hidden_effect::study::local_search::LocalSearch;
+use crate::hidden_effect::study::noise::add_noise;
+use crate::hidden_effect::study::record::word;
 use crate::hidden_effect::study::trial::draw_detectable;
 
-/// The truths are others than those of the other kinds.
+/// The number of the first truth, which no other kind uses.
 const FIRST: u64 = 1_000_000;
-/// Streams of the noise of further runs.
+/// The random stream of the noise of further runs.
 const STAGE: u64 = 1 << 45;
-/// Streams of random orders of runs.
+/// The first random stream of orders of runs.
 const ORDERS: u64 = 1 << 46;
 
 /// An experiment that gets further runs.
@@ -27,7 +29,7 @@ pub struct Campaign {
     number: u64,
 }
 
-/// What a search says about the campaign so far.
+/// The conclusion of a search of the campaign so far.
 pub struct Answer {
     conclusion: Conclusion,
     /// The runs that the rig could make.
@@ -37,7 +39,7 @@ pub struct Answer {
 }
 
 impl Campaign {
-    /// One detectable effect at one load and one speed.
+    /// Draws a detectable effect at one load and one speed.
     pub fn new(seed: u64, number: u64) -> Result<Self, StudyError> {
         let case = draw_detectable(Plan::Narrow, 1, seed, FIRST + number)?;
         Ok(Self { case, seed, number })
@@ -47,12 +49,12 @@ impl Campaign {
         &self.case.hidden[0]
     }
 
-    /// The conditions of the runs made.
+    /// The runs so far.
     pub fn made(&self) -> &[PlannedRun] {
         &self.case.rows
     }
 
-    /// Searches what is missing.
+    /// Searches for the effects that the model is missing.
     pub fn search(&self) -> Result<Answer, StudyError> {
         let mut local = LocalSearch::new(&self.case.plan.job(), &self.case.experiment(), 1)?;
         let conclusion = local.run()?;
@@ -63,21 +65,19 @@ impl Campaign {
             theta: Vec::new(),
         };
         let task = local.models.task();
-        let is_truth =
-            |candidate: Option<usize>| candidate.is_some_and(|k| task.library[k].name == self.case.hidden[0]);
-        let effects = &conclusion.ranking.effects;
-        let truth = effects.iter().find(|effect| is_truth(effect.candidate));
+        let truth = task
+            .library
+            .iter()
+            .position(|effect| effect.name == self.case.hidden[0]);
+        let truth = truth.and_then(|k| conclusion.ranking.effect(Some(k)));
         Ok(Answer {
-            truth: truth.map(|own| (own.log_bayes_factor, own.probability, own.class)),
+            truth: truth.map(|effect| (effect.log_bayes_factor, effect.probability, effect.class)),
             possible: local.models.variant(&proposed)?.1.conditions.clone(),
             conclusion,
         })
     }
 
-    /// The possible runs in a random order.
-    ///
-    /// # Arguments
-    /// - `which`: of several orders.
+    /// The possible runs in one of several random orders.
     pub fn at_random(&self, possible: &[RunCondition], which: u64) -> Vec<RunCondition> {
         let stage = ORDERS + which;
         let mut stream = Stream::new(self.seed, stage, self.number, self.case.rows.len() as u64);
@@ -89,7 +89,7 @@ impl Campaign {
         order
     }
 
-    /// Makes and measures one more run; `false` where the truth refuses it. Further runs of the same number share their noise.
+    /// Makes and measures one more run; returns `false` if the model rejects it. The noise depends on the number of the run alone.
     pub fn measure(&mut self, condition: &RunCondition) -> Result<bool, StudyError> {
         let case = &mut self.case;
         let row = PlannedRun {
@@ -106,11 +106,9 @@ impl Campaign {
         let Some(&[noise_free]) = made.as_deref() else {
             return Ok(false);
         };
-        let noise = Stream::new(self.seed, STAGE, self.number, case.rows.len() as u64).normals(CHANNELS);
         let mut measured = noise_free;
-        for (k, x) in measured.iter_mut().enumerate() {
-            *x += case.sds[k] * noise[k];
-        }
+        let mut stream = Stream::new(self.seed, STAGE, self.number, case.rows.len() as u64);
+        add_noise(std::slice::from_mut(&mut measured), case.sds, &mut stream);
         case.rows.push(row);
         case.noise_free.push(noise_free);
         case.measured.push(measured);
@@ -119,7 +117,7 @@ impl Campaign {
 }
 
 impl Answer {
-    /// Something is missing, and the data do not decide what.
+    /// Whether something is missing and the data do not decide what.
     pub fn is_open(&self) -> bool {
         self.conclusion.verdict == SearchVerdict::Undecided && !self.conclusion.next_runs.is_empty()
     }
@@ -130,9 +128,9 @@ impl Answer {
         runs.map(|run| self.possible[run.run].clone()).collect()
     }
 
-    /// Whether the truth's class is claimed, or something else; `None` without a claim.
+    /// Whether the class of the truth is claimed; `None` without a claim.
     pub fn is_right(&self) -> Option<bool> {
-        let class = |k: usize| self.conclusion.ranking.effect(Some(k)).map(|own| own.class);
+        let class = |k: usize| self.conclusion.ranking.effect(Some(k)).map(|effect| effect.class);
         let truth = self.truth.map(|(_, _, class)| class);
         match self.conclusion.verdict {
             SearchVerdict::Named(k) => Some(truth.is_some() && class(k) == truth),
@@ -146,11 +144,7 @@ impl Answer {
 impl fmt::Display for Answer {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (factor, probability, _) = self.truth.unwrap_or((f64::NAN, 0.0, 0));
-        let said = match self.is_right() {
-            Some(true) => "right",
-            Some(false) => "WRONG",
-            None => "open",
-        };
-        write!(f, "{said} (truth {factor:.1} P {probability:.3})")
+        let answer = word(self.is_right());
+        write!(f, "{answer} (truth {factor:.1} P {probability:.3})")
     }
 }

@@ -1,8 +1,8 @@
-//! How many further runs tell what is missing, chosen by the search, at random, or to fill the space of conditions.
+//! How many further runs identify the missing effect, if the search chooses them, or at random, or to fill the space of conditions.
 //!
 //! # Layout
-//! - `campaign`: an experiment that gets further runs. `strategy`: how they are chosen; `space`: the conditions that a rig can set.
-//! - `story`: one campaign by one strategy.
+//! - `campaign`: an experiment that gets further runs. `strategy`: the choice of the runs; `space`: the conditions that a rig can set.
+//! - `story`: one campaign, continued by one strategy.
 
 pub mod campaign;
 pub mod space;
@@ -13,31 +13,26 @@ use campaign::{Answer, Campaign};
 use story::Story;
 use strategy::{MAX_STRATEGY_RUNS, Strategy};
 
-use crate::hidden_effect::study::error::StudyError;
-use crate::hidden_effect::study::parallel::each;
+use crate::error::StudyError;
 use crate::hidden_effect::study::rate::{Rate, mean};
+use crate::parallel::each;
 
-/// Pairs of runs that are tried at random where the two proposed ones leave the case open.
+/// The number of random pairs of runs that are tried if the two proposed runs leave the case open.
 const PAIRS: u64 = 25;
 
-/// The stories of one experiment, one by each strategy.
+/// The stories of one experiment, one for each strategy.
 struct Case {
     stories: Vec<Story>,
-    /// Of random pairs of runs, how many would have resolved it; `None` where the proposed pair did.
+    /// The share of random pairs of runs that resolve the case; `None` if the proposed pair resolves it.
     pairs: Option<Rate>,
 }
 
-/// Draws so many experiments, and of those that the search leaves undecided prints how many runs each strategy needs.
+/// Draws experiments, and prints how many runs each strategy needs for those that the search leaves undecided.
 pub fn run(count: u64, seed: u64) -> Result<(), StudyError> {
-    let of_cases = each(count, |number| {
-        let case = case(seed, number);
-        if let Err(message) = &case {
-            println!("failed: ambiguous {number}: {message}");
-        }
-        case
+    let cases = each(count, |number| {
+        case(seed, number).inspect_err(|message| println!("failed: ambiguous {number}: {message}"))
     })?;
-    let of_cases: Vec<Option<Case>> = of_cases.into_iter().collect::<Result<_, StudyError>>()?;
-    let open: Vec<Case> = of_cases.into_iter().flatten().collect();
+    let open: Vec<Case> = cases.into_iter().flatten().collect();
     println!("open after the first runs: {} of {count}", open.len());
     for (place, strategy) in Strategy::ALL.into_iter().enumerate() {
         let stories: Vec<&Story> = open.iter().map(|case| &case.stories[place]).collect();
@@ -46,29 +41,19 @@ pub fn run(count: u64, seed: u64) -> Result<(), StudyError> {
             let right = stories
                 .iter()
                 .map(|s| s.right_after.is_some_and(|after| after <= runs));
-            let goal = if strategy.is_proposed() && runs == 2 {
-                " (goal .90)"
-            } else {
-                ""
-            };
+            let has_goal = strategy.is_proposed() && runs == 2;
+            let goal = if has_goal { " (goal .90)" } else { "" };
             println!("  resolved by {runs}: {}{goal}", Rate::new(right));
         }
-        // A case that stays open is counted as if one more run resolved it.
-        let needed: Vec<f64> = stories
-            .iter()
-            .map(|s| s.right_after.unwrap_or(MAX_STRATEGY_RUNS + 1) as f64)
-            .collect();
-        let [average, error] = mean(&needed);
+        // A case that stays open counts as if one more run resolved it.
+        let limit = MAX_STRATEGY_RUNS + 1;
+        let needed = stories.iter().map(|s| s.right_after.unwrap_or(limit) as f64);
+        let [average, error] = mean(&needed.collect::<Vec<f64>>());
         if strategy != Strategy::Batch {
-            println!(
-                "  runs needed, at most {}: {average:.2} ± {error:.2}",
-                MAX_STRATEGY_RUNS + 1
-            );
+            println!("  runs needed, at most {limit}: {average:.2} ± {error:.2}");
         }
-        println!(
-            "  wrongly named: {} (goal 0)",
-            Rate::new(stories.iter().map(|s| s.is_wrong))
-        );
+        let wrong = Rate::new(stories.iter().map(|s| s.is_wrong));
+        println!("  wrongly named: {wrong} (goal 0)");
     }
     let tried: Vec<Rate> = open.iter().filter_map(|case| case.pairs).collect();
     let possible = tried.iter().map(|rate| rate.count > 0);
@@ -76,15 +61,12 @@ pub fn run(count: u64, seed: u64) -> Result<(), StudyError> {
         "of those that two at once leave open, some of {PAIRS} random pairs resolves {}",
         Rate::new(possible)
     );
-    let all = tried.iter().fold(Rate { count: 0, of: 0 }, |sum, rate| Rate {
-        count: sum.count + rate.count,
-        of: sum.of + rate.of,
-    });
+    let all: Rate = tried.into_iter().sum();
     println!("  resolved by a random pair there: {all}");
     Ok(())
 }
 
-/// The case of a number; `None` where the first runs decide.
+/// The case of a number; `None` if the first runs decide.
 fn case(seed: u64, number: u64) -> Result<Option<Case>, StudyError> {
     let campaign = Campaign::new(seed, number)?;
     let first = campaign.search()?;
@@ -108,7 +90,7 @@ fn case(seed: u64, number: u64) -> Result<Option<Case>, StudyError> {
     Ok(Some(Case { stories, pairs }))
 }
 
-/// How often a random pair of runs has the truth's class named.
+/// The share of random pairs of runs after which the class of the truth is named.
 fn pairs_at_random(campaign: &Campaign, first: &Answer) -> Result<Rate, StudyError> {
     let mut right = Vec::new();
     for pair in 0..PAIRS {

@@ -5,7 +5,7 @@ use shared::model::RunCondition;
 
 use crate::hidden_effect::study::design::PlannedRun;
 
-/// Slip, logarithm of the load, logarithm of the rim speed; each from 0 to 1 over the possible runs.
+/// Slip, logarithm of the load and logarithm of the rim speed, each scaled from 0 to 1 over the possible runs.
 type Point = [f64; 3];
 
 /// The possible runs as points.
@@ -21,20 +21,21 @@ fn raw(slip: f64, wheel_load_n: f64, sled_speed_m_s: f64) -> Point {
 
 impl Space {
     pub fn new(possible: &[RunCondition]) -> Self {
-        let raw: Vec<Point> = possible
+        let raw = possible
             .iter()
-            .map(|c| raw(c.slip, c.wheel_load_n, c.sled_speed_m_s))
-            .collect();
+            .map(|c| raw(c.slip, c.wheel_load_n, c.sled_speed_m_s));
+        let raw: Vec<Point> = raw.collect();
         let extreme = |fold: fn(f64, f64) -> f64, first: f64| {
             std::array::from_fn(|k| raw.iter().map(|point| point[k]).fold(first, fold))
         };
         let least: Point = extreme(f64::min, f64::INFINITY);
         let greatest: Point = extreme(f64::max, f64::NEG_INFINITY);
         let range = std::array::from_fn(|k| (greatest[k] - least[k]).max(f64::MIN_POSITIVE));
+        let possible = Vec::new();
         let mut space = Self {
             least,
             range,
-            possible: Vec::new(),
+            possible,
         };
         space.possible = raw.iter().map(|point| space.scaled(point)).collect();
         space
@@ -44,18 +45,16 @@ impl Space {
         std::array::from_fn(|k| (raw[k] - self.least[k]) / self.range[k])
     }
 
-    /// The possible runs, each time the one that is farthest from all made and chosen before.
+    /// The order of the possible runs in which each is the one farthest from all earlier ones and from the runs already made.
     pub fn filling(&self, made: &[PlannedRun]) -> Vec<usize> {
-        let own = made
-            .iter()
-            .map(|row| self.scaled(&raw(row.slip, row.wheel_load_n, row.sled_speed_m_s)));
-        let mut taken: Vec<Point> = own.collect();
+        let scaled = |row: &PlannedRun| self.scaled(&raw(row.slip, row.wheel_load_n, row.sled_speed_m_s));
+        let mut taken: Vec<Point> = made.iter().map(scaled).collect();
         let mut order = Vec::new();
         while order.len() < self.possible.len() {
             let distance = |k: &usize| {
                 let squares = taken.iter().map(|other| {
-                    let own = self.possible[*k].iter().zip(other);
-                    own.map(|(a, b)| (a - b) * (a - b)).sum::<f64>()
+                    let pairs = self.possible[*k].iter().zip(other);
+                    pairs.map(|(a, b)| (a - b) * (a - b)).sum::<f64>()
                 });
                 squares.fold(f64::INFINITY, f64::min)
             };

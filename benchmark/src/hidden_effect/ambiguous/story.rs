@@ -1,21 +1,20 @@
-//! One campaign, continued by one strategy until something is named.
+//! One campaign, continued by one strategy until the search makes a claim.
 
 use super::campaign::{Answer, Campaign};
 use super::strategy::Strategy;
-use crate::hidden_effect::study::error::StudyError;
+use crate::error::StudyError;
 
-/// How a campaign went on.
+/// The course of a campaign.
 pub struct Story {
-    /// After so many further runs the truth's class was named.
+    /// The number of further runs after which the class of the truth was named.
     pub right_after: Option<usize>,
-    /// Something else was named.
+    /// Whether something else was named.
     pub is_wrong: bool,
     pub line: String,
 }
 
 impl Story {
-    /// # Arguments
-    /// - `first`: what is said before the first further run.
+    /// Continues a campaign after its first search.
     pub fn new(strategy: Strategy, campaign: &Campaign, first: &Answer) -> Result<Self, StudyError> {
         let mut campaign = campaign.clone();
         let mut story = Self {

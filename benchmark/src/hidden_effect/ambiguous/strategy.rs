@@ -1,4 +1,4 @@
-//! How further runs are chosen.
+//! The choice of further runs.
 
 use std::ops::RangeInclusive;
 
@@ -7,19 +7,19 @@ use shared::model::RunCondition;
 use super::campaign::{Answer, Campaign};
 use super::space::Space;
 
-/// Most further runs.
+/// The largest number of further runs.
 pub const MAX_STRATEGY_RUNS: usize = 4;
 
-/// How further runs are chosen.
+/// A strategy to choose further runs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Strategy {
-    /// The first proposed run is made, then the search is asked again.
+    /// The first proposed run is made before the next search.
     Proposed,
-    /// The two first proposed runs are made together.
+    /// The first two proposed runs are made before the next search.
     Batch,
-    /// Any run of the same grid.
+    /// A random run of the same grid is made.
     Random,
-    /// The run of the same grid that is farthest from all others.
+    /// The run of the same grid that is farthest from all earlier runs is made.
     SpaceFilling,
 }
 
@@ -39,7 +39,7 @@ impl Strategy {
         matches!(self, Self::Proposed | Self::Batch)
     }
 
-    /// Runs that are made before each search.
+    /// The number of runs that are made before each search.
     pub fn at_once(self) -> usize {
         if self == Self::Batch { 2 } else { 1 }
     }
@@ -56,7 +56,7 @@ impl Strategy {
     /// The runs to make, the next one first.
     ///
     /// # Arguments
-    /// - `possible`: the runs among which the first search could choose. `answer`: what the last one says.
+    /// - `possible`: the runs among which the first search could choose. `answer`: the conclusion of the last search.
     pub fn order(self, campaign: &Campaign, possible: &[RunCondition], answer: &Answer) -> Vec<RunCondition> {
         match self {
             Self::Proposed | Self::Batch => answer.proposed(),

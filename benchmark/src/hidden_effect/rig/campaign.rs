@@ -1,27 +1,26 @@
-//! A campaign on a rig with a flaw, in which nothing is missing from the model.
+//! A campaign on a rig with a flaw, without a missing effect.
 
 use shared::file::FileSet;
 use statistics::rng::Stream;
 
-use super::super::study::case::{NOISE, blank, run, spec};
-use super::super::study::design::{CHANNELS, Plan, PlannedRun, experiment};
-use super::super::study::error::StudyError;
+use super::super::study::case::{MAX_REJECTED, NOISE, blank, run, spec};
+use super::super::study::design::{Plan, PlannedRun, experiment};
+use super::super::study::noise::{RunValues, add_noise, noise_sds};
 use super::flaw::Flaw;
+use crate::error::StudyError;
 
-/// Random streams of truths and noise.
+/// The first random stream of truths and noise.
 const STAGE: u64 = (1 << 47) + 1;
-/// Most draws of the prior in a row that the model rejects.
-const MAX_REFUSED: u64 = 1000;
 const PLAN: Plan = Plan::Full;
 
 /// A campaign on a rig with a flaw.
 #[derive(Debug, Clone)]
 pub struct RigCampaign {
     flaw: Flaw,
-    /// With order and preparation.
+    /// The runs, with order and preparation.
     rows: Vec<PlannedRun>,
-    measured: Vec<[f64; CHANNELS]>,
-    sds: [f64; CHANNELS],
+    measured: Vec<RunValues>,
+    sds: RunValues,
 }
 
 impl RigCampaign {
@@ -31,8 +30,8 @@ impl RigCampaign {
         rows.retain(|row| !row.is_holdout);
         let preparations = preparations(&rows);
         let disturbances = flaw.disturbances(&preparations, seed, number);
-        for (row, own) in rows.iter_mut().zip(&disturbances) {
-            (row.order, row.prepared) = (Some(own.order), Some(own.prepared));
+        for (row, disturbance) in rows.iter_mut().zip(&disturbances) {
+            (row.order, row.prepared) = (Some(disturbance.order), Some(disturbance.prepared));
         }
         let parameters = spec(&PLAN.job(), &blank(&rows))?;
         let place = |name: &str| {
@@ -41,13 +40,13 @@ impl RigCampaign {
         };
         let (stiffness, angle) = (place("log10_p_ref")?, place("friction_angle_deg")?);
         let prior = parameters.prior();
-        for refused in 0..MAX_REFUSED {
-            let truth = prior.sample(&mut Stream::new(seed, STAGE, number, refused));
+        for rejected in 0..MAX_REJECTED {
+            let truth = prior.sample(&mut Stream::new(seed, STAGE, number, rejected));
             let mut values = Vec::new();
-            for (row, own) in rows.iter().zip(&disturbances) {
+            for (row, disturbance) in rows.iter().zip(&disturbances) {
                 let mut theta = truth.clone();
-                theta[stiffness] += own.stiffness.log10();
-                theta[angle] += own.angle_deg;
+                theta[stiffness] += disturbance.stiffness.log10();
+                theta[angle] += disturbance.angle_deg;
                 let alone = PlannedRun {
                     order: None,
                     prepared: None,
@@ -58,19 +57,12 @@ impl RigCampaign {
             if values.len() < rows.len() {
                 continue;
             }
-            let sds: [f64; CHANNELS] = std::array::from_fn(|channel| {
-                let squares: f64 = values.iter().map(|v| v[channel] * v[channel]).sum();
-                NOISE * (squares / rows.len() as f64).sqrt()
-            });
-            let mut noise = Stream::new(seed, STAGE + 1, number, 0)
-                .normals(CHANNELS * rows.len())
-                .into_iter();
-            for (own, measured) in disturbances.iter().zip(&mut values) {
-                measured[0] += own.pull_sds * sds[0];
-                for (x, sd) in measured.iter_mut().zip(sds) {
-                    *x += flaw.noise() * sd * noise.next().unwrap_or(0.0);
-                }
+            let sds = noise_sds(NOISE, values.iter());
+            for (disturbance, measured) in disturbances.iter().zip(&mut values) {
+                measured[0] += disturbance.pull_sds * sds[0];
             }
+            let noise = sds.map(|sd| flaw.noise() * sd);
+            add_noise(&mut values, noise, &mut Stream::new(seed, STAGE + 1, number, 0));
             return Ok(Self {
                 flaw,
                 rows,
@@ -78,17 +70,14 @@ impl RigCampaign {
                 sds,
             });
         }
-        Err(format!("the model rejected {MAX_REFUSED} draws of the prior in a row").into())
+        Err(format!("the model rejected {MAX_REJECTED} draws of the prior in a row").into())
     }
 
     pub fn job(&self) -> FileSet {
         PLAN.job()
     }
 
-    /// The files that the search gets.
-    ///
-    /// # Arguments
-    /// - `is_stated`: with the column that states the flaw.
+    /// The files of the experiment; with `is_stated`, the runs have the column that states the flaw.
     pub fn experiment(&self, is_stated: bool) -> FileSet {
         let column = self.flaw.column().filter(|_| is_stated);
         let mut rows = self.rows.clone();
@@ -100,18 +89,18 @@ impl RigCampaign {
     }
 }
 
-/// The preparation of each run, from 1, if each load and rim speed has its own.
+/// The preparation of each run, from 1, with a separate preparation for each load and rim speed.
 fn preparations(rows: &[PlannedRun]) -> Vec<usize> {
-    let mut known: Vec<(f64, i64)> = Vec::new();
-    let of_row = |row: &PlannedRun| {
-        // The rim speed to a micrometre per second.
+    let mut prepared: Vec<(f64, i64)> = Vec::new();
+    let preparation = |row: &PlannedRun| {
+        // The rim speed is rounded to a micrometre per second.
         let rim = (1e6 * row.sled_speed_m_s / (1.0 - row.slip)).round() as i64;
-        let own = (row.wheel_load_n, rim);
-        let place = known.iter().position(|other| *other == own);
+        let condition = (row.wheel_load_n, rim);
+        let place = prepared.iter().position(|other| *other == condition);
         1 + place.unwrap_or_else(|| {
-            known.push(own);
-            known.len() - 1
+            prepared.push(condition);
+            prepared.len() - 1
         })
     };
-    rows.iter().map(of_row).collect()
+    rows.iter().map(preparation).collect()
 }

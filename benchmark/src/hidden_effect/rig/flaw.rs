@@ -1,25 +1,26 @@
-//! What is wrong with a rig whose model is right.
+//! Flaws of a rig whose model is right.
 
 use statistics::rng::Stream;
 
-/// Random streams of orders and preparations.
+/// The random stream of orders and preparations.
 const STAGE: u64 = 1 << 47;
 /// Change of the stiffness over the series, up and down from its middle.
 const STIFFNESS_DRIFT: f64 = 0.10;
 /// Shift of the pull over the series, up and down from its middle, in noise sds.
 const PULL_DRIFT_SDS: f64 = 1.2;
-/// Sds of stiffness and friction angle from one preparation to the next.
+/// Relative sd of the stiffness from one preparation to the next.
 const PREPARED_STIFFNESS: f64 = 0.10;
+/// Sd of the friction angle from one preparation to the next.
 const PREPARED_ANGLE_DEG: f64 = 1.0;
-/// The noise over what is declared.
+/// The ratio of the noise to the declared noise.
 const UNDERSTATED: f64 = 1.5;
 
-/// What is wrong with a rig whose model is right.
+/// A flaw of a rig whose model is right.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Flaw {
     /// The soil stiffens by 20 % over the series and the zero of the pull moves by 2.4 noise sds, with the runs made in order of slip.
     SortedDrift,
-    /// The same, with the runs made in random order.
+    /// The same drifts, with the runs made in random order.
     RandomDrift,
     /// Four preparations of the soil, one for each load and speed, which differ in stiffness and friction.
     Preparations,
@@ -27,16 +28,17 @@ pub enum Flaw {
     Understated,
 }
 
-/// What a flaw does to one run.
+/// The effect of a flaw on one run.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Disturbance {
     /// Factor of the soil's stiffness.
     pub stiffness: f64,
     pub angle_deg: f64,
-    /// In noise sds.
+    /// The shift of the pull in noise sds.
     pub pull_sds: f64,
-    /// The place in time, from 1, and the soil preparation.
+    /// The place in time, from 1.
     pub order: usize,
+    /// The number of the soil preparation.
     pub prepared: usize,
 }
 
@@ -61,7 +63,7 @@ impl Flaw {
         }
     }
 
-    /// Whether the experiment states the column, for each search of a campaign.
+    /// For each search of a campaign, whether the experiment states the column.
     pub fn statements(self) -> &'static [bool] {
         match self.column() {
             Some(_) => &[true, false],
@@ -69,7 +71,7 @@ impl Flaw {
         }
     }
 
-    /// The noise over what is declared.
+    /// The ratio of the noise to the declared noise.
     pub fn noise(self) -> f64 {
         if self == Flaw::Understated {
             UNDERSTATED
@@ -78,10 +80,10 @@ impl Flaw {
         }
     }
 
-    /// What happens to each run.
+    /// The effect of the flaw on each run.
     ///
     /// # Arguments
-    /// - `preparations`: of each run, if each load and speed has its own.
+    /// - `preparations`: the preparation of each run, with a separate one for each load and speed.
     pub fn disturbances(self, preparations: &[usize], seed: u64, number: u64) -> Vec<Disturbance> {
         let count = preparations.len();
         let mut order: Vec<usize> = (0..count).collect();
@@ -91,8 +93,8 @@ impl Flaw {
                 order.swap(place, stream.below(place + 1));
             }
         }
-        let of_run = |run: usize| {
-            let mut own = Disturbance {
+        let disturbance = |run: usize| {
+            let mut disturbed = Disturbance {
                 stiffness: 1.0,
                 angle_deg: 0.0,
                 pull_sds: 0.0,
@@ -102,20 +104,20 @@ impl Flaw {
             match self {
                 Flaw::SortedDrift | Flaw::RandomDrift => {
                     let from_middle = 2.0 * order[run] as f64 / (count - 1) as f64 - 1.0;
-                    own.stiffness = 1.0 + STIFFNESS_DRIFT * from_middle;
-                    own.pull_sds = PULL_DRIFT_SDS * from_middle;
+                    disturbed.stiffness = 1.0 + STIFFNESS_DRIFT * from_middle;
+                    disturbed.pull_sds = PULL_DRIFT_SDS * from_middle;
                 }
                 Flaw::Preparations => {
-                    own.prepared = preparations[run];
-                    let of_preparation = 1 + own.prepared as u64;
-                    let z = Stream::new(seed, STAGE, number, of_preparation).normals(2);
-                    own.stiffness = 1.0 + PREPARED_STIFFNESS * z[0];
-                    own.angle_deg = PREPARED_ANGLE_DEG * z[1];
+                    disturbed.prepared = preparations[run];
+                    let attempt = 1 + disturbed.prepared as u64;
+                    let z = Stream::new(seed, STAGE, number, attempt).normals(2);
+                    disturbed.stiffness = 1.0 + PREPARED_STIFFNESS * z[0];
+                    disturbed.angle_deg = PREPARED_ANGLE_DEG * z[1];
                 }
                 Flaw::Understated => {}
             }
-            own
+            disturbed
         };
-        (0..count).map(of_run).collect()
+        (0..count).map(disturbance).collect()
     }
 }

@@ -1,8 +1,8 @@
-//! Rigs that are not as a model has them: whether the search claims physics that is not there.
+//! Rigs with a flaw, on which the search must not claim missing physics.
 //!
 //! # Layout
-//! - `flaw`: what is wrong with the rig. `campaign`: its measurements. `tally`: false claims.
-//! - `untryable`: an effect acts that needs what the experiment does not state.
+//! - `flaw`: the flaw of a rig. `campaign`: its measurements. `tally`: false claims.
+//! - `untryable`: an effect acts that needs a property which the experiment does not state.
 
 pub mod campaign;
 pub mod flaw;
@@ -15,14 +15,14 @@ use campaign::RigCampaign;
 pub use flaw::Flaw;
 use tally::{Tally, line};
 
-use super::study::error::StudyError;
-use super::study::parallel::each;
 use super::study::record::record;
+use crate::error::StudyError;
+use crate::parallel::each;
 
-/// Most effects in a combination of the search.
+/// The largest number of effects in a combination of the search.
 const MAX_EFFECTS: usize = 3;
 
-/// Draws so many campaigns in which nothing is missing but the rig has one of these flaws, and prints how often something is claimed.
+/// Draws campaigns without a missing effect on rigs with each of these flaws, and prints how often an effect is claimed.
 pub fn run(flaws: &[Flaw], count: u64, seed: u64) -> Result<(), StudyError> {
     for &flaw in flaws {
         print!("{}", tally(flaw, 0..count, seed, flaw.statements())?);
@@ -30,7 +30,7 @@ pub fn run(flaws: &[Flaw], count: u64, seed: u64) -> Result<(), StudyError> {
     Ok(())
 }
 
-/// The claims on campaigns of these numbers, with the flaw stated if it can be.
+/// The claims on campaigns of these numbers, whose experiments state the flaw if they can.
 pub fn stated(flaw: Flaw, numbers: Range<u64>, seed: u64) -> Result<Tally, StudyError> {
     tally(flaw, numbers, seed, &flaw.statements()[..1])
 }
@@ -52,6 +52,5 @@ fn tally(
         }
         Ok::<_, StudyError>(records)
     })?;
-    let records: Result<Vec<_>, StudyError> = records.into_iter().collect();
-    Ok(Tally::new(flaw, statements, &records?))
+    Ok(Tally::new(flaw, statements, &records))
 }

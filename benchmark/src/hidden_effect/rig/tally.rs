@@ -5,16 +5,17 @@ use std::fmt;
 use record::{Discovery, Verdict};
 
 use super::super::study::rate::Rate;
+use super::super::study::record::leader;
 use super::flaw::Flaw;
 
-/// What one search claims.
+/// The claim of one search.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Claim {
     Nothing,
     Undecided,
-    /// A drift, which is there.
+    /// A drift, which is the flaw of the rig.
     Drift,
-    /// Physics, which is not.
+    /// Missing physics, which does not exist.
     False,
 }
 
@@ -27,11 +28,8 @@ pub struct Tally {
 fn claim(flaw: Flaw, record: &Discovery) -> Claim {
     let drifts = matches!(flaw, Flaw::SortedDrift | Flaw::RandomDrift);
     let is_drift = || {
-        record
-            .effects
-            .iter()
-            .find(|e| e.name != "none")
-            .is_some_and(|e| e.name.starts_with("drift_"))
+        let leading = record.effects.iter().find(|effect| effect.name != "none");
+        leading.is_some_and(|effect| effect.name.starts_with("drift_"))
     };
     match record.verdict {
         Verdict::NothingDetectable => Claim::Nothing,
@@ -51,32 +49,29 @@ fn statement(flaw: Flaw, is_stated: bool) -> String {
 
 /// A search in one line.
 pub fn line(flaw: Flaw, number: u64, is_stated: bool, record: &Discovery) -> String {
-    let first = record.effects.first();
+    let (statement, claim) = (statement(flaw, is_stated), claim(flaw, record));
     format!(
-        "{}{} {number}: {:?}, {} P {:.3}",
+        "{}{statement} {number}: {claim:?}, {}",
         flaw.name(),
-        statement(flaw, is_stated),
-        claim(flaw, record),
-        first.map_or("", |effect| effect.name.as_str()),
-        first.map_or(0.0, |effect| effect.probability),
+        leader(record)
     )
 }
 
 impl Tally {
     /// # Arguments
-    /// - `statements`: whether the flaw is stated, for each search of a campaign. `records`: of each campaign, one for each statement.
+    /// - `statements`: whether each search of a campaign states the flaw. `records`: the searches of each campaign, one for each statement.
     pub fn new(flaw: Flaw, statements: &[bool], records: &[Vec<Discovery>]) -> Self {
-        let of = |(place, is_stated): (usize, &bool)| {
-            let claims = records.iter().map(|own| claim(flaw, &own[place]));
+        let claims = |(place, is_stated): (usize, &bool)| {
+            let claims = records.iter().map(|searches| claim(flaw, &searches[place]));
             (*is_stated, claims.collect())
         };
         Self {
             flaw,
-            claims: statements.iter().enumerate().map(of).collect(),
+            claims: statements.iter().enumerate().map(claims).collect(),
         }
     }
 
-    /// Campaigns in which physics is claimed although the flaw is stated, or cannot be.
+    /// The number of campaigns in which missing physics is claimed, with the flaw stated if the experiment can state it.
     pub fn false_claims(&self) -> usize {
         let (_, claims) = &self.claims[0];
         claims.iter().filter(|claim| **claim == Claim::False).count()
@@ -87,11 +82,8 @@ impl fmt::Display for Tally {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for (is_stated, claims) in &self.claims {
             let rate = |wanted: Claim| Rate::new(claims.iter().map(|claim| *claim == wanted));
-            let goal = if *is_stated || self.flaw.column().is_none() {
-                " (goal 0)"
-            } else {
-                ""
-            };
+            let has_goal = *is_stated || self.flaw.column().is_none();
+            let goal = if has_goal { " (goal 0)" } else { "" };
             writeln!(f, "{}{}", self.flaw.name(), statement(self.flaw, *is_stated))?;
             writeln!(f, "  false claims: {}{goal}", rate(Claim::False))?;
             for (what, wanted) in [

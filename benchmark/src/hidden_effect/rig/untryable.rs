@@ -1,22 +1,21 @@
-//! Truths that the search cannot try, because the experiment does not state what they need.
+//! Truths that the search cannot try, because the experiment does not state a property that they need.
 
-use record::{Discovery, NONE, NOT_IN_LIBRARY, Verdict};
+use record::{Discovery, Extension, NONE, NOT_IN_LIBRARY, Verdict};
 
 use super::super::study::case::SyntheticCase;
 use super::super::study::design::Plan;
-use super::super::study::error::StudyError;
 use super::super::study::noise_free::{MIN_SEPARATION, shortfall};
-use super::super::study::parallel::each;
 use super::super::study::rate::Rate;
-use super::super::study::record::record;
+use super::super::study::record::{class, leader, record};
 use super::MAX_EFFECTS;
-use record::Extension;
+use crate::error::StudyError;
+use crate::parallel::each;
 
-/// The truths are others than those of the other kinds.
+/// The number of the first truth, which no other kind uses.
 const FIRST: u64 = 2_000_000;
-/// Truths that are drawn until the effect is detectable.
+/// The largest number of truths that are drawn until the effect is detectable.
 const MAX_DRAWN: u64 = 1000;
-/// Effects with the lines of the experiment that they need.
+/// The effects, each with the lines of the experiment that it needs.
 const TRUTHS: [(&str, &str); 2] = [
     ("bulldozing", "density_kg_m3 = 1400.0\n"),
     (
@@ -25,63 +24,55 @@ const TRUTHS: [(&str, &str); 2] = [
     ),
 ];
 
-/// What a search says where the truth could not be tried.
+/// The answer of a search that could not try the truth.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Said {
-    /// Undecided or nothing detectable, and the truth is the most probable explanation.
+pub enum Answer {
+    /// No effect is claimed, and the truth is the most probable explanation.
     TruthLeads,
+    /// No effect is claimed, and another explanation is the most probable.
     Open,
-    /// An effect that stands in for the truth is named, or a law.
+    /// Another effect or a law is claimed in place of the truth.
     StandIn,
 }
 
-/// Searches so many experiments, and prints how often a stand-in is named.
+/// Searches a number of experiments, and prints how often a stand-in is named.
 pub fn run(count: u64, seed: u64) -> Result<(), StudyError> {
-    let said = each(count, |number| {
-        let (said, line) = one(seed, number)?;
+    let answers = each(count, |number| {
+        let (answer, line) = one(seed, number)?;
         println!("{line}");
-        Ok::<_, StudyError>(said)
+        Ok::<_, StudyError>(answer)
     })?;
-    let said: Vec<Said> = said.into_iter().collect::<Result<_, StudyError>>()?;
-    let rate = |wanted: Said| Rate::new(said.iter().map(|own| *own == wanted));
-    println!("a stand-in is named: {} (goal 0)", rate(Said::StandIn));
-    println!("the truth leads, not tried: {}", rate(Said::TruthLeads));
-    println!("open otherwise: {}", rate(Said::Open));
+    let rate = |wanted: Answer| Rate::new(answers.iter().map(|answer| *answer == wanted));
+    println!("a stand-in is named: {} (goal 0)", rate(Answer::StandIn));
+    println!("the truth leads, not tried: {}", rate(Answer::TruthLeads));
+    println!("open otherwise: {}", rate(Answer::Open));
     Ok(())
 }
 
-/// One experiment: what is said, and a line about it.
-pub fn one(seed: u64, number: u64) -> Result<(Said, String), StudyError> {
+/// Searches one experiment; returns the answer, and a line about it.
+pub fn one(seed: u64, number: u64) -> Result<(Answer, String), StudyError> {
     let (name, unstated) = TRUTHS[(number % TRUTHS.len() as u64) as usize];
     let case = draw(name, seed, FIRST + number)?;
     let mut experiment = case.experiment();
     experiment.toml = experiment.toml.replace(unstated, "");
     let record = record(&case.plan.job(), &experiment, MAX_EFFECTS, 1)?;
-    let first = record.effects.first();
-    let said = said(&record, name);
-    let shown = format!(
-        "untryable {number} {name}: {said:?}, {:?}, {} P {:.3}",
-        record.verdict,
-        first.map_or("", |effect| effect.name.as_str()),
-        first.map_or(0.0, |effect| effect.probability),
+    let (answer, leader) = (answer(&record, name), leader(&record));
+    let line = format!(
+        "untryable {number} {name}: {answer:?}, {:?}, {leader}",
+        record.verdict
     );
-    Ok((said, shown))
+    Ok((answer, line))
 }
 
-fn said(record: &Discovery, truth: &str) -> Said {
+fn answer(record: &Discovery, truth: &str) -> Answer {
     let first = record.effects.first().map(|effect| effect.name.as_str());
     match record.verdict {
-        Verdict::Named | Verdict::NotInLibrary => Said::StandIn,
+        Verdict::Named | Verdict::NotInLibrary => Answer::StandIn,
         // The truth may be a member of the class.
-        Verdict::Class if class_of(record, truth) != leading_class(record) => Said::StandIn,
-        _ if first == Some(truth) => Said::TruthLeads,
-        _ => Said::Open,
+        Verdict::Class if class(record, truth) != leading_class(record) => Answer::StandIn,
+        _ if first == Some(truth) => Answer::TruthLeads,
+        _ => Answer::Open,
     }
-}
-
-fn class_of(record: &Discovery, name: &str) -> Option<u32> {
-    let own = record.effects.iter().find(|effect| effect.name == name);
-    own.map(|effect| effect.class)
 }
 
 fn leading_class(record: &Discovery) -> Option<u32> {
@@ -90,7 +81,7 @@ fn leading_class(record: &Discovery) -> Option<u32> {
     first.map(|effect| effect.class)
 }
 
-/// A truth with one effect that can be detected.
+/// Draws a truth with an effect that is detectable.
 fn draw(name: &str, seed: u64, number: u64) -> Result<SyntheticCase, StudyError> {
     let hidden = [(name.to_owned(), Extension::Effect(name.to_owned()))];
     for attempt in 0..MAX_DRAWN {

@@ -11,17 +11,15 @@ use shared::outcome::{Observables, Outcome};
 use statistics::rng::Stream;
 
 use super::design::{CHANNELS, Plan, PlannedRun, experiment};
-use super::error::StudyError;
+use super::noise::{RunValues, add_noise, noise_sds};
+use crate::error::StudyError;
 
-/// Random streams of this study, separate from those of samplers and searches.
+/// The first random stream of this study, which no sampler and no search uses.
 const STAGE: u64 = 1 << 41;
-/// Most draws of the prior in a row that the model rejects.
-const MAX_REFUSED: u64 = 1000;
+/// The largest number of consecutive draws of the prior that the model may reject.
+pub const MAX_REJECTED: u64 = 1000;
 /// Noise sd of a channel over the root mean square of its noise-free values in the fitted runs.
 pub const NOISE: f64 = 0.03;
-
-/// The values of a run, in the order of the channels.
-type Values = [f64; CHANNELS];
 
 /// A synthetic experiment and its truth.
 #[derive(Debug, Clone)]
@@ -32,9 +30,9 @@ pub struct SyntheticCase {
     pub truth_job: FileSet,
     pub theta: Vec<f64>,
     pub rows: Vec<PlannedRun>,
-    pub noise_free: Vec<Values>,
-    pub measured: Vec<Values>,
-    pub sds: Values,
+    pub noise_free: Vec<RunValues>,
+    pub measured: Vec<RunValues>,
+    pub sds: RunValues,
 }
 
 /// Parses a job and its experiment.
@@ -43,14 +41,14 @@ pub fn spec(job: &FileSet, experiment: &FileSet) -> Result<Spec, StudyError> {
 }
 
 /// The values of each run.
-pub fn values(seen: &Observables, runs: usize) -> Vec<Values> {
-    let of = |channel: Channel, run: usize| seen.channel(channel)[run];
+pub fn values(seen: &Observables, runs: usize) -> Vec<RunValues> {
+    let channels = [Channel::DrawbarPull, Channel::Torque, Channel::Sinkage];
     (0..runs)
-        .map(|run| [Channel::DrawbarPull, Channel::Torque, Channel::Sinkage].map(|c| of(c, run)))
+        .map(|run| channels.map(|channel| seen.channel(channel)[run]))
         .collect()
 }
 
-fn evaluated(variant: &ModelVariant, theta: &[f64]) -> Result<Option<Vec<Values>>, StudyError> {
+fn evaluated(variant: &ModelVariant, theta: &[f64]) -> Result<Option<Vec<RunValues>>, StudyError> {
     match Evaluate::new(variant)?.evaluate(theta) {
         Outcome::Evaluated(seen) => Ok(Some(values(&seen, variant.conditions.len()))),
         Outcome::Rejected(_) => Ok(None),
@@ -58,23 +56,24 @@ fn evaluated(variant: &ModelVariant, theta: &[f64]) -> Result<Option<Vec<Values>
     }
 }
 
-/// Placeholder values before the runs are made.
+/// The files of an experiment whose runs are not measured yet: every value is zero.
 pub fn blank(rows: &[PlannedRun]) -> FileSet {
     experiment(rows, &vec![[0.0; CHANNELS]; rows.len()], [1.0; CHANNELS])
 }
 
-/// Runs a known model; `None` where it rejects one of the runs.
-pub fn run(job: &FileSet, rows: &[PlannedRun], theta: &[f64]) -> Result<Option<Vec<Values>>, StudyError> {
+/// Simulates the runs with a parameter vector; `None` if the model rejects one of them.
+pub fn run(job: &FileSet, rows: &[PlannedRun], theta: &[f64]) -> Result<Option<Vec<RunValues>>, StudyError> {
     let spec = spec(job, &blank(rows))?;
     let theta = spec.model_theta(theta);
-    let Some(mut all) = evaluated(&spec.fit_variant, theta)? else {
-        return Ok(None);
-    };
-    if let Some(variant) = &spec.holdout_variant {
-        let Some(holdout) = evaluated(variant, theta)? else {
+    let mut all = Vec::new();
+    for variant in [Some(&spec.fit_variant), spec.holdout_variant.as_ref()]
+        .into_iter()
+        .flatten()
+    {
+        let Some(values) = evaluated(variant, theta)? else {
             return Ok(None);
         };
-        all.extend(holdout);
+        all.extend(values);
     }
     Ok(Some(all))
 }
@@ -83,7 +82,7 @@ impl SyntheticCase {
     /// Draws a truth from the priors of the base and the hidden effects, and measures it.
     ///
     /// # Arguments
-    /// - `hidden`: the name of each effect with its addition to the job. `attempt`: another truth of the same number.
+    /// - `hidden`: the name of each effect with its addition to the job. `attempt`: distinguishes truths of the same number.
     pub fn draw(
         plan: Plan,
         hidden: &[(String, Extension)],
@@ -95,32 +94,20 @@ impl SyntheticCase {
         let truth_job = extended("job.toml", &plan.job(), &extensions)?;
         let rows = plan.rows();
         let prior = spec(&truth_job, &blank(&rows))?.prior();
-        for refused in 0..MAX_REFUSED {
+        for rejected in 0..MAX_REJECTED {
             let stage = STAGE + 2 * attempt;
-            let theta = prior.sample(&mut Stream::new(seed, stage, number, refused));
+            let theta = prior.sample(&mut Stream::new(seed, stage, number, rejected));
             let Some(noise_free) = run(&truth_job, &rows, &theta)? else {
                 continue;
             };
-            let mut sds = [0.0; CHANNELS];
-            for (channel, sd) in sds.iter_mut().enumerate() {
-                let fitted = rows.iter().zip(&noise_free).filter(|(row, _)| !row.is_holdout);
-                let squares: Vec<f64> = fitted.map(|(_, v)| v[channel] * v[channel]).collect();
-                *sd = NOISE * (squares.iter().sum::<f64>() / squares.len() as f64).sqrt();
-            }
-            let mut noise = Stream::new(seed, stage + 1, number, 0)
-                .normals(CHANNELS * rows.len())
-                .into_iter();
-            let mut noisy = |v: &Values| {
-                let mut measured = *v;
-                for (x, sd) in measured.iter_mut().zip(sds) {
-                    *x += sd * noise.next().unwrap_or(0.0);
-                }
-                measured
-            };
+            let fitted = rows.iter().zip(&noise_free).filter(|(row, _)| !row.is_holdout);
+            let sds = noise_sds(NOISE, fitted.map(|(_, values)| values));
+            let mut measured = noise_free.clone();
+            add_noise(&mut measured, sds, &mut Stream::new(seed, stage + 1, number, 0));
             return Ok(Self {
                 plan,
                 hidden: hidden.iter().map(|(name, _)| name.clone()).collect(),
-                measured: noise_free.iter().map(&mut noisy).collect(),
+                measured,
                 truth_job,
                 theta,
                 rows,
@@ -128,10 +115,10 @@ impl SyntheticCase {
                 sds,
             });
         }
-        Err(format!("the model rejected {MAX_REFUSED} draws of the prior in a row").into())
+        Err(format!("the model rejected {MAX_REJECTED} draws of the prior in a row").into())
     }
 
-    /// The files of a campaign on the same soil before its effects acted; `None` where the model rejects that.
+    /// The files of a campaign on the same soil without the hidden effects; `None` if the model rejects it.
     ///
     /// # Arguments
     /// - `noise`: the random stream of its noise.
@@ -141,7 +128,7 @@ impl SyntheticCase {
             Ok::<_, StudyError>(all.into_iter().map(|p| p.name).collect::<Vec<_>>())
         };
         let with = names(&self.truth_job)?;
-        let place = |name: &String| with.iter().position(|own| own == name);
+        let place = |name: &String| with.iter().position(|parameter| parameter == name);
         let base = names(&self.plan.job())?;
         let theta: Vec<f64> = base
             .iter()
@@ -150,19 +137,16 @@ impl SyntheticCase {
         let Some(mut values) = run(&self.plan.job(), &self.rows, &theta)? else {
             return Ok(None);
         };
-        let mut normals = noise.normals(CHANNELS * values.len()).into_iter();
-        for (x, sd) in values.iter_mut().flat_map(|run| run.iter_mut().zip(self.sds)) {
-            *x += sd * normals.next().unwrap_or(0.0);
-        }
+        add_noise(&mut values, self.sds, &mut noise);
         Ok(Some(experiment(&self.rows, &values, self.sds)))
     }
 
-    /// The files that the search gets.
+    /// The files of the measured experiment.
     pub fn experiment(&self) -> FileSet {
         experiment(&self.rows, &self.measured, self.sds)
     }
 
-    /// The same without noise.
+    /// The files of the experiment without noise.
     pub fn noise_free(&self) -> FileSet {
         experiment(&self.rows, &self.noise_free, self.sds)
     }

@@ -4,13 +4,13 @@ use shared::file::FileSet;
 
 /// Measured channels: drawbar pull, torque, sinkage.
 pub const CHANNELS: usize = 3;
-/// Truths of the quasi-static model are drawn from these priors.
+/// The priors of the quasi-static model, from which truths are drawn.
 const PRIORS: &str = "log10_p_ref = { uniform = [4.0, 5.6] }\nkappa = { normal = [0.0, 0.3], bounds = [-0.8, 2.0] }\nn = { normal = [1.1, 0.2], bounds = [0.8, 2.0] }\nfriction_angle_deg = { normal = [30.0, 5.7], bounds = [11.5, 37.3] }\n";
-/// Priors of the three-dimensional model: soils that carry the wheel, and no kappa, which one wheel does not determine.
+/// The priors of the three-dimensional model. The soils carry the wheel, and kappa is fixed because one wheel does not determine it.
 const SPATIAL_PRIORS: &str = "log10_p_ref = { uniform = [4.6, 5.4] }\nkappa = 0.0\nn = { normal = [1.1, 0.1], bounds = [0.8, 2.0] }\nfriction_angle_deg = { normal = [30.0, 4.0], bounds = [15.0, 37.3] }\n";
-/// The three-dimensional model as a user gets it, without kappa.
+/// The three-dimensional model with its default settings.
 const ROLLING: &str = "kind = \"scm\"\n";
-/// Short and coarse rolling: the trials test the search, not the physics.
+/// Short rolling on a coarse grid, because the trials test the search and not the physics.
 const SPATIAL: &str = "kind = \"scm\"\ndem_spacing_m = 0.012\ntravel_step_m = 0.003\nsteady_travel_m = 0.3\nsteady_tolerance = 0.01\n";
 
 /// A design of runs.
@@ -18,11 +18,11 @@ const SPATIAL: &str = "kind = \"scm\"\ndem_spacing_m = 0.012\ntravel_step_m = 0.
 pub enum Plan {
     /// Six slips, two loads, two speeds of the rim.
     Full,
-    /// The same; every second run is a second pass.
+    /// As `Full`, with a second pass in every second run.
     Passes,
-    /// The same; every second run is that of a smaller wheel.
+    /// As `Full`, with a smaller wheel in every second run.
     Wheels,
-    /// Six slips at one load and one speed: many effects are ambiguous.
+    /// Six slips at one load and one speed, which leave many effects ambiguous.
     Narrow,
     /// Four slips, two loads, two speeds of a wheel that rolls in three dimensions on a coarse grid.
     Spatial,
@@ -39,14 +39,14 @@ pub struct PlannedRun {
     pub sled_speed_m_s: f64,
     pub pass: u32,
     pub is_holdout: bool,
-    /// Its place in time, and its soil preparation, where the experiment states them.
+    /// The place in time and the soil preparation, if the experiment states them.
     pub order: Option<usize>,
     pub prepared: Option<usize>,
 }
 
 impl Plan {
-    /// The design in which an effect of the catalogue can be distinguished from the soil's stiffness.
-    pub fn of(effect: &str) -> Self {
+    /// The design in which the data can distinguish an effect of the catalogue from the soil's stiffness.
+    pub fn for_effect(effect: &str) -> Self {
         match effect {
             "multipass_hardening" => Plan::Passes,
             "small_diameter" | "edge_loss" | "reece_pressure" => Plan::Wheels,
@@ -54,7 +54,7 @@ impl Plan {
         }
     }
 
-    /// The fitted runs, then the holdout runs, between and slightly beyond them.
+    /// The fitted runs, and then the held-out runs, which lie between them and slightly beyond.
     pub fn rows(self) -> Vec<PlannedRun> {
         let [slips, loads, rims]: [&[f64]; 3] = match self {
             Plan::Full | Plan::Passes | Plan::Wheels => {
@@ -107,7 +107,7 @@ impl Plan {
             _ => ("kind = \"quasi_static\"\n", PRIORS),
         };
         let radii = match self {
-            // With grousers the radius is that of the rim.
+            // The radius of a wheel with grousers is that of its rim.
             Plan::Spatial | Plan::Rolling => "wheel_radius_m = { uniform = [0.124, 0.130] }\n",
             Plan::Wheels => {
                 "\"wheel_radius_m.wide\" = { uniform = [0.125, 0.155] }\n\"wheel_radius_m.small\" = { uniform = [0.075, 0.09] }\n"
@@ -144,10 +144,8 @@ pub fn experiment(rows: &[PlannedRun], values: &[[f64; CHANNELS]], sds: [f64; CH
         ("order", rows.iter().map(|row| row.order).collect::<Vec<_>>()),
         ("prepared", rows.iter().map(|row| row.prepared).collect()),
     ];
-    let stated = columns
-        .into_iter()
-        .filter(|(_, values)| values.iter().any(Option::is_some));
-    let stated: Vec<_> = stated.collect();
+    let mut stated = columns.to_vec();
+    stated.retain(|(_, values)| values.iter().any(Option::is_some));
     runs.extend(stated.iter().map(|(name, _)| format!(",{name}")));
     for (number, (row, [pull, torque, sinkage])) in rows.iter().zip(values).enumerate() {
         let PlannedRun {
@@ -163,11 +161,9 @@ pub fn experiment(rows: &[PlannedRun], values: &[[f64; CHANNELS]], sds: [f64; CH
         runs += &format!(
             "\nr{number},{wheel},s,{slip:?},{wheel_load_n:?},{sled_speed_m_s:?},{pass},{pull:?},{torque:?},{sinkage:?},{usage}"
         );
-        runs.extend(
-            stated
-                .iter()
-                .map(|(_, values)| values[number].map_or(",".to_owned(), |value| format!(",{value}"))),
-        );
+        for (_, values) in &stated {
+            runs += &values[number].map_or(",".to_owned(), |value| format!(",{value}"));
+        }
     }
     runs += "\n";
     FileSet {

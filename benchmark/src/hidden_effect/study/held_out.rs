@@ -7,21 +7,23 @@ use shared::model::RunCondition;
 
 use super::case::{SyntheticCase, spec, values};
 use super::design::CHANNELS;
-use super::error::StudyError;
 use super::local_search::LocalSearch;
+use super::noise::RunValues;
 use super::rate::Rate;
+use crate::error::StudyError;
 
-/// Two-sided 90 % of a normal distribution.
+/// Half of the two-sided 90 % interval of a standard normal distribution.
 const Z90: f64 = 1.644_853_626_951_473;
 
 /// Errors on holdout runs.
 #[derive(Debug, Clone, Copy)]
 pub struct HeldOut {
-    /// Root mean square error of the most probable prediction against the noise-free truth, in noise sds: of the base, and of the
-    /// best model; infinite where the model rejects a run.
+    /// Root mean square error of the most probable prediction of the base against the noise-free truth, in noise sds. It is infinite if
+    /// the model rejects a run.
     pub before: f64,
+    /// The same error of the best model.
     pub after: f64,
-    /// Measurements within the 90 % interval of the best model.
+    /// The share of the measurements within the 90 % interval of the best model.
     pub covered: Rate,
 }
 
@@ -35,7 +37,7 @@ impl HeldOut {
             return Ok(Self {
                 before: 0.0,
                 after: 0.0,
-                covered: Rate { count: 0, of: 0 },
+                covered: Rate::default(),
             });
         };
         let conditions = &variant.conditions;
@@ -47,8 +49,9 @@ impl HeldOut {
         let after = predicted(local, &conclusion.best, conditions)?;
         let held_out = case.rows.iter().zip(case.noise_free.iter().zip(&case.measured));
         let held_out = held_out.filter(|(row, _)| row.is_holdout);
-        let (truth, measured): (RunValues, RunValues) = held_out.map(|(_, (t, m))| (*t, *m)).unzip();
-        let error = |draws: &[Option<RunValues>]| -> f64 {
+        let (truth, measured): (Vec<RunValues>, Vec<RunValues>) =
+            held_out.map(|(_, (t, m))| (*t, *m)).unzip();
+        let error = |draws: &[Option<Vec<RunValues>>]| -> f64 {
             let Some(Some(mode)) = draws.first() else {
                 return f64::INFINITY;
             };
@@ -61,7 +64,7 @@ impl HeldOut {
             (squares / (CHANNELS * truth.len()) as f64).sqrt()
         };
         let mut covered = Vec::new();
-        let drawn: Vec<&RunValues> = after.iter().flatten().collect();
+        let drawn: Vec<&Vec<RunValues>> = after.iter().flatten().collect();
         for (run, measured) in measured.iter().enumerate() {
             for (k, sd) in case.sds.iter().enumerate() {
                 let mean = drawn.iter().map(|p| p[run][k]).sum::<f64>() / drawn.len() as f64;
@@ -78,16 +81,14 @@ impl HeldOut {
     }
 }
 
-/// The channels of every run.
-type RunValues = Vec<[f64; CHANNELS]>;
-
 fn predicted(
     local: &mut LocalSearch,
     fitted: &PosteriorModel,
     conditions: &[RunCondition],
-) -> Result<Vec<Option<RunValues>>, StudyError> {
-    let seen = local.predict(&fitted.effects, conditions, &fitted.draws)?;
-    let seen = seen.into_iter();
+) -> Result<Vec<Option<Vec<RunValues>>>, StudyError> {
+    let seen = local
+        .predict(&fitted.effects, conditions, &fitted.draws)?
+        .into_iter();
     Ok(seen
         .map(|seen| seen.map(|s| values(&s, conditions.len())))
         .collect())

@@ -1,6 +1,6 @@
 //! The kinds of trials, by what is hidden.
 
-/// What is hidden in a trial.
+/// The kind of a trial.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum HiddenKind {
     One,
@@ -8,7 +8,7 @@ pub enum HiddenKind {
     Outside,
     Two,
     Three,
-    /// One detectable effect of the three-dimensional model: an evaluation is too expensive for undetectable ones.
+    /// One effect of the three-dimensional model, which must be detectable because an evaluation is expensive.
     Spatial,
 }
 

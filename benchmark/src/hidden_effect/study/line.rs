@@ -1,6 +1,6 @@
 //! A trial in one line: the truth, the conclusion, the cost.
 
-use discovery::{Conclusion, SearchTask};
+use discovery::{Conclusion, RankedEffect, SearchTask};
 
 use super::case::SyntheticCase;
 use super::score::TrialScore;
@@ -17,35 +17,26 @@ pub fn line(
     let name = |k: Option<usize>| k.map_or("none", |k| candidates[k].name.as_str());
     let mut judged: Vec<_> = conclusion.ranking.effects.iter().collect();
     judged.sort_by(|a, b| b.probability.total_cmp(&a.probability));
-    let best: Vec<String> = judged
-        .iter()
-        .take(3)
-        .map(|j| {
-            let (name, factor) = (name(j.candidate), j.log_bayes_factor);
-            format!("{name} {factor:.1} P {:.3} c{}", j.probability, j.class)
-        })
-        .collect();
-    let truth = judged
-        .iter()
-        .find(|j| j.candidate.is_some() && case.hidden == [name(j.candidate)]);
-    let own = truth.map_or(String::new(), |j| {
+    let figures = |name: &str, j: &RankedEffect| {
         format!(
-            " (truth {:.1} P {:.3} c{})",
+            "{name} {:.1} P {:.3} c{}",
             j.log_bayes_factor, j.probability, j.class
         )
-    });
+    };
+    let best = judged.iter().take(3).map(|j| figures(name(j.candidate), j));
+    let best: Vec<String> = best.collect();
+    let mut judged = judged.iter();
+    let truth = judged.find(|j| j.candidate.is_some() && case.hidden == [name(j.candidate)]);
+    let truth = truth.map_or(String::new(), |j| format!(" ({})", figures("truth", j)));
     let set: Vec<&str> = conclusion.combination.iter().map(|k| name(Some(*k))).collect();
     let outside = conclusion.outside.as_ref().map_or(String::new(), |o| {
         let [base, library] = o.left_out_nats;
-        format!(
-            " law {} {:.1} left out {base:.1} {library:.1}",
-            name(Some(o.candidate)),
-            o.log_bayes_factor
-        )
+        let (law, factor) = (name(Some(o.candidate)), o.log_bayes_factor);
+        format!(" law {law} {factor:.1} left out {base:.1} {library:.1}")
     });
     let theta: Vec<String> = case.theta.iter().map(|x| format!("{x:.3e}")).collect();
     format!(
-        "{} {number} {} [{}] separation {:.1} over base {:.1} | {:?}{} | {}{own} | set {}{outside} | outside P {:.3} | chi2 p {:.1e}, best {:.1e} | held out {} | evaluations {} {} {}, {:.1} s",
+        "{} {number} {} [{}] separation {:.1} over base {:.1} | {:?}{} | {}{truth} | set {}{outside} | outside P {:.3} | chi2 p {:.1e}, best {:.1e} | held out {} | evaluations {} {} {}, {:.1} s",
         score.kind.name(),
         case.hidden.join("+"),
         theta.join(" "),

@@ -1,4 +1,4 @@
-//! The search of the farm on this thread.
+//! The search of the farm on the thread of the caller.
 
 use std::collections::BTreeMap;
 
@@ -12,9 +12,9 @@ use shared::model::RunCondition;
 use shared::outcome::{Observables, Outcome};
 use statistics::Likelihood;
 
-use super::error::StudyError;
+use crate::error::StudyError;
 
-/// The models of a job and an experiment.
+/// A search of a job and an experiment.
 pub struct LocalSearch {
     pub models: SearchModels,
     evaluates: BTreeMap<String, Evaluate>,
@@ -22,7 +22,7 @@ pub struct LocalSearch {
 
 impl LocalSearch {
     /// # Arguments
-    /// - `max_effects`: most effects in a combination.
+    /// - `max_effects`: the largest number of effects in a combination.
     pub fn new(job: &FileSet, experiment: &FileSet, max_effects: usize) -> Result<Self, StudyError> {
         Ok(Self {
             models: SearchModels::new(job, experiment, max_effects)?,
@@ -30,8 +30,8 @@ impl LocalSearch {
         })
     }
 
-    /// The predicted values; `None` where the model rejects the parameters.
-    fn ask(&mut self, query: &Query) -> Result<Option<Vec<f64>>, StudyError> {
+    /// Predicts the values of a query; `None` if the model rejects the parameters.
+    fn evaluate(&mut self, query: &Query) -> Result<Option<Vec<f64>>, StudyError> {
         let (hash, variant) = self.models.variant(query)?.clone();
         let theta = self.models.model_theta(query, &variant);
         if !self.evaluates.contains_key(&hash) {
@@ -43,7 +43,7 @@ impl LocalSearch {
         })
     }
 
-    /// The predictions of a model with effects under other conditions; `None` where it rejects the parameters.
+    /// Predicts with effects under other conditions; `None` for parameters that the model rejects.
     pub fn predict(
         &mut self,
         effects: &[usize],
@@ -59,9 +59,8 @@ impl LocalSearch {
         let Some(first) = thetas.first() else {
             return Ok(Vec::new());
         };
-        let own = self.models.variant(&query(first))?;
-        let mut variant = own.1.clone();
-        // The soil's density is there only if an effect of this variant needs it; the first run of its series has its order.
+        let mut variant = self.models.variant(&query(first))?.1.clone();
+        // Conditions have a density only if an effect of the variant needs it. The predicted runs take the order of the first run.
         let first = variant.conditions.first();
         let (density_kg_m3, order) = (first.and_then(|c| c.density_kg_m3), first.and_then(|c| c.order));
         variant.conditions = conditions.to_vec();
@@ -79,7 +78,7 @@ impl LocalSearch {
         Ok(predicted.collect())
     }
 
-    /// Searches what the model is missing.
+    /// Searches for the effects that the model is missing.
     pub fn run(&mut self) -> Result<Conclusion, StudyError> {
         let mut search = DiscoverySearch::new(self.models.task())?;
         loop {
@@ -91,18 +90,18 @@ impl LocalSearch {
             }
             for index in 0..search.pending().len() {
                 let query = search.query(index).cloned().ok_or("no query is pending")?;
-                let values = self.ask(&query)?;
+                let values = self.evaluate(&query)?;
                 search.tell(index, values.as_deref())?;
             }
         }
     }
 
-    /// Searches one effect with other data of the same runs.
+    /// Ranks the effects of the library for other data of the same runs.
     pub fn library(&mut self, likelihood: Likelihood) -> Result<EffectRanking, StudyError> {
         let task = self.models.task();
         let search = EffectSearch::new(&task.prior, likelihood, &task.library, &task.settings)?;
         run(search, |request| {
-            self.ask(&Query {
+            self.evaluate(&Query {
                 model: QueriedModel::With(request.candidate.into_iter().collect()),
                 is_proposed: false,
                 is_low_fidelity: request.is_low_fidelity,
@@ -115,10 +114,10 @@ impl LocalSearch {
 /// Runs a search to its end.
 ///
 /// # Arguments
-/// - `ask`: the values of the base, or of the base with a candidate, at a parameter vector.
+/// - `evaluate`: predicts the base, or the base with a candidate, at a parameter vector.
 pub fn run(
     mut search: EffectSearch,
-    mut ask: impl FnMut(&EffectRequest) -> Result<Option<Vec<f64>>, StudyError>,
+    mut evaluate: impl FnMut(&EffectRequest) -> Result<Option<Vec<f64>>, StudyError>,
 ) -> Result<EffectRanking, StudyError> {
     loop {
         if let Some(ranking) = search.ranking() {
@@ -129,7 +128,7 @@ pub fn run(
             return Err("the search neither ends nor has pending requests".into());
         }
         for (index, request) in pending.iter().enumerate() {
-            let values = ask(request)?;
+            let values = evaluate(request)?;
             search.tell(index, values.as_deref())?;
         }
     }

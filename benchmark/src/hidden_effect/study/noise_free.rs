@@ -9,13 +9,13 @@ use shared::outcome::Outcome;
 use statistics::{Likelihood, LogLikelihood};
 
 use super::case::{SyntheticCase, spec};
-use super::error::StudyError;
 use super::local_search::{LocalSearch, run};
+use crate::error::StudyError;
 
-/// Nats by which the truth must beat a rival for a trial to count.
+/// Nats by which the truth must exceed every rival in a trial that counts.
 pub const MIN_SEPARATION: f64 = 10.0;
 
-/// The log-likelihood of the truth without noise, the maximum.
+/// The log-likelihood of the truth for noise-free data, which is the maximum.
 fn perfect(likelihood: &Likelihood) -> Result<f64, StudyError> {
     let values: Vec<f64> = likelihood.data().iter().map(|d| d.value).collect();
     match likelihood.log_likelihood(&values, &[]) {
@@ -24,18 +24,20 @@ fn perfect(likelihood: &Likelihood) -> Result<f64, StudyError> {
     }
 }
 
-/// Nats by which the base with some of the effects falls short of the truth without noise, fitted from the truth.
+/// Nats by which the base with some of the effects falls short of the truth for noise-free data; the fit starts at the truth.
 pub fn shortfall(case: &SyntheticCase, effects: &[&Extension]) -> Result<f64, StudyError> {
     let job = extended("job.toml", &case.plan.job(), effects)?;
     let truth = spec(&case.truth_job, &case.noise_free())?.parameters;
-    let own = spec(&job, &case.noise_free())?.parameters;
+    let parameters = spec(&job, &case.noise_free())?.parameters;
     let place = |name: &String| truth.iter().position(|p| p.name == *name);
-    let start = own.iter().filter_map(|p| Some(case.theta[place(&p.name)?]));
-    shortfall_of(&job, &case.noise_free(), start.collect())
+    let start = parameters
+        .iter()
+        .filter_map(|p| Some(case.theta[place(&p.name)?]));
+    job_shortfall(&job, &case.noise_free(), start.collect())
 }
 
-/// Nats by which a job falls short of noise-free measurements, fitted from these parameters.
-pub fn shortfall_of(job: &FileSet, noise_free: &FileSet, start: Vec<f64>) -> Result<f64, StudyError> {
+/// Nats by which a job falls short of the truth for noise-free data; the fit starts at these parameters.
+pub fn job_shortfall(job: &FileSet, noise_free: &FileSet, start: Vec<f64>) -> Result<f64, StudyError> {
     let spec = spec(job, noise_free)?;
     let settings = SearchSettings {
         starts: Starts::Draws(vec![start]),
@@ -53,7 +55,7 @@ pub fn shortfall_of(job: &FileSet, noise_free: &FileSet, start: Vec<f64>) -> Res
     Ok(perfect(&spec.likelihood)? - ranking.effects[0].log_likelihood)
 }
 
-/// The library searched without noise.
+/// The ranking of the library for noise-free data.
 pub struct NoiseFree {
     ranking: EffectRanking,
     perfect: f64,
@@ -68,15 +70,15 @@ impl NoiseFree {
         })
     }
 
-    /// Nats by which the base falls short.
+    /// Nats by which the base falls short of the truth.
     pub fn over_base(&self) -> f64 {
         self.perfect - self.ranking.effects[0].log_likelihood
     }
 
-    /// Nats by which the best rival outside the class of an effect falls short; of `None`, the best of all.
+    /// Nats by which the best rival outside the class of an effect falls short of the truth; with `None`, the best effect of all.
     pub fn separation(&self, effect: Option<usize>) -> f64 {
-        let own = effect.and_then(|k| self.ranking.effect(Some(k))).map(|j| j.class);
-        let rivals = self.ranking.effects.iter().filter(|j| Some(j.class) != own);
+        let class = effect.and_then(|k| self.ranking.effect(Some(k))).map(|j| j.class);
+        let rivals = self.ranking.effects.iter().filter(|j| Some(j.class) != class);
         self.perfect - rivals.map(|j| j.log_likelihood).fold(f64::NEG_INFINITY, f64::max)
     }
 }

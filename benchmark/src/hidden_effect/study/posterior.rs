@@ -1,13 +1,11 @@
-//! A calibration on this thread, by the sampler or by a fit with the normal density about it.
+//! Draws of the posterior of a job, by the sampler or by a fit with its normal approximation.
 
-use std::sync::Arc;
-
-use coordinator::embedded::Evaluate;
-use farm::calibration::{Calibration, CalibrationIdentity, CalibrationResult, SimulationResult};
+use farm::calibration::CalibrationResult;
 use shared::file::FileSet;
 
 use super::case::spec;
-use super::error::StudyError;
+use crate::calibration::calibrate;
+use crate::error::StudyError;
 
 /// A sample of the posterior.
 #[derive(Debug, Clone)]
@@ -35,7 +33,7 @@ impl PosteriorSample {
         })
     }
 
-    /// As `posterior.csv` has the draws.
+    /// The draws in the form of `posterior.csv`.
     pub fn csv(&self) -> String {
         let mut text = self.parameters.join(",");
         for draw in &self.draws {
@@ -50,7 +48,7 @@ impl PosteriorSample {
 /// Calibrates a job.
 ///
 /// # Arguments
-/// - `sampler`: the table `[sampler]` but its seed.
+/// - `sampler`: the table `[sampler]` without its seed.
 pub fn sample(
     job: &FileSet,
     experiment: &FileSet,
@@ -63,43 +61,19 @@ pub fn sample(
     };
     let spec = spec(&job, experiment)?;
     let parameters = spec.parameters.iter().map(|p| p.name.clone()).collect();
-    let model = Evaluate::new(&spec.fit_variant)?;
-    let identity = CalibrationIdentity {
-        id: 0,
-        name: "hidden effect".into(),
-        study: 0,
-        experiment: 0,
+    let calibration = calibrate(spec)?;
+    let (log_evidence, particles) = match calibration.engine().finding() {
+        Some(CalibrationResult::Posterior(posterior)) => (posterior.log_evidence, &posterior.particles),
+        Some(CalibrationResult::Estimate(estimate)) => {
+            let normal = estimate.approximation.as_ref().ok_or("the fit gives no draws")?;
+            (normal.log_evidence, &normal.draws)
+        }
+        Some(CalibrationResult::Discovery(_)) | None => return Err("the calibration has no posterior".into()),
     };
-    let mut calibration = Calibration::new(identity, Arc::new(spec))?;
-    loop {
-        let found = match calibration.engine().finding() {
-            Some(CalibrationResult::Posterior(posterior)) => {
-                Some((posterior.log_evidence, &posterior.particles))
-            }
-            Some(CalibrationResult::Estimate(estimate)) => {
-                let normal = estimate.approximation.as_ref();
-                let normal = normal.ok_or("the fit gives no draws")?;
-                Some((normal.log_evidence, &normal.draws))
-            }
-            Some(CalibrationResult::Discovery(_)) | None => None,
-        };
-        if let Some((log_evidence, particles)) = found {
-            return Ok(PosteriorSample {
-                log_evidence,
-                parameters,
-                draws: particles.iter().map(|p| p.theta.clone()).collect(),
-                log_likelihoods: particles.iter().map(|p| p.log_likelihood.value()).collect(),
-            });
-        }
-        if let Some(message) = &calibration.message {
-            return Err(message.clone().into());
-        }
-        for evaluation in calibration.queue.asked() {
-            let Some(question) = calibration.question(evaluation) else {
-                break;
-            };
-            let computed = SimulationResult::new(Some(model.evaluate(question.theta)), None)?;
-            calibration.complete(evaluation, computed, "hidden effect")?;
-        }
-    }
+    Ok(PosteriorSample {
+        log_evidence,
+        parameters,
+        draws: particles.iter().map(|p| p.theta.clone()).collect(),
+        log_likelihoods: particles.iter().map(|p| p.log_likelihood.value()).collect(),
+    })
 }

@@ -2,40 +2,39 @@
 
 use std::fmt;
 
-/// Two-sided 95 % of a normal distribution.
+/// Half of the two-sided 95 % interval of a standard normal distribution.
 const Z: f64 = 1.959_963_984_540_054;
 
 /// A number of cases among all.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Default, Clone, Copy, PartialEq, Eq)]
 pub struct Rate {
     pub count: usize,
-    pub of: usize,
+    pub total: usize,
 }
 
 impl Rate {
-    /// The cases that hold among all.
-    pub fn new(all: impl IntoIterator<Item = bool>) -> Self {
-        let (mut count, mut of) = (0, 0);
-        for holds in all {
-            count += usize::from(holds);
-            of += 1;
-        }
-        Self { count, of }
+    /// Counts the cases that hold.
+    pub fn new(cases: impl IntoIterator<Item = bool>) -> Self {
+        let each = cases.into_iter().map(|holds| Self {
+            count: usize::from(holds),
+            total: 1,
+        });
+        each.sum()
     }
 
     pub fn share(self) -> f64 {
-        self.count as f64 / self.of.max(1) as f64
+        self.count as f64 / self.total.max(1) as f64
     }
 
-    /// Wilson's 95 % interval; from 0 to 1 of nothing.
+    /// Wilson's 95 % interval; from 0 to 1 without a case.
     ///
     /// # Source
     /// Wilson 1927, "Probable inference, the law of succession, and statistical inference", J. Am. Stat. Assoc. 22.
     pub fn interval(self) -> [f64; 2] {
-        if self.of == 0 {
+        if self.total == 0 {
             return [0.0, 1.0];
         }
-        let (n, p) = (self.of as f64, self.share());
+        let (n, p) = (self.total as f64, self.share());
         let middle = p + Z * Z / (2.0 * n);
         let half = Z * (p * (1.0 - p) / n + Z * Z / (4.0 * n * n)).sqrt();
         let whole = 1.0 + Z * Z / n;
@@ -49,17 +48,25 @@ impl Rate {
 impl fmt::Display for Rate {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [low, high] = self.interval();
+        let Self { count, total } = self;
         write!(
             f,
-            "{} of {} ({:.3}, {low:.3} to {high:.3})",
-            self.count,
-            self.of,
+            "{count} of {total} ({:.3}, {low:.3} to {high:.3})",
             self.share()
         )
     }
 }
 
-/// Mean and standard error; 0 of nothing.
+impl std::iter::Sum for Rate {
+    fn sum<I: Iterator<Item = Self>>(rates: I) -> Self {
+        rates.fold(Self::default(), |sum, rate| Self {
+            count: sum.count + rate.count,
+            total: sum.total + rate.total,
+        })
+    }
+}
+
+/// Mean and standard error; 0 without a value.
 pub fn mean(values: &[f64]) -> [f64; 2] {
     let n = values.len().max(1) as f64;
     let mean = values.iter().sum::<f64>() / n;
@@ -67,7 +74,7 @@ pub fn mean(values: &[f64]) -> [f64; 2] {
     [mean, (squares / (n - 1.0).max(1.0) / n).sqrt()]
 }
 
-/// The middle one; 0 of nothing.
+/// The median; 0 without a value.
 pub fn median(values: &[f64]) -> f64 {
     let mut values = values.to_vec();
     values.sort_by(f64::total_cmp);

@@ -8,13 +8,13 @@ use search::{RunningDiscovery, SearchModels};
 use shared::file::FileSet;
 use shared::outcome::Outcome;
 
-use super::error::StudyError;
-use super::parallel::each_on;
+use crate::error::StudyError;
+use crate::parallel::each_on;
 
-/// Searches what is missing.
+/// Searches for the effects that the model is missing.
 ///
 /// # Arguments
-/// - `max_effects`: most effects in a combination. `threads`: that share the evaluations of a round.
+/// - `max_effects`: the largest number of effects in a combination. `threads`: the threads that share the evaluations of a round.
 pub fn record(
     job: &FileSet,
     experiment: &FileSet,
@@ -50,18 +50,39 @@ pub fn record(
     }
 }
 
-/// Whether the truth's class is claimed; `None` without a claim.
+/// Whether the class of the truth is claimed; `None` without a claim.
 ///
 /// # Arguments
 /// - `truth`: the hidden effect; `None`: nothing is hidden.
 pub fn is_right(record: &Discovery, truth: Option<&str>) -> Option<bool> {
-    let class = |name: &str| record.effects.iter().find(|e| e.name == name).map(|e| e.class);
     match record.verdict {
         Verdict::NothingDetectable | Verdict::Undecided => None,
         Verdict::NotInLibrary => Some(false),
         Verdict::Named | Verdict::Class => {
             let leading = record.effects.iter().find(|e| e.name != NONE);
-            Some(truth.is_some() && leading.map(|e| e.class) == truth.and_then(class))
+            Some(truth.is_some() && leading.map(|e| e.class) == truth.and_then(|name| class(record, name)))
         }
     }
+}
+
+/// The word for the correctness of a claim.
+pub fn word(is_right: Option<bool>) -> &'static str {
+    match is_right {
+        Some(true) => "right",
+        Some(false) => "WRONG",
+        None => "open",
+    }
+}
+
+/// The name and probability of the most probable explanation.
+pub fn leader(record: &Discovery) -> String {
+    let effect = record.effects.first();
+    let (name, probability) = effect.map_or(("", 0.0), |effect| (effect.name.as_str(), effect.probability));
+    format!("{name} P {probability:.3}")
+}
+
+/// The class of an effect.
+pub fn class(record: &Discovery, name: &str) -> Option<u32> {
+    let effect = record.effects.iter().find(|effect| effect.name == name);
+    effect.map(|effect| effect.class)
 }

@@ -12,7 +12,7 @@ use super::noise_free::MIN_SEPARATION;
 /// The class of an explanation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum TrialClass {
-    /// Effects of the library that the data cannot distinguish; 0: nothing is missing.
+    /// Effects of the library that the data cannot distinguish; class 0 means that nothing is missing.
     Library(usize),
     Outside,
 }
@@ -21,34 +21,39 @@ enum TrialClass {
 #[derive(Debug, Clone)]
 pub struct TrialScore {
     pub kind: HiddenKind,
-    /// Nats by which the best rival outside the truth's class falls short without noise, and the base; infinite of several effects,
-    /// which were drawn so.
+    /// Nats by which the best rival outside the class of the truth falls short for noise-free data. It is infinite for several effects,
+    /// each of which is drawn to be detectable.
     pub separation: f64,
+    /// Nats by which the base falls short for noise-free data.
     pub over_base: f64,
-    /// An effect, a class or a law is claimed.
+    /// Whether an effect, a class or a law is claimed.
     pub is_claimed: bool,
     pub verdict: SearchVerdict,
-    /// The most probable class is the truth's; one of the two most probable is.
+    /// Whether the most probable class is that of the truth.
     pub is_right: bool,
+    /// Whether one of the two most probable classes is that of the truth.
     pub is_in_two: bool,
-    /// Whether the truth is alone in its class, and the most probable effect.
+    /// Whether the truth is alone in its class.
     pub is_alone: bool,
+    /// Whether the truth is the most probable effect.
     pub is_named: bool,
-    /// The claim is right.
     pub claim_is_right: bool,
     /// Probability of the most probable class.
     pub stated: f64,
-    /// The 95 % set contains the truth's class; its size.
+    /// Whether the 95 % set contains the class of the truth.
     pub is_covered: bool,
+    /// The number of classes in the 95 % set.
     pub set_size: usize,
-    /// Of a law: the quantity is right; the quantity and the variable are.
+    /// Whether the quantity of the claimed law is right.
     pub quantity: bool,
+    /// Whether the quantity and the variable of the claimed law are right.
     pub dependence: bool,
-    /// The best combination is the truth, up to classes.
+    /// Whether the best combination is the truth, up to classes.
     pub is_exact: bool,
     pub held_out: HeldOut,
-    /// Candidates, and evaluations.
+    /// The number of candidates.
     pub candidates: usize,
+    /// The number of evaluations before an effect is named, and before it is confirmed.
     pub to_name: usize,
     pub to_confirm: usize,
     pub evaluations: usize,
@@ -57,7 +62,7 @@ pub struct TrialScore {
     pub line: String,
 }
 
-/// The facts of a trial beside its conclusion.
+/// The facts of a trial besides its conclusion.
 pub struct TrialFacts {
     pub separation: f64,
     pub over_base: f64,
@@ -67,58 +72,38 @@ pub struct TrialFacts {
 
 /// The probability of each class, the most probable first.
 fn by_class(conclusion: &Conclusion) -> Vec<(TrialClass, f64)> {
-    let classes = conclusion
-        .ranking
-        .effects
-        .iter()
-        .map(|j| j.class)
-        .max()
-        .unwrap_or(0);
-    let own = |class: usize| {
-        conclusion
-            .ranking
-            .effects
-            .iter()
-            .filter(move |j| j.class == class)
+    let effects = &conclusion.ranking.effects;
+    let classes = effects.iter().map(|j| j.class).max().unwrap_or(0);
+    let probability = |class: usize| {
+        let members = effects.iter().filter(|j| j.class == class);
+        members.map(|j| j.probability).sum()
     };
-    let mut all: Vec<(TrialClass, f64)> = (0..=classes)
-        .map(|class| {
-            (
-                TrialClass::Library(class),
-                own(class).map(|j| j.probability).sum(),
-            )
-        })
-        .collect();
+    let all = (0..=classes).map(|class| (TrialClass::Library(class), probability(class)));
+    let mut all: Vec<(TrialClass, f64)> = all.collect();
     all.extend(conclusion.not_in_library.map(|(_, p)| (TrialClass::Outside, p)));
     all.sort_by(|a, b| b.1.total_cmp(&a.1));
     all
 }
 
 fn class_of(conclusion: &Conclusion, candidate: Option<usize>) -> Option<TrialClass> {
-    let judged = conclusion
-        .ranking
-        .effects
-        .iter()
-        .find(|j| j.candidate == candidate)?;
+    let judged = conclusion.ranking.effect(candidate)?;
     Some(TrialClass::Library(judged.class))
 }
 
-/// Whether two combinations have as many effects of each class.
-fn is_same(conclusion: &Conclusion, mut a: Vec<Option<usize>>, mut b: Vec<Option<usize>>) -> bool {
-    let classes = |set: &mut Vec<Option<usize>>| {
-        let own = set.iter().map(|k| match class_of(conclusion, *k) {
-            Some(TrialClass::Library(class)) if k.is_some() => Some(class),
-            _ => None,
-        });
-        let mut own: Vec<Option<usize>> = own.collect();
-        own.sort_unstable();
-        own
+/// Whether two combinations have equally many effects of each class.
+fn is_same(conclusion: &Conclusion, a: &[Option<usize>], b: &[Option<usize>]) -> bool {
+    let classes = |set: &[Option<usize>]| -> Option<Vec<usize>> {
+        let class = |k: &Option<usize>| Some(conclusion.ranking.effect(Some((*k)?))?.class);
+        let mut classes: Vec<usize> = set.iter().map(class).collect::<Option<_>>()?;
+        classes.sort_unstable();
+        Some(classes)
     };
-    let (a, b) = (classes(&mut a), classes(&mut b));
-    a == b && !a.contains(&None)
+    classes(a).is_some_and(|a| Some(a) == classes(b))
 }
 
 impl TrialScore {
+    /// Scores a conclusion against the truth.
+    ///
     /// # Arguments
     /// - `law`: quantity and variable of a hidden law.
     pub fn new(
@@ -140,18 +125,15 @@ impl TrialScore {
         let ranked = by_class(conclusion);
         let is_truth = |class: TrialClass| Some(class) == truth;
         let (best, stated) = ranked[0];
-        let mut held = 0.0;
+        let mut cumulative = 0.0;
         let credible = ranked.iter().take_while(|(_, p)| {
-            let is_in = held < 0.95;
-            held += p;
+            let is_in = cumulative < 0.95;
+            cumulative += p;
             is_in
         });
         let credible: Vec<TrialClass> = credible.map(|(class, _)| *class).collect();
-        let effects = conclusion
-            .ranking
-            .effects
-            .iter()
-            .filter(|j| j.candidate.is_some());
+        let all = conclusion.ranking.effects.iter();
+        let effects = all.clone().filter(|j| j.candidate.is_some());
         let first = effects.reduce(|a, b| if b.probability > a.probability { b } else { a });
         let claimed = match conclusion.verdict {
             SearchVerdict::Named(k) => class_of(conclusion, Some(k)),
@@ -159,19 +141,10 @@ impl TrialScore {
             SearchVerdict::NotInLibrary => Some(TrialClass::Outside),
             SearchVerdict::NothingDetectable | SearchVerdict::Undecided => None,
         };
-        let found = conclusion
-            .outside
-            .as_ref()
-            .map(|o| task.laws[o.law].curve.name.as_str());
-        let quantity = |law: &str| match law.split('_').next() {
-            Some("drawbar") => "drawbar".to_owned(),
-            first => first.unwrap_or_default().to_owned(),
-        };
-        let members = conclusion
-            .ranking
-            .effects
-            .iter()
-            .filter(|j| is_truth(TrialClass::Library(j.class)));
+        let found = conclusion.outside.as_ref();
+        let found = found.map(|o| task.laws[o.law].curve.name.as_str());
+        let quantity = |law: &str| law.split('_').next().unwrap_or_default().to_owned();
+        let combination: Vec<_> = conclusion.combination.iter().map(|k| Some(*k)).collect();
         Self {
             kind,
             separation: facts.separation,
@@ -180,7 +153,7 @@ impl TrialScore {
             verdict: conclusion.verdict,
             is_right: is_truth(best),
             is_in_two: ranked.iter().take(2).any(|(class, _)| is_truth(*class)),
-            is_alone: members.count() == 1,
+            is_alone: all.filter(|j| is_truth(TrialClass::Library(j.class))).count() == 1,
             is_named: first.is_some_and(|j| hidden == [j.candidate]),
             claim_is_right: claimed.is_some() && claimed == truth,
             stated,
@@ -188,11 +161,7 @@ impl TrialScore {
             set_size: credible.len(),
             quantity: found.zip(law).is_some_and(|(a, b)| quantity(a) == quantity(b)),
             dependence: found.is_some() && found == law,
-            is_exact: is_same(
-                conclusion,
-                hidden.clone(),
-                conclusion.combination.iter().map(|k| Some(*k)).collect(),
-            ),
+            is_exact: is_same(conclusion, &hidden, &combination),
             held_out: facts.held_out,
             candidates: task.library.len(),
             to_name: conclusion.ranking.evaluations.to_name(),
@@ -208,7 +177,7 @@ impl TrialScore {
         self.verdict == SearchVerdict::NotInLibrary
     }
 
-    /// Whether the result is as good as it can be: an effect that is not distinguishable from a rival may be confused with it.
+    /// Whether the result is as good as possible. An effect may be confused with a rival that the data cannot distinguish from it.
     pub fn is_good(&self) -> bool {
         match self.kind {
             HiddenKind::None => !self.is_claimed,

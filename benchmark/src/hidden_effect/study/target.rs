@@ -9,51 +9,51 @@ use super::rate::{Rate, mean, median};
 pub struct Target {
     pub what: &'static str,
     pub measured: f64,
-    /// Its 95 % interval, or its spread.
+    /// The 95 % interval or the spread of the measured value.
     shown: String,
     floor: f64,
     aim: f64,
-    /// Whether less is better.
-    is_least: bool,
+    /// Whether smaller values are better.
+    is_bounded_above: bool,
 }
 
 impl Target {
-    /// A share with Wilson's interval; `None` of nothing.
+    /// A share with Wilson's interval; `None` without a case.
     pub fn rate(what: &'static str, rate: Rate, [floor, aim]: [f64; 2]) -> Option<Self> {
         let [low, high] = rate.interval();
-        (rate.of > 0).then(|| Self {
+        (rate.total > 0).then(|| Self {
             what,
             measured: rate.share(),
-            shown: format!("{} of {}, {low:.3} to {high:.3}", rate.count, rate.of),
+            shown: format!("{} of {}, {low:.3} to {high:.3}", rate.count, rate.total),
             floor,
             aim,
-            is_least: false,
+            is_bounded_above: false,
         })
     }
 
-    /// A target that is the better the smaller.
+    /// The same target, of which smaller values are better.
     pub fn least(self) -> Self {
         Self {
-            is_least: true,
+            is_bounded_above: true,
             ..self
         }
     }
 
-    /// A mean with its standard error; `None` of nothing. Less is better.
+    /// A mean with its standard error, of which smaller values are better; `None` without a value.
     pub fn mean(what: &'static str, values: &[f64], [floor, aim]: [f64; 2]) -> Option<Self> {
         let [average, error] = mean(values);
-        let most = values.iter().copied().fold(0.0, f64::max);
+        let max = values.iter().copied().fold(0.0, f64::max);
         (!values.is_empty()).then(|| Self {
             what,
             measured: average,
-            shown: format!("± {error:.3}, median {:.3}, most {most:.2}", median(values)),
+            shown: format!("± {error:.3}, median {:.3}, most {max:.2}", median(values)),
             floor,
             aim,
-            is_least: true,
+            is_bounded_above: true,
         })
     }
 
-    /// Ratio of sums, robust against a few extreme ratios; `None` of nothing. Less is better.
+    /// A ratio of sums, which is robust against a few extreme ratios and of which smaller values are better; `None` without a pair.
     pub fn ratio(what: &'static str, pairs: &[[f64; 2]], [floor, aim]: [f64; 2]) -> Option<Self> {
         let sum = |k: usize| pairs.iter().map(|pair| pair[k]).sum::<f64>();
         let ratios: Vec<f64> = pairs.iter().map(|[after, before]| after / before).collect();
@@ -67,7 +67,7 @@ impl Target {
             ),
             floor,
             aim,
-            is_least: true,
+            is_bounded_above: true,
         })
     }
 
@@ -77,7 +77,7 @@ impl Target {
     }
 
     fn reaches(&self, goal: f64) -> bool {
-        if self.is_least {
+        if self.is_bounded_above {
             self.measured <= goal
         } else {
             self.measured >= goal

@@ -141,7 +141,7 @@ impl JobParameter {
         };
         // Models may state different defaults of one parameter; the description has those of the first model.
         let mut seen = BTreeSet::new();
-        let of_models = parameters::of_models()
+        let of_models = parameters::model_parameters()
             .filter(move |base| seen.insert(base.name))
             .map(JobParameter::from);
         of_models

@@ -4,17 +4,22 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use super::error::StudyError;
 
-/// The threads of the machine.
+/// The number of threads of the machine.
 pub fn threads() -> usize {
     std::thread::available_parallelism().map_or(1, usize::from)
 }
 
-/// The results of pieces of work, in their order; which thread does which piece changes nothing.
-pub fn each<T: Send>(count: u64, work: impl Fn(u64) -> T + Sync) -> Result<Vec<T>, StudyError> {
-    each_on(threads(), count, work)
+/// The results of pieces of work, in their order, which does not depend on the threads; the first error ends all.
+pub fn each<T, E>(count: u64, work: impl Fn(u64) -> Result<T, E> + Sync) -> Result<Vec<T>, StudyError>
+where
+    T: Send,
+    E: Into<StudyError> + Send,
+{
+    let results = each_on(threads(), count, work)?.into_iter();
+    results.map(|result| result.map_err(Into::into)).collect()
 }
 
-/// As [`each`], on so many threads.
+/// The results of pieces of work on a number of threads, in their order, which does not depend on the threads.
 pub fn each_on<T: Send>(
     threads: usize,
     count: u64,
