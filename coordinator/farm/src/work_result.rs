@@ -147,10 +147,11 @@ impl Farm {
         }
         let computed = SimulationResult::new(result.outcome, result.end)?;
         let record = self.workers.get(worker);
-        if record.is_none_or(|record| record.completed < NEW_WORKER_RESULTS) {
-            calibration.verify(result.evaluation);
-        }
-        let completed = calibration.complete(result.evaluation, computed, worker)?;
+        let is_new = record.is_none_or(|record| record.completed < NEW_WORKER_RESULTS);
+        let completed = match is_new {
+            true => calibration.complete_verified(result.evaluation, computed, worker)?,
+            false => calibration.complete(result.evaluation, computed, worker)?,
+        };
         entry.pace.count(calibration.cost.simulations, now_ms);
         Ok(completed)
     }

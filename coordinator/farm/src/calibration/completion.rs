@@ -17,22 +17,41 @@ use job::AlgorithmSettings;
 use record::{EvaluationKey, EvaluationRow, Fact, Kept, RejectionReason};
 
 impl Calibration {
-    /// Takes the result of an evaluation; late duplicates change nothing.
+    /// Takes the result of an evaluation; a late duplicate is compared with the stored result and changes nothing else.
     ///
     /// Returns the facts to store, in order, and whether the result counted.
     ///
     /// # Errors
-    /// [`ResultError`] for a result that does not fit its variant: the worker's fault, nothing is recorded.
+    /// [`ResultError`] for a result that does not fit its variant. The calibration is unchanged; the caller fails the lease.
     pub fn complete(
         &mut self,
         evaluation: u64,
         computed: SimulationResult,
         worker: &str,
     ) -> Result<(Vec<Fact>, bool), ResultError> {
-        if let Err(error) = self.check(evaluation, &computed) {
-            self.witness.forget_unanswered(evaluation);
-            return Err(error);
+        self.check(evaluation, &computed)?;
+        Ok(self.take(evaluation, computed, worker))
+    }
+
+    /// Takes the result of an evaluation as [`Calibration::complete`] does, and asks a second worker for the same evaluation in order to
+    /// compare their answers.
+    ///
+    /// # Errors
+    /// The same as of [`Calibration::complete`].
+    pub fn complete_verified(
+        &mut self,
+        evaluation: u64,
+        computed: SimulationResult,
+        worker: &str,
+    ) -> Result<(Vec<Fact>, bool), ResultError> {
+        self.check(evaluation, &computed)?;
+        if self.witness.verification.is_on() && self.queue.is_asked(evaluation) {
+            self.ask_second(evaluation, None);
         }
+        Ok(self.take(evaluation, computed, worker))
+    }
+
+    fn take(&mut self, evaluation: u64, computed: SimulationResult, worker: &str) -> (Vec<Fact>, bool) {
         let answer = Answer {
             worker: worker.to_owned(),
             fingerprint: computed.fingerprint(),
@@ -40,7 +59,7 @@ impl Calibration {
         match self.queue.complete(evaluation) {
             Completion::First => {}
             Completion::Duplicate | Completion::Unknown => {
-                return Ok((self.compare(evaluation, answer), false));
+                return (self.compare(evaluation, answer), false);
             }
         }
         let row = match self.row(evaluation, computed, &answer) {
@@ -48,7 +67,7 @@ impl Calibration {
             Err(error) => {
                 let mut facts = Vec::new();
                 self.finish(CalibrationState::Failed, Some(error.to_string()), &mut facts);
-                return Ok((facts, false));
+                return (facts, false);
             }
         };
         let mut consequences = Vec::new();
@@ -57,7 +76,7 @@ impl Calibration {
         let calibration = self.identity.id;
         let mut facts = vec![Fact::Evaluated { calibration, row }];
         facts.append(&mut consequences);
-        Ok((facts, true))
+        (facts, true)
     }
 
     /// Checks that a result answers what is asked for at present; what an earlier round has asked is not known.

@@ -231,13 +231,6 @@ impl Calibration {
         self.witness.second.ask(evaluation, question, variant, slow);
     }
 
-    /// Lets the answer to an evaluation, which is about to come, be compared with that of a second worker.
-    pub fn verify(&mut self, evaluation: u64) {
-        if self.witness.verification.is_on() && self.queue.is_asked(evaluation) {
-            self.ask_second(evaluation, None);
-        }
-    }
-
     /// Stops asking beside slow leases that have ended, or that are suspects: a suspect is alone wherever it is. An evaluation
     /// that has been leased anew is not slow yet.
     pub fn drop_idle_seconds(&mut self) {

@@ -120,12 +120,6 @@ impl SecondAnswers {
         self.repeated.contains_key(&evaluation)
     }
 
-    /// Whether an evaluation is asked for twice, and nobody has answered.
-    pub fn is_unanswered(&self, evaluation: u64) -> bool {
-        let repeated = self.repeated.get(&evaluation);
-        repeated.is_some_and(|repeated| repeated.answers.is_empty())
-    }
-
     /// What an evaluation is leased with.
     pub fn question(&self, evaluation: u64) -> Option<Question<'_>> {
         self.repeated.get(&evaluation).map(|repeated| Question {

@@ -75,13 +75,6 @@ impl Witness {
         self.round.keys().copied().collect()
     }
 
-    /// No answer came that could be used: nothing is compared so far.
-    pub(super) fn forget_unanswered(&mut self, evaluation: u64) {
-        if self.second.is_unanswered(evaluation) {
-            self.second.drop(evaluation);
-        }
-    }
-
     /// Takes the answer that is stored.
     pub(super) fn store(&mut self, evaluation: u64, answer: Answer, is_confirmed: bool) {
         let stored = StoredAnswer { answer, is_confirmed };
