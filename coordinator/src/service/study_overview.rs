@@ -6,12 +6,12 @@ use shared::api::{CalibrationState, CalibrationStatus};
 
 use super::error::ServiceError;
 use super::handle::Service;
-use super::results::{Stamp, is_of_members, members_stamp};
+use super::results::members_stamp;
 use super::study_members::study_members;
 use job::model_kind;
 use record::CalibrationRow;
 use report::{StudyFile, StudyListItem, StudyOverview};
-use store::StoreError;
+use store::{Stamp, StoreError, is_of_members};
 
 impl Service {
     /// A study as the page shows it.
@@ -59,7 +59,7 @@ impl Service {
             ),
             None => {
                 let name = StudyFile::Overview.name();
-                self.results.text(id, &name, &stamp.to_string()).await?
+                self.results.text(id, &name, &stamp).await?
             }
         };
         if let Some(text) = text {

@@ -32,6 +32,7 @@ mod repeats;
 mod results;
 mod server;
 mod sql;
+mod stamp;
 mod theta;
 mod tokens;
 mod verification;
@@ -53,6 +54,7 @@ pub use read::{StoredStudy, StoredWebhook};
 pub use reader::Reader;
 pub use results::StudyResults;
 use sql::{Connection, Pool, query_scalar};
+pub use stamp::{Doubts, Stamp, is_of_members, members_stamp};
 pub use tokens::TokenTable;
 pub use writer::Writer;
 

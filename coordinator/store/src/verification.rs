@@ -145,19 +145,6 @@ impl Reader {
         Ok(rows.into_iter().map(quarantine).collect())
     }
 
-    /// How many doubts about workers the store has: disputes and quarantined workers. What was computed before a new one does not
-    /// say it.
-    ///
-    /// # Errors
-    /// [`StoreError`].
-    pub async fn doubts(&self) -> Result<(i64, i64), StoreError> {
-        if !self.has_table("quarantine").await? {
-            return Ok((0, 0));
-        }
-        let counts = query_as("SELECT (SELECT count(*) FROM disputes), (SELECT count(*) FROM quarantine)");
-        Ok(counts.fetch_one(&self.pool).await?)
-    }
-
     /// How far the results of a calibration are verified. In a store of before migration 18, which only reading leaves as it is, none
     /// is.
     ///
@@ -201,5 +188,40 @@ impl Reader {
             resting_on: counts(resting).collect(),
             computed_again: counts(rewound).collect(),
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use record::{Fact, Fingerprint};
+
+    use crate::fixture;
+
+    #[tokio::test]
+    async fn only_an_answer_that_differs_from_the_stored_one_changes_a_study() {
+        let (_folder, store, calibration) = fixture::store().await;
+        let mut sink = store.writer().sink();
+        let mut store_fact = async |fact: Fact| {
+            let number = sink(vec![fact]).unwrap();
+            store.writer().durable(number).await.unwrap();
+        };
+        store_fact(Fact::Evaluated {
+            calibration,
+            row: fixture::row(3, "a", 7),
+        })
+        .await;
+        let mut studies = store.writer().study_changes();
+        let duplicate = |fingerprint| Fact::Duplicate {
+            calibration,
+            evaluation: 3,
+            fingerprint: Fingerprint(fingerprint),
+            worker: "b".into(),
+        };
+        for (fingerprint, is_change) in [(7, false), (8, true), (8, false)] {
+            store_fact(duplicate(fingerprint)).await;
+            assert_eq!(studies.has_changed().unwrap(), is_change, "{fingerprint}");
+            studies.mark_unchanged();
+        }
+        store.close().await;
     }
 }

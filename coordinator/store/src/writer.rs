@@ -466,7 +466,8 @@ async fn write_group(
                     other => {
                         insert_evaluations(connection, &mut rows).await?;
                         replies.states.extend(StateChange::of(&other));
-                        super::facts::write(connection, other, health).await?;
+                        replies.have_studies_changed |=
+                            super::facts::write(connection, other, health).await?;
                     }
                 }
             }
@@ -511,12 +512,11 @@ async fn write_group(
     Ok(facts)
 }
 
-/// Whether a write changes which studies there are, which members they have, or which results of theirs are kept: a late result that
-/// differs from the stored one makes them out of date.
+/// Returns whether a write changes which studies there are, or which members they have.
 fn changes_studies(write: &Write) -> bool {
     use Write::{Archive, Delete, Member, Study};
     matches!(
         write,
-        Study { .. } | Member { .. } | Archive { .. } | Delete { .. } | Write::Fact(Fact::Duplicate { .. })
+        Study { .. } | Member { .. } | Archive { .. } | Delete { .. }
     )
 }
