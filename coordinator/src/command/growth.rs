@@ -117,11 +117,11 @@ pub(super) async fn add_runs(config: &AddRunsArguments) -> anyhow::Result<()> {
     ))?)
 }
 
-/// An addition to a study, and how it is computed where the study is in a folder.
+/// An addition to a study, with the settings of its computation in a folder.
 struct Addition<'a> {
     source: &'a SourceArguments,
     growth: &'a GrowthArguments,
-    /// The calibration to whose study something is added.
+    /// A calibration of the study.
     calibration: i64,
 }
 

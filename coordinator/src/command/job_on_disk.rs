@@ -1,4 +1,4 @@
-//! A job on disk with the files it names, and the effects that the command line adds.
+//! A job on disk with its files and the effects that the command line adds.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -13,17 +13,17 @@ use job::{
     with_service_effects, without_service_effects,
 };
 
-/// A job with everything it names, read and validated.
+/// A job with all its files, read and validated.
 pub(super) struct JobOnDisk {
     /// Name for lists and folders.
     pub(super) name: String,
-    /// The job with the effects of the command line, and its effect files.
+    /// The job with its effect files and the effects of the command line.
     pub(super) job: FileSet,
     /// Its experiment.
     pub(super) experiment: FileSet,
-    /// Their specification; with the first model where the job compares several.
+    /// The specification; with the first model where the job compares several.
     pub(super) spec: Spec,
-    /// Their specifications with each of the other models.
+    /// The specifications with each of the other models.
     pub(super) others: Vec<Spec>,
 }
 
@@ -55,7 +55,7 @@ pub(super) fn read(file: &JobArguments, own: &[ServiceEffect]) -> Result<JobOnDi
         let added = job.list_effects(effects, files);
         added.map_err(|e| FileError::whole(&job_name, e))?;
     }
-    // Messages name the lines of the file as it is; what is kept has the additions.
+    // Messages name the lines of the user's file; the stored job has the additions.
     let toml = accepting_job(&job_name, &written, &file.accept)?;
     let addition = Addition {
         effects: file.effect.clone(),
@@ -85,7 +85,7 @@ pub(super) fn read(file: &JobArguments, own: &[ServiceEffect]) -> Result<JobOnDi
     })
 }
 
-/// The effect files of the command line, each by its name without folders.
+/// Reads the effect files of the command line, each by its name without folders.
 fn added_files(paths: &[PathBuf]) -> Result<BTreeMap<String, String>, FileError> {
     let mut files = BTreeMap::new();
     for path in paths {
@@ -104,7 +104,7 @@ fn added_files(paths: &[PathBuf]) -> Result<BTreeMap<String, String>, FileError>
     Ok(files)
 }
 
-/// The job's name: its file's, or its folder's where the file is just `job.toml`.
+/// Returns the job's name: the name of its file, or of its folder where the file is `job.toml`.
 fn name(path: &Path) -> String {
     let text = |s: Option<&std::ffi::OsStr>| s.map(|s| s.to_string_lossy().into_owned());
     let stem = text(path.file_stem()).unwrap_or_else(|| "job".into());
@@ -115,7 +115,7 @@ fn name(path: &Path) -> String {
     text(absolute.parent().and_then(Path::file_name)).unwrap_or(stem)
 }
 
-/// The name of a file without its ending.
+/// Returns the name of a file without its ending.
 fn stem(file: &str) -> &str {
     file.strip_suffix(".toml").unwrap_or(file)
 }

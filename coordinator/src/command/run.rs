@@ -25,7 +25,7 @@ pub(super) async fn run(config: RunArguments) -> anyhow::Result<()> {
         .out
         .clone()
         .unwrap_or_else(|| Path::new("out").join(&job.name));
-    // The address is taken before anything is written, so that a port in use leaves nothing behind.
+    // The address is bound before anything is written, so that a port in use leaves no folder behind.
     let listener = match config.listen {
         Some(address) => Some(
             TcpListener::bind(address)
@@ -52,7 +52,7 @@ pub(super) async fn run(config: RunArguments) -> anyhow::Result<()> {
     result
 }
 
-/// The study of this folder: the stored one, where it has the same job, or a new one.
+/// Returns the study of this folder: the stored one, if it has the same job, or a new one.
 async fn take_up(job: &JobOnDisk, folder: &Folder) -> anyhow::Result<i64> {
     let service = &folder.service;
     let rows = service.store().reader().calibrations().await?;
@@ -75,7 +75,7 @@ async fn take_up(job: &JobOnDisk, folder: &Folder) -> anyhow::Result<i64> {
         };
         return Ok(service.add_calibration(new).await?.study);
     };
-    // The other members of the study follow from the first, or a user added them.
+    // The other members of the study follow from the first one, or were added by a user.
     let first = first?;
     let mut is_same = service.spec_of(&first).await?.same_as(&job.spec);
     for (row, spec) in rows.zip(&job.others) {
@@ -99,7 +99,7 @@ async fn take_up(job: &JobOnDisk, folder: &Folder) -> anyhow::Result<i64> {
     Ok(first.study)
 }
 
-/// Whether a stored calibration is of one of the models that a job compares; its own job is of that model alone.
+/// Returns whether a stored calibration has one of the models that a job compares. Its stored job has this model alone.
 fn same_model(mut stored: Spec, of_job: &Spec) -> bool {
     (stored.models, stored.discovery) = (of_job.models, of_job.discovery);
     stored.same_as(of_job)

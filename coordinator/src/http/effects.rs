@@ -1,4 +1,4 @@
-//! `/v1/effects`: the catalogue, the library's effects and those that users add.
+//! `/v1/effects`: the catalogue, with the effects of the library and those that users add.
 
 use axum::Json;
 use axum::extract::State;
@@ -104,7 +104,7 @@ async fn show(State(service): State<Service>, Name(name): Name) -> Result<Json<E
     }))
 }
 
-/// The effect of a stored file, which was read when it was added.
+/// Reads the effect of a stored file, which was validated when it was added.
 fn read(stored: &StoredEffect) -> Result<Effect, HttpError> {
     let corrupt = |error| {
         let version = stored.version.version;

@@ -1,4 +1,4 @@
-//! Adds effects of users to the catalogue, and finds the ones that a job names.
+//! Effects that users add to the catalogue, and the ones that a job names.
 
 use formula::Effect;
 use formula::catalogue::find;
@@ -46,7 +46,8 @@ impl Service {
         Ok(self.store().writer().add_effect(new).await?)
     }
 
-    /// All versions of the effect `NAME`, and the last one, or for `NAME@VERSION` that version; `None` where no user has added the effect.
+    /// Reads all versions of the effect `NAME`, and the last one, or for `NAME@VERSION` that version; `None` if no user has added the
+    /// effect.
     ///
     /// # Errors
     /// [`ServiceError`]: the effect has no such version.
@@ -77,7 +78,7 @@ impl Service {
         Ok(Some((versions, meant)))
     }
 
-    /// The effects that a job lists and that users have added.
+    /// Reads the effects that a job lists and that users have added.
     ///
     /// # Errors
     /// [`ServiceError`]: an effect has no such version.
@@ -110,7 +111,7 @@ impl Service {
         })
     }
 
-    /// An effect that users have added, as a file that states its version.
+    /// Reads an effect that users have added, as a file that states its version.
     async fn as_file(&self, named: &str) -> Result<Option<ServiceEffect>, ServiceError> {
         let stored = self.own_effect(named).await.map_err(|error| match error {
             missing @ ServiceError::NoVersion { .. } => FileError::whole(JOB, missing.to_string()).into(),

@@ -1,4 +1,4 @@
-//! The texts that have been computed about studies.
+//! The cache of texts about studies.
 
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -6,8 +6,8 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use report::StudyFile;
 use store::{Stamp, Store, StoreError, StudyResults};
 
-/// The texts that have been computed about studies, each under the stamp of what it was computed from. They are in the store's table of
-/// results. A store that is only read takes none: there, overviews and lines of the list are kept in memory.
+/// The cache of texts about studies, each under the stamp of the state from which it was computed. The texts are in the store's table of
+/// results. A store that is opened for reading alone takes none: then overviews and lines of the list are kept in memory.
 #[derive(Debug, Clone)]
 pub(super) struct ResultCache {
     store: Store,
@@ -26,7 +26,7 @@ impl ResultCache {
         self.in_memory.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// A text about a study, if it is kept under this stamp.
+    /// Returns a text about a study, if it is kept under this stamp.
     pub(super) async fn text(
         &self,
         study: i64,
@@ -44,7 +44,7 @@ impl ResultCache {
         Ok(kept.and_then(|kept| kept.files.get(name)).cloned())
     }
 
-    /// The text of one name of every study that has it, with its stamp.
+    /// Returns the text with one name of every study that has it, with its stamp.
     pub(super) async fn of_every_study(
         &self,
         name: &str,
@@ -78,7 +78,7 @@ impl ResultCache {
         Ok(())
     }
 
-    /// Frees the memory of studies that are no longer there.
+    /// Drops the texts in memory of deleted studies.
     pub(super) fn forget_deleted(&self, is_there: impl Fn(i64) -> bool) {
         self.in_memory().retain(|study, _| is_there(*study));
     }

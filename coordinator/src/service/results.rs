@@ -1,4 +1,4 @@
-//! The files of studies and calibrations: computed when somebody asks for them, then kept under a stamp.
+//! Texts about studies and calibrations: computed on request, then kept under a stamp.
 
 use std::collections::BTreeMap;
 
@@ -15,20 +15,20 @@ use report::{CalibrationFile, StudyFile, StudyOverview};
 use result::FinishedCalibration;
 use store::{Stamp, StoreError, StudyResults};
 
-/// Digest of the sources that this program was built from.
+/// The digest of the sources of this program.
 const BUILD: &str = env!("GROUSER_BUILD");
 
 impl Service {
-    /// A finished calibration.
+    /// Loads a finished calibration.
     ///
     /// # Errors
-    /// [`ServiceError::NotFound`]; [`ServiceError::Control`] where it is not finished; [`ServiceError::Search`] for a search;
-    /// [`ServiceError::Effects`] where this program has other effects; others where the store cannot be read.
+    /// [`ServiceError::NotFound`]; [`ServiceError::Control`] if it is not finished; [`ServiceError::Search`] for a search;
+    /// [`ServiceError::Effects`] if this program has other effects; others if the store cannot be read.
     pub async fn finished_calibration(&self, id: i64) -> Result<FinishedCalibration, ServiceError> {
         finished_calibration(&self.store().reader(), &self.calibration_row(id).await?).await
     }
 
-    /// A file of a finished calibration.
+    /// Returns a file of a finished calibration.
     ///
     /// # Errors
     /// The same as of [`Service::finished_calibration`].
@@ -48,10 +48,10 @@ impl Service {
         Ok(text)
     }
 
-    /// The flags of a finished calibration, as they stand in its diagnostics.
+    /// Returns the flags of a finished calibration, as in its diagnostics.
     ///
     /// # Errors
-    /// The same as of [`Service::finished_calibration`]; [`StoreError::Corrupt`] where the stored text is none of diagnostics.
+    /// The same as of [`Service::finished_calibration`]; [`StoreError::Corrupt`] if the stored text does not contain diagnostics.
     pub async fn flags(&self, id: i64) -> Result<String, ServiceError> {
         flags_text(
             id,
@@ -59,10 +59,10 @@ impl Service {
         )
     }
 
-    /// A file of the study of a calibration.
+    /// Returns a file of the study of a calibration.
     ///
     /// # Errors
-    /// The same as of [`Service::finished_calibration`], where nothing of the study is finished.
+    /// The same as of [`Service::finished_calibration`], if no calibration of the study is finished.
     pub async fn study_file(&self, id: i64, file: StudyFile) -> Result<String, ServiceError> {
         let row = self.calibration_row(id).await?;
         if let StudyFile::Figures(_) = file {
@@ -72,8 +72,8 @@ impl Service {
         self.text_of_study(&row, &rows, stamp, file).await
     }
 
-    /// A file of a study, from the results that are kept, else computed. A study that is over gets all its files at once, because they
-    /// are made from the same tables.
+    /// Returns a file of a study, kept or computed. For a finished study all files are computed at once, because they are made from the
+    /// same tables.
     pub(super) async fn text_of_study(
         &self,
         row: &CalibrationRow,
@@ -86,7 +86,7 @@ impl Service {
             return Ok(text);
         }
         let study = finished_study(&self.store().reader(), row, rows).await?;
-        // A step that is decided but not begun is work to come: the study is about to grow.
+        // The next step of a study is unfinished work, although it has not begun: the study is about to grow.
         let is_over = are_over(rows) && study.state.is_final();
         let is_of_list = matches!(file, StudyFile::Overview | StudyFile::ListItem);
         let computed = match () {
@@ -105,7 +105,7 @@ impl Service {
         Ok(text)
     }
 
-    /// Keeps an overview of a study, and its line in the list.
+    /// Keeps the overview of a study, and its line in the list.
     pub(super) async fn keep_overview(
         &self,
         overview: &StudyOverview,
@@ -123,7 +123,7 @@ impl Service {
         Ok(self.results.keep(StudyResults { study, stamp, files }).await?)
     }
 
-    /// Reads the members of a study, with the stamp of what is computed from them.
+    /// Reads the members of a study, with the stamp of results that are computed from them.
     pub(super) async fn stamped_members(
         &self,
         study: i64,
@@ -141,7 +141,7 @@ fn are_over(rows: &[CalibrationRow]) -> bool {
     rows.iter().all(|row| row.state.is_final())
 }
 
-/// The flags among the diagnostics of a calibration, as JSON.
+/// Returns the flags among the diagnostics of a calibration, as JSON.
 fn flags_text(id: i64, diagnostics: &str) -> Result<String, ServiceError> {
     #[derive(Deserialize)]
     struct Flagged<'a> {

@@ -1,4 +1,4 @@
-//! One statement for each kind of fact but evaluations, which go in groups.
+//! One statement for each kind of fact. Evaluations are inserted in groups instead.
 
 use std::sync::atomic::Ordering;
 
@@ -23,7 +23,7 @@ const SAMPLE: [&str; 6] = [
     "log_likelihood",
     "log_prior",
 ];
-/// The tables with one row for each calibration.
+/// The key of tables that have one row for each calibration.
 const ITS_OWN: Conflict<'static> = Conflict::Replace(&["calibration"]);
 
 /// Writes a fact within the present transaction. Stages and states may be written again after a restart. Returns whether the fact makes
@@ -229,7 +229,7 @@ async fn estimate(
         .execute(&mut *connection)
         .await?;
     if let Some(approximation) = &e.approximation {
-        // Draws that belong to no stage: there is no other population.
+        // A fit has no stages, so its draws are stored under stage 0.
         samples(connection, (calibration, 0), &approximation.draws).await?;
     }
     query("UPDATE calibrations SET log_evidence = ?, evaluations = ?, rejected = ? WHERE id = ?")
@@ -269,7 +269,7 @@ async fn compare(
             "result of an unknown evaluation"
         ),
         Some((same, _)) if same == fingerprint.0 => {}
-        // Given up after faults: there is no answer to compare with.
+        // The evaluation was given up after faults, so there is no answer to compare with.
         Some((_, nobody)) if nobody.is_empty() => {}
         Some((_, first)) => {
             health.differing_duplicates.fetch_add(1, Ordering::Relaxed);

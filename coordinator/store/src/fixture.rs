@@ -8,7 +8,7 @@ use tempfile::TempDir;
 
 use super::{NewCalibrationRow, NewStudy, Store};
 
-/// A store in a folder of its own, and the number of its calibration.
+/// Makes a store in a folder of its own. Returns the store and the number of its calibration.
 pub(super) async fn store() -> (TempDir, Store, i64) {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("grouser.db").display().to_string();

@@ -10,10 +10,10 @@ use super::theta::theta;
 use record::{Dispute, PriorDraw, RejectionReason};
 
 impl Reader {
-    /// The draws of a sampler's first round.
+    /// Reads the draws of a sampler's first round, which are draws from the prior.
     ///
     /// # Arguments
-    /// - `count`: how many there are.
+    /// - `count`: the number of draws.
     ///
     /// # Errors
     /// [`StoreError`].
@@ -42,7 +42,7 @@ impl Reader {
             .collect()
     }
 
-    /// How often a lease failed, by what was said of it.
+    /// Reads how often leases failed, by message.
     ///
     /// # Errors
     /// [`StoreError`].
@@ -59,7 +59,7 @@ impl Reader {
             .collect())
     }
 
-    /// Number of evaluations that were given up after faults.
+    /// Reads the number of evaluations that were given up after faults.
     ///
     /// # Errors
     /// [`StoreError`].
@@ -72,7 +72,7 @@ impl Reader {
         Ok(count.unsigned_abs())
     }
 
-    /// Evaluations that were answered in two ways, in order. A store of before migration 12 has none.
+    /// Reads the evaluations that have two different answers, in order. A store of before migration 12 has none.
     ///
     /// # Errors
     /// [`StoreError`].

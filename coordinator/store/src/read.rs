@@ -48,7 +48,7 @@ pub struct StoredWebhook {
 }
 
 impl Reader {
-    /// The web hook of a calibration's study, if it has one.
+    /// Reads the web hook of a calibration's study, if it has one.
     ///
     /// # Errors
     /// [`StoreError`].
@@ -70,7 +70,7 @@ impl Reader {
         .transpose()
     }
 
-    /// Number of calibrations in each state, by its word.
+    /// Reads the number of calibrations in each state, by the name of the state.
     ///
     /// # Errors
     /// [`StoreError`].
@@ -79,7 +79,7 @@ impl Reader {
         Ok(states.fetch_all(&self.pool).await?)
     }
 
-    /// An experiment.
+    /// Reads an experiment.
     ///
     /// # Errors
     /// [`StoreError`].
@@ -101,7 +101,7 @@ impl Reader {
         .transpose()
     }
 
-    /// Every experiment, oldest first, with the studies that have a calibration on it.
+    /// Reads every experiment, oldest first, with the studies that have a calibration on it.
     ///
     /// # Errors
     /// [`StoreError`].
@@ -123,7 +123,7 @@ impl Reader {
         Ok(experiments)
     }
 
-    /// A calibration.
+    /// Reads a calibration.
     ///
     /// # Errors
     /// [`StoreError`].
@@ -136,10 +136,10 @@ impl Reader {
         row.as_ref().map(|row| self.calibration_row(row)).transpose()
     }
 
-    /// Every calibration by its id, oldest first; in place of one whose row cannot be read, why.
+    /// Reads every calibration by its id, oldest first. A row that cannot be read is replaced by its error.
     ///
     /// # Errors
-    /// [`StoreError`] where none can be read.
+    /// [`StoreError`] where no row can be read.
     pub async fn calibrations(&self) -> Result<Vec<(i64, Result<CalibrationRow, StoreError>)>, StoreError> {
         let sql = format!("{CALIBRATION} ORDER BY c.id");
         let rows = query(sqlx::AssertSqlSafe(sql)).fetch_all(&self.pool).await?;
@@ -147,7 +147,7 @@ impl Reader {
         rows.iter().map(row).collect()
     }
 
-    /// The calibrations of a study, oldest first.
+    /// Reads the calibrations of a study, oldest first.
     ///
     /// # Errors
     /// [`StoreError`].
@@ -160,7 +160,7 @@ impl Reader {
         rows.iter().map(|row| self.calibration_row(row)).collect()
     }
 
-    /// All studies, oldest first.
+    /// Reads all studies, oldest first.
     ///
     /// # Errors
     /// [`StoreError`].
@@ -184,14 +184,14 @@ impl Reader {
         Ok(studies)
     }
 
-    /// Study, id and state of every calibration, oldest first.
+    /// Reads the study, id and state of every calibration, oldest first.
     ///
     /// # Errors
     /// [`StoreError`].
     pub async fn member_states(&self) -> Result<Vec<(i64, i64, CalibrationState)>, StoreError> {
         let rows = query("SELECT study, id, state FROM calibrations ORDER BY id");
         let rows = rows.fetch_all(&self.pool).await?;
-        // A state that cannot be read is reported where the calibration is asked for.
+        // An unreadable state is reported where the calibration is requested.
         let known = |row: &Row| {
             let state = CalibrationState::from_name(row.try_get("state").ok()?)?;
             Some((row.try_get("study").ok()?, row.try_get("id").ok()?, state))
@@ -199,7 +199,7 @@ impl Reader {
         Ok(rows.iter().filter_map(known).collect())
     }
 
-    /// The studies whose members are all over, each with their number; archived ones left out.
+    /// Reads the studies whose calibrations are all over, each with the number of its calibrations; archived studies are left out.
     ///
     /// # Errors
     /// [`StoreError`].
@@ -217,7 +217,7 @@ impl Reader {
             .collect())
     }
 
-    /// The stages of a calibration, in order.
+    /// Reads the stages of a calibration, in order.
     ///
     /// # Errors
     /// [`StoreError`].
@@ -245,7 +245,7 @@ impl Reader {
         rows.iter().map(stage).collect()
     }
 
-    /// The population at the end of a stage, or of the last one.
+    /// Reads the population at the end of a stage, or of the last one.
     ///
     /// # Errors
     /// [`StoreError`].
@@ -261,7 +261,8 @@ impl Reader {
         rows.iter().map(particle).collect()
     }
 
-    /// At most so many equally spaced draws of the population at the end of a stage, or of the last one, and its size.
+    /// Reads at most `max` equally spaced draws of the population at the end of a stage, or of the last one, and the size of the
+    /// population.
     ///
     /// Takes m of n draws: those k with floor((k + 1) m / n) > floor(k m / n).
     ///
@@ -271,7 +272,7 @@ impl Reader {
         &self,
         calibration: i64,
         stage: Option<u32>,
-        most: u32,
+        max: u32,
     ) -> Result<(Vec<Particle>, u64), StoreError> {
         let population = "FROM samples WHERE calibration = ?1
              AND stage = coalesce(?2, (SELECT max(stage) FROM samples WHERE calibration = ?1))";
@@ -288,7 +289,7 @@ impl Reader {
         let rows = query(sqlx::AssertSqlSafe(taken))
             .bind(calibration)
             .bind(stage)
-            .bind(i64::from(most).min(count))
+            .bind(i64::from(max).min(count))
             .bind(count.max(1))
             .fetch_all(&self.pool)
             .await?;
@@ -296,7 +297,7 @@ impl Reader {
         Ok((samples?, count.unsigned_abs()))
     }
 
-    /// The populations at the end of every stage, in order.
+    /// Reads the populations at the end of every stage, in order.
     ///
     /// # Errors
     /// [`StoreError`].
@@ -308,8 +309,8 @@ impl Reader {
         Ok(populations)
     }
 
-    /// The predicted values that the likelihood took of a parameter vector while sampling; `None` where it was not
-    /// simulated then, or refused. For what was stored before migration 9, which kept the values of every evaluation.
+    /// Reads the predicted values that the likelihood used for a parameter vector while sampling; `None` where it was not simulated then,
+    /// or was rejected. Only stores of before migration 9, which kept the values of every evaluation, need this query.
     ///
     /// # Errors
     /// [`StoreError`].
@@ -323,7 +324,7 @@ impl Reader {
              WHERE calibration = ? AND theta = ? AND fitted IS NOT NULL ORDER BY evaluation LIMIT 1",
         )
         .bind(calibration);
-        // A file keeps such a vector as text; a server has it from a copy, in the form of today.
+        // A file keeps such a vector as text. A server got it from a copy, which converts it to bytes.
         let row = match self.pool {
             Pool::Sqlite(_) => row.bind(json(theta)),
             Pool::Postgres(_) => row.bind(blob::encode(theta)),
@@ -332,7 +333,7 @@ impl Reader {
         row.map(|row| blob::decode_values(row.get("fitted"))).transpose()
     }
 
-    /// The result of a fit.
+    /// Reads the result of a fit.
     ///
     /// # Errors
     /// [`StoreError`].
@@ -379,7 +380,7 @@ impl Reader {
         record.map(read).transpose()
     }
 
-    /// The final draws of a calibration; the first is the most probable particle, of a fit the only one.
+    /// Reads the final draws of a calibration. The first is the most probable particle; a fit without draws has only this one.
     ///
     /// # Errors
     /// [`StoreError`].
@@ -426,7 +427,7 @@ impl Reader {
         Ok(predictions)
     }
 
-    /// Reads what a metamodel did between evaluations; `None` if there was none.
+    /// Reads the statistics of the subchains that a metamodel ran between evaluations; `None` if there was none.
     ///
     /// # Errors
     /// [`StoreError`].
@@ -448,8 +449,8 @@ impl Reader {
         Ok((subchains.subchains > 0).then_some(subchains))
     }
 
-    /// The fitted runs at the likeliest parameters, with their histories where the model knows time; `None` where they were
-    /// not simulated once more, or refused.
+    /// Reads the fitted runs at the likeliest parameters, with their histories where the model has a time axis; `None` where they were not
+    /// simulated once more, or were rejected.
     ///
     /// # Errors
     /// [`StoreError`].
@@ -465,9 +466,9 @@ impl Reader {
             .transpose()
     }
 
-    /// How many parameter vectors of the sampler or the fit the model refused, by the kind of refusal.
+    /// Reads how many parameter vectors of the sampler or the fit the model rejected, by the kind of rejection.
     ///
-    /// What it refuses of the final draws, their held-out runs among them, is said of these.
+    /// Rejections of final draws are not counted; they are stored with the draws.
     ///
     /// # Errors
     /// [`StoreError`].
@@ -486,7 +487,7 @@ impl Reader {
             .collect())
     }
 
-    /// The message of the first rejected parameter vector of the sampler or the fit, without its kind.
+    /// Reads the message of the first rejected parameter vector of the sampler or the fit, without the kind of rejection.
     ///
     /// # Errors
     /// [`StoreError`].
@@ -507,7 +508,7 @@ impl Reader {
     }
 }
 
-/// A number that fits 32 bits.
+/// Reads a number that must fit 32 bits.
 fn small(row: &Row, column: &str) -> Result<u32, StoreError> {
     let value: i64 = row.try_get(column)?;
     u32::try_from(value).map_err(|_| StoreError::Corrupt(format!("{column} {value}")))
@@ -528,7 +529,7 @@ fn array<T: serde::de::DeserializeOwned>(json: &str) -> Result<Vec<T>, StoreErro
 }
 
 impl Reader {
-    /// A calibration; what cannot be read is named with its id.
+    /// Makes a calibration from its row. An error names the id of the row.
     fn calibration_row(&self, row: &Row) -> Result<CalibrationRow, StoreError> {
         let id: i64 = row.try_get("id")?;
         let columns = || {
@@ -547,7 +548,7 @@ impl Reader {
     }
 }
 
-/// The stored place of a calibration in its study; `None` in a row that an earlier version wrote.
+/// Reads the stored place of a calibration in its study; `None` in a row that an earlier version wrote.
 fn membership(row: &Row) -> Result<Option<Membership>, StoreError> {
     let role: Option<&str> = match row.try_get("role") {
         Err(sqlx::Error::ColumnNotFound(_)) => None,

@@ -1,4 +1,4 @@
-//! The files that a finished study ends with.
+//! The stored results of studies: texts that were computed from a state of the study.
 
 use std::collections::BTreeMap;
 
@@ -12,7 +12,7 @@ use super::stamp::Stamp;
 pub struct StudyResults {
     /// The study.
     pub study: i64,
-    /// What they were computed by and from.
+    /// The build and the state of the study from which they were computed.
     pub stamp: Stamp,
     /// Text of each file by its name.
     pub files: BTreeMap<String, String>,
@@ -47,7 +47,7 @@ pub(super) async fn write(connection: &mut Connection, results: StudyResults) ->
 }
 
 impl Reader {
-    /// A file of a study, if it was stored under this stamp. Of a store before migration 10, which has none, `None`.
+    /// Reads a file of a study, if it was stored under this stamp. A store of before migration 10 has no files.
     ///
     /// # Errors
     /// [`StoreError`].
@@ -64,7 +64,7 @@ impl Reader {
         Ok(body)
     }
 
-    /// The file of one name of every study that has it, with its stamp.
+    /// Reads the file with one name of every study that has it, with its stamp.
     ///
     /// # Errors
     /// [`StoreError`].

@@ -1,7 +1,7 @@
-//! Statements of the two databases that a store may stand in: written once, in the SQL that both have.
+//! SQL statements that run on SQLite and on PostgreSQL.
 //!
-//! A statement is written with SQLite's parameters, `?` or `?1`; for PostgreSQL they become `$1`. The functions of SQLite that
-//! statements use stand in `migrations/postgres`. What only one of them has (PRAGMAs, locks, sizes) stands in `file` and `server`.
+//! A statement is written with SQLite's parameters, `?` or `?1`; for PostgreSQL they become `$1`. `migrations/postgres` defines the
+//! functions of SQLite that statements use. Parts that only one database has (PRAGMAs, locks, sizes) are in `file` and `server`.
 
 use std::marker::PhantomData;
 
@@ -12,7 +12,7 @@ use sqlx::sqlite::SqliteRow;
 use sqlx::{AssertSqlSafe, Connection as _, PgConnection, PgPool, Postgres, SqlSafeStr, SqlStr, Sqlite};
 use sqlx::{Decode, Row as _, SqliteConnection, SqlitePool, Type};
 
-/// The character that takes the place of NUL in a text: PostgreSQL has no text with NUL.
+/// The replacement of NUL in a text, because PostgreSQL's texts cannot contain NUL.
 const NUL: &str = "\u{2400}";
 
 /// A connection that may write.
@@ -48,7 +48,7 @@ impl<'a> From<&'a Pool> for On<'a> {
 }
 
 impl Connection {
-    /// Begins a transaction that writes; whatever has begun is rolled back where the connection ends before [`Connection::commit`].
+    /// Begins a transaction that writes. It is rolled back if the connection ends before [`Connection::commit`].
     pub(super) async fn begin(&mut self) -> Result<(), sqlx::Error> {
         let begin = match self {
             Connection::Sqlite(_) => "BEGIN IMMEDIATE",
@@ -70,7 +70,7 @@ impl Connection {
 }
 
 impl Pool {
-    /// A connection that sees one moment of the store for as long as it is held.
+    /// Opens a connection that sees the store as it is at this moment.
     pub(super) async fn view(&self) -> Result<Connection, sqlx::Error> {
         let (mut connection, begin) = match self {
             Pool::Sqlite(pool) => (Connection::Sqlite(pool.acquire().await?.detach()), "BEGIN"),
@@ -108,7 +108,7 @@ pub(super) enum Value {
     Bytes(Option<Vec<u8>>),
 }
 
-/// Values of one Rust type are values of one kind.
+/// Implements `From` for the Rust types of each kind of value.
 macro_rules! values {
     ($($kind:ident: $($of:ty),+;)+) => {$($(
         impl From<$of> for Value {
@@ -144,7 +144,7 @@ pub(super) enum Row {
     Postgres(PgRow),
 }
 
-/// A type that a column is read as: either database decodes it.
+/// A type that both databases can decode from a column.
 pub(super) trait Column<'r>:
     Decode<'r, Sqlite> + Type<Sqlite> + Decode<'r, Postgres> + Type<Postgres>
 {
@@ -161,7 +161,7 @@ impl Row {
         }
     }
 
-    /// Reads a column that cannot fail, because its table says what it holds.
+    /// Reads a column of which the table guarantees the type.
     pub(super) fn get<'r, T: Column<'r>>(&'r self, column: &str) -> T {
         match self {
             Row::Sqlite(row) => row.get(column),
@@ -185,7 +185,7 @@ pub(super) struct Query {
     is_kept: bool,
 }
 
-/// A statement; a connection prepares it once.
+/// Makes a statement; a connection prepares it once.
 pub(super) fn query(sql: impl SqlSafeStr) -> Query {
     Query {
         sql: sql.into_sql_str(),
@@ -211,7 +211,7 @@ macro_rules! bound {
     }};
 }
 
-/// A text that PostgreSQL takes.
+/// Replaces NUL in a text, which PostgreSQL does not accept.
 fn without_nul(text: String) -> String {
     match text.contains('\0') {
         true => text.replace('\0', NUL),
@@ -220,13 +220,13 @@ fn without_nul(text: String) -> String {
 }
 
 impl Query {
-    /// The value of the next parameter.
+    /// Binds the value of the next parameter.
     pub(super) fn bind(mut self, value: impl Into<Value>) -> Query {
         self.values.push(value.into());
         self
     }
 
-    /// Executes it; how many rows it changed.
+    /// Executes the statement. Returns how many rows it changed.
     pub(super) async fn execute(self, on: impl Into<On<'_>>) -> Result<u64, sqlx::Error> {
         match on.into() {
             On::Connection(Connection::Sqlite(connection)) => {
@@ -287,7 +287,7 @@ impl Query {
         }
     }
 
-    /// The rows one by one, as they come.
+    /// Returns the rows as a stream.
     pub(super) fn fetch(self, connection: &mut Connection) -> BoxStream<'_, Result<Row, sqlx::Error>> {
         match connection {
             Connection::Sqlite(connection) => {
@@ -313,13 +313,13 @@ impl Query {
 /// A statement whose rows are tuples.
 pub(super) struct QueryAs<T>(Query, PhantomData<T>);
 
-/// A statement whose rows are tuples.
+/// Makes a statement whose rows are tuples.
 pub(super) fn query_as<T: Tuple>(sql: impl SqlSafeStr) -> QueryAs<T> {
     QueryAs(query(sql), PhantomData)
 }
 
 impl<T: Tuple> QueryAs<T> {
-    /// The value of the next parameter.
+    /// Binds the value of the next parameter.
     pub(super) fn bind(self, value: impl Into<Value>) -> QueryAs<T> {
         QueryAs(self.0.bind(value), PhantomData)
     }
@@ -344,7 +344,7 @@ impl<T: Tuple> QueryAs<T> {
 /// A statement whose rows have one column.
 pub(super) struct QueryScalar<T>(QueryAs<(T,)>);
 
-/// A statement whose rows have one column.
+/// Makes a statement whose rows have one column.
 pub(super) fn query_scalar<T>(sql: impl SqlSafeStr) -> QueryScalar<T>
 where
     (T,): Tuple,
@@ -356,7 +356,7 @@ impl<T> QueryScalar<T>
 where
     (T,): Tuple,
 {
-    /// The value of the next parameter.
+    /// Binds the value of the next parameter.
     pub(super) fn bind(self, value: impl Into<Value>) -> QueryScalar<T> {
         QueryScalar(self.0.bind(value))
     }
@@ -380,15 +380,15 @@ where
     }
 }
 
-/// The fate of a row whose key is there already.
+/// The treatment of a row whose key exists already.
 pub(super) enum Conflict<'a> {
-    /// It stays, and the new one is dropped.
+    /// The old row stays, and the new one is dropped.
     Keep,
-    /// The new one takes its place; these columns are the key.
+    /// The new row replaces the old one; these columns are the key.
     Replace(&'a [&'a str]),
 }
 
-/// Inserts rows of so many columns in one statement.
+/// Makes a statement that inserts rows.
 pub(super) fn insert(table: &str, columns: &[&str], rows: Vec<Vec<Value>>, conflict: &Conflict<'_>) -> Query {
     let row = format!("({})", vec!["?"; columns.len()].join(", "));
     let places = vec![row.as_str(); rows.len()].join(", ");
@@ -403,14 +403,14 @@ pub(super) fn insert(table: &str, columns: &[&str], rows: Vec<Vec<Value>>, confl
     let columns = columns.join(", ");
     let insert = format!("INSERT INTO {table} ({columns}) VALUES {places} ON CONFLICT {conflict}");
     Query {
-        // One of many rows is large, and seldom the same.
+        // A statement of many rows is large and seldom repeated, so it is not kept prepared.
         is_kept: rows.len() == 1,
         values: rows.into_iter().flatten().collect(),
         sql: AssertSqlSafe(insert).into_sql_str(),
     }
 }
 
-/// A statement with PostgreSQL's parameters in place of SQLite's. What stands in quotes is left as it is.
+/// Replaces SQLite's parameters by PostgreSQL's, except inside quotes.
 fn numbered(sql: &SqlStr) -> SqlStr {
     let mut text = String::with_capacity(sql.as_str().len() + 64);
     let (mut is_quoted, mut count) = (false, 0);

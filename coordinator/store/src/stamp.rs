@@ -93,7 +93,7 @@ async fn doubts<'a>(on: impl Into<On<'a>>) -> Result<Doubts, sqlx::Error> {
          UNION ALL SELECT calibration, evaluation, worker, '' FROM quarantine ORDER BY 1, 2, 3, 4",
     );
     let rows: Vec<(i64, i64, String, String)> = rows.fetch_all(on).await?;
-    // A release of Rust may hash otherwise: then results are computed once more.
+    // Another release of Rust may hash differently. Then results are only computed once more.
     let mut hasher = DefaultHasher::new();
     rows.hash(&mut hasher);
     Ok(Doubts(hasher.finish()))

@@ -1,8 +1,8 @@
-//! Evaluations that a second worker is asked for as well: to compare the answers, or because the first worker is slow.
+//! Evaluations that a second worker computes as well: to compare the answers, or because the first worker is slow.
 //!
-//! A question is kept with everything that a lease of it needs, because its round may be over by the time of the second answer.
-//! Two equal answers of different workers settle an evaluation; whoever answered otherwise computes wrongly. While all answers
-//! differ, another worker is asked.
+//! A question is kept with all data of its lease, because its round may be over before the second answer arrives. Two equal answers of
+//! different workers settle an evaluation, and workers with other answers compute wrongly. While all answers differ, another worker is
+//! asked.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -13,11 +13,11 @@ use statistics::Subchain;
 use super::question::Question;
 use crate::lease::{LeaseQueue, SlowLease};
 
-/// The largest number of evaluations that wait for a second answer. More are not verified: a farm of one worker would gather them
+/// The largest number of evaluations that wait for a second answer. Beyond it none is verified: with a single worker, they would accumulate
 /// without end.
 const MAX_WAITING: usize = 1_000;
 
-/// Who answered, and what.
+/// A worker's answer.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Answer {
     /// The worker.
@@ -26,23 +26,23 @@ pub struct Answer {
     pub fingerprint: Fingerprint,
 }
 
-/// What is known after an answer.
+/// The state of a comparison after an answer.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Verdict {
-    /// Nobody was asked twice.
+    /// The evaluation is not compared.
     NotAsked,
-    /// There are not two equal answers, and none that differ.
+    /// All answers so far are equal, but fewer than two workers have answered.
     Open,
     /// Answers differ, and no two are equal.
     Differ,
     /// Two workers agree.
     Settled {
-        /// Who answered first: its answer is stored.
+        /// The worker that answered first; its answer is stored.
         first: String,
-        /// Who answered otherwise.
+        /// The workers with other answers.
         wrong: Vec<String>,
     },
-    /// A worker has answered in two ways.
+    /// A worker has given two different answers.
     Contradiction,
 }
 
@@ -51,7 +51,7 @@ struct Repeated {
     variant: String,
     theta: Vec<f64>,
     subchain: Option<Subchain>,
-    /// Whether answers are compared; else the first one is enough.
+    /// Whether answers are compared; otherwise the first one is enough.
     is_compared: bool,
     answers: Vec<Answer>,
 }
@@ -59,22 +59,23 @@ struct Repeated {
 /// The evaluations of a calibration that a second worker is asked for.
 #[derive(Debug, Default)]
 pub struct SecondAnswers {
-    /// Who holds them.
+    /// The leases of these evaluations.
     pub queue: LeaseQueue,
     repeated: BTreeMap<u64, Repeated>,
-    /// The repeated evaluations of which one answer is enough, each with the slow lease that it stands beside.
+    /// The evaluations for which one answer is enough, each with the slow lease beside which it is leased.
     uncompared: BTreeMap<u64, u64>,
-    /// The variants that they evaluate, which the calibration may forget.
+    /// The variants of these evaluations, which the calibration may drop.
     variants: BTreeMap<String, ModelVariant>,
 }
 
 impl SecondAnswers {
-    /// Asks for a second answer, unless too many wait for one; where that is done already, it is compared from now on if one of the two says so.
+    /// Asks for a second answer, unless too many evaluations wait for one. If the evaluation is repeated already, its answers are compared
+    /// from now on, if one of the two calls wants that.
     ///
     /// # Arguments
-    /// - `question`: what is asked.
-    /// - `variant`: the variant of its hash.
-    /// - `slow`: the lease that is too slow: the first answer is enough. Without one, the answers are compared.
+    /// - `question`: the question of the evaluation.
+    /// - `variant`: the variant that the question names.
+    /// - `slow`: the slow lease, so that the first answer is enough. Without one, the answers are compared.
     pub fn ask(
         &mut self,
         evaluation: u64,
@@ -85,7 +86,7 @@ impl SecondAnswers {
         let is_compared = slow.is_none();
         if let Some(repeated) = self.repeated.get_mut(&evaluation) {
             if is_compared && !repeated.is_compared {
-                // Whoever is slow may answer as well; only who has answered may not once more.
+                // The slow worker may still answer. A worker that has answered is not asked again.
                 repeated.is_compared = true;
                 self.uncompared.remove(&evaluation);
                 self.queue.unbar(evaluation);
@@ -115,12 +116,12 @@ impl SecondAnswers {
         );
     }
 
-    /// Whether an evaluation is asked for twice.
+    /// Returns whether a second worker is asked for an evaluation.
     pub fn contains(&self, evaluation: u64) -> bool {
         self.repeated.contains_key(&evaluation)
     }
 
-    /// What an evaluation is leased with.
+    /// Returns the question of an evaluation.
     pub fn question(&self, evaluation: u64) -> Option<Question<'_>> {
         self.repeated.get(&evaluation).map(|repeated| Question {
             variant: &repeated.variant,
@@ -129,12 +130,12 @@ impl SecondAnswers {
         })
     }
 
-    /// The variant of a hash, if something here evaluates it.
+    /// Returns the variant with a hash, if an evaluation here uses it.
     pub fn variant(&self, hash: &str) -> Option<&ModelVariant> {
         self.variants.get(hash)
     }
 
-    /// Takes an answer.
+    /// Takes an answer and compares it with the earlier ones.
     pub fn answered(&mut self, evaluation: u64, answer: Answer) -> Verdict {
         let Some(repeated) = self.repeated.get_mut(&evaluation) else {
             return Verdict::NotAsked;
@@ -168,7 +169,7 @@ impl SecondAnswers {
         }
     }
 
-    /// Asks for an evaluation no more.
+    /// Stops asking for an evaluation.
     pub fn drop(&mut self, evaluation: u64) {
         self.repeated.remove(&evaluation);
         self.uncompared.remove(&evaluation);
@@ -178,7 +179,7 @@ impl SecondAnswers {
         }
     }
 
-    /// Drops what need not be compared and nobody holds, unless it is wanted: asked of the evaluation and the slow lease.
+    /// Drops evaluations without a holder that need not be compared, unless `is_wanted` returns true for the evaluation and its slow lease.
     pub fn drop_idle(&mut self, is_wanted: impl Fn(u64, u64) -> bool) {
         let is_idle = |&(evaluation, lease): &(u64, u64)| {
             !self.queue.is_leased(evaluation) && !is_wanted(evaluation, lease)
@@ -201,8 +202,8 @@ impl SecondAnswers {
         self.queue.take_back_of(|name| name == worker);
     }
 
-    /// Ends the leases whose time has come; how many. What its workers fail at again and again is asked for no more: there is an
-    /// answer, and another one need not be had at any price.
+    /// Ends expired leases. Returns their number. An evaluation that failed repeatedly is dropped, because the second answer is not
+    /// essential.
     pub fn expire(&mut self, now_ms: u64) -> u64 {
         let expired = self.queue.expire(now_ms);
         let exhausted = expired.failures.iter().filter(|failure| failure.exhausted());
@@ -216,8 +217,8 @@ impl SecondAnswers {
         expired.unstarted + expired.failures.len() as u64
     }
 
-    /// Drops what nobody can answer: `can_answer` tells whether there is a worker besides those that have. So is a lease that has been
-    /// out for so long `[ms]`. How many.
+    /// Drops evaluations that no worker can answer, and those whose lease has been out for `hung_ms`. `can_answer` states whether there is
+    /// a worker besides those that have answered. Returns their number.
     pub fn drop_hopeless(
         &mut self,
         can_answer: impl Fn(&[Answer]) -> bool,
@@ -234,7 +235,7 @@ impl SecondAnswers {
         hopeless.len() as u64
     }
 
-    /// Number of evaluations whose answers wait to be compared.
+    /// Returns the number of evaluations that wait for an answer.
     pub fn waiting(&self) -> usize {
         self.repeated.len()
     }

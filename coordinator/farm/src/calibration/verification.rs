@@ -1,15 +1,15 @@
-//! Which evaluations a second worker computes as well.
+//! The choice of the evaluations that a second worker computes as well.
 
 use record::SealKey;
 use sha2::{Digest, Sha256};
 
-/// Whether and how often answers are verified.
+/// The share of verified evaluations, and the key that selects them.
 ///
-/// The choice depends on the calibration's key, which only the coordinator knows: no worker can tell which of its answers are
+/// The choice depends on the calibration's key, which only the coordinator knows. Thus no worker can tell which of its answers are
 /// compared, and a restart chooses the same ones.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Verification {
-    /// Share of the evaluations, in [0, 1]; 0 verifies nothing.
+    /// The share of the evaluations, in [0, 1]; 0 verifies nothing.
     pub share: f64,
     /// The key of the calibration.
     pub key: SealKey,
@@ -22,12 +22,12 @@ impl Verification {
         key: SealKey([0; 16]),
     };
 
-    /// Whether anything is verified.
+    /// Returns whether anything is verified.
     pub fn is_on(self) -> bool {
         self.share > 0.0
     }
 
-    /// Whether an evaluation is among those that are verified whoever answers it.
+    /// Returns whether an evaluation is selected for verification.
     pub fn selects(self, evaluation: u64) -> bool {
         if !self.is_on() {
             return false;

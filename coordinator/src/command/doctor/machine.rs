@@ -1,4 +1,4 @@
-//! The machine: program, processor, clock, file descriptors.
+//! Checks of the machine: program, processor, clock, file descriptors.
 
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
@@ -8,7 +8,7 @@ use super::finding::Finding;
 use crate::config::ARCHITECTURE;
 use crate::embedded::model_version;
 
-/// The beginning of 2026: an earlier clock is wrong.
+/// The beginning of 2026. A clock that shows an earlier time is wrong.
 const EARLIEST: Duration = Duration::from_secs(1_767_225_600);
 /// File descriptors that a service needs for its connections and its store.
 const DESCRIPTORS: u64 = 4_096 + 64;

@@ -12,7 +12,7 @@ use super::finding::Finding;
 use super::service;
 use store::{Reader, StoreError, file_of, is_server, name_of};
 
-/// Time of one record above which a disk is slow: every acknowledged result waits for it.
+/// The time of one write to disk above which a disk is slow, because every acknowledged result waits for one.
 const SLOW: Duration = Duration::from_millis(100);
 /// Free space below which there is a warning, and below which there is a failure `[bytes]`.
 const LITTLE_BYTES: u64 = 1_000_000_000;
@@ -100,7 +100,7 @@ async fn read(store: &str) -> (Finding, bool) {
     }
 }
 
-/// Writes as a store does, and measures the time.
+/// Writes to the disk as a store does, and measures the time.
 fn writable(folder: &Path) -> Finding {
     let probe = folder.join(format!(".grouser-doctor-{}", std::process::id()));
     let begin = Instant::now();
@@ -152,7 +152,7 @@ fn of_space(name: &str, free_bytes: u64) -> Finding {
     }
 }
 
-/// Checks whether a service can listen at an address, or does.
+/// Checks whether a service can listen at an address, or already listens there.
 async fn address(listen: SocketAddr, has_token: bool) -> Finding {
     let refused = match TcpListener::bind(listen).await {
         Ok(_) if !listen.ip().is_loopback() && !has_token => {

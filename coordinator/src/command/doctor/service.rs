@@ -1,4 +1,4 @@
-//! A service: whether it answers, takes the token, and has workers of this version.
+//! Checks of a service: whether it answers, accepts the token, and has workers of this version.
 
 use std::collections::BTreeMap;
 use std::net::SocketAddr;
@@ -108,7 +108,7 @@ fn of_workers(workers: &BTreeMap<String, Worker>, url: &str) -> Vec<Finding> {
     findings
 }
 
-/// The version of the coordinator that listens at an address of this machine, if one does.
+/// Returns the version of the coordinator that listens at an address of this machine, if one does.
 pub(super) async fn version_at(address: SocketAddr) -> Option<String> {
     let arguments = ClientArguments {
         token_file: None,
@@ -124,7 +124,7 @@ pub(super) async fn version_at(address: SocketAddr) -> Option<String> {
     Some(health.version)
 }
 
-/// Requests an answer from a service; another program may accept the connection and stay silent.
+/// Requests an answer from a service within [`PATIENCE`], because another program may accept the connection and stay silent.
 async fn ask<T: DeserializeOwned>(service: &Place, path: &str) -> anyhow::Result<T> {
     let answer = tokio::time::timeout(PATIENCE, service.get(path)).await;
     answer.map_err(|_| anyhow!("no answer within {} s", PATIENCE.as_secs()))?

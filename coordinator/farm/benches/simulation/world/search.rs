@@ -1,4 +1,4 @@
-//! Many schedules on all cores, until a promise is broken.
+//! A search over many schedules on all cores for a broken promise.
 
 use std::ops::Range;
 use std::sync::Mutex;
@@ -11,17 +11,17 @@ use super::promise::Broken;
 use super::schedule::{self, Journal};
 use super::tally::Tally;
 
-/// What many schedules gave.
+/// The result of a search.
 #[derive(Debug)]
 pub(crate) struct Search {
-    /// Of the schedules that kept every promise.
+    /// The counts of the schedules that kept every promise.
     pub(crate) tally: Tally,
     /// The lowest seed found that breaks a promise.
     pub(crate) broken: Option<(u64, Broken)>,
     pub(crate) time: Duration,
 }
 
-/// Runs the schedules of some seeds on all cores, until a promise is broken or the time is up.
+/// Runs the schedules of some seeds on all cores, until a promise is broken or the time is over.
 pub(crate) fn search(
     cases: &[Vec<Case>],
     plant: Option<Plant>,
@@ -45,7 +45,7 @@ pub(crate) fn search(
             }
         }
         if broken.is_some() {
-            // The others stop, too.
+            // This ends the other threads, too.
             next.store(u64::MAX / 2, Ordering::Relaxed);
         }
         let mut found = found.lock().expect("no schedule panics while it is held");

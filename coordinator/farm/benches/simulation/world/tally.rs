@@ -1,9 +1,9 @@
-//! What happened in schedules, counted.
+//! Counts of the events in schedules.
 
 use std::fmt;
 use std::ops::AddAssign;
 
-/// What happened in schedules, counted.
+/// Counts of the events in schedules.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub(crate) struct Tally {
     pub(crate) schedules: u64,

@@ -7,7 +7,7 @@ fn queue(evaluations: u64) -> LeaseQueue {
     queue
 }
 
-/// Claims for the only worker there is.
+/// Claims for the only worker.
 fn claim(queue: &mut LeaseQueue, worker: &str, want: usize, holds: usize, first: u64) -> Vec<(u64, u64)> {
     claim_beside(queue, worker, want, holds, first, &[])
 }
@@ -152,7 +152,7 @@ fn a_renewed_lease_outlives_its_first_time() {
 }
 
 proptest! {
-    /// Whatever happens in whatever order, no evaluation is held twice, none is lost, each completes once.
+    /// For events in any order, no evaluation is held twice, none is lost, and each completes once.
     #[test]
     fn random_histories_lose_nothing(steps in prop::collection::vec((0u8..7, 0u64..12), 1..200)) {
         let mut queue = queue(12);
