@@ -37,9 +37,9 @@ async fn run() -> std::process::ExitCode {
                 std::process::ExitCode::from(stopped.exit_status())
             }
             None => {
-                let said = refuse(of_causes(error.chain()));
+                let status = refuse(of_causes(error.chain()));
                 let worker = error.downcast_ref::<coordinator::embedded::WorkerError>();
-                worker.map_or(said, |error| error.status().into())
+                worker.map_or(status, |error| error.status().into())
             }
         },
     }

@@ -79,8 +79,10 @@ pub struct Dispatcher {
 pub struct Stopped;
 
 impl Dispatcher {
-    /// Starts the farm's thread. Facts go to `sink`; when the store fails, the thread ends. The owner of the store receives the
-    /// calibrations to replay from the returned channel, and returns each by [`Dispatcher::add`].
+    /// Starts the farm's thread.
+    ///
+    /// Facts go to `sink`; when the store fails, the thread ends. The owner of the store receives the calibrations to replay from the
+    /// returned channel, and returns each by [`Dispatcher::add`].
     ///
     /// # Errors
     /// The operating system refuses a thread.
@@ -124,17 +126,11 @@ impl Dispatcher {
     }
 
     /// Sends a worker's exchange, which is parked until there is work or its waiting time is over.
-    ///
-    /// # Errors
-    /// [`Stopped`].
     pub async fn exchange(&self, request: ExchangeRequest) -> Result<Durable<ExchangeResponse>, Stopped> {
         self.reply(|reply| Message::Exchange { request, reply }).await
     }
 
     /// Adds a calibration, with facts of its replay that may have been lost.
-    ///
-    /// # Errors
-    /// [`Stopped`].
     pub async fn add(&self, calibration: Calibration, key: SealKey, facts: Vec<Fact>) -> Result<(), Stopped> {
         let calibration = Box::new(calibration);
         let add = |reply| Message::Add {
@@ -147,9 +143,6 @@ impl Dispatcher {
     }
 
     /// Reports that a requested replay failed.
-    ///
-    /// # Errors
-    /// [`Stopped`].
     pub fn rewind_failed(&self, id: i64, reason: String) -> Result<(), Stopped> {
         self.send(Message::RewindFailed { id, reason })
     }
@@ -163,17 +156,11 @@ impl Dispatcher {
     }
 
     /// Returns the status of a calibration in progress; `None` if it is over or does not exist.
-    ///
-    /// # Errors
-    /// [`Stopped`].
     pub async fn status(&self, id: i64) -> Result<Option<CalibrationStatus>, Stopped> {
         self.look(move |farm, now| farm.status(id, now)).await
     }
 
     /// Returns the status of every calibration in progress, by id.
-    ///
-    /// # Errors
-    /// [`Stopped`].
     pub async fn statuses(&self) -> Result<BTreeMap<i64, CalibrationStatus>, Stopped> {
         self.look(|farm, now| {
             farm.ids()
@@ -185,33 +172,21 @@ impl Dispatcher {
     }
 
     /// Returns the known workers.
-    ///
-    /// # Errors
-    /// [`Stopped`].
     pub async fn workers(&self) -> Result<BTreeMap<String, WorkerRecord>, Stopped> {
         self.look(|farm, now| farm.workers(now)).await
     }
 
     /// Returns the variant of a hash.
-    ///
-    /// # Errors
-    /// [`Stopped`].
     pub async fn variant(&self, hash: String) -> Result<Option<ModelVariant>, Stopped> {
         self.look(move |farm, _| farm.variant(&hash)).await
     }
 
     /// Returns the amount of work.
-    ///
-    /// # Errors
-    /// [`Stopped`].
     pub async fn demand(&self) -> Result<WorkDemand, Stopped> {
         self.look(|farm, _| farm.demand()).await
     }
 
     /// Returns numbers for the metrics page.
-    ///
-    /// # Errors
-    /// [`Stopped`].
     pub async fn metrics(&self) -> Result<FarmMetrics, Stopped> {
         self.look(|farm, _| farm.metrics()).await
     }

@@ -170,9 +170,9 @@ impl Farm {
             stated.is_none_or(|stated| equations_of(stated) != equations_of(&version))
         };
         let workers = self.workers.iter().filter(|(_, worker)| is_other(worker));
-        let others: Vec<&String> = workers.map(|(name, _)| name).collect();
+        let other_workers: Vec<&String> = workers.map(|(name, _)| name).collect();
         let queue = &mut calibration.queue;
-        queue.take_back_of(|name| others.iter().any(|other| *other == name));
+        queue.take_back_of(|name| other_workers.iter().any(|other| *other == name));
         calibration.model_version = Some(version.clone());
         let calibration = id;
         self.facts.push(Fact::ModelVersion { calibration, version });

@@ -49,7 +49,7 @@ fn planted_bugs_are_found() {
     let cases = cases();
     // These bugs need rare sequences of events, which only the bench reaches.
     let rare = [Plant::HoleInFacts, Plant::KeyAgain];
-    for plant in Plant::ALL.into_iter().filter(|plant| !rare.contains(plant)) {
+    for plant in Plant::ALL.iter().copied().filter(|plant| !rare.contains(plant)) {
         let found = search(&cases, Some(plant), 1..SCHEDULES + 1, None).broken;
         assert!(found.is_some(), "{plant:?} is not found in {SCHEDULES} schedules");
     }

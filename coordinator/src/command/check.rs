@@ -21,7 +21,9 @@ const PILOT_S: f64 = 30.0;
 pub(super) async fn check(config: &CheckArguments) -> anyhow::Result<()> {
     let job = job_on_disk::read(&config.file, &[])?;
     let allowed = Arc::new(LocalModels::new(&config.models.allow_model).map_err(anyhow::Error::msg)?);
-    let models: Vec<Spec> = std::iter::once(job.spec.clone()).chain(job.others).collect();
+    let models: Vec<Spec> = std::iter::once(job.spec.clone())
+        .chain(job.alternatives)
+        .collect();
     let mut text = String::new();
     for (number, spec) in models.iter().enumerate() {
         if models.len() > 1 {

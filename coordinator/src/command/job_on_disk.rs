@@ -24,15 +24,18 @@ pub(super) struct JobOnDisk {
     /// The specification; with the first model where the job compares several.
     pub(super) spec: Spec,
     /// The specifications with each of the other models.
-    pub(super) others: Vec<Spec>,
+    pub(super) alternatives: Vec<Spec>,
 }
 
-/// Reads and validates a job and its experiment. Of the effects that it lists, `own` are in the catalogue of a service.
-pub(super) fn read(file: &JobArguments, own: &[ServiceEffect]) -> Result<JobOnDisk, FileError> {
+/// Reads and validates a job and its experiment. Of the effects that it lists, `service_effects` are in the catalogue of a service.
+pub(super) fn read(file: &JobArguments, service_effects: &[ServiceEffect]) -> Result<JobOnDisk, FileError> {
     let path = &file.job;
     let job_name = path.display().to_string();
     let written = read_text(path)?;
-    let mut models = Job::parse_models(&job_name, &without_service_effects(&job_name, &written, own)?)?;
+    let mut models = Job::parse_models(
+        &job_name,
+        &without_service_effects(&job_name, &written, service_effects)?,
+    )?;
     for name in &file.accept {
         models.accept(name).map_err(|e| FileError::whole(&job_name, e))?;
     }
@@ -50,8 +53,8 @@ pub(super) fn read(file: &JobArguments, own: &[ServiceEffect]) -> Result<JobOnDi
     let files = read_beside(path, &job.named_files())?;
     let added = added_files(&file.effect_file)?;
     let names: Vec<String> = added.keys().cloned().collect();
-    let of_service: Vec<String> = own.iter().map(|own| own.file.clone()).collect();
-    for (effects, files) in [(&file.effect[..], &names), (&[], &of_service)] {
+    let service_files: Vec<String> = service_effects.iter().map(|effect| effect.file.clone()).collect();
+    for (effects, files) in [(&file.effect[..], &names), (&[], &service_files)] {
         let added = job.list_effects(effects, files);
         added.map_err(|e| FileError::whole(&job_name, e))?;
     }
@@ -66,12 +69,12 @@ pub(super) fn read(file: &JobArguments, own: &[ServiceEffect]) -> Result<JobOnDi
         ..Addition::default()
     };
     let kept = extended_job(&job_name, &FileSet { toml, files }, &addition)?;
-    let kept = with_service_effects(&job_name, kept, own)?;
+    let kept = with_service_effects(&job_name, kept, service_effects)?;
     let mut specs = Spec::of_models(&job_name, models, &kept.files, &experiment_name, &experiment)?;
     for spec in &specs {
         check_accepted(spec).map_err(|e| FileError::whole(&job_name, e.to_string()))?;
     }
-    let others = specs.split_off(1);
+    let alternatives = specs.split_off(1);
     let spec = specs.remove(0);
     let effects = file.effect.iter().map(String::as_str);
     let additions = effects.chain(names.iter().map(|name| stem(name)));
@@ -81,7 +84,7 @@ pub(super) fn read(file: &JobArguments, own: &[ServiceEffect]) -> Result<JobOnDi
         job: kept,
         experiment,
         spec,
-        others,
+        alternatives,
     })
 }
 

@@ -16,7 +16,7 @@ use report::model_limits;
 pub(super) async fn run(config: RunArguments) -> anyhow::Result<()> {
     let job = job_on_disk::read(&config.file, &[])?;
     for text in std::iter::once(&job.spec)
-        .chain(&job.others)
+        .chain(&job.alternatives)
         .flat_map(model_limits)
     {
         note(&format!("note: {text}"));
@@ -58,7 +58,7 @@ async fn take_up(job: &JobOnDisk, folder: &Folder) -> anyhow::Result<i64> {
     let rows = service.store().reader().calibrations().await?;
     let mut rows = rows.into_iter().map(|(_, row)| row);
     let Some(first) = rows.next() else {
-        for spec in std::iter::once(&job.spec).chain(&job.others) {
+        for spec in std::iter::once(&job.spec).chain(&job.alternatives) {
             folder.equations_of(spec).await?;
         }
         let experiment = NewExperiment {
@@ -78,7 +78,7 @@ async fn take_up(job: &JobOnDisk, folder: &Folder) -> anyhow::Result<i64> {
     // The other members of the study follow from the first one, or were added by a user.
     let first = first?;
     let mut is_same = service.spec_of(&first).await?.same_as(&job.spec);
-    for (row, spec) in rows.zip(&job.others) {
+    for (row, spec) in rows.zip(&job.alternatives) {
         let row = row?;
         is_same = is_same && same_model(service.spec_of(&row).await?, spec);
     }

@@ -110,8 +110,7 @@ fn name_number(path: &str, operation: &mut Operation) {
 
 /// Adds the answers of the gate, and those to unreadable requests, where the handler states none with this status.
 fn add_refusals(operation: &mut Operation, refusals: &[(&str, &str)]) {
-    let is_query =
-        |own: &RefOr<Parameter>| matches!(own, RefOr::T(own) if own.parameter_in == ParameterIn::Query);
+    let is_query = |parameter: &RefOr<Parameter>| matches!(parameter, RefOr::T(parameter) if parameter.parameter_in == ParameterIn::Query);
     let has_query = operation.parameters.iter().flatten().any(is_query);
     let is_read = operation.request_body.is_some() || has_query;
     let malformed = if is_read { &UNREADABLE } else { &BROKEN };

@@ -86,10 +86,10 @@ mod tests {
     }
 
     fn pilots(pending: &[&str], running: &[&str]) -> Pilots {
-        let own = |names: &[&str]| names.iter().map(|&name| name.to_owned()).collect();
+        let owned = |names: &[&str]| names.iter().map(|&name| name.to_owned()).collect();
         Pilots {
-            pending: own(pending),
-            running: own(running),
+            pending: owned(pending),
+            running: owned(running),
         }
     }
 

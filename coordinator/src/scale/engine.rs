@@ -41,8 +41,10 @@ impl Engine {
         }
     }
 
-    /// Returns the change that brings the number of pilots to the wanted one. Kubernetes ends surplus pods. Of other engines, only waiting
-    /// pilots are cancelled, and running pilots end by themselves when they have no work.
+    /// Returns the change that brings the number of pilots to the wanted one.
+    ///
+    /// Kubernetes ends surplus pods. Of other engines, only waiting pilots are cancelled, and running pilots end by themselves when they
+    /// have no work.
     pub fn resize(&self, settings: &PilotSettings, pilots: &Pilots, wanted: u32) -> Change {
         let present = pilots.count();
         let started = wanted.saturating_sub(present);
@@ -121,10 +123,10 @@ mod tests {
     }
 
     fn pilots(pending: &[&str], running: &[&str]) -> Pilots {
-        let own = |names: &[&str]| names.iter().map(|&name| name.to_owned()).collect();
+        let owned = |names: &[&str]| names.iter().map(|&name| name.to_owned()).collect();
         Pilots {
-            pending: own(pending),
-            running: own(running),
+            pending: owned(pending),
+            running: owned(running),
         }
     }
 

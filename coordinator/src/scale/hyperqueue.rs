@@ -31,7 +31,7 @@ pub(super) fn list() -> Invocation {
 pub(super) fn pilots(answer: &str, settings: &PilotSettings) -> Result<Pilots, ProgramError> {
     let jobs: Vec<Job> = serde_json::from_str(answer).map_err(|_| ProgramError::Answer {
         program: "hq",
-        said: answer.trim().to_owned(),
+        answer: answer.trim().to_owned(),
     })?;
     let mut pilots = Pilots::default();
     for job in jobs.into_iter().filter(|job| job.name == settings.name) {

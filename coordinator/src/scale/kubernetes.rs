@@ -28,8 +28,8 @@ struct Status {
 }
 
 fn kubectl(settings: &PilotSettings, arguments: &[&str]) -> Invocation {
-    let own = arguments.iter().map(|&argument| argument.to_owned());
-    Invocation::new("kubectl", own.chain(settings.options.iter().cloned()))
+    let arguments = arguments.iter().map(|&argument| argument.to_owned());
+    Invocation::new("kubectl", arguments.chain(settings.options.iter().cloned()))
 }
 
 /// Returns the call that reads the deployment.
@@ -41,7 +41,7 @@ pub(super) fn list(settings: &PilotSettings) -> Invocation {
 pub(super) fn pilots(answer: &str) -> Result<Pilots, ProgramError> {
     let Deployment { spec, status } = serde_json::from_str(answer).map_err(|_| ProgramError::Answer {
         program: "kubectl",
-        said: answer.trim().to_owned(),
+        answer: answer.trim().to_owned(),
     })?;
     let running = status.ready_replicas.min(spec.replicas) as usize;
     let pods = vec!["pod".to_owned(); spec.replicas as usize];

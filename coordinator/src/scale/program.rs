@@ -25,15 +25,15 @@ pub enum ProgramError {
     #[error("{program}: no answer within {} s", PATIENCE.as_secs())]
     Silent { program: &'static str },
     /// It failed.
-    #[error("{program}: {status}: {said}")]
+    #[error("{program}: {status}: {answer}")]
     Failed {
         program: &'static str,
         status: ExitStatus,
-        said: String,
+        answer: String,
     },
     /// Its answer does not have the form of the supported versions.
-    #[error("{program}: unexpected answer {said:?}")]
-    Answer { program: &'static str, said: String },
+    #[error("{program}: unexpected answer {answer:?}")]
+    Answer { program: &'static str, answer: String },
 }
 
 /// A call of a program, with its arguments, environment and input.
@@ -89,7 +89,7 @@ impl Invocation {
         Err(ProgramError::Failed {
             program,
             status: output.status,
-            said: String::from_utf8_lossy(&output.stderr).trim().to_owned(),
+            answer: String::from_utf8_lossy(&output.stderr).trim().to_owned(),
         })
     }
 }

@@ -22,7 +22,7 @@ pub(super) fn pilots(answer: &str) -> Result<Pilots, ProgramError> {
         let Some((job, state)) = line.trim().split_once(' ') else {
             return Err(ProgramError::Answer {
                 program: "squeue",
-                said: line.to_owned(),
+                answer: line.to_owned(),
             });
         };
         match state {

@@ -28,7 +28,7 @@ impl Service {
     /// [`ServiceError`]: the effect is unknown, or the job has it already.
     pub async fn extend(&self, id: i64, extension: Extension) -> Result<CalibrationCreated, ServiceError> {
         let _growing = self.growing.lock().await;
-        let extension = self.of_own_effect(extension).await?;
+        let extension = self.with_user_effect(extension).await?;
         self.extended(id, &extension).await
     }
 

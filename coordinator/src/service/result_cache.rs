@@ -33,7 +33,12 @@ impl ResultCache {
         name: &str,
         stamp: &Stamp,
     ) -> Result<Option<String>, StoreError> {
-        if let Some(text) = self.store.reader().result(study, name, &stamp.to_string()).await? {
+        if let Some(text) = self
+            .store
+            .reader()
+            .result(study, name, &stamp.to_string())
+            .await?
+        {
             // Another process has stored newer texts than those in memory.
             self.in_memory()
                 .retain(|id, kept| *id != study || kept.stamp == *stamp);
@@ -45,10 +50,7 @@ impl ResultCache {
     }
 
     /// Returns the text with one name of every study that has it, with its stamp.
-    pub(super) async fn of_every_study(
-        &self,
-        name: &str,
-    ) -> Result<BTreeMap<i64, (String, String)>, StoreError> {
+    pub(super) async fn texts(&self, name: &str) -> Result<BTreeMap<i64, (String, String)>, StoreError> {
         let mut found = self.store.reader().results(name).await?;
         let in_memory = self.in_memory();
         let kept = in_memory.iter().filter_map(|(study, kept)| {
@@ -111,7 +113,12 @@ mod tests {
             };
             cache.keep(results).await.unwrap();
         };
-        keep(1, &now, &[StudyFile::Overview, StudyFile::ListItem, StudyFile::Report]).await;
+        keep(
+            1,
+            &now,
+            &[StudyFile::Overview, StudyFile::ListItem, StudyFile::Report],
+        )
+        .await;
         keep(1, &now, &[StudyFile::Report]).await;
         keep(1, &then, &[StudyFile::Overview]).await;
         keep(2, &now, &[StudyFile::ListItem]).await;
@@ -120,7 +127,7 @@ mod tests {
         assert_eq!(overview, format!("text of 1 by {now}"));
         assert_eq!(text(StudyFile::Overview, &then).await, None);
         assert_eq!(text(StudyFile::Report, &now).await, None);
-        let listed = async || cache.of_every_study(&StudyFile::ListItem.name()).await.unwrap();
+        let listed = async || cache.texts(&StudyFile::ListItem.name()).await.unwrap();
         assert_eq!(listed().await[&2].0, now.to_string());
         cache.forget_deleted(|study| study == 1);
         assert_eq!(listed().await.into_keys().collect::<Vec<_>>(), [1]);

@@ -84,7 +84,7 @@ impl Service {
         for status in self.list(true).await?.into_iter().filter(|s| s.study != 0) {
             studies.entry(status.study).or_default().push(status);
         }
-        let mut listed = self.results.of_every_study(&StudyFile::ListItem.name()).await?;
+        let mut listed = self.results.texts(&StudyFile::ListItem.name()).await?;
         let item = |(id, members): (i64, Vec<CalibrationStatus>)| {
             let stamp = members_stamp(members.iter().map(|member| (member.id, member.state)));
             let lead = members.first()?;
@@ -135,7 +135,7 @@ impl Service {
 
     /// Returns the studies whose present members have no overview yet, each with the part of the stamp that the members determine.
     async fn studies_without_overview(&self) -> Result<BTreeMap<i64, String>, ServiceError> {
-        let listed = self.results.of_every_study(&StudyFile::ListItem.name()).await?;
+        let listed = self.results.texts(&StudyFile::ListItem.name()).await?;
         // Results of a study that is deleted in parts are not stored.
         let deleted = self.store().reader().half_deleted().await?;
         let mut studies: BTreeMap<i64, Vec<(i64, CalibrationState)>> = BTreeMap::new();

@@ -108,8 +108,8 @@ mod tests {
         )
     }
 
-    fn search(id: i64, of: i64) -> CalibrationRow {
-        CalibrationRow::finished(id, Membership::search_of(of))
+    fn search(id: i64, parent: i64) -> CalibrationRow {
+        CalibrationRow::finished(id, Membership::search_of(parent))
     }
 
     fn found() -> Discovery {

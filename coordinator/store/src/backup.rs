@@ -67,6 +67,6 @@ impl Reader {
     async fn copy_to(&self, file: &Path) -> Result<(), StoreError> {
         let name = file.display().to_string();
         let copied = query("VACUUM INTO ?").bind(&name).execute(&self.pool).await;
-        copied.map(drop).map_err(|source| StoreError::of(&name, source))
+        copied.map(drop).map_err(|source| StoreError::new(&name, source))
     }
 }

@@ -17,7 +17,7 @@ pub struct StateChange {
 
 impl StateChange {
     /// Returns the change of state that a fact describes; `None` for other facts.
-    pub(super) fn of(fact: &Fact) -> Option<StateChange> {
+    pub(super) fn from_fact(fact: &Fact) -> Option<StateChange> {
         let Fact::State {
             calibration,
             state,

@@ -67,7 +67,7 @@ pub async fn copy_store(from: &str, to: &str) -> Result<Vec<(String, u64)>, Stor
     }
     let wrap = |path: &str| {
         let path = path.to_owned();
-        move |source| StoreError::of(&path, source)
+        move |source| StoreError::new(&path, source)
     };
     let mut source = reader.pool.view().await.map_err(wrap(from))?;
     let (mut target, _lock) = opening::to_write(to).await?;

@@ -19,7 +19,7 @@ const INTERRUPTED: u32 = 9;
 /// # Errors
 /// [`StoreError::Damaged`] with the first damaged table.
 pub(super) async fn check(connection: &mut SqliteConnection, path: &str) -> Result<(), StoreError> {
-    let wrap = |source| StoreError::of(path, source);
+    let wrap = |source| StoreError::new(path, source);
     let tables = "SELECT name FROM sqlite_schema WHERE type = 'table' AND name NOT LIKE 'sqlite%'
                   ORDER BY name = 'evaluations', name = 'samples', name";
     let tables: Vec<String> = sqlx::query_scalar(tables)

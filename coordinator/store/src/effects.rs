@@ -88,10 +88,7 @@ pub(super) async fn insert_effect(
 
 impl Reader {
     /// Reads the last version of every effect that users have added, by name. A store of before migration 17 has none.
-    ///
-    /// # Errors
-    /// [`StoreError`].
-    pub async fn own_effects(&self) -> Result<Vec<StoredEffect>, StoreError> {
+    pub async fn user_effects(&self) -> Result<Vec<StoredEffect>, StoreError> {
         if !self.has_table("effects").await? {
             return Ok(Vec::new());
         }
@@ -102,9 +99,6 @@ impl Reader {
     }
 
     /// Reads every version of an effect that users have added, oldest first.
-    ///
-    /// # Errors
-    /// [`StoreError`].
     pub async fn effect_versions(&self, name: &str) -> Result<Vec<StoredEffect>, StoreError> {
         if !self.has_table("effects").await? {
             return Ok(Vec::new());

@@ -28,7 +28,7 @@ pub enum StoreError {
     },
     /// The file was written by a later version of the program.
     #[error(
-        "store {path}: a newer version of Grouser wrote it: its tables have version {found}, this program knows versions up to {known}; use the newer program"
+        "store {path}: a newer version of Grouser wrote it: its tables have version {found}, this program knows versions up to {supported}; use the newer program"
     )]
     Newer {
         /// The file.
@@ -36,7 +36,7 @@ pub enum StoreError {
         /// Version of its tables.
         found: i64,
         /// The latest version that this program knows.
-        known: i64,
+        supported: i64,
     },
     /// The file is damaged.
     #[error(
@@ -92,7 +92,7 @@ pub(super) fn primary_code(error: &sqlx::Error) -> Option<u32> {
 
 impl StoreError {
     /// Makes a store error from an error of SQLite about a file.
-    pub(super) fn of(path: &str, source: sqlx::Error) -> StoreError {
+    pub(super) fn new(path: &str, source: sqlx::Error) -> StoreError {
         let path = name_of(path);
         match is_locked(&source) {
             true => StoreError::Locked { path },
@@ -101,12 +101,12 @@ impl StoreError {
     }
 
     /// Makes a store error from an error of a migration.
-    pub(super) fn of_migration(path: &str, source: MigrateError) -> StoreError {
+    pub(super) fn from_migration(path: &str, source: MigrateError) -> StoreError {
         match source {
             MigrateError::Execute(source) | MigrateError::ExecuteMigration(source, _)
                 if is_locked(&source) =>
             {
-                StoreError::of(path, source)
+                StoreError::new(path, source)
             }
             source => StoreError::Migrate {
                 path: name_of(path),

@@ -27,9 +27,9 @@ pub(super) fn options(path: &str) -> SqliteConnectOptions {
 
 /// Refuses a database that another program or a later version of this program has made.
 pub(super) async fn recognise(connection: &mut SqliteConnection, path: &str) -> Result<(), StoreError> {
-    let wrap = |source| StoreError::of(path, source);
+    let wrap = |source| StoreError::new(path, source);
     let ours = "SELECT count(*) FROM sqlite_schema WHERE name = '_sqlx_migrations' OR name = 'calibrations'";
-    let known: i64 = sqlx::query_scalar(ours)
+    let supported: i64 = sqlx::query_scalar(ours)
         .fetch_one(&mut *connection)
         .await
         .map_err(wrap)?;
@@ -40,7 +40,7 @@ pub(super) async fn recognise(connection: &mut SqliteConnection, path: &str) -> 
     if all == 0 {
         return Ok(());
     }
-    if known != 2 {
+    if supported != 2 {
         return Err(StoreError::Unfit {
             path: file_of(path).into(),
             reason: "the database was not created by Grouser".into(),
@@ -50,10 +50,14 @@ pub(super) async fn recognise(connection: &mut SqliteConnection, path: &str) -> 
         .fetch_one(connection)
         .await
         .map_err(wrap)?;
-    let (found, known) = (found.unwrap_or_default(), migrations::VERSION);
-    if found > known {
+    let (found, supported) = (found.unwrap_or_default(), migrations::VERSION);
+    if found > supported {
         let path = file_of(path).into();
-        return Err(StoreError::Newer { path, found, known });
+        return Err(StoreError::Newer {
+            path,
+            found,
+            supported,
+        });
     }
     Ok(())
 }
@@ -62,7 +66,7 @@ pub(super) async fn recognise(connection: &mut SqliteConnection, path: &str) -> 
 pub(super) async fn connect(path: &str, may_create: bool) -> Result<Connection, StoreError> {
     let options = writing(path).create_if_missing(may_create);
     let connected = SqliteConnection::connect_with(&options).await;
-    let mut connection = connected.map_err(|source| StoreError::of(path, source))?;
+    let mut connection = connected.map_err(|source| StoreError::new(path, source))?;
     recognise(&mut connection, path).await?;
     Ok(Connection::Sqlite(connection))
 }

@@ -75,7 +75,7 @@ impl Store {
     /// # Errors
     /// [`StoreError`] with the store and the database's reason; [`StoreError::InUse`] where another coordinator holds it.
     pub async fn open(path: &str, now_ms: i64) -> Result<Store, StoreError> {
-        let wrap = |source| StoreError::of(path, source);
+        let wrap = |source| StoreError::new(path, source);
         let (mut connection, lock) = opening::to_write(path).await?;
         let epoch = begin_epoch(&mut connection, now_ms).await.map_err(wrap)?;
         let pool = match is_server(path) {
@@ -84,7 +84,7 @@ impl Store {
         };
         let writer = Writer::start(connection, lock);
         Ok(Store {
-            reader: Reader::of(pool),
+            reader: Reader::new(pool),
             writer,
             file: (!is_server(path)).then(|| file_of(path).into()),
             epoch,
@@ -93,9 +93,6 @@ impl Store {
     }
 
     /// Opens a store for reading alone, also beside a coordinator that writes to it. The writer of such a store refuses every write.
-    ///
-    /// # Errors
-    /// [`StoreError`].
     pub async fn open_read_only(path: &str) -> Result<Store, StoreError> {
         Ok(Store {
             reader: Reader::open(path).await?,

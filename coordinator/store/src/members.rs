@@ -41,7 +41,7 @@ pub(super) struct Filled {
 /// # Errors
 /// The error of the database.
 pub(super) async fn fill(connection: &mut Connection, path: &str) -> Result<(), StoreError> {
-    let wrap = |source| StoreError::of(path, source);
+    let wrap = |source| StoreError::new(path, source);
     let empty = query_scalar("SELECT count(*) FROM calibrations WHERE role IS NULL");
     let empty: i64 = empty.fetch_one(&mut *connection).await.map_err(wrap)?;
     if empty == 0 {
@@ -86,7 +86,7 @@ pub(super) async fn filled(on: impl Into<On<'_>>) -> Result<BTreeMap<i64, Filled
     .await?;
     let rows: Vec<EarlierRow> = rows.iter().map(earlier_row).collect::<Result<_, _>>()?;
     let studies = rows.chunk_by(|a, b| a.study == b.study);
-    Ok(studies.flat_map(of_study).collect())
+    Ok(studies.flat_map(filled_study).collect())
 }
 
 fn earlier_row(row: &Row) -> Result<EarlierRow, sqlx::Error> {
@@ -106,7 +106,7 @@ fn earlier_row(row: &Row) -> Result<EarlierRow, sqlx::Error> {
 }
 
 /// Computes the new columns for the calibrations of a study, oldest first.
-fn of_study(rows: &[EarlierRow]) -> Vec<(i64, Filled)> {
+fn filled_study(rows: &[EarlierRow]) -> Vec<(i64, Filled)> {
     let (searches, calibrations): (Vec<&EarlierRow>, Vec<&EarlierRow>) =
         rows.iter().partition(|row| is_earlier_search(&row.job.toml));
     // A job that this version does not understand compares no models.
@@ -256,7 +256,7 @@ mod tests {
 
     /// Returns the memberships by id.
     fn memberships(rows: &[EarlierRow]) -> BTreeMap<i64, Membership> {
-        let filled = of_study(rows);
+        let filled = filled_study(rows);
         filled
             .into_iter()
             .map(|(id, filled)| (id, filled.membership))
@@ -332,7 +332,7 @@ mod tests {
         assert_eq!(given[&3], Membership::search_of(2));
         assert_eq!(given[&4], Membership::search_of(1));
         // This version reads the job that it stands for.
-        let filled: BTreeMap<i64, Filled> = of_study(&rows).into_iter().collect();
+        let filled: BTreeMap<i64, Filled> = filled_study(&rows).into_iter().collect();
         let toml = filled[&3].toml.clone().unwrap();
         assert_eq!(Job::parse(JOB, &toml).unwrap().algorithm.seed(), 7);
         assert!(toml.contains("n = 1.0"), "{toml}");
@@ -362,7 +362,7 @@ mod tests {
         // The searched calibration has been lost: the search stays with the study, and with its own model.
         let lost = row(9, "lost", &format!("{MODEL}n = 1.0\n"));
         let rows = [row(1, "sand", MODEL), search_row(3, &lost)];
-        let filled: BTreeMap<i64, Filled> = of_study(&rows).into_iter().collect();
+        let filled: BTreeMap<i64, Filled> = filled_study(&rows).into_iter().collect();
         assert_eq!(filled[&3].membership, Membership::search_of(1));
         assert!(filled[&3].toml.as_ref().unwrap().contains("n = 1.0"));
     }

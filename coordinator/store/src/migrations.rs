@@ -53,15 +53,15 @@ pub(super) const VERSION: i64 = FILES[FILES.len() - 1].0;
 
 /// Returns the migrations of a file.
 pub(super) fn migrator() -> Migrator {
-    of(FILES)
+    from_files(FILES)
 }
 
 /// Returns the migrations of a server.
 pub(super) fn server_migrator() -> Migrator {
-    of(SERVER_FILES)
+    from_files(SERVER_FILES)
 }
 
-fn of(files: &[(i64, &'static str, &'static str)]) -> Migrator {
+fn from_files(files: &[(i64, &'static str, &'static str)]) -> Migrator {
     let migration = |&(version, name, sql): &(i64, &'static str, &'static str)| {
         Migration::new(
             version,

@@ -86,6 +86,6 @@ async fn migrate(connection: &mut Connection, path: &str) -> Result<(), StoreErr
         Connection::Sqlite(connection) => migrations::migrator().run(connection).await,
         Connection::Postgres(connection) => migrations::server_migrator().run(connection).await,
     };
-    migrated.map_err(|source| StoreError::of_migration(path, source))?;
+    migrated.map_err(|source| StoreError::from_migration(path, source))?;
     members::fill(connection, path).await
 }

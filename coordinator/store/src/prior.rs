@@ -14,9 +14,6 @@ impl Reader {
     ///
     /// # Arguments
     /// - `count`: the number of draws.
-    ///
-    /// # Errors
-    /// [`StoreError`].
     pub async fn prior_draws(&self, calibration: i64, count: usize) -> Result<Vec<PriorDraw>, StoreError> {
         let rows = query(
             "SELECT e.theta, e.rejection, e.fitted,
@@ -43,9 +40,6 @@ impl Reader {
     }
 
     /// Reads how often leases failed, by message.
-    ///
-    /// # Errors
-    /// [`StoreError`].
     pub async fn faults(&self, calibration: i64) -> Result<BTreeMap<String, u64>, StoreError> {
         let rows = query(
             "SELECT message, count(*) AS n FROM faults WHERE calibration = ? AND attempt > 0 GROUP BY message",
@@ -60,9 +54,6 @@ impl Reader {
     }
 
     /// Reads the number of evaluations that were given up after faults.
-    ///
-    /// # Errors
-    /// [`StoreError`].
     pub async fn given_up(&self, calibration: i64) -> Result<u64, StoreError> {
         let count: i64 =
             query_scalar("SELECT count(*) FROM evaluations WHERE calibration = ? AND worker = ''")
@@ -73,9 +64,6 @@ impl Reader {
     }
 
     /// Reads the evaluations that have two different answers, in order. A store of before migration 12 has none.
-    ///
-    /// # Errors
-    /// [`StoreError`].
     pub async fn disputes(&self, calibration: i64) -> Result<Vec<Dispute>, StoreError> {
         if !self.has_table("disputes").await? {
             return Ok(Vec::new());

@@ -49,9 +49,6 @@ pub struct StoredWebhook {
 
 impl Reader {
     /// Reads the web hook of a calibration's study, if it has one.
-    ///
-    /// # Errors
-    /// [`StoreError`].
     pub async fn webhook(&self, calibration: i64) -> Result<Option<StoredWebhook>, StoreError> {
         let row = query(
             "SELECT s.id, c.name, s.webhook FROM calibrations c JOIN studies s ON s.id = c.study
@@ -71,18 +68,12 @@ impl Reader {
     }
 
     /// Reads the number of calibrations in each state, by the name of the state.
-    ///
-    /// # Errors
-    /// [`StoreError`].
     pub async fn states(&self) -> Result<Vec<(String, i64)>, StoreError> {
         let states = query_as("SELECT state, count(*) FROM calibrations GROUP BY state");
         Ok(states.fetch_all(&self.pool).await?)
     }
 
     /// Reads an experiment.
-    ///
-    /// # Errors
-    /// [`StoreError`].
     pub async fn experiment(&self, id: i64) -> Result<Option<ExperimentRow>, StoreError> {
         let row = query("SELECT toml, files FROM experiments WHERE id = ?")
             .bind(id)
@@ -102,9 +93,6 @@ impl Reader {
     }
 
     /// Reads every experiment, oldest first, with the studies that have a calibration on it.
-    ///
-    /// # Errors
-    /// [`StoreError`].
     pub async fn experiments(&self) -> Result<Vec<(i64, Vec<i64>)>, StoreError> {
         let rows: Vec<(i64, Option<i64>)> = query_as(
             "SELECT e.id, m.study FROM experiments e LEFT JOIN
@@ -124,9 +112,6 @@ impl Reader {
     }
 
     /// Reads a calibration.
-    ///
-    /// # Errors
-    /// [`StoreError`].
     pub async fn calibration(&self, id: i64) -> Result<Option<CalibrationRow>, StoreError> {
         let sql = format!("{CALIBRATION} WHERE c.id = ?");
         let row = query(sqlx::AssertSqlSafe(sql))
@@ -148,9 +133,6 @@ impl Reader {
     }
 
     /// Reads the calibrations of a study, oldest first.
-    ///
-    /// # Errors
-    /// [`StoreError`].
     pub async fn study(&self, id: i64) -> Result<Vec<CalibrationRow>, StoreError> {
         let sql = format!("{CALIBRATION} WHERE c.study = ? ORDER BY c.id");
         let rows = query(sqlx::AssertSqlSafe(sql))
@@ -161,9 +143,6 @@ impl Reader {
     }
 
     /// Reads all studies, oldest first.
-    ///
-    /// # Errors
-    /// [`StoreError`].
     pub async fn studies(&self) -> Result<Vec<StoredStudy>, StoreError> {
         let rows: Vec<(i64, i64, i64)> = query_as(
             "SELECT s.id, s.experiment, c.id FROM studies s JOIN calibrations c ON c.study = s.id ORDER BY s.id, c.id",
@@ -185,24 +164,18 @@ impl Reader {
     }
 
     /// Reads the study, id and state of every calibration, oldest first.
-    ///
-    /// # Errors
-    /// [`StoreError`].
     pub async fn member_states(&self) -> Result<Vec<(i64, i64, CalibrationState)>, StoreError> {
         let rows = query("SELECT study, id, state FROM calibrations ORDER BY id");
         let rows = rows.fetch_all(&self.pool).await?;
         // An unreadable state is reported where the calibration is requested.
-        let known = |row: &Row| {
+        let readable = |row: &Row| {
             let state = CalibrationState::from_name(row.try_get("state").ok()?)?;
             Some((row.try_get("study").ok()?, row.try_get("id").ok()?, state))
         };
-        Ok(rows.iter().filter_map(known).collect())
+        Ok(rows.iter().filter_map(readable).collect())
     }
 
     /// Reads the studies whose calibrations are all over, each with the number of its calibrations; archived studies are left out.
-    ///
-    /// # Errors
-    /// [`StoreError`].
     pub async fn settled_studies(&self) -> Result<Vec<(i64, i64)>, StoreError> {
         let rows = query(
             "SELECT study, count(*) AS members FROM calibrations c JOIN studies s ON s.id = c.study
@@ -218,9 +191,6 @@ impl Reader {
     }
 
     /// Reads the stages of a calibration, in order.
-    ///
-    /// # Errors
-    /// [`StoreError`].
     pub async fn stages(&self, calibration: i64) -> Result<Vec<StageRow>, StoreError> {
         let rows = query("SELECT * FROM stages WHERE calibration = ? ORDER BY stage")
             .bind(calibration)
@@ -246,9 +216,6 @@ impl Reader {
     }
 
     /// Reads the population at the end of a stage, or of the last one.
-    ///
-    /// # Errors
-    /// [`StoreError`].
     pub async fn samples(&self, calibration: i64, stage: Option<u32>) -> Result<Vec<Particle>, StoreError> {
         let rows = query(
             "SELECT theta, log_likelihood, log_prior FROM samples WHERE calibration = ?1
@@ -265,9 +232,6 @@ impl Reader {
     /// population.
     ///
     /// Takes m of n draws: those k with floor((k + 1) m / n) > floor(k m / n).
-    ///
-    /// # Errors
-    /// [`StoreError`].
     pub async fn thinned_samples(
         &self,
         calibration: i64,
@@ -298,9 +262,6 @@ impl Reader {
     }
 
     /// Reads the populations at the end of every stage, in order.
-    ///
-    /// # Errors
-    /// [`StoreError`].
     pub async fn populations(&self, calibration: i64) -> Result<Vec<Vec<Particle>>, StoreError> {
         let mut populations = Vec::new();
         for stage in self.stages(calibration).await? {
@@ -310,10 +271,9 @@ impl Reader {
     }
 
     /// Reads the predicted values that the likelihood used for a parameter vector while sampling; `None` where it was not simulated then,
-    /// or was rejected. Only stores of before migration 9, which kept the values of every evaluation, need this query.
+    /// or was rejected.
     ///
-    /// # Errors
-    /// [`StoreError`].
+    /// Only stores of before migration 9, which kept the values of every evaluation, need this query.
     pub async fn fitted_values(
         &self,
         calibration: i64,
@@ -334,9 +294,6 @@ impl Reader {
     }
 
     /// Reads the result of a fit.
-    ///
-    /// # Errors
-    /// [`StoreError`].
     pub async fn estimate(&self, calibration: i64) -> Result<Option<EstimateRow>, StoreError> {
         let row = query("SELECT * FROM estimates WHERE calibration = ?")
             .bind(calibration)
@@ -365,9 +322,6 @@ impl Reader {
     }
 
     /// Reads the result of a search for a missing effect.
-    ///
-    /// # Errors
-    /// [`StoreError`].
     pub async fn discovery(&self, calibration: i64) -> Result<Option<Discovery>, StoreError> {
         let record: Option<String> = query_scalar("SELECT record FROM discoveries WHERE calibration = ?")
             .bind(calibration)
@@ -381,9 +335,6 @@ impl Reader {
     }
 
     /// Reads the final draws of a calibration. The first is the most probable particle; a fit without draws has only this one.
-    ///
-    /// # Errors
-    /// [`StoreError`].
     pub async fn predictions(&self, calibration: i64) -> Result<Vec<Prediction>, StoreError> {
         let rows = query(
             "SELECT evaluation, theta, rejection, observables FROM evaluations
@@ -428,9 +379,6 @@ impl Reader {
     }
 
     /// Reads the statistics of the subchains that a metamodel ran between evaluations; `None` if there was none.
-    ///
-    /// # Errors
-    /// [`StoreError`].
     pub async fn subchains(&self, calibration: i64) -> Result<Option<Subchains>, StoreError> {
         let row = query(
             "SELECT count(*) AS subchains, CAST(coalesce(sum(json_extract(subchain, '$.moves')), 0) AS BIGINT) AS moves,
@@ -451,9 +399,6 @@ impl Reader {
 
     /// Reads the fitted runs at the likeliest parameters, with their histories where the model has a time axis; `None` where they were not
     /// simulated once more, or were rejected.
-    ///
-    /// # Errors
-    /// [`StoreError`].
     pub async fn likeliest(&self, calibration: i64) -> Result<Option<Observables>, StoreError> {
         let row = query(
             "SELECT observables FROM evaluations WHERE calibration = ? AND evaluation = ? AND observables IS NOT NULL",
@@ -469,9 +414,6 @@ impl Reader {
     /// Reads how many parameter vectors of the sampler or the fit the model rejected, by the kind of rejection.
     ///
     /// Rejections of final draws are not counted; they are stored with the draws.
-    ///
-    /// # Errors
-    /// [`StoreError`].
     pub async fn rejections(&self, calibration: i64) -> Result<BTreeMap<String, u64>, StoreError> {
         let rows = query(
             "SELECT substr(rejection, 1, instr(rejection, ':') - 1) AS kind, count(*) AS n FROM evaluations
@@ -488,9 +430,6 @@ impl Reader {
     }
 
     /// Reads the message of the first rejected parameter vector of the sampler or the fit, without the kind of rejection.
-    ///
-    /// # Errors
-    /// [`StoreError`].
     pub async fn first_rejection(&self, calibration: i64) -> Result<Option<String>, StoreError> {
         let row = query(
             "SELECT rejection FROM evaluations

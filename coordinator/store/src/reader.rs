@@ -26,7 +26,7 @@ pub struct Reader {
 
 impl Reader {
     /// Makes a reader of a store whose tables are up to date.
-    pub(super) fn of(pool: Pool) -> Reader {
+    pub(super) fn new(pool: Pool) -> Reader {
         Reader {
             pool,
             earlier_members: None,
@@ -40,10 +40,10 @@ impl Reader {
     pub async fn open(path: &str) -> Result<Reader, StoreError> {
         if is_server(path) {
             let pool = server::pool(path).await?;
-            let wrap = |source| StoreError::of(path, source);
+            let wrap = |source| StoreError::new(path, source);
             let mut connection = Connection::Postgres(pool.acquire().await.map_err(wrap)?.detach());
             server::recognise(&mut connection, path).await?;
-            return Reader::of(Pool::Postgres(pool)).with_earlier_members().await;
+            return Reader::new(Pool::Postgres(pool)).with_earlier_members().await;
         }
         let file = file_of(path);
         if !Path::new(file).is_file() {
@@ -112,10 +112,10 @@ impl Reader {
     }
 
     async fn with(options: SqliteConnectOptions, path: &str) -> Result<Reader, StoreError> {
-        let wrap = |source| StoreError::of(path, source);
+        let wrap = |source| StoreError::new(path, source);
         let pool = pool(options).await.map_err(wrap)?;
         recognise(&mut *pool.acquire().await.map_err(wrap)?, path).await?;
-        Reader::of(Pool::Sqlite(pool)).with_earlier_members().await
+        Reader::new(Pool::Sqlite(pool)).with_earlier_members().await
     }
 
     async fn with_earlier_members(mut self) -> Result<Reader, StoreError> {

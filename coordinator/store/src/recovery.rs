@@ -17,9 +17,6 @@ const PAGE: usize = 2_000;
 
 impl Reader {
     /// Reads the ids of the calibrations that are not over, oldest first.
-    ///
-    /// # Errors
-    /// [`StoreError`].
     pub async fn unfinished(&self) -> Result<Vec<i64>, StoreError> {
         let ids = query_scalar(
             "SELECT id FROM calibrations WHERE state NOT IN ('finished', 'failed', 'cancelled') ORDER BY id",
@@ -49,9 +46,6 @@ impl Reader {
 
     /// Reads everything that a replay needs. With `fitted`, this includes predicted values, which a fit is told and a metamodel is trained
     /// on.
-    ///
-    /// # Errors
-    /// [`StoreError`].
     pub async fn stored(&self, calibration: i64, fitted: bool) -> Result<Stored, StoreError> {
         // All statements see one state of the store, because results may be dropped meanwhile.
         let mut view = self.pool.view().await?;

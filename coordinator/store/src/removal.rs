@@ -100,9 +100,6 @@ pub(super) async fn archive(
 
 impl Reader {
     /// Reads the studies that are deleted in part. A store of before migration 15 has none.
-    ///
-    /// # Errors
-    /// [`StoreError`].
     pub async fn half_deleted(&self) -> Result<Vec<i64>, StoreError> {
         if !self.has_table("deletions").await? {
             return Ok(Vec::new());
@@ -112,9 +109,6 @@ impl Reader {
     }
 
     /// Reads the archived studies with the times at which they were archived `[ms since 1970]`. A store of before migration 15 has none.
-    ///
-    /// # Errors
-    /// [`StoreError`].
     pub async fn archived(&self) -> Result<Vec<(i64, i64)>, StoreError> {
         // The column was added by the same migration.
         if !self.has_table("deletions").await? {

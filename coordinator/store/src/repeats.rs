@@ -38,9 +38,6 @@ pub(super) async fn add(
 impl Reader {
     /// Reads how the external model of a calibration answered when it was evaluated twice. A calibration of a built-in model, and a store
     /// of before migration 19, have no such statistics.
-    ///
-    /// # Errors
-    /// [`StoreError`].
     pub async fn repeats(&self, calibration: i64) -> Result<Repeats, StoreError> {
         if !self.has_table("repeats").await? {
             return Ok(Repeats::default());

@@ -48,9 +48,6 @@ pub(super) async fn write(connection: &mut Connection, results: StudyResults) ->
 
 impl Reader {
     /// Reads a file of a study, if it was stored under this stamp. A store of before migration 10 has no files.
-    ///
-    /// # Errors
-    /// [`StoreError`].
     pub async fn result(&self, study: i64, name: &str, stamp: &str) -> Result<Option<String>, StoreError> {
         if !self.has_table("results").await? {
             return Ok(None);
@@ -65,9 +62,6 @@ impl Reader {
     }
 
     /// Reads the file with one name of every study that has it, with its stamp.
-    ///
-    /// # Errors
-    /// [`StoreError`].
     pub async fn results(&self, name: &str) -> Result<BTreeMap<i64, (String, String)>, StoreError> {
         if !self.has_table("results").await? {
             return Ok(BTreeMap::new());
@@ -104,7 +98,10 @@ mod tests {
         };
         let read = async |name: &str, stamp: &Stamp| {
             let text = reader.result(study, name, &stamp.to_string()).await.unwrap();
-            assert!(text.as_ref().is_none_or(|text| *text == format!("{name} by {stamp}")));
+            assert!(
+                text.as_ref()
+                    .is_none_or(|text| *text == format!("{name} by {stamp}"))
+            );
             text.is_some()
         };
         let old = stamp().await;

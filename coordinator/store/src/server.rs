@@ -40,19 +40,19 @@ const SETTINGS: [(&str, &str); 4] = [
 ];
 
 fn options(path: &str) -> Result<PgConnectOptions, StoreError> {
-    let options = PgConnectOptions::from_str(path).map_err(|source| StoreError::of(path, source))?;
+    let options = PgConnectOptions::from_str(path).map_err(|source| StoreError::new(path, source))?;
     Ok(options.application_name("grouser").options(SETTINGS))
 }
 
 /// Opens a connection that may write.
 pub(super) async fn connect(path: &str) -> Result<Connection, StoreError> {
     let connected = PgConnection::connect_with(&options(path)?).await;
-    let mut connection = Connection::Postgres(connected.map_err(|source| StoreError::of(path, source))?);
+    let mut connection = Connection::Postgres(connected.map_err(|source| StoreError::new(path, source))?);
     // An acknowledged commit must be on disk, whatever the server's default is.
     let durable = query("SET synchronous_commit = on")
         .execute(&mut connection)
         .await;
-    durable.map_err(|source| StoreError::of(path, source))?;
+    durable.map_err(|source| StoreError::new(path, source))?;
     Ok(connection)
 }
 
@@ -62,10 +62,10 @@ pub(super) async fn pool(path: &str) -> Result<PgPool, StoreError> {
     // A pool would repeat for half a minute an attempt that the server refuses at once.
     let first = PgConnection::connect_with(&options).await;
     let closed = first
-        .map_err(|source| StoreError::of(path, source))?
+        .map_err(|source| StoreError::new(path, source))?
         .close()
         .await;
-    closed.map_err(|source| StoreError::of(path, source))?;
+    closed.map_err(|source| StoreError::new(path, source))?;
     Ok(PgPoolOptions::new().max_connections(4).connect_lazy_with(options))
 }
 
@@ -76,12 +76,12 @@ pub(super) async fn lock(connection: &mut Connection, path: &str) -> Result<bool
     taken
         .fetch_one(connection)
         .await
-        .map_err(|source| StoreError::of(path, source))
+        .map_err(|source| StoreError::new(path, source))
 }
 
 /// Refuses a database that another program or a later version of this program has made.
 pub(super) async fn recognise(connection: &mut Connection, path: &str) -> Result<(), StoreError> {
-    let wrap = |source| StoreError::of(path, source);
+    let wrap = |source| StoreError::new(path, source);
     // An interrupted first start may leave an empty table of migrations. Views are ignored, because this program makes none.
     let tables = "SELECT count(*) FROM information_schema.tables
                   WHERE table_schema = current_schema() AND table_type = 'BASE TABLE' AND table_name <> '_sqlx_migrations'";
@@ -94,11 +94,11 @@ pub(super) async fn recognise(connection: &mut Connection, path: &str) -> Result
     }
     let ours = "SELECT count(*) FROM information_schema.tables WHERE table_schema = current_schema()
                 AND table_name IN ('_sqlx_migrations', 'calibrations')";
-    let known: i64 = query_scalar(ours)
+    let supported: i64 = query_scalar(ours)
         .fetch_one(&mut *connection)
         .await
         .map_err(wrap)?;
-    if known != 2 {
+    if supported != 2 {
         return Err(StoreError::Unfit {
             path: name_of(path),
             reason: "the database has tables that Grouser did not create".into(),
@@ -106,12 +106,12 @@ pub(super) async fn recognise(connection: &mut Connection, path: &str) -> Result
     }
     let found = query_scalar("SELECT max(version) FROM _sqlx_migrations");
     let found: Option<i64> = found.fetch_one(connection).await.map_err(wrap)?;
-    let (found, known) = (found.unwrap_or_default(), migrations::VERSION);
-    match found > known {
+    let (found, supported) = (found.unwrap_or_default(), migrations::VERSION);
+    match found > supported {
         true => Err(StoreError::Newer {
             path: name_of(path),
             found,
-            known,
+            supported,
         }),
         false => Ok(()),
     }

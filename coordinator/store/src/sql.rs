@@ -110,14 +110,14 @@ pub(super) enum Value {
 
 /// Implements `From` for the Rust types of each kind of value.
 macro_rules! values {
-    ($($kind:ident: $($of:ty),+;)+) => {$($(
-        impl From<$of> for Value {
-            fn from(value: $of) -> Self {
+    ($($kind:ident: $($renumbered:ty),+;)+) => {$($(
+        impl From<$renumbered> for Value {
+            fn from(value: $renumbered) -> Self {
                 Value::$kind(Some(value.into()))
             }
         }
-        impl From<Option<$of>> for Value {
-            fn from(value: Option<$of>) -> Self {
+        impl From<Option<$renumbered>> for Value {
+            fn from(value: Option<$renumbered>) -> Self {
                 Value::$kind(value.map(Into::into))
             }
         }
@@ -211,6 +211,30 @@ macro_rules! bound {
     }};
 }
 
+/// Runs a method of the statement of either database, and maps its result.
+macro_rules! run {
+    ($query:expr, $on:expr, $method:ident, $sqlite:expr, $postgres:expr) => {
+        match $on.into() {
+            On::Connection(Connection::Sqlite(connection)) => {
+                let statement = bound!($query.sql, $query, |text| text);
+                statement.$method(connection).await.map($sqlite)
+            }
+            On::Pool(Pool::Sqlite(pool)) => {
+                let statement = bound!($query.sql, $query, |text| text);
+                statement.$method(pool).await.map($sqlite)
+            }
+            On::Connection(Connection::Postgres(connection)) => {
+                let statement = bound!(numbered(&$query.sql), $query, without_nul);
+                statement.$method(connection).await.map($postgres)
+            }
+            On::Pool(Pool::Postgres(pool)) => {
+                let statement = bound!(numbered(&$query.sql), $query, without_nul);
+                statement.$method(pool).await.map($postgres)
+            }
+        }
+    };
+}
+
 /// Replaces NUL in a text, which PostgreSQL does not accept.
 fn without_nul(text: String) -> String {
     match text.contains('\0') {
@@ -228,63 +252,18 @@ impl Query {
 
     /// Executes the statement. Returns how many rows it changed.
     pub(super) async fn execute(self, on: impl Into<On<'_>>) -> Result<u64, sqlx::Error> {
-        match on.into() {
-            On::Connection(Connection::Sqlite(connection)) => {
-                let statement = bound!(self.sql, self, |text| text);
-                statement
-                    .execute(connection)
-                    .await
-                    .map(|done| done.rows_affected())
-            }
-            On::Pool(Pool::Sqlite(pool)) => {
-                let statement = bound!(self.sql, self, |text| text);
-                statement.execute(pool).await.map(|done| done.rows_affected())
-            }
-            On::Connection(Connection::Postgres(connection)) => {
-                let statement = bound!(numbered(&self.sql), self, without_nul);
-                statement
-                    .execute(connection)
-                    .await
-                    .map(|done| done.rows_affected())
-            }
-            On::Pool(Pool::Postgres(pool)) => {
-                let statement = bound!(numbered(&self.sql), self, without_nul);
-                statement.execute(pool).await.map(|done| done.rows_affected())
-            }
-        }
+        run!(self, on, execute, |done| done.rows_affected(), |done| done
+            .rows_affected())
     }
 
     pub(super) async fn fetch_all(self, on: impl Into<On<'_>>) -> Result<Vec<Row>, sqlx::Error> {
         fn rows<R>(rows: Vec<R>, row: fn(R) -> Row) -> Vec<Row> {
             rows.into_iter().map(row).collect()
         }
-        match on.into() {
-            On::Connection(Connection::Sqlite(connection)) => {
-                let statement = bound!(self.sql, self, |text| text);
-                statement
-                    .fetch_all(connection)
-                    .await
-                    .map(|all| rows(all, Row::Sqlite))
-            }
-            On::Pool(Pool::Sqlite(pool)) => {
-                let statement = bound!(self.sql, self, |text| text);
-                statement.fetch_all(pool).await.map(|all| rows(all, Row::Sqlite))
-            }
-            On::Connection(Connection::Postgres(connection)) => {
-                let statement = bound!(numbered(&self.sql), self, without_nul);
-                statement
-                    .fetch_all(connection)
-                    .await
-                    .map(|all| rows(all, Row::Postgres))
-            }
-            On::Pool(Pool::Postgres(pool)) => {
-                let statement = bound!(numbered(&self.sql), self, without_nul);
-                statement
-                    .fetch_all(pool)
-                    .await
-                    .map(|all| rows(all, Row::Postgres))
-            }
-        }
+        run!(self, on, fetch_all, |all| rows(all, Row::Sqlite), |all| rows(
+            all,
+            Row::Postgres
+        ))
     }
 
     /// Returns the rows as a stream.
@@ -395,8 +374,8 @@ pub(super) fn insert(table: &str, columns: &[&str], rows: Vec<Vec<Value>>, confl
     let conflict = match conflict {
         Conflict::Keep => "DO NOTHING".to_owned(),
         Conflict::Replace(key) => {
-            let others = columns.iter().filter(|column| !key.contains(column));
-            let taken: Vec<String> = others.map(|c| format!("{c} = excluded.{c}")).collect();
+            let updated = columns.iter().filter(|column| !key.contains(column));
+            let taken: Vec<String> = updated.map(|c| format!("{c} = excluded.{c}")).collect();
             format!("({}) DO UPDATE SET {}", key.join(", "), taken.join(", "))
         }
     };
@@ -436,12 +415,12 @@ mod tests {
 
     #[test]
     fn parameters_are_numbered_and_quotes_left_alone() {
-        let of = |sql: &'static str| numbered(&sql.into_sql_str()).as_str().to_owned();
-        assert_eq!(of("a = ? AND b = ?"), "a = $1 AND b = $2");
+        let renumbered = |sql: &'static str| numbered(&sql.into_sql_str()).as_str().to_owned();
+        assert_eq!(renumbered("a = ? AND b = ?"), "a = $1 AND b = $2");
         assert_eq!(
-            of("a = ?2 AND b = ?1 AND c = ?12"),
+            renumbered("a = ?2 AND b = ?1 AND c = ?12"),
             "a = $2 AND b = $1 AND c = $12"
         );
-        assert_eq!(of("a = '?''?' AND b = ?"), "a = '?''?' AND b = $1");
+        assert_eq!(renumbered("a = '?''?' AND b = ?"), "a = '?''?' AND b = $1");
     }
 }

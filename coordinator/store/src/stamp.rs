@@ -10,8 +10,10 @@ use super::error::StoreError;
 use super::reader::Reader;
 use super::sql::{Connection, On, query_as};
 
-/// Everything that the results of a study depend on: the build of the program, the members, the doubts about workers. The facts of a
-/// calibration that is over do not change, so its number stands for them; but a worker may be found to compute wrongly later.
+/// Everything that the results of a study depend on: the build of the program, the members, the doubts about workers.
+///
+/// The facts of a calibration that is over do not change, so its number stands for them; but a worker may be found to compute wrongly
+/// later.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Stamp {
     build: String,
@@ -109,10 +111,8 @@ impl Reader {
     }
 
     /// Reads the calibrations of a study, oldest first, with the stamp of the results that a build of the program computes from them.
-    /// Doubts are read first: one that arises while the calibrations are read makes the stamp out of date.
     ///
-    /// # Errors
-    /// [`StoreError`].
+    /// Doubts are read first: one that arises while the calibrations are read makes the stamp out of date.
     pub async fn stamped_study(
         &self,
         study: i64,

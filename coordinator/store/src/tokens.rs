@@ -10,9 +10,6 @@ const TOKENS: &str = "SELECT name, role, hash, created_at_ms, revoked_at_ms FROM
 
 impl Reader {
     /// Reads every token, revoked ones included, oldest first. A store of before migration 14 has none.
-    ///
-    /// # Errors
-    /// [`StoreError`].
     pub async fn tokens(&self) -> Result<Vec<Token>, StoreError> {
         if !self.has_table("tokens").await? {
             return Ok(Vec::new());
@@ -61,9 +58,6 @@ pub struct TokenTable {
 
 impl TokenTable {
     /// Opens a store, also one in use. If no coordinator holds it, it is created or brought up to date.
-    ///
-    /// # Errors
-    /// [`StoreError`].
     pub async fn open(path: &str) -> Result<TokenTable, StoreError> {
         let (connection, lock) = opening::beside(path).await?;
         Ok(TokenTable {
@@ -74,31 +68,22 @@ impl TokenTable {
     }
 
     fn failed(&self, source: sqlx::Error) -> StoreError {
-        StoreError::of(&self.path, source)
+        StoreError::new(&self.path, source)
     }
 
     /// Returns every token, revoked ones included, oldest first.
-    ///
-    /// # Errors
-    /// [`StoreError`].
     pub async fn all(&mut self) -> Result<Vec<Token>, StoreError> {
         let rows = query(TOKENS).fetch_all(&mut self.connection).await;
         rows.map_err(|e| self.failed(e))?.iter().map(token).collect()
     }
 
     /// Adds a token. Returns whether its name was free.
-    ///
-    /// # Errors
-    /// [`StoreError`].
     pub async fn add(&mut self, token: &Token) -> Result<bool, StoreError> {
         let added = insert_token(&mut self.connection, token).await;
         Ok(added.map_err(|e| self.failed(e))? == 1)
     }
 
     /// Adds a token and revokes the token of the same name, unless both are the same.
-    ///
-    /// # Errors
-    /// [`StoreError`].
     pub async fn replace(&mut self, token: &Token) -> Result<(), StoreError> {
         let replaced = async {
             self.connection.begin().await?;
@@ -117,9 +102,6 @@ impl TokenTable {
     }
 
     /// Revokes the token with a name. Returns whether there was one in use.
-    ///
-    /// # Errors
-    /// [`StoreError`].
     pub async fn revoke(&mut self, name: &str, now_ms: i64) -> Result<bool, StoreError> {
         let revoked = query("UPDATE tokens SET revoked_at_ms = ? WHERE name = ? AND revoked_at_ms IS NULL")
             .bind(now_ms)
@@ -130,12 +112,9 @@ impl TokenTable {
     }
 
     /// Closes the store.
-    ///
-    /// # Errors
-    /// [`StoreError`].
     pub async fn close(self) -> Result<(), StoreError> {
         let TokenTable { connection, path, .. } = self;
         let closed = connection.close().await;
-        closed.map_err(|source| StoreError::of(&path, source))
+        closed.map_err(|source| StoreError::new(&path, source))
     }
 }

@@ -129,9 +129,6 @@ pub(super) async fn rewind(
 
 impl Reader {
     /// Reads the workers that compute wrongly.
-    ///
-    /// # Errors
-    /// [`StoreError`].
     pub async fn quarantine(&self) -> Result<Vec<Quarantine>, StoreError> {
         let rows: Vec<(String, i64, i64)> =
             query_as("SELECT worker, calibration, evaluation FROM quarantine ORDER BY worker")
@@ -146,9 +143,6 @@ impl Reader {
     }
 
     /// Reads how many results of a calibration are verified. In a store of before migration 18, no result is verified.
-    ///
-    /// # Errors
-    /// [`StoreError`].
     pub async fn verified(&self, calibration: i64) -> Result<Verified, StoreError> {
         if !self.has_table("quarantine").await? {
             // Versions before migration 18 did not verify results.

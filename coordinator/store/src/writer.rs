@@ -118,7 +118,7 @@ impl Writer {
         let (sender, receiver) = mpsc::unbounded_channel();
         let (committed_sender, committed) = watch::channel(0);
         let listeners = Listeners::new(STATES);
-        let told = listeners.clone();
+        let notified = listeners.clone();
         let health = Arc::new(StoreHealth::default());
         let waiting = Arc::new(Waiting::default());
         let (shared, waited_for) = (health.clone(), waiting.clone());
@@ -128,7 +128,7 @@ impl Writer {
                 connection,
                 receiver,
                 &committed_sender,
-                &told,
+                &notified,
                 &shared,
                 &waited_for,
             )
@@ -160,8 +160,10 @@ impl Writer {
         }
     }
 
-    /// Returns the function by which the farm sends facts in order. It returns the number of the last fact, or `None` after the writer has
-    /// ended. Only one such function may exist for a store, because it numbers the facts.
+    /// Returns the function by which the farm sends facts in order.
+    ///
+    /// It returns the number of the last fact, or `None` after the writer has ended. Only one such function may exist for a store, because
+    /// it numbers the facts.
     pub fn sink(&self) -> impl FnMut(Vec<Fact>) -> Option<u64> + Send + 'static {
         let (sender, health, waiting) = (self.sender.clone(), self.health.clone(), self.waiting.clone());
         let mut sent = 0;
@@ -249,26 +251,17 @@ impl Writer {
     }
 
     /// Stores an experiment. Returns its id.
-    ///
-    /// # Errors
-    /// [`StoreError::Stopped`].
     pub async fn add_experiment(&self, files: FileSet, now_ms: i64) -> Result<i64, StoreError> {
         let write = |reply| Write::Experiment { files, now_ms, reply };
         self.committed(write).await
     }
 
     /// Stores a study with its first calibrations. Returns their ids.
-    ///
-    /// # Errors
-    /// [`StoreError::Stopped`].
     pub async fn add_study(&self, new: NewStudy) -> Result<StudyIds, StoreError> {
         self.committed(|reply| Write::Study { new, reply }).await
     }
 
     /// Stores a further calibration of a study, on its experiment or on another one. Returns its id.
-    ///
-    /// # Errors
-    /// [`StoreError::Stopped`].
     pub async fn add_member(
         &self,
         study: i64,
@@ -287,25 +280,16 @@ impl Writer {
     }
 
     /// Stores a version of an effect, unless a version with the same text exists.
-    ///
-    /// # Errors
-    /// [`StoreError::Stopped`].
     pub async fn add_effect(&self, new: NewEffect) -> Result<AddedEffect, StoreError> {
         self.committed(|reply| Write::Effect { new, reply }).await
     }
 
     /// Stores the files of a study and deletes those under other stamps, unless the study has changed since the files were computed.
-    ///
-    /// # Errors
-    /// [`StoreError::Stopped`].
     pub async fn keep_results(&self, results: StudyResults) -> Result<(), StoreError> {
         self.committed(|reply| Write::Results { results, reply }).await
     }
 
     /// Archives a study at a time; without a time, restores it.
-    ///
-    /// # Errors
-    /// [`StoreError::Stopped`].
     pub async fn archive_study(&self, study: i64, at_ms: Option<i64>) -> Result<(), StoreError> {
         self.committed(|reply| Write::Archive { study, at_ms, reply })
             .await
@@ -313,9 +297,6 @@ impl Writer {
 
     /// Deletes a study with all rows that belong to it alone. It is deleted in parts, so that facts of other studies are stored between
     /// them.
-    ///
-    /// # Errors
-    /// [`StoreError::Stopped`].
     pub async fn delete_study(&self, study: i64, now_ms: i64) -> Result<(), StoreError> {
         let delete = |reply| Write::Delete { study, now_ms, reply };
         while !self.committed(delete).await? {}
@@ -466,7 +447,7 @@ async fn write_group(
                     Fact::Evaluated { calibration, row } => rows.push((calibration, row)),
                     other => {
                         insert_evaluations(connection, &mut rows).await?;
-                        replies.states.extend(StateChange::of(&other));
+                        replies.states.extend(StateChange::from_fact(&other));
                         replies.have_studies_changed |=
                             super::facts::write(connection, other, health).await?;
                     }

@@ -36,7 +36,10 @@ fn main() -> ExitCode {
             .map_err(|_| USAGE.to_owned())
             .and_then(|seed| one(seed, None)),
         ["seed", seed, bug] => {
-            let plant = Plant::ALL.into_iter().find(|plant| format!("{plant:?}") == bug);
+            let plant = Plant::ALL
+                .iter()
+                .copied()
+                .find(|plant| format!("{plant:?}") == bug);
             let seed = seed.parse().ok().filter(|_| plant.is_some());
             seed.ok_or_else(|| USAGE.to_owned())
                 .and_then(|seed| one(seed, plant))
@@ -84,7 +87,7 @@ fn planted() -> Result<bool, String> {
     let cases = Case::all()?;
     let mut all = true;
     println!("{:<24} {:>10} {:>8}  found by", "planted bug", "schedules", "s");
-    for plant in Plant::ALL {
+    for &plant in Plant::ALL {
         let Search { tally, broken, time } = search(&cases, Some(plant), 1..u64::MAX, Some(MAX_TIME));
         let found = broken.map_or("NOT FOUND".into(), |(seed, broken)| {
             format!("{broken} (seed {seed})")

@@ -110,10 +110,10 @@ impl Calibration {
         answer: &Answer,
     ) -> Result<EvaluationRow, LikelihoodError> {
         let SimulationResult { end, mut outcome } = computed;
-        let asked = self
+        let proposed = self
             .theta(evaluation)
             .expect("the queue holds only evaluations asked for");
-        let theta = end.as_ref().map_or(asked, |end| &end.theta).to_vec();
+        let theta = end.as_ref().map_or(proposed, |end| &end.theta).to_vec();
         let is_scored = self.phase.is_sampling() && self.engine.discovery().is_none();
         let score = |outcome| self.score(outcome, &theta);
         // Where a subchain stayed at its start, there is no outcome and no score.
@@ -223,7 +223,7 @@ impl Calibration {
         let calibration = self.identity.id;
         let (draws, fact) = match self.engine.finding() {
             Some(CalibrationResult::Posterior(posterior)) => {
-                let draws = FinalDraws::of_posterior(posterior);
+                let draws = FinalDraws::from_posterior(posterior);
                 let posterior = Box::new(posterior.clone());
                 (
                     Some(draws),
@@ -234,7 +234,7 @@ impl Calibration {
                 )
             }
             Some(CalibrationResult::Estimate(estimate)) => {
-                let draws = FinalDraws::of_estimate(estimate, self.variants.has_histories());
+                let draws = FinalDraws::from_estimate(estimate, self.variants.has_histories());
                 let estimate = Box::new(estimate.clone());
                 (
                     Some(draws),

@@ -27,7 +27,7 @@ impl FinalDraws {
     }
 
     /// Takes final draws from a posterior.
-    pub(super) fn of_posterior(posterior: &PosteriorSample) -> Self {
+    pub(super) fn from_posterior(posterior: &PosteriorSample) -> Self {
         spread(&posterior.particles, None)
     }
 
@@ -35,7 +35,7 @@ impl FinalDraws {
     ///
     /// # Arguments
     /// - `has_histories`: whether the model has a time axis, so that the estimate is simulated once more.
-    pub(super) fn of_estimate(estimate: &ModeEstimate, has_histories: bool) -> Self {
+    pub(super) fn from_estimate(estimate: &ModeEstimate, has_histories: bool) -> Self {
         match &estimate.approximation {
             Some(approximation) => spread(&approximation.draws, Some(&estimate.theta)),
             None => FinalDraws::new(

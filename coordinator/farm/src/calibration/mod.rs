@@ -156,8 +156,10 @@ impl Calibration {
         Ok(calibration)
     }
 
-    /// Makes the calibration compare a share of its answers with those of a second worker. An external model may give two answers on honest
-    /// machines. Its workers evaluate it twice themselves, so its answers are not compared here.
+    /// Makes the calibration compare a share of its answers with those of a second worker.
+    ///
+    /// An external model may give two answers on honest machines. Its workers evaluate it twice themselves, so its answers are not compared
+    /// here.
     ///
     /// # Arguments
     /// - `share`: the share of the evaluations that a second worker computes as well, in [0, 1].
@@ -195,7 +197,7 @@ impl Calibration {
             (Some(searched), _) => searched,
             (None, Some(_)) => (self.variants.with_metamodel()?, theta),
             (None, None) => {
-                let variant = self.variants.of_key(self.key(evaluation))?;
+                let variant = self.variants.for_key(self.key(evaluation))?;
                 (variant, self.spec.model_theta(theta))
             }
         };

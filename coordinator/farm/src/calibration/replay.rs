@@ -145,16 +145,16 @@ mod tests {
     }
 
     fn calibration(job: &str) -> Calibration {
-        of_runs(job, RUNS)
+        with_runs(job, RUNS)
     }
 
     /// Makes the same calibration with two more holdout runs, the first of which the model rejects.
     fn with_a_refused_run() -> Calibration {
         let more = "c,w,s,0.9,100,0.008,5.2,holdout\nd,w,s,0.3,100,0.008,5.0,holdout\n";
-        of_runs(JOB, &format!("{RUNS}{more}"))
+        with_runs(JOB, &format!("{RUNS}{more}"))
     }
 
-    fn of_runs(job: &str, runs: &str) -> Calibration {
+    fn with_runs(job: &str, runs: &str) -> Calibration {
         let files = FileSet {
             toml: EXPERIMENT.into(),
             files: [("runs.csv".into(), runs.into())].into(),
@@ -348,8 +348,8 @@ mod tests {
                 let rest = work(&mut again, usize::MAX, false);
                 let all: Vec<Fact> = begun.iter().chain(&rest).cloned().collect();
                 assert_eq!(sorted(&all), whole, "cut after {cut}");
-                let told: Vec<String> = [lost, rest].iter().flat_map(|f| estimates(f)).collect();
-                assert_eq!(told, estimates(&first), "cut after {cut}");
+                let restarted: Vec<String> = [lost, rest].iter().flat_map(|f| estimates(f)).collect();
+                assert_eq!(restarted, estimates(&first), "cut after {cut}");
             }
         }
     }

@@ -217,8 +217,9 @@ impl SecondAnswers {
         expired.unstarted + expired.failures.len() as u64
     }
 
-    /// Drops evaluations that no worker can answer, and those whose lease has been out for `hung_ms`. `can_answer` states whether there is
-    /// a worker besides those that have answered. Returns their number.
+    /// Drops evaluations that no worker can answer, and those whose lease has been out for `hung_ms`.
+    ///
+    /// `can_answer` states whether there is a worker besides those that have answered. Returns their number.
     pub fn drop_hopeless(
         &mut self,
         can_answer: impl Fn(&[Answer]) -> bool,
@@ -245,7 +246,7 @@ impl SecondAnswers {
 mod tests {
     use super::*;
 
-    fn asked(is_compared: bool) -> SecondAnswers {
+    fn repeated_evaluation(is_compared: bool) -> SecondAnswers {
         let mut second = SecondAnswers::default();
         let question = Question {
             variant: "00ff",
@@ -274,13 +275,13 @@ mod tests {
 
     #[test]
     fn two_equal_answers_settle_and_a_third_finds_who_is_wrong() {
-        let mut second = asked(true);
+        let mut second = repeated_evaluation(true);
         assert_eq!(answer(&mut second, "a", 1), Verdict::Open);
         assert_eq!(answer(&mut second, "a", 1), Verdict::Open, "said twice");
         assert_eq!(answer(&mut second, "b", 1), settled("a", &[]));
         assert_eq!(answer(&mut second, "c", 1), Verdict::NotAsked);
 
-        let mut second = asked(true);
+        let mut second = repeated_evaluation(true);
         answer(&mut second, "liar", 9);
         assert_eq!(answer(&mut second, "a", 1), Verdict::Differ);
         assert_eq!(answer(&mut second, "fool", 8), Verdict::Differ);
@@ -289,7 +290,7 @@ mod tests {
 
     #[test]
     fn a_worker_that_answers_in_two_ways_contradicts_itself() {
-        let mut second = asked(true);
+        let mut second = repeated_evaluation(true);
         answer(&mut second, "a", 1);
         assert_eq!(answer(&mut second, "a", 2), Verdict::Contradiction);
         second.forget("a");
@@ -302,7 +303,7 @@ mod tests {
 
     #[test]
     fn a_slow_worker_s_evaluation_needs_one_answer() {
-        let mut second = asked(false);
+        let mut second = repeated_evaluation(false);
         assert_eq!((second.waiting(), second.queue.unleased()), (1, 1));
         assert_eq!(answer(&mut second, "b", 1), Verdict::NotAsked);
         assert_eq!((second.waiting(), second.queue.len()), (0, 0));
@@ -310,7 +311,7 @@ mod tests {
 
     #[test]
     fn nobody_is_asked_beside_a_lease_that_is_out_no_more() {
-        let mut second = asked(false);
+        let mut second = repeated_evaluation(false);
         second.drop_idle(|_, lease| lease == 7);
         assert_eq!(second.waiting(), 1);
         second.drop_idle(|_, lease| lease == 8);
@@ -319,19 +320,19 @@ mod tests {
 
     #[test]
     fn what_nobody_can_answer_is_dropped() {
-        let mut second = asked(true);
+        let mut second = repeated_evaluation(true);
         answer(&mut second, "a", 1);
-        let others = |names: &'static [&'static str]| {
+        let has_other = |names: &'static [&'static str]| {
             move |answers: &[Answer]| names.iter().any(|n| !answers.iter().any(|a| a.worker == *n))
         };
-        assert_eq!(second.drop_hopeless(others(&["a", "b"]), 50, 0), 0);
-        assert_eq!(second.drop_hopeless(others(&["a"]), 50, 0), 1);
+        assert_eq!(second.drop_hopeless(has_other(&["a", "b"]), 50, 0), 0);
+        assert_eq!(second.drop_hopeless(has_other(&["a"]), 50, 0), 1);
         assert_eq!(second.waiting(), 0);
     }
 
     #[test]
     fn a_slow_worker_may_answer_once_answers_are_compared() {
-        let mut second = asked(false);
+        let mut second = repeated_evaluation(false);
         let question = Question {
             variant: "00ff",
             theta: &[1.5],

@@ -55,7 +55,7 @@ impl Variants {
     }
 
     /// Returns the hash of the variant of an evaluation without a subchain.
-    pub(super) fn of_key(&self, key: EvaluationKey) -> Option<&str> {
+    pub(super) fn for_key(&self, key: EvaluationKey) -> Option<&str> {
         match key {
             EvaluationKey::Sampling { .. } => Some(&self.sampled),
             EvaluationKey::Prediction { holdout: false, .. } => Some(&self.fit),

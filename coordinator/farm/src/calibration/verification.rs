@@ -49,17 +49,17 @@ mod tests {
 
     #[test]
     fn the_share_is_kept_and_the_choice_is_the_key_s() {
-        let of = |share, key| Verification {
+        let verification = |share, key| Verification {
             share,
             key: SealKey([key; 16]),
         };
         let chosen = |v: Verification| (0..20_000).filter(|&e| v.selects(e)).collect::<Vec<u64>>();
         assert!(chosen(Verification::OFF).is_empty());
-        assert_eq!(chosen(of(1.0, 1)).len(), 20_000);
-        let one = chosen(of(0.01, 1));
+        assert_eq!(chosen(verification(1.0, 1)).len(), 20_000);
+        let one = chosen(verification(0.01, 1));
         // Four standard deviations of a binomial count.
         assert!((144..=256).contains(&one.len()), "{}", one.len());
-        assert_eq!(one, chosen(of(0.01, 1)));
-        assert_ne!(one, chosen(of(0.01, 2)));
+        assert_eq!(one, chosen(verification(0.01, 1)));
+        assert_ne!(one, chosen(verification(0.01, 2)));
     }
 }

@@ -133,7 +133,7 @@ fn writable(folder: &Path) -> Finding {
 fn space(folder: &Path) -> Finding {
     let name = folder.display();
     match statvfs(folder) {
-        Ok(disk) => of_space(&name.to_string(), disk.f_bavail.saturating_mul(disk.f_frsize)),
+        Ok(disk) => free_space(&name.to_string(), disk.f_bavail.saturating_mul(disk.f_frsize)),
         Err(error) => Finding::fail(
             "space",
             format!("{name}: {error}"),
@@ -142,7 +142,7 @@ fn space(folder: &Path) -> Finding {
     }
 }
 
-fn of_space(name: &str, free_bytes: u64) -> Finding {
+fn free_space(name: &str, free_bytes: u64) -> Finding {
     let seen = format!("{name}: {:.1} GB are free", free_bytes as f64 / 1e9);
     let remedy = "make room, or put the store elsewhere; coordinator delete STUDY frees space inside a store";
     match free_bytes {
@@ -188,12 +188,12 @@ mod tests {
 
     #[test]
     fn little_space_is_a_warning_and_none_a_failure() {
-        assert!(of_space("/", 99_999_999).is_failure());
-        let text = of_space("/", 500_000_000).to_string();
+        assert!(free_space("/", 99_999_999).is_failure());
+        let text = free_space("/", 500_000_000).to_string();
         assert!(
             text.starts_with("warn  space       /: 0.5 GB are free\n"),
             "{text}"
         );
-        assert!(of_space("/", LITTLE_BYTES).to_string().starts_with("ok"));
+        assert!(free_space("/", LITTLE_BYTES).to_string().starts_with("ok"));
     }
 }

@@ -60,7 +60,7 @@ pub(super) async fn findings(url: &str, arguments: &ClientArguments) -> Vec<Find
     match ask(&client, "/v1/workers").await {
         Ok(workers) => {
             findings.push(Finding::ok("token", "is accepted, or not asked for"));
-            findings.extend(of_workers(&workers, url));
+            findings.extend(check_workers(&workers, url));
         }
         Err(error) => findings.push(Finding::fail(
             "token",
@@ -71,7 +71,7 @@ pub(super) async fn findings(url: &str, arguments: &ClientArguments) -> Vec<Find
     findings
 }
 
-fn of_workers(workers: &BTreeMap<String, Worker>, url: &str) -> Vec<Finding> {
+fn check_workers(workers: &BTreeMap<String, Worker>, url: &str) -> Vec<Finding> {
     let (here, gone): (Vec<_>, Vec<_>) = workers
         .iter()
         .partition(|(_, worker)| worker.silent_ms < SILENT_MS);
@@ -144,7 +144,7 @@ mod tests {
             (name.to_owned(), worker)
         };
         let workers = workers.iter().map(worker).collect();
-        of_workers(&workers, "http://keeper:7070")
+        check_workers(&workers, "http://keeper:7070")
             .iter()
             .map(Finding::to_string)
             .collect()

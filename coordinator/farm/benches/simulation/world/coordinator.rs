@@ -171,12 +171,12 @@ impl<'a> Coordinator<'a> {
     }
 
     fn exchange(&mut self, request: &ExchangeRequest, now_ms: u64) -> Result<ExchangeResponse, Broken> {
-        let told = self.planted_request(request.clone(), now_ms)?;
+        let planted = self.planted_request(request.clone(), now_ms)?;
         let farm = self
             .farm
             .as_mut()
             .expect("an exchange is with a coordinator that is up");
-        let response = farm.exchange(told, now_ms);
+        let response = farm.exchange(planted, now_ms);
         self.take_facts(Source::Exchange(request))?;
         self.witness.exchanged(request, &response, &self.ledger, now_ms)?;
         Ok(response)
@@ -318,25 +318,23 @@ impl<'a> Coordinator<'a> {
         let Some(table) = self.ledger.table(id) else {
             return Ok(());
         };
-        {
-            let stored = match self.plant {
-                Some(plant) => plant.replayed(table.stored()),
-                None => table.stored(),
-            };
-            let key = table.key;
-            let share = self.verified_share;
-            let replayed = table.case.begin(id).and_then(|calibration| {
-                let mut calibration = calibration.verified(share, key);
-                let facts = calibration.replay(stored).map_err(|e| e.to_string())?;
-                Ok((calibration, facts))
-            });
-            let (calibration, facts) = replayed.map_err(|e| Broken::new(Promise::Replay, e))?;
-            self.witness.began(id);
-            if let Some(farm) = &mut self.farm {
-                farm.add(calibration, key, facts, now_ms);
-            }
-            self.take_facts(Source::Restart)
+        let stored = match self.plant {
+            Some(plant) => plant.replayed(table.stored()),
+            None => table.stored(),
+        };
+        let key = table.key;
+        let share = self.verified_share;
+        let replayed = table.case.begin(id).and_then(|calibration| {
+            let mut calibration = calibration.verified(share, key);
+            let facts = calibration.replay(stored).map_err(|e| e.to_string())?;
+            Ok((calibration, facts))
+        });
+        let (calibration, facts) = replayed.map_err(|e| Broken::new(Promise::Replay, e))?;
+        self.witness.began(id);
+        if let Some(farm) = &mut self.farm {
+            farm.add(calibration, key, facts, now_ms);
         }
+        self.take_facts(Source::Restart)
     }
 }
 

@@ -150,14 +150,14 @@ impl<'a> Witness<'a> {
             );
             return Err(Broken::new(Promise::OneHolder, how));
         }
-        let mut others = self
+        let mut other_leases = self
             .live
             .iter()
             // At the end of a calibration, a second answer that does not come is not waited for.
             .filter(|((.., is_second), live)| !is_second || now_ms < live.since_ms + self.lease_ms)
             .map(|(_, live)| live)
             .filter(|live| live.worker == request.worker && live.lease != number);
-        let is_alone = others.all(|live| !lease.announce && !live.is_suspect);
+        let is_alone = other_leases.all(|live| !lease.announce && !live.is_suspect);
         demand(is_alone, Promise::Alone, || {
             format!(
                 "lease {number} makes {} hold a suspect and something else",

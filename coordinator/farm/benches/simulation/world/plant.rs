@@ -8,9 +8,22 @@ use super::ledger::Ledger;
 /// Of this many rows, one is lost.
 const LOST: usize = 20;
 
-/// A planted bug.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Plant {
+/// Defines the planted bugs and the list of all.
+macro_rules! plants {
+    ($($(#[$doc:meta])* $plant:ident,)+) => {
+        /// A planted bug.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+        pub(crate) enum Plant {
+            $($(#[$doc])* $plant,)+
+        }
+
+        impl Plant {
+            pub(crate) const ALL: &[Plant] = &[$(Plant::$plant),+];
+        }
+    };
+}
+
+plants! {
     /// Answers leave before their facts are on disk.
     AnswerBeforeDisk,
     /// One row in twenty is never written, though its result is acknowledged.
@@ -72,38 +85,6 @@ pub(crate) enum Plant {
 }
 
 impl Plant {
-    pub(crate) const ALL: [Plant; 29] = [
-        Plant::AnswerBeforeDisk,
-        Plant::RowLost,
-        Plant::RowUnderOtherNumber,
-        Plant::ScoreRounded,
-        Plant::FactsSwapped,
-        Plant::AttemptTwice,
-        Plant::AttemptLost,
-        Plant::DuplicateUnseen,
-        Plant::DuplicateCounted,
-        Plant::HoleInFacts,
-        Plant::ReplaySkipsRow,
-        Plant::ReplayForgetsAttempts,
-        Plant::ReplayForgetsPause,
-        Plant::ReplayForgetsVersion,
-        Plant::ReplayForgetsCoarse,
-        Plant::FenceRepeats,
-        Plant::RenewedAfterExpiry,
-        Plant::ExpiresEarly,
-        Plant::TakenForLost,
-        Plant::RenewedIsStarted,
-        Plant::StartUnread,
-        Plant::SealUnchecked,
-        Plant::WorkerUnchecked,
-        Plant::ReturnedByOthers,
-        Plant::VersionUnchecked,
-        Plant::KeyAgain,
-        Plant::PauseLost,
-        Plant::CommandBeforeDisk,
-        Plant::QuarantineForgotten,
-    ];
-
     /// Returns the facts that are written under this bug.
     pub(crate) fn facts(self, mut facts: Vec<Fact>, ledger: &Ledger) -> Vec<Fact> {
         let is_row = |fact: &Fact| matches!(fact, Fact::Evaluated { .. });

@@ -182,12 +182,12 @@ impl Schedule<'_> {
         match self.stream.below(100) {
             0..42 => self.act(),
             42..72 => {
-                let most = if self.is_calm {
+                let max_messages = if self.is_calm {
                     usize::MAX
                 } else {
                     1 + self.stream.below(4)
                 };
-                (0..self.network.len().min(most)).try_for_each(|_| self.deliver())
+                (0..self.network.len().min(max_messages)).try_for_each(|_| self.deliver())
             }
             72..86 => {
                 let facts = if self.is_calm {
@@ -243,8 +243,9 @@ impl Schedule<'_> {
             && chance(&mut self.stream, self.weather.twice)
         {
             self.tally.twice += 1;
-            let again = self.now_ms + self.stream.below(LEASE_MS as usize) as u64;
-            self.network.push((again, Message::Request(request.clone(), *to)));
+            let again_ms = self.now_ms + self.stream.below(LEASE_MS as usize) as u64;
+            self.network
+                .push((again_ms, Message::Request(request.clone(), *to)));
         }
         self.network.push((at_ms, message));
     }
@@ -433,7 +434,7 @@ impl Schedule<'_> {
         if self.verifies && !liars.is_empty() && !liars.contains(&self.workers[place].name) {
             return;
         }
-        let Some(again) = self.workers[place].sent.as_ref().and_then(lie) else {
+        let Some(again_ms) = self.workers[place].sent.as_ref().and_then(lie) else {
             return;
         };
         self.tally.lies += 1;
@@ -443,7 +444,7 @@ impl Schedule<'_> {
             .insert(self.workers[place].name.clone());
         let request = bare(self.workers[place].name.clone(), self.workers[place].version);
         self.inject(ExchangeRequest {
-            results: vec![again],
+            results: vec![again_ms],
             ..request
         });
     }
@@ -481,12 +482,12 @@ impl Schedule<'_> {
             _ => {
                 let leases: Vec<u64> = self.coordinator.witness.live().map(|(lease, _)| lease).collect();
                 let name = self.workers[place].name.clone();
-                let others = self
+                let foreign = self
                     .coordinator
                     .witness
                     .live()
                     .filter(|(_, worker)| *worker != name);
-                let returned = others.map(|(lease, _)| lease).collect();
+                let returned = foreign.map(|(lease, _)| lease).collect();
                 ExchangeRequest {
                     returned,
                     started: leases.clone(),

@@ -26,7 +26,7 @@ pub(crate) fn search(
     cases: &[Vec<Case>],
     plant: Option<Plant>,
     seeds: Range<u64>,
-    most: Option<Duration>,
+    max_time: Option<Duration>,
 ) -> Search {
     let began = Instant::now();
     let next = AtomicU64::new(seeds.start);
@@ -36,7 +36,7 @@ pub(crate) fn search(
         let mut broken = None;
         while broken.is_none() {
             let seed = next.fetch_add(1, Ordering::Relaxed);
-            if seed >= seeds.end || most.is_some_and(|most| began.elapsed() > most) {
+            if seed >= seeds.end || max_time.is_some_and(|max_time| began.elapsed() > max_time) {
                 break;
             }
             match schedule::run(cases, seed, plant, Journal(false)) {

@@ -47,11 +47,11 @@ pub(crate) fn chance(stream: &mut Stream, probability: f64) -> bool {
 impl Weather {
     /// Draws a weather: each fault is absent in half of the schedules, else its probability is drawn from rare to frequent.
     pub(crate) fn draw(stream: &mut Stream) -> Weather {
-        let mut often = |most: f64| {
+        let mut often = |max: f64| {
             if stream.uniform() < 0.5 {
                 0.0
             } else {
-                most * libm::exp(-3.0 * stream.uniform())
+                max * libm::exp(-3.0 * stream.uniform())
             }
         };
         let mut weather = Weather {

@@ -50,7 +50,7 @@ pub(crate) struct Witness<'a> {
     /// Results acknowledged since the last restored backup.
     acknowledged: BTreeSet<(i64, u64)>,
     /// Calibrations that this start of the farm knows.
-    known: BTreeSet<i64>,
+    begun: BTreeSet<i64>,
     pub(super) lease_ms: u64,
     pub(super) history: u32,
     /// Whether an evaluation was given up after honest failures on three workers. The results then differ from those of the run without
@@ -68,7 +68,7 @@ impl<'a> Witness<'a> {
             verifies,
             unstarted: BTreeMap::new(),
             acknowledged: BTreeSet::new(),
-            known: BTreeSet::new(),
+            begun: BTreeSet::new(),
             lease_ms,
             history: 0,
             is_given_up: false,
@@ -154,8 +154,8 @@ impl<'a> Witness<'a> {
             }
             Fact::Rewound { worker, .. } => {
                 if table.has_unconfirmed_of(worker) {
-                    self.live.retain(|(of, ..), _| *of != id);
-                    self.unstarted.retain(|(of, _), _| *of != id);
+                    self.live.retain(|(calibration, ..), _| *calibration != id);
+                    self.unstarted.retain(|(calibration, _), _| *calibration != id);
                 }
                 Ok(())
             }
@@ -183,7 +183,7 @@ impl<'a> Witness<'a> {
             Fact::ModelVersion { version, .. } => {
                 let equations = equations_of(version);
                 self.live
-                    .retain(|(of, ..), live| *of != id || live.version == equations);
+                    .retain(|(calibration, ..), live| *calibration != id || live.version == equations);
                 let by_result = matches!(source, Source::Exchange(r) if r.model_version == equations && !r.results.is_empty());
                 demand(
                     table.model_version.is_none() && by_result,
@@ -253,8 +253,8 @@ impl<'a> Witness<'a> {
         let is_resumed = state == CalibrationState::Running && matches!(source, Source::Command);
         if state.is_final() || is_resumed {
             // Earlier leases are forgotten; after the resumption, the evaluations are leased again.
-            self.live.retain(|(of, ..), _| *of != id);
-            self.unstarted.retain(|(of, _), _| *of != id);
+            self.live.retain(|(calibration, ..), _| *calibration != id);
+            self.unstarted.retain(|(calibration, _), _| *calibration != id);
         }
         match state {
             CalibrationState::Finished => table.is_complete(id),
@@ -267,7 +267,7 @@ impl<'a> Witness<'a> {
                     || self
                         .unstarted
                         .iter()
-                        .any(|((of, _), &count)| *of == id && count >= UNSTARTED);
+                        .any(|((calibration, _), &count)| *calibration == id && count >= UNSTARTED);
                 let by_user = matches!(source, Source::Command);
                 demand(exhausted || by_user, Promise::Pause, || {
                     format!("calibration {id} pauses after {:?}", table.failed)
@@ -303,10 +303,9 @@ impl<'a> Witness<'a> {
                         matches!(r.outcome, Some(Outcome::Fault(_))) && self.lease_of(r, worker).is_some()
                     })
             }
-            Source::Tick => self
-                .expired
-                .iter()
-                .any(|(of, live)| *of == (id, evaluation, false) && live.worker == worker && live.started),
+            Source::Tick => self.expired.iter().any(|(calibration, live)| {
+                *calibration == (id, evaluation, false) && live.worker == worker && live.started
+            }),
             Source::Command | Source::Restart => false,
         };
         demand(is_its_own, Promise::Attempt, || {
@@ -319,8 +318,9 @@ impl<'a> Witness<'a> {
     /// Notes that results were dropped.
     pub(crate) fn rewound(&mut self, id: i64, ledger: &Ledger) {
         if let Some(table) = ledger.table(id) {
-            self.acknowledged
-                .retain(|(of, evaluation)| *of != id || table.rows.contains_key(evaluation));
+            self.acknowledged.retain(|(calibration, evaluation)| {
+                *calibration != id || table.rows.contains_key(evaluation)
+            });
         }
     }
 
@@ -328,7 +328,7 @@ impl<'a> Witness<'a> {
     pub(super) fn disputed(&self, request: &ExchangeRequest, ledger: &Ledger) -> Result<(), Broken> {
         for result in &request.results {
             let (id, evaluation) = (result.calibration, result.evaluation);
-            let Some(table) = ledger.table(id).filter(|_| self.known.contains(&id)) else {
+            let Some(table) = ledger.table(id).filter(|_| self.begun.contains(&id)) else {
                 continue;
             };
             let row = table
@@ -403,14 +403,14 @@ impl<'a> Witness<'a> {
 
     /// Notes that a calibration was given to the farm.
     pub(crate) fn began(&mut self, id: i64) {
-        self.known.insert(id);
+        self.begun.insert(id);
     }
 
     /// Checks what a crash has left; `restored` states whether a backup was restored.
     pub(crate) fn crashed(&mut self, ledger: &Ledger, restored: bool) -> Result<(), Broken> {
         self.live.clear();
         self.unstarted.clear();
-        self.known.clear();
+        self.begun.clear();
         if restored {
             self.history += 1;
             self.acknowledged.clear();

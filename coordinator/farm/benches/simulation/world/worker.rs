@@ -26,7 +26,7 @@ enum Phase {
 
 /// An exchange that is not answered yet.
 #[derive(Debug)]
-struct Asked {
+struct PendingExchange {
     exchange: u64,
     sent_ms: u64,
     results: Vec<WorkResult>,
@@ -58,7 +58,7 @@ pub(crate) struct Worker {
     returned: Vec<u64>,
     received: u64,
     exchanges: u64,
-    asked: Option<Asked>,
+    pending: Option<PendingExchange>,
     /// The time until which it stands still `[ms]`.
     pub(crate) stopped_until_ms: u64,
     /// An acknowledged result, which may be sent again.
@@ -80,7 +80,7 @@ impl Worker {
             received: 0,
             // The numbers of exchanges of two workers never coincide.
             exchanges: birth << 32,
-            asked: None,
+            pending: None,
             stopped_until_ms: 0,
             sent: None,
         }
@@ -141,15 +141,15 @@ impl Worker {
             self.returned.push(number);
         }
         if self
-            .asked
+            .pending
             .as_ref()
-            .is_some_and(|asked| now_ms < asked.sent_ms + PATIENCE_MS)
+            .is_some_and(|pending| now_ms < pending.sent_ms + PATIENCE_MS)
         {
             return Act::Nothing;
         }
         // Without an answer, the results are sent once more.
-        if let Some(asked) = self.asked.take() {
-            self.outbox.splice(0..0, asked.results);
+        if let Some(pending) = self.pending.take() {
+            self.outbox.splice(0..0, pending.results);
         }
         self.exchange(now_ms, chance(stream, weather.unrenewed))
     }
@@ -183,7 +183,7 @@ impl Worker {
             },
             ..bare(self.name.clone(), self.version)
         };
-        self.asked = Some(Asked {
+        self.pending = Some(PendingExchange {
             exchange: self.exchanges,
             sent_ms: now_ms,
             results,
@@ -194,15 +194,15 @@ impl Worker {
 
     /// Takes an answer. An answer to an exchange that the worker has given up is ignored, as that of a closed connection.
     pub(crate) fn accept(&mut self, exchange: u64, response: ExchangeResponse) {
-        let Some(asked) = self.asked.take_if(|asked| asked.exchange == exchange) else {
+        let Some(pending) = self.pending.take_if(|pending| pending.exchange == exchange) else {
             return;
         };
-        for number in asked.announced {
+        for number in pending.announced {
             if let Some((_, phase)) = self.held.get_mut(&number) {
                 *phase = Phase::Begun;
             }
         }
-        self.sent = asked.results.into_iter().next_back().or(self.sent.take());
+        self.sent = pending.results.into_iter().next_back().or(self.sent.take());
         for lease in response.leases {
             self.received = self.received.max(lease.lease);
             let phase = if lease.announce {

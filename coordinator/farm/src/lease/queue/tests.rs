@@ -18,10 +18,14 @@ fn claim_beside(
     want: usize,
     holds: usize,
     first: u64,
-    others: &[&str],
+    other_workers: &[&str],
 ) -> Vec<(u64, u64)> {
     let mut next = first;
-    let has_other = |failed: &[String]| others.iter().any(|other| !failed.iter().any(|f| f == other));
+    let has_other = |failed: &[String]| {
+        other_workers
+            .iter()
+            .any(|other| !failed.iter().any(|f| f == other))
+    };
     let claimant = Claimant {
         worker,
         holds,
@@ -122,8 +126,8 @@ fn an_evaluation_that_nobody_begins_is_told_after_twenty_leases_in_a_row() {
                 assert!(queue.start(lease, "a", 100));
                 queue.give_back(lease, "a");
             } else {
-                let told = queue.expire(100).never_begun;
-                assert_eq!(told.len(), usize::from(!begun && lost == 10), "{lost}");
+                let never_begun = queue.expire(100).never_begun;
+                assert_eq!(never_begun.len(), usize::from(!begun && lost == 10), "{lost}");
             }
         }
     }
