@@ -1,4 +1,4 @@
-//! Local workers in this process, and the program `worker` as a verb; the only place that knows the worker.
+//! Local workers in this process, and the verb `worker`. No other file uses the crate `worker`.
 
 use std::future::Future;
 use std::sync::Arc;
@@ -19,23 +19,23 @@ use farm::dispatch::Dispatcher;
 pub use worker::config::WorkerConfig;
 pub use worker::program::ProgramError as WorkerError;
 
-/// Whether this machine can run what was built; asked before anything else.
+/// Checks that this machine can run the program. This is called before anything else.
 ///
 /// # Errors
-/// A sentence that says how to build for this machine.
+/// A sentence that tells how to build for this machine.
 pub fn check_processor() -> Result<(), String> {
     worker::processor::check().map_err(|e| e.to_string())
 }
 
-/// Does what the program `worker` does.
+/// Runs the program `worker`.
 pub async fn work(config: WorkerConfig) -> Result<(), WorkerError> {
     worker::program::execute(config).await
 }
 
-/// The farm as a worker in the same process sees it.
+/// The farm as the coordinator of a worker in the same process.
 ///
-/// It does not wait for the store: such a worker dies with the coordinator, so nobody could resend what was
-/// acknowledged too early, and a lost evaluation is computed again to the same bits.
+/// Its answers do not wait for the store. If the process ends, its workers end too, so they cannot resend lost results; a restart computes
+/// these again, to the same bits.
 struct InProcess(Dispatcher);
 
 impl Coordinator for InProcess {
@@ -57,27 +57,27 @@ impl Coordinator for InProcess {
     }
 }
 
-/// Local workers and what they have done.
+/// Local workers and their state.
 #[derive(Debug)]
 pub struct LocalWorkers {
-    /// How many threads simulate.
+    /// The number of simulation threads.
     pub threads: usize,
     clock: Arc<SimulationClock>,
     failure: watch::Receiver<Option<String>>,
     task: tokio::task::JoinHandle<()>,
 }
 
-/// Version of the equations of our models that local workers compute.
+/// Returns the version of the built-in equations that local workers compute.
 pub fn model_version() -> &'static str {
     worker::model_version()
 }
 
-/// The models that are not ours that local workers run, as their operator allows.
+/// The external models that local workers run, as their operator allows.
 #[derive(Debug, Clone, Default)]
 pub struct LocalModels(Arc<AllowedModels>);
 
 impl LocalModels {
-    /// Reads what the operator allows; to be called on a runtime.
+    /// Reads the models that the operator allows. It must be called on a runtime.
     ///
     /// # Errors
     /// A sentence that names the argument.
@@ -88,7 +88,8 @@ impl LocalModels {
             .map_err(|e| e.to_string())
     }
 
-    /// Version of the equations that local workers compute for a model: of ours, or that of one that is not; asks it, and blocks.
+    /// Returns the version of the equations that local workers compute for a model. An external model is asked for its version, which
+    /// blocks.
     ///
     /// # Errors
     /// A sentence: the model is not allowed here, or does not answer.
@@ -100,7 +101,7 @@ impl LocalModels {
     }
 }
 
-/// Process and time: fresh for every process, also where each is the first of its container.
+/// Returns a name from process id and time. It is new for every process, even where each has the same id in its container.
 fn local_name() -> String {
     let since = std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH);
     format!(
@@ -111,7 +112,7 @@ fn local_name() -> String {
 }
 
 impl LocalWorkers {
-    /// Starts so many threads; they stop when `shutdown` is ready.
+    /// Starts simulation threads, which stop when `shutdown` is ready.
     pub fn start(
         dispatcher: Dispatcher,
         threads: usize,
@@ -141,7 +142,7 @@ impl LocalWorkers {
         }
     }
 
-    /// Ready with the reason when the workers have failed; never, as long as they have not.
+    /// Returns a future that is ready with the reason when the workers have failed, and never otherwise.
     pub fn failure(&self) -> impl Future<Output = String> + Send + 'static {
         let mut failure = self.failure.clone();
         async move {
@@ -156,35 +157,35 @@ impl LocalWorkers {
         }
     }
 
-    /// Seconds spent simulating, summed over the threads.
+    /// Returns the seconds spent simulating, summed over the threads.
     pub fn simulated_s(&self) -> f64 {
         self.clock.simulated_s()
     }
 
-    /// Waits until the threads have given back what they held.
+    /// Waits until the threads have returned their leases.
     pub async fn join(self) {
         // A panic of the task has been logged where it happened.
         let _ = self.task.await;
     }
 }
 
-/// A variant evaluated in this thread, without a farm: for pilots and signatures.
+/// A variant that is evaluated in this thread without a farm, for pilots and signatures.
 #[derive(Debug)]
 pub struct Evaluate(worker::model::CompiledVariant);
 
 impl Evaluate {
-    /// Makes a variant of one of our models ready.
+    /// Compiles a variant of a built-in model.
     ///
     /// # Errors
-    /// A sentence that names what is not known.
+    /// A sentence that names the unknown part.
     pub fn new(variant: &ModelVariant) -> Result<Self, String> {
         Self::with(variant, &LocalModels::default())
     }
 
-    /// The same of any model that is allowed here.
+    /// Compiles a variant of any model that is allowed here.
     ///
     /// # Errors
-    /// A sentence that names what is not known.
+    /// A sentence that names the unknown part.
     pub fn with(variant: &ModelVariant, models: &LocalModels) -> Result<Self, String> {
         worker::model::CompiledVariant::new(variant, &models.0)
             .map(Evaluate)
@@ -196,7 +197,7 @@ impl Evaluate {
         self.0.evaluate(theta)
     }
 
-    /// Evaluates what a lease would ask for.
+    /// Evaluates the question of a lease.
     pub fn serve(
         &self,
         theta: &[f64],
@@ -205,7 +206,8 @@ impl Evaluate {
         self.0.serve(theta, subchain)
     }
 
-    /// Drawbar pull `[N]`, torque \[N m\] and sinkage `[m]` of every condition, each alone: a refusal leaves the others.
+    /// Evaluates every condition alone, so that a rejection leaves the others. Returns drawbar pull `[N]`, torque \[N m\] and sinkage
+    /// `[m]`.
     pub fn each(&self, theta: &[f64]) -> Vec<Result<[f64; 3], String>> {
         let channels = self.0.each(theta).into_iter();
         channels

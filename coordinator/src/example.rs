@@ -1,4 +1,4 @@
-//! The examples that the program carries: a first calibration needs no files.
+//! The built-in examples, with which a first calibration needs no files.
 
 /// A text with the name of its file.
 type NamedFile = (&'static str, &'static str);
@@ -8,9 +8,9 @@ type NamedFile = (&'static str, &'static str);
 pub struct Example {
     /// Its name.
     pub name: &'static str,
-    /// Its name for people.
+    /// Its title.
     pub title: &'static str,
-    /// What it shows.
+    /// A sentence about its content.
     pub summary: &'static str,
     /// The job.
     pub job: NamedFile,

@@ -1,15 +1,15 @@
-//! The coordinator: runs calibrations on a farm of workers and keeps what comes out.
+//! The coordinator: it runs calibrations on a farm of workers and keeps the results.
 //!
 //! # Layout
-//! - [`study`]: how a study grows: its next step from where it stands.
+//! - [`study`]: the growth of a study: its lineage and its next step.
 //! - [`service`]: store and farm together: submit, recover, control, grow.
-//! - [`webhook`]: what is posted when a calibration pauses or ends.
-//! - [`http`]: the REST interface; the only place that knows axum.
-//! - [`example`]: the examples that the program carries.
-//! - [`effect`]: the effects as users meet them: cards and signatures.
+//! - [`webhook`]: the messages that are posted when a calibration pauses or ends.
+//! - [`http`]: the REST interface. No other module uses axum.
+//! - [`example`]: the built-in examples.
+//! - [`effect`]: the effects as users see them: cards and signatures.
 //! - [`schema`]: schemas of the files that people write.
-//! - [`scale`]: how many workers Slurm, HyperQueue or Kubernetes should run, and how they are told.
-//! - [`embedded`]: local workers in this process; the only place that knows the worker.
+//! - [`scale`]: how many workers Slurm, HyperQueue or Kubernetes should run, and the calls of their programs.
+//! - [`embedded`]: local workers in this process. No other module uses the crate `worker`.
 //! - [`command`]: the verbs of the command line.
 //! - [`config`]: command line and environment.
 

@@ -11,11 +11,11 @@ use tracing_subscriber::layer::SubscriberExt as _;
 use tracing_subscriber::util::SubscriberInitExt as _;
 
 fn main() -> std::process::ExitCode {
-    // First of all: the processor may lack the instructions of whatever comes next.
+    // This check comes first, because the processor may lack instructions of the code that follows.
     if let Err(error) = coordinator::embedded::check_processor() {
         return refuse(error);
     }
-    // The cryptography of every connection; only a second call would fail.
+    // The cryptography of every connection is installed once; only a second call would fail.
     let _ = rustls::crypto::ring::default_provider().install_default();
     run()
 }
@@ -37,15 +37,15 @@ async fn run() -> std::process::ExitCode {
                 std::process::ExitCode::from(stopped.exit_status())
             }
             None => {
-                let said = refuse(of_causes(error.chain()));
+                let status = refuse(of_causes(error.chain()));
                 let worker = error.downcast_ref::<coordinator::embedded::WorkerError>();
-                worker.map_or(said, |error| error.status().into())
+                worker.map_or(status, |error| error.status().into())
             }
         },
     }
 }
 
-/// Says why the program ends; where nothing can be written, as on a full disk, it ends all the same.
+/// Prints why the program ends. If standard error cannot be written, as on a full disk, the program ends nevertheless.
 fn refuse(error: impl std::fmt::Display) -> std::process::ExitCode {
     let _ = writeln!(std::io::stderr(), "error: {error}");
     std::process::ExitCode::FAILURE

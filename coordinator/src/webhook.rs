@@ -1,7 +1,7 @@
-//! Web hooks: the pause or end of a calibration, posted to a URL that its job was submitted with.
+//! Web hooks: messages about the pause or end of a calibration, posted to a URL that was submitted with its job.
 //!
-//! Only to hosts that the operator lists, without following redirects: nobody can make the coordinator ask other machines
-//! of its network.
+//! They are posted only to hosts that the operator lists, without following redirects, so that no user can make the coordinator send
+//! requests to other machines of its network.
 
 use std::time::Duration;
 
@@ -10,30 +10,30 @@ use reqwest::{Client, Url};
 use serde::Serialize;
 use shared::api::CalibrationState;
 
-/// Pauses before the attempts to deliver.
+/// The pauses before each attempt to deliver.
 const PAUSES: [Duration; 3] = [Duration::ZERO, Duration::from_secs(2), Duration::from_secs(20)];
-/// An attempt lasts so long at most.
+/// The longest duration of an attempt.
 const TIMEOUT: Duration = Duration::from_secs(10);
-/// Longest URL `[bytes]`.
+/// The longest URL `[bytes]`.
 const LONGEST: usize = 2000;
-/// So much of a wrong URL or of an unknown host is shown \[characters\].
+/// The largest part of a wrong URL or of an unknown host that a message shows \[characters\].
 const SHOWN: usize = 200;
 
-/// Why nothing is posted to a URL.
+/// The reason why nothing is posted to a URL.
 #[derive(Debug, thiserror::Error)]
 pub enum WebhookError {
-    /// The URL has no form.
+    /// The text is not a valid URL.
     #[error("webhook {0}: {1}")]
     Url(String, String),
     /// The operator does not list its host.
     #[error("webhook host {0}: the service posts to hosts of its --webhook-host alone")]
     Host(String),
-    /// It was not taken.
+    /// The receiver did not accept it.
     #[error("webhook host {0}: {1}")]
     Refused(String, String),
 }
 
-/// What is posted, as JSON.
+/// The posted message, as JSON.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Announcement {
     pub study: i64,
@@ -42,16 +42,16 @@ pub struct Announcement {
     pub name: String,
     /// Its new state: paused, finished, failed or cancelled.
     pub state: CalibrationState,
-    /// Why paused or failed.
+    /// The reason of a pause or a failure.
     pub message: Option<String>,
 }
 
-/// Hosts that may be posted to.
+/// The hosts to which web hooks may be posted.
 #[derive(Debug, Clone, Default)]
 pub struct WebhookHosts(pub Vec<String>);
 
 impl WebhookHosts {
-    /// The URL of a text, if it may be posted to.
+    /// Parses a URL and checks that its host is allowed.
     ///
     /// # Errors
     /// [`WebhookError::Url`] and [`WebhookError::Host`].
@@ -77,18 +77,18 @@ impl WebhookHosts {
         }
     }
 
-    /// Posts an announcement, again after a while where it is not taken.
+    /// Posts an announcement, with repeated attempts if it is not accepted.
     ///
     /// # Errors
     /// [`WebhookError`] of the last attempt.
     pub async fn post(&self, url: &str, announcement: &Announcement) -> Result<(), WebhookError> {
         let target = self.check(url)?;
-        // Its path and its query may hold a key, which is no log's business.
+        // The log states only the host, because path and query may contain a key.
         let host = target.host_str().unwrap_or_default().to_owned();
         let refused = |what: String| WebhookError::Refused(host.clone(), what);
         let client = Client::builder().redirect(Policy::none()).timeout(TIMEOUT);
         let client = match target.scheme() {
-            // Without TLS no certificate is read: a machine may have none.
+            // Without TLS the certificates of the machine are not read, because there may be none.
             "http" => client.tls_certs_only([]),
             _ => client,
         };

@@ -2,13 +2,13 @@
 
 use shared::api::CalibrationState;
 
-/// Why a user's command on a calibration is refused.
+/// The reason why a user's command on a calibration is refused.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum ControlError {
-    /// It is over, or was never there.
+    /// The calibration is over, or does not exist.
     #[error("calibration {0} is not in progress")]
     NotInProgress(i64),
-    /// There is no result yet, or there never will be one.
+    /// The calibration has no result yet, or never will.
     #[error("calibration {id} is {}; results are available when it is finished", state.name())]
     NotFinished {
         /// The calibration.
@@ -31,13 +31,13 @@ pub enum ControlError {
 /// A user's command on a calibration.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Control {
-    /// Stop; it cannot be resumed.
+    /// Stops the calibration for good.
     Cancel,
-    /// Lease nothing until resumed.
+    /// Leases nothing until the calibration is resumed.
     Pause,
-    /// Resume.
+    /// Resumes a paused calibration.
     Resume {
-        /// Whether evaluations that had used up their attempts count as rejected; else they get new attempts.
+        /// Whether evaluations without attempts left count as rejected; otherwise they get new attempts.
         skip_faults: bool,
     },
 }

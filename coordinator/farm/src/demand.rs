@@ -1,4 +1,4 @@
-//! How much work there is, for whatever starts workers.
+//! The amount of work, for programs that start workers.
 
 use shared::api::WorkDemand;
 
@@ -6,7 +6,7 @@ use super::farm::Farm;
 use super::progress;
 
 impl Farm {
-    /// The work of all calibrations that are neither over nor paused.
+    /// Returns the work of all calibrations that are neither over nor paused.
     pub fn demand(&self) -> WorkDemand {
         let open = || {
             let calibrations = self.calibrations.values().map(|entry| &entry.calibration);
@@ -18,7 +18,7 @@ impl Farm {
             .iter()
             .filter(|(name, _)| !self.quarantine.contains_key(*name));
         let timed = able.clone().filter_map(|(_, worker)| {
-            // One result counts as much as another, whoever computed it.
+            // All results have the same weight, whichever worker computed them.
             Some((worker.evaluation_s?, worker.completed.max(1) as f64))
         });
         let (time_s, count) = timed.fold((0.0, 0.0), |(time_s, count), (mean_s, results)| {

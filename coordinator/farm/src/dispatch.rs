@@ -1,7 +1,7 @@
-//! The thread of the farm: receives messages one by one, sends answers and facts.
+//! The thread of the farm. It receives messages one by one, and sends answers and facts.
 //!
-//! The thread owns all state, so there is no lock, and a simulation of thousands of proposals never runs on
-//! the async runtime. Requests that wait for work are parked here and served in the order of their arrival.
+//! The thread owns all state, so there is no lock, and long computations of a sampler never run on the async runtime. Requests that wait
+//! for work are parked here and served in the order of their arrival.
 
 use std::collections::{BTreeMap, VecDeque};
 use std::sync::mpsc;
@@ -25,19 +25,19 @@ use record::fact::Fact;
 /// Stores facts in order; returns the number of the last fact so far, or `None` after the store has failed.
 type FactSink = Box<dyn FnMut(Vec<Fact>) -> Option<u64> + Send>;
 
-/// How often time passes for leases `[ms]`.
+/// The interval at which the farm's clock advances.
 const TICK: Duration = Duration::from_millis(250);
 
 /// An answer together with the number of the fact that must be stored before it may be given.
 pub type Durable<T> = (T, u64);
 
-/// Calibrations to replay from the store, as soon as their facts are stored: results of theirs were dropped.
+/// Calibrations to replay from the store, once their facts are stored, because some of their results were dropped.
 pub type Rewinds = UnboundedReceiver<Durable<i64>>;
-/// The way to the worker that waits for an answer.
+/// The reply channel of a worker's request.
 type ExchangeReply = oneshot::Sender<Durable<ExchangeResponse>>;
-/// A question to the farm at a time `[ms]`.
+/// A query of the farm at a time `[ms]`.
 type Look = Box<dyn FnOnce(&Farm, u64) + Send>;
-/// What a command led to.
+/// The result of a user's command.
 pub type Controlled = Result<Durable<CalibrationState>, ControlError>;
 
 enum Message {
@@ -79,8 +79,10 @@ pub struct Dispatcher {
 pub struct Stopped;
 
 impl Dispatcher {
-    /// Starts the farm's thread. Facts go to `sink`; when the store fails, the thread ends. Whoever holds the store replays what the
-    /// other end of the pair asks for, and gives it back by [`Dispatcher::add`].
+    /// Starts the farm's thread.
+    ///
+    /// Facts go to `sink`; when the store fails, the thread ends. The owner of the store receives the calibrations to replay from the
+    /// returned channel, and returns each by [`Dispatcher::add`].
     ///
     /// # Errors
     /// The operating system refuses a thread.
@@ -107,7 +109,7 @@ impl Dispatcher {
         Ok((Dispatcher { sender, pulse }, asked))
     }
 
-    /// What the thread is doing.
+    /// Returns the pulse of the thread.
     pub fn pulse(&self) -> &Pulse {
         &self.pulse
     }
@@ -123,18 +125,12 @@ impl Dispatcher {
         answer.await.map_err(|_| Stopped)
     }
 
-    /// A worker's exchange; parked until there is work or its patience ends.
-    ///
-    /// # Errors
-    /// [`Stopped`].
+    /// Sends a worker's exchange, which is parked until there is work or its waiting time is over.
     pub async fn exchange(&self, request: ExchangeRequest) -> Result<Durable<ExchangeResponse>, Stopped> {
         self.reply(|reply| Message::Exchange { request, reply }).await
     }
 
     /// Adds a calibration, with facts of its replay that may have been lost.
-    ///
-    /// # Errors
-    /// [`Stopped`].
     pub async fn add(&self, calibration: Calibration, key: SealKey, facts: Vec<Fact>) -> Result<(), Stopped> {
         let calibration = Box::new(calibration);
         let add = |reply| Message::Add {
@@ -146,15 +142,12 @@ impl Dispatcher {
         self.reply(add).await
     }
 
-    /// Says that a replay which was asked for failed.
-    ///
-    /// # Errors
-    /// [`Stopped`].
+    /// Reports that a requested replay failed.
     pub fn rewind_failed(&self, id: i64, reason: String) -> Result<(), Stopped> {
         self.send(Message::RewindFailed { id, reason })
     }
 
-    /// A user's command on a calibration.
+    /// Sends a user's command on a calibration.
     ///
     /// # Errors
     /// [`Stopped`]; inside, [`ControlError`].
@@ -162,18 +155,12 @@ impl Dispatcher {
         self.reply(|reply| Message::Control { id, control, reply }).await
     }
 
-    /// The status of a calibration in progress; `None` if it is over or unknown.
-    ///
-    /// # Errors
-    /// [`Stopped`].
+    /// Returns the status of a calibration in progress; `None` if it is over or does not exist.
     pub async fn status(&self, id: i64) -> Result<Option<CalibrationStatus>, Stopped> {
         self.look(move |farm, now| farm.status(id, now)).await
     }
 
-    /// The status of every calibration in progress, by id.
-    ///
-    /// # Errors
-    /// [`Stopped`].
+    /// Returns the status of every calibration in progress, by id.
     pub async fn statuses(&self) -> Result<BTreeMap<i64, CalibrationStatus>, Stopped> {
         self.look(|farm, now| {
             farm.ids()
@@ -184,34 +171,22 @@ impl Dispatcher {
         .await
     }
 
-    /// The known workers.
-    ///
-    /// # Errors
-    /// [`Stopped`].
+    /// Returns the known workers.
     pub async fn workers(&self) -> Result<BTreeMap<String, WorkerRecord>, Stopped> {
         self.look(|farm, now| farm.workers(now)).await
     }
 
-    /// The variant of a hash.
-    ///
-    /// # Errors
-    /// [`Stopped`].
+    /// Returns the variant of a hash.
     pub async fn variant(&self, hash: String) -> Result<Option<ModelVariant>, Stopped> {
         self.look(move |farm, _| farm.variant(&hash)).await
     }
 
-    /// How much work there is.
-    ///
-    /// # Errors
-    /// [`Stopped`].
+    /// Returns the amount of work.
     pub async fn demand(&self) -> Result<WorkDemand, Stopped> {
         self.look(|farm, _| farm.demand()).await
     }
 
-    /// Numbers for the metrics page.
-    ///
-    /// # Errors
-    /// [`Stopped`].
+    /// Returns numbers for the metrics page.
     pub async fn metrics(&self) -> Result<FarmMetrics, Stopped> {
         self.look(|farm, _| farm.metrics()).await
     }
@@ -222,7 +197,7 @@ impl Dispatcher {
     ) -> Result<T, Stopped> {
         let message = |reply: oneshot::Sender<T>| {
             let look = move |farm: &Farm, now| {
-                // The asker may have gone away meanwhile; nobody misses the answer then.
+                // If the receiver is gone, nobody needs the answer.
                 let _ = reply.send(look(farm, now));
             };
             Message::Look { look: Box::new(look) }
@@ -230,14 +205,14 @@ impl Dispatcher {
         self.reply(message).await
     }
 
-    /// Ends the farm's thread; parked workers are told nothing and try again.
+    /// Ends the farm's thread. Parked workers get no answer and send their requests again.
     pub fn stop(&self) {
         let _ = self.sender.send(Message::Stop);
     }
 }
 
 struct Parked {
-    /// What the worker asked for, without what has been taken of it.
+    /// The worker's request, without the parts that the farm has taken.
     request: ExchangeRequest,
     until_ms: u64,
     reply: ExchangeReply,
@@ -248,7 +223,7 @@ struct Thread {
     sink: FactSink,
     rewinds: UnboundedSender<Durable<i64>>,
     parked: VecDeque<Parked>,
-    /// When the first of them has waited long enough.
+    /// The earliest time at which one of them has waited long enough `[ms]`.
     parked_until_ms: u64,
     began: Instant,
 }
@@ -268,7 +243,7 @@ impl Thread {
                 self.handle(message, now_ms);
             }
             if Instant::now() >= next_tick {
-                // Renewals may have come in during a long step of a sampler: they count before time passes.
+                // Renewals may have arrived during a long step of a sampler. They count before leases expire.
                 while let Ok(message) = receiver.try_recv() {
                     if matches!(message, Message::Stop) {
                         return;
@@ -292,11 +267,11 @@ impl Thread {
         u64::try_from(self.began.elapsed().as_millis()).unwrap_or(u64::MAX)
     }
 
-    /// Hands the new facts to the store; the number of the last fact so far.
+    /// Sends the new facts to the store. Returns the number of the last fact.
     fn flush(&mut self) -> Option<u64> {
         let fact = (self.sink)(self.farm.take_facts())?;
         for id in self.farm.take_rewinds() {
-            // Without a listener the coordinator is going down: the next start replays it.
+            // Without a receiver the coordinator is ending. The next start replays the calibration.
             let _ = self.rewinds.send((id, fact));
         }
         Some(fact)
@@ -355,8 +330,8 @@ impl Thread {
         }
     }
 
-    /// Gives work, or the news that there is none, to those whose turn it is. Thousands may be parked: without work nobody looks at
-    /// them before the first has waited long enough.
+    /// Answers parked requests for which there is work, or whose waiting time is over. There may be thousands: without work, none is
+    /// examined before the first has waited long enough.
     fn serve_parked(&mut self, now_ms: u64) {
         if !self.farm.has_work() && now_ms < self.parked_until_ms {
             return;
@@ -388,7 +363,7 @@ impl Thread {
         }
     }
 
-    /// Answers; leases for a worker that has gone away meanwhile are taken back at once.
+    /// Sends an answer. If the worker is gone meanwhile, its leases are taken back at once.
     fn answer(&mut self, worker: &str, reply: ExchangeReply, answer: Durable<ExchangeResponse>, now_ms: u64) {
         if let Err((response, _)) = reply.send(answer) {
             for lease in response.leases {

@@ -1,4 +1,4 @@
-//! The farm: all calibrations in progress and all known workers; which worker evaluates what.
+//! The farm: all calibrations in progress and all connected workers, and the assignment of evaluations to workers.
 
 use std::collections::BTreeMap;
 
@@ -16,14 +16,14 @@ use crate::lease::LeaseQueue;
 use record::SealKey;
 use record::fact::Fact;
 
-/// How long a worker is counted as connected after its last message `[ms]`.
+/// The time after its last message for which a worker counts as connected `[ms]`.
 const WORKER_SILENCE_MS: u64 = 60_000;
 
-/// All calibrations in progress and all known workers.
+/// All calibrations in progress and all connected workers.
 #[derive(Debug)]
 pub struct Farm {
     pub(super) calibrations: BTreeMap<i64, Entry>,
-    /// Calibrations that ended since the start: their late results are compared.
+    /// Calibrations that have ended since the start. Their late results are compared.
     pub(super) ended: BTreeMap<i64, Ended>,
     pub(super) workers: BTreeMap<String, WorkerRecord>,
     /// Workers that compute wrongly, with the reason.
@@ -41,7 +41,7 @@ pub(super) struct Entry {
     pub(super) calibration: Calibration,
     pub(super) key: SealKey,
     pub(super) pace: Pace,
-    /// The number of replays that the calibration waits for; it neither leases nor takes anything until the last.
+    /// The number of replays that the calibration waits for. It leases and takes nothing before the last of them.
     pub(super) rewinds: u32,
     /// Whether the last replay failed, so that a user has to ask for another.
     pub(super) is_replay_due: bool,
@@ -56,7 +56,7 @@ impl Entry {
     }
 }
 
-/// A calibration that takes no results, with what its late results are checked by.
+/// A calibration that takes no results, with the data that check its late results.
 #[derive(Debug, Clone)]
 pub(super) struct Ended {
     pub(super) key: SealKey,
@@ -65,7 +65,7 @@ pub(super) struct Ended {
 }
 
 impl Farm {
-    /// An empty farm; `epoch` numbers the starts of the coordinator, so lease numbers never repeat.
+    /// Makes an empty farm; `epoch` numbers the starts of the coordinator, so lease numbers never repeat.
     pub fn new(epoch: u64, lease_ms: u64) -> Self {
         Farm {
             calibrations: BTreeMap::new(),
@@ -80,21 +80,21 @@ impl Farm {
         }
     }
 
-    /// Adds a calibration, with facts of its replay that may have been lost. A calibration that was
-    /// replayed because of a worker that computes wrongly takes its old place.
+    /// Adds a calibration, with facts of its replay that may have been lost. A calibration that was replayed because a worker computes
+    /// wrongly replaces its former state.
     pub fn add(&mut self, mut calibration: Calibration, key: SealKey, facts: Vec<Fact>, now_ms: u64) {
         let id = calibration.identity.id;
         if self.ended.contains_key(&id) {
-            // Cancelled while it was replayed.
+            // The calibration was cancelled while it was replayed.
             return;
         }
         if let Some(before) = self.calibrations.get_mut(&id) {
             before.rewinds = before.rewinds.saturating_sub(1);
             if before.rewinds > 0 {
-                // The replay read results that have been dropped since.
+                // The replay has read results that have been dropped since.
                 return;
             }
-            // Commands of a user during the replay hold.
+            // A user's commands during the replay take effect.
             if !calibration.state.is_final() {
                 calibration.state = before.calibration.state;
                 calibration.message.clone_from(&before.calibration.message);
@@ -112,16 +112,16 @@ impl Farm {
             counted_ms: now_ms,
         };
         self.calibrations.insert(entry.calibration.identity.id, entry);
-        // A replay may have ended it: then its late results are compared from now on.
+        // The replay may have ended the calibration. Its late results are compared from now on.
         self.account(now_ms);
     }
 
-    /// The facts since the last call, in order.
+    /// Returns the facts since the last call, in order.
     pub fn take_facts(&mut self) -> Vec<Fact> {
         std::mem::take(&mut self.facts)
     }
 
-    /// Numbers for the metrics page.
+    /// Returns numbers for the metrics page.
     pub fn metrics(&self) -> FarmMetrics {
         let leased = |e: &Entry| e.calibration.queue.leased() + e.calibration.witness.second.queue.leased();
         let waiting = |e: &Entry| e.calibration.witness.second.waiting();
@@ -136,13 +136,14 @@ impl Farm {
         }
     }
 
-    /// Whether an exchange would give a lease to somebody.
+    /// Returns whether an exchange would give some worker a lease.
     pub fn has_work(&self) -> bool {
         let second = |e: &Entry| e.calibration.is_open() && e.calibration.witness.second.queue.unleased() > 0;
         self.remaining() > 0 || self.calibrations.values().any(second)
     }
 
-    /// Workers that are not quarantined. Counted over the few that are: every exchange asks, and there may be many workers.
+    /// Returns the number of workers that are not quarantined. Every exchange calls this function, so it loops over the few quarantined
+    /// workers and not over all.
     pub(super) fn able_workers(&self) -> usize {
         let is_known = |name: &&String| self.workers.contains_key(*name);
         self.workers.len() - self.quarantine.keys().filter(is_known).count()
@@ -153,7 +154,7 @@ impl Farm {
         open.map(|e| e.calibration.queue.unleased() as u64).sum()
     }
 
-    /// Takes a worker's results, renewals and returns, and leases it what it wants.
+    /// Takes a worker's results, renewals and returns, and leases up to the wanted number of evaluations.
     pub fn exchange(&mut self, mut request: ExchangeRequest, now_ms: u64) -> ExchangeResponse {
         let has_lost = self.note_worker(&request, now_ms);
         let results = std::mem::take(&mut request.results);
@@ -177,7 +178,7 @@ impl Farm {
             entry.calibration.drop_idle_seconds();
         }
         self.account(now_ms);
-        // The worker may have been quarantined for its results of this message.
+        // A result of this message may have caused the quarantine of the worker.
         let (leases, refused) = match self.quarantine.get(worker) {
             Some(reason) => (Vec::new(), Some(reason.clone())),
             None => self.lease(worker, request.want as usize, now_ms),
@@ -194,7 +195,7 @@ impl Farm {
         }
     }
 
-    /// Puts a worker on record. Whether leases that were given to it have not arrived: it speaks again without having received them.
+    /// Records a worker. Returns whether leases were lost: the worker sends a message without having received them.
     fn note_worker(&mut self, request: &ExchangeRequest, now_ms: u64) -> bool {
         let record = self.workers.entry(request.worker.clone());
         let record = record.or_insert_with(|| WorkerRecord {
@@ -212,7 +213,7 @@ impl Farm {
             quarantined: None,
         });
         record.last_seen_ms = now_ms;
-        // The last message counts: what waits for a worker of a version must not wait for one that has another version now.
+        // The last message decides, so that no evaluation waits for a worker that has changed its version.
         record.model_version.clone_from(&request.model_version);
         record.models.clone_from(&request.models);
         record.evaluation_s = request.evaluation_s;
@@ -225,7 +226,7 @@ impl Farm {
         self.queues().any(|queue| queue.give_back(lease, worker));
     }
 
-    /// The queues of all calibrations.
+    /// Returns the queues of all calibrations.
     fn queues(&mut self) -> impl Iterator<Item = &mut LeaseQueue> {
         self.calibrations.values_mut().flat_map(Entry::queues)
     }
@@ -266,10 +267,10 @@ impl Farm {
         self.account(now_ms);
     }
 
-    /// Adds up busy time and removes calibrations that are over.
+    /// Adds up busy time and removes finished calibrations.
     fn account(&mut self, now_ms: u64) {
         for entry in self.calibrations.values_mut() {
-            // A calibration that waits for others has no cost yet.
+            // A calibration without leases has no cost.
             let calibration = &entry.calibration;
             if calibration.state == CalibrationState::Running && calibration.queue.leased() > 0 {
                 entry.calibration.cost.busy_ms += now_ms.saturating_sub(entry.counted_ms);
@@ -316,7 +317,7 @@ impl Farm {
                 let message = Some("paused by a user".to_owned());
                 calibration.change_state(CalibrationState::Paused, message, &mut self.facts);
             }
-            // Its replay asks for what is to be evaluated.
+            // The replay will ask for the evaluations.
             (Control::Resume { .. }, CalibrationState::Paused) if entry.rewinds > 0 => {
                 if std::mem::take(&mut entry.is_replay_due) {
                     self.rewinds.push(id);
@@ -346,19 +347,19 @@ impl Farm {
         Ok(state)
     }
 
-    /// The status of a calibration in progress.
+    /// Returns the status of a calibration in progress.
     pub fn status(&self, id: i64, now_ms: u64) -> Option<CalibrationStatus> {
         self.calibrations
             .get(&id)
             .map(|e| progress::status(&e.calibration, &e.pace, e.rewinds > 0, now_ms))
     }
 
-    /// Ids of the calibrations in progress.
+    /// Returns the ids of the calibrations in progress.
     pub fn ids(&self) -> Vec<i64> {
         self.calibrations.keys().copied().collect()
     }
 
-    /// The known workers.
+    /// Returns the connected workers.
     pub fn workers(&self, now_ms: u64) -> BTreeMap<String, WorkerRecord> {
         let mut workers = self.workers.clone();
         for (name, record) in &mut workers {
@@ -369,7 +370,7 @@ impl Farm {
         workers
     }
 
-    /// The variant of a hash, if a calibration in hand uses it.
+    /// Returns the variant with a hash, if a calibration in progress uses it.
     pub fn variant(&self, hash: &str) -> Option<ModelVariant> {
         self.calibrations
             .values()

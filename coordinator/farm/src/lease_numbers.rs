@@ -1,9 +1,9 @@
-//! The numbers of leases: they grow, over restarts too.
+//! The numbers of leases, which grow also over restarts.
 
-/// Leases of one epoch before its numbers run into those of the next second.
+/// The number of bits for leases of one epoch. More leases would run into the numbers of the next second.
 const BITS: u32 = 25;
 
-/// Gives out lease numbers.
+/// A generator of lease numbers.
 #[derive(Debug)]
 pub(super) struct LeaseNumbers {
     epoch: u64,
@@ -11,12 +11,12 @@ pub(super) struct LeaseNumbers {
 }
 
 impl LeaseNumbers {
-    /// The numbers of a start of the coordinator (see the table `epochs`).
+    /// Makes the generator of a start of the coordinator (see the table `epochs`).
     pub(super) fn new(epoch: u64) -> Self {
         LeaseNumbers { epoch, given: 0 }
     }
 
-    /// The next number: larger than every one before.
+    /// Returns the next number, which is larger than every earlier one.
     pub(super) fn next_number(&mut self) -> u64 {
         self.given += 1;
         (self.epoch << BITS) + self.given

@@ -1,4 +1,4 @@
-//! What a worker is given.
+//! The choice of the leases that a worker is given.
 
 use shared::api::CalibrationState;
 use shared::exchange::Lease;
@@ -15,15 +15,15 @@ use crate::lease::{Claimant, NewClaim};
 #[derive(Debug, Clone, Copy)]
 struct Turn {
     id: i64,
-    /// Whether it leases what is asked for twice.
+    /// Whether it leases evaluations that a second worker computes as well.
     is_second: bool,
     /// The largest number of leases.
     max_leases: usize,
 }
 
 impl Farm {
-    /// The calibrations that may lease to a worker that holds so many leases, in turn: first those with suspects where its hands
-    /// are empty, then what is asked for twice, then the oldest; first its share of each, then what is left.
+    /// Returns the calibrations that may lease to a worker that holds `holds` leases, in order: those with suspects if the worker holds
+    /// nothing, then second answers, then the oldest. Each gets its share first, then the rest.
     fn turns(&self, want: usize, holds: usize) -> Vec<Turn> {
         let waits = |e: &&Entry| e.calibration.is_open() && e.calibration.queue.unleased() > 0;
         let waiting: Vec<&Calibration> = self
@@ -48,7 +48,7 @@ impl Farm {
             let is_suspected = |turn: &Turn| self.calibrations[&turn.id].calibration.queue.suspects() > 0;
             turns.sort_by_key(|turn| !is_suspected(turn));
             suspected = turns.iter().filter(|turn| is_suspected(turn)).count();
-            // A suspect goes to empty hands, however many leases of its calibration are out.
+            // A suspect needs a worker without leases, however many leases of its calibration are out.
             if let Some(turn) = turns.first_mut().filter(|_| suspected > 0) {
                 turn.max_leases = turn.max_leases.max(1);
             }
@@ -65,7 +65,7 @@ impl Farm {
         turns
     }
 
-    /// Leases up to `want` evaluations.
+    /// Leases up to `want` evaluations. Returns the leases, and the reason if a calibration refuses the worker.
     pub(super) fn lease(&mut self, worker: &str, want: usize, now_ms: u64) -> (Vec<Lease>, Option<String>) {
         let mut leases = Vec::new();
         let mut refused = None;
@@ -112,10 +112,10 @@ impl Farm {
         (leases, refused)
     }
 
-    /// The version of the model that a worker computes a calibration with.
+    /// Returns the version of the model that a worker computes a calibration with.
     ///
     /// # Errors
-    /// Why the worker cannot compute it.
+    /// The reason why the worker cannot compute it.
     fn version_for(&self, worker: &str, id: i64) -> Result<String, String> {
         let calibration = &self.calibrations[&id].calibration;
         let record = self.workers.get(worker);
@@ -126,7 +126,7 @@ impl Farm {
                 "calibration {id} is of the model {model}, which worker {worker} does not run: its operator allows it by --allow-model, and it must answer"
             ));
         };
-        // The files of effects travel with the variant: a worker need not know them.
+        // The files of effects are sent with the variant, so a worker need not have them.
         let pinned = calibration.model_version.as_deref().map(equations_of);
         match pinned.filter(|pinned| *pinned != equations_of(version)) {
             None => Ok(version.to_owned()),
@@ -136,7 +136,7 @@ impl Farm {
         }
     }
 
-    /// Claims evaluations of a calibration for a worker of a version of the model.
+    /// Claims evaluations of a calibration for a worker.
     fn claim(&mut self, turn: Turn, claimant: Claimant, max_leases: usize, version: &str) -> Vec<NewClaim> {
         let Some(entry) = self.calibrations.get_mut(&turn.id) else {
             return Vec::new();
@@ -165,7 +165,7 @@ impl Farm {
     }
 }
 
-/// The lease of a claim, with its seal.
+/// Makes the lease of a claim, with its seal.
 fn sealed(entry: &Entry, turn: Turn, worker: &str, version: &str, claim: NewClaim) -> Lease {
     let calibration = &entry.calibration;
     let (lease, evaluation) = (claim.lease, claim.evaluation);

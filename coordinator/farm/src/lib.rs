@@ -1,19 +1,19 @@
-//! The farm: all calibrations in progress and all known workers; which worker evaluates what.
+//! The farm: all calibrations in progress and all connected workers, and the assignment of evaluations to workers.
 //!
 //! # Layout
-//! - [`calibration`]: a calibration in progress: the one place where sampler, likelihood and leases meet. Pure.
+//! - [`calibration`]: a calibration in progress, which combines sampler, likelihood and leases. Pure.
 //! - [`lease`]: the rules of leasing. Pure.
-//! - `farm`: [`Farm`]. Pure: the clock comes as an argument and facts go out as a list.
-//! - `leasing`: what a worker is given. `work_result`: what becomes of its results.
-//! - `verification`: what follows where workers disagree, and who is asked beside a slow one.
-//! - [`dispatch`]: gives it a thread. `pulse`: what that thread is doing.
+//! - `farm`: [`Farm`]. Pure: the time is an argument, and facts are returned as a list.
+//! - `leasing`: the leases for a worker. `work_result`: the effect of its results.
+//! - `verification`: the consequences of disagreement between workers, and second leases beside slow ones.
+//! - [`dispatch`]: the thread of the farm. `pulse`: the activity of that thread.
 //! - `control`: the commands of a user on a calibration.
-//! - `demand`: how much work there is.
+//! - `demand`: the amount of work.
 //! - `lease_numbers`: numbers of leases.
-//! - `share`: how calibrations share what a worker takes.
-//! - `seal`: binds a result to what was asked of whom.
-//! - `progress`: how fast a calibration goes.
-//! - `worker_record`, `metrics`: what is known of workers, and counted.
+//! - `share`: the division of leases among calibrations.
+//! - `seal`: the proof that a result belongs to its question.
+//! - `progress`: the speed of a calibration.
+//! - `worker_record`, `metrics`: records of workers, and counters.
 
 pub mod calibration;
 mod control;

@@ -5,11 +5,11 @@
 pub struct FarmCounters {
     /// Results that counted.
     pub completed: u64,
-    /// The number of these by workers that are part of a queue's job.
+    /// The number of these that came from workers of a queue's job.
     pub completed_in_queues: u64,
     /// Results that changed nothing.
     pub duplicates: u64,
-    /// Results whose seal does not prove what they answer.
+    /// Results whose seal does not match.
     pub refused: u64,
     /// Leases given out.
     pub leased: u64,
@@ -17,7 +17,7 @@ pub struct FarmCounters {
     pub lost: u64,
     /// Results that a second worker has confirmed.
     pub confirmed: u64,
-    /// Results that nobody was there to confirm.
+    /// Results that no worker was there to confirm.
     pub unanswered: u64,
     /// Leases that expired or ended in a fault.
     pub failed_leases: u64,
@@ -34,7 +34,7 @@ pub struct FarmMetrics {
     pub leased: usize,
     /// Calibrations in progress.
     pub calibrations: usize,
-    /// Known workers.
+    /// Connected workers.
     pub workers: usize,
     /// Results that wait for a second answer.
     pub unconfirmed: usize,

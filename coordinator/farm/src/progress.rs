@@ -9,16 +9,16 @@ use crate::calibration::{Calibration, CalibrationEngine};
 /// The time over which the pace is averaged `[ms]`.
 const WINDOW_MS: u64 = 10_000;
 
-/// Simulations over the last seconds.
+/// The recent speed of simulations.
 #[derive(Debug)]
 pub(super) struct Pace {
-    /// (time, simulations by then), a few a second; never empty.
+    /// Pairs (time, simulations by then), a few for each second; never empty.
     marks: VecDeque<(u64, u64)>,
-    /// Mean duration of leases that ended in a result, the late ones counting more `[ms]`.
+    /// Mean duration of leases that ended in a result, with more weight on recent ones `[ms]`.
     mean_lease_ms: Option<u64>,
 }
 
-/// A lease changes the mean duration of leases by this part of its difference.
+/// The inverse of the weight of a new duration in the mean.
 const LEASE_MEMORY: u64 = 16;
 
 impl Pace {
@@ -29,7 +29,7 @@ impl Pace {
         }
     }
 
-    /// Notes how many simulations are done by now.
+    /// Records the number of completed simulations at a time.
     pub(super) fn count(&mut self, simulations: u64, now_ms: u64) {
         if self.marks.back().is_none_or(|&(at, _)| now_ms >= at + 250) {
             self.marks.push_back((now_ms, simulations));
@@ -39,13 +39,13 @@ impl Pace {
         }
     }
 
-    /// Notes for how long a lease was out `[ms]`.
+    /// Records the duration of a lease `[ms]`.
     pub(super) fn count_lease(&mut self, age_ms: u64) {
         let mean_ms = self.mean_lease_ms.unwrap_or(age_ms);
         self.mean_lease_ms = Some((mean_ms * (LEASE_MEMORY - 1) + age_ms).div_ceil(LEASE_MEMORY));
     }
 
-    /// How long leases are out in the mean `[ms]`; `None` before the first result.
+    /// Returns the mean duration of leases `[ms]`; `None` before the first result.
     pub(super) fn mean_lease_ms(&self) -> Option<u64> {
         self.mean_lease_ms
     }
@@ -57,7 +57,7 @@ impl Pace {
     }
 }
 
-/// The status of a calibration.
+/// Returns the status of a calibration.
 pub(super) fn status(
     calibration: &Calibration,
     pace: &Pace,
@@ -117,21 +117,21 @@ fn position(engine: &CalibrationEngine) -> Position {
     }
 }
 
-/// What a calibration waits for that has nothing left to evaluate.
+/// Returns what a calibration waits for that has nothing left to evaluate.
 fn waits(calibration: &Calibration) -> Option<String> {
     let waiting = calibration.witness.second.waiting();
     let message = || format!("all is evaluated; {waiting} answers wait for that of a second worker");
     calibration.is_concluded().then(message)
 }
 
-/// Rough time to go.
+/// Returns a rough estimate of the time to go.
 fn remaining_s(calibration: &Calibration, per_second: f64) -> Option<f64> {
     let left = evaluations_left(calibration)?;
     (per_second > 0.0).then_some(left / per_second)
 }
 
-/// The number of evaluations that a calibration still wants, roughly: exponents grow by about a constant factor a stage, so the stages to come
-/// follow from the growth so far; each is taken to cost as much as the mean of the stages behind. `None` before the second stage.
+/// Estimates the number of evaluations that are left: exponents grow by about a constant factor in each stage, so the number of stages
+/// follows from the growth so far, and each is assumed to cost the mean of the earlier stages. Returns `None` before the second stage.
 pub(super) fn evaluations_left(calibration: &Calibration) -> Option<f64> {
     let exponents: Vec<f64> = calibration
         .engine()

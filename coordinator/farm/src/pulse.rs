@@ -1,28 +1,28 @@
-//! Whether the farm's thread lives, and how long it has been at its present step; told without asking the thread.
+//! The pulse of the farm's thread: whether it lives, and how long its present step has taken. It is read without a message to the thread.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
-/// No step is in progress.
+/// The value for no step in progress.
 const RESTING: u64 = u64::MAX;
-/// The thread has ended.
+/// The value for an ended thread.
 const ENDED: u64 = u64::MAX - 1;
 
-/// What the farm's thread is doing; clones share it.
+/// The activity of the farm's thread; clones share it.
 #[derive(Debug, Clone)]
 pub struct Pulse {
     began: Instant,
-    /// When the present step began, after `began` `[ms]`, or one of the constants above.
+    /// The start of the present step, relative to `began` `[ms]`, or one of the constants above.
     step_ms: Arc<AtomicU64>,
 }
 
-/// What the thread holds: a pulse ends with it, also where the thread panics.
+/// The thread's end of a pulse. Dropping it ends the pulse, also after a panic.
 #[derive(Debug)]
 pub(super) struct Heart(Pulse);
 
 impl Heart {
-    /// The heart of a thread that begins now.
+    /// Makes the heart of a thread that begins now.
     pub(super) fn begin() -> Heart {
         Heart(Pulse {
             began: Instant::now(),
@@ -34,12 +34,12 @@ impl Heart {
         self.0.clone()
     }
 
-    /// A step begins.
+    /// Marks the beginning of a step.
     pub(super) fn step_begins(&self) {
         self.0.step_ms.store(self.0.age_ms(), Ordering::Relaxed);
     }
 
-    /// The step is over.
+    /// Marks the end of a step.
     pub(super) fn rests(&self) {
         self.0.step_ms.store(RESTING, Ordering::Relaxed);
     }
@@ -56,7 +56,7 @@ impl Pulse {
         u64::try_from(self.began.elapsed().as_millis()).unwrap_or(RESTING)
     }
 
-    /// How long the thread has been at its present step, zero between two; `None` once it has ended.
+    /// Returns the duration of the present step, zero between two steps; `None` once the thread has ended.
     pub fn step(&self) -> Option<Duration> {
         match self.step_ms.load(Ordering::Relaxed) {
             ENDED => None,

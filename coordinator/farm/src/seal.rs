@@ -1,16 +1,15 @@
-//! The seal of a lease: proves that a result answers what this calibration asked this worker.
+//! The seal of a lease. It proves that a result answers the question that this calibration asked this worker.
 //!
-//! A seal has two halves of 64 bits, in hexadecimal digits. The first is a digest of the question: variant, parameter vector,
-//! subchain. The second is a digest of the calibration's key, the terms of the lease and the first half. Only the coordinator
-//! knows the key, so nobody else can make a seal, and it can be checked after a restart, when the lease is forgotten. The digest
-//! is SHA-256, cut to 64 bits.
+//! A seal has two halves of 64 bits, in hexadecimal digits. The first is a digest of the question: variant, parameter vector, subchain. The
+//! second is a digest of the calibration's key, the terms of the lease and the first half. Only the coordinator knows the key, so no other
+//! program can make a seal, and a seal can be checked after a restart, when the lease is forgotten. The digest is SHA-256, cut to 64 bits.
 
 use record::SealKey;
 use sha2::{Digest, Sha256};
 
 use crate::calibration::Question;
 
-/// To whom and for what a lease is given.
+/// The terms of a lease.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct LeaseTerms<'a> {
     pub lease: u64,
@@ -21,12 +20,12 @@ pub(super) struct LeaseTerms<'a> {
     pub model_version: &'a str,
 }
 
-/// The seal of a lease that asks a question.
+/// Returns the seal of a lease with a question.
 pub(super) fn seal(key: SealKey, terms: LeaseTerms, question: Question) -> String {
     sealed(key, terms, &question_digest(question))
 }
 
-/// Whether a seal belongs to a lease under these terms; where the question is still known, also whether it asked that.
+/// Returns whether a seal matches the terms of a lease and, where the question is known, also the question.
 pub(super) fn proves(seal: &str, key: SealKey, terms: LeaseTerms, question: Option<Question>) -> bool {
     match question {
         Some(question) => seal == self::seal(key, terms, question),
@@ -62,7 +61,7 @@ fn sealed(key: SealKey, terms: LeaseTerms, question: &str) -> String {
     format!("{question}{}", half(hash))
 }
 
-/// A text with its length in front, so that no two lists of texts give the same bytes.
+/// Hashes a text after its length, so that no two lists of texts give the same bytes.
 fn text(hash: &mut Sha256, text: &str) {
     hash.update((text.len() as u64).to_le_bytes());
     hash.update(text);

@@ -1,4 +1,4 @@
-//! How calibrations share what a worker takes.
+//! The division of a worker's leases among calibrations.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -7,8 +7,8 @@ use std::collections::BinaryHeap;
 /// calibration waits for no large one, and calibrations of slow and of fast evaluations get the same share of the workers' time.
 ///
 /// # Arguments
-/// - `queues`: of each calibration the leases that are out, and the evaluations that wait.
-/// - `want`: the most leases.
+/// - `queues`: for each calibration, the number of leases that are out and of evaluations that wait.
+/// - `want`: the largest number of leases to deal.
 ///
 /// # Returns
 /// The number of leases of each calibration.

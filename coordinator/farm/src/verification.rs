@@ -1,4 +1,4 @@
-//! What follows where workers disagree, and who is asked beside a slow one.
+//! The consequences of disagreement between workers, and second leases beside slow ones.
 
 use shared::model::equations_of;
 
@@ -8,16 +8,16 @@ use crate::lease::SlowLease;
 use record::Quarantine;
 use record::fact::Fact;
 
-/// A lease is slow once it is out for this many times the mean of its calibration's leases, and
+/// A lease is slow once its age exceeds this multiple of the mean duration of its calibration's leases plus [`SLOW_MS`].
 const SLOW_TIMES: u64 = 3;
-/// this much longer `[ms]`.
+/// The fixed part of the age at which a lease is slow `[ms]`.
 const SLOW_MS: u64 = 1_000;
 
-/// At the end of a calibration a second answer is waited for as long as this many leases take in the mean, and a lease's time.
+/// At the end of a calibration, a lease for a second answer may take this multiple of the mean duration plus the duration of a lease.
 const HUNG_TIMES: u64 = 10;
 
 impl Farm {
-    /// The farm with workers that were found to compute wrongly before.
+    /// Quarantines workers that were found to compute wrongly before a restart.
     #[must_use]
     pub fn with_quarantine(mut self, quarantine: Vec<Quarantine>) -> Self {
         let reason = |q: &Quarantine| reason(&q.worker, q.calibration, q.evaluation);
@@ -26,12 +26,12 @@ impl Farm {
         self
     }
 
-    /// The calibrations to replay from the store, since the last call: it has dropped results of theirs.
+    /// Returns the calibrations to replay from the store since the last call, because results of theirs were dropped.
     pub fn take_rewinds(&mut self) -> Vec<i64> {
         std::mem::take(&mut self.rewinds)
     }
 
-    /// A replay failed: the calibration waits for a user, who resumes it for another try.
+    /// Pauses a calibration whose replay failed. A user who resumes it starts another replay.
     pub fn rewind_failed(&mut self, id: i64, reason: &str) {
         let Some(entry) = self.calibrations.get_mut(&id) else {
             return;
@@ -46,8 +46,8 @@ impl Farm {
             .change_state(paused, Some(message), &mut self.facts);
     }
 
-    /// Quarantines a worker that computes wrongly: its leases come back, and no calibration in progress rests on results of its
-    /// that nobody has confirmed.
+    /// Quarantines a worker that computes wrongly. Its leases are taken back, and calibrations with unconfirmed results of the worker are
+    /// replayed without them.
     pub(super) fn convict(&mut self, worker: &str, calibration: i64, evaluation: u64) {
         if self.quarantine.contains_key(worker) {
             return;
@@ -74,12 +74,12 @@ impl Farm {
             if rests {
                 entry.calibration.queue = Default::default();
                 entry.calibration.witness.second = Default::default();
-                // A replay that is under way has read what is dropped now.
+                // A replay in progress has read results that are dropped now.
                 entry.rewinds += 1;
                 self.rewinds.push(id);
             }
         }
-        // Last: a crash that cuts the facts before it leaves a worker that can be found once more.
+        // This fact comes last. A crash that loses it leaves a worker that can be convicted again.
         self.facts.push(Fact::Quarantined {
             worker: worker.to_owned(),
             calibration,
@@ -87,7 +87,7 @@ impl Farm {
         });
     }
 
-    /// Ends a calibration that has nothing left but to compare answers, once they are compared or nobody is there to give them.
+    /// Finishes a calibration with only comparisons left, once they are made or no worker can make them.
     pub(super) fn settle(&mut self, id: i64, now_ms: u64) {
         let Some(entry) = self.calibrations.get_mut(&id) else {
             return;
@@ -116,7 +116,7 @@ impl Farm {
         calibration.settle(&mut self.facts);
     }
 
-    /// Asks another worker for what a slow one holds, where nothing else waits: the first answer counts.
+    /// Asks another worker for evaluations of slow leases, where nothing else waits. The first answer counts.
     pub(super) fn ask_beside_slow_workers(&mut self, now_ms: u64) {
         for entry in self.calibrations.values_mut() {
             let Entry {

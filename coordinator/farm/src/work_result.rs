@@ -1,4 +1,4 @@
-//! What becomes of a worker's result.
+//! The effect of a worker's result on the farm.
 
 use std::borrow::Cow;
 
@@ -12,12 +12,12 @@ use crate::calibration::{Calibration, ResultError, SimulationResult};
 use crate::lease::LeaseFailure;
 use record::fact::Fact;
 
-/// The first results of a worker are all compared with those of another; their number.
+/// The number of a worker's first results that are all compared with those of another worker.
 const NEW_WORKER_RESULTS: u64 = 5;
 
-/// What becomes of a result.
+/// The effect of a result.
 enum Taken {
-    /// The result counts, or its machine failed.
+    /// The result counts, or its lease has failed.
     New,
     /// The result changes nothing.
     Duplicate,
@@ -26,7 +26,7 @@ enum Taken {
 }
 
 impl Farm {
-    /// Takes the results of a worker. The number of those that changed nothing.
+    /// Takes the results of a worker. Returns the number of those that changed nothing.
     pub(super) fn take_results(&mut self, worker: &str, results: Vec<WorkResult>, now_ms: u64) -> u32 {
         let (mut duplicates, mut refused_leases) = (0, Vec::new());
         for result in results {
@@ -57,8 +57,8 @@ impl Farm {
         duplicates + refused_leases.len() as u32
     }
 
-    /// Takes a result from a worker that has said which version of the equations it computes. The first that counts pins its
-    /// calibration to it.
+    /// Takes a result from a worker that has stated its version of the equations. The first result that counts pins the calibration to this
+    /// version.
     fn take_result(&mut self, worker: &str, result: WorkResult, now_ms: u64) -> Taken {
         let (id, lease, repeated) = (result.calibration, result.lease, result.repeated);
         if let Some(closed) = self.closed(id) {
@@ -98,7 +98,7 @@ impl Farm {
         taken
     }
 
-    /// The version of the model under which the seal of a result proves that it answers a lease of its worker.
+    /// Returns the model version under which the seal of a result matches a lease of its worker.
     fn proven_version(&self, worker: &str, result: &WorkResult) -> Result<String, Taken> {
         let Some(entry) = self.calibrations.get(&result.calibration) else {
             return Err(Taken::Duplicate);
@@ -106,13 +106,13 @@ impl Farm {
         let (calibration, evaluation) = (&entry.calibration, result.evaluation);
         let record = self.workers.get(worker);
         let Some(version) = record.and_then(|record| record.equations_for(calibration)) else {
-            // The worker ran the model when it took the lease; the version that it runs now is not known.
+            // The worker ran the model when it took the lease, but its present version is unknown.
             return Err(Taken::Refused);
         };
         let pinned = calibration.model_version.as_deref();
         let is_other = pinned.is_some_and(|pinned| equations_of(pinned) != equations_of(version));
         if is_other && calibration.spec.model.external.is_some() {
-            // The model has become another one since the lease.
+            // The model has changed since the lease.
             return Err(Taken::Refused);
         }
         let model_version = model_version(calibration, version);
@@ -131,7 +131,7 @@ impl Farm {
         }
     }
 
-    /// Lets a proven result take effect on its calibration. The facts to store, and whether the result counted.
+    /// Completes the evaluation of a result with a valid seal. Returns the facts to store, and whether the result counted.
     fn complete(
         &mut self,
         worker: &str,
@@ -147,15 +147,16 @@ impl Farm {
         }
         let computed = SimulationResult::new(result.outcome, result.end)?;
         let record = self.workers.get(worker);
-        if record.is_none_or(|record| record.completed < NEW_WORKER_RESULTS) {
-            calibration.verify(result.evaluation);
-        }
-        let completed = calibration.complete(result.evaluation, computed, worker)?;
+        let is_new = record.is_none_or(|record| record.completed < NEW_WORKER_RESULTS);
+        let completed = match is_new {
+            true => calibration.complete_verified(result.evaluation, computed, worker)?,
+            false => calibration.complete(result.evaluation, computed, worker)?,
+        };
         entry.pace.count(calibration.cost.simulations, now_ms);
         Ok(completed)
     }
 
-    /// Pins a calibration to a version of the model, unless it is pinned: leases of workers of another version come back.
+    /// Pins a calibration to a version of the model, unless it is pinned. Leases of workers of other versions are taken back.
     fn pin(&mut self, id: i64, version: String) {
         let Some(entry) = self.calibrations.get_mut(&id) else {
             return;
@@ -169,9 +170,9 @@ impl Farm {
             stated.is_none_or(|stated| equations_of(stated) != equations_of(&version))
         };
         let workers = self.workers.iter().filter(|(_, worker)| is_other(worker));
-        let others: Vec<&String> = workers.map(|(name, _)| name).collect();
+        let other_workers: Vec<&String> = workers.map(|(name, _)| name).collect();
         let queue = &mut calibration.queue;
-        queue.take_back_of(|name| others.iter().any(|other| *other == name));
+        queue.take_back_of(|name| other_workers.iter().any(|other| *other == name));
         calibration.model_version = Some(version.clone());
         let calibration = id;
         self.facts.push(Fact::ModelVersion { calibration, version });
@@ -193,7 +194,7 @@ impl Farm {
         self.counters.completed_in_queues += u64::from(is_in_queue);
     }
 
-    /// Fails a lease whose worker gave no result.
+    /// Fails a lease whose worker returned no valid result.
     fn fail(&mut self, id: i64, lease: u64, worker: &str, message: &str) {
         self.worker_mut(worker).faults += 1;
         self.counters.failed_leases += 1;
@@ -218,8 +219,8 @@ impl Farm {
             .expect("the worker of an exchange is on record")
     }
 
-    /// Key and model version of a calibration that takes no results: it has ended, or waits for its replay, after which a result
-    /// counts where it is asked for again.
+    /// Returns the key and the model version of a calibration that takes no results, because it has ended or waits for its replay. After a
+    /// replay, a result counts if its evaluation is asked for again.
     fn closed(&self, id: i64) -> Option<Ended> {
         let Some(entry) = self.calibrations.get(&id) else {
             return self.ended.get(&id).cloned();
@@ -233,7 +234,7 @@ impl Farm {
         })
     }
 
-    /// Lets the store compare a result that does not count.
+    /// Sends a result that does not count to the store for comparison.
     fn compare_late(&mut self, worker: &str, result: WorkResult, closed: &Ended) -> Taken {
         let (calibration, evaluation) = (result.calibration, result.evaluation);
         let terms = LeaseTerms {
@@ -246,7 +247,7 @@ impl Farm {
         if !proves(&result.seal, closed.key, terms, None) {
             return Taken::Refused;
         }
-        // After a rewind the same number may ask something else: what it asked before is not known.
+        // After a rewind, the number may stand for another question.
         let computed = SimulationResult::new(result.outcome, result.end);
         if let Some(computed) = computed.ok().filter(|_| !closed.is_rewound) {
             self.facts.push(Fact::Duplicate {
@@ -260,7 +261,7 @@ impl Farm {
     }
 }
 
-/// The version that a calibration is pinned to; before its first result, what it would be pinned to by a worker's.
+/// Returns the version that a calibration is pinned to; before its first result, the version that a result of this worker would pin it to.
 pub(super) fn model_version<'a>(calibration: &'a Calibration, version: &str) -> Cow<'a, str> {
     match &calibration.model_version {
         Some(pinned) => Cow::Borrowed(pinned),

@@ -41,14 +41,14 @@ pub struct WorkerRecord {
 }
 
 impl WorkerRecord {
-    /// Version of the equations that it computes for a calibration: its own, or that of the model that is not ours; `None` where it
-    /// does not run that.
+    /// Returns the version of the equations that it computes for a calibration: its own, or that of the model that is not ours; `None`
+    /// where it does not run that.
     pub(super) fn equations_for(&self, calibration: &Calibration) -> Option<&str> {
         let external = calibration.spec.model.external.as_ref();
         self.equations_of_model(external.map(|model| model.source.name()).as_deref())
     }
 
-    /// Version that it computes of a model that is not ours, by the name of the model; without a name, of our equations.
+    /// Returns the version that it computes of a model that is not ours, by the name of the model; without a name, of our equations.
     pub(super) fn equations_of_model(&self, external: Option<&str>) -> Option<&str> {
         match external {
             None => Some(self.model_version.as_str()),

@@ -1,18 +1,18 @@
-//! Who gets which lease, in a farm without network and store.
+//! Tests of leasing in a farm without network and store.
 
 use farm::calibration::SimulationResult;
 use farm::{Control, Farm};
 use record::{Fact, SealKey};
 use shared::api::CalibrationState;
 use shared::exchange::{ExchangeRequest, ExchangeResponse, Lease, WorkResult};
-use shared::outcome::{Fault, Outcome};
+use shared::outcome::{Fault, Observables, Outcome};
 
 use super::simulation::world::case::{Case, EQUATIONS};
 use super::simulation::world::request::bare;
 
 const LEASE_MS: u64 = 1_000;
 
-/// A farm with the first job of some kinds, numbered from 1.
+/// Makes a farm with the first job of some kinds, numbered from 1.
 fn farm(kinds: &[usize]) -> (Farm, Vec<Vec<Case>>) {
     let cases = Case::all().expect("the jobs are valid");
     let mut farm = Farm::new(1, LEASE_MS);
@@ -31,7 +31,7 @@ fn request(worker: &str, want: u32) -> ExchangeRequest {
     }
 }
 
-/// How many leases of each of the first two calibrations.
+/// Counts the leases of each of the first two calibrations.
 fn counts(response: &ExchangeResponse) -> [usize; 2] {
     [1, 2].map(|id| response.leases.iter().filter(|l| l.calibration == id).count())
 }
@@ -53,7 +53,7 @@ fn fault() -> Option<Outcome> {
     Some(Outcome::Fault(Fault { message }))
 }
 
-/// Kinds of [`Case::all`]: fifty particles, five.
+/// Indices of kinds in [`Case::all`]: fifty particles, five particles.
 const LARGE: usize = 3;
 const SMALL: usize = 0;
 
@@ -65,7 +65,7 @@ fn a_small_calibration_does_not_wait_for_a_large_one() {
     let (mut farm, _) = self::farm(&[LARGE, LARGE]);
     assert_eq!(counts(&farm.exchange(request("a", 9), 0)), [5, 4]);
     assert_eq!(counts(&farm.exchange(request("b", 5), 0)), [2, 3]);
-    // What one leaves, the other takes.
+    // The second calibration takes the leases that the paused one leaves.
     farm.control(1, Control::Pause, 0).expect("it runs");
     assert_eq!(counts(&farm.exchange(request("c", 5), 0)), [0, 5]);
 }
@@ -130,9 +130,9 @@ fn a_result_pins_the_version_and_a_lease_does_not() {
         results: vec![answer(&theirs[0], outcome(&theirs[0]))],
         ..wrong
     };
-    let told = farm.exchange(late, 0);
-    assert_eq!((told.leases.len(), told.duplicates), (0, 1));
-    assert!(told.refused.is_some());
+    let response = farm.exchange(late, 0);
+    assert_eq!((response.leases.len(), response.duplicates), (0, 1));
+    assert!(response.refused.is_some());
     assert!(farm.take_facts().is_empty());
     let again: Vec<u64> = farm
         .exchange(request("a", 9), 0)
@@ -150,7 +150,7 @@ fn a_result_pins_the_version_and_a_lease_does_not() {
 #[test]
 fn a_suspect_does_not_wait_for_a_worker_that_has_become_another() {
     let (mut farm, _) = farm(&[SMALL]);
-    // The name is heard first with the version of this calibration, and computes another ever since.
+    // The worker first states the version of this calibration, and later another one.
     farm.exchange(request("other", 0), 0);
     let leases = farm.exchange(request("a", 1), 0).leases;
     let other = ExchangeRequest {
@@ -238,6 +238,47 @@ fn nothing_counts_behind_the_result_that_convicts_its_worker() {
 }
 
 #[test]
+fn an_answer_of_wrong_shape_beside_a_slow_lease_costs_an_attempt_like_a_fault() {
+    for outcome in [fault(), Some(Outcome::Evaluated(Observables::default()))] {
+        let (mut farm, cases) = farm(&[SMALL]);
+        let mut leases = farm.exchange(request("slow", 9), 0).leases;
+        let slow = leases.pop().expect("five evaluations wait");
+        let answer_of =
+            |lease: &Lease| answer(lease, cases[SMALL][0].answers[&lease.evaluation].outcome.clone());
+        let answered = ExchangeRequest {
+            results: leases.iter().map(answer_of).collect(),
+            holding: vec![slow.lease],
+            ..request("slow", 0)
+        };
+        farm.exchange(answered, 10);
+        let held = ExchangeRequest {
+            holding: vec![slow.lease],
+            ..request("slow", 0)
+        };
+        farm.exchange(held, 1_000);
+        farm.tick(1_500);
+        farm.exchange(request("other", 0), 1_500);
+        // The third failure ends the second lease, and the next tick starts a new one.
+        for is_suspect in [false, true, true, false] {
+            farm.tick(1_500);
+            let [second] = &farm.exchange(request("other", 1), 1_500).leases[..] else {
+                panic!("the slow worker's evaluation is leased to another one");
+            };
+            assert_eq!(
+                (second.evaluation, second.announce),
+                (slow.evaluation, is_suspect)
+            );
+            let failed = ExchangeRequest {
+                results: vec![answer(second, outcome.clone())],
+                ..request("other", 0)
+            };
+            farm.exchange(failed, 1_500);
+        }
+        assert_eq!(farm.workers(1_500)["other"].faults, 4);
+    }
+}
+
+#[test]
 fn an_evaluation_that_nobody_begins_pauses_its_calibration() {
     let (mut farm, _) = farm(&[SMALL]);
     let mut now_ms = 0;
@@ -245,7 +286,7 @@ fn an_evaluation_that_nobody_begins_pauses_its_calibration() {
         let running = farm.status(1, now_ms).expect("it is in progress").state;
         assert_ne!(running, CalibrationState::Paused, "after {lost} leases");
         let mut leases = 0;
-        // Each worker takes one suspect, or everything, and is never heard of again.
+        // Each worker takes one suspect, or everything, and never sends a message again.
         while !farm
             .exchange(request(&format!("w{lost}-{leases}"), 9), now_ms)
             .leases

@@ -1,4 +1,4 @@
-//! The farm without network and store: its rules of leasing, and promises under simulated faults.
+//! Tests of the farm without network and store: the rules of leasing, and promises under simulated faults.
 
 mod leasing;
 mod simulation;

@@ -1,4 +1,4 @@
-//! Some schedules of the bench `simulation`: the farm keeps its promises, and bugs that are planted are found.
+//! A slice of the bench `simulation`: the farm keeps its promises, and planted bugs are found.
 
 #[expect(dead_code, reason = "the bench uses more of it")]
 #[path = "../benches/simulation/world/mod.rs"]
@@ -22,7 +22,7 @@ fn every_promise_is_kept_through_any_weather_and_the_bits_are_those_of_a_run_wit
         broken.is_none(),
         "{broken:?}: cargo bench -p farm --bench simulation -- seed S"
     );
-    // Everything that may go wrong has gone wrong.
+    // Every kind of fault has occurred.
     assert_eq!(tally.schedules, SCHEDULES);
     assert!(tally.finished > SCHEDULES && tally.cancelled > 0, "{tally}");
     assert!(
@@ -36,7 +36,8 @@ fn every_promise_is_kept_through_any_weather_and_the_bits_are_those_of_a_run_wit
     assert!(tally.forged > 500 && tally.disputes > 50, "{tally}");
 }
 
-/// Nobody was asked beside a lease that is out no more, and asked again when the evaluation had been leased anew.
+/// A regression: an evaluation was dropped because the lease beside which it was asked had ended, and was asked again after it had been
+/// leased anew.
 #[test]
 fn a_schedule_that_broke_a_promise_keeps_it() {
     let Search { broken, .. } = search(&cases(), None, 418_118..418_119, None);
@@ -46,9 +47,9 @@ fn a_schedule_that_broke_a_promise_keeps_it() {
 #[test]
 fn planted_bugs_are_found() {
     let cases = cases();
-    // These need rare chains of events: see the bench.
+    // These bugs need rare sequences of events, which only the bench reaches.
     let rare = [Plant::HoleInFacts, Plant::KeyAgain];
-    for plant in Plant::ALL.into_iter().filter(|plant| !rare.contains(plant)) {
+    for plant in Plant::ALL.iter().copied().filter(|plant| !rare.contains(plant)) {
         let found = search(&cases, Some(plant), 1..SCHEDULES + 1, None).broken;
         assert!(found.is_some(), "{plant:?} is not found in {SCHEDULES} schedules");
     }

@@ -13,15 +13,17 @@ use job::{AlgorithmSettings, Spec, confounded_orders};
 use report::{model_limits, terminal};
 use search::untried::additions;
 
-/// Number of particles of the pilot: enough to fit the proposals of the stages; the number of stages hardly depends on it.
+/// The number of particles of the pilot. It suffices to fit the proposals of the stages, whose number hardly depends on it.
 const PILOT_PARTICLES: usize = 300;
-/// Longest duration of the pilot; its evaluations so far are extrapolated `[s]`.
+/// The longest duration of the pilot, whose evaluations are then extrapolated `[s]`.
 const PILOT_S: f64 = 30.0;
 
 pub(super) async fn check(config: &CheckArguments) -> anyhow::Result<()> {
     let job = job_on_disk::read(&config.file, &[])?;
     let allowed = Arc::new(LocalModels::new(&config.models.allow_model).map_err(anyhow::Error::msg)?);
-    let models: Vec<Spec> = std::iter::once(job.spec.clone()).chain(job.others).collect();
+    let models: Vec<Spec> = std::iter::once(job.spec.clone())
+        .chain(job.alternatives)
+        .collect();
     let mut text = String::new();
     for (number, spec) in models.iter().enumerate() {
         if models.len() > 1 {
@@ -72,7 +74,7 @@ pub(super) async fn check(config: &CheckArguments) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// The expected cost of a calibration: in words, and in seconds of a core.
+/// Estimates the cost of a calibration. Returns it in words, and in seconds of a core.
 async fn cost(spec: Spec, models: Arc<LocalModels>) -> anyhow::Result<(String, f64)> {
     let algorithm = spec.algorithm;
     let point_estimates = spec.point_estimates.clone();
@@ -95,7 +97,7 @@ async fn cost(spec: Spec, models: Arc<LocalModels>) -> anyhow::Result<(String, f
         core_s / cores as f64
     );
     for algorithm in point_estimates {
-        // The budget, because where they settle is not known before.
+        // The budget is the estimate, because the number of evaluations until convergence is unknown.
         let budget = algorithm.max_evaluations().unwrap_or_default() as f64;
         text += &format!(
             "point estimate {}: at most {:.3} core hours\n",
@@ -124,7 +126,8 @@ struct Pilot {
 }
 
 impl Pilot {
-    /// Expected evaluations of the whole job: the number of stages hardly depends on the particles; a fit or a search has run as a whole.
+    /// Returns the expected number of evaluations of the whole job. The number of stages hardly depends on the number of particles; a fit
+    /// or a search has run as a whole.
     fn expected(&self, algorithm: AlgorithmSettings) -> f64 {
         match (algorithm, self.algorithm) {
             (AlgorithmSettings::Sample(whole), AlgorithmSettings::Sample(small)) => {
@@ -137,7 +140,7 @@ impl Pilot {
         }
     }
 
-    /// States the algorithm that ran, and how far it came.
+    /// Describes the algorithm that ran, and how far it came.
     fn words(&self) -> String {
         let evaluations = self.evaluations;
         let ran = match self.algorithm {
@@ -210,7 +213,8 @@ fn pilot(mut spec: Spec, models: &LocalModels) -> anyhow::Result<Pilot> {
     })
 }
 
-/// Simulates what a calibration asks for until it ends, or for as long as a pilot may last; the seconds that simulations took.
+/// Simulates the calibration's evaluations until it ends, or until the longest duration of a pilot. Returns the seconds that simulations
+/// took.
 fn simulate(calibration: &mut Calibration, models: &LocalModels) -> anyhow::Result<f64> {
     let mut compiled: BTreeMap<String, Evaluate> = BTreeMap::new();
     let began = Instant::now();

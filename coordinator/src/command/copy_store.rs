@@ -1,4 +1,4 @@
-//! `coordinator copy-store`: a store from a file to a server, or back.
+//! `coordinator copy-store`: copies a store from a file to a server, or from a server to a file.
 
 use super::output::say;
 use crate::config::CopyStoreArguments;

@@ -1,4 +1,4 @@
-//! `coordinator effects`: the catalogue, or one effect with what it does.
+//! `coordinator effects`: lists the catalogue, or shows one effect with its influence.
 
 use std::fmt::Write;
 
@@ -19,7 +19,7 @@ use result::number;
 
 /// Longest line `[columns]`.
 const COLUMNS: usize = 100;
-/// Steps of a curve's height.
+/// The characters for the heights of a curve.
 const BARS: [char; 8] = ['▁', '▂', '▃', '▄', '▅', '▆', '▇', '█'];
 
 pub(super) async fn effects(config: &EffectsArguments) -> anyhow::Result<()> {
@@ -29,7 +29,7 @@ pub(super) async fn effects(config: &EffectsArguments) -> anyhow::Result<()> {
     };
     let effect = match (&config.file, &config.name) {
         (Some(path), _) => {
-            // The checks are those of a job.
+            // The file passes the same checks as the effect file of a job.
             let file = path.display().to_string();
             let effect = read_user_effect(&file, &read_text(path)?)?;
             check_effect(&file, &effect)?;
@@ -44,7 +44,7 @@ pub(super) async fn effects(config: &EffectsArguments) -> anyhow::Result<()> {
     Ok(say(&format!("{text}\n\n{}", deeds(&shown)))?)
 }
 
-/// Every effect of the catalogue, by the part of the model that it concerns.
+/// Returns every effect of the catalogue, by the part of the model that it concerns.
 fn list() -> String {
     let cards: Vec<EffectCard> = catalogue().iter().map(EffectCard::new).collect();
     let mut text = wrapped(
@@ -85,7 +85,7 @@ fn entry(card: &EffectCard) -> String {
     text
 }
 
-/// A prior as a job would have it, without braces.
+/// Formats a prior as in a job, without braces.
 fn prior(prior: &serde_json::Value) -> String {
     let value = |v: &serde_json::Value| match (v.as_f64(), v.as_array()) {
         (Some(x), _) => number::plain(x),
@@ -129,7 +129,7 @@ fn wrapped(words: &str, indent: usize) -> String {
     text + &line + "\n"
 }
 
-/// The changes by each strength, in a table and in curves.
+/// Formats the changes by each strength, as a table and as curves.
 fn deeds(signature: &Signature) -> String {
     let pass = if signature.pass > 1 { "; second pass" } else { "" };
     let angle = match signature.slip_angle_deg {
@@ -181,7 +181,7 @@ fn deeds(signature: &Signature) -> String {
     text
 }
 
-/// `v_a = 0.01 m/s`.
+/// Formats a value with its name and unit, as in `v_a = 0.01 m/s`.
 fn set(name: &str, value: f64, unit: &str) -> String {
     format!("{name} = {}{}", number::plain(value), behind(unit))
 }
@@ -200,7 +200,7 @@ fn cell(value: Option<f64>, signed: bool) -> String {
     }
 }
 
-/// The curve of a channel as bars between its least and its greatest value, followed by these values.
+/// Draws the curve of a channel as bars between its least and its greatest value, followed by these values.
 fn curve(channel: &ChannelSignature) -> String {
     let values = || channel.curve.iter().flatten().copied();
     let (least, most) = values().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| {

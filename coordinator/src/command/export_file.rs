@@ -1,4 +1,4 @@
-//! `coordinator export`: a calibration as a file for other programs.
+//! `coordinator export`: writes a calibration as a file for other programs.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -51,7 +51,7 @@ fn path(id: i64, part: &str) -> String {
     format!("/v1/calibrations/{id}/{part}")
 }
 
-/// The inference data of a calibration, checked: a service of another version may have sent them.
+/// Reads the inference data of a calibration and checks them, because a service of another version may have sent them.
 async fn data(place: &Place, id: i64) -> anyhow::Result<InferenceData> {
     let data: InferenceData = place.get(&path(id, "inference-data")).await?;
     data.check()?;

@@ -1,4 +1,4 @@
-//! Decides whether a service may listen at an address, and whether it asks for tokens.
+//! The decision whether a service may listen at an address, and whether it requires tokens.
 
 use std::net::SocketAddr;
 
@@ -8,7 +8,7 @@ use crate::config::ExposureArguments;
 use crate::http::{Exposure, TokenRule, tls_acceptor};
 use store::{Reader, name_of};
 
-/// Returns how a service is reached at an address. Refuses an address that other machines reach where no token is needed.
+/// Decides how a service is reached at an address. Refuses an address that other machines reach where no token is required.
 pub(super) async fn exposure(
     listening: SocketAddr,
     config: &ExposureArguments,

@@ -1,4 +1,4 @@
-//! The folder of a run: opens its store, computes its study to the end, writes and prints the results.
+//! The folder of a run: its store, the computation of its study, and its results.
 
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -29,11 +29,11 @@ const LOOK: Duration = Duration::from_millis(100);
 /// Whether the tables and flags of a study are printed.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Details {
-    /// Only the report has them.
+    /// Only the report has tables and flags.
     Hidden,
-    /// They are printed, with the search of the named calibration, else with the last search.
+    /// Tables and flags are printed, with the search of the given calibration or, without one, with the last search.
     Shown {
-        /// The searched calibration.
+        /// The calibration whose search is printed.
         searched: Option<i64>,
     },
 }
@@ -47,11 +47,11 @@ impl Details {
     }
 }
 
-/// A folder with its store open.
+/// A folder with its open store.
 pub(super) struct Folder {
     /// Path of the folder.
     pub(super) out: PathBuf,
-    /// Its store, and a farm for it.
+    /// The store, and a farm for it.
     pub(super) service: Service,
     local_workers: Option<usize>,
     models: LocalModels,
@@ -59,7 +59,7 @@ pub(super) struct Folder {
 }
 
 impl Folder {
-    /// Opens the store of an existing folder; workers elsewhere may join at the listener.
+    /// Opens the store of an existing folder. Remote workers may join at the listener.
     pub(super) async fn open(
         out: &Path,
         local_workers: Option<usize>,
@@ -68,7 +68,7 @@ impl Folder {
     ) -> anyhow::Result<Folder> {
         let models = LocalModels::new(&models.allow_model).map_err(anyhow::Error::msg)?;
         let store = out.join("grouser.db").display().to_string();
-        // Without a listener there is one worker: this program.
+        // Without a listener, this program is the only worker.
         let verified_share = listener.as_ref().map_or(0.0, |_| VERIFIED_PERCENT / 100.0);
         let settings = FarmSettings {
             lease_ms: LEASE_MS,
@@ -119,11 +119,11 @@ impl Folder {
         Ok(())
     }
 
-    /// Version of the equations that local workers compute for a job's model; `None` where they do not run the model, but workers elsewhere
-    /// may join.
+    /// Returns the version of the equations that local workers compute for a job's model; `None` where they do not run the model, but
+    /// remote workers may join.
     ///
     /// # Errors
-    /// No worker would run the model.
+    /// Neither local nor remote workers would run the model.
     pub(super) async fn equations_of(&self, spec: &Spec) -> anyhow::Result<Option<String>> {
         let external = spec.model.external.clone();
         let models = self.models.clone();
@@ -184,7 +184,7 @@ impl Folder {
         }
     }
 
-    /// The text that is printed about a study.
+    /// Makes the text that is printed about a study.
     async fn results(
         &self,
         calibration: i64,
@@ -210,7 +210,7 @@ impl Folder {
         Ok(text + &terminal::ending(&self.out, is_brief))
     }
 
-    /// Simulates until the study is over, or until ^C.
+    /// Simulates until the study is over, or until an interrupt.
     async fn calibrate(&mut self, study: i64) -> anyhow::Result<()> {
         let server = self.server.take();
         let service = &self.service;
@@ -246,13 +246,13 @@ impl Folder {
             workers.join().await;
         }
         if let Some(server) = server {
-            // Workers elsewhere may be in a long poll, which must not delay the end.
+            // Remote workers may be in a long poll, which must not delay the end.
             server.abort();
         }
         end
     }
 
-    /// Writes every result to a temporary name first, so that its final name never has a half-written file.
+    /// Writes every result to a temporary name first, so that no file is ever incomplete under its final name.
     async fn write_results(&self, calibration: i64, rounds: &[DiscoveryRound]) -> anyhow::Result<()> {
         let mut files = Vec::new();
         for file in [
@@ -274,7 +274,7 @@ impl Folder {
     }
 }
 
-/// Shows progress until every calibration of the study is over and it takes no further step, or until ^C.
+/// Shows progress until every calibration of the study is over and it takes no further step, or until an interrupt.
 async fn watch_until_over(
     study: i64,
     service: &Service,
@@ -322,7 +322,7 @@ async fn watch_until_over(
     }
 }
 
-/// The expected number of calibrations and searches of a study: a study that adds effects is expected to find one.
+/// Returns the expected number of calibrations and searches of a study. A study that adds effects is expected to find one.
 async fn expected_members(study: i64, service: &Service) -> anyhow::Result<usize> {
     let rows = service.store().reader().study(study).await?;
     let Some(first) = rows.first() else { return Ok(0) };

@@ -61,12 +61,12 @@ pub(super) async fn extend(config: &ExtendArguments) -> anyhow::Result<()> {
         wheel: config.wheel.clone(),
         effect_file: config.effect_file.as_deref().map(named_text).transpose()?,
     };
-    let known: Vec<CalibrationStatus> = match place {
+    let calibrations: Vec<CalibrationStatus> = match place {
         Place::Folder { .. } => place.get("/v1/calibrations?archived=true").await?,
         Place::Service(_) => Vec::new(),
     };
     let tell_of_known = |created: &CalibrationCreated| {
-        if known.iter().any(|status| status.id == created.id) {
+        if calibrations.iter().any(|status| status.id == created.id) {
             note(&format!("calibration {} has it already", created.id));
         }
     };
@@ -117,11 +117,11 @@ pub(super) async fn add_runs(config: &AddRunsArguments) -> anyhow::Result<()> {
     ))?)
 }
 
-/// An addition to a study, and how it is computed where the study is in a folder.
+/// An addition to a study, with the settings of its computation in a folder.
 struct Addition<'a> {
     source: &'a SourceArguments,
     growth: &'a GrowthArguments,
-    /// The calibration to whose study something is added.
+    /// A calibration of the study.
     calibration: i64,
 }
 

@@ -1,4 +1,4 @@
-//! `coordinator import`: a user's table of measurements to runs.csv, or a proposed map.
+//! `coordinator import`: converts a user's table of measurements to runs.csv, or proposes a map for it.
 
 use std::path::Path;
 

@@ -1,4 +1,4 @@
-//! A job on disk with the files it names, and the effects that the command line adds.
+//! A job on disk with its files and the effects that the command line adds.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -13,26 +13,29 @@ use job::{
     with_service_effects, without_service_effects,
 };
 
-/// A job with everything it names, read and validated.
+/// A job with all its files, read and validated.
 pub(super) struct JobOnDisk {
     /// Name for lists and folders.
     pub(super) name: String,
-    /// The job with the effects of the command line, and its effect files.
+    /// The job with its effect files and the effects of the command line.
     pub(super) job: FileSet,
     /// Its experiment.
     pub(super) experiment: FileSet,
-    /// Their specification; with the first model where the job compares several.
+    /// The specification; with the first model where the job compares several.
     pub(super) spec: Spec,
-    /// Their specifications with each of the other models.
-    pub(super) others: Vec<Spec>,
+    /// The specifications with each of the other models.
+    pub(super) alternatives: Vec<Spec>,
 }
 
-/// Reads and validates a job and its experiment. Of the effects that it lists, `own` are in the catalogue of a service.
-pub(super) fn read(file: &JobArguments, own: &[ServiceEffect]) -> Result<JobOnDisk, FileError> {
+/// Reads and validates a job and its experiment. Of the effects that it lists, `service_effects` are in the catalogue of a service.
+pub(super) fn read(file: &JobArguments, service_effects: &[ServiceEffect]) -> Result<JobOnDisk, FileError> {
     let path = &file.job;
     let job_name = path.display().to_string();
     let written = read_text(path)?;
-    let mut models = Job::parse_models(&job_name, &without_service_effects(&job_name, &written, own)?)?;
+    let mut models = Job::parse_models(
+        &job_name,
+        &without_service_effects(&job_name, &written, service_effects)?,
+    )?;
     for name in &file.accept {
         models.accept(name).map_err(|e| FileError::whole(&job_name, e))?;
     }
@@ -50,12 +53,12 @@ pub(super) fn read(file: &JobArguments, own: &[ServiceEffect]) -> Result<JobOnDi
     let files = read_beside(path, &job.named_files())?;
     let added = added_files(&file.effect_file)?;
     let names: Vec<String> = added.keys().cloned().collect();
-    let of_service: Vec<String> = own.iter().map(|own| own.file.clone()).collect();
-    for (effects, files) in [(&file.effect[..], &names), (&[], &of_service)] {
+    let service_files: Vec<String> = service_effects.iter().map(|effect| effect.file.clone()).collect();
+    for (effects, files) in [(&file.effect[..], &names), (&[], &service_files)] {
         let added = job.list_effects(effects, files);
         added.map_err(|e| FileError::whole(&job_name, e))?;
     }
-    // Messages name the lines of the file as it is; what is kept has the additions.
+    // Messages name the lines of the user's file; the stored job has the additions.
     let toml = accepting_job(&job_name, &written, &file.accept)?;
     let addition = Addition {
         effects: file.effect.clone(),
@@ -66,12 +69,12 @@ pub(super) fn read(file: &JobArguments, own: &[ServiceEffect]) -> Result<JobOnDi
         ..Addition::default()
     };
     let kept = extended_job(&job_name, &FileSet { toml, files }, &addition)?;
-    let kept = with_service_effects(&job_name, kept, own)?;
+    let kept = with_service_effects(&job_name, kept, service_effects)?;
     let mut specs = Spec::of_models(&job_name, models, &kept.files, &experiment_name, &experiment)?;
     for spec in &specs {
         check_accepted(spec).map_err(|e| FileError::whole(&job_name, e.to_string()))?;
     }
-    let others = specs.split_off(1);
+    let alternatives = specs.split_off(1);
     let spec = specs.remove(0);
     let effects = file.effect.iter().map(String::as_str);
     let additions = effects.chain(names.iter().map(|name| stem(name)));
@@ -81,11 +84,11 @@ pub(super) fn read(file: &JobArguments, own: &[ServiceEffect]) -> Result<JobOnDi
         job: kept,
         experiment,
         spec,
-        others,
+        alternatives,
     })
 }
 
-/// The effect files of the command line, each by its name without folders.
+/// Reads the effect files of the command line, each by its name without folders.
 fn added_files(paths: &[PathBuf]) -> Result<BTreeMap<String, String>, FileError> {
     let mut files = BTreeMap::new();
     for path in paths {
@@ -104,7 +107,7 @@ fn added_files(paths: &[PathBuf]) -> Result<BTreeMap<String, String>, FileError>
     Ok(files)
 }
 
-/// The job's name: its file's, or its folder's where the file is just `job.toml`.
+/// Returns the job's name: the name of its file, or of its folder where the file is `job.toml`.
 fn name(path: &Path) -> String {
     let text = |s: Option<&std::ffi::OsStr>| s.map(|s| s.to_string_lossy().into_owned());
     let stem = text(path.file_stem()).unwrap_or_else(|| "job".into());
@@ -115,7 +118,7 @@ fn name(path: &Path) -> String {
     text(absolute.parent().and_then(Path::file_name)).unwrap_or(stem)
 }
 
-/// The name of a file without its ending.
+/// Returns the name of a file without its ending.
 fn stem(file: &str) -> &str {
     file.strip_suffix(".toml").unwrap_or(file)
 }

@@ -1,4 +1,4 @@
-//! The place of the calibrations that a verb is about: a service or a folder. Both answer the same requests.
+//! The place of a verb's calibrations, a service or a folder, both of which answer the same requests.
 
 use anyhow::{Context, bail};
 use serde::Serialize;
@@ -10,11 +10,11 @@ use crate::config::{ClientArguments, SourceArguments, TargetArguments};
 use crate::http::InProcess;
 use crate::service::Service;
 
-/// A service or a folder, which answers requests.
+/// A service or a folder.
 pub(super) enum Place {
-    /// A service elsewhere.
+    /// A service, which is reached over HTTP.
     Service(ServiceClient),
-    /// The store in the folder of a run, which this program opens itself.
+    /// The store in the folder of a run, which this program opens.
     Folder {
         routes: InProcess,
         service: Box<Service>,
@@ -22,7 +22,7 @@ pub(super) enum Place {
 }
 
 impl Place {
-    /// Opens the place that the arguments name; a folder for reading, also beside a program that writes to it.
+    /// Opens the place that the arguments name. A folder is opened for reading, also beside a program that writes to it.
     pub(super) async fn open(source: &SourceArguments) -> anyhow::Result<Place> {
         match &source.out {
             None => Place::at(&source.url(), &source.client),
@@ -51,7 +51,7 @@ impl Place {
         }
     }
 
-    /// The answer to a request, from JSON.
+    /// Sends a request. Returns the value of the JSON answer.
     async fn value<T: DeserializeOwned>(
         &self,
         method: &str,
@@ -85,7 +85,7 @@ impl Place {
         self.value("POST", path, Some(serde_json::to_string(body)?)).await
     }
 
-    /// The id of the calibration that a verb is about: the stated one, or the first of the only study.
+    /// Returns the id of the calibration that a verb is about: the given one, or the first calibration of the only study.
     pub(super) async fn id(&self, target: &TargetArguments) -> anyhow::Result<i64> {
         if let Some(id) = target.id {
             return Ok(id);
@@ -98,7 +98,7 @@ impl Place {
         }
     }
 
-    /// A result of the calibration that a verb is about, by the last word of its path.
+    /// Requests a result of the calibration that a verb is about, by the last word of its path.
     pub(super) async fn part<T: DeserializeOwned>(
         &self,
         target: &TargetArguments,
@@ -109,7 +109,7 @@ impl Place {
     }
 }
 
-/// A service over a network.
+/// The HTTP client of a service.
 pub(super) struct ServiceClient {
     client: reqwest::Client,
     url: String,
@@ -121,7 +121,7 @@ impl ServiceClient {
         let parsed = reqwest::Url::parse(url).with_context(|| format!("--url {url}"))?;
         let builder = reqwest::Client::builder();
         let builder = match (parsed.scheme(), &config.ca_certificate) {
-            // Without TLS no certificate is read: a machine may have none.
+            // Without TLS the certificates of the machine are not read, because there may be none.
             ("http", _) => builder.tls_certs_only([]),
             ("https", None) => builder,
             ("https", Some(file)) => {

@@ -8,19 +8,19 @@ use shared::api::{CalibrationState, CalibrationStatus, Position, Progress};
 
 use super::output::note;
 
-/// Natural logarithm of the first tempering exponent of a usual calibration, about 1e-5: the stages climb from there to 0.
+/// Natural logarithm of the first tempering exponent of a usual calibration, about 1e-5. It rises to 0 over the stages.
 const FIRST_LN_EXPONENT: f64 = -11.5;
-/// Share of a calibration's work until the exponent is 1.
+/// The share of a calibration's work until the exponent is 1.
 const CLIMB: f64 = 0.9;
-/// Evaluations of a usual search.
+/// The number of evaluations of a usual search.
 const SEARCH: f64 = 2000.0;
-/// Steps of a usual fit.
+/// The number of steps of a usual fit.
 const FIT_STEPS: f64 = 8.0;
-/// Generations of a usual search by generations.
+/// The number of generations of a usual evolution.
 const GENERATIONS: f64 = 100.0;
-/// Smallest finished share from which the remaining time is estimated.
+/// The smallest finished share from which the remaining time is estimated.
 const MIN_SHARE: f64 = 0.03;
-/// Largest share that the display shows: the end is not certain.
+/// The largest share that the display shows, because the end is not certain.
 const MAX_SHARE: f64 = 0.99;
 
 /// The finished share of a study, from 0 to 1. Its members are equal parts, and the present one counts by its finished share. The share never
@@ -29,10 +29,10 @@ const MAX_SHARE: f64 = 0.99;
 struct StudyShare(f64);
 
 impl StudyShare {
-    /// The share now.
+    /// Updates the share, and returns it.
     ///
     /// # Arguments
-    /// - `over`: members that are over. `expected`: the least number of members in the end.
+    /// - `over`: the number of finished members. `expected`: the least number of members in the end.
     fn advance(&mut self, over: usize, expected: usize, present: &Progress) -> f64 {
         let parts = expected.max(over + 1) as f64;
         let now = (over as f64 + share_of(present)) / parts;
@@ -41,7 +41,7 @@ impl StudyShare {
     }
 }
 
-/// The share of a calibration or a search that is done, from 0 to 1.
+/// Returns the finished share of a calibration or a search, from 0 to 1.
 fn share_of(p: &Progress) -> f64 {
     let settling = |done: f64, usual: f64| 1.0 - libm::exp(-done / usual);
     match p.position {
@@ -59,7 +59,7 @@ fn share_of(p: &Progress) -> f64 {
     }
 }
 
-/// The time to go, in words; `None` while too little is done to tell.
+/// Returns the remaining time in words; `None` while too little is finished for an estimate.
 fn time_to_go(elapsed_s: f64, first: f64, share: f64) -> Option<String> {
     let done = share - first;
     let seconds = elapsed_s * (1.0 - share) / done;
@@ -70,7 +70,7 @@ fn time_to_go(elapsed_s: f64, first: f64, share: f64) -> Option<String> {
     })
 }
 
-/// The progress of a calibration in words: `stage 7 of about 12`.
+/// Returns the phase of a calibration in words: `stage 7 of about 12`.
 ///
 /// # Arguments
 /// - `first`: stage and exponent at which it was seen first; its stages to come climb as fast as those since then.
@@ -162,7 +162,7 @@ impl Display {
                 bar.set_position((1000.0 * share) as u64);
                 bar.set_message(message);
             }
-            // A phase with the same stage is one, whatever the estimate of the others.
+            // Phases with the same stage count as one, whatever the estimated number of stages.
             None if self.phase.0 != status.id || stage_of(&self.phase.1) != stage_of(&phase.1) => {
                 note(message.trim_start());
             }
@@ -184,7 +184,7 @@ impl Display {
     }
 }
 
-/// A phase without the estimate of how many there are.
+/// Returns a phase without the estimated number of stages.
 fn stage_of(phase: &str) -> &str {
     phase.split([',', ' ']).nth(1).unwrap_or(phase)
 }
@@ -219,7 +219,7 @@ mod tests {
     fn the_share_of_a_study_never_falls_and_never_reaches_the_whole() {
         let mut share = StudyShare::default();
         let mut shown = Vec::new();
-        // A study that turns out to have more members than expected, and stages whose progress starts again with each step.
+        // The study turns out to have more members than expected, and has stages whose progress starts again with each step.
         for over in 0..6 {
             for (stage, exponent) in [(0, 0.0), (1, 1e-6), (2, 1e-3), (3, 0.2), (4, 1.0)] {
                 for step_done in [0, 500, 1000, 10] {

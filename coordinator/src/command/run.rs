@@ -16,7 +16,7 @@ use report::model_limits;
 pub(super) async fn run(config: RunArguments) -> anyhow::Result<()> {
     let job = job_on_disk::read(&config.file, &[])?;
     for text in std::iter::once(&job.spec)
-        .chain(&job.others)
+        .chain(&job.alternatives)
         .flat_map(model_limits)
     {
         note(&format!("note: {text}"));
@@ -25,7 +25,7 @@ pub(super) async fn run(config: RunArguments) -> anyhow::Result<()> {
         .out
         .clone()
         .unwrap_or_else(|| Path::new("out").join(&job.name));
-    // The address is taken before anything is written, so that a port in use leaves nothing behind.
+    // The address is bound before anything is written, so that a port in use leaves no folder behind.
     let listener = match config.listen {
         Some(address) => Some(
             TcpListener::bind(address)
@@ -52,13 +52,13 @@ pub(super) async fn run(config: RunArguments) -> anyhow::Result<()> {
     result
 }
 
-/// The study of this folder: the stored one, where it has the same job, or a new one.
+/// Returns the study of this folder: the stored one, if it has the same job, or a new one.
 async fn take_up(job: &JobOnDisk, folder: &Folder) -> anyhow::Result<i64> {
     let service = &folder.service;
     let rows = service.store().reader().calibrations().await?;
     let mut rows = rows.into_iter().map(|(_, row)| row);
     let Some(first) = rows.next() else {
-        for spec in std::iter::once(&job.spec).chain(&job.others) {
+        for spec in std::iter::once(&job.spec).chain(&job.alternatives) {
             folder.equations_of(spec).await?;
         }
         let experiment = NewExperiment {
@@ -75,10 +75,10 @@ async fn take_up(job: &JobOnDisk, folder: &Folder) -> anyhow::Result<i64> {
         };
         return Ok(service.add_calibration(new).await?.study);
     };
-    // The other members of the study follow from the first, or a user added them.
+    // The other members of the study follow from the first one, or were added by a user.
     let first = first?;
     let mut is_same = service.spec_of(&first).await?.same_as(&job.spec);
-    for (row, spec) in rows.zip(&job.others) {
+    for (row, spec) in rows.zip(&job.alternatives) {
         let row = row?;
         is_same = is_same && same_model(service.spec_of(&row).await?, spec);
     }
@@ -99,7 +99,7 @@ async fn take_up(job: &JobOnDisk, folder: &Folder) -> anyhow::Result<i64> {
     Ok(first.study)
 }
 
-/// Whether a stored calibration is of one of the models that a job compares; its own job is of that model alone.
+/// Returns whether a stored calibration has one of the models that a job compares. Its stored job has this model alone.
 fn same_model(mut stored: Spec, of_job: &Spec) -> bool {
     (stored.models, stored.discovery) = (of_job.models, of_job.discovery);
     stored.same_as(of_job)

@@ -1,4 +1,4 @@
-//! `coordinator scale`: starts and ends workers on machines of a queue, by the work that a service has.
+//! `coordinator scale`: starts and ends workers on machines of a queue, according to the work of a service.
 
 use std::time::{Duration, Instant};
 
@@ -39,7 +39,7 @@ pub(super) async fn scale(arguments: &ScaleArguments) -> anyhow::Result<()> {
     let stop = stop_signal()?;
     tokio::pin!(stop);
     loop {
-        // A round that fails, as while the service or the queue is restarted, may succeed the next time.
+        // A round may fail while the service or the queue restarts, and the next one may succeed.
         match scaler.round(arguments.cost_cap_thread_h).await {
             Ok(Round::Spent) => return Ok(()),
             Ok(Round::Done) => {}
@@ -70,7 +70,7 @@ fn engine(arguments: &ScaleArguments) -> anyhow::Result<Engine> {
 }
 
 fn settings(arguments: &ScaleArguments) -> anyhow::Result<PilotSettings> {
-    // Each pilot starts in another folder.
+    // Relative paths are made absolute, because each pilot starts in another folder.
     let whole = |file: &Option<std::path::PathBuf>| {
         let whole = file.as_ref().map(std::path::absolute).transpose();
         whole.context("the current folder")
@@ -90,11 +90,11 @@ fn settings(arguments: &ScaleArguments) -> anyhow::Result<PilotSettings> {
 /// The result of a round.
 enum Round {
     Done,
-    /// The cap of cost is reached, and all pilots are ended.
+    /// The limit of the cost is reached, and all pilots are ended.
     Spent,
 }
 
-/// Reads the waiting work and the pilots, and starts or ends pilots by it.
+/// The rounds, each of which reads the waiting work and the pilots, and starts or ends pilots.
 struct Scaler {
     service: Place,
     engine: Engine,

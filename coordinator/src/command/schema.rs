@@ -1,4 +1,4 @@
-//! Schemas of files, for editors.
+//! `coordinator schema`: prints JSON schemas of files, for editors.
 
 use std::path::Path;
 

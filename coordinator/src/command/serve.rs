@@ -1,4 +1,4 @@
-//! `coordinator serve`: the service.
+//! `coordinator serve`: runs the service.
 
 use std::net::{IpAddr, Ipv4Addr, Ipv6Addr, SocketAddr};
 use std::ops::RangeInclusive;
@@ -16,7 +16,7 @@ use crate::embedded::{LocalModels, LocalWorkers};
 use crate::service::{FarmSettings, Service, ServiceError};
 use store::{StoreError, name_of};
 
-/// Durations that a lease may have `[ms]`: from the delays of a network to a day.
+/// The allowed durations of a lease `[ms]`: from the delays of a network to a day.
 const LEASE_MS: RangeInclusive<u64> = 100..=86_400_000;
 /// Interval between two attempts of a standby to open the store.
 const STANDBY: Duration = Duration::from_secs(1);
@@ -74,13 +74,13 @@ pub(super) async fn serve(config: ServeArguments) -> anyhow::Result<()> {
     if let Some(workers) = workers {
         workers.join().await;
     }
-    // Long polls end with the farm, so the server has nobody left to wait for.
+    // Long polls end with the farm, so the server waits for no client.
     service.close().await;
     server.abort();
     Ok(())
 }
 
-/// How the farm leases and verifies, by arguments within their bounds.
+/// Makes the settings of the farm from the arguments, within their bounds.
 fn farm_settings(config: &ServeArguments) -> anyhow::Result<FarmSettings> {
     if !LEASE_MS.contains(&config.lease_ms) {
         let (least, most) = (LEASE_MS.start(), LEASE_MS.end());
@@ -101,8 +101,8 @@ fn farm_settings(config: &ServeArguments) -> anyhow::Result<FarmSettings> {
     })
 }
 
-/// Takes the address and opens the store; the address first, so that a port in use leaves nothing behind. A standby listens when it has
-/// the store: a load balancer must send requests to the coordinator that serves.
+/// Binds the address, then opens the store, so that a port in use has no consequences. A standby binds its address only when it has the
+/// store, because a load balancer must send requests to the active coordinator.
 async fn open(config: &ServeArguments, settings: FarmSettings) -> anyhow::Result<(TcpListener, Service)> {
     let store = &config.store.store;
     let bind = async || {
@@ -122,7 +122,7 @@ async fn open(config: &ServeArguments, settings: FarmSettings) -> anyhow::Result
     Ok((bind().await?, Service::open(store, settings).await?))
 }
 
-/// The address at which a browser shows the page: of this machine where the service listens to all addresses, with TLS by the name of its
+/// Returns the URL of the page for a browser: on this machine if the service listens to all addresses, and with TLS by the name of the
 /// certificate.
 fn opening(listening: SocketAddr, tls: bool, name: Option<&str>) -> String {
     let scheme = if tls { "https" } else { "http" };
@@ -147,7 +147,7 @@ async fn standby(store: &str, settings: FarmSettings) -> anyhow::Result<Service>
         match Service::open(store, settings).await {
             Ok(service) => return Ok(service),
             Err(ServiceError::Store(StoreError::InUse(_))) => has_reached_it = true,
-            // A server that is started again may be away for a while; one that was never there is an error.
+            // A database server may be down for a while during a restart. If it was never there, this is an error.
             Err(ServiceError::Store(error @ StoreError::Database { .. })) if has_reached_it => {
                 tracing::warn!(%error, "standing by");
             }

@@ -1,4 +1,4 @@
-//! Completions for a shell, and man pages.
+//! Shell completions and man pages.
 
 use std::path::Path;
 
@@ -9,7 +9,7 @@ use clap_complete::Shell;
 use super::output::say;
 use crate::config::CoordinatorConfig;
 
-/// Prints completions of the command line.
+/// Prints the completions of the command line for a shell.
 pub(super) fn completions(shell: Shell) -> anyhow::Result<()> {
     let mut text = Vec::new();
     clap_complete::generate(shell, &mut CoordinatorConfig::command(), "coordinator", &mut text);

@@ -5,13 +5,13 @@ use tokio::sync::watch;
 /// A signal that asks the program to stop.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum StopSignal {
-    /// ^C.
+    /// SIGINT, as from Ctrl-C.
     Interrupt,
     /// SIGTERM.
     Terminate,
 }
 
-/// A command that a signal stopped before its work was done.
+/// The error of a command that a signal stopped before its work was done.
 #[derive(Debug, thiserror::Error)]
 #[error("stopped; the same command resumes from here")]
 pub struct Stopped(StopSignal);
@@ -21,7 +21,7 @@ impl Stopped {
         Stopped(signal)
     }
 
-    /// The exit status: 128 and the number of the signal, as shells have it.
+    /// Returns the exit status: 128 plus the number of the signal, as in shells.
     pub fn exit_status(&self) -> u8 {
         match self.0 {
             StopSignal::Interrupt => 130,
@@ -30,7 +30,7 @@ impl Stopped {
     }
 }
 
-/// Ready at ^C or SIGTERM.
+/// Returns a future that is ready at SIGINT or SIGTERM.
 pub(super) fn stop_signal() -> anyhow::Result<impl Future<Output = StopSignal> + Send + 'static> {
     use tokio::signal::unix::{SignalKind, signal};
     let mut terminate = signal(SignalKind::terminate())?;
@@ -42,7 +42,7 @@ pub(super) fn stop_signal() -> anyhow::Result<impl Future<Output = StopSignal> +
     })
 }
 
-/// Tells everything that was started here to stop.
+/// A sender that tells the tasks of a command to stop.
 pub(super) struct Shutdown(watch::Sender<bool>);
 
 impl Shutdown {
@@ -54,7 +54,7 @@ impl Shutdown {
         self.0.send_replace(true);
     }
 
-    /// Ready when it is time to stop.
+    /// Returns a future that is ready when it is time to stop.
     pub(super) fn wait(&self) -> impl Future<Output = ()> + Send + 'static {
         let mut stopped = self.0.subscribe();
         async move { drop(stopped.wait_for(|s| *s).await) }

@@ -12,9 +12,9 @@ use crate::config::{StoreArguments, TokenCommand};
 use record::{Token, TokenHash, TokenRole};
 use store::{TokenTable, name_of};
 
-/// Longest name of a token.
+/// The longest name of a token.
 const LONGEST_NAME: usize = 64;
-/// Smallest length of a token that was made elsewhere: 128 random bits in hexadecimal digits.
+/// The smallest length of a token that was made by another program: 128 random bits in hexadecimal digits.
 const MIN_SECRET: usize = 32;
 
 pub(super) async fn token(command: &TokenCommand) -> anyhow::Result<()> {
@@ -56,7 +56,7 @@ async fn add(name: &str, role: TokenRole, from: Option<&Path>, store: &StoreArgu
         let tokens = table.all().await?;
         let same = |stored: &&Token| stored.hash.is(&token.hash);
         match tokens.iter().rfind(same) {
-            // A coordinator also starts with a secret that was revoked since, and refuses it.
+            // A coordinator starts with a revoked secret, too, and refuses it.
             Some(stored) if stored.is_revoked => note(&format!(
                 "the token of {} was revoked, and stays so",
                 file.display()
@@ -88,7 +88,7 @@ async fn add(name: &str, role: TokenRole, from: Option<&Path>, store: &StoreArgu
     Ok(say(&format!("{secret}\n"))?)
 }
 
-/// A token that was made elsewhere.
+/// Reads a token that was made by another program.
 fn secret_of(file: &Path) -> anyhow::Result<String> {
     let token = BearerToken::find(Some(file), None)?;
     let secret = token.as_ref().map(BearerToken::expose).unwrap_or_default();
@@ -124,7 +124,7 @@ async fn revoke(name: &str, store: &StoreArguments) -> anyhow::Result<()> {
     Ok(say(&format!("token {name} is revoked\n"))?)
 }
 
-/// A new token: `grouser-` and 64 hexadecimal digits, random bits of the operating system.
+/// Makes a new token: `grouser-` and 64 hexadecimal digits of random bits from the operating system.
 ///
 /// # Errors
 /// The operating system has no random bits.

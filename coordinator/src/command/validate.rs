@@ -1,7 +1,7 @@
-//! `coordinator validate`: each level of a factor, predicted by a calibration on the others.
+//! `coordinator validate`: predicts each level of a factor by a calibration on the other levels.
 //!
-//! The calibrations are stored in another folder below the run: they are no part of its study, whose ledger compares models on the same
-//! measurements. A later call resumes them, and `--out` shows them like any other.
+//! The calibrations are stored in another folder below the run, because they are no part of its study, whose ledger compares models on the
+//! same measurements. A later call resumes them, and `--out` shows them like any other.
 
 use std::path::Path;
 
@@ -68,14 +68,14 @@ pub(super) async fn validate(config: &ValidateArguments) -> anyhow::Result<()> {
     })?)
 }
 
-/// Writes a text to a temporary name first, so that the final name never has a half-written file.
+/// Writes a text to a temporary name first, so that the file is never incomplete under its final name.
 fn write(path: &Path, text: &str) -> anyhow::Result<()> {
     let partial = path.with_extension("json.part");
     std::fs::write(&partial, text).with_context(|| partial.display().to_string())?;
     std::fs::rename(&partial, path).with_context(|| path.display().to_string())
 }
 
-/// Predicts a level by a calibration on the other levels.
+/// The validation of a calibration by leaving out levels.
 struct Rest {
     /// The calibration whose model predicts.
     calibration: FinishedCalibration,
@@ -85,7 +85,7 @@ struct Rest {
 }
 
 impl Rest {
-    /// Predicts a level from the others; a level that cannot be predicted has a reason.
+    /// Predicts a level from the others. Where this is impossible, the result is the reason.
     async fn predict(&self, level: LeftOutLevel, folder: &mut Folder) -> anyhow::Result<ValidatedLevel> {
         let edited = match Experiment::with_held_out(FILES[1], &self.experiment, &level.runs) {
             Ok(edited) => edited,
@@ -123,7 +123,7 @@ impl Rest {
         }
     }
 
-    /// The calibration of an earlier call on these runs by the same equations.
+    /// Returns the calibration of an earlier call on these runs with the same equations.
     async fn earlier(&self, edited: &FileSet, folder: &Folder) -> anyhow::Result<Option<CalibrationRow>> {
         let service = &folder.service;
         let equations = folder.equations_of(&self.calibration.spec).await?;
@@ -140,7 +140,7 @@ impl Rest {
     }
 
     async fn add(&self, level: &LeftOutLevel, edited: FileSet, folder: &Folder) -> Result<i64, ServiceError> {
-        // A mistake is refused before anything is stored.
+        // The job is validated before anything is stored.
         Spec::new(FILES[0], &self.job, FILES[1], &edited)?;
         let experiment = NewExperiment {
             toml: edited.toml,

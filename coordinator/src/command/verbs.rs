@@ -47,9 +47,9 @@ pub(super) async fn submit(config: &SubmitArguments) -> anyhow::Result<()> {
     Ok(say(&text)?)
 }
 
-/// The effects of a job that the library lacks and the catalogue of the service has.
+/// Reads those effects of a job that are in the catalogue of the service and not in the library.
 async fn added_effects(config: &SubmitArguments, service: &Place) -> anyhow::Result<Vec<ServiceEffect>> {
-    /// The part of `GET /v1/effects/NAME` that is needed here.
+    /// The needed part of the answer to `GET /v1/effects/NAME`.
     #[derive(Deserialize)]
     struct Page {
         effect: EffectCard,
@@ -60,7 +60,7 @@ async fn added_effects(config: &SubmitArguments, service: &Place) -> anyhow::Res
     for named in foreign_effects(&toml) {
         let is_name = |c: char| c.is_ascii_alphanumeric() || "_@".contains(c);
         if !named.chars().all(is_name) {
-            // The reader of the job refuses the name.
+            // The reader of the job refuses this name.
             continue;
         }
         let page: Page = service
@@ -163,17 +163,17 @@ pub(super) async fn report(config: &ReportArguments) -> anyhow::Result<()> {
     write(config.output.as_deref(), &report, "report.html")
 }
 
-/// The calibration of the current model of a study, or the given calibration where the study has no current model.
+/// Returns the calibration of the current model of a study, or the given calibration if the study has no current model.
 async fn current(place: &Place, calibration: i64) -> anyhow::Result<i64> {
     let status: CalibrationStatus = place.get(&format!("/v1/calibrations/{calibration}")).await?;
     let study: StudyOverview = place.get(&format!("/v1/studies/{}", status.study)).await?;
     Ok(study.current.unwrap_or(calibration))
 }
 
-/// Writes a text to a file, or to standard output. Where that is a terminal, it gets the size of the text and how to write it.
+/// Writes a text to a file, or to standard output. A terminal gets the size of the text instead, and how to write it to a file.
 ///
 /// # Arguments
-/// - `name`: name of the file that is proposed.
+/// - `name`: the proposed name of the file.
 pub(super) fn write(path: Option<&Path>, text: &str, name: &str) -> anyhow::Result<()> {
     match path {
         Some(path) => std::fs::write(path, text).with_context(|| path.display().to_string()),
@@ -182,7 +182,7 @@ pub(super) fn write(path: Option<&Path>, text: &str, name: &str) -> anyhow::Resu
     }
 }
 
-/// The message that a terminal gets in place of a long text.
+/// Returns the message for a terminal in place of a long text.
 fn in_place_of(text: &str, name: &str) -> String {
     let mut message = format!("{} lines, {} kB", text.lines().count(), text.len().div_ceil(1000));
     if name.ends_with(".csv")

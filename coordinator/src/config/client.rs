@@ -17,7 +17,7 @@ pub struct ClientArguments {
 }
 
 impl ClientArguments {
-    /// The token: of the file, or else of the environment.
+    /// Returns the token: of the file, or else of the environment.
     ///
     /// # Errors
     /// The file cannot be read, or the token has no form.

@@ -454,9 +454,10 @@ pub struct AddRunsArguments {
 }
 
 impl CoordinatorCommand {
-    /// The filter of the log: `RUST_LOG` as a level or as `target=level` between commas, else `info` with these exceptions. Warnings
-    /// of slow statements are hidden, because a busy disk causes them. Only a service logs the starts, pauses and ends of calibrations, and
-    /// additions to studies: the other verbs print these themselves.
+    /// Returns the filter of the log: `RUST_LOG` as a level or as `target=level` between commas, else `info` with these exceptions.
+    ///
+    /// Warnings of slow statements are hidden, because a busy disk causes them. Only a service logs the starts, pauses and ends of
+    /// calibrations, and additions to studies: the other verbs print these themselves.
     pub fn log_filter(&self) -> Targets {
         let stated = std::env::var("RUST_LOG").ok().and_then(|text| text.parse().ok());
         let (journal, of_workers) = match self {

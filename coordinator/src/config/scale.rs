@@ -70,7 +70,7 @@ pub struct ScaleArguments {
     pub options: Vec<String>,
 }
 
-/// A positive number of at most ten years in seconds.
+/// Returns a positive number of at most ten years in seconds.
 fn positive(text: &str) -> Result<f64, String> {
     const MAX_SECONDS: f64 = 315_360_000.0;
     match text.parse::<f64>() {

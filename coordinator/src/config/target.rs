@@ -20,7 +20,7 @@ pub struct SourceArguments {
 }
 
 impl SourceArguments {
-    /// The URL of the service: the argument, or else the environment's.
+    /// Returns the URL of the service: the argument, or else the environment's.
     pub fn url(&self) -> String {
         let environment = || std::env::var("GROUSER_URL").ok();
         self.url

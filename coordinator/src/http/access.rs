@@ -1,4 +1,4 @@
-//! Checks the bearer token of a request against the role that its route needs.
+//! Authorisation: the check of a request's bearer token against the role that its route needs.
 
 use std::fmt;
 use std::time::Duration;
@@ -14,27 +14,27 @@ use super::page;
 use record::{Token, TokenHash, TokenRole};
 use store::Reader;
 
-/// Interval between two reads of the tokens: a change takes effect after this time.
+/// The interval between two reads of the tokens, after which a change takes effect.
 const LOOK: Duration = Duration::from_secs(1);
-/// Answer where a token is needed and none is sent.
+/// The answer where a token is required and none is sent.
 const NEEDED: &str =
     "a token is needed: GROUSER_TOKEN or --token-file, sent as \"Authorization: Bearer TOKEN\"";
-/// Answer to a token that lets nobody in.
+/// The answer to an unknown or revoked token.
 const UNKNOWN: &str = "the token is unknown or revoked";
 
-/// When a token is asked for.
+/// The rule that decides whether a token is required.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum TokenRule {
     /// Always.
     Always,
-    /// Once the store has had a token; for a service that only this machine reaches.
+    /// Once the store has had a token. This is for a service that only this machine can reach.
     OnceThereIsOne,
     /// Never.
     Never,
 }
 
 impl TokenRule {
-    /// Whether a store with these tokens asks for one.
+    /// Returns whether requests to a store with these tokens need one.
     fn asks(self, tokens: &[Token]) -> bool {
         match self {
             TokenRule::Always => true,
@@ -44,24 +44,24 @@ impl TokenRule {
     }
 }
 
-/// The token of a hash, unless it is revoked.
+/// Returns the token with a hash, unless it is revoked.
 fn valid<'a>(tokens: &'a [Token], hash: &TokenHash) -> Option<&'a Token> {
     let found = tokens.iter().find(|token| token.hash.is(hash));
     found.filter(|token| !token.is_revoked)
 }
 
-/// The sender of a request, for log and store.
+/// The sender of a request, for the log and the store.
 #[derive(Debug, Clone, FromRequestParts)]
 #[from_request(via(axum::Extension))]
 pub(super) struct Caller {
-    /// The name of the token, where one is asked for.
+    /// The name of the token, where one is required.
     name: Option<String>,
     hash: Option<TokenHash>,
     access: Access,
 }
 
 impl Caller {
-    /// This program itself, which is asked for no token.
+    /// Returns this program as the sender, which needs no token.
     pub(super) fn this_program() -> Caller {
         let access = Access {
             rule: TokenRule::Never,
@@ -74,12 +74,13 @@ impl Caller {
         }
     }
 
-    /// The name of the token, where one is asked for.
+    /// Returns the name of the token, where one is required.
     pub(super) fn into_name(self) -> Option<String> {
         self.name
     }
 
-    /// Ready as soon as the sender would no longer be let in: its token was revoked, or tokens are asked for since. For what lasts long.
+    /// Returns an error as soon as the sender would no longer be admitted, because its token was revoked or tokens have become required.
+    /// Long requests watch this future.
     pub(super) async fn shut_out(mut self) -> HttpError {
         let Access { rule, tokens } = &mut self.access;
         let hash = self.hash.as_ref();
@@ -88,7 +89,7 @@ impl Caller {
             rule.asks(tokens) && !is_known
         };
         if tokens.wait_for(is_out).await.is_err() {
-            // Nobody looks after the tokens any more: the service is going down.
+            // The task that reads the tokens has ended, because the service is ending.
             std::future::pending::<()>().await;
         }
         match hash {
@@ -107,7 +108,7 @@ impl fmt::Display for Caller {
     }
 }
 
-/// The tokens of the store, as of a moment ago.
+/// The tokens of the store, which a task reads again and again.
 #[derive(Debug, Clone)]
 pub(super) struct Access {
     rule: TokenRule,
@@ -115,7 +116,7 @@ pub(super) struct Access {
 }
 
 impl Access {
-    /// Begins with these tokens, and reads them again and again for as long as the access is used.
+    /// Begins with these tokens, and reads them again and again while the access is in use.
     pub(super) fn start(rule: TokenRule, tokens: Vec<Token>, reader: Reader) -> Access {
         let (sender, tokens) = watch::channel(tokens);
         tokio::spawn(async move {
@@ -131,7 +132,7 @@ impl Access {
         Access { rule, tokens }
     }
 
-    /// The sender of a request, if it may be sent.
+    /// Returns the sender of a request, if the request is authorised.
     pub(super) fn caller(
         &self,
         method: &Method,
@@ -150,7 +151,7 @@ impl Access {
         let stated = stated.filter(|(scheme, _)| scheme.eq_ignore_ascii_case("bearer"));
         let hash = stated.map(|(_, token)| TokenHash::new(token.trim()));
         let Some(needed) = needed(method, path).filter(|_| is_asked_for) else {
-            // A token that is stated before one is asked for keeps its polls and streams when the first one is.
+            // A token that was sent before tokens were required keeps its polls and streams when the first token is made.
             return Ok(caller(None, hash));
         };
         let refused = |message| HttpError::new(ErrorKind::Unauthorized, message);
@@ -169,7 +170,7 @@ impl Access {
     }
 }
 
-/// The role that a request needs; nobody is asked for one to see whether the service is alive, or for the files of the page.
+/// Returns the role that a request needs; `None` for `/health` and the files of the page.
 fn needed(method: &Method, path: &str) -> Option<TokenRole> {
     match path {
         "/health" | "/" | page::DOCS_PATH => None,

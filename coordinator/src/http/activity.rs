@@ -1,4 +1,4 @@
-//! Whether a connection waits for its client, and since when.
+//! The activity of a connection: whether it waits for its client, and since when.
 
 use std::pin::Pin;
 use std::sync::Arc;
@@ -15,17 +15,17 @@ use tokio::sync::Notify;
 #[derive(Debug)]
 pub(super) struct Activity {
     began: Instant,
-    /// When the client last sent or took something, after `began` `[ms]`.
+    /// The time at which the client last sent or received data, after `began` `[ms]`.
     progress_ms: AtomicU64,
-    /// Requests that have arrived as a whole and whose answer is not written yet.
+    /// The number of requests that have arrived completely and are not answered completely.
     answering: AtomicU32,
-    /// Whether an answer waits for the client to take it.
+    /// Whether data of an answer wait for the client.
     is_stalled: AtomicBool,
     closed: Notify,
 }
 
 impl Activity {
-    /// A connection that begins now.
+    /// Makes the activity of a connection that begins now.
     pub(super) fn begin() -> Arc<Activity> {
         Arc::new(Activity {
             began: Instant::now(),
@@ -40,57 +40,57 @@ impl Activity {
         u64::try_from(self.began.elapsed().as_millis()).unwrap_or(u64::MAX)
     }
 
-    /// The client has sent something.
+    /// Records that the client has sent data.
     pub(super) fn received(&self) {
         self.progress_ms.store(self.age_ms(), Ordering::Relaxed);
     }
 
-    /// The client has taken something.
+    /// Records that the client has received data.
     pub(super) fn sent(&self) {
         self.received();
         self.is_stalled.store(false, Ordering::Relaxed);
     }
 
-    /// The client takes nothing.
+    /// Records that the client does not receive data.
     pub(super) fn stalled(&self) {
         self.is_stalled.store(true, Ordering::Relaxed);
     }
 
-    /// Whether the client does not take what is written to it.
+    /// Returns whether the client does not receive the data that are written to it.
     pub(super) fn is_stalled(&self) -> bool {
         self.is_stalled.load(Ordering::Relaxed)
     }
 
-    /// How long the connection has waited for its client; `None` while the client waits for the service.
+    /// Returns how long the connection has waited for its client; `None` while the client waits for the service.
     pub(super) fn waiting(&self) -> Option<Duration> {
         let waits = self.is_stalled() || self.answering.load(Ordering::Relaxed) == 0;
         let progress_ms = self.progress_ms.load(Ordering::Relaxed);
         waits.then(|| Duration::from_millis(self.age_ms().saturating_sub(progress_ms)))
     }
 
-    /// Asks the connection to end at once.
+    /// Requests the end of the connection.
     pub(super) fn close(&self) {
         self.closed.notify_one();
     }
 
-    /// Ready when the connection has been asked to end.
+    /// Waits until the end of the connection is requested.
     pub(super) async fn closed(&self) {
         self.closed.notified().await;
     }
 
-    /// From now on the client waits for the service, until the answer is written.
+    /// Marks that the client waits for the service, until the returned guard is dropped.
     pub(super) fn answer(self: &Arc<Self>) -> Answering {
         self.answering.fetch_add(1, Ordering::Relaxed);
         Answering(self.clone())
     }
 }
 
-/// While it exists, the client waits for the service.
+/// A guard: while it exists, the client waits for the service.
 #[derive(Debug)]
 pub(super) struct Answering(Arc<Activity>);
 
 impl Answering {
-    /// Lasts until the body of the answer has been handed to the connection.
+    /// Keeps the guard until the body of the answer has been handed to the connection.
     pub(super) fn through(self, response: Response<Body>) -> Response<Body> {
         response.map(|body| {
             Body::new(AnswerBody {
@@ -108,7 +108,7 @@ impl Drop for Answering {
     }
 }
 
-/// The body of an answer, with what lasts as long as it.
+/// The body of an answer with the guard.
 struct AnswerBody {
     body: Body,
     _answering: Answering,

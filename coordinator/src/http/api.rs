@@ -1,11 +1,11 @@
-//! The routes of `/v1`, of every resource.
+//! The routes of `/v1`, collected from all resources.
 
 use utoipa_axum::router::OpenApiRouter;
 
 use super::{calibrations, document, effects, events, examples, experiments, growth, import, studies, work};
 use crate::service::Service;
 
-/// The routes of `/v1`.
+/// Returns the routes of `/v1`.
 pub(super) fn api() -> OpenApiRouter<Service> {
     let routes = OpenApiRouter::new()
         .merge(experiments::routes())

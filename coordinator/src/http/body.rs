@@ -1,4 +1,4 @@
-//! The body of a request: its form, its size and the time that it takes are checked before its handler sees it.
+//! The body of a request: its form, its size and its duration are checked before the handler gets it.
 
 use std::error::Error;
 use std::future::poll_fn;
@@ -15,14 +15,14 @@ use shared::wire::WireForm;
 use super::body_memory::{BodyMemory, ORDINARY};
 use super::error::HttpError;
 
-/// Where workers post.
+/// The path to which workers post results.
 const EXCHANGE: &str = "/v1/work/exchange";
-/// A body must have arrived after this time.
+/// The time within which a body must arrive.
 const BODY_TIME: Duration = Duration::from_secs(120);
 
-/// Largest body of a route `[bytes]`: the results of a large batch or the files of a large experiment; a table of
-/// measurements; a job with the draws that it names; the rows of further runs; an effect file that joins a job; names of runs; else next to nothing, as an effect of the
-/// catalogue needs.
+/// Returns the largest body of a route `[bytes]`. Large routes are the results of a large batch, the files of a large experiment, a table
+/// of measurements, a job with the draws that it names, further runs, an effect file for a job, and lists of runs. Other bodies are as
+/// small as the addition of an effect from the catalogue.
 fn limit(path: &str) -> usize {
     match path.rsplit('/').next() {
         _ if path == EXCHANGE => 64 << 20,
@@ -34,10 +34,11 @@ fn limit(path: &str) -> usize {
     }
 }
 
-/// A POST is JSON, or a worker's message: no page can send these to another site without being asked first.
+/// Checks that a POST has the form of JSON or of a worker's message, because a browser does not let a page send these to another site
+/// without a preflight request.
 pub(super) fn check_form(request: &Request) -> Result<(), HttpError> {
     let path = request.uri().path();
-    // The exchange names the forms that it takes itself; below a path that is none of ours it is not found.
+    // The exchange checks its forms itself. A path outside `/v1` gets the answer 404.
     if request.method() != Method::POST || path.ends_with(EXCHANGE) {
         return Ok(());
     }
@@ -53,7 +54,7 @@ pub(super) fn check_form(request: &Request) -> Result<(), HttpError> {
     Err(HttpError::new(ErrorKind::UnsupportedMediaType, message))
 }
 
-/// The request with its whole body.
+/// Reads the whole body of a request.
 pub(super) async fn received(request: Request, memory: &BodyMemory) -> Result<Request, HttpError> {
     let path = request.uri().path();
     let (limit, is_of_worker) = (limit(path), path == EXCHANGE);
@@ -78,7 +79,7 @@ fn too_large(limit: usize) -> HttpError {
     HttpError::new(ErrorKind::TooLarge, message)
 }
 
-/// The bytes of a body, in one piece: many small ones would leave holes in the memory of the process.
+/// Reads a body into one allocation, because many small ones would fragment the memory of the process.
 async fn whole(
     mut body: Body,
     limit: usize,
@@ -93,7 +94,7 @@ async fn whole(
     let mut room = memory.take(first, is_of_worker).await?;
     let mut bytes = Vec::with_capacity(stated.unwrap_or_default());
     while let Some(frame) = poll_fn(|context| Pin::new(&mut body).poll_frame(context)).await {
-        // What follows the parts of a body is passed over.
+        // Frames that are not data, such as trailers, are ignored.
         let Ok(part) = frame.map_err(|error| unreadable(&error))?.into_data() else {
             continue;
         };

@@ -1,9 +1,8 @@
-//! The memory for all bodies that are on their way or being read.
+//! The memory for all bodies that are being received or read.
 //!
-//! What workers post, other ordinary bodies, and large ones have memory of their own, so that nobody who sends large bodies, or halves of
-//! them, keeps a worker from posting its results. A worker posts what it has as soon as the answer before has arrived: about 2 kB for an
-//! evaluation of 24 runs, 200 kB for a hundred of them. There is room for 320 such messages at the same moment, and each is there for
-//! milliseconds.
+//! Workers' messages, other ordinary bodies and large bodies have separate memory. Thus a client that sends large or incomplete bodies
+//! cannot keep workers from posting results. A worker posts its results as soon as the previous answer has arrived: about 2 kB for an
+//! evaluation of 24 runs, 200 kB for a hundred of them. 320 such messages fit at the same time, and each is there for milliseconds.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -20,9 +19,9 @@ pub(super) const ORDINARY: usize = 4 << 20;
 const OF_WORKERS_TOGETHER: usize = 64 << 20;
 /// Memory for all other ordinary bodies together `[bytes]`.
 const ORDINARY_TOGETHER: usize = 32 << 20;
-/// Memory for all larger ones together: two of the largest `[bytes]`.
+/// Memory for all large bodies together: two of the largest `[bytes]`.
 const LARGE_TOGETHER: usize = 128 << 20;
-/// A body waits so long for memory before it is refused.
+/// The time that a body waits for memory before it is refused.
 const PATIENCE: Duration = Duration::from_secs(5);
 
 /// The memory of all bodies; clones share it.
@@ -42,10 +41,10 @@ impl BodyMemory {
         }
     }
 
-    /// Room for a body of so many bytes, the largest of any route at most.
+    /// Reserves memory for a body of `bytes`, which is at most the largest size of any route.
     ///
     /// # Errors
-    /// Others have the memory, and go on having it.
+    /// The memory stays in use for longer than [`PATIENCE`].
     pub(super) async fn take(&self, bytes: usize, is_of_worker: bool) -> Result<Room, HttpError> {
         let (memory, together) = match (bytes <= ORDINARY, is_of_worker) {
             (true, true) => (&self.of_workers, OF_WORKERS_TOGETHER),
@@ -67,7 +66,7 @@ impl BodyMemory {
     }
 }
 
-/// Memory that a body may fill.
+/// Reserved memory for a body.
 #[derive(Debug)]
 pub(super) struct Room {
     bytes: usize,
@@ -79,7 +78,7 @@ impl Room {
         self.bytes
     }
 
-    /// A body in its room, which is free again when nobody reads the body any more.
+    /// Returns the body with its reservation, which ends when the last reader drops the body.
     pub(super) fn holding(self, content: Vec<u8>) -> Bytes {
         Bytes::from_owner(Held {
             content,

@@ -313,7 +313,7 @@ async fn predictions(State(service): State<Service>, Id(id): Id) -> Result<impl 
     Ok(json(service.study_file(id, StudyFile::PredictionRows).await?))
 }
 
-/// A text that is JSON already.
+/// Returns a text that is JSON already.
 fn json(text: String) -> impl IntoResponse {
     ([(header::CONTENT_TYPE, "application/json")], text)
 }

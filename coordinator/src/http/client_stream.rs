@@ -1,4 +1,4 @@
-//! The stream of a connection: notes when its client sends or takes something, and leaves nothing behind of one that takes nothing.
+//! The stream of a connection. It records when its client sends or receives data, and frees the buffers of a client that receives nothing.
 
 use std::io;
 use std::pin::Pin;
@@ -32,7 +32,8 @@ impl ClientStream {
 impl Drop for ClientStream {
     fn drop(&mut self) {
         if self.activity.is_stalled() {
-            // Otherwise the operating system keeps what was written until the client takes it. Where it refuses, it does so.
+            // Otherwise the operating system keeps the written data until the client receives them. An error of this call has no other
+            // consequence.
             let _ = self.stream.set_zero_linger();
         }
     }

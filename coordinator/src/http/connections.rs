@@ -1,7 +1,7 @@
-//! Connections: how many there may be, and how long each may keep the service waiting.
+//! The connections of a service: their number, and the time that each may keep the service waiting.
 //!
-//! Where all are taken, a new one takes the place of the one that has waited longest for its client: whoever connects and then neither
-//! sends nor takes anything shuts nobody out.
+//! When all places are taken, a new connection replaces the one that has waited longest for its client. Thus clients that connect and then
+//! neither send nor receive data cannot lock others out.
 
 use std::sync::{Arc, Weak};
 use std::time::Duration;
@@ -25,29 +25,28 @@ use super::client_stream::ClientStream;
 
 /// The largest number of connections at a time.
 const CONNECTIONS: u64 = 4096;
-/// File descriptors that are left to the store, to outputs and to a connection that waits for its place.
+/// File descriptors that are reserved for the store, for outputs and for a connection that waits for its place.
 const OTHER_DESCRIPTORS: u64 = 64;
-/// The head of a request, or the greeting of TLS, must have arrived after this time; a connection without requests is closed
-/// after it too.
+/// The time within which the head of a request, or the greeting of TLS, must arrive. A connection without requests is closed after it, too.
 const HEADER_TIME: Duration = Duration::from_secs(15);
-/// A connection whose client has taken nothing for so long, though there is something for it, is closed.
+/// The time after which a connection is closed whose client does not receive available data.
 const TAKING_TIME: Duration = Duration::from_secs(30);
-/// What the operating system keeps of an answer that its client has not taken `[bytes]`; Linux counts its own part twice.
+/// The size of the operating system's buffer for data that the client has not received `[bytes]`; Linux doubles it for its own use.
 const SEND_BUFFER: usize = 64 << 10;
-/// Largest head of a request, and the largest part of a body that is read ahead `[bytes]`.
+/// The largest head of a request, and the largest part of a body that is read ahead `[bytes]`.
 const BUFFER: usize = 64 << 10;
-/// A connection that has waited so long for its client may have to make place for another.
+/// The time that a connection has waited for its client, after which it may be closed in favour of another.
 const GRACE: Duration = Duration::from_millis(250);
-/// Pause after an error of the operating system, and between looks for a connection that can make place.
+/// The pause after an error of the operating system, and between searches for a connection to close.
 const PAUSE: Duration = Duration::from_millis(100);
 
-/// As many connections as descriptors allow, after asking for as many descriptors as the operating system grants.
+/// Returns the number of connections that the file descriptors allow, after requesting as many descriptors as the operating system grants.
 fn max_connections() -> usize {
     let mut limit = getrlimit(Resource::Nofile);
     let wanted = CONNECTIONS + OTHER_DESCRIPTORS;
     if limit.current.is_some_and(|current| current < wanted) {
         limit.current = Some(limit.maximum.map_or(wanted, |maximum| maximum.min(wanted)));
-        // Where it is refused, the limit stays what it was.
+        // Where this is refused, the limit is unchanged.
         let _ = setrlimit(Resource::Nofile, limit);
     }
     let descriptors = getrlimit(Resource::Nofile).current.unwrap_or(wanted);
@@ -57,7 +56,7 @@ fn max_connections() -> usize {
     usize::try_from(count).unwrap_or(1)
 }
 
-/// Bounds what a client that takes nothing costs; connections have the settings of their listener.
+/// Bounds the memory for clients that receive nothing. Connections inherit this setting from their listener.
 fn bound_untaken(listener: &TcpListener) {
     let socket = SockRef::from(listener);
     let limit = socket
@@ -68,11 +67,11 @@ fn bound_untaken(listener: &TcpListener) {
     }
 }
 
-/// The places of connections.
+/// The limited places for connections.
 struct Places {
     free: Arc<Semaphore>,
     count: usize,
-    /// The connections that have a place; some of them have ended.
+    /// The connections that have a place; some of them may have ended.
     taken: Vec<Weak<Activity>>,
 }
 
@@ -85,7 +84,7 @@ impl Places {
         }
     }
 
-    /// A place for a new connection, as soon as there is one.
+    /// Waits for a place for a new connection.
     async fn take(&mut self, activity: &Arc<Activity>) -> OwnedSemaphorePermit {
         let place = loop {
             if let Ok(place) = self.free.clone().try_acquire_owned() {
@@ -162,7 +161,7 @@ pub(super) async fn serve(
     connections.shutdown().await;
 }
 
-/// Answers one connection.
+/// The handler of one connection.
 struct Connection {
     http: http1::Builder,
     router: Router,
@@ -171,7 +170,7 @@ struct Connection {
 }
 
 impl Connection {
-    /// Answers requests until either side ends the connection, or another one needs its place.
+    /// Answers requests until either side ends the connection, or its place is needed for another one.
     async fn answer(self, stream: TcpStream, tls: Option<TlsAcceptor>) {
         let activity = self.activity.clone();
         let stream = ClientStream::new(stream, activity.clone());
@@ -201,7 +200,7 @@ impl Connection {
             router.call(request)
         });
         let connection = self.http.serve_connection(TokioIo::new(stream), service);
-        // A broken connection is its client's affair.
+        // A broken connection needs no message; its client has ended it.
         let _ = self.watcher.watch(connection).await;
     }
 }

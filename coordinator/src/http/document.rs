@@ -1,5 +1,5 @@
-//! The OpenAPI document: what the handlers state, and what holds for all of them: answers of the gate, meanings of statuses, numbers
-//! in paths, examples of bodies.
+//! The OpenAPI document: the descriptions of the handlers, completed by what holds for all of them: answers of the gate, meanings of
+//! statuses, numbers in paths, examples of bodies.
 
 use utoipa::OpenApi;
 use utoipa::openapi::path::{Operation, Parameter, ParameterIn};
@@ -8,7 +8,7 @@ use utoipa::openapi::{Content, Ref, RefOr, ResponseBuilder};
 
 use super::request_example::request_example;
 
-/// The document that the handlers complete.
+/// The document before the handlers are added.
 #[derive(OpenApi)]
 #[openapi(
     info(
@@ -33,7 +33,7 @@ use super::request_example::request_example;
 )]
 struct Document;
 
-/// Answers of the gate to a GET or DELETE, then those to a POST besides.
+/// The answers of the gate: those to a GET or DELETE, then the further ones to a POST.
 const REFUSALS: [(&str, &str); 6] = [
     ("401", "no token, or one that is not accepted"),
     ("403", "a foreign host or page, or a token of another role"),
@@ -46,7 +46,7 @@ const REFUSALS: [(&str, &str); 6] = [
     ),
 ];
 
-/// The document before the handlers: its information, and the scheme of the tokens.
+/// Returns the document before the handlers are added: its information, and the scheme of the tokens.
 pub(super) fn base() -> utoipa::openapi::OpenApi {
     let mut document = Document::openapi();
     let scheme = SecurityScheme::Http(Http::new(HttpAuthScheme::Bearer));
@@ -55,12 +55,12 @@ pub(super) fn base() -> utoipa::openapi::OpenApi {
     document
 }
 
-/// Answer of a handler to a body or a query that it cannot read.
+/// The answer of a handler to a body or a query that it cannot read.
 const UNREADABLE: (&str, &str) = ("400", "a body or query that is not of the form described");
-/// Answer to a request without either.
+/// The answer to a malformed request without body and query.
 const BROKEN: (&str, &str) = ("400", "the request breaks the rules of HTTP, as with two hosts");
 
-/// What the statuses of errors mean where a handler says nothing closer.
+/// The meanings of error statuses for which the handler states none.
 const MEANINGS: [(&str, &str); 4] = [
     ("404", "nothing has this number or name"),
     (
@@ -71,14 +71,14 @@ const MEANINGS: [(&str, &str); 4] = [
     ("500", "something failed inside; the log of the service says what"),
 ];
 
-/// What the number in a path is that begins so.
+/// The meaning of the number in a path, by the beginning of the path.
 const NUMBERS: [(&str, &str); 3] = [
     ("/v1/calibrations/", "number of the calibration"),
     ("/v1/experiments/", "number of the experiment"),
     ("/v1/studies/", "number of the study"),
 ];
 
-/// The document of all handlers, with what each leaves to be said once.
+/// Completes the document of all handlers.
 pub(super) fn complete(mut document: utoipa::openapi::OpenApi) -> utoipa::openapi::OpenApi {
     for (path, item) in &mut document.paths.paths {
         for (operation, refusals) in [
@@ -96,7 +96,7 @@ pub(super) fn complete(mut document: utoipa::openapi::OpenApi) -> utoipa::openap
     document
 }
 
-/// Says what the number in the path is.
+/// Describes the number in the path.
 fn name_number(path: &str, operation: &mut Operation) {
     let number = NUMBERS.iter().find(|(begin, _)| path.starts_with(begin));
     for parameter in operation.parameters.iter_mut().flatten() {
@@ -108,10 +108,9 @@ fn name_number(path: &str, operation: &mut Operation) {
     }
 }
 
-/// Adds the answers of the gate, and to what cannot be read, where the handler states none of that status.
+/// Adds the answers of the gate, and those to unreadable requests, where the handler states none with this status.
 fn add_refusals(operation: &mut Operation, refusals: &[(&str, &str)]) {
-    let is_query =
-        |own: &RefOr<Parameter>| matches!(own, RefOr::T(own) if own.parameter_in == ParameterIn::Query);
+    let is_query = |parameter: &RefOr<Parameter>| matches!(parameter, RefOr::T(parameter) if parameter.parameter_in == ParameterIn::Query);
     let has_query = operation.parameters.iter().flatten().any(is_query);
     let is_read = operation.request_body.is_some() || has_query;
     let malformed = if is_read { &UNREADABLE } else { &BROKEN };
@@ -125,7 +124,7 @@ fn add_refusals(operation: &mut Operation, refusals: &[(&str, &str)]) {
     }
 }
 
-/// Describes the answers that the handler states without a word.
+/// Describes the answers for which the handler has no description.
 fn add_meanings(operation: &mut Operation) {
     for (status, meaning) in MEANINGS {
         if let Some(RefOr::T(response)) = operation.responses.responses.get_mut(status)
@@ -136,7 +135,7 @@ fn add_meanings(operation: &mut Operation) {
     }
 }
 
-/// Shows a body that the operation takes.
+/// Adds an example of the body, if the operation takes one.
 fn add_example(operation: &mut Operation) {
     let Some(RefOr::T(body)) = &mut operation.request_body else {
         return;

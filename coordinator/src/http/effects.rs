@@ -1,4 +1,4 @@
-//! `/v1/effects`: the catalogue, the library's effects and those that users add.
+//! `/v1/effects`: the catalogue, with the effects of the library and those that users add.
 
 use axum::Json;
 use axum::extract::State;
@@ -56,7 +56,7 @@ struct EffectAdded {
 #[utoipa::path(get, path = "/effects", operation_id = "list_effects", tag = "effects",
     responses((status = 200, description = "cards of the effects", body = Vec<EffectCard>)))]
 async fn list(State(service): State<Service>) -> Result<Json<Vec<EffectCard>>, HttpError> {
-    let added = service.store().reader().own_effects().await?;
+    let added = service.store().reader().user_effects().await?;
     let cards = tokio::task::spawn_blocking(move || {
         let library = catalogue().iter().map(|effect| Ok(EffectCard::new(effect)));
         let added = added
@@ -77,7 +77,7 @@ async fn show(State(service): State<Service>, Name(name): Name) -> Result<Json<E
     let (effect, card, versions) = match find(&name) {
         Some(effect) => (effect.clone(), EffectCard::new(effect), Vec::new()),
         None => {
-            let stored = service.own_effect(&name).await?;
+            let stored = service.user_effect(&name).await?;
             let (versions, meant) =
                 stored.ok_or_else(|| HttpError::new(ErrorKind::NotFound, unknown_effect(&name)))?;
             let effect = read(&meant)?;
@@ -104,7 +104,7 @@ async fn show(State(service): State<Service>, Name(name): Name) -> Result<Json<E
     }))
 }
 
-/// The effect of a stored file, which was read when it was added.
+/// Reads the effect of a stored file, which was validated when it was added.
 fn read(stored: &StoredEffect) -> Result<Effect, HttpError> {
     let corrupt = |error| {
         let version = stored.version.version;

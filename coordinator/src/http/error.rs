@@ -1,4 +1,4 @@
-//! Every error answer: one status for each type, one body.
+//! Error answers: one status for each kind of error, and one form of the body.
 
 use axum::Json;
 use axum::extract::FromRequest;
@@ -12,28 +12,28 @@ use shared::sentence::one_line;
 use crate::service::ServiceError;
 use store::StoreError;
 
-/// An error that goes to a client. It stays with its response, so that the log, and a caller in this process, read its cause.
+/// An error that goes to a client. It is attached to its response, so that the log, and a caller in this process, can read its cause.
 #[derive(Debug, Clone, thiserror::Error)]
 #[error("{}", .cause.as_ref().unwrap_or(.message))]
 pub struct HttpError {
     kind: ErrorKind,
     message: String,
-    /// The cause of an internal error; a client over a network cannot mend it, and is not told.
+    /// The cause of an internal error, which a client over a network does not get.
     cause: Option<String>,
 }
 
 impl HttpError {
-    /// An error of a type with its message.
+    /// Makes an error of a kind with its message.
     pub fn new(kind: ErrorKind, message: impl Into<String>) -> Self {
         HttpError {
             kind,
-            // It may repeat what a client has sent.
+            // The message may repeat text of the client.
             message: one_line(&message.into()).into_owned(),
             cause: None,
         }
     }
 
-    /// An error whose cause only the log states.
+    /// Makes an internal error, whose cause only the log states.
     fn internal(cause: &dyn std::error::Error) -> Self {
         HttpError {
             kind: ErrorKind::Internal,
@@ -83,7 +83,7 @@ impl IntoResponse for HttpError {
     }
 }
 
-/// Logs an internal error on its way to a client.
+/// Logs an internal error before the response is sent.
 pub(super) async fn logged(response: Response) -> Response {
     let error = response.extensions().get::<HttpError>();
     if let Some(error) = error.filter(|error| error.kind == ErrorKind::Internal) {
@@ -113,7 +113,7 @@ impl From<ServiceError> for HttpError {
             | ServiceError::Stopped(_) => ErrorKind::Internal,
         };
         match &error {
-            // The owner of the store needs to know which row is bad.
+            // The owner of the store needs to know which row is corrupt.
             ServiceError::Store(StoreError::Corrupt(_)) => HttpError::new(kind, error.to_string()),
             _ if kind == ErrorKind::Internal => HttpError::internal(&error),
             _ => HttpError::new(kind, error.to_string()),
@@ -142,7 +142,7 @@ impl From<farm::dispatch::Stopped> for HttpError {
     }
 }
 
-/// A JSON body whose refusal has our form.
+/// A JSON body, for which refusals have the form of this interface.
 #[derive(FromRequest)]
 #[from_request(via(axum::Json), rejection(HttpError))]
 pub(super) struct Body<T>(pub(super) T);
@@ -167,7 +167,7 @@ impl From<BytesRejection> for HttpError {
     }
 }
 
-/// Query parameters whose refusal has our form.
+/// Query parameters, for which refusals have the form of this interface.
 #[derive(axum::extract::FromRequestParts)]
 #[from_request(via(axum::extract::Query), rejection(HttpError))]
 pub(super) struct Query<T>(pub(super) T);
@@ -194,7 +194,7 @@ impl From<QueryRejection> for HttpError {
     }
 }
 
-/// Answer to a path that is none of ours.
+/// Answers a request to an unknown path.
 pub(super) async fn no_route(uri: axum::http::Uri) -> HttpError {
     HttpError::new(
         ErrorKind::NotFound,
@@ -202,7 +202,7 @@ pub(super) async fn no_route(uri: axum::http::Uri) -> HttpError {
     )
 }
 
-/// Answer to a method that a path does not take.
+/// Answers a request with a method that its path does not support.
 pub(super) async fn no_method(method: axum::http::Method, uri: axum::http::Uri) -> HttpError {
     HttpError::new(
         ErrorKind::NotFound,

@@ -1,7 +1,7 @@
 //! `/v1/calibrations/ID/events`: server-sent events of a calibration.
 //!
-//! `event: status` carries the same JSON as `GET /v1/calibrations/ID` whenever it changed, looked at twice a
-//! second; `event: stage` carries each finished stage. The stream ends with the calibration, or with the token of whoever watches.
+//! `event: status` carries the same JSON as `GET /v1/calibrations/ID` whenever it has changed, checked twice a second; `event: stage`
+//! carries each finished stage. The stream ends with the calibration, or when the watcher's token is revoked.
 
 use std::convert::Infallible;
 use std::time::Duration;
@@ -75,7 +75,7 @@ async fn events(
 }
 
 impl Watch {
-    /// Waits a little, then tells what is new.
+    /// Waits for a moment, then returns the new events.
     async fn look(&mut self) -> Vec<Event> {
         if self.seen.is_some() {
             tokio::time::sleep(LOOK).await;
@@ -85,7 +85,7 @@ impl Watch {
             return Vec::new();
         };
         let mut events = Vec::new();
-        // A failed read tells nothing new; the next look will.
+        // After a failed read, the next call returns the stages.
         if let Ok(stages) = self.service.store().reader().stages(self.id).await {
             for stage in stages.iter().skip(self.stages) {
                 events.extend(Event::default().event("stage").json_data(stage));

@@ -1,4 +1,4 @@
-//! `/v1/examples`: jobs that the program carries, to try it with.
+//! `/v1/examples`: the built-in examples.
 
 use std::collections::BTreeMap;
 

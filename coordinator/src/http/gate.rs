@@ -16,17 +16,17 @@ use super::body_memory::BodyMemory;
 use super::error::HttpError;
 use super::host::Hosts;
 
-/// The checks of one service.
+/// The settings of these checks.
 #[derive(Debug, Clone)]
 pub(super) struct Gate {
     pub(super) hosts: Hosts,
     pub(super) access: Access,
     pub(super) body_memory: BodyMemory,
-    /// Whether nothing may be changed.
+    /// Whether every change is refused.
     pub(super) is_read_only: bool,
 }
 
-/// Lets a request through, with its [`super::access::Caller`] and its whole body.
+/// Passes an admitted request to its handler, with its [`super::access::Caller`] and its whole body.
 pub(super) async fn pass(
     State(gate): State<Gate>,
     Extension(activity): Extension<Arc<Activity>>,

@@ -1,4 +1,4 @@
-//! How a study grows: extensions of calibrations, searches for missing effects, further runs.
+//! The routes that extend studies: extensions of calibrations, searches for missing effects, further runs.
 
 use axum::Json;
 use axum::extract::State;

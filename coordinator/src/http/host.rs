@@ -1,7 +1,7 @@
-//! Which hosts a request may name: a page of another site must not speak to the service through a browser.
+//! The check of a request's host and origin, because a page of another site must not access the service through a browser.
 //!
-//! A name that an attacker lets point to this machine is refused as a foreign `Host`, and a page of another site by
-//! its `Origin`. An address as a `Host` cannot be made to point elsewhere.
+//! A name that an attacker resolves to this machine is refused as a foreign `Host`, and a page of another site by its `Origin`. An IP
+//! address as `Host` cannot be redirected in this way.
 
 use std::net::{IpAddr, SocketAddr};
 
@@ -12,7 +12,7 @@ use shared::api::ErrorKind;
 
 use super::error::HttpError;
 
-/// The hosts that are ours.
+/// The hosts of the service.
 #[derive(Debug, Clone)]
 pub(super) struct Hosts {
     listening: IpAddr,
@@ -20,7 +20,7 @@ pub(super) struct Hosts {
 }
 
 impl Hosts {
-    /// The hosts of a listening address, and further names of the service.
+    /// Makes the hosts of a listening address, with further names of the service.
     pub(super) fn new(listening: SocketAddr, names: Vec<String>) -> Hosts {
         Hosts {
             listening: listening.ip(),
@@ -28,13 +28,13 @@ impl Hosts {
         }
     }
 
-    /// Refuses a request that names a foreign host, or comes from a page of another one.
+    /// Refuses a request that names a foreign host, or that comes from a page of another host.
     pub(super) fn check(&self, headers: &HeaderMap) -> Result<(), HttpError> {
         let text = |name: HeaderName| headers.get(name).map(|value| value.to_str().unwrap_or_default());
         let forbidden = |message: String| Err(HttpError::new(ErrorKind::Forbidden, message));
         let count = headers.get_all(HOST).iter().count();
         if count > 1 {
-            // A proxy before the service may use the field that the service ignores.
+            // A proxy before the service may use the other of the two fields.
             let message = format!("Host: {count} header fields must be 1");
             return Err(HttpError::new(ErrorKind::InvalidBody, message));
         }
@@ -74,7 +74,7 @@ impl Hosts {
     }
 }
 
-/// Whether an origin, as in `https://farm.example:8443`, is that of a host.
+/// Returns whether an origin, as in `https://farm.example:8443`, belongs to a host.
 fn is_of(origin: &str, host: &Authority) -> bool {
     let place = origin
         .split_once("://")

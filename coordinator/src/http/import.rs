@@ -1,4 +1,4 @@
-//! `/v1/import`: users' tables of measurements to runs.csv.
+//! `/v1/import`: conversion of users' tables of measurements to runs.csv.
 
 use axum::Json;
 use base64::Engine as _;
@@ -13,7 +13,7 @@ use utoipa_axum::routes;
 use super::error::{Body, HttpError};
 use crate::service::Service;
 
-/// A table may take some hundred megabytes while it is read.
+/// One table is read at a time, because it may take some hundred megabytes of memory.
 static ONE_AT_A_TIME: Semaphore = Semaphore::const_new(1);
 
 pub(super) fn routes() -> OpenApiRouter<Service> {
@@ -93,7 +93,7 @@ async fn guess_map(Body(asked): Body<GuessRequest>) -> Result<Json<Guess>, HttpE
         .map_err(|complaint| HttpError::new(ErrorKind::InvalidFile, complaint.to_string()))
 }
 
-/// Reads a file that was sent in base64 when its turn has come.
+/// Reads a file that was sent in base64, when no other table is being read.
 async fn read_alone<T: Send + 'static>(
     name: String,
     content: String,
@@ -110,7 +110,7 @@ async fn read_alone<T: Send + 'static>(
     alone(read).await?
 }
 
-/// The bytes of a file; its text is given back to the memory at once.
+/// Decodes the bytes of a file, and frees the memory of its text at once.
 fn decoded(content: String) -> Result<Vec<u8>, HttpError> {
     let bytes = BASE64_STANDARD.decode(content);
     bytes.map_err(|e| {
@@ -121,12 +121,12 @@ fn decoded(content: String) -> Result<Vec<u8>, HttpError> {
     })
 }
 
-/// Reads a table off the threads that serve, one at a time.
+/// Reads a table outside the threads of the runtime, one at a time.
 async fn alone<T: Send + 'static>(read: impl FnOnce() -> T + Send + 'static) -> Result<T, HttpError> {
     // The semaphore is never closed.
     let turn = ONE_AT_A_TIME.acquire().await;
-    // A thread that reads cannot be stopped. It keeps its turn until it has ended: its client may hang up long before, and with the
-    // client goes this future.
+    // A thread that reads cannot be stopped. It keeps the permit until it has ended, because this future is dropped when its client
+    // disconnects.
     let read = move || {
         let _turn = turn;
         read()

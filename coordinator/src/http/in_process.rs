@@ -1,4 +1,5 @@
-//! Requests that this program makes of its own routes. They pass no network, so there is no gate: no host, no token, no limit of a body.
+//! Requests to the routes of this program without a network. They do not pass the gate, so hosts, tokens and sizes of bodies are not
+//! checked.
 
 use axum::body::{Body, to_bytes};
 use axum::extract::DefaultBodyLimit;
@@ -18,7 +19,7 @@ use shared::api::ErrorKind;
 pub struct InProcess(Router);
 
 impl InProcess {
-    /// The routes of a service.
+    /// Makes the routes of a service.
     pub fn new(service: Service) -> InProcess {
         let (router, _) = api().split_for_parts();
         InProcess(
@@ -29,10 +30,10 @@ impl InProcess {
         )
     }
 
-    /// The body of the answer to a request, whose own body is JSON.
+    /// Sends a request with an optional JSON body. Returns the body of the answer.
     ///
     /// # Errors
-    /// The refusal of the route, with the cause of an internal error, which a client over a network does not get.
+    /// The refusal of the route. It includes the cause of an internal error, which a client over a network does not get.
     pub async fn answer(&self, method: &str, path: &str, body: Option<String>) -> Result<String, HttpError> {
         let invalid =
             |error: &dyn std::fmt::Display| HttpError::new(ErrorKind::InvalidBody, error.to_string());
@@ -86,7 +87,7 @@ mod tests {
             refused("GET", "/v1/calibrations/9", None).await,
             "there is no calibration 9"
         );
-        // Bodies have no bound: these runs are larger than a route takes by default, 2 MiB.
+        // Bodies have no limit here. These runs exceed axum's default limit of 2 MiB.
         let runs = "1,2,3\n".repeat(1 << 20);
         for runs in ["", &runs] {
             let new = serde_json::json!({"runs": runs, "calibration": 1}).to_string();

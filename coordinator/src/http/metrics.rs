@@ -1,4 +1,4 @@
-//! `/metrics` for Prometheus and `/health` for whoever restarts us.
+//! `/metrics` for Prometheus and `/health` for programs that restart the service.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -21,7 +21,7 @@ use farm::dispatch::Stopped;
 use farm::{FarmCounters, FarmMetrics};
 use store::{Store, StoreError};
 
-/// The figures of one answer.
+/// The metrics of one answer.
 struct Figures(Registry);
 
 impl Figures {
@@ -37,7 +37,7 @@ impl Figures {
         self.0.register(name, help, gauge);
     }
 
-    /// Counts leases and results since the start.
+    /// Adds leases and results since the start.
     fn results(&mut self, counters: &FarmCounters) {
         let refused = "Results whose seal does not prove that they answer a lease of their worker, or of a quarantined worker";
         let lost = "Leases that never reached their worker and were given to others";
@@ -69,7 +69,7 @@ impl Figures {
         }
     }
 
-    /// Counts the evaluations, calibrations and workers of the farm.
+    /// Adds the evaluations, calibrations and workers of the farm.
     fn farm(&mut self, farm: &FarmMetrics) {
         self.gauge(
             "verifications_waiting",
@@ -99,7 +99,7 @@ impl Figures {
         );
     }
 
-    /// Counts the writes of the store, and the facts that wait for it.
+    /// Adds the writes of the store, and the facts that wait for it.
     fn store(&mut self, store: &Store) {
         let health = store.writer().health();
         let stored = |value: &AtomicU64| value.load(Ordering::Relaxed);
@@ -122,7 +122,7 @@ impl Figures {
         );
     }
 
-    /// Calibrations of the store by state; 0 for a state without any.
+    /// Adds the number of calibrations in each state, also 0.
     fn states(&mut self, counts: &[(String, i64)]) {
         let family = Family::<InState, Gauge>::default();
         for state in CalibrationState::ALL.iter().map(|state| state.name()) {
@@ -189,7 +189,7 @@ struct Health {
 #[utoipa::path(get, path = "/health", operation_id = "get_health", tag = "service", security(()),
     responses((status = 200, description = "it works", body = Health)))]
 async fn health(State(service): State<Service>) -> Result<Json<Health>, HttpError> {
-    // Neither is asked: a large step of a sampler takes seconds, and whoever restarts a service that does not answer makes it worse.
+    // The answer does not query farm and store: a large step of a sampler takes seconds, and a restart of the service would only delay it.
     let step = service.dispatcher().pulse().step().ok_or(Stopped)?;
     if !service.store().is_read_only() && service.store().writer().has_ended() {
         return Err(StoreError::Stopped.into());

@@ -1,8 +1,9 @@
-//! The REST interface under `/v1`; the only place that knows axum.
+//! The REST interface under `/v1`. No other module uses axum.
 //!
-//! One file per resource; each exports `routes()`, which `api` gathers. The OpenAPI `document` is made from the handlers, with `request_example`s. Before these stand
-//! `connections` (how many, how long; `client_stream` and `activity` tell which ones wait for their clients) and `gate` (`host`, `body` with
-//! `body_memory`, `access`: what is let through); `request_metrics` counts around them. `in_process` asks the routes without all of these.
+//! There is one file for each resource, which exports `routes()`; `api` collects them. The OpenAPI `document` is made from the handlers and
+//! the `request_example`s. Every request passes `connections` (their number and duration; `client_stream` and `activity` record which ones
+//! wait for their clients) and `gate` (the checks of `host`, `body` with `body_memory`, and `access`); `request_metrics` counts all
+//! requests. `in_process` calls the routes without these checks.
 
 mod access;
 mod activity;
@@ -56,24 +57,24 @@ pub use in_process::InProcess;
 use request_metrics::RequestMetrics;
 pub use tls::{TlsError, tls_acceptor};
 
-/// How a service shows itself: by which names it is reached, and when it asks for tokens.
+/// How a service is reached: its names, its rule for tokens, its certificate.
 #[derive(Clone)]
 pub struct Exposure {
     pub listening: std::net::SocketAddr,
     /// Names besides the listening address.
     pub names: Vec<String>,
-    /// When a token is asked for.
+    /// When a token is required.
     pub token_rule: TokenRule,
-    /// The tokens of the store, as of its start.
+    /// The tokens of the store at its start.
     pub tokens: Vec<Token>,
-    /// The certificate, where the service speaks TLS itself.
+    /// The TLS acceptor, where the service speaks TLS itself.
     pub tls: Option<TlsAcceptor>,
 }
 
-/// Every route, behind the gate.
+/// Returns every route, behind the gate.
 fn router(service: Service, gate: Gate) -> Router {
     let (router, document) = api().merge(metrics::routes()).split_for_parts();
-    // Connections share the bytes; the document as a value would take 1.7 MB for each clone of its route.
+    // Connections share the bytes, because the document as a value would take 1.7 MB for each clone of its route.
     let document = Bytes::from(
         document::complete(document)
             .to_json()
@@ -86,12 +87,12 @@ fn router(service: Service, gate: Gate) -> Router {
         .fallback(error::no_route)
         .method_not_allowed_fallback(error::no_method)
         .layer(axum::middleware::map_response(error::logged))
-        // Answers are compressed for clients that accept it: browsers do, workers do not.
+        // Answers are compressed for clients that accept it, as browsers do; workers do not.
         .layer(CompressionLayer::new())
-        // The gate bounds bodies, by route.
+        // The gate limits the size of bodies by route.
         .layer(DefaultBodyLimit::disable())
         .layer(axum::middleware::from_fn_with_state(gate, gate::pass))
-        // Refusals of the gate count too.
+        // This layer is outside the gate, so that refusals of the gate are counted.
         .layer(axum::middleware::from_fn_with_state(
             RequestMetrics::new(),
             request_metrics::measure,

@@ -1,5 +1,5 @@
-//! `/`, `/docs` and `/page/…`: the page and the description of the interface, as embedded. They need no token: what they show, they ask
-//! for with that of their user.
+//! `/`, `/docs` and `/page/…`: the embedded files of the page and of the description of the interface. They need no token; the page sends
+//! its user's token with its requests.
 
 use axum::Router;
 use axum::http::header::{
@@ -14,12 +14,12 @@ use page::asset::{DOCS, INDEX, asset};
 use super::error::{Name, no_route};
 use crate::service::Service;
 
-/// Where the files are.
+/// The path of the page's files.
 pub(super) const FOLDER: &str = "/page/";
-/// Where the interface is described.
+/// The path of the description of the interface.
 pub(super) const DOCS_PATH: &str = "/docs";
-/// The page runs its own modules alone, asks this service alone, and stands in no other page. Styles in elements are those of the
-/// pictures.
+/// The content security policy: the page runs only its own modules, sends requests only to this service, and is shown in no frame. The
+/// pictures need styles in elements.
 const POLICY: &str = "default-src 'none'; script-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data: blob:; connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
 
 pub(super) fn routes() -> Router<Service> {
@@ -38,7 +38,7 @@ pub(super) fn routes() -> Router<Service> {
         )
 }
 
-/// A file; a browser that has it is told so.
+/// Returns a file, or the status 304 if the browser has it.
 async fn file(path: &str, uri: Uri, headers: HeaderMap) -> Response {
     let Some(asset) = asset(path) else {
         return no_route(uri).await.into_response();
@@ -49,7 +49,7 @@ async fn file(path: &str, uri: Uri, headers: HeaderMap) -> Response {
         (CONTENT_SECURITY_POLICY, POLICY),
         (REFERRER_POLICY, "no-referrer"),
         (X_CONTENT_TYPE_OPTIONS, "nosniff"),
-        // Asked again each time: a new program has other files under the same names.
+        // The browser must ask each time, because a new program has other files under the same names.
         (CACHE_CONTROL, "no-cache"),
     ];
     let is_known = headers

@@ -1,12 +1,12 @@
-//! Bodies that the operations take, for the OpenAPI document: those of the example `hidden-effect`, in the order in which somebody who
-//! tries the interface would post them.
+//! Examples of bodies for the OpenAPI document. They are those of the example `hidden-effect`, in the order of a first session with the
+//! interface.
 
 use serde_json::{Value, json};
 use shared::exchange::PROTOCOL_VERSION;
 
 use crate::example::{EXAMPLES, Example};
 
-/// A row of measurements that the example has not.
+/// A row of measurements that the example does not contain.
 const FURTHER_RUNS: &str =
     "run,wheel,soil,slip,wheel_load_n,sled_speed_m_s,drawbar_pull_n,torque_n_m,sinkage_m,use
 more,w,s,0.25,80.0,0.015,11.9,1.62,0.0071,fit
@@ -24,10 +24,10 @@ neutral = 0.0
 prior = { normal = [0.0, 0.2] }
 ";
 
-/// A table with semicolons and decimal commas: slip, load and pull of one run.
+/// A table with semicolons and decimal commas: slip, load and drawbar pull of one run.
 const TABLE_BASE64: &str = "c2xpcCBbJV07bG9hZCBba05dO3B1bGwgW05dCjIwOzAsMTszNSwyCg==";
 
-/// Where its columns go.
+/// The map of the table's columns.
 const MAP: &str = "columns.wheel = { value = \"smooth\" }
 columns.soil = { value = \"sand\" }
 columns.slip = { column = \"slip [%]\", unit = \"%\" }
@@ -36,7 +36,7 @@ columns.sled_speed_m_s = { value = 8, unit = \"mm/s\" }
 columns.drawbar_pull_n = { column = \"pull [N]\", unit = \"N\" }
 ";
 
-/// A body that the operation of this id takes; `None` of one that takes none.
+/// Returns a body for the operation with this id; `None` if the operation takes no body.
 pub(super) fn request_example(operation: &str) -> Option<Value> {
     let [
         Example {

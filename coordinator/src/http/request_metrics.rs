@@ -1,4 +1,4 @@
-//! Requests by route: how many, with which status, how long they took.
+//! Metrics of requests by route: their number, statuses and durations.
 
 use std::time::Instant;
 
@@ -58,7 +58,7 @@ impl RequestMetrics {
     }
 }
 
-/// Measures a request. What is none of our routes counts under one name, so that nobody can make up labels.
+/// Measures a request. All unknown paths count under one name, so that a client cannot create labels.
 pub(super) async fn measure(
     State(metrics): State<RequestMetrics>,
     mut request: Request,

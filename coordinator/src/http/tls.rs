@@ -9,17 +9,17 @@ use rustls::pki_types::pem::PemObject;
 use rustls::pki_types::{CertificateDer, PrivateKeyDer};
 use tokio_rustls::TlsAcceptor;
 
-/// Why a certificate or its key cannot be used.
+/// The reason why a certificate or its key cannot be used.
 #[derive(Debug, thiserror::Error)]
 pub enum TlsError {
-    /// The file cannot be read, or is no PEM of its kind.
+    /// The file cannot be read, or is not a PEM file of its kind.
     #[error("{file}: no {what} in PEM form: {source}")]
     File {
         file: String,
         what: &'static str,
         source: rustls::pki_types::pem::Error,
     },
-    /// They do not belong together, or cannot be used.
+    /// Certificate and key do not match, or cannot be used.
     #[error("certificate {certificate} with key {key}: {source}")]
     Pair {
         certificate: String,
@@ -28,7 +28,8 @@ pub enum TlsError {
     },
 }
 
-/// Takes connections under a certificate, with those of its authorities behind it in the same file, and its private key.
+/// Makes the acceptor of TLS connections from a certificate file, which also contains the certificates of its authorities, and a private
+/// key.
 ///
 /// # Errors
 /// [`TlsError`] with the file.

@@ -1,4 +1,4 @@
-//! `/v1/work`: what workers talk to; `/v1/workers`: who they are.
+//! `/v1/work`: the exchange of workers with the farm; `/v1/workers`: the list of workers.
 
 use std::collections::BTreeMap;
 
@@ -20,19 +20,19 @@ use super::error::{HttpError, Name};
 use crate::service::Service;
 use farm::WorkerRecord;
 
-/// A poll may last so long `[ms]`.
+/// The longest duration of a poll `[ms]`.
 const LONGEST_WAIT_MS: u64 = 30_000;
-/// Largest number of leases in one answer.
+/// The largest number of leases in one answer.
 const MAX_WANTED: u32 = 10_000;
-/// Longest name of a worker, or of the version of its equations `[bytes]`.
+/// The longest name of a worker, or of the version of its equations `[bytes]`.
 const LONGEST_NAME: usize = 200;
-/// Longest name of a model that is not ours: a URL, and a name there `[bytes]`.
+/// The longest name of an external model, which may contain a URL `[bytes]`.
 const LONGEST_MODEL: usize = 400;
-/// Most of them that a worker runs.
+/// The largest number of external models of a worker.
 const MAX_MODELS: usize = 100;
-/// Longest mean time of a worker's evaluations, twelve days `[s]`.
+/// The longest mean time of a worker's evaluations, twelve days `[s]`.
 const LONGEST_EVALUATION_S: f64 = 1e6;
-/// Longest message of an outcome `[bytes]`.
+/// The longest message of an outcome `[bytes]`.
 const LONGEST_MESSAGE: usize = 10_000;
 
 pub(super) fn routes() -> OpenApiRouter<Service> {
@@ -76,14 +76,14 @@ async fn exchange(
     request.want = request.want.min(MAX_WANTED);
     let response = tokio::select! {
         response = service.exchange(request) => response?.to_bytes(answer),
-        // Leases that were given meanwhile go to others: nobody receives them.
+        // Leases of this exchange go to other workers, because nobody receives them.
         refusal = caller.shut_out() => return Err(refusal),
     };
     let body = response.map_err(|e| HttpError::new(ErrorKind::Internal, e.to_string()))?;
     Ok(([(CONTENT_TYPE, answer.media_type())], body))
 }
 
-/// Refuses what a worker says at such length that it would burden lists, logs and the store.
+/// Refuses texts of a worker that are too long for lists, logs and the store.
 fn check_texts(request: &ExchangeRequest) -> Result<(), HttpError> {
     let check = |what: &str, text: &str, longest: usize| {
         if text.len() <= longest {
@@ -120,7 +120,7 @@ fn check_texts(request: &ExchangeRequest) -> Result<(), HttpError> {
     Ok(())
 }
 
-/// Refuses a time that nothing takes: what starts workers multiplies it by the evaluations that are left.
+/// Refuses an impossible time, because programs that start workers multiply it by the number of remaining evaluations.
 fn check_time(request: &ExchangeRequest) -> Result<(), HttpError> {
     match request.evaluation_s {
         Some(evaluation_s) if !(0.0..=LONGEST_EVALUATION_S).contains(&evaluation_s) => {
@@ -145,7 +145,7 @@ impl<S: Send + Sync> FromRequest<S> for Exchange {
         let (form, answer) = forms(request.headers())?;
         let body = Bytes::from_request(request, state).await?;
         let request = ExchangeRequest::from_bytes(&body, form).map_err(|error| {
-            // of JSON, axum names the key
+            // for JSON, axum's message names the key
             let named = Json::<ExchangeRequest>::from_bytes(&body).err();
             let named = named.filter(|_| form == WireForm::Json).map(HttpError::from);
             named.unwrap_or_else(|| HttpError::new(ErrorKind::InvalidBody, error.to_string()))
@@ -154,7 +154,7 @@ impl<S: Send + Sync> FromRequest<S> for Exchange {
     }
 }
 
-/// The form of a request, and that of its answer.
+/// Returns the form of a request, and the form of its answer.
 fn forms(headers: &HeaderMap) -> Result<(WireForm, WireForm), HttpError> {
     let header = |name| {
         headers

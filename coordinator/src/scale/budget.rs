@@ -1,46 +1,46 @@
-//! What pilots have cost, and when starting more is in vain.
+//! The cost of pilots, and the pauses after pilots that achieve nothing.
 
 use std::collections::BTreeSet;
 use std::time::Duration;
 
 use super::pilot::Pilots;
 
-/// The pauses after pilots that ended without a result: they double, from the first to the last.
+/// The pauses after pilots that ended without a result: the first one, and the longest one. They double in between.
 const PAUSES: [Duration; 2] = [Duration::from_secs(10), Duration::from_secs(600)];
 
-/// The cost of running pilots, against its cap.
+/// The cost of running pilots so far.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Cost {
     thread_s: f64,
 }
 
 impl Cost {
-    /// Adds the cost of so many threads over a time.
+    /// Adds the cost of some threads over a time.
     pub fn add(&mut self, threads: u64, time: Duration) {
         self.thread_s += threads as f64 * time.as_secs_f64();
     }
 
-    /// Hours of a thread so far.
+    /// Returns the cost so far in hours of a thread.
     pub fn thread_h(&self) -> f64 {
         self.thread_s / 3600.0
     }
 }
 
-/// Notices pilots that end while work waits and none has computed anything, as where their token is refused, their program is another
-/// version, or their machine is too small.
+/// The detection of futile pilots: they end while work waits and none has computed a result, as when their token is refused, their program
+/// has another version, or their machine is too small.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Vain {
-    /// The pilots that were there at the last look.
+    /// The pilots in the previous round.
     there: BTreeSet<String>,
-    /// Results of all pilots until then.
+    /// The number of results of all pilots until then.
     computed: u64,
     pause: Option<Duration>,
     left: Duration,
 }
 
 impl Vain {
-    /// What is seen after another while: the pilots, the results of all pilots so far, and whether evaluations wait. Says the pause
-    /// when one begins.
+    /// Updates the state with the pilots of a round, the number of results of all pilots so far, and whether evaluations wait. Returns the
+    /// pause when one begins.
     pub fn seen(
         &mut self,
         pilots: &Pilots,
@@ -62,12 +62,12 @@ impl Vain {
         None
     }
 
-    /// Pilots have been taken back: that they are missing at the next look says nothing.
+    /// Notes that pilots were cancelled, so that their absence in the next round is not counted.
     pub fn took_back(&mut self) {
         self.there.clear();
     }
 
-    /// Whether pilots may be started.
+    /// Returns whether pilots may be started.
     pub fn may_start(&self) -> bool {
         self.left.is_zero()
     }
@@ -86,10 +86,10 @@ mod tests {
     }
 
     fn pilots(pending: &[&str], running: &[&str]) -> Pilots {
-        let own = |names: &[&str]| names.iter().map(|&name| name.to_owned()).collect();
+        let owned = |names: &[&str]| names.iter().map(|&name| name.to_owned()).collect();
         Pilots {
-            pending: own(pending),
-            running: own(running),
+            pending: owned(pending),
+            running: owned(running),
         }
     }
 
@@ -100,7 +100,7 @@ mod tests {
         let mut pauses = Vec::new();
         for round in 0..9 {
             assert!(vain.may_start());
-            // Others still wait for a machine.
+            // The others still wait for a machine.
             let name = round.to_string();
             assert_eq!(vain.seen(&pilots(&["x"], &[&name]), 7, true, s(10)), None);
             let pause = vain.seen(&pilots(&["x"], &[]), 7, true, s(10)).unwrap();
@@ -109,7 +109,7 @@ mod tests {
             assert_eq!(vain.seen(&pilots(&["x"], &[]), 7, true, pause), None);
         }
         assert_eq!(pauses, [10, 20, 40, 80, 160, 320, 600, 600, 600]);
-        // A result of any pilot ends that.
+        // A result of any pilot ends the pause.
         assert_eq!(vain.seen(&pilots(&["x"], &["9"]), 8, true, s(1)), None);
         assert!(vain.may_start());
         assert_eq!(vain.seen(&pilots(&["x"], &[]), 8, true, s(1)), Some(s(10)));

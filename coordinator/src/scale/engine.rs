@@ -1,10 +1,10 @@
-//! The engines.
+//! The engines that start pilots: Slurm, HyperQueue, Kubernetes.
 
 use super::pilot::{PilotSettings, Pilots};
 use super::program::{Invocation, ProgramError};
 use super::{hyperqueue, kubernetes, slurm};
 
-/// What starts pilots.
+/// An engine that starts pilots.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Engine {
     /// Slurm, with the batch script of a pilot.
@@ -18,21 +18,21 @@ pub enum Engine {
     Kubernetes,
 }
 
-/// The batch script of a pilot of Slurm, where none is named.
+/// The default batch script of a pilot of Slurm.
 pub const SLURM_PILOT: &str = include_str!("../../../deploy/slurm/pilot.sh");
 
-/// What an engine is told, to have more pilots or fewer.
+/// A change of the number of pilots, as calls of the engine's program.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Change {
-    /// So many pilots more.
+    /// The number of pilots to start.
     pub started: u32,
-    /// So many fewer.
+    /// The number of pilots to end.
     pub ended: u32,
     pub(super) invocations: Vec<Invocation>,
 }
 
 impl Engine {
-    /// The pilots that there are.
+    /// Asks the engine for its pilots.
     pub async fn pilots(&self, settings: &PilotSettings) -> Result<Pilots, ProgramError> {
         match self {
             Engine::Slurm { .. } => slurm::pilots(&slurm::list(settings).run().await?),
@@ -41,8 +41,10 @@ impl Engine {
         }
     }
 
-    /// What brings their number to what is wanted. Of too many pods of Kubernetes some end; of other pilots those that wait are taken
-    /// back, and those that run end by themselves when they have nothing to do.
+    /// Returns the change that brings the number of pilots to the wanted one.
+    ///
+    /// Kubernetes ends surplus pods. Of other engines, only waiting pilots are cancelled, and running pilots end by themselves when they
+    /// have no work.
     pub fn resize(&self, settings: &PilotSettings, pilots: &Pilots, wanted: u32) -> Change {
         let present = pilots.count();
         let started = wanted.saturating_sub(present);
@@ -52,7 +54,7 @@ impl Engine {
             Engine::Slurm { .. } | Engine::HyperQueue if too_many > 0 => {
                 let waiting = pilots.pending.len();
                 let ended = waiting.min(too_many as usize);
-                // The newest wait longest.
+                // The newest pilots are cancelled first, because they would wait longest.
                 let cancelled = self.cancel(&pilots.pending[waiting - ended..]);
                 (ended as u32, Vec::from_iter(cancelled))
             }
@@ -69,7 +71,7 @@ impl Engine {
         }
     }
 
-    /// What ends all pilots.
+    /// Returns the change that ends all pilots.
     pub fn end(&self, settings: &PilotSettings, pilots: &Pilots) -> Change {
         let all = [&pilots.pending[..], &pilots.running[..]].concat();
         Change {
@@ -82,7 +84,7 @@ impl Engine {
         }
     }
 
-    /// What takes pilots back, by their names.
+    /// Returns the call that cancels pilots by their names.
     fn cancel(&self, pilots: &[String]) -> Option<Invocation> {
         match self {
             _ if pilots.is_empty() => None,
@@ -94,7 +96,7 @@ impl Engine {
 }
 
 impl Change {
-    /// Tells the engine.
+    /// Calls the engine's programs.
     pub async fn make(self) -> Result<(), ProgramError> {
         for invocation in self.invocations {
             invocation.run().await?;
@@ -121,10 +123,10 @@ mod tests {
     }
 
     fn pilots(pending: &[&str], running: &[&str]) -> Pilots {
-        let own = |names: &[&str]| names.iter().map(|&name| name.to_owned()).collect();
+        let owned = |names: &[&str]| names.iter().map(|&name| name.to_owned()).collect();
         Pilots {
-            pending: own(pending),
-            running: own(running),
+            pending: owned(pending),
+            running: owned(running),
         }
     }
 

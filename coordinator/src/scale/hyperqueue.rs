@@ -1,14 +1,14 @@
 //! HyperQueue: `hq submit`, `hq job list`, `hq job cancel`.
 //!
-//! A pilot is a job of one task. Machines come from HyperQueue's own workers: those that its allocator (`hq alloc add slurm`, `hq alloc
-//! add pbs`) gets, or that are started by hand, as over SSH.
+//! A pilot is a job of one task. Machines are those of HyperQueue's own workers, which its allocator (`hq alloc add slurm`, `hq alloc add
+//! pbs`) or a user starts.
 
 use serde::Deserialize;
 
 use super::pilot::{PilotSettings, Pilots};
 use super::program::{Invocation, ProgramError};
 
-/// A job of `hq job list`.
+/// A job in the answer of `hq job list`.
 #[derive(Deserialize)]
 struct Job {
     id: u64,
@@ -22,16 +22,16 @@ struct Tasks {
     waiting: u64,
 }
 
-/// Asks for the jobs that have not ended.
+/// Returns the call that lists the jobs that have not ended.
 pub(super) fn list() -> Invocation {
     Invocation::new("hq", ["--output-mode=json", "job", "list"])
 }
 
-/// The pilots of such an answer.
+/// Reads the pilots from the answer.
 pub(super) fn pilots(answer: &str, settings: &PilotSettings) -> Result<Pilots, ProgramError> {
     let jobs: Vec<Job> = serde_json::from_str(answer).map_err(|_| ProgramError::Answer {
         program: "hq",
-        said: answer.trim().to_owned(),
+        answer: answer.trim().to_owned(),
     })?;
     let mut pilots = Pilots::default();
     for job in jobs.into_iter().filter(|job| job.name == settings.name) {
@@ -44,7 +44,7 @@ pub(super) fn pilots(answer: &str, settings: &PilotSettings) -> Result<Pilots, P
     Ok(pilots)
 }
 
-/// Submits so many, each by itself, so that one can be taken back.
+/// Returns the call that submits `more` jobs, each by itself, so that single ones can be cancelled.
 pub(super) fn start(settings: &PilotSettings, more: u32) -> Vec<Invocation> {
     let mut arguments = vec![
         "submit".to_owned(),
@@ -59,7 +59,7 @@ pub(super) fn start(settings: &PilotSettings, more: u32) -> Vec<Invocation> {
     vec![Invocation::new("hq", arguments); more as usize]
 }
 
-/// Takes jobs back.
+/// Returns the call that cancels jobs.
 pub(super) fn cancel(jobs: &[String]) -> Invocation {
     Invocation::new("hq", ["job".to_owned(), "cancel".to_owned(), jobs.join(",")])
 }

@@ -1,6 +1,6 @@
 //! Kubernetes: replicas of a deployment, by `kubectl`.
 //!
-//! What a pod is told stands in its manifest (`deploy/kubernetes`); here only the number of pods is set.
+//! The manifest (`deploy/kubernetes`) has the arguments of a pod; this module only sets the number of pods.
 
 use serde::Deserialize;
 
@@ -28,20 +28,20 @@ struct Status {
 }
 
 fn kubectl(settings: &PilotSettings, arguments: &[&str]) -> Invocation {
-    let own = arguments.iter().map(|&argument| argument.to_owned());
-    Invocation::new("kubectl", own.chain(settings.options.iter().cloned()))
+    let arguments = arguments.iter().map(|&argument| argument.to_owned());
+    Invocation::new("kubectl", arguments.chain(settings.options.iter().cloned()))
 }
 
-/// Asks for the deployment.
+/// Returns the call that reads the deployment.
 pub(super) fn list(settings: &PilotSettings) -> Invocation {
     kubectl(settings, &["get", "deployment", &settings.name, "--output=json"])
 }
 
-/// The pilots of such an answer; pods have no names here.
+/// Reads the pilots from the answer; pods have no names here.
 pub(super) fn pilots(answer: &str) -> Result<Pilots, ProgramError> {
     let Deployment { spec, status } = serde_json::from_str(answer).map_err(|_| ProgramError::Answer {
         program: "kubectl",
-        said: answer.trim().to_owned(),
+        answer: answer.trim().to_owned(),
     })?;
     let running = status.ready_replicas.min(spec.replicas) as usize;
     let pods = vec!["pod".to_owned(); spec.replicas as usize];
@@ -52,7 +52,7 @@ pub(super) fn pilots(answer: &str) -> Result<Pilots, ProgramError> {
     })
 }
 
-/// Sets the number of pods.
+/// Returns the call that sets the number of pods.
 pub(super) fn set(settings: &PilotSettings, replicas: u32) -> Invocation {
     let name = format!("deployment/{}", settings.name);
     kubectl(settings, &["scale", &name, &format!("--replicas={replicas}")])

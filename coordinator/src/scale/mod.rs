@@ -1,13 +1,13 @@
-//! How many workers an engine should run, and how it is told.
+//! The number of workers that an engine should run, and the calls of the engine's programs.
 //!
-//! A *pilot* is a worker process that an engine starts: a job of Slurm or HyperQueue, a pod of Kubernetes. The engine gets machines,
-//! keeps them and gives them back; which evaluation goes where stays the farm's.
+//! A *pilot* is a worker process that an engine starts: a job of Slurm or HyperQueue, a pod of Kubernetes. The engine allocates and
+//! releases machines; the farm alone distributes evaluations.
 //!
 //! # Layout
-//! - [`policy`]: how many pilots the work is worth. Pure.
-//! - [`budget`]: what pilots have cost, and when starting more is in vain. Pure.
-//! - [`pilot`]: what every pilot is told, and which there are.
-//! - [`engine`]: the engines; `slurm`, `hyperqueue` and `kubernetes` each speak to one of them by its own programs.
+//! - [`policy`]: the number of pilots for the present work. Pure.
+//! - [`budget`]: the cost of pilots, and the pauses after pilots that achieve nothing. Pure.
+//! - [`pilot`]: the settings of pilots, and the list of present ones.
+//! - [`engine`]: the engines; `slurm`, `hyperqueue` and `kubernetes` each make the calls of one engine's programs.
 //! - `program`: runs these programs.
 
 pub mod budget;

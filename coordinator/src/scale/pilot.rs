@@ -1,30 +1,30 @@
-//! Pilots: what each is told, and which there are.
+//! Pilots: their settings, and the list of present ones.
 
 use std::collections::BTreeSet;
 use std::path::PathBuf;
 
-/// What every pilot is told.
+/// The settings of every pilot.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PilotSettings {
     /// Name of the jobs, or of the deployment.
     pub name: String,
-    /// URL of the service as workers reach it.
+    /// The URL of the service for workers.
     pub coordinator: String,
     pub worker: String,
-    /// Threads that simulate.
+    /// The number of simulation threads.
     pub threads: u32,
-    /// It ends after so long without work `[s]`.
+    /// The time without work after which a pilot ends `[s]`.
     pub max_idle_s: f64,
-    /// File with the token of the service.
+    /// The file with the token of the service.
     pub token_file: Option<PathBuf>,
-    /// Certificate of the service's authority.
+    /// The certificate of the service's authority.
     pub ca_certificate: Option<PathBuf>,
     /// Further options for the program of the engine.
     pub options: Vec<String>,
 }
 
 impl PilotSettings {
-    /// The environment of a pilot: names and values, as the program `worker` and `pilot.sh` read them.
+    /// Returns the environment of a pilot: names and values, as the program `worker` and `pilot.sh` read them.
     pub(super) fn environment(&self) -> Vec<(&'static str, String)> {
         let mut variables = vec![
             ("GROUSER_COORDINATOR", self.coordinator.clone()),
@@ -45,19 +45,19 @@ impl PilotSettings {
 /// The pilots of an engine, by the names that it gives them.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Pilots {
-    /// Those that wait for a machine.
+    /// The pilots that wait for a machine.
     pub pending: Vec<String>,
-    /// Those that run, or are about to.
+    /// The pilots that run, or are about to.
     pub running: Vec<String>,
 }
 
 impl Pilots {
-    /// How many there are.
+    /// Returns the number of pilots.
     pub fn count(&self) -> u32 {
         u32::try_from(self.pending.len() + self.running.len()).unwrap_or(u32::MAX)
     }
 
-    /// The names of all.
+    /// Returns the names of all pilots.
     pub(super) fn names(&self) -> BTreeSet<String> {
         self.pending.iter().chain(&self.running).cloned().collect()
     }

@@ -1,30 +1,30 @@
-//! How many pilots the work is worth.
+//! The policy that determines the number of pilots from the waiting work.
 
 use std::time::Duration;
 
 use shared::api::WorkDemand;
 
-/// Bounds and aims.
+/// Bounds and aims of the policy.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Policy {
-    /// At least so many pilots.
+    /// The smallest number of pilots.
     pub min: u32,
-    /// At most so many.
+    /// The largest number of pilots.
     pub max: u32,
-    /// Threads of each.
+    /// The number of threads of a pilot.
     pub threads: u32,
-    /// The work left should be over within so long `[s]`.
+    /// The time in which the remaining work should be finished `[s]`.
     pub finish_within_s: f64,
 }
 
 impl Policy {
-    /// How many pilots should run.
+    /// Returns the wanted number of pilots.
     ///
-    /// n = ⌈min(W τ / t, Q) / k⌉ within [min, max], with W evaluations left, of τ seconds each, t the time in which they should be
-    /// over, Q evaluations that wait or are leased, which is how many threads can work at once, and k threads of a pilot.
+    /// n = ⌈min(W τ / t, Q) / k⌉ within [min, max], with W evaluations left of τ seconds each, the time t in which they should be finished,
+    /// Q evaluations that wait or are leased, which limits the number of busy threads, and k threads of a pilot.
     ///
-    /// While τ is not known, one pilot finds it out. Between two rounds of a calibration, where Q = 0, what there is stays: the next round
-    /// comes as soon as the sampler has proposed it. Test: `the_work_left_decides_within_bounds`.
+    /// While τ is unknown, one pilot measures it. Between two rounds of a calibration, where Q = 0, the number of pilots stays, because the
+    /// next round follows as soon as the sampler has proposed it. Test: `the_work_left_decides_within_bounds`.
     pub fn wanted(&self, demand: &WorkDemand, present: u32) -> u32 {
         let at_once = demand.queued + demand.leased;
         let wanted = match (demand.in_hand, at_once, demand.evaluation_s) {
@@ -41,15 +41,15 @@ impl Policy {
     }
 }
 
-/// Keeps pilots through the end of a round, where little is left to be done at once, for the next one.
+/// A delay that keeps pilots at the end of a round, where few evaluations are left, for the next round.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Patience {
     fewer_for: Duration,
 }
 
 impl Patience {
-    /// How many pilots are wanted after another while: fewer than there are only once that has been so for `patience`, or where no
-    /// calibration is in hand.
+    /// Returns the delayed number of pilots. It falls below the present number only after it has been wanted for `patience`, or without a
+    /// calibration in progress.
     pub fn wanted(
         &mut self,
         wanted: u32,
@@ -99,9 +99,9 @@ mod tests {
     fn the_work_left_decides_within_bounds() {
         // 10,000 evaluations of 1 s in 100 s want 100 threads: 25 pilots of four
         assert_eq!(POLICY.wanted(&demand(5000, 10_000, Some(1.0)), 0), 25);
-        // no more threads than evaluations that can run at once
+        // there are no more threads than evaluations that can run at once
         assert_eq!(POLICY.wanted(&demand(40, 10_000, Some(1.0)), 0), 10);
-        // quick work wants one
+        // quick work needs one pilot
         assert_eq!(POLICY.wanted(&demand(5000, 5000, Some(1e-5)), 0), 1);
         assert_eq!(POLICY.wanted(&demand(1 << 40, 1 << 50, Some(1e6)), 0), 200);
     }

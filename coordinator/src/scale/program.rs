@@ -1,4 +1,4 @@
-//! Runs a program of an engine.
+//! The execution of an engine's program.
 
 use std::io;
 use std::process::{ExitStatus, Stdio};
@@ -7,10 +7,10 @@ use std::time::Duration;
 use tokio::io::AsyncWriteExt as _;
 use tokio::process::Command;
 
-/// A program that says nothing for so long is given up.
+/// The time after which a silent program is terminated.
 const PATIENCE: Duration = Duration::from_secs(60);
 
-/// Why an engine was not told, or did not answer.
+/// The reason why a call of an engine's program failed.
 #[derive(Debug, thiserror::Error)]
 pub enum ProgramError {
     /// It cannot be run.
@@ -21,22 +21,22 @@ pub enum ProgramError {
         #[source]
         source: io::Error,
     },
-    /// It has not ended.
+    /// It has not ended in time.
     #[error("{program}: no answer within {} s", PATIENCE.as_secs())]
     Silent { program: &'static str },
     /// It failed.
-    #[error("{program}: {status}: {said}")]
+    #[error("{program}: {status}: {answer}")]
     Failed {
         program: &'static str,
         status: ExitStatus,
-        said: String,
+        answer: String,
     },
-    /// It said something else than it does in the versions that are known.
-    #[error("{program}: unexpected answer {said:?}")]
-    Answer { program: &'static str, said: String },
+    /// Its answer does not have the form of the supported versions.
+    #[error("{program}: unexpected answer {answer:?}")]
+    Answer { program: &'static str, answer: String },
 }
 
-/// A program with its arguments, environment and input.
+/// A call of a program, with its arguments, environment and input.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Invocation {
     pub(super) program: &'static str,
@@ -55,7 +55,7 @@ impl Invocation {
         }
     }
 
-    /// What it prints.
+    /// Runs the program. Returns its output.
     ///
     /// # Errors
     /// [`ProgramError`], but for [`ProgramError::Answer`].
@@ -74,7 +74,7 @@ impl Invocation {
         let stdin = child.stdin.take();
         let answer = async {
             if let Some(mut stdin) = stdin {
-                // One that reads no input may have closed it.
+                // A program that reads no input may have closed it.
                 let _ = stdin.write_all(self.input.as_bytes()).await;
             }
             child.wait_with_output().await
@@ -89,7 +89,7 @@ impl Invocation {
         Err(ProgramError::Failed {
             program,
             status: output.status,
-            said: String::from_utf8_lossy(&output.stderr).trim().to_owned(),
+            answer: String::from_utf8_lossy(&output.stderr).trim().to_owned(),
         })
     }
 }

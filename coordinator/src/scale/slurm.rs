@@ -3,10 +3,10 @@
 use super::pilot::{PilotSettings, Pilots};
 use super::program::{Invocation, ProgramError};
 
-/// Most jobs of one array; sites allow 1001 at least, where they have not changed `MaxArraySize`.
+/// The largest number of jobs in one array. Sites allow at least 1001, unless they have changed `MaxArraySize`.
 const MAX_ARRAY_SIZE: u32 = 1000;
 
-/// Asks for this user's jobs of the name: each on a line of its own, with its state.
+/// Returns the call that lists this user's jobs with the name: each on a line of its own, with its state.
 pub(super) fn list(settings: &PilotSettings) -> Invocation {
     let name = format!("--name={}", settings.name);
     Invocation::new(
@@ -15,14 +15,14 @@ pub(super) fn list(settings: &PilotSettings) -> Invocation {
     )
 }
 
-/// The pilots of such an answer; a job that is completing is none any more.
+/// Reads the pilots from the answer; a completing job no longer counts.
 pub(super) fn pilots(answer: &str) -> Result<Pilots, ProgramError> {
     let mut pilots = Pilots::default();
     for line in answer.lines() {
         let Some((job, state)) = line.trim().split_once(' ') else {
             return Err(ProgramError::Answer {
                 program: "squeue",
-                said: line.to_owned(),
+                answer: line.to_owned(),
             });
         };
         match state {
@@ -36,7 +36,7 @@ pub(super) fn pilots(answer: &str) -> Result<Pilots, ProgramError> {
     Ok(pilots)
 }
 
-/// Submits so many, as arrays.
+/// Returns the calls that submit jobs as arrays.
 pub(super) fn start(settings: &PilotSettings, script: &str, more: u32) -> Vec<Invocation> {
     let array = |first: u32| {
         let last = (more - first).min(MAX_ARRAY_SIZE) - 1;
@@ -56,7 +56,7 @@ pub(super) fn start(settings: &PilotSettings, script: &str, more: u32) -> Vec<In
     (0..more).step_by(MAX_ARRAY_SIZE as usize).map(array).collect()
 }
 
-/// Takes jobs back.
+/// Returns the call that cancels jobs.
 pub(super) fn cancel(jobs: &[String]) -> Invocation {
     Invocation::new("scancel", jobs)
 }

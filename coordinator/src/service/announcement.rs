@@ -8,7 +8,7 @@ use crate::webhook::Announcement;
 use store::{StateChange, StoreError};
 
 impl Service {
-    /// Posts each pause and end of a calibration to the web hook of its study, until the service ends. The farm never waits for it.
+    /// Posts each pause and end of a calibration to the web hook of its study, until the service ends. The farm does not wait for it.
     pub async fn announce(&self) {
         let mut changes = self.store().writer().state_changes();
         loop {

@@ -1,4 +1,4 @@
-//! Adds effects of users to the catalogue, and finds the ones that a job names.
+//! Effects that users add to the catalogue, and the ones that a job names.
 
 use formula::Effect;
 use formula::catalogue::find;
@@ -46,11 +46,12 @@ impl Service {
         Ok(self.store().writer().add_effect(new).await?)
     }
 
-    /// All versions of the effect `NAME`, and the last one, or for `NAME@VERSION` that version; `None` where no user has added the effect.
+    /// Reads all versions of the effect `NAME`, and the last one, or for `NAME@VERSION` that version; `None` if no user has added the
+    /// effect.
     ///
     /// # Errors
     /// [`ServiceError`]: the effect has no such version.
-    pub async fn own_effect(
+    pub async fn user_effect(
         &self,
         named: &str,
     ) -> Result<Option<(Vec<StoredEffect>, StoredEffect)>, ServiceError> {
@@ -77,22 +78,25 @@ impl Service {
         Ok(Some((versions, meant)))
     }
 
-    /// The effects that a job lists and that users have added.
+    /// Reads the effects that a job lists and that users have added.
     ///
     /// # Errors
     /// [`ServiceError`]: an effect has no such version.
-    pub(super) async fn listed_own_effects(&self, job: &FileSet) -> Result<Vec<ServiceEffect>, ServiceError> {
+    pub(super) async fn listed_user_effects(
+        &self,
+        job: &FileSet,
+    ) -> Result<Vec<ServiceEffect>, ServiceError> {
         let toml = job.toml.clone();
         let listed = tokio::task::spawn_blocking(move || foreign_effects(&toml));
-        let mut own = Vec::new();
+        let mut effects = Vec::new();
         for named in listed.await.map_err(|_| Stopped)? {
-            own.extend(self.as_file(&named).await?);
+            effects.extend(self.as_file(&named).await?);
         }
-        Ok(own)
+        Ok(effects)
     }
 
     /// Replaces the name of an effect that a user has added by the file of the effect.
-    pub(super) async fn of_own_effect(&self, extension: Extension) -> Result<Extension, ServiceError> {
+    pub(super) async fn with_user_effect(&self, extension: Extension) -> Result<Extension, ServiceError> {
         let Extension::Effect(named) = &extension else {
             return Ok(extension);
         };
@@ -100,23 +104,23 @@ impl Service {
             || PlainParameter::find(named).is_some()
             || ModelSwitch::find(named).is_some()
             || EffectOnNodes::find(named).is_some();
-        let own = if is_ours { None } else { self.as_file(named).await? };
-        Ok(match own {
-            Some(own) => Extension::File {
-                name: own.file,
-                text: own.text,
+        let file = if is_ours { None } else { self.as_file(named).await? };
+        Ok(match file {
+            Some(file) => Extension::File {
+                name: file.file,
+                text: file.text,
             },
             None => extension,
         })
     }
 
-    /// An effect that users have added, as a file that states its version.
+    /// Reads an effect that users have added, as a file that states its version.
     async fn as_file(&self, named: &str) -> Result<Option<ServiceEffect>, ServiceError> {
-        let stored = self.own_effect(named).await.map_err(|error| match error {
+        let stored = self.user_effect(named).await.map_err(|error| match error {
             missing @ ServiceError::NoVersion { .. } => FileError::whole(JOB, missing.to_string()).into(),
             error => error,
         })?;
-        let own = |effect: StoredEffect| {
+        let service_effect = |effect: StoredEffect| {
             ServiceEffect::new(
                 named.to_owned(),
                 &effect.name,
@@ -124,6 +128,6 @@ impl Service {
                 effect.text,
             )
         };
-        Ok(stored.map(|(_, effect)| own(effect)))
+        Ok(stored.map(|(_, effect)| service_effect(effect)))
     }
 }

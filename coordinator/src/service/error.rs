@@ -1,4 +1,4 @@
-//! Errors of the service.
+//! Errors of the service, each with its message.
 
 use shared::api::CalibrationState;
 use shared::file::FileError;
@@ -18,13 +18,13 @@ pub enum ServiceError {
     File(#[from] FileError),
     #[error(transparent)]
     Begin(#[from] BeginError),
-    /// This version computes other facts of a calibration than the stored ones.
+    /// The facts that this version computes differ from the stored ones.
     #[error(transparent)]
     Replay(#[from] ReplayError),
-    /// A calibration could not be taken up at the start.
+    /// A calibration could not be resumed at the start.
     #[error("calibration {id} cannot be resumed: {reason}")]
     LeftAlone { id: i64, reason: String },
-    /// The library has the name of an effect to add.
+    /// The name of an effect to add is that of an effect of the library.
     #[error("the effect {0} belongs to the library: give yours another name")]
     OfLibrary(String),
     #[error("effect {name} has no version {version:?}; the last one is {last}")]
@@ -33,24 +33,24 @@ pub enum ServiceError {
         version: String,
         last: i64,
     },
-    /// Nothing can be posted to a URL.
+    /// No messages can be posted to a URL.
     #[error(transparent)]
     Webhook(#[from] WebhookError),
-    /// A study is still computed.
+    /// A study is not finished.
     #[error("calibration {calibration} of study {study} is {}; the study cannot be {verb}: wait, or cancel it first", state.name())]
     InProgress {
         study: i64,
-        /// Its first calibration that is not over.
+        /// Its first unfinished calibration.
         calibration: i64,
         state: CalibrationState,
         verb: &'static str,
     },
     #[error("study {0} is archived: restore it first")]
     Archived(i64),
-    /// The effects are not those that the calibration was computed with.
+    /// The effects differ from those with which the calibration was computed.
     #[error(transparent)]
     Effects(#[from] EffectsChanged),
-    /// A search has nothing to extend, and no search of its own.
+    /// A search can be neither extended nor searched.
     #[error("calibration {0} is a search for a missing effect: name the calibration whose model it searches")]
     Search(i64),
     #[error("there is no {what} {id}")]
@@ -71,13 +71,13 @@ pub enum ServiceError {
 }
 
 impl ServiceError {
-    /// No `what` has this id.
+    /// Makes the error that no `what` has this id.
     pub(super) fn not_found(what: &'static str, id: i64) -> Self {
         let id = id.to_string();
         ServiceError::NotFound { what, id }
     }
 
-    /// A calibration without a result yet.
+    /// Makes the error that a calibration has no result yet.
     pub(super) fn not_finished(row: &CalibrationRow) -> Self {
         let (id, state) = (row.id, row.state);
         ControlError::NotFinished { id, state }.into()

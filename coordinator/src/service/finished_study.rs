@@ -40,7 +40,7 @@ pub(super) async fn finished_calibration(
     finished_with(reader, row, &mut ParsedExperiments::default()).await
 }
 
-/// A finished calibration of a study whose experiments were parsed before.
+/// Loads a finished calibration of a study whose experiments were parsed before.
 async fn finished_with(
     reader: &Reader,
     row: &CalibrationRow,
@@ -48,7 +48,7 @@ async fn finished_with(
 ) -> Result<FinishedCalibration, ServiceError> {
     check_finished(row)?;
     let spec = experiments.spec_of(reader, row).await?;
-    // Parameters and texts would be shown that the result was not computed with.
+    // Parameters and texts would be shown with which the result was not computed.
     if let Some(pinned) = &row.model_version {
         spec.check_effects(pinned)?;
     }
@@ -58,7 +58,7 @@ async fn finished_with(
         false => (reader.estimate(row.id).await?, Vec::new()),
     };
     let mut populations = reader.populations(row.id).await?;
-    // The draws of a normal approximation belong to no stage.
+    // The draws of a normal approximation have no stage.
     let posterior = match populations.pop() {
         Some(last) => last,
         None => reader.samples(row.id, None).await?,
@@ -100,7 +100,7 @@ async fn finished_with(
     })
 }
 
-/// The values that the model predicts at the likeliest draw, from its observables, else as they were stored for the sampler.
+/// Returns the predicted values at the likeliest draw: from its observables, or as they were stored for the sampler.
 async fn likeliest_values(
     reader: &Reader,
     row: &CalibrationRow,
@@ -111,7 +111,7 @@ async fn likeliest_values(
     let Some(sample) = likeliest(posterior) else {
         return Ok(None);
     };
-    // Programs of scm-5 and before left out readings and derivatives where they simulated histories.
+    // Programs of version scm-5 and earlier left out readings and derivatives where they simulated histories.
     let whole = at_likeliest.filter(|observables| {
         let histories = spec.fit_variant.with_histories();
         observables.covers(histories.as_ref().unwrap_or(&spec.fit_variant))
@@ -122,7 +122,7 @@ async fn likeliest_values(
     }
 }
 
-/// Loads what is finished of the study of a calibration, from these members: one that joins meanwhile is no part of it.
+/// Loads the finished members of a calibration's study, out of the given members. A member that joins meanwhile is left out.
 ///
 /// # Errors
 /// [`finished_calibration`] states them for the given calibration, where nothing is finished.
@@ -140,7 +140,7 @@ pub(super) async fn finished_study(
         |row: &CalibrationRow| models > 1 && lineage.compared().iter().any(|other| other.id == row.id);
     let of_models: Vec<_> = calibrations.iter().filter(|row| compared(row)).collect();
     let best = most_probable(of_models.iter().map(|row| row.log_evidence)).map(|i| of_models[i]);
-    // Without any, the calibration that was asked for says why there is nothing to show.
+    // Without any, the error of the requested calibration states why there is no result.
     let lead = best.or(calibrations.first()).copied().unwrap_or(row);
     let mut experiments = ParsedExperiments::default();
     let lead = finished_with(reader, lead, &mut experiments).await?;
@@ -158,7 +158,7 @@ pub(super) async fn finished_study(
     }
     let state = match unfinished {
         Some(row) => row.state,
-        // A step that is decided but not begun is work to come.
+        // The next step of a study is unfinished work, although it has not begun.
         None if next_step_from(reader, rows).await?.is_some() => CalibrationState::Running,
         None => CalibrationState::Finished,
     };
@@ -176,14 +176,14 @@ pub(super) async fn finished_study(
 }
 
 impl Service {
-    /// The finished searches of a study.
+    /// Reads the finished searches of a study.
     pub async fn search_rounds(&self, study: i64) -> Result<Vec<DiscoveryRound>, ServiceError> {
         let reader = self.store().reader();
         search_rounds(&reader, &reader.study(study).await?).await
     }
 }
 
-/// The finished searches among the members of a study.
+/// Reads the finished searches among the members of a study.
 async fn search_rounds(
     reader: &Reader,
     rows: &[CalibrationRow],

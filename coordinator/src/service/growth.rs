@@ -21,13 +21,14 @@ use search::candidate::extended;
 use store::NewCalibrationRow;
 
 impl Service {
-    /// Adds a calibration to the study of another, with one more effect in its job. The answer is the existing one where the study has it.
+    /// Adds a calibration to the study of another, with one more effect in its job. If the study has such a calibration already, the answer
+    /// names it.
     ///
     /// # Errors
-    /// [`ServiceError`]: the effect is unknown, or stands there already.
+    /// [`ServiceError`]: the effect is unknown, or the job has it already.
     pub async fn extend(&self, id: i64, extension: Extension) -> Result<CalibrationCreated, ServiceError> {
         let _growing = self.growing.lock().await;
-        let extension = self.of_own_effect(extension).await?;
+        let extension = self.with_user_effect(extension).await?;
         self.extended(id, &extension).await
     }
 
@@ -44,11 +45,11 @@ impl Service {
         self.add_member(&row, change, row.experiment, name, job).await
     }
 
-    /// Adds measurements to a study: an experiment with further rows of CSV, and a calibration on it with the job of the named calibration, or
-    /// of the last one of the ledger.
+    /// Adds measurements to a study: an experiment with further rows of CSV, and a calibration on it with the job of the given calibration,
+    /// or of the last one of the ledger.
     ///
     /// # Errors
-    /// [`ServiceError`]: a row is malformed, or its run stands there already.
+    /// [`ServiceError`]: a row is malformed, or its run exists already.
     pub async fn add_runs(
         &self,
         study: i64,
@@ -77,7 +78,7 @@ impl Service {
             tokio::task::spawn_blocking(move || Experiment::with_runs(FILES[1], &experiment, &csv));
         let (enlarged, runs) = enlarged.await.map_err(|_| Stopped)??;
         let job = continued_job(FILES[0], &last.job)?;
-        // A mistake is refused before anything is stored.
+        // The job is validated before anything is stored.
         let name = format!("{} ({runs} runs)", last.name);
         let change = Some(Change::Runs(runs));
         let member = self
@@ -92,7 +93,8 @@ impl Service {
         })
     }
 
-    /// Adds the search of a calibration's model for a missing effect. The answer is the existing search, unless it ended without a record.
+    /// Adds the search of a calibration's model for a missing effect. If the study has this search already, the answer names it, unless it
+    /// ended without a record.
     pub async fn discover(&self, id: i64) -> Result<CalibrationCreated, ServiceError> {
         let _growing = self.growing.lock().await;
         self.searched(id).await
@@ -138,7 +140,7 @@ impl Service {
 
     /// Extends studies by their next steps until the service ends.
     pub async fn keep_growing(&self) {
-        // Number of members of each study when it last had no next step.
+        // The number of members of each study when it last had no next step.
         let mut at_rest: BTreeMap<i64, i64> = BTreeMap::new();
         let mut changes = self.study_changes();
         loop {
@@ -167,7 +169,7 @@ impl Service {
         }
     }
 
-    /// Returns a calibration that can be extended and searched.
+    /// Reads a calibration that can be extended and searched.
     pub(super) async fn searchable(&self, id: i64) -> Result<CalibrationRow, ServiceError> {
         let row = self.calibration_row(id).await?;
         match row.membership.is_search() {
@@ -255,7 +257,7 @@ impl Service {
     }
 }
 
-/// The answer for a calibration that exists already, as if it were made now.
+/// Makes the answer for an existing calibration, which is the same as for a new one.
 fn created(row: &CalibrationRow) -> CalibrationCreated {
     CalibrationCreated {
         id: row.id,
@@ -264,7 +266,7 @@ fn created(row: &CalibrationRow) -> CalibrationCreated {
     }
 }
 
-/// The compared models that a study does not go on with: all but the one with the most evidence.
+/// Returns the compared models with which a study does not continue: all but the one with the largest evidence.
 fn passed_over(rows: &[CalibrationRow]) -> Vec<i64> {
     let compared = Lineage::new(rows).compared();
     let best = most_probable(compared.iter().map(|row| row.log_evidence));

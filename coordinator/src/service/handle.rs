@@ -1,4 +1,4 @@
-//! Store and farm together: list, status, control and results of calibrations.
+//! The service: store and farm together, for lists, status, control and results of calibrations.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -21,7 +21,7 @@ use job::Spec;
 use record::CalibrationRow;
 use store::{Store, StoreError};
 
-/// Number of facts that may wait for the store before the service asks workers for patience.
+/// The number of facts waiting for the store above which workers must wait.
 const BACKLOG: u64 = 200_000;
 
 /// Store and farm together; clones are cheap.
@@ -33,7 +33,7 @@ pub struct Service {
     left_alone: Arc<BTreeMap<i64, String>>,
     pub(super) webhook_hosts: WebhookHosts,
     pub(super) results: ResultCache,
-    /// A task that adds to a study holds it, so that each task sees the additions before its own.
+    /// A lock that a task holds while it adds to a study, so that it sees all earlier additions.
     pub(super) growing: Arc<tokio::sync::Mutex<()>>,
 }
 
@@ -74,7 +74,7 @@ impl Service {
         }
     }
 
-    /// Opens the store for reading alone: nothing is in progress, and every write is refused.
+    /// Opens the store for reading alone. No calibration is in progress, and every write is refused.
     pub async fn open_read_only(path: &str) -> Result<Service, ServiceError> {
         let store = Store::open_read_only(path).await?;
         let farm = Farm::new(store.epoch(), LEASE_MS);
@@ -97,12 +97,12 @@ impl Service {
         self.store.close().await;
     }
 
-    /// The reason why a stored calibration could not be resumed.
+    /// Returns the reason why a stored calibration could not be resumed.
     pub fn left_alone(&self, id: i64) -> Option<&str> {
         self.left_alone.get(&id).map(String::as_str)
     }
 
-    /// Number of calibrations that could not be resumed.
+    /// Returns the number of calibrations that could not be resumed.
     pub fn count_left_alone(&self) -> usize {
         self.left_alone.len()
     }
@@ -126,7 +126,7 @@ impl Service {
         stored_calibration::calibration_row(&self.store.reader(), id).await
     }
 
-    /// The specification of a stored calibration.
+    /// Returns the specification of a stored calibration.
     pub async fn spec_of(&self, row: &CalibrationRow) -> Result<Spec, ServiceError> {
         stored_calibration::spec_of(&self.store.reader(), row).await
     }
@@ -153,7 +153,7 @@ impl Service {
         status
     }
 
-    /// The status of every calibration, oldest first; those of archived studies on request.
+    /// Returns the status of every calibration, oldest first; those of archived studies on request.
     pub async fn list(&self, with_archived: bool) -> Result<Vec<CalibrationStatus>, ServiceError> {
         let mut in_hand = self.dispatcher.statuses().await?;
         let rows = self.store.reader().calibrations().await?;

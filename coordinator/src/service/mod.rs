@@ -1,4 +1,4 @@
-//! Store and farm together: submit, recover, control, grow.
+//! The service: store and farm together, to submit, recover, control and extend calibrations.
 //!
 //! # Layout
 //! - `handle`: [`Service`].
@@ -9,10 +9,10 @@
 //! - `removal`: archives and deletes studies.
 //! - `announcement`: posts to web hooks.
 //! - `growth`: additions to an existing study. `what_if`: studies without some runs.
-//! - `stored_calibration`, `study_step`, `finished_study`: read the store.
+//! - `stored_calibration`, `study_step`, `finished_study`: values that are read from the store.
 //! - `study_members`: the members of a study.
-//! - `results`: the files of studies and calibrations, kept in the `result_cache`. `study_overview`: studies as the page shows them.
-//! - `study_changes`: tells when there is something to do about studies.
+//! - `results`: the texts about studies and calibrations, kept in the `result_cache`. `study_overview`: studies for the page.
+//! - `study_changes`: notifications of changes of studies.
 
 mod announcement;
 mod clock;

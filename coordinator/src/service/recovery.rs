@@ -9,8 +9,8 @@ use farm::calibration::{Calibration, CalibrationIdentity};
 use farm::dispatch::{Dispatcher, Rewinds, Stopped};
 use store::{Reader, Store};
 
-/// Resumes the calibrations that are not over; returns those that cannot be resumed, with the reasons. Nothing is written about these: another
-/// version may resume them, or a backup has the row that is bad here.
+/// Resumes the calibrations that are not over. Returns those that cannot be resumed, with the reasons. Nothing is written about these,
+/// because another version may resume them, or a backup may have an intact row.
 pub(super) async fn recover(
     store: &Store,
     dispatcher: &Dispatcher,
@@ -66,7 +66,7 @@ async fn take_up(
         experiment: row.experiment,
     };
     let experiment = experiment_files(reader, row.experiment).await?;
-    // Replaying is seconds of CPU for a long calibration: not on the async runtime.
+    // The replay of a long calibration takes seconds of CPU time, so it does not run on the async runtime.
     let replayed = tokio::task::spawn_blocking(move || {
         let calibration = Calibration::from_files(identity, spec, &row.job, &experiment)?;
         let mut calibration = calibration.verified(verified_share, key);

@@ -1,4 +1,4 @@
-//! Studies that are archived, taken back or deleted, and how long archived ones are kept.
+//! Archiving, restoring and deletion of studies, and the deletion of studies that were archived long ago.
 
 use std::time::Duration;
 
@@ -12,7 +12,7 @@ const LOOK: Duration = Duration::from_secs(600);
 const DAY_MS: i64 = 86_400_000;
 
 impl Service {
-    /// Deletes a study with its calibrations, and with its experiments where no other study has them; returns the calibrations.
+    /// Deletes a study with its calibrations, and with its experiments if no other study has them. Returns the calibrations.
     ///
     /// # Errors
     /// [`ServiceError::InProgress`] where one of its calibrations is not over.
@@ -21,17 +21,17 @@ impl Service {
         self.delete_at_rest(study).await
     }
 
-    /// Deletes a study while nothing can be added to it: the caller keeps studies from growing.
+    /// Deletes a study while nothing can be added to it. The caller holds the lock of additions.
     async fn delete_at_rest(&self, study: i64) -> Result<Vec<i64>, ServiceError> {
         let calibrations = self.at_rest(study, "deleted").await?;
         let writer = self.store().writer();
-        // A deletion that is cut short leaves an archived study, which does not grow after a restart either.
+        // An interrupted deletion leaves an archived study, which does not grow after a restart either.
         writer.archive_study(study, Some(now_ms())).await?;
         writer.delete_study(study, now_ms()).await?;
         Ok(calibrations)
     }
 
-    /// Deletes a study that was archived until a time and still is; `None` where it is not.
+    /// Deletes a study that was archived before a time and still is. Returns `None` if it is not.
     async fn delete_archived(&self, study: i64, until_ms: i64) -> Result<Option<Vec<i64>>, ServiceError> {
         let _growing = self.growing.lock().await;
         let archived = self.store().reader().archived().await?;
@@ -44,7 +44,7 @@ impl Service {
         }
     }
 
-    /// Takes a study out of the lists; it no longer grows. Its results stay.
+    /// Archives a study: it is left out of the lists and no longer grows. Its results stay.
     ///
     /// # Errors
     /// The same as of [`Service::delete_study`].
@@ -54,7 +54,7 @@ impl Service {
         Ok(self.store().writer().archive_study(study, Some(now_ms())).await?)
     }
 
-    /// Takes an archived study back into the lists.
+    /// Restores an archived study to the lists.
     ///
     /// # Errors
     /// The same as of [`Service::delete_study`].
@@ -67,7 +67,7 @@ impl Service {
         Ok(self.store().writer().archive_study(study, None).await?)
     }
 
-    /// The calibrations of a study; refuses a study of which the farm holds a calibration.
+    /// Returns the calibrations of a study. Refuses a study with a calibration in the farm.
     async fn at_rest(&self, study: i64, verb: &'static str) -> Result<Vec<i64>, ServiceError> {
         let studies = self.store().reader().studies().await?;
         let stored = studies.into_iter().find(|stored| stored.id == study);
@@ -95,8 +95,8 @@ impl Service {
         }
     }
 
-    /// Finishes deletions that an end of the service has interrupted. Then, until the service ends, deletes studies that were archived a
-    /// number of days ago, where a number is given.
+    /// Finishes deletions that an end of the service has interrupted. With a number of days, then deletes studies that were archived that
+    /// long ago, until the service ends.
     pub async fn keep_tidy(&self, days: Option<u32>) {
         match self.store().reader().half_deleted().await {
             Ok(studies) => {

@@ -1,13 +1,13 @@
-//! The texts that have been computed about studies.
+//! The cache of texts about studies.
 
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use report::StudyFile;
-use store::{Store, StoreError, StudyResults};
+use store::{Stamp, Store, StoreError, StudyResults};
 
-/// The texts that have been computed about studies, each under the stamp of what it was computed from. They are in the store's table of
-/// results. A store that is only read takes none: there, overviews and lines of the list are kept in memory.
+/// The cache of texts about studies, each under the stamp of the state from which it was computed. The texts are in the store's table of
+/// results. A store that is opened for reading alone takes none: then overviews and lines of the list are kept in memory.
 #[derive(Debug, Clone)]
 pub(super) struct ResultCache {
     store: Store,
@@ -26,53 +26,61 @@ impl ResultCache {
         self.in_memory.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// A text about a study, if it is kept under this stamp.
+    /// Returns a text about a study, if it is kept under this stamp.
     pub(super) async fn text(
         &self,
         study: i64,
         name: &str,
-        stamp: &str,
+        stamp: &Stamp,
     ) -> Result<Option<String>, StoreError> {
-        if let Some(text) = self.store.reader().result(study, name, stamp).await? {
+        if let Some(text) = self
+            .store
+            .reader()
+            .result(study, name, &stamp.to_string())
+            .await?
+        {
             // Another process has stored newer texts than those in memory.
             self.in_memory()
-                .retain(|id, kept| *id != study || kept.stamp == stamp);
+                .retain(|id, kept| *id != study || kept.stamp == *stamp);
             return Ok(Some(text));
         }
         let in_memory = self.in_memory();
-        let kept = in_memory.get(&study).filter(|kept| kept.stamp == stamp);
+        let kept = in_memory.get(&study).filter(|kept| kept.stamp == *stamp);
         Ok(kept.and_then(|kept| kept.files.get(name)).cloned())
     }
 
-    /// The text of one name of every study that has it, with its stamp.
-    pub(super) async fn of_every_study(
-        &self,
-        name: &str,
-    ) -> Result<BTreeMap<i64, (String, String)>, StoreError> {
+    /// Returns the text with one name of every study that has it, with its stamp.
+    pub(super) async fn texts(&self, name: &str) -> Result<BTreeMap<i64, (String, String)>, StoreError> {
         let mut found = self.store.reader().results(name).await?;
         let in_memory = self.in_memory();
         let kept = in_memory.iter().filter_map(|(study, kept)| {
             let text = kept.files.get(name)?.clone();
-            Some((*study, (kept.stamp.clone(), text)))
+            Some((*study, (kept.stamp.to_string(), text)))
         });
         found.extend(kept);
         Ok(found)
     }
 
-    /// Keeps texts; those of the study under another stamp are out of date, and go.
+    /// Keeps texts and drops those of the study under other stamps. Texts that were computed from an earlier state of the study than the
+    /// present one are not kept.
     pub(super) async fn keep(&self, mut results: StudyResults) -> Result<(), StoreError> {
         if !self.store.is_read_only() {
             return self.store.writer().keep_results(results).await;
         }
         let in_lists = [StudyFile::Overview, StudyFile::ListItem].map(StudyFile::name);
         results.files.retain(|name, _| in_lists.contains(name));
-        if !results.files.is_empty() {
+        let (present, _) = self
+            .store
+            .reader()
+            .stamped_study(results.study, results.stamp.build())
+            .await?;
+        if !results.files.is_empty() && results.stamp == present {
             self.in_memory().insert(results.study, results);
         }
         Ok(())
     }
 
-    /// Frees the memory of studies that are no longer there.
+    /// Drops the texts in memory of deleted studies.
     pub(super) fn forget_deleted(&self, is_there: impl Fn(i64) -> bool) {
         self.in_memory().retain(|study, _| is_there(*study));
     }
@@ -80,6 +88,9 @@ impl ResultCache {
 
 #[cfg(test)]
 mod tests {
+    use shared::api::CalibrationState;
+    use store::Doubts;
+
     use super::*;
 
     #[tokio::test]
@@ -87,25 +98,37 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("grouser.db").display().to_string();
         Store::open(&path, 0).await.unwrap().close().await;
-        let cache = ResultCache::new(&Store::open_read_only(&path).await.unwrap());
-        let keep = async |study: i64, files: &[StudyFile]| {
-            let files = files.iter().map(|file| (file.name(), format!("text of {study}")));
+        let store = Store::open_read_only(&path).await.unwrap();
+        let cache = ResultCache::new(&store);
+        let (now, _) = store.reader().stamped_study(1, "b1").await.unwrap();
+        let then = Stamp::new("b1", [(1, CalibrationState::Finished)].into_iter(), Doubts::NONE);
+        let keep = async |study: i64, stamp: &Stamp, files: &[StudyFile]| {
+            let files = files
+                .iter()
+                .map(|file| (file.name(), format!("text of {study} by {stamp}")));
             let results = StudyResults {
                 study,
-                stamp: "now".into(),
+                stamp: stamp.clone(),
                 files: files.collect(),
             };
             cache.keep(results).await.unwrap();
         };
-        keep(1, &[StudyFile::Overview, StudyFile::ListItem, StudyFile::Report]).await;
-        keep(1, &[StudyFile::Report]).await;
-        keep(2, &[StudyFile::ListItem]).await;
+        keep(
+            1,
+            &now,
+            &[StudyFile::Overview, StudyFile::ListItem, StudyFile::Report],
+        )
+        .await;
+        keep(1, &now, &[StudyFile::Report]).await;
+        keep(1, &then, &[StudyFile::Overview]).await;
+        keep(2, &now, &[StudyFile::ListItem]).await;
         let text = async |file: StudyFile, stamp| cache.text(1, &file.name(), stamp).await.unwrap();
-        assert_eq!(text(StudyFile::Overview, "now").await.unwrap(), "text of 1");
-        assert_eq!(text(StudyFile::Overview, "then").await, None);
-        assert_eq!(text(StudyFile::Report, "now").await, None);
-        let listed = async || cache.of_every_study(&StudyFile::ListItem.name()).await.unwrap();
-        assert_eq!(listed().await[&2], ("now".to_owned(), "text of 2".to_owned()));
+        let overview = text(StudyFile::Overview, &now).await.unwrap();
+        assert_eq!(overview, format!("text of 1 by {now}"));
+        assert_eq!(text(StudyFile::Overview, &then).await, None);
+        assert_eq!(text(StudyFile::Report, &now).await, None);
+        let listed = async || cache.texts(&StudyFile::ListItem.name()).await.unwrap();
+        assert_eq!(listed().await[&2].0, now.to_string());
         cache.forget_deleted(|study| study == 1);
         assert_eq!(listed().await.into_keys().collect::<Vec<_>>(), [1]);
     }

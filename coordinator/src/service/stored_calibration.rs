@@ -60,8 +60,8 @@ impl ParsedExperiments {
     }
 }
 
-/// Whether a calibration has draws of the posterior, or will have them: draws of a sample, or of a fit's normal approximation. Fits of
-/// earlier versions have none, so that for a finished fit the store decides.
+/// Returns whether a calibration has, or will have, draws of the posterior: those of a sampler, or of a fit's normal approximation. Fits of
+/// earlier versions have none, so for a finished fit the store decides.
 pub(super) async fn has_posterior(reader: &Reader, row: &CalibrationRow) -> Result<bool, ServiceError> {
     Ok(match row.membership.role {
         Role::Sample => true,
@@ -73,7 +73,7 @@ pub(super) async fn has_posterior(reader: &Reader, row: &CalibrationRow) -> Resu
     })
 }
 
-/// The status of a stored calibration that the farm does not hold. A calibration whose row cannot be read still has a line in every list.
+/// Makes the status of a stored calibration that is not in the farm. A calibration whose row cannot be read still has a line in every list.
 pub(super) fn stored_status(id: i64, row: &Result<CalibrationRow, StoreError>) -> CalibrationStatus {
     let row = match row {
         Ok(row) => row,

@@ -1,4 +1,4 @@
-//! Tells when there is something to do about studies: when the store's writer says so, or every half second where another program writes.
+//! Notifications of changes of studies: from the store's writer, or every half second if another program writes the store.
 
 use std::time::Duration;
 
@@ -6,13 +6,14 @@ use tokio::sync::watch;
 
 use super::handle::Service;
 
-/// The shortest time between two looks at the studies.
+/// The shortest time between two notifications.
 const LOOK: Duration = Duration::from_millis(500);
 
-/// The changes of studies since the first call.
+/// A receiver of notifications of changes of studies.
 #[derive(Debug)]
 pub(super) struct StudyChanges {
-    /// Absent where another program writes the store: SQLite and PostgreSQL tell a reader of no commit.
+    /// The notifications of the writer; `None` if another program writes the store, because SQLite and PostgreSQL notify a reader of no
+    /// commit.
     notices: Option<watch::Receiver<()>>,
     has_looked: bool,
 }
@@ -29,18 +30,18 @@ impl Service {
 }
 
 impl StudyChanges {
-    /// Ready when it is time to look at the studies: at first, and whenever one may have changed since the last look.
+    /// Waits until a study may have changed since the last call. The first call returns at once.
     pub(super) async fn next(&mut self) {
         if std::mem::replace(&mut self.has_looked, true) {
             tokio::time::sleep(LOOK).await;
             if let Some(notices) = &mut self.notices {
-                // The other end lives as long as the service.
+                // The sender exists as long as the service.
                 let _ = notices.changed().await;
             }
         }
     }
 
-    /// Makes the next look due soon: there is more to do, or the studies could not be read.
+    /// Makes the next call return soon, because there is more to do, or the studies could not be read.
     pub(super) fn look_again(&mut self) {
         if let Some(notices) = &mut self.notices {
             notices.mark_changed();
@@ -54,7 +55,7 @@ mod tests {
 
     use super::*;
 
-    /// Whether a look is due, once the shortest time between two has passed.
+    /// Returns whether a notification arrives once the shortest time between two has passed.
     async fn is_due(changes: &mut StudyChanges) -> bool {
         tokio::time::timeout(3 * LOOK, changes.next()).await.is_ok()
     }
@@ -66,7 +67,7 @@ mod tests {
             notices: Some(writer.subscribe()),
             has_looked: false,
         };
-        // A change before the first look is seen by this look or by the next one.
+        // A change before the first call may be seen by the first or the second one.
         writer.send_replace(());
         assert!(changes.next().now_or_never().is_some());
         assert!(is_due(&mut changes).await);

@@ -1,4 +1,4 @@
-//! The members of a study in its overview.
+//! The members of a study for its overview.
 
 use shared::api::CalibrationState;
 
@@ -8,7 +8,7 @@ use record::{CalibrationRow, addition_name};
 use result::{Rejections, StudyMember};
 use store::Reader;
 
-/// The members of a study, finished or not, oldest first.
+/// Reads the members of a study, finished or not, oldest first.
 ///
 /// # Errors
 /// [`ServiceError`] where the store cannot be read.

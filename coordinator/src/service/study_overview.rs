@@ -1,4 +1,4 @@
-//! Studies as the page shows them, and the list of all.
+//! Overviews of studies for the page, and the list of all studies.
 
 use std::collections::BTreeMap;
 
@@ -6,15 +6,15 @@ use shared::api::{CalibrationState, CalibrationStatus};
 
 use super::error::ServiceError;
 use super::handle::Service;
-use super::results::{Stamp, is_of_members, members_stamp};
+use super::results::members_stamp;
 use super::study_members::study_members;
 use job::model_kind;
 use record::CalibrationRow;
 use report::{StudyFile, StudyListItem, StudyOverview};
-use store::StoreError;
+use store::{Stamp, StoreError, is_of_members};
 
 impl Service {
-    /// A study as the page shows it.
+    /// Returns the overview of a study.
     pub async fn study_overview(&self, id: i64) -> Result<StudyOverview, ServiceError> {
         let reader = self.store().reader();
         let (stamp, rows) = self.stamped_members(id).await?;
@@ -22,7 +22,7 @@ impl Service {
             return Err(ServiceError::not_found("study", id));
         }
         let mut overview = self.overview_of_ended(id, &rows, stamp).await?;
-        // States and messages also change while the same members are over.
+        // States and messages change also while the kept text stays valid.
         for (member, row) in overview.members.iter_mut().zip(&rows) {
             let status = self.status_of(row).await?;
             (member.member.state, member.member.message) = (status.state, status.message);
@@ -43,7 +43,7 @@ impl Service {
         }
     }
 
-    /// The part of a study's overview that only changes when a member begins or ends.
+    /// Returns the part of a study's overview that changes only when a member begins or ends.
     async fn overview_of_ended(
         &self,
         id: i64,
@@ -59,7 +59,7 @@ impl Service {
             ),
             None => {
                 let name = StudyFile::Overview.name();
-                self.results.text(id, &name, &stamp.to_string()).await?
+                self.results.text(id, &name, &stamp).await?
             }
         };
         if let Some(text) = text {
@@ -74,17 +74,17 @@ impl Service {
         Ok(overview)
     }
 
-    /// Every study, oldest first; archived ones only where that is asked for. The errors and the verdict of a study that has just
-    /// changed are left out until they are computed.
+    /// Lists every study, oldest first; archived ones on request. Errors and verdict of a study that has just changed are left out until
+    /// they are computed.
     pub async fn studies(&self, with_archived: bool) -> Result<Vec<StudyListItem>, ServiceError> {
         let reader = self.store().reader();
         let archived = reader.archived().await?;
         let mut studies: BTreeMap<i64, Vec<CalibrationStatus>> = BTreeMap::new();
-        // A calibration whose row cannot be read belongs to no study that is known.
+        // A calibration whose row cannot be read belongs to no known study.
         for status in self.list(true).await?.into_iter().filter(|s| s.study != 0) {
             studies.entry(status.study).or_default().push(status);
         }
-        let mut listed = self.results.of_every_study(&StudyFile::ListItem.name()).await?;
+        let mut listed = self.results.texts(&StudyFile::ListItem.name()).await?;
         let item = |(id, members): (i64, Vec<CalibrationStatus>)| {
             let stamp = members_stamp(members.iter().map(|member| (member.id, member.state)));
             let lead = members.first()?;
@@ -108,7 +108,7 @@ impl Service {
 
     /// Computes the overviews of studies as their members begin and end, until the service ends.
     pub async fn keep_overviews(&self) {
-        // The members of the studies whose overview could not be computed.
+        // The stamps of the studies whose overview could not be computed.
         let mut failed: BTreeMap<i64, String> = BTreeMap::new();
         let mut changes = self.study_changes();
         loop {
@@ -133,10 +133,10 @@ impl Service {
         }
     }
 
-    /// The studies whose present members have no overview yet, with the stamp of these members.
+    /// Returns the studies whose present members have no overview yet, each with the part of the stamp that the members determine.
     async fn studies_without_overview(&self) -> Result<BTreeMap<i64, String>, ServiceError> {
-        let listed = self.results.of_every_study(&StudyFile::ListItem.name()).await?;
-        // No results of a study are stored while it is deleted in parts.
+        let listed = self.results.texts(&StudyFile::ListItem.name()).await?;
+        // Results of a study that is deleted in parts are not stored.
         let deleted = self.store().reader().half_deleted().await?;
         let mut studies: BTreeMap<i64, Vec<(i64, CalibrationState)>> = BTreeMap::new();
         for (study, id, state) in self.store().reader().member_states().await? {

@@ -11,7 +11,7 @@ use record::{CalibrationRow, Discovery};
 use store::Reader;
 
 impl Service {
-    /// The next step of a study.
+    /// Determines the next step of a study.
     ///
     /// # Errors
     /// [`ServiceError`] where a member cannot be read.
@@ -20,10 +20,10 @@ impl Service {
         next_step_from(&reader, &reader.study(study).await?).await
     }
 
-    /// The record of the search for an effect that the model of a calibration lacks.
+    /// Reads the record of the search for an effect that the model of a calibration lacks.
     ///
     /// # Errors
-    /// [`ServiceError::NotFound`] where no search was asked for, [`ServiceError::Control`] where it is not finished.
+    /// [`ServiceError::NotFound`] if there is no search, [`ServiceError::Control`] if it is not finished.
     pub async fn finished_search(&self, id: i64) -> Result<Discovery, ServiceError> {
         let reader = self.store().reader();
         let row = self.calibration_row(id).await?;
@@ -37,7 +37,7 @@ impl Service {
     }
 }
 
-/// The next step of a study with these members.
+/// Determines the next step of a study with these members.
 pub(super) async fn next_step_from(
     reader: &Reader,
     rows: &[CalibrationRow],

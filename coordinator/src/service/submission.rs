@@ -1,4 +1,4 @@
-//! New experiments and calibrations: validated, stored, started.
+//! Submission of experiments and calibrations: they are validated, stored and started.
 
 use std::sync::Arc;
 
@@ -47,17 +47,17 @@ impl Service {
             toml: new.toml,
             files: new.files,
         };
-        let own = self.listed_own_effects(&job).await?;
-        // The samplers are built before anything is stored, so that a job which they refuse leaves nothing half-written.
+        let service_effects = self.listed_user_effects(&job).await?;
+        // The samplers are made before anything is stored, so that a job which they refuse leaves no rows.
         let trial = CalibrationIdentity {
             id: 0,
             name,
             study: 0,
             experiment: new.experiment,
         };
-        // Reading a stranger's files and drawing a large population from the prior is CPU work: not on the async
-        // runtime.
-        let members = tokio::task::spawn_blocking(move || members(&trial, job, &own, &experiment));
+        // Validating files and drawing a large population from the prior take CPU time, so they do not run on the async runtime.
+        let members =
+            tokio::task::spawn_blocking(move || members(&trial, job, &service_effects, &experiment));
         let members = members.await.map_err(|_| Stopped)??;
         let (members, rows): (Vec<Calibration>, Vec<NewCalibrationRow>) = members.into_iter().unzip();
         let study = NewStudy {
@@ -80,27 +80,27 @@ impl Service {
     }
 }
 
-/// The calibrations that a job begins its study with, each with its own job: the job itself, then the other models that it compares, or
-/// the point estimates that it asks for. Effects of the service's catalogue that the job lists become files of it.
+/// Makes the first calibrations of a job's study, each with a job of its own: the job itself, then the other models that it compares, or
+/// the point estimates that it requests. Effects of the service's catalogue that the job lists become files of it.
 fn members(
     identity: &CalibrationIdentity,
     job: FileSet,
-    own: &[ServiceEffect],
+    service_effects: &[ServiceEffect],
     experiment: &FileSet,
 ) -> Result<Vec<(Calibration, NewCalibrationRow)>, ServiceError> {
     let file = "job.toml";
-    // Messages name the lines of the file as it is; what is kept has the files of own effects.
-    let mut parsed = Job::parse_models(file, &without_service_effects(file, &job.toml, own)?)?;
+    // Messages name the lines of the user's file; the stored job has the files of users' effects.
+    let mut parsed = Job::parse_models(file, &without_service_effects(file, &job.toml, service_effects)?)?;
     parsed.first.check_files(file, &job.files)?;
-    let names: Vec<String> = own.iter().map(|own| own.file.clone()).collect();
+    let names: Vec<String> = service_effects.iter().map(|effect| effect.file.clone()).collect();
     let added = parsed.first.list_effects(&[], &names);
     added.map_err(|e| FileError::whole(file, e))?;
-    let job = with_service_effects(file, job, own)?;
+    let job = with_service_effects(file, job, service_effects)?;
     let mut specs = Spec::of_models(file, parsed, &job.files, "experiment.toml", experiment)?;
     for spec in &specs {
         check_accepted(spec).map_err(|e| FileError::whole(file, e.to_string()))?;
     }
-    let others = specs.split_off(1);
+    let alternatives = specs.split_off(1);
     let spec = specs.remove(0);
     let point_estimates = spec.point_estimates.clone();
     let experiment = Arc::clone(&spec.experiment);
@@ -113,7 +113,7 @@ fn members(
         )
     };
     let mut members = vec![member(identity.name.clone(), None, spec, job.clone(), identity)?];
-    for (number, spec) in (1..).zip(others) {
+    for (number, spec) in (1..).zip(alternatives) {
         let alone = model_job(file, &job, number)?;
         let name = format!("{} ({})", identity.name, spec.model.kind.name());
         let spec = spec_of(&alone)?;
@@ -129,7 +129,7 @@ fn members(
     Ok(members)
 }
 
-/// A calibration with its row; the store fills in the parent.
+/// Makes a calibration with its row, in which the store fills in the parent.
 fn member(
     name: String,
     change: Option<Change>,
@@ -157,7 +157,7 @@ fn member(
     ))
 }
 
-/// The role of a calibration by an algorithm.
+/// Returns the role of a calibration with an algorithm.
 pub(super) fn role_of(algorithm: &AlgorithmSettings) -> Role {
     match algorithm {
         AlgorithmSettings::Sample(_) => Role::Sample,

@@ -1,4 +1,4 @@
-//! Repeats a study without some of its fitted runs.
+//! Studies that repeat a calibration without some of its fitted runs.
 
 use shared::api::{CalibrationCreated, NewCalibration, NewExperiment};
 use shared::experiment::Experiment;
@@ -8,11 +8,11 @@ use super::handle::Service;
 use farm::dispatch::Stopped;
 use job::{Spec, searched_job};
 
-/// Largest number of runs that a name lists.
+/// The largest number of runs that a name lists.
 const MAX_NAMED: usize = 3;
 
 impl Service {
-    /// Begins a study with the job of a calibration, in which these fitted runs are held out and a missing effect is searched for.
+    /// Begins a study with the job of a calibration, in which these fitted runs are held out, and a search for a missing effect.
     ///
     /// # Errors
     /// [`ServiceError`]: a run is unknown or held out already, or none is left to fit; the calibration is a search.
@@ -25,7 +25,7 @@ impl Service {
         let name = name(&row.name, &without);
         let job = searched_job("job.toml", &row.job)?;
         let trial = job.clone();
-        // A mistake is refused before anything is stored.
+        // The job is validated before anything is stored.
         let edited = tokio::task::spawn_blocking(move || {
             let edited = Experiment::with_held_out("experiment.toml", &files, &without)?;
             Spec::new("job.toml", &trial, "experiment.toml", &edited)?;

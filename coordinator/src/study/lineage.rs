@@ -1,4 +1,4 @@
-//! How the calibrations of a study follow from one another, read from their stored membership alone.
+//! The lineage of a study's calibrations, read from their stored membership alone.
 
 use record::{CalibrationRow, Change, Extension, parts_of};
 
@@ -9,32 +9,34 @@ pub struct Lineage<'a> {
 }
 
 impl<'a> Lineage<'a> {
-    /// The lineage of the calibrations of one study, oldest first.
+    /// Makes the lineage of the calibrations of one study, oldest first.
     pub fn new(rows: &'a [CalibrationRow]) -> Self {
         Self { rows }
     }
 
-    /// The calibrations, searches left out.
+    /// Returns the calibrations without the searches.
     pub fn calibrations(self) -> impl Iterator<Item = &'a CalibrationRow> {
         self.rows.iter().filter(|row| !row.membership.is_search())
     }
 
-    /// The calibrations of the models that the submitted job compares: the first members of the study, one where it has one model.
+    /// Returns the calibrations of the models that the submitted job compares. They are the first members of the study; without a
+    /// comparison there is one.
     pub fn compared(self) -> &'a [CalibrationRow] {
         let is_compared = |row: &&CalibrationRow| matches!(row.membership.change, Some(Change::Model(_)));
         let further = self.rows.iter().skip(1).take_while(is_compared);
         &self.rows[..self.rows.len().min(1 + further.count())]
     }
 
-    /// The calibration with which a model on its measurements began: another algorithm has the model of its parent.
+    /// Returns the first calibration with the same model on the same measurements. A calibration by another algorithm has the model of its
+    /// parent.
     pub fn model_of(self, id: i64) -> i64 {
         self.ancestors(id)
             .find(|row| !matches!(row.membership.change, Some(Change::Algorithm(_))))
             .map_or(id, |row| row.id)
     }
 
-    /// The search of a calibration's model, if there is one; of several, which can only be where one failed, the last. A search is
-    /// its own.
+    /// Returns the search of a calibration's model, if there is one. If several exist, because one failed, it is the last. The search of a
+    /// search is itself.
     pub fn search_of(self, id: i64) -> Option<&'a CalibrationRow> {
         let model = self.model_of(id);
         self.rows.iter().rev().find(|row| {
@@ -44,7 +46,7 @@ impl<'a> Lineage<'a> {
         })
     }
 
-    /// The additions to the submitted model that a calibration has, in the order in which the study made them.
+    /// Returns the additions to the submitted model that a calibration has, in the order in which the study made them.
     pub fn additions(self, id: i64) -> Vec<&'a Extension> {
         let mut changes: Vec<&Change> = self
             .ancestors(id)
@@ -64,14 +66,14 @@ impl<'a> Lineage<'a> {
         additions
     }
 
-    /// Whether a calibration has an effect that the study added.
+    /// Returns whether a calibration has an effect that the study added.
     pub fn has_added(self, id: i64, effect: &str) -> bool {
         self.additions(id)
             .iter()
             .any(|extension| is_part(extension, effect))
     }
 
-    /// Whether the study has dropped an effect.
+    /// Returns whether the study has dropped an effect.
     pub fn has_dropped(self, effect: &str) -> bool {
         self.calibrations().any(|row| match &row.membership.change {
             Some(Change::Drop(effects)) => effects.iter().any(|dropped| dropped == effect),
@@ -79,7 +81,7 @@ impl<'a> Lineage<'a> {
         })
     }
 
-    /// The calibration that a change made of another, unless it ended without a result.
+    /// Returns the calibration that results from another one by a change, unless it ended without a result.
     pub fn existing(self, parent: i64, change: &Change) -> Option<&'a CalibrationRow> {
         use shared::api::CalibrationState::{Cancelled, Failed};
         self.calibrations().find(|row| {
@@ -89,10 +91,10 @@ impl<'a> Lineage<'a> {
         })
     }
 
-    /// A calibration and those that it follows from, the nearest first.
+    /// Returns a calibration and its ancestors, the nearest first.
     fn ancestors(self, id: i64) -> impl Iterator<Item = &'a CalibrationRow> {
         let find = move |id: i64| self.rows.iter().find(|row| row.id == id);
-        // A parent is older than its child, so that no row of a damaged store leads in a circle.
+        // A parent is older than its child, so that a damaged store cannot cause an endless loop.
         std::iter::successors(find(id), move |row| {
             row.membership
                 .parent
@@ -102,7 +104,7 @@ impl<'a> Lineage<'a> {
     }
 }
 
-/// Whether an addition brings an effect or a setting.
+/// Returns whether an addition adds this effect or setting.
 fn is_part(extension: &Extension, part: &str) -> bool {
     parts_of(extension).iter().any(|brought| brought == part)
 }
@@ -122,7 +124,7 @@ mod tests {
         Extension::Effect(name.into())
     }
 
-    /// A sample with a fit beside it and its search; an extension with its search; the extension on more runs.
+    /// Makes a sample with a fit and a search; an extension with its search; the extension on more runs.
     fn study() -> Vec<CalibrationRow> {
         vec![
             CalibrationRow::finished(1, Membership::submitted(Role::Sample)),
@@ -137,7 +139,7 @@ mod tests {
     #[test]
     fn a_search_is_found_by_what_is_stored_and_not_by_the_text_of_its_job() {
         let mut rows = study();
-        // A later release may write the same job otherwise.
+        // A later release may write the same job in another form.
         for (number, row) in rows.iter_mut().enumerate() {
             row.job.toml = format!("# written by release {number}\n");
         }

@@ -1,4 +1,4 @@
-//! The next step of a study, a function of its state alone: a restart takes the same step.
+//! The next step of a study. It depends on the state of the study alone, so that a restart takes the same step.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -9,7 +9,7 @@ use record::{CalibrationRow, Discovery, Extension, parts_of};
 
 use super::lineage::Lineage;
 
-/// What the finished calibrations of a study have given, by their ids.
+/// The results of the finished calibrations of a study, by their ids.
 #[derive(Debug, Clone, Default)]
 pub struct StudyFindings {
     /// The calibrations that have a posterior: the lines of the error ledger.
@@ -29,19 +29,18 @@ pub enum StudyStep {
     Drop(i64, Vec<String>),
 }
 
-/// Which of several models has the most evidence, the first of equals; `None` without any.
+/// Returns the index of the model with the largest evidence, the first of equal ones; `None` without any.
 pub fn most_probable(log_evidences: impl Iterator<Item = Option<f64>>) -> Option<usize> {
     let finite = log_evidences.enumerate().filter_map(|(i, log)| Some((i, log?)));
     let best = finite.reduce(|best, next| if next.1 > best.1 { next } else { best })?;
     Some(best.0)
 }
 
-/// The next step of a study; `None` where it is complete or a member is unfinished.
+/// Returns the next step of a study; `None` if it is complete or a member is unfinished.
 ///
-/// A failed or cancelled member ends it. With `ask` the last calibration of the ledger is searched, and the user decides. With
-/// `auto` it is extended by the effect that its search names, up to the allowed number of effects beyond those of the first
-/// member; an effect that was dropped is neither added nor dropped again. Where the job compares several models, the study goes
-/// on with the one of most evidence.
+/// A failed or cancelled member ends it. With `ask` the last calibration of the ledger is searched, and the user decides. With `auto` it is
+/// extended by the effect that its search names, up to the allowed number of effects beyond those of the first member; an effect that was
+/// dropped is neither added nor dropped again. If the job compares several models, the study continues with the model of largest evidence.
 pub fn next_step(
     settings: DiscoverySettings,
     rows: &[CalibrationRow],
@@ -109,8 +108,8 @@ mod tests {
         )
     }
 
-    fn search(id: i64, of: i64) -> CalibrationRow {
-        CalibrationRow::finished(id, Membership::search_of(of))
+    fn search(id: i64, parent: i64) -> CalibrationRow {
+        CalibrationRow::finished(id, Membership::search_of(parent))
     }
 
     fn found() -> Discovery {
@@ -125,7 +124,7 @@ mod tests {
         }
     }
 
-    /// The next step with at most two effects, where searches found these.
+    /// Returns the next step with at most two effects, where searches found these.
     fn step(apply: Apply, rows: &[CalibrationRow], records: &[(i64, Discovery)]) -> Option<StudyStep> {
         let settings = DiscoverySettings {
             apply,
@@ -240,7 +239,7 @@ mod tests {
         rows.extend([dropped(7, 5, "a"), search(8, 7)]);
         records.push((8, names(Some("a"), &[])));
         assert_eq!(step(Apply::Auto, &rows, &records), None, "it was dropped before");
-        // the user insists
+        // the user adds it nevertheless
         rows.extend([added(9, 7, "a"), search(10, 9)]);
         records.push((10, names(None, &["a"])));
         assert_eq!(

@@ -1,4 +1,4 @@
-//! A copy of a store while a coordinator may be writing to it.
+//! Backup of a store, also while a coordinator writes to it.
 
 use std::fs::{File, OpenOptions};
 use std::path::Path;
@@ -7,36 +7,36 @@ use super::error::StoreError;
 use super::reader::Reader;
 use super::sql::query;
 
-/// Why there is no backup.
+/// The reason why there is no backup.
 #[derive(Debug, thiserror::Error)]
 pub enum BackupError {
-    /// The store cannot be read, or its copy not be written.
+    /// The store cannot be read, or its copy cannot be written.
     #[error(transparent)]
     Store(#[from] StoreError),
-    /// The file cannot be made.
+    /// The file cannot be created.
     #[error("{path}: {source}")]
     File {
         /// The file.
         path: String,
-        /// What the operating system says.
+        /// The error of the operating system.
         source: std::io::Error,
     },
 }
 
 impl Reader {
-    /// Writes the store as it is at one moment to a new file, without what was deleted; its size `[bytes]`.
+    /// Writes the store as it is at one moment to a new file, without deleted rows. Returns the size of the file `[bytes]`.
     ///
-    /// The name is taken first, so that nothing is overwritten; it stands for the copy when that is complete and on disk.
+    /// The name is reserved first, so that nothing is overwritten. The copy gets the name when it is complete and on disk.
     ///
     /// # Errors
-    /// [`BackupError`]; what was begun is removed.
+    /// [`BackupError`]; the incomplete file is removed.
     pub async fn back_up(&self, to: &Path) -> Result<u64, BackupError> {
         let partial = to.with_added_extension("part");
         let failed = |path: &Path| {
             let path = path.display().to_string();
             move |source| BackupError::File { path, source }
         };
-        // A store holds hashes of tokens and unpublished measurements: its copy is the owner's alone.
+        // A store holds hashes of tokens and unpublished measurements, so only the owner may read its copy.
         let make = |path: &Path| {
             let mut options = OpenOptions::new();
             std::os::unix::fs::OpenOptionsExt::mode(&mut options, 0o600);
@@ -57,7 +57,7 @@ impl Reader {
         };
         let copied = copied.await;
         if copied.is_err() {
-            // The error that is told is the cause, even if the copy cannot be removed either.
+            // The error that is reported is the cause, even if the copy cannot be removed either.
             let _ = std::fs::remove_file(&partial);
             let _ = std::fs::remove_file(to);
         }
@@ -67,6 +67,6 @@ impl Reader {
     async fn copy_to(&self, file: &Path) -> Result<(), StoreError> {
         let name = file.display().to_string();
         let copied = query("VACUUM INTO ?").bind(&name).execute(&self.pool).await;
-        copied.map(drop).map_err(|source| StoreError::of(&name, source))
+        copied.map(drop).map_err(|source| StoreError::new(&name, source))
     }
 }

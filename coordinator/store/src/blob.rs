@@ -6,7 +6,7 @@ use shared::outcome::{Observables, SimulatedHistory};
 
 use super::error::StoreError;
 
-/// The number of vectors that observables may have.
+/// The number of vectors in [`Observables`].
 pub(super) const VECTORS: usize = 16;
 
 /// The lengths of the vectors, in their order, and the number of samples of each history.
@@ -15,18 +15,18 @@ pub(super) struct Lengths {
     pub(super) samples: Vec<usize>,
 }
 
-/// The bytes of numbers.
+/// Encodes numbers as bytes.
 pub(super) fn encode(values: &[f64]) -> Vec<u8> {
     values.iter().flat_map(|v| v.to_le_bytes()).collect()
 }
 
-/// The numbers of bytes.
+/// Decodes numbers from bytes.
 pub(super) fn decode_values(bytes: &[u8]) -> Result<Vec<f64>, StoreError> {
     let corrupt = || StoreError::Corrupt(format!("a vector of {} bytes", bytes.len()));
     numbers(bytes).ok_or_else(corrupt)
 }
 
-/// The numbers of bytes; `None` where the last is incomplete.
+/// Decodes numbers from bytes. Returns `None` where the last number is incomplete.
 pub(super) fn numbers(bytes: &[u8]) -> Option<Vec<f64>> {
     let (words, rest) = bytes.as_chunks::<8>();
     let numbers = words.iter().map(|word| f64::from_le_bytes(*word));
@@ -34,7 +34,7 @@ pub(super) fn numbers(bytes: &[u8]) -> Option<Vec<f64>> {
 }
 
 impl Lengths {
-    /// The observables of all numbers; `None` where they are more or fewer.
+    /// Splits the concatenated numbers into observables. Returns `None` where there are too many or too few numbers.
     pub(super) fn split(&self, numbers: &[f64]) -> Option<Observables> {
         let mut rest = numbers;
         let mut take = |count: usize| {
@@ -56,7 +56,7 @@ impl Lengths {
     }
 }
 
-/// The vectors of observables, in the order of their bytes.
+/// Returns the vectors of observables in the order in which they are stored.
 pub(super) fn vectors(o: &Observables) -> [Cow<'_, [f64]>; VECTORS] {
     let nodes: Vec<f64> = o.nodes_in_contact.iter().map(|&n| f64::from(n)).collect();
     [
@@ -79,7 +79,7 @@ pub(super) fn vectors(o: &Observables) -> [Cow<'_, [f64]>; VECTORS] {
     ]
 }
 
-/// The observables of their vectors.
+/// Makes observables from their vectors in this order.
 fn observables(vectors: [Vec<f64>; VECTORS]) -> Observables {
     let mut vectors = vectors.into_iter();
     let mut next = || vectors.next().unwrap_or_default();
@@ -91,7 +91,7 @@ fn observables(vectors: [Vec<f64>; VECTORS]) -> Observables {
         b_eff_m: next(),
         contact_length_m: next(),
         residual_load_n: next(),
-        // Written from u32, so the conversion back is exact.
+        // The numbers were written from `u32`, so the conversion back is exact.
         nodes_in_contact: next().into_iter().map(|n| n as u32).collect(),
         simulated_travel_m: next(),
         settled_to: next(),
@@ -101,7 +101,7 @@ fn observables(vectors: [Vec<f64>; VECTORS]) -> Observables {
         d_lateral_force_n: next(),
         plate_pressure_pa: next(),
         shear_stress_pa: next(),
-        // Stored beside the observables, and of fitted runs alone.
+        // These values have a column of their own, and only fitted runs have them.
         coarse: None,
         histories: Vec::new(),
     }

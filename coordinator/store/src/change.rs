@@ -1,23 +1,23 @@
-//! Changes of state, which are told once they are stored.
+//! Changes of state, and the listeners that are notified of them once they are stored.
 
 use record::fact::Fact;
 use shared::api::CalibrationState;
 use tokio::sync::{broadcast, watch};
 
-/// A change of state that is stored.
+/// A stored change of state.
 #[derive(Debug, Clone)]
 pub struct StateChange {
     /// The calibration.
     pub calibration: i64,
     /// Its new state.
     pub state: CalibrationState,
-    /// Why paused or failed.
+    /// The reason of a pause or a failure.
     pub message: Option<String>,
 }
 
 impl StateChange {
-    /// The change of state that a fact is.
-    pub(super) fn of(fact: &Fact) -> Option<StateChange> {
+    /// Returns the change of state that a fact describes; `None` for other facts.
+    pub(super) fn from_fact(fact: &Fact) -> Option<StateChange> {
         let Fact::State {
             calibration,
             state,
@@ -35,7 +35,7 @@ impl StateChange {
     }
 }
 
-/// The listeners, which want to know what has been stored.
+/// The listeners that are notified of commits.
 #[derive(Debug, Clone)]
 pub(super) struct Listeners {
     states: broadcast::Sender<StateChange>,
@@ -43,7 +43,7 @@ pub(super) struct Listeners {
 }
 
 impl Listeners {
-    /// The number of changes of state that are kept for a slow listener.
+    /// Makes listeners. `count` is the number of changes of state that are kept for a slow listener.
     pub(super) fn new(count: usize) -> Self {
         Listeners {
             states: broadcast::Sender::new(count),
@@ -59,13 +59,13 @@ impl Listeners {
         self.studies.subscribe()
     }
 
-    /// Tells the changes of a commit; whether there are other studies or members than before.
+    /// Notifies the listeners of the changes of a commit. `have_studies_changed` states whether studies, members or results changed.
     pub(super) fn tell(&self, states: Vec<StateChange>, have_studies_changed: bool) {
         if have_studies_changed || !states.is_empty() {
             self.studies.send_replace(());
         }
         for change in states {
-            // Nobody may want to know.
+            // There may be no listener.
             let _ = self.states.send(change);
         }
     }

@@ -11,12 +11,13 @@ use super::sql::{Conflict, Connection, Row, Value, insert, query, query_as, quer
 use super::theta::theta;
 use super::{migrations, opening};
 
-/// Rows that one statement inserts: with the columns of the widest table, fewer parameters than either database takes.
+/// The number of rows that one statement inserts. With the columns of the widest table, they have fewer parameters than either database
+/// accepts.
 const ROWS: usize = 1_000;
-/// The tables that others refer to, in the order in which they do.
+/// The tables that other tables refer to, in an order in which they can be filled.
 const FIRST: [&str; 3] = ["experiments", "studies", "calibrations"];
 
-/// The kind of value that a column holds. SQLite has no type of its own for yes and no, so the server's tables say it.
+/// The kind of value that a column holds. SQLite has no Boolean type, so the kinds are read from the server's tables.
 #[derive(Debug, Clone, Copy)]
 enum Kind {
     Integer,
@@ -31,12 +32,12 @@ struct Table {
     columns: Vec<(String, Kind)>,
 }
 
-/// Copies all rows of a store, as they are at one moment, to another one that has none; how many rows each table has.
+/// Copies all rows of a store, as they are at one moment, to another store that has none. Returns how many rows each table has.
 ///
-/// It is all there, or nothing is. The number of the last start goes along, so that what follows continues there.
+/// Either everything is copied or nothing. The number of the last start is copied too, so that the numbers of later starts continue it.
 ///
 /// # Errors
-/// [`StoreError`]: both are files or both servers, the one is of an earlier version or damaged, the other has rows or is in use.
+/// [`StoreError`]: both are files or both are servers, the source is of an earlier version or damaged, the target has rows or is in use.
 pub async fn copy_store(from: &str, to: &str) -> Result<Vec<(String, u64)>, StoreError> {
     let unfit = |path: &str, reason: &str| StoreError::Unfit {
         path: name_of(path),
@@ -66,7 +67,7 @@ pub async fn copy_store(from: &str, to: &str) -> Result<Vec<(String, u64)>, Stor
     }
     let wrap = |path: &str| {
         let path = path.to_owned();
-        move |source| StoreError::of(&path, source)
+        move |source| StoreError::new(&path, source)
     };
     let mut source = reader.pool.view().await.map_err(wrap(from))?;
     let (mut target, _lock) = opening::to_write(to).await?;
@@ -99,7 +100,7 @@ pub async fn copy_store(from: &str, to: &str) -> Result<Vec<(String, u64)>, Stor
     Ok(copied)
 }
 
-/// The version of the tables; `None` where there are none.
+/// Returns the version of the tables; `None` where there are no tables.
 async fn version(reader: &Reader) -> Result<Option<i64>, StoreError> {
     if !reader.has_table("_sqlx_migrations").await? {
         return Ok(None);
@@ -108,7 +109,7 @@ async fn version(reader: &Reader) -> Result<Option<i64>, StoreError> {
     Ok(version.fetch_one(&reader.pool).await?)
 }
 
-/// The store's tables and their columns, as a server describes them; those that others refer to come first.
+/// Returns the store's tables and their columns, as a server describes them. Tables that others refer to come first.
 async fn tables(server: &mut Connection) -> Result<Vec<Table>, StoreError> {
     let columns: Vec<(String, String, String)> = query_as(
         "SELECT c.table_name::text, c.column_name::text, c.data_type::text
@@ -154,14 +155,14 @@ async fn count(connection: &mut Connection, table: &Table) -> Result<u64, sqlx::
     Ok(count.unsigned_abs())
 }
 
-/// Copies the rows of a table; how many were read.
+/// Copies the rows of a table. Returns how many were read.
 async fn copy_rows(
     source: &mut Connection,
     target: &mut Connection,
     table: &Table,
 ) -> Result<u64, StoreError> {
     let names: Vec<&str> = table.columns.iter().map(|(name, _)| name.as_str()).collect();
-    // A row of these may refer to an earlier one of the same table.
+    // A row of these tables may refer to an earlier row of the same table.
     let order = if FIRST.contains(&table.name.as_str()) {
         " ORDER BY id"
     } else {
@@ -194,7 +195,7 @@ fn values(row: &Row, columns: &[(String, Kind)]) -> Result<Vec<Value>, StoreErro
     columns.iter().map(value).collect()
 }
 
-/// The bytes of a column; a parameter vector of before migration 9, which a file keeps as text, in the form of today.
+/// Returns the bytes of a column. A parameter vector of before migration 9, which a file keeps as text, is converted to bytes.
 fn bytes(row: &Row, column: &str) -> Result<Option<Vec<u8>>, StoreError> {
     match column {
         "theta" => Ok(Some(blob::encode(&theta(row)?))),
@@ -202,7 +203,7 @@ fn bytes(row: &Row, column: &str) -> Result<Option<Vec<u8>>, StoreError> {
     }
 }
 
-/// Lets a server number its next rows on from those that were copied.
+/// Makes a server number its next rows after those that were copied.
 async fn number_on(server: &mut Connection) -> Result<(), sqlx::Error> {
     let columns: Vec<(String, String)> = query_as(
         "SELECT table_name::text, column_name::text FROM information_schema.columns

@@ -1,4 +1,4 @@
-//! Damage of the file, looked for at the start.
+//! A search for damage in the file when the store is opened.
 
 use std::time::{Duration, Instant};
 
@@ -7,19 +7,19 @@ use sqlx::{AssertSqlSafe, SqliteConnection};
 use super::error::{StoreError, primary_code};
 use super::file::file_of;
 
-/// The start waits so long for the check; what it has not reached by then is unchecked.
+/// The longest time that the check may take. Tables that it has not reached by then stay unchecked.
 const BUDGET: Duration = Duration::from_secs(3);
-/// Steps of SQLite between two looks at the clock.
+/// The number of steps of SQLite between two checks of the time.
 const STEPS: i32 = 10_000;
-/// SQLite's code where the clock has stopped it.
+/// SQLite's result code for an interrupted statement.
 const INTERRUPTED: u32 = 9;
 
-/// Checks the pages and rows of every table, the large ones last, for as long as [`BUDGET`] lasts.
+/// Checks the pages and rows of every table, the large ones last, until [`BUDGET`] is spent.
 ///
 /// # Errors
 /// [`StoreError::Damaged`] with the first damaged table.
 pub(super) async fn check(connection: &mut SqliteConnection, path: &str) -> Result<(), StoreError> {
-    let wrap = |source| StoreError::of(path, source);
+    let wrap = |source| StoreError::new(path, source);
     let tables = "SELECT name FROM sqlite_schema WHERE type = 'table' AND name NOT LIKE 'sqlite%'
                   ORDER BY name = 'evaluations', name = 'samples', name";
     let tables: Vec<String> = sqlx::query_scalar(tables)

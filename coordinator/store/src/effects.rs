@@ -46,7 +46,7 @@ pub struct StoredEffect {
     pub version: EffectVersion,
 }
 
-/// The fate of an effect that was to be stored.
+/// The version of an effect after an attempt to store its text.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct AddedEffect {
     /// Name of the effect.
@@ -57,7 +57,7 @@ pub struct AddedEffect {
     pub is_new: bool,
 }
 
-/// Inserts the next version of an effect, unless one has the same text.
+/// Inserts the next version of an effect, unless a version has the same text.
 pub(super) async fn insert_effect(
     connection: &mut Connection,
     new: NewEffect,
@@ -87,11 +87,8 @@ pub(super) async fn insert_effect(
 }
 
 impl Reader {
-    /// The last version of every effect that users have added, by name. A store of before migration 17 has none.
-    ///
-    /// # Errors
-    /// [`StoreError`].
-    pub async fn own_effects(&self) -> Result<Vec<StoredEffect>, StoreError> {
+    /// Reads the last version of every effect that users have added, by name. A store of before migration 17 has none.
+    pub async fn user_effects(&self) -> Result<Vec<StoredEffect>, StoreError> {
         if !self.has_table("effects").await? {
             return Ok(Vec::new());
         }
@@ -101,10 +98,7 @@ impl Reader {
         Ok(rows.iter().map(stored).collect())
     }
 
-    /// Every version of an effect that users have added, the first one first.
-    ///
-    /// # Errors
-    /// [`StoreError`].
+    /// Reads every version of an effect that users have added, oldest first.
     pub async fn effect_versions(&self, name: &str) -> Result<Vec<StoredEffect>, StoreError> {
         if !self.has_table("effects").await? {
             return Ok(Vec::new());

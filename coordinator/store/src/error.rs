@@ -7,15 +7,15 @@ use sqlx::sqlite::SqliteError;
 use super::health::PATIENCE;
 use super::place::{is_server, name_of};
 
-/// Why the store cannot be used.
+/// The reason why the store cannot be used.
 #[derive(Debug, thiserror::Error)]
 pub enum StoreError {
-    /// The database refuses.
+    /// The database refuses a statement or a connection.
     #[error("store {path}: {source}")]
     Database {
         /// The file, or the server without its password.
         path: String,
-        /// What it says.
+        /// The database's error.
         source: sqlx::Error,
     },
     /// The file is of another version of the program.
@@ -23,12 +23,12 @@ pub enum StoreError {
     Migrate {
         /// The file.
         path: String,
-        /// What the migration says.
+        /// The error of the migration.
         source: MigrateError,
     },
     /// The file was written by a later version of the program.
     #[error(
-        "store {path}: a newer version of Grouser wrote it: its tables have version {found}, this program knows versions up to {known}; use the newer program"
+        "store {path}: a newer version of Grouser wrote it: its tables have version {found}, this program knows versions up to {supported}; use the newer program"
     )]
     Newer {
         /// The file.
@@ -36,7 +36,7 @@ pub enum StoreError {
         /// Version of its tables.
         found: i64,
         /// The latest version that this program knows.
-        known: i64,
+        supported: i64,
     },
     /// The file is damaged.
     #[error(
@@ -50,13 +50,13 @@ pub enum StoreError {
         /// What SQLite says.
         what: String,
     },
-    /// Another program keeps a lock of SQLite.
+    /// Another program holds a lock of SQLite.
     #[error("store {path}: another program holds a lock on this file, and has kept it for {} s", PATIENCE.as_secs())]
     Locked {
         /// The file.
         path: String,
     },
-    /// Another coordinator has it open.
+    /// Another coordinator has the store open.
     #[error("store {0}: another coordinator is using {what}", what = if is_server(.0) { "it" } else { "this file" })]
     InUse(String),
     /// A row cannot be read back.
@@ -70,20 +70,20 @@ pub enum StoreError {
     Unfit {
         /// The file.
         path: String,
-        /// Why not.
+        /// The reason.
         reason: String,
     },
-    /// There is nothing to read.
+    /// The store does not exist.
     #[error("store {0}: no such file")]
     Missing(String),
 }
 
-/// Whether SQLite refuses because another program holds a lock.
+/// Returns whether SQLite refuses because another program holds a lock.
 pub(super) fn is_locked(error: &sqlx::Error) -> bool {
     primary_code(error) == Some(5)
 }
 
-/// The primary result code of SQLite.
+/// Returns the primary result code of SQLite.
 pub(super) fn primary_code(error: &sqlx::Error) -> Option<u32> {
     let error = error.as_database_error()?.try_downcast_ref::<SqliteError>()?;
     let code = error.code()?;
@@ -91,8 +91,8 @@ pub(super) fn primary_code(error: &sqlx::Error) -> Option<u32> {
 }
 
 impl StoreError {
-    /// Turns an error of SQLite about a file into ours.
-    pub(super) fn of(path: &str, source: sqlx::Error) -> StoreError {
+    /// Makes a store error from an error of SQLite about a file.
+    pub(super) fn new(path: &str, source: sqlx::Error) -> StoreError {
         let path = name_of(path);
         match is_locked(&source) {
             true => StoreError::Locked { path },
@@ -100,13 +100,13 @@ impl StoreError {
         }
     }
 
-    /// Turns an error of a migration into ours.
-    pub(super) fn of_migration(path: &str, source: MigrateError) -> StoreError {
+    /// Makes a store error from an error of a migration.
+    pub(super) fn from_migration(path: &str, source: MigrateError) -> StoreError {
         match source {
             MigrateError::Execute(source) | MigrateError::ExecuteMigration(source, _)
                 if is_locked(&source) =>
             {
-                StoreError::of(path, source)
+                StoreError::new(path, source)
             }
             source => StoreError::Migrate {
                 path: name_of(path),
@@ -115,7 +115,7 @@ impl StoreError {
         }
     }
 
-    /// Turns a damaged value into an error about a row; `place` names it.
+    /// Makes an error about a row from an error about a value; `place` names the row.
     pub(super) fn within(self, place: &str) -> StoreError {
         match self {
             StoreError::Corrupt(what) => StoreError::Corrupt(format!("{place}: {what}")),

@@ -1,4 +1,4 @@
-//! One statement for each kind of fact but evaluations, which go in groups.
+//! One statement for each kind of fact. Evaluations are inserted in groups instead.
 
 use std::sync::atomic::Ordering;
 
@@ -23,23 +23,25 @@ const SAMPLE: [&str; 6] = [
     "log_likelihood",
     "log_prior",
 ];
-/// The tables with one row for each calibration.
+/// The key of tables that have one row for each calibration.
 const ITS_OWN: Conflict<'static> = Conflict::Replace(&["calibration"]);
 
-/// Writes a fact within the present transaction. Stages and states may be told twice, after a restart.
+/// Writes a fact within the present transaction. Stages and states may be written again after a restart. Returns whether the fact makes
+/// results of studies out of date.
 pub(super) async fn write(
     connection: &mut Connection,
     fact: Fact,
     health: &StoreHealth,
-) -> Result<(), sqlx::Error> {
-    match fact {
+) -> Result<bool, sqlx::Error> {
+    let raises_doubts = matches!(fact, Fact::Quarantined { .. } | Fact::Rewound { .. });
+    let written = match fact {
         Fact::Evaluated { .. } => unreachable!("evaluations go in groups"),
         Fact::Duplicate {
             calibration,
             evaluation,
             fingerprint,
             worker,
-        } => compare(connection, calibration, evaluation, fingerprint, &worker, health).await,
+        } => return compare(connection, calibration, evaluation, fingerprint, &worker, health).await,
         Fact::Stage {
             calibration,
             record,
@@ -136,7 +138,8 @@ pub(super) async fn write(
         .execute(connection)
         .await
         .map(drop),
-    }
+    };
+    written.map(|()| raises_doubts)
 }
 
 async fn busy(connection: &mut Connection, calibration: i64, busy_ms: u64) -> Result<(), sqlx::Error> {
@@ -226,7 +229,7 @@ async fn estimate(
         .execute(&mut *connection)
         .await?;
     if let Some(approximation) = &e.approximation {
-        // Draws that belong to no stage: there is no other population.
+        // A fit has no stages, so its draws are stored under stage 0.
         samples(connection, (calibration, 0), &approximation.draws).await?;
     }
     query("UPDATE calibrations SET log_evidence = ?, evaluations = ?, rejected = ? WHERE id = ?")
@@ -243,7 +246,7 @@ async fn estimate(
         .map(drop)
 }
 
-/// Compares a late duplicate with what is stored: two machines must give the same bits.
+/// Compares a late duplicate with the stored result: two machines must give the same bits. Returns whether a new dispute is stored.
 async fn compare(
     connection: &mut Connection,
     calibration: i64,
@@ -251,7 +254,7 @@ async fn compare(
     fingerprint: Fingerprint,
     second: &str,
     health: &StoreHealth,
-) -> Result<(), sqlx::Error> {
+) -> Result<bool, sqlx::Error> {
     let stored: Option<(i64, String)> =
         query_as("SELECT fingerprint, worker FROM evaluations WHERE calibration = ? AND evaluation = ?")
             .bind(calibration)
@@ -266,7 +269,7 @@ async fn compare(
             "result of an unknown evaluation"
         ),
         Some((same, _)) if same == fingerprint.0 => {}
-        // Given up after faults: there is no answer to compare with.
+        // The evaluation was given up after faults, so there is no answer to compare with.
         Some((_, nobody)) if nobody.is_empty() => {}
         Some((_, first)) => {
             health.differing_duplicates.fetch_add(1, Ordering::Relaxed);
@@ -277,7 +280,7 @@ async fn compare(
                 second,
                 "two workers returned different results for the same evaluation: the farm is not deterministic"
             );
-            query(
+            let inserted = query(
                 "INSERT INTO disputes (calibration, evaluation, first, second, at_ms)
                  VALUES (?, ?, ?, ?, unixepoch('subsec') * 1000) ON CONFLICT DO NOTHING",
             )
@@ -287,12 +290,16 @@ async fn compare(
             .bind(second)
             .execute(&mut *connection)
             .await?;
-            // The stored results of the study do not know it yet.
+            if inserted == 0 {
+                return Ok(false);
+            }
+            // The stored results of the study do not mention the dispute.
             query("DELETE FROM results WHERE study = (SELECT study FROM calibrations WHERE id = ?)")
                 .bind(calibration)
                 .execute(&mut *connection)
                 .await?;
+            return Ok(true);
         }
     }
-    Ok(())
+    Ok(false)
 }

@@ -1,4 +1,4 @@
-//! The file of a store: its name, its options, its lock, and what is refused as one.
+//! The file of a store: its name, its options, its lock, and the checks that refuse other files.
 
 use std::io::Read;
 use std::os::unix::fs::{MetadataExt, OpenOptionsExt};
@@ -12,24 +12,24 @@ use super::health::PATIENCE;
 use super::migrations;
 use super::sql::Connection;
 
-/// The file's name without the scheme.
+/// Returns the file's name without the scheme.
 pub fn file_of(path: &str) -> &str {
     path.strip_prefix("sqlite://").unwrap_or(path)
 }
 
 pub(super) fn options(path: &str) -> SqliteConnectOptions {
-    // By file name, not by URL: a name may hold a `%` or a `?`.
+    // The file is given by its name and not by a URL, because a name may contain `%` or `?`.
     SqliteConnectOptions::new()
         .filename(file_of(path))
         .foreign_keys(true)
         .busy_timeout(PATIENCE)
 }
 
-/// Refuses a database that somebody else has made, or a later version of this program.
+/// Refuses a database that another program or a later version of this program has made.
 pub(super) async fn recognise(connection: &mut SqliteConnection, path: &str) -> Result<(), StoreError> {
-    let wrap = |source| StoreError::of(path, source);
+    let wrap = |source| StoreError::new(path, source);
     let ours = "SELECT count(*) FROM sqlite_schema WHERE name = '_sqlx_migrations' OR name = 'calibrations'";
-    let known: i64 = sqlx::query_scalar(ours)
+    let supported: i64 = sqlx::query_scalar(ours)
         .fetch_one(&mut *connection)
         .await
         .map_err(wrap)?;
@@ -40,7 +40,7 @@ pub(super) async fn recognise(connection: &mut SqliteConnection, path: &str) -> 
     if all == 0 {
         return Ok(());
     }
-    if known != 2 {
+    if supported != 2 {
         return Err(StoreError::Unfit {
             path: file_of(path).into(),
             reason: "the database was not created by Grouser".into(),
@@ -50,19 +50,23 @@ pub(super) async fn recognise(connection: &mut SqliteConnection, path: &str) -> 
         .fetch_one(connection)
         .await
         .map_err(wrap)?;
-    let (found, known) = (found.unwrap_or_default(), migrations::VERSION);
-    if found > known {
+    let (found, supported) = (found.unwrap_or_default(), migrations::VERSION);
+    if found > supported {
         let path = file_of(path).into();
-        return Err(StoreError::Newer { path, found, known });
+        return Err(StoreError::Newer {
+            path,
+            found,
+            supported,
+        });
     }
     Ok(())
 }
 
-/// A connection that may write.
+/// Opens a connection that may write.
 pub(super) async fn connect(path: &str, may_create: bool) -> Result<Connection, StoreError> {
     let options = writing(path).create_if_missing(may_create);
     let connected = SqliteConnection::connect_with(&options).await;
-    let mut connection = connected.map_err(|source| StoreError::of(path, source))?;
+    let mut connection = connected.map_err(|source| StoreError::new(path, source))?;
     recognise(&mut connection, path).await?;
     Ok(Connection::Sqlite(connection))
 }
@@ -80,7 +84,7 @@ pub(super) async fn pool(options: SqliteConnectOptions) -> Result<SqlitePool, sq
         .await
 }
 
-/// Refuses what cannot be a store before anything is written beside it.
+/// Refuses a file that cannot be a store before anything is written beside it.
 pub(super) fn examine(path: &str) -> Result<(), StoreError> {
     let file = Path::new(file_of(path));
     if path.contains(":memory:") {
@@ -111,10 +115,10 @@ pub(super) fn examine(path: &str) -> Result<(), StoreError> {
     }
 }
 
-/// Takes the lock file beside the store; it is released when the returned file is dropped, or at any death.
+/// Takes the lock file beside the store. The lock is released when the returned file is dropped, or when the process dies.
 ///
-/// It is named after the file itself, whatever symlinks lead there. A file with several names is refused: SQLite names
-/// the write-ahead log after the file, so what was acknowledged under one name would be missing under the other.
+/// The lock file is named after the file itself, even where a symbolic link leads to it. A file with several hard links is refused: SQLite
+/// names the write-ahead log after the file, so facts that were acknowledged under one name would be missing under the other.
 pub(super) fn lock(path: &str) -> Result<Option<std::fs::File>, StoreError> {
     let file = file_of(path);
     if file.contains(":memory:") {
@@ -124,13 +128,14 @@ pub(super) fn lock(path: &str) -> Result<Option<std::fs::File>, StoreError> {
         path: file.into(),
         source: sqlx::Error::Io(e),
     };
-    // A store holds hashes of tokens, the keys of seals and unpublished measurements: it is its owner's alone. SQLite gives the files
-    // beside it the same mode. Whoever has opened a store to others keeps it so.
+    // A store holds hashes of tokens, keys of seals and unpublished measurements, so only its owner may read it. SQLite gives the files
+    // beside it the same mode. The mode of an existing store is kept.
     let make = |name: &str| {
         let mut options = std::fs::OpenOptions::new();
         options.create(true).append(true).mode(0o600).open(name)
     };
-    // A link may lead to a file that is not there yet. One that is there is not opened: closing it would end locks of this process.
+    // A link may lead to a file that does not exist yet. An existing file is not opened, because closing it would release locks of this
+    // process.
     let found = std::fs::metadata(file).or_else(|_| make(file).and_then(|made| made.metadata()));
     let names = found.map_err(io)?.nlink();
     if names > 1 {

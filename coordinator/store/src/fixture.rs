@@ -2,13 +2,13 @@
 
 use std::collections::BTreeMap;
 
-use record::{Membership, Role};
+use record::{EvaluationRow, Fact, Fingerprint, Kept, Membership, Role};
 use shared::file::FileSet;
 use tempfile::TempDir;
 
 use super::{NewCalibrationRow, NewStudy, Store};
 
-/// A store in a folder of its own, and the number of its calibration.
+/// Makes a store in a folder of its own. Returns the store and the number of its calibration.
 pub(super) async fn store() -> (TempDir, Store, i64) {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("grouser.db").display().to_string();
@@ -31,4 +31,33 @@ pub(super) async fn store() -> (TempDir, Store, i64) {
     };
     let ids = store.writer().add_study(new).await.unwrap();
     (folder, store, ids.calibrations[0])
+}
+
+/// Makes the row of an evaluation that a worker has computed.
+pub(super) fn row(evaluation: u64, worker: &str, fingerprint: i64) -> EvaluationRow {
+    EvaluationRow {
+        evaluation,
+        theta: vec![1.0],
+        log_likelihood: None,
+        kept: Kept::Scored,
+        coarse: None,
+        end: None,
+        fingerprint: Fingerprint(fingerprint),
+        worker: worker.into(),
+    }
+}
+
+/// Makes the facts of a dispute between two workers about evaluation 3.
+pub(super) fn dispute(calibration: i64, first: &str, second: &str) -> Vec<Fact> {
+    let evaluated = Fact::Evaluated {
+        calibration,
+        row: row(3, first, 1),
+    };
+    let duplicate = Fact::Duplicate {
+        calibration,
+        evaluation: 3,
+        fingerprint: Fingerprint(2),
+        worker: second.into(),
+    };
+    vec![evaluated, duplicate]
 }

@@ -3,10 +3,10 @@
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::Duration;
 
-/// How long a lock of another program is waited for before that is said.
+/// The time to wait for another program's lock before a warning.
 pub(super) const PATIENCE: Duration = Duration::from_secs(5);
 
-/// Figures of the writer, for the metrics page.
+/// Counters of the writer, for the metrics page.
 #[derive(Debug, Default)]
 pub struct StoreHealth {
     /// Facts sent to the writer.
@@ -17,14 +17,14 @@ pub struct StoreHealth {
     pub facts: AtomicU64,
     /// Time spent writing and committing `[us]`.
     pub busy_us: AtomicU64,
-    /// Late duplicates that differed from what is stored: faults of determinism.
+    /// Late duplicates that differed from the stored results: faults of determinism.
     pub differing_duplicates: AtomicU64,
     /// Whether a lock of another program keeps the writer from writing.
     pub is_locked: AtomicBool,
 }
 
 impl StoreHealth {
-    /// Notes that a lock has been waited for, and says so once a minute.
+    /// Notes that the writer waits for a lock, and logs a warning once a minute.
     pub(super) fn wait_for_lock(&self, waited: Duration) {
         let is_news = !self.is_locked.swap(true, Ordering::Relaxed);
         if is_news || waited.as_secs() % 60 < PATIENCE.as_secs() {

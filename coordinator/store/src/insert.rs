@@ -25,14 +25,14 @@ const EVALUATION: [&str; 11] = [
     "coarse",
 ];
 
-/// A study to store, with the calibrations that it begins with: all of them, or none.
+/// A study to store, with its first calibrations. Either all of them are stored or none.
 #[derive(Debug, Clone)]
 pub struct NewStudy {
     /// The experiment that it is about.
     pub experiment: i64,
     /// Its calibrations.
     pub calibrations: Vec<NewCalibrationRow>,
-    /// The address that pauses and ends are posted to.
+    /// The address that pauses and ends are posted to, if the user gave one.
     pub webhook: Option<String>,
     /// Now.
     pub now_ms: i64,
@@ -50,7 +50,7 @@ pub struct StudyIds {
 /// A calibration to store.
 #[derive(Debug, Clone)]
 pub struct NewCalibrationRow {
-    /// Its place in the study. The store knows the parent of what a new study begins with: the first of them.
+    /// Its place in the study. For the first calibrations of a new study, the store fills in the parent, which is the first of them.
     pub membership: Membership,
     /// Name for lists.
     pub name: String,
@@ -58,7 +58,7 @@ pub struct NewCalibrationRow {
     pub job: FileSet,
 }
 
-/// Inserts an experiment; its id.
+/// Inserts an experiment. Returns its id.
 pub(super) async fn insert_experiment(
     connection: &mut Connection,
     files: FileSet,
@@ -99,7 +99,7 @@ pub(super) async fn insert_study(
     Ok(StudyIds { study, calibrations })
 }
 
-/// Inserts a calibration, on the experiment of its study where none is named.
+/// Inserts a calibration. Without an experiment of its own, it belongs to the experiment of its study.
 pub(super) async fn insert_calibration(
     connection: &mut Connection,
     study: i64,
@@ -128,12 +128,12 @@ pub(super) async fn insert_calibration(
     .await
 }
 
-/// Inserts evaluations, many rows to a statement: SQLite through sqlx costs by the statement.
+/// Inserts evaluations, many rows in one statement, because the cost of SQLite through sqlx is a cost for each statement.
 pub(super) async fn insert_evaluations(
     connection: &mut Connection,
     rows: &mut Vec<(i64, EvaluationRow)>,
 ) -> Result<(), sqlx::Error> {
-    // By their numbers: pages are filled one after the other.
+    // Sorted rows fill the pages of the table one after the other.
     rows.sort_by_key(|(calibration, row)| (*calibration, row.evaluation));
     while !rows.is_empty() {
         let part = rows.drain(..rows.len().min(ROWS));

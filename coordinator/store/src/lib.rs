@@ -1,7 +1,7 @@
-//! Everything that is kept, in an SQLite file or in a PostgreSQL server: the only place that knows SQL.
+//! The store: everything that the coordinator keeps, in an SQLite file or in a PostgreSQL server. No other crate contains SQL.
 //!
-//! One task writes (`writer`); everybody else reads through a pool of their own. Statements are written once, in the SQL that both
-//! databases have (`sql`); what only one has stands in `file` and `server`. What the tables mean stands in `migrations/README.md`.
+//! One task writes (`writer`); all others read through a pool of connections. Statements are written once, in the SQL that both databases
+//! have (`sql`). Parts that only one database has are in `file` and `server`. `migrations/README.md` explains the tables.
 
 mod backup;
 mod blob;
@@ -32,6 +32,7 @@ mod repeats;
 mod results;
 mod server;
 mod sql;
+mod stamp;
 mod theta;
 mod tokens;
 mod verification;
@@ -53,6 +54,7 @@ pub use read::{StoredStudy, StoredWebhook};
 pub use reader::Reader;
 pub use results::StudyResults;
 use sql::{Connection, Pool, query_scalar};
+pub use stamp::{Doubts, Stamp, is_of_members, members_stamp};
 pub use tokens::TokenTable;
 pub use writer::Writer;
 
@@ -61,19 +63,19 @@ pub use writer::Writer;
 pub struct Store {
     reader: Reader,
     writer: Writer,
-    /// The file of one that stands in a file.
+    /// The path of the file; `None` for a server.
     file: Option<PathBuf>,
     epoch: u64,
     is_read_only: bool,
 }
 
 impl Store {
-    /// Opens it, makes it if need be, brings its tables up to date, starts the writer and a new epoch.
+    /// Opens or creates a store, brings its tables up to date, starts the writer and a new epoch.
     ///
     /// # Errors
     /// [`StoreError`] with the store and the database's reason; [`StoreError::InUse`] where another coordinator holds it.
     pub async fn open(path: &str, now_ms: i64) -> Result<Store, StoreError> {
-        let wrap = |source| StoreError::of(path, source);
+        let wrap = |source| StoreError::new(path, source);
         let (mut connection, lock) = opening::to_write(path).await?;
         let epoch = begin_epoch(&mut connection, now_ms).await.map_err(wrap)?;
         let pool = match is_server(path) {
@@ -82,7 +84,7 @@ impl Store {
         };
         let writer = Writer::start(connection, lock);
         Ok(Store {
-            reader: Reader::of(pool),
+            reader: Reader::new(pool),
             writer,
             file: (!is_server(path)).then(|| file_of(path).into()),
             epoch,
@@ -90,10 +92,7 @@ impl Store {
         })
     }
 
-    /// Opens it for reading alone, also beside a coordinator that writes to it; whatever is told is refused.
-    ///
-    /// # Errors
-    /// [`StoreError`].
+    /// Opens a store for reading alone, also beside a coordinator that writes to it. The writer of such a store refuses every write.
     pub async fn open_read_only(path: &str) -> Result<Store, StoreError> {
         Ok(Store {
             reader: Reader::open(path).await?,
@@ -104,10 +103,10 @@ impl Store {
         })
     }
 
-    /// Warns in the log of damage to the file that can be found in a short time.
+    /// Logs a warning if a short check finds damage in the file.
     ///
     /// # Errors
-    /// [`StoreError`] where there is no connection; damage is no error.
+    /// [`StoreError`] where there is no connection. Damage is not an error.
     pub async fn warn_of_damage(&self) -> Result<(), StoreError> {
         if let (Pool::Sqlite(pool), Some(file)) = (&self.reader.pool, &self.file) {
             let mut connection = pool.acquire().await?;
@@ -118,36 +117,36 @@ impl Store {
         Ok(())
     }
 
-    /// Whether the file is opened for reading alone.
+    /// Returns whether the store is opened for reading alone.
     pub fn is_read_only(&self) -> bool {
         self.is_read_only
     }
 
-    /// The way to the writer.
+    /// Returns the handle of the writer.
     pub fn writer(&self) -> &Writer {
         &self.writer
     }
 
-    /// Stores what was told before and closes the file.
+    /// Stores all facts that were sent before, then closes the store.
     pub async fn close(&self) {
-        // Readers first: the last connection folds the write-ahead log into the file.
+        // The readers close first, because the last connection merges the write-ahead log into the file.
         self.reader.pool.close().await;
         self.writer.close().await;
     }
 
-    /// Sizes of the file and of its write-ahead log `[bytes]`; a server measures its own.
+    /// Returns the sizes of the file and of its write-ahead log `[bytes]`; `None` for a server.
     pub fn sizes_bytes(&self) -> Option<[u64; 2]> {
         let file = self.file.as_ref()?;
         let log = PathBuf::from(format!("{}-wal", file.display()));
         Some([file, &log].map(|file| std::fs::metadata(file).map_or(0, |file| file.len())))
     }
 
-    /// Number of the present start of the coordinator on this store.
+    /// Returns the number of this start of the coordinator on this store.
     pub fn epoch(&self) -> u64 {
         self.epoch
     }
 
-    /// The readers' view of the store.
+    /// Returns a reader of the store.
     pub fn reader(&self) -> Reader {
         self.reader.clone()
     }
@@ -156,7 +155,7 @@ impl Store {
 /// Seconds from 1970 to 2026.
 const EPOCHS_FROM_S: i64 = 1_767_225_600;
 
-/// Numbers this start by the clock, but above every start before.
+/// Numbers this start by the clock, but always above every earlier start.
 async fn begin_epoch(connection: &mut Connection, now_ms: i64) -> Result<u64, sqlx::Error> {
     let epoch: i64 = query_scalar(
         "INSERT INTO epochs (epoch, started_at_ms)

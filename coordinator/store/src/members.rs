@@ -1,7 +1,7 @@
-//! The place of each calibration in its study, in stores that versions before migration 20 wrote.
+//! The place of each calibration in its study, for stores that versions before migration 20 wrote.
 //!
-//! These versions did not store it. They named a calibration after the one that it follows from, and a search had the job that they
-//! derived from the searched one. Both rules are applied here once, and nowhere else.
+//! These versions did not store the place. They named a calibration after its parent, and a search had a job that they derived from the job
+//! of the searched calibration. Only this file applies these two rules.
 
 use std::collections::BTreeMap;
 
@@ -15,10 +15,10 @@ use job::{
 };
 use record::{Change, Extension, Membership, Role};
 
-/// How messages call a job.
+/// The name of a job in messages.
 const JOB: &str = "job.toml";
 
-/// A calibration as an earlier version stored it.
+/// The row of a calibration as an earlier version stored it.
 #[derive(Debug, Clone)]
 struct EarlierRow {
     id: i64,
@@ -28,20 +28,20 @@ struct EarlierRow {
     job: FileSet,
 }
 
-/// The facts about a calibration that an earlier version did not store.
+/// The columns of a calibration that an earlier version did not store.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Filled {
     pub(super) membership: Membership,
-    /// The job in the language of this version, where that of the earlier one is no longer part of it.
+    /// The job in the present language, where the language of the earlier version is no longer part of it.
     pub(super) toml: Option<String>,
 }
 
-/// Fills the rows that an earlier version wrote.
+/// Fills the new columns of the rows that an earlier version wrote.
 ///
 /// # Errors
-/// The database's reason.
+/// The error of the database.
 pub(super) async fn fill(connection: &mut Connection, path: &str) -> Result<(), StoreError> {
-    let wrap = |source| StoreError::of(path, source);
+    let wrap = |source| StoreError::new(path, source);
     let empty = query_scalar("SELECT count(*) FROM calibrations WHERE role IS NULL");
     let empty: i64 = empty.fetch_one(&mut *connection).await.map_err(wrap)?;
     if empty == 0 {
@@ -73,10 +73,10 @@ pub(super) async fn fill(connection: &mut Connection, path: &str) -> Result<(), 
     connection.commit().await.map_err(wrap)
 }
 
-/// The facts that the rows of an earlier version lack, by their ids.
+/// Computes the columns that the rows of an earlier version lack, by the id of the row.
 ///
 /// # Errors
-/// The database's reason.
+/// The error of the database.
 pub(super) async fn filled(on: impl Into<On<'_>>) -> Result<BTreeMap<i64, Filled>, sqlx::Error> {
     let rows = query(
         "SELECT c.id, c.study, coalesce(c.experiment, s.experiment) AS on_experiment, c.name, c.toml, c.files
@@ -86,7 +86,7 @@ pub(super) async fn filled(on: impl Into<On<'_>>) -> Result<BTreeMap<i64, Filled
     .await?;
     let rows: Vec<EarlierRow> = rows.iter().map(earlier_row).collect::<Result<_, _>>()?;
     let studies = rows.chunk_by(|a, b| a.study == b.study);
-    Ok(studies.flat_map(of_study).collect())
+    Ok(studies.flat_map(filled_study).collect())
 }
 
 fn earlier_row(row: &Row) -> Result<EarlierRow, sqlx::Error> {
@@ -94,7 +94,7 @@ fn earlier_row(row: &Row) -> Result<EarlierRow, sqlx::Error> {
         id: row.try_get("id")?,
         study: row.try_get("study")?,
         experiment: row.try_get("on_experiment")?,
-        // A row that cannot be read is reported where its calibration is asked for.
+        // An unreadable row is reported where its calibration is requested.
         name: row.try_get("name").unwrap_or_default(),
         job: FileSet {
             toml: row.try_get("toml").unwrap_or_default(),
@@ -105,11 +105,11 @@ fn earlier_row(row: &Row) -> Result<EarlierRow, sqlx::Error> {
     })
 }
 
-/// The calibrations of a study, oldest first.
-fn of_study(rows: &[EarlierRow]) -> Vec<(i64, Filled)> {
+/// Computes the new columns for the calibrations of a study, oldest first.
+fn filled_study(rows: &[EarlierRow]) -> Vec<(i64, Filled)> {
     let (searches, calibrations): (Vec<&EarlierRow>, Vec<&EarlierRow>) =
         rows.iter().partition(|row| is_earlier_search(&row.job.toml));
-    // A job that this version does not understand compares nothing.
+    // A job that this version does not understand compares no models.
     let lead = calibrations.first();
     let models = lead
         .and_then(|lead| Job::parse(JOB, &lead.job.toml).ok())
@@ -137,7 +137,7 @@ fn of_study(rows: &[EarlierRow]) -> Vec<(i64, Filled)> {
     filled
 }
 
-/// Names what a calibration of a job computes; a sample if this version does not understand the job.
+/// Returns the role of a calibration from its job. A job that this version does not understand counts as a sample.
 fn role(row: &EarlierRow) -> Role {
     match Job::parse(JOB, &row.job.toml).map(|job| job.algorithm) {
         Ok(AlgorithmSettings::Fit(_) | AlgorithmSettings::Evolve(_)) => Role::Fit,
@@ -145,8 +145,8 @@ fn role(row: &EarlierRow) -> Role {
     }
 }
 
-/// The search of the first calibration that has the model; where no text is the same, of the one that it is named after; of one that is
-/// no longer there, by its own job.
+/// Finds the calibration that a search belongs to: the first one with the same model; if none has the same text, the one that the search is
+/// named after; if that one is gone, the search keeps its own job.
 fn search(row: &EarlierRow, calibrations: &[&EarlierRow]) -> Filled {
     let is_searched = |other: &&&EarlierRow| {
         other.experiment == row.experiment
@@ -173,10 +173,10 @@ fn search(row: &EarlierRow, calibrations: &[&EarlierRow]) -> Filled {
     }
 }
 
-/// A calibration that joined its study later, or a point estimate that the job asks for.
+/// Computes the place of a calibration that joined its study later, or of a point estimate that the job requests.
 fn follower(row: &EarlierRow, lead: &EarlierRow, earlier: &[&EarlierRow]) -> Membership {
     let role = role(row);
-    // The longest name that this one begins with: the calibration that it follows from.
+    // The parent is the calibration with the longest name that this name begins with.
     let named = earlier
         .iter()
         .rev()
@@ -194,7 +194,7 @@ fn follower(row: &EarlierRow, lead: &EarlierRow, earlier: &[&EarlierRow]) -> Mem
     }
 }
 
-/// The change that the rest of a name stands for.
+/// Returns the change that the rest of a name stands for.
 fn change(row: &EarlierRow, parent: &EarlierRow, rest: &str) -> Option<Change> {
     if let Some(effect) = rest.strip_prefix('+') {
         return Some(Change::Add(addition(row, parent, effect)));
@@ -254,9 +254,9 @@ mod tests {
         }
     }
 
-    /// Memberships by id.
+    /// Returns the memberships by id.
     fn memberships(rows: &[EarlierRow]) -> BTreeMap<i64, Membership> {
-        let filled = of_study(rows);
+        let filled = filled_study(rows);
         filled
             .into_iter()
             .map(|(id, filled)| (id, filled.membership))
@@ -332,7 +332,7 @@ mod tests {
         assert_eq!(given[&3], Membership::search_of(2));
         assert_eq!(given[&4], Membership::search_of(1));
         // This version reads the job that it stands for.
-        let filled: BTreeMap<i64, Filled> = of_study(&rows).into_iter().collect();
+        let filled: BTreeMap<i64, Filled> = filled_study(&rows).into_iter().collect();
         let toml = filled[&3].toml.clone().unwrap();
         assert_eq!(Job::parse(JOB, &toml).unwrap().algorithm.seed(), 7);
         assert!(toml.contains("n = 1.0"), "{toml}");
@@ -362,7 +362,7 @@ mod tests {
         // The searched calibration has been lost: the search stays with the study, and with its own model.
         let lost = row(9, "lost", &format!("{MODEL}n = 1.0\n"));
         let rows = [row(1, "sand", MODEL), search_row(3, &lost)];
-        let filled: BTreeMap<i64, Filled> = of_study(&rows).into_iter().collect();
+        let filled: BTreeMap<i64, Filled> = filled_study(&rows).into_iter().collect();
         assert_eq!(filled[&3].membership, Membership::search_of(1));
         assert!(filled[&3].toml.as_ref().unwrap().contains("n = 1.0"));
     }

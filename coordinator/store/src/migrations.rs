@@ -1,4 +1,4 @@
-//! The store's tables, in the order in which they came about.
+//! The migrations of the store's tables, in order.
 
 use sqlx::SqlSafeStr;
 use sqlx::migrate::{Migration, MigrationType, Migrator};
@@ -16,7 +16,7 @@ macro_rules! file {
 
 /// Number, name and text of each file of `migrations/`.
 ///
-/// They are listed here because the macro that lists them builds SQLite a second time, for the compiler.
+/// The files are listed here because sqlx's macro would build SQLite a second time, for the compiler.
 const FILES: &[(i64, &str, &str)] = &[
     file!(1, "experiments", "0001_experiments.sql"),
     file!(2, "calibrations", "0002_calibrations.sql"),
@@ -41,7 +41,7 @@ const FILES: &[(i64, &str, &str)] = &[
     file!(21, "observables", "0021_observables.sql"),
 ];
 
-/// The files of `migrations/postgres/`: a server begins with the tables of version 19, and changes with the files of both folders.
+/// The files of `migrations/postgres/`. A server starts with the tables of version 19; later migrations have a file in each folder.
 const SERVER_FILES: &[(i64, &str, &str)] = &[
     file!(19, "store", "postgres/0019_store.sql"),
     file!(20, "members", "postgres/0020_members.sql"),
@@ -51,17 +51,17 @@ const SERVER_FILES: &[(i64, &str, &str)] = &[
 /// The version of the tables that this program writes.
 pub(super) const VERSION: i64 = FILES[FILES.len() - 1].0;
 
-/// Brings the tables of a file up to date.
+/// Returns the migrations of a file.
 pub(super) fn migrator() -> Migrator {
-    of(FILES)
+    from_files(FILES)
 }
 
-/// Brings the tables of a server up to date.
+/// Returns the migrations of a server.
 pub(super) fn server_migrator() -> Migrator {
-    of(SERVER_FILES)
+    from_files(SERVER_FILES)
 }
 
-fn of(files: &[(i64, &'static str, &'static str)]) -> Migrator {
+fn from_files(files: &[(i64, &'static str, &'static str)]) -> Migrator {
     let migration = |&(version, name, sql): &(i64, &'static str, &'static str)| {
         Migration::new(
             version,

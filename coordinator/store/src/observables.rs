@@ -1,5 +1,5 @@
-//! Observables as bytes: a mark, the lengths of their vectors and histories as MessagePack, and all numbers one after the other.
-//! Rows without the mark are of earlier versions.
+//! The binary form of observables: a mark, the lengths of their vectors and histories as MessagePack, then all numbers. Rows without the
+//! mark were written by earlier versions.
 
 use shared::channel::Channel;
 use shared::outcome::Observables;
@@ -8,10 +8,10 @@ use super::blob::{self, Lengths, numbers, vectors};
 use super::error::StoreError;
 use super::older_blob;
 
-/// The mark: a not-a-number that no other form begins with.
+/// The mark: a not-a-number with which no earlier form begins.
 const MARK: [u8; 8] = 0x7ff8_0000_0000_0001_u64.to_le_bytes();
 
-/// The bytes of observables.
+/// Encodes observables as bytes.
 pub(super) fn encode(o: &Observables) -> Vec<u8> {
     let vectors = vectors(o);
     let lengths = vectors.each_ref().map(|vector| vector.len());
@@ -32,7 +32,7 @@ pub(super) fn encode(o: &Observables) -> Vec<u8> {
     bytes
 }
 
-/// The observables of bytes.
+/// Decodes observables from bytes, in this form or an earlier one.
 pub(super) fn decode(bytes: &[u8]) -> Result<Observables, StoreError> {
     let observables = match bytes.strip_prefix(&MARK) {
         Some(described) => decode_described(described),

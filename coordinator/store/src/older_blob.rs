@@ -1,23 +1,23 @@
-//! Observables as earlier versions stored them: numbers alone, told apart by the end of the bytes.
+//! The binary forms of observables that earlier versions wrote: numbers alone, distinguished by the last eight bytes.
 //!
-//! The first nine vectors of each run stand there always, and `settled_to` where a not-a-number ends the bytes. An infinity ends bytes
-//! with anything more, after the numbers that say what there is. A negative infinity ends any of these with histories behind it, after the
-//! number of samples of each history and the number of histories. No observable is one of these. Channels of a model that is not ours
-//! stand alone: their vectors, and one byte with a bit for each.
+//! All forms begin with the first nine vectors of each run. A not-a-number at the end adds `settled_to`. An infinity at the end adds
+//! further vectors, preceded by numbers that list them. A negative infinity at the end adds histories to any of these forms, preceded by
+//! the number of samples of each history and the number of histories. No observable has one of these values. Channels of an external model
+//! have a form of their own: their vectors, and one byte with a bit for each.
 
 use shared::channel::Channel;
 use shared::outcome::Observables;
 
 use super::blob::{Lengths, VECTORS, numbers};
 
-/// Vectors that always stand there.
+/// The number of vectors that every form has.
 const ALWAYS: usize = 9;
-/// The places of `settled_to`, the four derivatives, plates and rings.
+/// The index of `settled_to` in the order of the vectors; the derivatives, plates and rings follow.
 const SETTLED: usize = 9;
 const PLATES: usize = 14;
 const RINGS: usize = 15;
 
-/// The observables of bytes.
+/// Decodes observables from bytes.
 pub(super) fn decode(bytes: &[u8]) -> Option<Observables> {
     let mut vectors = [0; VECTORS];
     if let (words, &[channels]) = bytes.as_chunks::<8>() {
@@ -45,7 +45,7 @@ pub(super) fn decode(bytes: &[u8]) -> Option<Observables> {
             vectors[..=SETTLED].fill(rest.len() / (ALWAYS + 1));
             rest
         }
-        // Written from counts, so the conversion back is exact; of anything else the sum is wrong.
+        // The lengths were written from counts, so the conversion back is exact. In bytes of another form their sum is wrong.
         &[
             ref rest @ ..,
             runs,
@@ -71,12 +71,12 @@ pub(super) fn decode(bytes: &[u8]) -> Option<Observables> {
     Lengths { vectors, samples }.split(&[averages, histories].concat())
 }
 
-/// Splits the lengths of histories off the end, where there are any.
+/// Splits the lengths of the histories off the end, where there are histories.
 fn split_samples(all: &[f64]) -> Option<(&[f64], Vec<usize>)> {
     let [words @ .., histories, f64::NEG_INFINITY] = all else {
         return Some((all, Vec::new()));
     };
-    // Written from counts, so the conversion back is exact; of anything else the lengths are wrong.
+    // The lengths were written from counts, so the conversion back is exact. In bytes of another form they are wrong.
     let (words, samples) = words.split_at_checked(words.len().checked_sub(*histories as usize)?)?;
     Some((words, samples.iter().map(|&count| count as usize).collect()))
 }
@@ -88,7 +88,7 @@ mod tests {
     use super::super::blob::encode;
     use super::*;
 
-    /// Nine vectors of two runs: 1, 1, 2, 2, … 9, 9.
+    /// Makes nine vectors of two runs: 1, 1, 2, 2, … 9, 9.
     fn nine() -> Vec<f64> {
         (1..=9).flat_map(|i| [f64::from(i); 2]).collect()
     }

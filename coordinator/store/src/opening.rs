@@ -1,4 +1,4 @@
-//! Opens a store for writing.
+//! Opening of a store for writing.
 
 use std::fs::File;
 use std::time::{Duration, Instant};
@@ -9,22 +9,22 @@ use super::place::{is_server, name_of};
 use super::sql::Connection;
 use super::{damage, file, members, migrations, server};
 
-/// How soon a lock of a server is asked for again.
+/// The time between two attempts to take the lock of a server.
 const ASK_AGAIN: Duration = Duration::from_millis(100);
 
-/// A connection that may write, and what keeps others from the store.
+/// A connection that may write, with the lock that keeps other writers out.
 struct Opened {
     connection: Connection,
-    /// The lock of a file; that of a server goes with the connection.
+    /// The lock of a file; the lock of a server belongs to the connection.
     lock: Option<File>,
-    /// Whether nobody else holds the store.
+    /// Whether no other program holds the store.
     is_free: bool,
 }
 
-/// Opens a store for its one writer: whole, and with tables that are up to date.
+/// Opens a store for its one writer, and brings its tables up to date.
 ///
 /// # Errors
-/// [`StoreError::InUse`] where another coordinator holds the store; else the database's reason.
+/// [`StoreError::InUse`] where another coordinator holds the store; else the database's error.
 pub(super) async fn to_write(path: &str) -> Result<(Connection, Option<File>), StoreError> {
     let mut opened = open(path, true).await?;
     if let Connection::Sqlite(connection) = &mut opened.connection {
@@ -34,11 +34,11 @@ pub(super) async fn to_write(path: &str) -> Result<(Connection, Option<File>), S
     Ok((opened.connection, opened.lock))
 }
 
-/// Opens a store for short changes beside a coordinator that may hold it; where none does, its tables are brought up to date, and none
-/// starts meanwhile.
+/// Opens a store for short changes beside a coordinator that may hold it. If none does, the tables are brought up to date, and no
+/// coordinator can start until the connection is dropped.
 ///
 /// # Errors
-/// The database's reason.
+/// The database's error.
 pub(super) async fn beside(path: &str) -> Result<(Connection, Option<File>), StoreError> {
     let mut opened = open(path, false).await?;
     if opened.is_free {
@@ -51,7 +51,7 @@ async fn open(path: &str, is_alone: bool) -> Result<Opened, StoreError> {
     if is_server(path) {
         let mut connection = server::connect(path).await?;
         let mut is_free = server::lock(&mut connection, path).await?;
-        // The server may not have noticed yet that the coordinator before this one has died.
+        // The server may not have noticed yet that the previous coordinator has died.
         let end = Instant::now() + PATIENCE;
         while is_alone && !is_free {
             if Instant::now() > end {
@@ -60,7 +60,7 @@ async fn open(path: &str, is_alone: bool) -> Result<Opened, StoreError> {
             tokio::time::sleep(ASK_AGAIN).await;
             is_free = server::lock(&mut connection, path).await?;
         }
-        // Behind the lock: another coordinator may be making the tables.
+        // The tables are examined after the lock is taken, because another coordinator may be creating them.
         server::recognise(&mut connection, path).await?;
         return Ok(Opened {
             connection,
@@ -86,6 +86,6 @@ async fn migrate(connection: &mut Connection, path: &str) -> Result<(), StoreErr
         Connection::Sqlite(connection) => migrations::migrator().run(connection).await,
         Connection::Postgres(connection) => migrations::server_migrator().run(connection).await,
     };
-    migrated.map_err(|source| StoreError::of_migration(path, source))?;
+    migrated.map_err(|source| StoreError::from_migration(path, source))?;
     members::fill(connection, path).await
 }

@@ -1,18 +1,18 @@
-//! The place of a store: the name of its file, or the URL of a server.
+//! The place of a store: the path of its file, or the URL of a server.
 
-/// Whether a store stands in a PostgreSQL server.
+/// Returns whether a store stands in a PostgreSQL server.
 pub fn is_server(path: &str) -> bool {
     ["postgres://", "postgresql://"]
         .iter()
         .any(|scheme| path.starts_with(scheme))
 }
 
-/// Names a store in messages: by its file, or by its URL without the password.
+/// Returns the name of a store for messages: its path, or its URL without the password.
 pub fn name_of(path: &str) -> String {
     let Some((scheme, rest)) = path.split_once("://").filter(|_| is_server(path)) else {
         return path.to_owned();
     };
-    // A password may stand before the host or among the settings, and may have any character, though the URL is not valid then.
+    // A password may stand before the host or in the query. It may contain any character, although the URL is invalid then.
     let first = || rest.split([':', '/', '?', '@']).next().unwrap_or_default();
     match rest.rsplit_once('@') {
         Some((before, _)) if before.contains('?') => format!("{scheme}://{}…", first()),

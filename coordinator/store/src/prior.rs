@@ -10,13 +10,10 @@ use super::theta::theta;
 use record::{Dispute, PriorDraw, RejectionReason};
 
 impl Reader {
-    /// The draws of a sampler's first round.
+    /// Reads the draws of a sampler's first round, which are draws from the prior.
     ///
     /// # Arguments
-    /// - `count`: how many there are.
-    ///
-    /// # Errors
-    /// [`StoreError`].
+    /// - `count`: the number of draws.
     pub async fn prior_draws(&self, calibration: i64, count: usize) -> Result<Vec<PriorDraw>, StoreError> {
         let rows = query(
             "SELECT e.theta, e.rejection, e.fitted,
@@ -42,10 +39,7 @@ impl Reader {
             .collect()
     }
 
-    /// How often a lease failed, by what was said of it.
-    ///
-    /// # Errors
-    /// [`StoreError`].
+    /// Reads how often leases failed, by message.
     pub async fn faults(&self, calibration: i64) -> Result<BTreeMap<String, u64>, StoreError> {
         let rows = query(
             "SELECT message, count(*) AS n FROM faults WHERE calibration = ? AND attempt > 0 GROUP BY message",
@@ -59,10 +53,7 @@ impl Reader {
             .collect())
     }
 
-    /// Number of evaluations that were given up after faults.
-    ///
-    /// # Errors
-    /// [`StoreError`].
+    /// Reads the number of evaluations that were given up after faults.
     pub async fn given_up(&self, calibration: i64) -> Result<u64, StoreError> {
         let count: i64 =
             query_scalar("SELECT count(*) FROM evaluations WHERE calibration = ? AND worker = ''")
@@ -72,10 +63,7 @@ impl Reader {
         Ok(count.unsigned_abs())
     }
 
-    /// Evaluations that were answered in two ways, in order. A store of before migration 12 has none.
-    ///
-    /// # Errors
-    /// [`StoreError`].
+    /// Reads the evaluations that have two different answers, in order. A store of before migration 12 has none.
     pub async fn disputes(&self, calibration: i64) -> Result<Vec<Dispute>, StoreError> {
         if !self.has_table("disputes").await? {
             return Ok(Vec::new());

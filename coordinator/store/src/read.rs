@@ -48,10 +48,7 @@ pub struct StoredWebhook {
 }
 
 impl Reader {
-    /// The web hook of a calibration's study, if it has one.
-    ///
-    /// # Errors
-    /// [`StoreError`].
+    /// Reads the web hook of a calibration's study, if it has one.
     pub async fn webhook(&self, calibration: i64) -> Result<Option<StoredWebhook>, StoreError> {
         let row = query(
             "SELECT s.id, c.name, s.webhook FROM calibrations c JOIN studies s ON s.id = c.study
@@ -70,19 +67,13 @@ impl Reader {
         .transpose()
     }
 
-    /// Number of calibrations in each state, by its word.
-    ///
-    /// # Errors
-    /// [`StoreError`].
+    /// Reads the number of calibrations in each state, by the name of the state.
     pub async fn states(&self) -> Result<Vec<(String, i64)>, StoreError> {
         let states = query_as("SELECT state, count(*) FROM calibrations GROUP BY state");
         Ok(states.fetch_all(&self.pool).await?)
     }
 
-    /// An experiment.
-    ///
-    /// # Errors
-    /// [`StoreError`].
+    /// Reads an experiment.
     pub async fn experiment(&self, id: i64) -> Result<Option<ExperimentRow>, StoreError> {
         let row = query("SELECT toml, files FROM experiments WHERE id = ?")
             .bind(id)
@@ -101,10 +92,7 @@ impl Reader {
         .transpose()
     }
 
-    /// Every experiment, oldest first, with the studies that have a calibration on it.
-    ///
-    /// # Errors
-    /// [`StoreError`].
+    /// Reads every experiment, oldest first, with the studies that have a calibration on it.
     pub async fn experiments(&self) -> Result<Vec<(i64, Vec<i64>)>, StoreError> {
         let rows: Vec<(i64, Option<i64>)> = query_as(
             "SELECT e.id, m.study FROM experiments e LEFT JOIN
@@ -123,10 +111,7 @@ impl Reader {
         Ok(experiments)
     }
 
-    /// A calibration.
-    ///
-    /// # Errors
-    /// [`StoreError`].
+    /// Reads a calibration.
     pub async fn calibration(&self, id: i64) -> Result<Option<CalibrationRow>, StoreError> {
         let sql = format!("{CALIBRATION} WHERE c.id = ?");
         let row = query(sqlx::AssertSqlSafe(sql))
@@ -136,10 +121,10 @@ impl Reader {
         row.as_ref().map(|row| self.calibration_row(row)).transpose()
     }
 
-    /// Every calibration by its id, oldest first; in place of one whose row cannot be read, why.
+    /// Reads every calibration by its id, oldest first. A row that cannot be read is replaced by its error.
     ///
     /// # Errors
-    /// [`StoreError`] where none can be read.
+    /// [`StoreError`] where no row can be read.
     pub async fn calibrations(&self) -> Result<Vec<(i64, Result<CalibrationRow, StoreError>)>, StoreError> {
         let sql = format!("{CALIBRATION} ORDER BY c.id");
         let rows = query(sqlx::AssertSqlSafe(sql)).fetch_all(&self.pool).await?;
@@ -147,10 +132,7 @@ impl Reader {
         rows.iter().map(row).collect()
     }
 
-    /// The calibrations of a study, oldest first.
-    ///
-    /// # Errors
-    /// [`StoreError`].
+    /// Reads the calibrations of a study, oldest first.
     pub async fn study(&self, id: i64) -> Result<Vec<CalibrationRow>, StoreError> {
         let sql = format!("{CALIBRATION} WHERE c.study = ? ORDER BY c.id");
         let rows = query(sqlx::AssertSqlSafe(sql))
@@ -160,10 +142,7 @@ impl Reader {
         rows.iter().map(|row| self.calibration_row(row)).collect()
     }
 
-    /// All studies, oldest first.
-    ///
-    /// # Errors
-    /// [`StoreError`].
+    /// Reads all studies, oldest first.
     pub async fn studies(&self) -> Result<Vec<StoredStudy>, StoreError> {
         let rows: Vec<(i64, i64, i64)> = query_as(
             "SELECT s.id, s.experiment, c.id FROM studies s JOIN calibrations c ON c.study = s.id ORDER BY s.id, c.id",
@@ -184,25 +163,19 @@ impl Reader {
         Ok(studies)
     }
 
-    /// Study, id and state of every calibration, oldest first.
-    ///
-    /// # Errors
-    /// [`StoreError`].
+    /// Reads the study, id and state of every calibration, oldest first.
     pub async fn member_states(&self) -> Result<Vec<(i64, i64, CalibrationState)>, StoreError> {
         let rows = query("SELECT study, id, state FROM calibrations ORDER BY id");
         let rows = rows.fetch_all(&self.pool).await?;
-        // A state that cannot be read is reported where the calibration is asked for.
-        let known = |row: &Row| {
+        // An unreadable state is reported where the calibration is requested.
+        let readable = |row: &Row| {
             let state = CalibrationState::from_name(row.try_get("state").ok()?)?;
             Some((row.try_get("study").ok()?, row.try_get("id").ok()?, state))
         };
-        Ok(rows.iter().filter_map(known).collect())
+        Ok(rows.iter().filter_map(readable).collect())
     }
 
-    /// The studies whose members are all over, each with their number; archived ones left out.
-    ///
-    /// # Errors
-    /// [`StoreError`].
+    /// Reads the studies whose calibrations are all over, each with the number of its calibrations; archived studies are left out.
     pub async fn settled_studies(&self) -> Result<Vec<(i64, i64)>, StoreError> {
         let rows = query(
             "SELECT study, count(*) AS members FROM calibrations c JOIN studies s ON s.id = c.study
@@ -217,10 +190,7 @@ impl Reader {
             .collect())
     }
 
-    /// The stages of a calibration, in order.
-    ///
-    /// # Errors
-    /// [`StoreError`].
+    /// Reads the stages of a calibration, in order.
     pub async fn stages(&self, calibration: i64) -> Result<Vec<StageRow>, StoreError> {
         let rows = query("SELECT * FROM stages WHERE calibration = ? ORDER BY stage")
             .bind(calibration)
@@ -245,10 +215,7 @@ impl Reader {
         rows.iter().map(stage).collect()
     }
 
-    /// The population at the end of a stage, or of the last one.
-    ///
-    /// # Errors
-    /// [`StoreError`].
+    /// Reads the population at the end of a stage, or of the last one.
     pub async fn samples(&self, calibration: i64, stage: Option<u32>) -> Result<Vec<Particle>, StoreError> {
         let rows = query(
             "SELECT theta, log_likelihood, log_prior FROM samples WHERE calibration = ?1
@@ -261,17 +228,15 @@ impl Reader {
         rows.iter().map(particle).collect()
     }
 
-    /// At most so many equally spaced draws of the population at the end of a stage, or of the last one, and its size.
+    /// Reads at most `max` equally spaced draws of the population at the end of a stage, or of the last one, and the size of the
+    /// population.
     ///
     /// Takes m of n draws: those k with floor((k + 1) m / n) > floor(k m / n).
-    ///
-    /// # Errors
-    /// [`StoreError`].
     pub async fn thinned_samples(
         &self,
         calibration: i64,
         stage: Option<u32>,
-        most: u32,
+        max: u32,
     ) -> Result<(Vec<Particle>, u64), StoreError> {
         let population = "FROM samples WHERE calibration = ?1
              AND stage = coalesce(?2, (SELECT max(stage) FROM samples WHERE calibration = ?1))";
@@ -288,7 +253,7 @@ impl Reader {
         let rows = query(sqlx::AssertSqlSafe(taken))
             .bind(calibration)
             .bind(stage)
-            .bind(i64::from(most).min(count))
+            .bind(i64::from(max).min(count))
             .bind(count.max(1))
             .fetch_all(&self.pool)
             .await?;
@@ -296,10 +261,7 @@ impl Reader {
         Ok((samples?, count.unsigned_abs()))
     }
 
-    /// The populations at the end of every stage, in order.
-    ///
-    /// # Errors
-    /// [`StoreError`].
+    /// Reads the populations at the end of every stage, in order.
     pub async fn populations(&self, calibration: i64) -> Result<Vec<Vec<Particle>>, StoreError> {
         let mut populations = Vec::new();
         for stage in self.stages(calibration).await? {
@@ -308,11 +270,10 @@ impl Reader {
         Ok(populations)
     }
 
-    /// The predicted values that the likelihood took of a parameter vector while sampling; `None` where it was not
-    /// simulated then, or refused. For what was stored before migration 9, which kept the values of every evaluation.
+    /// Reads the predicted values that the likelihood used for a parameter vector while sampling; `None` where it was not simulated then,
+    /// or was rejected.
     ///
-    /// # Errors
-    /// [`StoreError`].
+    /// Only stores of before migration 9, which kept the values of every evaluation, need this query.
     pub async fn fitted_values(
         &self,
         calibration: i64,
@@ -323,7 +284,7 @@ impl Reader {
              WHERE calibration = ? AND theta = ? AND fitted IS NOT NULL ORDER BY evaluation LIMIT 1",
         )
         .bind(calibration);
-        // A file keeps such a vector as text; a server has it from a copy, in the form of today.
+        // A file keeps such a vector as text. A server got it from a copy, which converts it to bytes.
         let row = match self.pool {
             Pool::Sqlite(_) => row.bind(json(theta)),
             Pool::Postgres(_) => row.bind(blob::encode(theta)),
@@ -332,10 +293,7 @@ impl Reader {
         row.map(|row| blob::decode_values(row.get("fitted"))).transpose()
     }
 
-    /// The result of a fit.
-    ///
-    /// # Errors
-    /// [`StoreError`].
+    /// Reads the result of a fit.
     pub async fn estimate(&self, calibration: i64) -> Result<Option<EstimateRow>, StoreError> {
         let row = query("SELECT * FROM estimates WHERE calibration = ?")
             .bind(calibration)
@@ -364,9 +322,6 @@ impl Reader {
     }
 
     /// Reads the result of a search for a missing effect.
-    ///
-    /// # Errors
-    /// [`StoreError`].
     pub async fn discovery(&self, calibration: i64) -> Result<Option<Discovery>, StoreError> {
         let record: Option<String> = query_scalar("SELECT record FROM discoveries WHERE calibration = ?")
             .bind(calibration)
@@ -379,10 +334,7 @@ impl Reader {
         record.map(read).transpose()
     }
 
-    /// The final draws of a calibration; the first is the most probable particle, of a fit the only one.
-    ///
-    /// # Errors
-    /// [`StoreError`].
+    /// Reads the final draws of a calibration. The first is the most probable particle; a fit without draws has only this one.
     pub async fn predictions(&self, calibration: i64) -> Result<Vec<Prediction>, StoreError> {
         let rows = query(
             "SELECT evaluation, theta, rejection, observables FROM evaluations
@@ -426,10 +378,7 @@ impl Reader {
         Ok(predictions)
     }
 
-    /// Reads what a metamodel did between evaluations; `None` if there was none.
-    ///
-    /// # Errors
-    /// [`StoreError`].
+    /// Reads the statistics of the subchains that a metamodel ran between evaluations; `None` if there was none.
     pub async fn subchains(&self, calibration: i64) -> Result<Option<Subchains>, StoreError> {
         let row = query(
             "SELECT count(*) AS subchains, CAST(coalesce(sum(json_extract(subchain, '$.moves')), 0) AS BIGINT) AS moves,
@@ -448,11 +397,8 @@ impl Reader {
         Ok((subchains.subchains > 0).then_some(subchains))
     }
 
-    /// The fitted runs at the likeliest parameters, with their histories where the model knows time; `None` where they were
-    /// not simulated once more, or refused.
-    ///
-    /// # Errors
-    /// [`StoreError`].
+    /// Reads the fitted runs at the likeliest parameters, with their histories where the model has a time axis; `None` where they were not
+    /// simulated once more, or were rejected.
     pub async fn likeliest(&self, calibration: i64) -> Result<Option<Observables>, StoreError> {
         let row = query(
             "SELECT observables FROM evaluations WHERE calibration = ? AND evaluation = ? AND observables IS NOT NULL",
@@ -465,12 +411,9 @@ impl Reader {
             .transpose()
     }
 
-    /// How many parameter vectors of the sampler or the fit the model refused, by the kind of refusal.
+    /// Reads how many parameter vectors of the sampler or the fit the model rejected, by the kind of rejection.
     ///
-    /// What it refuses of the final draws, their held-out runs among them, is said of these.
-    ///
-    /// # Errors
-    /// [`StoreError`].
+    /// Rejections of final draws are not counted; they are stored with the draws.
     pub async fn rejections(&self, calibration: i64) -> Result<BTreeMap<String, u64>, StoreError> {
         let rows = query(
             "SELECT substr(rejection, 1, instr(rejection, ':') - 1) AS kind, count(*) AS n FROM evaluations
@@ -486,10 +429,7 @@ impl Reader {
             .collect())
     }
 
-    /// The message of the first rejected parameter vector of the sampler or the fit, without its kind.
-    ///
-    /// # Errors
-    /// [`StoreError`].
+    /// Reads the message of the first rejected parameter vector of the sampler or the fit, without the kind of rejection.
     pub async fn first_rejection(&self, calibration: i64) -> Result<Option<String>, StoreError> {
         let row = query(
             "SELECT rejection FROM evaluations
@@ -507,7 +447,7 @@ impl Reader {
     }
 }
 
-/// A number that fits 32 bits.
+/// Reads a number that must fit 32 bits.
 fn small(row: &Row, column: &str) -> Result<u32, StoreError> {
     let value: i64 = row.try_get(column)?;
     u32::try_from(value).map_err(|_| StoreError::Corrupt(format!("{column} {value}")))
@@ -528,7 +468,7 @@ fn array<T: serde::de::DeserializeOwned>(json: &str) -> Result<Vec<T>, StoreErro
 }
 
 impl Reader {
-    /// A calibration; what cannot be read is named with its id.
+    /// Makes a calibration from its row. An error names the id of the row.
     fn calibration_row(&self, row: &Row) -> Result<CalibrationRow, StoreError> {
         let id: i64 = row.try_get("id")?;
         let columns = || {
@@ -547,7 +487,7 @@ impl Reader {
     }
 }
 
-/// The stored place of a calibration in its study; `None` in a row that an earlier version wrote.
+/// Reads the stored place of a calibration in its study; `None` in a row that an earlier version wrote.
 fn membership(row: &Row) -> Result<Option<Membership>, StoreError> {
     let role: Option<&str> = match row.try_get("role") {
         Err(sqlx::Error::ColumnNotFound(_)) => None,

@@ -1,4 +1,4 @@
-//! Reads a store through a pool of connections.
+//! Read access to a store through a pool of connections.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -13,37 +13,37 @@ use super::place::is_server;
 use super::server;
 use super::sql::{Connection, Pool, query_scalar};
 
-/// SQLite's codes where it cannot make its index of the write-ahead log: read-only, failed, full, cannot open.
+/// SQLite's result codes where it cannot create its index of the write-ahead log: read-only, failed, full, cannot open.
 const DENIED: [u32; 4] = [8, 10, 13, 14];
 
-/// Reads a store, also one that another process is writing.
+/// Read access to a store, also to one that another process is writing.
 #[derive(Debug, Clone)]
 pub struct Reader {
     pub(super) pool: Pool,
-    /// The facts that the rows of an earlier version lack: reading alone leaves the store as it is.
+    /// The columns that the rows of an earlier version lack. They are kept in memory, because a reader does not change the store.
     pub(super) earlier_members: Option<Arc<BTreeMap<i64, Filled>>>,
 }
 
 impl Reader {
-    /// Reads a store whose tables are up to date.
-    pub(super) fn of(pool: Pool) -> Reader {
+    /// Makes a reader of a store whose tables are up to date.
+    pub(super) fn new(pool: Pool) -> Reader {
         Reader {
             pool,
             earlier_members: None,
         }
     }
 
-    /// Opens an existing store for reading alone, a file also in a folder or on a disk that takes no further byte.
+    /// Opens an existing store for reading alone, also a file in a folder or on a disk that cannot be written.
     ///
     /// # Errors
     /// [`StoreError`] with the store and the reason.
     pub async fn open(path: &str) -> Result<Reader, StoreError> {
         if is_server(path) {
             let pool = server::pool(path).await?;
-            let wrap = |source| StoreError::of(path, source);
+            let wrap = |source| StoreError::new(path, source);
             let mut connection = Connection::Postgres(pool.acquire().await.map_err(wrap)?.detach());
             server::recognise(&mut connection, path).await?;
-            return Reader::of(Pool::Postgres(pool)).with_earlier_members().await;
+            return Reader::new(Pool::Postgres(pool)).with_earlier_members().await;
         }
         let file = file_of(path);
         if !Path::new(file).is_file() {
@@ -68,16 +68,16 @@ impl Reader {
                 ),
             });
         }
-        // The file is whole, and whoever could change it would have left an index to read by.
+        // The file is complete: a writer would have left an index of the write-ahead log.
         Reader::with(options.immutable(true), path).await
     }
 
-    /// Whether the store has been closed.
+    /// Returns whether the store has been closed.
     pub fn is_closed(&self) -> bool {
         self.pool.is_closed()
     }
 
-    /// Whether nothing has made its tables yet.
+    /// Returns whether the store has no tables yet.
     ///
     /// # Errors
     /// The store cannot be read.
@@ -85,7 +85,7 @@ impl Reader {
         Ok(!self.has_table("calibrations").await?)
     }
 
-    /// Whether the store has a table: one of an earlier version, which only reading leaves as it is, may lack it.
+    /// Returns whether the store has a table. A store of an earlier version that is opened for reading alone may lack it.
     pub(super) async fn has_table(&self, name: &str) -> Result<bool, StoreError> {
         let tables = match self.pool {
             Pool::Sqlite(_) => "SELECT count(*) FROM sqlite_schema WHERE type = 'table' AND name = ?",
@@ -97,7 +97,7 @@ impl Reader {
         Ok(tables > 0)
     }
 
-    /// Whether a table has a column.
+    /// Returns whether a table has a column.
     pub(super) async fn has_column(&self, table: &str, column: &str) -> Result<bool, StoreError> {
         let columns = match self.pool {
             Pool::Sqlite(_) => "SELECT count(*) FROM pragma_table_info(?) WHERE name = ?",
@@ -112,17 +112,17 @@ impl Reader {
     }
 
     async fn with(options: SqliteConnectOptions, path: &str) -> Result<Reader, StoreError> {
-        let wrap = |source| StoreError::of(path, source);
+        let wrap = |source| StoreError::new(path, source);
         let pool = pool(options).await.map_err(wrap)?;
         recognise(&mut *pool.acquire().await.map_err(wrap)?, path).await?;
-        Reader::of(Pool::Sqlite(pool)).with_earlier_members().await
+        Reader::new(Pool::Sqlite(pool)).with_earlier_members().await
     }
 
     async fn with_earlier_members(mut self) -> Result<Reader, StoreError> {
         if !self.has_table("calibrations").await? {
             return Ok(self);
         }
-        // A program that was stopped between the new columns and their values has left them empty.
+        // If a program stopped between adding the new columns and filling them, they are empty.
         let is_filled = self.has_column("calibrations", "role").await? && {
             let empty = query_scalar("SELECT count(*) FROM calibrations WHERE role IS NULL");
             let empty: i64 = empty.fetch_one(&self.pool).await?;

@@ -1,4 +1,4 @@
-//! The rows that a restart needs of an unfinished calibration.
+//! Queries for the rows that a restart needs to resume a calibration.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -12,14 +12,11 @@ use super::sql::{Row, query, query_scalar};
 use super::theta::theta;
 use record::{EvaluationRow, Fingerprint, Kept, SealKey, Stored};
 
-/// The largest number of evaluations that one statement reads: a long calibration has hundreds of thousands.
+/// The number of evaluations that one statement reads. A long calibration has hundreds of thousands.
 const PAGE: usize = 2_000;
 
 impl Reader {
-    /// Ids of the calibrations that are not over, oldest first.
-    ///
-    /// # Errors
-    /// [`StoreError`].
+    /// Reads the ids of the calibrations that are not over, oldest first.
     pub async fn unfinished(&self) -> Result<Vec<i64>, StoreError> {
         let ids = query_scalar(
             "SELECT id FROM calibrations WHERE state NOT IN ('finished', 'failed', 'cancelled') ORDER BY id",
@@ -29,7 +26,7 @@ impl Reader {
         Ok(ids)
     }
 
-    /// The key that seals the leases of a calibration.
+    /// Reads the key that seals the leases of a calibration.
     ///
     /// # Errors
     /// [`StoreError`]; [`StoreError::Corrupt`] where the key does not have 16 bytes.
@@ -47,13 +44,10 @@ impl Reader {
         bytes.map(SealKey).ok_or_else(corrupt)
     }
 
-    /// Everything a replay needs; with `fitted`, also the models' values, which a fit is told and a metamodel
-    /// learns from.
-    ///
-    /// # Errors
-    /// [`StoreError`].
+    /// Reads everything that a replay needs. With `fitted`, this includes predicted values, which a fit is told and a metamodel is trained
+    /// on.
     pub async fn stored(&self, calibration: i64, fitted: bool) -> Result<Stored, StoreError> {
-        // One view of the store: results may be dropped meanwhile.
+        // All statements see one state of the store, because results may be dropped meanwhile.
         let mut view = self.pool.view().await?;
         let row = query(
             "SELECT state, message, model_version, busy_ms,

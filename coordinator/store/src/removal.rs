@@ -1,4 +1,4 @@
-//! Studies that are archived or deleted.
+//! Archiving and deletion of studies.
 
 use sqlx::AssertSqlSafe;
 
@@ -6,14 +6,14 @@ use super::error::StoreError;
 use super::reader::Reader;
 use super::sql::{Connection, query, query_as, query_scalar};
 
-/// Tables that have many rows of a calibration, with their keys.
+/// Tables that have many rows for a calibration, with their keys.
 const LARGE: [(&str, &str); 2] = [
     ("evaluations", "calibration, evaluation"),
     ("samples", "calibration, stage, particle"),
 ];
-/// Rows of these that one commit deletes: results of workers wait no longer than for them.
+/// The number of rows of these tables that one commit deletes. Results of workers wait no longer than for one such commit.
 const PART: u64 = 1000;
-/// Tables that have few.
+/// Tables that have few rows for a calibration.
 const SMALL: [&str; 7] = [
     "stages",
     "estimates",
@@ -24,7 +24,7 @@ const SMALL: [&str; 7] = [
     "repeats",
 ];
 
-/// Deletes a part of what belongs to a study alone, and the study itself at last; whether nothing is left.
+/// Deletes a part of the rows that belong to a study alone, and in the last part the study itself. Returns whether nothing is left.
 pub(super) async fn delete_part(
     connection: &mut Connection,
     study: i64,
@@ -37,7 +37,8 @@ pub(super) async fn delete_part(
     .bind(study)
     .fetch_all(&mut *connection)
     .await?;
-    // From the first part on it is archived and its files are gone; a restart finds here what to go on with.
+    // With the first part, the study is archived and its results are deleted. After a restart, this row shows that the deletion must
+    // continue.
     query(
         "INSERT INTO deletions (study, last_calibration, last_experiment, deleted_at_ms)
          SELECT id, (SELECT coalesce(max(id), 0) FROM calibrations WHERE study = ?1), ?2, ?3 FROM studies WHERE id = ?1
@@ -83,7 +84,7 @@ pub(super) async fn delete_part(
     Ok(true)
 }
 
-/// Archives a study at a time, or takes it back where none is given.
+/// Archives a study at a time; without a time, restores it.
 pub(super) async fn archive(
     connection: &mut Connection,
     study: i64,
@@ -98,10 +99,7 @@ pub(super) async fn archive(
 }
 
 impl Reader {
-    /// Studies of which a part has been deleted; none in a store of before migration 15, which only reading leaves as it is.
-    ///
-    /// # Errors
-    /// [`StoreError`].
+    /// Reads the studies that are deleted in part. A store of before migration 15 has none.
     pub async fn half_deleted(&self) -> Result<Vec<i64>, StoreError> {
         if !self.has_table("deletions").await? {
             return Ok(Vec::new());
@@ -110,13 +108,9 @@ impl Reader {
         Ok(studies.fetch_all(&self.pool).await?)
     }
 
-    /// Archived studies with the times at which they were archived `[ms since 1970]`. A store of before migration 15, which only
-    /// reading leaves as it is, has none.
-    ///
-    /// # Errors
-    /// [`StoreError`].
+    /// Reads the archived studies with the times at which they were archived `[ms since 1970]`. A store of before migration 15 has none.
     pub async fn archived(&self) -> Result<Vec<(i64, i64)>, StoreError> {
-        // It came with the same migration.
+        // The column was added by the same migration.
         if !self.has_table("deletions").await? {
             return Ok(Vec::new());
         }

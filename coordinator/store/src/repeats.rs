@@ -1,4 +1,4 @@
-//! How models that are not ours answer what they are asked twice.
+//! Statistics of external models that are evaluated twice at the same parameters.
 
 use shared::exchange::RepeatedAnswer;
 
@@ -7,7 +7,7 @@ use super::reader::Reader;
 use super::sql::{Connection, query, query_as};
 use record::Repeats;
 
-/// Adds two answers to the count of a calibration.
+/// Adds two answers to the statistics of a calibration.
 pub(super) async fn add(
     connection: &mut Connection,
     calibration: i64,
@@ -36,11 +36,8 @@ pub(super) async fn add(
 }
 
 impl Reader {
-    /// How the model of a calibration answered what it was asked twice; nothing was where it is ours. A store of before migration
-    /// 19, which only reading leaves as it is, knows of none.
-    ///
-    /// # Errors
-    /// [`StoreError`].
+    /// Reads how the external model of a calibration answered when it was evaluated twice. A calibration of a built-in model, and a store
+    /// of before migration 19, have no such statistics.
     pub async fn repeats(&self, calibration: i64) -> Result<Repeats, StoreError> {
         if !self.has_table("repeats").await? {
             return Ok(Repeats::default());

@@ -1,27 +1,33 @@
-//! The files that a finished study ends with.
+//! The stored results of studies: texts that were computed from a state of the study.
 
 use std::collections::BTreeMap;
 
 use super::error::StoreError;
 use super::reader::Reader;
 use super::sql::{Connection, query, query_as, query_scalar};
+use super::stamp::Stamp;
 
 /// Files of a study, computed by one build of the program from one state of the study.
 #[derive(Debug, Clone)]
 pub struct StudyResults {
     /// The study.
     pub study: i64,
-    /// The stamp of the build and the members that they were computed by and from.
-    pub stamp: String,
+    /// The build and the state of the study from which they were computed.
+    pub stamp: Stamp,
     /// Text of each file by its name.
     pub files: BTreeMap<String, String>,
 }
 
-/// Writes files of a study; those under another stamp are out of date and go. A study that is deleted meanwhile keeps nothing.
+/// Writes files of a study and deletes those under other stamps. Files that were computed from an earlier state of the study than the
+/// present one are dropped, because a slow request must not replace newer files. A study that is being deleted keeps nothing.
 pub(super) async fn write(connection: &mut Connection, results: StudyResults) -> Result<(), sqlx::Error> {
+    if !results.stamp.is_current(connection, results.study).await? {
+        return Ok(());
+    }
+    let stamp = results.stamp.to_string();
     query("DELETE FROM results WHERE study = ? AND stamp <> ?")
         .bind(results.study)
-        .bind(&results.stamp)
+        .bind(&stamp)
         .execute(&mut *connection)
         .await?;
     for (name, body) in results.files {
@@ -32,7 +38,7 @@ pub(super) async fn write(connection: &mut Connection, results: StudyResults) ->
         )
         .bind(results.study)
         .bind(name)
-        .bind(&results.stamp)
+        .bind(&stamp)
         .bind(body)
         .execute(&mut *connection)
         .await?;
@@ -41,10 +47,7 @@ pub(super) async fn write(connection: &mut Connection, results: StudyResults) ->
 }
 
 impl Reader {
-    /// A file of a study, if it was stored under this stamp. Of a store before migration 10, which has none, `None`.
-    ///
-    /// # Errors
-    /// [`StoreError`].
+    /// Reads a file of a study, if it was stored under this stamp. A store of before migration 10 has no files.
     pub async fn result(&self, study: i64, name: &str, stamp: &str) -> Result<Option<String>, StoreError> {
         if !self.has_table("results").await? {
             return Ok(None);
@@ -58,10 +61,7 @@ impl Reader {
         Ok(body)
     }
 
-    /// The file of one name of every study that has it, with its stamp.
-    ///
-    /// # Errors
-    /// [`StoreError`].
+    /// Reads the file with one name of every study that has it, with its stamp.
     pub async fn results(&self, name: &str) -> Result<BTreeMap<i64, (String, String)>, StoreError> {
         if !self.has_table("results").await? {
             return Ok(BTreeMap::new());
@@ -77,45 +77,56 @@ impl Reader {
 
 #[cfg(test)]
 mod tests {
+    use record::Fact;
+    use shared::api::CalibrationState;
+
     use super::*;
     use crate::fixture;
 
     #[tokio::test]
-    async fn results_are_read_under_their_own_stamp_alone_and_go_with_it() {
+    async fn results_are_read_under_their_own_stamp_alone_and_an_older_one_replaces_no_newer() {
         let (_folder, store, calibration) = fixture::store().await;
-        let study = store
-            .reader()
-            .calibration(calibration)
-            .await
-            .unwrap()
-            .unwrap()
-            .study;
-        let keep = async |stamp: &str, names: &[&str]| {
+        let reader = store.reader();
+        let study = reader.calibration(calibration).await.unwrap().unwrap().study;
+        let stamp = async || reader.stamped_study(study, "b1").await.unwrap().0;
+        let keep = async |stamp: &Stamp, names: &[&str]| {
             let file = |name: &&str| ((*name).to_owned(), format!("{name} by {stamp}"));
             let files = names.iter().map(file).collect();
-            let stamp = stamp.to_owned();
-            store
-                .writer()
-                .keep_results(StudyResults { study, stamp, files })
-                .await
-                .unwrap();
+            let stamp = stamp.clone();
+            let results = StudyResults { study, stamp, files };
+            store.writer().keep_results(results).await.unwrap();
         };
-        let read = async |name: &str, stamp: &str| store.reader().result(study, name, stamp).await.unwrap();
-        assert_eq!(read("report.html", "one").await, None);
-        keep("one", &["report.html", "diagnostics-1.json"]).await;
-        assert_eq!(read("report.html", "one").await.unwrap(), "report.html by one");
-        assert_eq!(read("report.html", "two").await, None);
-        keep("two", &["report.html"]).await;
-        assert_eq!(read("report.html", "one").await, None);
-        assert_eq!(read("diagnostics-1.json", "one").await, None);
-        assert_eq!(read("report.html", "two").await.unwrap(), "report.html by two");
-        keep("two", &["figures-1.json"]).await;
-        assert!(read("report.html", "two").await.is_some(), "of the same stamp");
-        let reports = store.reader().results("report.html").await.unwrap();
-        assert_eq!(
-            reports[&study],
-            ("two".to_owned(), "report.html by two".to_owned())
-        );
+        let read = async |name: &str, stamp: &Stamp| {
+            let text = reader.result(study, name, &stamp.to_string()).await.unwrap();
+            assert!(
+                text.as_ref()
+                    .is_none_or(|text| *text == format!("{name} by {stamp}"))
+            );
+            text.is_some()
+        };
+        let old = stamp().await;
+        assert!(!read("report.html", &old).await);
+        keep(&old, &["report.html", "diagnostics-1.json"]).await;
+        assert!(read("report.html", &old).await);
+        let finished = Fact::State {
+            calibration,
+            state: CalibrationState::Finished,
+            message: None,
+            busy_ms: 0,
+        };
+        let number = store.writer().sink()(vec![finished]).unwrap();
+        store.writer().durable(number).await.unwrap();
+        let new = stamp().await;
+        assert!(!read("report.html", &new).await);
+        keep(&new, &["report.html"]).await;
+        assert!(!read("report.html", &old).await && !read("diagnostics-1.json", &old).await);
+        assert!(read("report.html", &new).await);
+        keep(&new, &["figures-1.json"]).await;
+        keep(&old, &["report.html"]).await;
+        assert!(read("report.html", &new).await && read("figures-1.json", &new).await);
+        assert!(!read("report.html", &old).await);
+        let reports = reader.results("report.html").await.unwrap();
+        assert_eq!(reports[&study].0, new.to_string());
         store.close().await;
     }
 }

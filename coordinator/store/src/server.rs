@@ -1,4 +1,4 @@
-//! A store in a PostgreSQL server: its connections, its lock, and what is refused as one.
+//! A store in a PostgreSQL server: its connections, its lock, and the checks that refuse other databases.
 
 use std::str::FromStr;
 use std::time::Duration;
@@ -11,27 +11,27 @@ use super::migrations;
 use super::place::name_of;
 use super::sql::{Connection, query, query_scalar};
 
-/// An idle writer asks so often whether its connection is still there.
+/// How often an idle writer checks whether its connection still exists.
 pub(super) const PROBE: Duration = Duration::from_secs(2);
-/// The server answers that within so long, or is taken for lost.
+/// The time within which the server must answer this check. Later, the connection counts as lost.
 pub(super) const ANSWER_TIME: Duration = Duration::from_secs(5);
-/// A group of facts takes milliseconds; a server that has not stored one in so long is taken for lost.
+/// The time within which the server must store a group of facts, which takes milliseconds. Later, the connection counts as lost.
 pub(super) const GROUP_TIME: Duration = Duration::from_secs(30);
 
-/// Awaits the result of a statement; an error if it takes longer.
+/// Awaits the result of a statement. Returns an error if it takes longer than `max`.
 pub(super) async fn in_time<T>(
-    most: Duration,
+    max: Duration,
     statement: impl Future<Output = Result<T, sqlx::Error>>,
 ) -> Result<T, sqlx::Error> {
     let late = |_| sqlx::Error::Io(std::io::Error::from(std::io::ErrorKind::TimedOut));
-    tokio::time::timeout(most, statement).await.map_err(late)?
+    tokio::time::timeout(max, statement).await.map_err(late)?
 }
 
-/// The number of the lock that the one writer of a database holds: "grouser" in its first bytes.
+/// The number of the lock that the one writer of a database holds: the letters of "grouser".
 const LOCK: i64 = 0x67_72_6f_75_73_65_72;
 
-/// A server soon notices that a machine is gone: probes after 2 s, three of them a second apart, and no more than 5 s for what it has
-/// sent itself to be acknowledged, while which it does not probe.
+/// Settings with which a server soon detects that a machine is gone: probes after 2 s, three of them a second apart, and at most 5 s until
+/// data that the server sent itself is acknowledged, because it does not probe meanwhile.
 const SETTINGS: [(&str, &str); 4] = [
     ("tcp_keepalives_idle", "2"),
     ("tcp_keepalives_interval", "1"),
@@ -40,49 +40,49 @@ const SETTINGS: [(&str, &str); 4] = [
 ];
 
 fn options(path: &str) -> Result<PgConnectOptions, StoreError> {
-    let options = PgConnectOptions::from_str(path).map_err(|source| StoreError::of(path, source))?;
+    let options = PgConnectOptions::from_str(path).map_err(|source| StoreError::new(path, source))?;
     Ok(options.application_name("grouser").options(SETTINGS))
 }
 
-/// A connection that may write.
+/// Opens a connection that may write.
 pub(super) async fn connect(path: &str) -> Result<Connection, StoreError> {
     let connected = PgConnection::connect_with(&options(path)?).await;
-    let mut connection = Connection::Postgres(connected.map_err(|source| StoreError::of(path, source))?);
-    // An acknowledged commit is on disk, whatever the server's default is.
+    let mut connection = Connection::Postgres(connected.map_err(|source| StoreError::new(path, source))?);
+    // An acknowledged commit must be on disk, whatever the server's default is.
     let durable = query("SET synchronous_commit = on")
         .execute(&mut connection)
         .await;
-    durable.map_err(|source| StoreError::of(path, source))?;
+    durable.map_err(|source| StoreError::new(path, source))?;
     Ok(connection)
 }
 
-/// Connections that read.
+/// Opens a pool of connections that read.
 pub(super) async fn pool(path: &str) -> Result<PgPool, StoreError> {
     let options = options(path)?;
-    // A pool would try again for half a minute what the server refuses at once.
+    // A pool would repeat for half a minute an attempt that the server refuses at once.
     let first = PgConnection::connect_with(&options).await;
     let closed = first
-        .map_err(|source| StoreError::of(path, source))?
+        .map_err(|source| StoreError::new(path, source))?
         .close()
         .await;
-    closed.map_err(|source| StoreError::of(path, source))?;
+    closed.map_err(|source| StoreError::new(path, source))?;
     Ok(PgPoolOptions::new().max_connections(4).connect_lazy_with(options))
 }
 
-/// Takes the lock of the one writer; whether it was free. The server releases it when the connection ends, whatever ends it. All that is
-/// written goes through the same connection: who has lost the lock can write nothing.
+/// Takes the lock of the one writer. Returns whether it was free. The server releases it when the connection ends. All writes go through
+/// the same connection, so a process that has lost the lock cannot write.
 pub(super) async fn lock(connection: &mut Connection, path: &str) -> Result<bool, StoreError> {
     let taken = query_scalar("SELECT pg_try_advisory_lock(?)").bind(LOCK);
     taken
         .fetch_one(connection)
         .await
-        .map_err(|source| StoreError::of(path, source))
+        .map_err(|source| StoreError::new(path, source))
 }
 
-/// Refuses a database that somebody else has made, or a later version of this program.
+/// Refuses a database that another program or a later version of this program has made.
 pub(super) async fn recognise(connection: &mut Connection, path: &str) -> Result<(), StoreError> {
-    let wrap = |source| StoreError::of(path, source);
-    // An interrupted first start may leave an empty table of migrations. Views are ignored; they are not ours.
+    let wrap = |source| StoreError::new(path, source);
+    // An interrupted first start may leave an empty table of migrations. Views are ignored, because this program makes none.
     let tables = "SELECT count(*) FROM information_schema.tables
                   WHERE table_schema = current_schema() AND table_type = 'BASE TABLE' AND table_name <> '_sqlx_migrations'";
     let all: i64 = query_scalar(tables)
@@ -94,11 +94,11 @@ pub(super) async fn recognise(connection: &mut Connection, path: &str) -> Result
     }
     let ours = "SELECT count(*) FROM information_schema.tables WHERE table_schema = current_schema()
                 AND table_name IN ('_sqlx_migrations', 'calibrations')";
-    let known: i64 = query_scalar(ours)
+    let supported: i64 = query_scalar(ours)
         .fetch_one(&mut *connection)
         .await
         .map_err(wrap)?;
-    if known != 2 {
+    if supported != 2 {
         return Err(StoreError::Unfit {
             path: name_of(path),
             reason: "the database has tables that Grouser did not create".into(),
@@ -106,12 +106,12 @@ pub(super) async fn recognise(connection: &mut Connection, path: &str) -> Result
     }
     let found = query_scalar("SELECT max(version) FROM _sqlx_migrations");
     let found: Option<i64> = found.fetch_one(connection).await.map_err(wrap)?;
-    let (found, known) = (found.unwrap_or_default(), migrations::VERSION);
-    match found > known {
+    let (found, supported) = (found.unwrap_or_default(), migrations::VERSION);
+    match found > supported {
         true => Err(StoreError::Newer {
             path: name_of(path),
             found,
-            known,
+            supported,
         }),
         false => Ok(()),
     }

@@ -1,7 +1,7 @@
-//! Statements of the two databases that a store may stand in: written once, in the SQL that both have.
+//! SQL statements that run on SQLite and on PostgreSQL.
 //!
-//! A statement is written with SQLite's parameters, `?` or `?1`; for PostgreSQL they become `$1`. The functions of SQLite that
-//! statements use stand in `migrations/postgres`. What only one of them has (PRAGMAs, locks, sizes) stands in `file` and `server`.
+//! A statement is written with SQLite's parameters, `?` or `?1`; for PostgreSQL they become `$1`. `migrations/postgres` defines the
+//! functions of SQLite that statements use. Parts that only one database has (PRAGMAs, locks, sizes) are in `file` and `server`.
 
 use std::marker::PhantomData;
 
@@ -12,7 +12,7 @@ use sqlx::sqlite::SqliteRow;
 use sqlx::{AssertSqlSafe, Connection as _, PgConnection, PgPool, Postgres, SqlSafeStr, SqlStr, Sqlite};
 use sqlx::{Decode, Row as _, SqliteConnection, SqlitePool, Type};
 
-/// The character that takes the place of NUL in a text: PostgreSQL has no text with NUL.
+/// The replacement of NUL in a text, because PostgreSQL's texts cannot contain NUL.
 const NUL: &str = "\u{2400}";
 
 /// A connection that may write.
@@ -48,7 +48,7 @@ impl<'a> From<&'a Pool> for On<'a> {
 }
 
 impl Connection {
-    /// Begins a transaction that writes; whatever has begun is rolled back where the connection ends before [`Connection::commit`].
+    /// Begins a transaction that writes. It is rolled back if the connection ends before [`Connection::commit`].
     pub(super) async fn begin(&mut self) -> Result<(), sqlx::Error> {
         let begin = match self {
             Connection::Sqlite(_) => "BEGIN IMMEDIATE",
@@ -70,7 +70,7 @@ impl Connection {
 }
 
 impl Pool {
-    /// A connection that sees one moment of the store for as long as it is held.
+    /// Opens a connection that sees the store as it is at this moment.
     pub(super) async fn view(&self) -> Result<Connection, sqlx::Error> {
         let (mut connection, begin) = match self {
             Pool::Sqlite(pool) => (Connection::Sqlite(pool.acquire().await?.detach()), "BEGIN"),
@@ -108,16 +108,16 @@ pub(super) enum Value {
     Bytes(Option<Vec<u8>>),
 }
 
-/// Values of one Rust type are values of one kind.
+/// Implements `From` for the Rust types of each kind of value.
 macro_rules! values {
-    ($($kind:ident: $($of:ty),+;)+) => {$($(
-        impl From<$of> for Value {
-            fn from(value: $of) -> Self {
+    ($($kind:ident: $($renumbered:ty),+;)+) => {$($(
+        impl From<$renumbered> for Value {
+            fn from(value: $renumbered) -> Self {
                 Value::$kind(Some(value.into()))
             }
         }
-        impl From<Option<$of>> for Value {
-            fn from(value: Option<$of>) -> Self {
+        impl From<Option<$renumbered>> for Value {
+            fn from(value: Option<$renumbered>) -> Self {
                 Value::$kind(value.map(Into::into))
             }
         }
@@ -144,7 +144,7 @@ pub(super) enum Row {
     Postgres(PgRow),
 }
 
-/// A type that a column is read as: either database decodes it.
+/// A type that both databases can decode from a column.
 pub(super) trait Column<'r>:
     Decode<'r, Sqlite> + Type<Sqlite> + Decode<'r, Postgres> + Type<Postgres>
 {
@@ -161,7 +161,7 @@ impl Row {
         }
     }
 
-    /// Reads a column that cannot fail, because its table says what it holds.
+    /// Reads a column of which the table guarantees the type.
     pub(super) fn get<'r, T: Column<'r>>(&'r self, column: &str) -> T {
         match self {
             Row::Sqlite(row) => row.get(column),
@@ -185,7 +185,7 @@ pub(super) struct Query {
     is_kept: bool,
 }
 
-/// A statement; a connection prepares it once.
+/// Makes a statement; a connection prepares it once.
 pub(super) fn query(sql: impl SqlSafeStr) -> Query {
     Query {
         sql: sql.into_sql_str(),
@@ -211,7 +211,31 @@ macro_rules! bound {
     }};
 }
 
-/// A text that PostgreSQL takes.
+/// Runs a method of the statement of either database, and maps its result.
+macro_rules! run {
+    ($query:expr, $on:expr, $method:ident, $sqlite:expr, $postgres:expr) => {
+        match $on.into() {
+            On::Connection(Connection::Sqlite(connection)) => {
+                let statement = bound!($query.sql, $query, |text| text);
+                statement.$method(connection).await.map($sqlite)
+            }
+            On::Pool(Pool::Sqlite(pool)) => {
+                let statement = bound!($query.sql, $query, |text| text);
+                statement.$method(pool).await.map($sqlite)
+            }
+            On::Connection(Connection::Postgres(connection)) => {
+                let statement = bound!(numbered(&$query.sql), $query, without_nul);
+                statement.$method(connection).await.map($postgres)
+            }
+            On::Pool(Pool::Postgres(pool)) => {
+                let statement = bound!(numbered(&$query.sql), $query, without_nul);
+                statement.$method(pool).await.map($postgres)
+            }
+        }
+    };
+}
+
+/// Replaces NUL in a text, which PostgreSQL does not accept.
 fn without_nul(text: String) -> String {
     match text.contains('\0') {
         true => text.replace('\0', NUL),
@@ -220,74 +244,29 @@ fn without_nul(text: String) -> String {
 }
 
 impl Query {
-    /// The value of the next parameter.
+    /// Binds the value of the next parameter.
     pub(super) fn bind(mut self, value: impl Into<Value>) -> Query {
         self.values.push(value.into());
         self
     }
 
-    /// Executes it; how many rows it changed.
+    /// Executes the statement. Returns how many rows it changed.
     pub(super) async fn execute(self, on: impl Into<On<'_>>) -> Result<u64, sqlx::Error> {
-        match on.into() {
-            On::Connection(Connection::Sqlite(connection)) => {
-                let statement = bound!(self.sql, self, |text| text);
-                statement
-                    .execute(connection)
-                    .await
-                    .map(|done| done.rows_affected())
-            }
-            On::Pool(Pool::Sqlite(pool)) => {
-                let statement = bound!(self.sql, self, |text| text);
-                statement.execute(pool).await.map(|done| done.rows_affected())
-            }
-            On::Connection(Connection::Postgres(connection)) => {
-                let statement = bound!(numbered(&self.sql), self, without_nul);
-                statement
-                    .execute(connection)
-                    .await
-                    .map(|done| done.rows_affected())
-            }
-            On::Pool(Pool::Postgres(pool)) => {
-                let statement = bound!(numbered(&self.sql), self, without_nul);
-                statement.execute(pool).await.map(|done| done.rows_affected())
-            }
-        }
+        run!(self, on, execute, |done| done.rows_affected(), |done| done
+            .rows_affected())
     }
 
     pub(super) async fn fetch_all(self, on: impl Into<On<'_>>) -> Result<Vec<Row>, sqlx::Error> {
         fn rows<R>(rows: Vec<R>, row: fn(R) -> Row) -> Vec<Row> {
             rows.into_iter().map(row).collect()
         }
-        match on.into() {
-            On::Connection(Connection::Sqlite(connection)) => {
-                let statement = bound!(self.sql, self, |text| text);
-                statement
-                    .fetch_all(connection)
-                    .await
-                    .map(|all| rows(all, Row::Sqlite))
-            }
-            On::Pool(Pool::Sqlite(pool)) => {
-                let statement = bound!(self.sql, self, |text| text);
-                statement.fetch_all(pool).await.map(|all| rows(all, Row::Sqlite))
-            }
-            On::Connection(Connection::Postgres(connection)) => {
-                let statement = bound!(numbered(&self.sql), self, without_nul);
-                statement
-                    .fetch_all(connection)
-                    .await
-                    .map(|all| rows(all, Row::Postgres))
-            }
-            On::Pool(Pool::Postgres(pool)) => {
-                let statement = bound!(numbered(&self.sql), self, without_nul);
-                statement
-                    .fetch_all(pool)
-                    .await
-                    .map(|all| rows(all, Row::Postgres))
-            }
-        }
+        run!(self, on, fetch_all, |all| rows(all, Row::Sqlite), |all| rows(
+            all,
+            Row::Postgres
+        ))
     }
 
-    /// The rows one by one, as they come.
+    /// Returns the rows as a stream.
     pub(super) fn fetch(self, connection: &mut Connection) -> BoxStream<'_, Result<Row, sqlx::Error>> {
         match connection {
             Connection::Sqlite(connection) => {
@@ -313,13 +292,13 @@ impl Query {
 /// A statement whose rows are tuples.
 pub(super) struct QueryAs<T>(Query, PhantomData<T>);
 
-/// A statement whose rows are tuples.
+/// Makes a statement whose rows are tuples.
 pub(super) fn query_as<T: Tuple>(sql: impl SqlSafeStr) -> QueryAs<T> {
     QueryAs(query(sql), PhantomData)
 }
 
 impl<T: Tuple> QueryAs<T> {
-    /// The value of the next parameter.
+    /// Binds the value of the next parameter.
     pub(super) fn bind(self, value: impl Into<Value>) -> QueryAs<T> {
         QueryAs(self.0.bind(value), PhantomData)
     }
@@ -344,7 +323,7 @@ impl<T: Tuple> QueryAs<T> {
 /// A statement whose rows have one column.
 pub(super) struct QueryScalar<T>(QueryAs<(T,)>);
 
-/// A statement whose rows have one column.
+/// Makes a statement whose rows have one column.
 pub(super) fn query_scalar<T>(sql: impl SqlSafeStr) -> QueryScalar<T>
 where
     (T,): Tuple,
@@ -356,7 +335,7 @@ impl<T> QueryScalar<T>
 where
     (T,): Tuple,
 {
-    /// The value of the next parameter.
+    /// Binds the value of the next parameter.
     pub(super) fn bind(self, value: impl Into<Value>) -> QueryScalar<T> {
         QueryScalar(self.0.bind(value))
     }
@@ -380,37 +359,37 @@ where
     }
 }
 
-/// The fate of a row whose key is there already.
+/// The treatment of a row whose key exists already.
 pub(super) enum Conflict<'a> {
-    /// It stays, and the new one is dropped.
+    /// The old row stays, and the new one is dropped.
     Keep,
-    /// The new one takes its place; these columns are the key.
+    /// The new row replaces the old one; these columns are the key.
     Replace(&'a [&'a str]),
 }
 
-/// Inserts rows of so many columns in one statement.
+/// Makes a statement that inserts rows.
 pub(super) fn insert(table: &str, columns: &[&str], rows: Vec<Vec<Value>>, conflict: &Conflict<'_>) -> Query {
     let row = format!("({})", vec!["?"; columns.len()].join(", "));
     let places = vec![row.as_str(); rows.len()].join(", ");
     let conflict = match conflict {
         Conflict::Keep => "DO NOTHING".to_owned(),
         Conflict::Replace(key) => {
-            let others = columns.iter().filter(|column| !key.contains(column));
-            let taken: Vec<String> = others.map(|c| format!("{c} = excluded.{c}")).collect();
+            let updated = columns.iter().filter(|column| !key.contains(column));
+            let taken: Vec<String> = updated.map(|c| format!("{c} = excluded.{c}")).collect();
             format!("({}) DO UPDATE SET {}", key.join(", "), taken.join(", "))
         }
     };
     let columns = columns.join(", ");
     let insert = format!("INSERT INTO {table} ({columns}) VALUES {places} ON CONFLICT {conflict}");
     Query {
-        // One of many rows is large, and seldom the same.
+        // A statement of many rows is large and seldom repeated, so it is not kept prepared.
         is_kept: rows.len() == 1,
         values: rows.into_iter().flatten().collect(),
         sql: AssertSqlSafe(insert).into_sql_str(),
     }
 }
 
-/// A statement with PostgreSQL's parameters in place of SQLite's. What stands in quotes is left as it is.
+/// Replaces SQLite's parameters by PostgreSQL's, except inside quotes.
 fn numbered(sql: &SqlStr) -> SqlStr {
     let mut text = String::with_capacity(sql.as_str().len() + 64);
     let (mut is_quoted, mut count) = (false, 0);
@@ -436,12 +415,12 @@ mod tests {
 
     #[test]
     fn parameters_are_numbered_and_quotes_left_alone() {
-        let of = |sql: &'static str| numbered(&sql.into_sql_str()).as_str().to_owned();
-        assert_eq!(of("a = ? AND b = ?"), "a = $1 AND b = $2");
+        let renumbered = |sql: &'static str| numbered(&sql.into_sql_str()).as_str().to_owned();
+        assert_eq!(renumbered("a = ? AND b = ?"), "a = $1 AND b = $2");
         assert_eq!(
-            of("a = ?2 AND b = ?1 AND c = ?12"),
+            renumbered("a = ?2 AND b = ?1 AND c = ?12"),
             "a = $2 AND b = $1 AND c = $12"
         );
-        assert_eq!(of("a = '?''?' AND b = ?"), "a = '?''?' AND b = $1");
+        assert_eq!(renumbered("a = '?''?' AND b = ?"), "a = '?''?' AND b = $1");
     }
 }

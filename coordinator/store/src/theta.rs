@@ -1,4 +1,4 @@
-//! Parameter vectors in a column: little-endian `f64`; JSON text in what was stored before migration 9.
+//! Parameter vectors in a column: little-endian `f64`; JSON text in rows of before migration 9.
 
 use sqlx::{Row as _, TypeInfo, ValueRef};
 
@@ -7,7 +7,7 @@ use super::error::StoreError;
 use super::json::numbers;
 use super::sql::Row;
 
-/// The parameter vector of a row, from its column `theta`.
+/// Returns the parameter vector of a row, from its column `theta`.
 pub(super) fn theta(row: &Row) -> Result<Vec<f64>, StoreError> {
     if let Row::Sqlite(row) = row
         && row.try_get_raw("theta")?.type_info().name() == "TEXT"

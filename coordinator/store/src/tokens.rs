@@ -1,4 +1,4 @@
-//! Tokens in the store, which the command line changes while a coordinator may be running.
+//! Access tokens in the store. The command line changes them while a coordinator may be running.
 
 use super::error::StoreError;
 use super::opening;
@@ -9,10 +9,7 @@ use record::{Token, TokenHash, TokenRole};
 const TOKENS: &str = "SELECT name, role, hash, created_at_ms, revoked_at_ms FROM tokens ORDER BY id";
 
 impl Reader {
-    /// Every token that was ever made, oldest first. A store of before migration 14 has none.
-    ///
-    /// # Errors
-    /// [`StoreError`].
+    /// Reads every token, revoked ones included, oldest first. A store of before migration 14 has none.
     pub async fn tokens(&self) -> Result<Vec<Token>, StoreError> {
         if !self.has_table("tokens").await? {
             return Ok(Vec::new());
@@ -37,7 +34,7 @@ fn token(row: &Row) -> Result<Token, StoreError> {
     })
 }
 
-/// Inserts a token unless its name is in use; how many rows that made.
+/// Inserts a token unless its name is in use. Returns how many rows were inserted.
 async fn insert_token(connection: &mut Connection, token: &Token) -> Result<u64, sqlx::Error> {
     query("INSERT INTO tokens (name, role, hash, created_at_ms) VALUES (?, ?, ?, ?) ON CONFLICT DO NOTHING")
         .bind(&token.name)
@@ -48,23 +45,19 @@ async fn insert_token(connection: &mut Connection, token: &Token) -> Result<u64,
         .await
 }
 
-/// The tokens of a store, for changing them.
+/// Write access to the tokens of a store.
 ///
-/// This is the one way to write to a store beside its coordinator: each change is one short transaction of SQLite, for
-/// which the coordinator's writer waits.
+/// Only this type writes to a store beside its coordinator. Each change is one short transaction, for which the coordinator's writer waits.
 #[derive(Debug)]
 pub struct TokenTable {
     connection: Connection,
     path: String,
-    /// Keeps a coordinator from starting meanwhile; none where one is running.
+    /// The lock that keeps a coordinator from starting meanwhile; `None` where one is running.
     _lock: Option<std::fs::File>,
 }
 
 impl TokenTable {
-    /// Opens a store, also one in use; makes it or brings it up to date where no coordinator holds it.
-    ///
-    /// # Errors
-    /// [`StoreError`].
+    /// Opens a store, also one in use. If no coordinator holds it, it is created or brought up to date.
     pub async fn open(path: &str) -> Result<TokenTable, StoreError> {
         let (connection, lock) = opening::beside(path).await?;
         Ok(TokenTable {
@@ -75,31 +68,22 @@ impl TokenTable {
     }
 
     fn failed(&self, source: sqlx::Error) -> StoreError {
-        StoreError::of(&self.path, source)
+        StoreError::new(&self.path, source)
     }
 
-    /// Every token that was ever made, oldest first.
-    ///
-    /// # Errors
-    /// [`StoreError`].
+    /// Returns every token, revoked ones included, oldest first.
     pub async fn all(&mut self) -> Result<Vec<Token>, StoreError> {
         let rows = query(TOKENS).fetch_all(&mut self.connection).await;
         rows.map_err(|e| self.failed(e))?.iter().map(token).collect()
     }
 
-    /// Adds a token; whether its name was free.
-    ///
-    /// # Errors
-    /// [`StoreError`].
+    /// Adds a token. Returns whether its name was free.
     pub async fn add(&mut self, token: &Token) -> Result<bool, StoreError> {
         let added = insert_token(&mut self.connection, token).await;
         Ok(added.map_err(|e| self.failed(e))? == 1)
     }
 
-    /// Adds a token in place of the one of its name, unless that is the same.
-    ///
-    /// # Errors
-    /// [`StoreError`].
+    /// Adds a token and revokes the token of the same name, unless both are the same.
     pub async fn replace(&mut self, token: &Token) -> Result<(), StoreError> {
         let replaced = async {
             self.connection.begin().await?;
@@ -117,10 +101,7 @@ impl TokenTable {
         replaced.await.map_err(|source| self.failed(source))
     }
 
-    /// Revokes the token of a name; whether there was one in use.
-    ///
-    /// # Errors
-    /// [`StoreError`].
+    /// Revokes the token with a name. Returns whether there was one in use.
     pub async fn revoke(&mut self, name: &str, now_ms: i64) -> Result<bool, StoreError> {
         let revoked = query("UPDATE tokens SET revoked_at_ms = ? WHERE name = ? AND revoked_at_ms IS NULL")
             .bind(now_ms)
@@ -131,12 +112,9 @@ impl TokenTable {
     }
 
     /// Closes the store.
-    ///
-    /// # Errors
-    /// [`StoreError`].
     pub async fn close(self) -> Result<(), StoreError> {
         let TokenTable { connection, path, .. } = self;
         let closed = connection.close().await;
-        closed.map_err(|source| StoreError::of(&path, source))
+        closed.map_err(|source| StoreError::new(&path, source))
     }
 }

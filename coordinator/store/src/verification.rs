@@ -1,11 +1,11 @@
-//! The consequences of comparing a worker's answers with those of another.
+//! The consequences of comparing the answers of workers: confirmations, quarantine, rewinds.
 
 use super::error::StoreError;
 use super::reader::Reader;
 use super::sql::{Connection, query, query_as};
 use record::{EvaluationKey, Quarantine, Verified};
 
-/// Notes that a second worker has reproduced a result.
+/// Records that a second worker has reproduced a result.
 pub(super) async fn confirm(
     connection: &mut Connection,
     calibration: i64,
@@ -21,7 +21,7 @@ pub(super) async fn confirm(
         .map(drop)
 }
 
-/// Notes that a worker computes wrongly.
+/// Records that a worker computes wrongly.
 pub(super) async fn quarantine(
     connection: &mut Connection,
     worker: &str,
@@ -44,7 +44,7 @@ pub(super) async fn quarantine(
     .bind(evaluation as i64)
     .execute(&mut *connection)
     .await?;
-    // An answer of this worker disputes nothing any more where the calibration goes on.
+    // In unfinished calibrations, a dispute with a wrong answer is settled.
     query(
         "DELETE FROM disputes WHERE ? IN (first, second) AND calibration IN
          (SELECT id FROM calibrations WHERE state NOT IN ('finished', 'failed', 'cancelled'))",
@@ -55,7 +55,7 @@ pub(super) async fn quarantine(
     .map(drop)
 }
 
-/// Drops the unconfirmed results of a worker, and all results of later rounds: they were asked for because of them.
+/// Deletes the unconfirmed results of a worker and all results of later rounds, because the later parameter vectors depend on them.
 pub(super) async fn rewind(
     connection: &mut Connection,
     calibration: i64,
@@ -80,7 +80,7 @@ pub(super) async fn rewind(
     .bind(results)
     .execute(&mut *connection)
     .await?;
-    // An answer of this worker disputes nothing any more.
+    // A dispute with a wrong answer is settled.
     query("DELETE FROM disputes WHERE calibration = ?1 AND ?2 IN (first, second)")
         .bind(calibration)
         .bind(worker)
@@ -97,7 +97,7 @@ pub(super) async fn rewind(
     .bind(worker)
     .execute(&mut *connection)
     .await?;
-    // The evaluations that failed then were asked something else.
+    // After the rewind, these numbers stand for other parameter vectors, which get new attempts.
     query(
         "INSERT INTO faults (calibration, evaluation, attempt, worker, message, at_ms)
          SELECT DISTINCT calibration, evaluation, 0, '', 'asked anew: earlier results were dropped', unixepoch('subsec') * 1000
@@ -107,7 +107,7 @@ pub(super) async fn rewind(
     .bind(round_end)
     .execute(&mut *connection)
     .await?;
-    // The replay tells again those of them that still hold.
+    // The replay writes those rows again that still hold.
     for table in ["stages", "samples", "estimates", "discoveries"] {
         let sql = format!("DELETE FROM {table} WHERE calibration = ?");
         query(sqlx::AssertSqlSafe(sql))
@@ -128,10 +128,7 @@ pub(super) async fn rewind(
 }
 
 impl Reader {
-    /// The workers that compute wrongly.
-    ///
-    /// # Errors
-    /// [`StoreError`].
+    /// Reads the workers that compute wrongly.
     pub async fn quarantine(&self) -> Result<Vec<Quarantine>, StoreError> {
         let rows: Vec<(String, i64, i64)> =
             query_as("SELECT worker, calibration, evaluation FROM quarantine ORDER BY worker")
@@ -145,27 +142,10 @@ impl Reader {
         Ok(rows.into_iter().map(quarantine).collect())
     }
 
-    /// How many doubts about workers the store has: disputes and quarantined workers. What was computed before a new one does not
-    /// say it.
-    ///
-    /// # Errors
-    /// [`StoreError`].
-    pub async fn doubts(&self) -> Result<(i64, i64), StoreError> {
-        if !self.has_table("quarantine").await? {
-            return Ok((0, 0));
-        }
-        let counts = query_as("SELECT (SELECT count(*) FROM disputes), (SELECT count(*) FROM quarantine)");
-        Ok(counts.fetch_one(&self.pool).await?)
-    }
-
-    /// How far the results of a calibration are verified. In a store of before migration 18, which only reading leaves as it is, none
-    /// is.
-    ///
-    /// # Errors
-    /// [`StoreError`].
+    /// Reads how many results of a calibration are verified. In a store of before migration 18, no result is verified.
     pub async fn verified(&self, calibration: i64) -> Result<Verified, StoreError> {
         if !self.has_table("quarantine").await? {
-            // Written before results were verified.
+            // Versions before migration 18 did not verify results.
             let (results, workers): (i64, i64) = query_as(
                 "SELECT count(*), count(DISTINCT worker) FROM evaluations WHERE calibration = ? AND worker <> ''",
             )
@@ -201,5 +181,40 @@ impl Reader {
             resting_on: counts(resting).collect(),
             computed_again: counts(rewound).collect(),
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use record::{Fact, Fingerprint};
+
+    use crate::fixture;
+
+    #[tokio::test]
+    async fn only_an_answer_that_differs_from_the_stored_one_changes_a_study() {
+        let (_folder, store, calibration) = fixture::store().await;
+        let mut sink = store.writer().sink();
+        let mut store_fact = async |fact: Fact| {
+            let number = sink(vec![fact]).unwrap();
+            store.writer().durable(number).await.unwrap();
+        };
+        store_fact(Fact::Evaluated {
+            calibration,
+            row: fixture::row(3, "a", 7),
+        })
+        .await;
+        let mut studies = store.writer().study_changes();
+        let duplicate = |fingerprint| Fact::Duplicate {
+            calibration,
+            evaluation: 3,
+            fingerprint: Fingerprint(fingerprint),
+            worker: "b".into(),
+        };
+        for (fingerprint, is_change) in [(7, false), (8, true), (8, false)] {
+            store_fact(duplicate(fingerprint)).await;
+            assert_eq!(studies.has_changed().unwrap(), is_change, "{fingerprint}");
+            studies.mark_unchanged();
+        }
+        store.close().await;
     }
 }

@@ -1,7 +1,7 @@
-//! The only task that writes: it commits all waiting writes as one group.
+//! The task that writes to the store. It commits all waiting writes as one group.
 //!
-//! Facts are numbered in the order of their arrival. An answer that rests on a fact is held back until the
-//! number of the last committed fact has reached it: acknowledged means durable.
+//! Facts are numbered in the order of their arrival. An answer that depends on a fact is held back until the fact is committed, so that
+//! acknowledged results are durable.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -25,9 +25,9 @@ use record::fact::{EvaluationRow, Fact};
 
 /// The largest number of facts in one commit.
 const GROUP: usize = 4096;
-/// Evaluations that nobody waits for gather for so long before they are committed: a commit writes whole pages.
+/// The time for which evaluations are collected before a commit if no answer depends on them, because a commit writes whole pages.
 const LINGER: Duration = Duration::from_millis(250);
-/// Changes of state that wait for whoever tells them; the oldest are dropped.
+/// The number of changes of state that are kept for slow listeners; older ones are dropped.
 const STATES: usize = 1024;
 
 enum Write {
@@ -69,7 +69,7 @@ enum Write {
     Close,
 }
 
-/// The way to the writer; clones are cheap.
+/// A handle of the writer; clones are cheap.
 #[derive(Debug, Clone)]
 pub struct Writer {
     sender: mpsc::UnboundedSender<Write>,
@@ -79,7 +79,7 @@ pub struct Writer {
     waiting: Arc<Waiting>,
 }
 
-/// Whether somebody waits for a commit.
+/// The number of tasks that wait for a commit.
 #[derive(Debug, Default)]
 struct Waiting {
     count: AtomicU64,
@@ -87,14 +87,14 @@ struct Waiting {
 }
 
 impl Waiting {
-    /// Ready as soon as somebody waits, or after [`LINGER`].
+    /// Waits until some task waits for a commit, but no longer than [`LINGER`].
     async fn linger(&self) {
         if self.count.load(Ordering::Acquire) == 0 {
             let _ = tokio::time::timeout(LINGER, self.arrived.notified()).await;
         }
     }
 
-    /// Waits for something that only a commit brings.
+    /// Awaits a future that only a commit completes, and makes the writer commit at once.
     async fn while_urgent<T>(&self, wait: impl Future<Output = T>) -> T {
         self.count.fetch_add(1, Ordering::AcqRel);
         self.arrived.notify_one();
@@ -103,7 +103,7 @@ impl Waiting {
     }
 }
 
-/// Counts a waiter out, also when its future is dropped.
+/// A guard that decreases the number of waiting tasks, also when its future is dropped.
 struct Leave<'a>(&'a Waiting);
 
 impl Drop for Leave<'_> {
@@ -113,12 +113,12 @@ impl Drop for Leave<'_> {
 }
 
 impl Writer {
-    /// Starts the task. `lock` is held until it ends.
+    /// Starts the task, which holds `lock` until it ends.
     pub(super) fn start(connection: Connection, lock: Option<std::fs::File>) -> Writer {
         let (sender, receiver) = mpsc::unbounded_channel();
         let (committed_sender, committed) = watch::channel(0);
         let listeners = Listeners::new(STATES);
-        let told = listeners.clone();
+        let notified = listeners.clone();
         let health = Arc::new(StoreHealth::default());
         let waiting = Arc::new(Waiting::default());
         let (shared, waited_for) = (health.clone(), waiting.clone());
@@ -128,7 +128,7 @@ impl Writer {
                 connection,
                 receiver,
                 &committed_sender,
-                &told,
+                &notified,
                 &shared,
                 &waited_for,
             )
@@ -136,7 +136,7 @@ impl Writer {
             {
                 tracing::error!(%error, "the store cannot be written");
             }
-            // Dropping `committed_sender` tells everyone who waits for a commit.
+            // Dropping `committed_sender` notifies every task that waits for a commit.
         });
         Writer {
             sender,
@@ -147,7 +147,7 @@ impl Writer {
         }
     }
 
-    /// The way to a writer that is not there: whatever is sent is refused.
+    /// Makes the handle of a store without a writer, which refuses every write.
     pub(super) fn none() -> Writer {
         let (sender, _) = mpsc::unbounded_channel();
         let (_, committed) = watch::channel(0);
@@ -160,8 +160,10 @@ impl Writer {
         }
     }
 
-    /// The farm's end of the way to the writer. It sends facts in order and returns the number of the last fact so far, or `None`
-    /// after the writer has ended. It alone numbers facts, so a store has one.
+    /// Returns the function by which the farm sends facts in order.
+    ///
+    /// It returns the number of the last fact, or `None` after the writer has ended. Only one such function may exist for a store, because
+    /// it numbers the facts.
     pub fn sink(&self) -> impl FnMut(Vec<Fact>) -> Option<u64> + Send + 'static {
         let (sender, health, waiting) = (self.sender.clone(), self.health.clone(), self.waiting.clone());
         let mut sent = 0;
@@ -193,14 +195,14 @@ impl Writer {
             .map_err(|_| StoreError::Stopped)
     }
 
-    /// Waits until the writer has ended: only a failing store ends it before its handles are gone.
+    /// Waits until the writer has ended. Only a failing store ends it while there are handles.
     pub async fn stopped(&self) {
         let mut committed = self.committed.clone();
         while committed.changed().await.is_ok() {}
     }
 
-    /// Stores what was sent before, then ends the task. What a lock of another program keeps from being stored is given up:
-    /// nobody has been told that it is.
+    /// Stores all facts that were sent before, then ends the task. If another program holds a lock on the store, waiting facts are dropped;
+    /// none of them has been acknowledged.
     pub async fn close(&self) {
         if self.sender.send(Write::Close).is_err() {
             return;
@@ -219,7 +221,7 @@ impl Writer {
         }
     }
 
-    /// Facts that wait to be stored.
+    /// Returns the number of facts that wait to be stored.
     pub fn backlog(&self) -> u64 {
         self.health
             .sent
@@ -227,48 +229,39 @@ impl Writer {
             .saturating_sub(*self.committed.borrow())
     }
 
-    /// Changes of state from now on, each after it is stored.
+    /// Returns a receiver of later changes of state, each sent after it is stored.
     pub fn state_changes(&self) -> broadcast::Receiver<StateChange> {
         self.listeners.states()
     }
 
-    /// Changes from now on of what studies there are, of their members and of the states of these, each after it is stored. Several may
-    /// be told as one.
+    /// Returns a receiver that is notified after a later change of studies, their members, the states of these, or the doubts about workers
+    /// is stored. Several changes may cause one notification.
     pub fn study_changes(&self) -> watch::Receiver<()> {
         self.listeners.studies()
     }
 
-    /// Whether the writer has ended, or there was none.
+    /// Returns whether the writer has ended, or never existed.
     pub fn has_ended(&self) -> bool {
         self.committed.has_changed().is_err()
     }
 
-    /// Figures of the writer.
+    /// Returns the counters of the writer.
     pub fn health(&self) -> &StoreHealth {
         &self.health
     }
 
-    /// Stores an experiment; its id.
-    ///
-    /// # Errors
-    /// [`StoreError::Stopped`].
+    /// Stores an experiment. Returns its id.
     pub async fn add_experiment(&self, files: FileSet, now_ms: i64) -> Result<i64, StoreError> {
         let write = |reply| Write::Experiment { files, now_ms, reply };
         self.committed(write).await
     }
 
-    /// Stores a study with its first calibrations; their ids.
-    ///
-    /// # Errors
-    /// [`StoreError::Stopped`].
+    /// Stores a study with its first calibrations. Returns their ids.
     pub async fn add_study(&self, new: NewStudy) -> Result<StudyIds, StoreError> {
         self.committed(|reply| Write::Study { new, reply }).await
     }
 
-    /// Stores a calibration of a study that is there, on its experiment or on another; its id.
-    ///
-    /// # Errors
-    /// [`StoreError::Stopped`].
+    /// Stores a further calibration of a study, on its experiment or on another one. Returns its id.
     pub async fn add_member(
         &self,
         study: i64,
@@ -286,42 +279,31 @@ impl Writer {
         self.committed(write).await
     }
 
-    /// Stores a version of an effect, unless its text is one already.
-    ///
-    /// # Errors
-    /// [`StoreError::Stopped`].
+    /// Stores a version of an effect, unless a version with the same text exists.
     pub async fn add_effect(&self, new: NewEffect) -> Result<AddedEffect, StoreError> {
         self.committed(|reply| Write::Effect { new, reply }).await
     }
 
-    /// Stores the files of a study in place of those that were there.
-    ///
-    /// # Errors
-    /// [`StoreError::Stopped`].
+    /// Stores the files of a study and deletes those under other stamps, unless the study has changed since the files were computed.
     pub async fn keep_results(&self, results: StudyResults) -> Result<(), StoreError> {
         self.committed(|reply| Write::Results { results, reply }).await
     }
 
-    /// Archives a study at a time, or takes it back where none is given.
-    ///
-    /// # Errors
-    /// [`StoreError::Stopped`].
+    /// Archives a study at a time; without a time, restores it.
     pub async fn archive_study(&self, study: i64, at_ms: Option<i64>) -> Result<(), StoreError> {
         self.committed(|reply| Write::Archive { study, at_ms, reply })
             .await
     }
 
-    /// Deletes a study with all that belongs to it alone, in parts: the facts of others are stored between them.
-    ///
-    /// # Errors
-    /// [`StoreError::Stopped`].
+    /// Deletes a study with all rows that belong to it alone. It is deleted in parts, so that facts of other studies are stored between
+    /// them.
     pub async fn delete_study(&self, study: i64, now_ms: i64) -> Result<(), StoreError> {
         let delete = |reply| Write::Delete { study, now_ms, reply };
         while !self.committed(delete).await? {}
         Ok(())
     }
 
-    /// Sends a write and waits for what it replies once it is committed.
+    /// Sends a write and waits for its reply, which comes after the commit.
     async fn committed<T>(&self, write: impl FnOnce(oneshot::Sender<T>) -> Write) -> Result<T, StoreError> {
         let (reply, answer) = oneshot::channel();
         self.sender.send(write(reply)).map_err(|_| StoreError::Stopped)?;
@@ -371,8 +353,8 @@ async fn run(
     connection.close().await
 }
 
-/// Waits for writes; how many there are, none once nobody can send any. Meanwhile a server is asked whether the connection is still
-/// there, and with it the lock: an idle coordinator, too, must end when another one may have taken over.
+/// Waits for writes. Returns their number, which is zero once all handles are dropped. Meanwhile it checks whether a server still holds the
+/// connection and its lock: an idle coordinator, too, must end when another one may have taken over.
 async fn next_writes(
     connection: &mut Connection,
     receiver: &mut mpsc::UnboundedReceiver<Write>,
@@ -392,7 +374,7 @@ async fn next_writes(
     }
 }
 
-/// Stores writes in one transaction; how many of them are facts.
+/// Stores writes in one transaction. Returns how many of them are facts.
 async fn store_group(
     connection: &mut Connection,
     group: impl Iterator<Item = Write>,
@@ -413,7 +395,7 @@ async fn store_group(
     Ok(facts)
 }
 
-/// Answers that may only be given after the commit.
+/// Replies that are sent after the commit.
 #[derive(Default)]
 struct Replies {
     ids: Vec<(oneshot::Sender<i64>, i64)>,
@@ -422,14 +404,14 @@ struct Replies {
     done: Vec<oneshot::Sender<()>>,
     deleted: Vec<(oneshot::Sender<bool>, bool)>,
     states: Vec<StateChange>,
-    /// Whether a study has begun, grown, been archived, taken back or deleted, or may have lost results.
+    /// Whether studies, their members or the doubts about workers have changed.
     have_studies_changed: bool,
 }
 
 impl Replies {
     fn send(self, listeners: &Listeners) {
         listeners.tell(self.states, self.have_studies_changed);
-        // An asker that has gone away finds what it stored in the list.
+        // If the receiver of a reply is gone, the row is stored nevertheless.
         for (reply, id) in self.ids {
             let _ = reply.send(id);
         }
@@ -465,8 +447,9 @@ async fn write_group(
                     Fact::Evaluated { calibration, row } => rows.push((calibration, row)),
                     other => {
                         insert_evaluations(connection, &mut rows).await?;
-                        replies.states.extend(StateChange::of(&other));
-                        super::facts::write(connection, other, health).await?;
+                        replies.states.extend(StateChange::from_fact(&other));
+                        replies.have_studies_changed |=
+                            super::facts::write(connection, other, health).await?;
                     }
                 }
             }
@@ -483,7 +466,7 @@ async fn write_group(
                 replies.done.push(reply);
             }
             Write::Delete { study, now_ms, reply } => {
-                // The facts about its calibrations that were told before go with them.
+                // Facts about its calibrations that arrived before are written first, so that they are deleted too.
                 insert_evaluations(connection, &mut rows).await?;
                 let is_gone = super::removal::delete_part(connection, study, now_ms).await?;
                 replies.deleted.push((reply, is_gone));
@@ -511,12 +494,11 @@ async fn write_group(
     Ok(facts)
 }
 
-/// Whether a write changes which studies there are, which members they have, or which results of theirs are kept: a late result that
-/// differs from the stored one makes them out of date.
+/// Returns whether a write changes which studies there are, or which members they have.
 fn changes_studies(write: &Write) -> bool {
     use Write::{Archive, Delete, Member, Study};
     matches!(
         write,
-        Study { .. } | Member { .. } | Archive { .. } | Delete { .. } | Write::Fact(Fact::Duplicate { .. })
+        Study { .. } | Member { .. } | Archive { .. } | Delete { .. }
     )
 }

@@ -1,8 +1,8 @@
-//! The farm under simulated faults, by the million.
+//! A simulation of the farm under faults, for a million random schedules.
 //!
-//! `cargo bench -p farm --bench simulation [-- schedules N [FIRST] | planted | seed S [BUG]]`: a million schedules where nothing is said;
-//! every planted bug until it is found; or one schedule with everything that happens in it. Exits with 1 where a promise is broken, or a
-//! planted bug is not found within a minute. docs/farm.md says what a schedule is.
+//! `cargo bench -p farm --bench simulation [-- schedules N [FIRST] | planted | seed S [BUG]]`: runs a million schedules by default; every
+//! planted bug until it is found; or one schedule with a log of its events. Exits with 1 where a promise is broken, or where a planted bug
+//! is not found within a minute. docs/promises.md describes schedules.
 
 mod world;
 
@@ -15,9 +15,9 @@ use world::plant::Plant;
 use world::schedule::{self, Journal};
 use world::search::{Search, search};
 
-/// Schedules where nothing is said.
+/// The number of schedules without an argument.
 const SCHEDULES: u64 = 1_000_000;
-/// A planted bug must be found within.
+/// The time within which a planted bug must be found.
 const MAX_TIME: Duration = Duration::from_secs(60);
 
 fn main() -> ExitCode {
@@ -36,7 +36,10 @@ fn main() -> ExitCode {
             .map_err(|_| USAGE.to_owned())
             .and_then(|seed| one(seed, None)),
         ["seed", seed, bug] => {
-            let plant = Plant::ALL.into_iter().find(|plant| format!("{plant:?}") == bug);
+            let plant = Plant::ALL
+                .iter()
+                .copied()
+                .find(|plant| format!("{plant:?}") == bug);
             let seed = seed.parse().ok().filter(|_| plant.is_some());
             seed.ok_or_else(|| USAGE.to_owned())
                 .and_then(|seed| one(seed, plant))
@@ -55,14 +58,14 @@ fn main() -> ExitCode {
 
 const USAGE: &str = "expected schedules N [FIRST], planted, or seed S [BUG]";
 
-/// So many seeds from the first.
+/// Returns a range of `number` seeds that begins with `first`.
 fn seeds(number: &str, first: &str) -> Result<Range<u64>, String> {
     let numbers = number.parse::<u64>().ok().zip(first.parse::<u64>().ok());
     let end = numbers.and_then(|(number, first)| Some((first, first.checked_add(number)?)));
     end.map(|(first, end)| first..end).ok_or_else(|| USAGE.to_owned())
 }
 
-/// Runs the schedules of some seeds on all cores; whether every promise is kept.
+/// Runs the schedules of some seeds on all cores. Returns whether every promise is kept.
 fn schedules(seeds: Range<u64>) -> Result<bool, String> {
     let cases = Case::all()?;
     let Search { tally, broken, time } = search(&cases, None, seeds, None);
@@ -79,12 +82,12 @@ fn schedules(seeds: Range<u64>) -> Result<bool, String> {
     Ok(broken.is_none())
 }
 
-/// Looks for every planted bug; whether each is found in time.
+/// Searches for every planted bug. Returns whether each is found in time.
 fn planted() -> Result<bool, String> {
     let cases = Case::all()?;
     let mut all = true;
     println!("{:<24} {:>10} {:>8}  found by", "planted bug", "schedules", "s");
-    for plant in Plant::ALL {
+    for &plant in Plant::ALL {
         let Search { tally, broken, time } = search(&cases, Some(plant), 1..u64::MAX, Some(MAX_TIME));
         let found = broken.map_or("NOT FOUND".into(), |(seed, broken)| {
             format!("{broken} (seed {seed})")
@@ -100,7 +103,7 @@ fn planted() -> Result<bool, String> {
     Ok(all)
 }
 
-/// Shows one schedule; whether every promise is kept.
+/// Runs one schedule and prints its events. Returns whether every promise is kept.
 fn one(seed: u64, plant: Option<Plant>) -> Result<bool, String> {
     let cases = Case::all()?;
     match schedule::run(&cases, seed, plant, Journal(true)) {

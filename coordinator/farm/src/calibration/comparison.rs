@@ -1,4 +1,4 @@
-//! Answers of a calibration beside those of other workers.
+//! The comparison of a calibration's answers with those of a second worker.
 
 use super::Calibration;
 use super::second_answer::Answer;
@@ -6,7 +6,7 @@ use super::witness::NOBODY;
 use record::Fact;
 
 impl Calibration {
-    /// Takes the answer that is stored; its evaluation may be asked for twice.
+    /// Takes the first answer to an evaluation, which is stored, and asks a second worker if the evaluation is to be verified.
     pub(super) fn answered_first(&mut self, answer: Answer, evaluation: u64) {
         self.witness.store(evaluation, answer.clone(), false);
         if answer.worker == NOBODY {
@@ -20,7 +20,7 @@ impl Calibration {
         self.witness.second.answered(evaluation, answer);
     }
 
-    /// Takes an answer that was stored before a restart. The round of its evaluation is the present one.
+    /// Takes an answer of the present round that was stored before a restart.
     pub(super) fn answered_before(&mut self, answer: Answer, evaluation: u64, is_confirmed: bool) {
         match is_confirmed {
             true => self.witness.store(evaluation, answer, true),
@@ -28,7 +28,7 @@ impl Calibration {
         }
     }
 
-    /// Takes an answer to an evaluation that has one already. The facts to store.
+    /// Takes a further answer to an evaluation. Returns the facts to store.
     pub(super) fn compare(&mut self, evaluation: u64, answer: Answer) -> Vec<Fact> {
         if let Some(first) = self.witness.disputed(evaluation, &answer) {
             self.ask_second(evaluation, None);

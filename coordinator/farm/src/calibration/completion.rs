@@ -1,4 +1,4 @@
-//! The results of a calibration: what they count, what follows from them, what is stored.
+//! The completion of evaluations: it checks and scores a result, and determines the facts to store and the next step.
 
 use inference::TellProgress;
 use shared::api::CalibrationState;
@@ -17,22 +17,41 @@ use job::AlgorithmSettings;
 use record::{EvaluationKey, EvaluationRow, Fact, Kept, RejectionReason};
 
 impl Calibration {
-    /// Takes the result of an evaluation; late duplicates change nothing.
+    /// Takes the result of an evaluation; a late duplicate is compared with the stored result and changes nothing else.
     ///
     /// Returns the facts to store, in order, and whether the result counted.
     ///
     /// # Errors
-    /// [`ResultError`] for a result that does not fit its variant: the worker's fault, nothing is recorded.
+    /// [`ResultError`] for a result that does not fit its variant. The calibration is unchanged; the caller fails the lease.
     pub fn complete(
         &mut self,
         evaluation: u64,
         computed: SimulationResult,
         worker: &str,
     ) -> Result<(Vec<Fact>, bool), ResultError> {
-        if let Err(error) = self.check(evaluation, &computed) {
-            self.witness.forget_unanswered(evaluation);
-            return Err(error);
+        self.check(evaluation, &computed)?;
+        Ok(self.take(evaluation, computed, worker))
+    }
+
+    /// Takes the result of an evaluation as [`Calibration::complete`] does, and asks a second worker for the same evaluation in order to
+    /// compare their answers.
+    ///
+    /// # Errors
+    /// The same as of [`Calibration::complete`].
+    pub fn complete_verified(
+        &mut self,
+        evaluation: u64,
+        computed: SimulationResult,
+        worker: &str,
+    ) -> Result<(Vec<Fact>, bool), ResultError> {
+        self.check(evaluation, &computed)?;
+        if self.witness.verification.is_on() && self.queue.is_asked(evaluation) {
+            self.ask_second(evaluation, None);
         }
+        Ok(self.take(evaluation, computed, worker))
+    }
+
+    fn take(&mut self, evaluation: u64, computed: SimulationResult, worker: &str) -> (Vec<Fact>, bool) {
         let answer = Answer {
             worker: worker.to_owned(),
             fingerprint: computed.fingerprint(),
@@ -40,7 +59,7 @@ impl Calibration {
         match self.queue.complete(evaluation) {
             Completion::First => {}
             Completion::Duplicate | Completion::Unknown => {
-                return Ok((self.compare(evaluation, answer), false));
+                return (self.compare(evaluation, answer), false);
             }
         }
         let row = match self.row(evaluation, computed, &answer) {
@@ -48,7 +67,7 @@ impl Calibration {
             Err(error) => {
                 let mut facts = Vec::new();
                 self.finish(CalibrationState::Failed, Some(error.to_string()), &mut facts);
-                return Ok((facts, false));
+                return (facts, false);
             }
         };
         let mut consequences = Vec::new();
@@ -57,10 +76,11 @@ impl Calibration {
         let calibration = self.identity.id;
         let mut facts = vec![Fact::Evaluated { calibration, row }];
         facts.append(&mut consequences);
-        Ok((facts, true))
+        (facts, true)
     }
 
-    /// Checks that a result answers what is asked for at present; what an earlier round has asked is not known.
+    /// Checks that a result answers the question of its evaluation. A question of an earlier round is no longer known, so its result
+    /// passes.
     fn check(&self, evaluation: u64, computed: &SimulationResult) -> Result<(), ResultError> {
         let Some(question) = self.question(evaluation) else {
             return Ok(());
@@ -82,7 +102,7 @@ impl Calibration {
         Ok(())
     }
 
-    /// What the store keeps of a result, and the engine is told.
+    /// Makes the row that the store keeps and the engine is told.
     fn row(
         &self,
         evaluation: u64,
@@ -90,13 +110,13 @@ impl Calibration {
         answer: &Answer,
     ) -> Result<EvaluationRow, LikelihoodError> {
         let SimulationResult { end, mut outcome } = computed;
-        let asked = self
+        let proposed = self
             .theta(evaluation)
             .expect("the queue holds only evaluations asked for");
-        let theta = end.as_ref().map_or(asked, |end| &end.theta).to_vec();
+        let theta = end.as_ref().map_or(proposed, |end| &end.theta).to_vec();
         let is_scored = self.phase.is_sampling() && self.engine.discovery().is_none();
         let score = |outcome| self.score(outcome, &theta);
-        // Where a subchain stayed there is nothing to score, and nothing is asked of the score.
+        // Where a subchain stayed at its start, there is no outcome and no score.
         let log_likelihood = outcome.as_ref().filter(|_| is_scored).map(score).transpose()?;
         let coarse = match &mut outcome {
             Some(Ok(observables)) if self.phase.is_sampling() => observables.coarse.take(),
@@ -114,7 +134,7 @@ impl Calibration {
         })
     }
 
-    /// The log-likelihood of an outcome.
+    /// Returns the log-likelihood of an outcome.
     fn score(
         &self,
         outcome: &Result<Observables, RejectionReason>,
@@ -125,7 +145,8 @@ impl Calibration {
         };
         let values = self.spec.predicted_values(observables);
         match self.spec.likelihood.log_likelihood(&values, theta) {
-            // A draw from the tail of a prior that reaches zero: such a sd says something about theta, not about the model.
+            // A draw from the tail of a prior may have a standard deviation of zero. This is a property of theta, not an error of the
+            // model.
             Err(LikelihoodError::Noise { .. }) => Ok(LogLikelihood::Impossible),
             scored => scored,
         }
@@ -147,14 +168,14 @@ impl Calibration {
         }
     }
 
-    /// Whether predicted values are kept in this round: an engine is told them again, or the draws are from the prior, which
-    /// diagnostics compare with the posterior.
+    /// Returns whether predicted values are kept in this round: because the engine is told them again at a restart, or because diagnostics
+    /// compare draws from the prior with the posterior.
     fn keeps_values(&self) -> bool {
         let samples = matches!(self.spec.algorithm, AlgorithmSettings::Sample(_));
         self.spec.algorithm.is_told_values() || (samples && self.engine.round() == 0)
     }
 
-    /// Lets a completed evaluation take effect on counts, engine and phase.
+    /// Updates counts, engine and phase after a completed evaluation.
     pub(super) fn advance(&mut self, row: &EvaluationRow, facts: &mut Vec<Fact>) {
         self.count(row);
         if !self.phase.is_sampling() {
@@ -188,21 +209,21 @@ impl Calibration {
     }
 
     fn count(&mut self, row: &EvaluationRow) {
-        // A subchain that stayed where it was has evaluated nothing.
+        // A subchain that stayed at its start has evaluated nothing.
         let is_simulated = row.end.as_ref().is_none_or(|end| end.accepted > 0);
-        // Held-out runs of a draw are no further parameter vector.
+        // The held-out runs of a draw do not count as a further parameter vector.
         let is_counted = is_simulated && !self.key(row.evaluation).is_of_holdout();
         self.cost.simulations += u64::from(is_simulated);
         self.cost.evaluations += u64::from(is_counted);
         self.cost.rejected += u64::from(is_counted && row.kept.is_rejected());
     }
 
-    /// Stores what the engine has found, and asks for the final draws; a search has none.
+    /// Stores the result of the engine, and asks for the final draws; a search has none.
     fn end_sampling(&mut self, facts: &mut Vec<Fact>) {
         let calibration = self.identity.id;
         let (draws, fact) = match self.engine.finding() {
             Some(CalibrationResult::Posterior(posterior)) => {
-                let draws = FinalDraws::of_posterior(posterior);
+                let draws = FinalDraws::from_posterior(posterior);
                 let posterior = Box::new(posterior.clone());
                 (
                     Some(draws),
@@ -213,7 +234,7 @@ impl Calibration {
                 )
             }
             Some(CalibrationResult::Estimate(estimate)) => {
-                let draws = FinalDraws::of_estimate(estimate, self.variants.has_histories());
+                let draws = FinalDraws::from_estimate(estimate, self.variants.has_histories());
                 let estimate = Box::new(estimate.clone());
                 (
                     Some(draws),
@@ -236,8 +257,8 @@ impl Calibration {
         }
     }
 
-    /// Notes that the model refuses the holdout runs of a draw together. Where there is one alone, or where a machine failed,
-    /// asking again would bring nothing.
+    /// Notes that the model rejects the holdout runs of a draw together, so that they are simulated one by one. This would not help with a
+    /// single holdout run, or where machines failed.
     fn note_refused(&mut self, row: &EvaluationRow) {
         if let EvaluationKey::Prediction { draw, holdout: true } = self.key(row.evaluation)
             && row.kept.is_rejected()
@@ -249,7 +270,7 @@ impl Calibration {
         }
     }
 
-    /// What follows when everything is there that the phase asks for.
+    /// Begins the next phase, once the present one has all its answers.
     fn end_phase(&mut self, facts: &mut Vec<Fact>) {
         self.phase = std::mem::take(&mut self.phase).next();
         match self.phase {
@@ -258,7 +279,7 @@ impl Calibration {
         }
     }
 
-    /// Ends a calibration that has nothing left to do, not even to compare.
+    /// Finishes a calibration that has no evaluations and no comparisons left.
     pub fn settle(&mut self, facts: &mut Vec<Fact>) {
         if self.is_concluded() && self.witness.second.waiting() == 0 {
             self.finish(CalibrationState::Finished, None, facts);

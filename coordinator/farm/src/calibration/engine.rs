@@ -1,4 +1,4 @@
-//! The sampler, fit, evolution or discovery of a calibration: what asks for evaluations and is told their results.
+//! The engine of a calibration: sampler, fit, evolution or search. It proposes evaluations and is told their results.
 
 use inference::evolution::Evolution;
 use inference::lm::LmFit;
@@ -10,29 +10,29 @@ use job::{AlgorithmSettings, AlgorithmSettingsError, Spec};
 use record::{Discovery, EvaluationRow};
 use search::{DiscoveryError, RunningDiscovery, SearchModels};
 
-/// What asks for evaluations and is told their results.
+/// The algorithm that proposes evaluations and is told their results.
 #[derive(Debug)]
 pub enum CalibrationEngine {
-    /// Samples the posterior; told log-likelihoods.
+    /// Samples the posterior; it is told log-likelihoods.
     Sampler(Box<Sampler>),
-    /// Fits the most probable parameters by steps; told predicted values.
+    /// Fits the most probable parameters by steps; it is told predicted values.
     Fit(Box<LmFit>),
-    /// Finds the most probable parameters by generations; told log-likelihoods.
+    /// Finds the most probable parameters by generations; it is told log-likelihoods.
     Evolution(Box<Evolution>),
-    /// Searches for what the model is missing; told predicted values.
+    /// Searches for a missing effect; it is told predicted values.
     Discovery(Box<RunningDiscovery>),
 }
 
-/// Why a calibration cannot begin.
+/// The reason why a calibration cannot begin.
 #[derive(Debug, thiserror::Error)]
 pub enum BeginError {
     /// The settings do not fit the prior.
     #[error("[sampler] {0}")]
     AlgorithmSettings(#[from] AlgorithmSettingsError),
-    /// The search has a model that cannot be made.
+    /// A model of the search cannot be made.
     #[error(transparent)]
     Search(#[from] DiscoveryError),
-    /// A search for a missing effect needs the models that it asks.
+    /// A search for a missing effect was begun without its models.
     #[error("a search for a missing effect needs the texts of its job and experiment")]
     NoModels,
 }
@@ -40,18 +40,18 @@ pub enum BeginError {
 /// A result that an engine cannot take.
 #[derive(Debug, thiserror::Error)]
 pub(super) enum EngineError {
-    /// It answers nothing that was asked.
+    /// It does not belong to a pending proposal.
     #[error(transparent)]
     Tell(#[from] TellError),
-    /// What follows cannot be asked.
+    /// The next round of the search cannot be proposed.
     #[error(transparent)]
     Discovery(#[from] DiscoveryError),
-    /// Its log-likelihood is no number.
+    /// Its log-likelihood is not a number.
     #[error(transparent)]
     Score(#[from] NotANumber),
 }
 
-/// What a sampler is told of an evaluation.
+/// Makes the result that a sampler is told.
 fn sampled(row: &EvaluationRow) -> Result<EvaluationResult, NotANumber> {
     let log_likelihood = log_likelihood(row)?;
     let pair = row.kept.fitted().zip(row.coarse.as_ref());
@@ -68,28 +68,28 @@ fn sampled(row: &EvaluationRow) -> Result<EvaluationResult, NotANumber> {
     })
 }
 
-/// ln p(data | theta) at the parameters that were asked for; where the model refused, the data are impossible.
+/// Returns ln p(data | theta) of an evaluation. Where the model rejected the parameters, the data are impossible.
 pub(super) fn log_likelihood(row: &EvaluationRow) -> Result<LogLikelihood, NotANumber> {
     row.log_likelihood
         .map_or(Ok(LogLikelihood::Impossible), LogLikelihood::new)
 }
 
-/// What an engine ends with.
+/// The result of an engine.
 #[derive(Debug, Clone)]
 pub enum CalibrationResult<'a> {
     /// A sample of the posterior.
     Posterior(&'a PosteriorSample),
     /// The most probable parameters.
     Estimate(&'a ModeEstimate),
-    /// What the model is missing.
+    /// The result of a search for a missing effect.
     Discovery(Box<Discovery>),
 }
 
 impl CalibrationEngine {
-    /// An engine whose first round is pending.
+    /// Makes an engine whose first round is pending.
     ///
     /// # Arguments
-    /// - `models`: what a search for a missing effect asks; nothing else needs them.
+    /// - `models`: the models of a search for a missing effect; `None` for other algorithms.
     ///
     /// # Errors
     /// [`BeginError`] where the settings do not fit the prior, or a search has no models.
@@ -115,7 +115,7 @@ impl CalibrationEngine {
         })
     }
 
-    /// Number of completed rounds.
+    /// Returns the number of completed rounds.
     pub(super) fn round(&self) -> u64 {
         match self {
             CalibrationEngine::Sampler(sampler) => sampler.round().number(),
@@ -125,7 +125,7 @@ impl CalibrationEngine {
         }
     }
 
-    /// This round's proposals, by ascending particle.
+    /// Returns the proposals of this round, by ascending particle.
     pub(super) fn pending(&self) -> &[Proposal] {
         match self {
             CalibrationEngine::Sampler(sampler) => sampler.round().pending(),
@@ -135,7 +135,7 @@ impl CalibrationEngine {
         }
     }
 
-    /// Takes the result of a pending particle: log-likelihood and the kept values.
+    /// Tells the engine the result of a pending particle.
     pub(super) fn tell(&mut self, particle: usize, row: &EvaluationRow) -> Result<TellProgress, EngineError> {
         Ok(match self {
             CalibrationEngine::Sampler(sampler) => sampler.tell(particle, sampled(row)?)?,
@@ -145,7 +145,7 @@ impl CalibrationEngine {
         })
     }
 
-    /// The search for a missing effect, if this is one.
+    /// Returns the search for a missing effect, if the engine is one.
     pub(super) fn discovery(&self) -> Option<&RunningDiscovery> {
         match self {
             CalibrationEngine::Discovery(discovery) => Some(discovery),
@@ -155,7 +155,7 @@ impl CalibrationEngine {
         }
     }
 
-    /// What takes the subchains of the stage in progress, if anything does.
+    /// Returns the metamodel that runs the subchains of the stage in progress, if there is one.
     pub(super) fn metamodel(&self) -> Option<&Metamodel> {
         match self {
             CalibrationEngine::Sampler(sampler) => sampler.metamodel(),
@@ -165,7 +165,7 @@ impl CalibrationEngine {
         }
     }
 
-    /// The finished stages; only a sampler has any.
+    /// Returns the finished stages; only a sampler has any.
     pub fn stages(&self) -> &[StageRecord] {
         match self {
             CalibrationEngine::Sampler(sampler) => sampler.stages(),
@@ -175,7 +175,7 @@ impl CalibrationEngine {
         }
     }
 
-    /// The result, once finished.
+    /// Returns the result, once finished.
     pub fn finding(&self) -> Option<CalibrationResult<'_>> {
         match self {
             CalibrationEngine::Sampler(sampler) => sampler.posterior().map(CalibrationResult::Posterior),

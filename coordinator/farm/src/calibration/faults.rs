@@ -1,8 +1,8 @@
-//! Evaluations that machines failed at: how often they are tried, and when they are given up.
+//! Failed attempts at evaluations: how often an evaluation is tried, and when it is given up.
 //!
-//! Three failed attempts on three different workers are the evaluation's own fault: it is recorded as rejected, with the reason
-//! `fault`, and the calibration goes on, for at most [`GIVEN_UP_PERCENT`] of a round. Above that share, and where fewer workers
-//! failed, so that a machine may be at fault, the calibration pauses.
+//! Three failed attempts on three different workers count as the fault of the evaluation: it is recorded as rejected, with the reason
+//! `fault`, and the calibration goes on, for at most [`GIVEN_UP_PERCENT`] of a round. Above that share, and where fewer workers failed, so
+//! that a machine may be at fault, the calibration pauses.
 
 use shared::api::CalibrationState;
 use statistics::SubchainEnd;
@@ -13,11 +13,11 @@ use super::witness::NOBODY;
 use crate::lease::{LeaseFailure, MAX_ATTEMPTS, MAX_UNSTARTED};
 use record::Fact;
 
-/// The share of a round's evaluations that may be given up, rounded to the next whole number: none of fewer than 50 `[%]`.
+/// The share of a round's evaluations that may be given up, rounded to the nearest whole number, which is zero below 50 evaluations `[%]`.
 const GIVEN_UP_PERCENT: usize = 1;
 
 impl Calibration {
-    /// Records that a lease failed: kept over restarts. When the attempts are used up, the evaluation is given up or the
+    /// Records that a lease failed; attempts are remembered over restarts. When they are used up, the evaluation is given up or the
     /// calibration pauses.
     pub fn lease_failed(&mut self, failure: &LeaseFailure, message: &str) -> Vec<Fact> {
         let evaluation = failure.evaluation;
@@ -59,7 +59,7 @@ impl Calibration {
         facts
     }
 
-    /// Pauses because no worker lives long enough to begin an evaluation: neither its fault nor that of a machine is known.
+    /// Pauses because no worker has begun an evaluation in many leases. It is unknown whether the evaluation or a machine is at fault.
     pub fn never_begun(&mut self, evaluation: u64) -> Vec<Fact> {
         if !self.is_open() {
             return Vec::new();
@@ -73,7 +73,7 @@ impl Calibration {
         facts
     }
 
-    /// Resumes after a pause. Evaluations that had used up their attempts are given up with `skip_faults`, else they get new ones.
+    /// Resumes after a pause. Evaluations without attempts left are given up with `skip_faults`; otherwise they get new attempts.
     pub fn resume(&mut self, skip_faults: bool, facts: &mut Vec<Fact>) {
         let failed = std::mem::take(&mut self.failed);
         let exhausted = failed
@@ -84,7 +84,7 @@ impl Calibration {
             })
             .map(|(&evaluation, _)| evaluation)
             .collect::<Vec<u64>>();
-        // An attempt 0 in the list of faults: the new attempts outlive a restart.
+        // Attempt 0 in the list of faults makes the new attempts outlive a restart.
         facts.extend(failed.into_keys().map(|evaluation| Fact::Fault {
             calibration: self.identity.id,
             evaluation,
@@ -103,7 +103,7 @@ impl Calibration {
         }
     }
 
-    /// Records an evaluation as rejected because of faults; a subchain stays where it was.
+    /// Records an evaluation as rejected because of faults; a subchain stays at its start.
     fn give_up(&mut self, evaluation: u64, message: &str, facts: &mut Vec<Fact>) {
         let start = self.theta(evaluation).map(<[f64]>::to_vec);
         let stayed = start

@@ -1,4 +1,4 @@
-//! The parameter vectors simulated after a sampler or a fit has ended.
+//! The final draws: parameter vectors that are simulated after a sampler or a fit has ended.
 
 use std::collections::BTreeSet;
 
@@ -6,14 +6,14 @@ use inference::point_estimate::ModeEstimate;
 use inference::{Particle, PosteriorSample};
 use record::EvaluationKey;
 
-/// The simulations that follow once the posterior, or the estimate, is known.
+/// The parameter vectors that are simulated once the posterior or the estimate is known.
 #[derive(Debug)]
 pub(super) struct FinalDraws {
-    /// To simulate on fitted and holdout runs.
+    /// The vectors to simulate on fitted and holdout runs.
     pub(super) thetas: Vec<Vec<f64>>,
-    /// The one of the highest likelihood, if it is simulated once more.
+    /// The vector of the highest likelihood, if it is simulated once more.
     pub(super) likeliest: Option<Vec<f64>>,
-    /// The draws at which the model refuses one of several holdout runs.
+    /// The draws at which the model rejects one of several holdout runs.
     pub(super) refused: BTreeSet<usize>,
 }
 
@@ -26,16 +26,16 @@ impl FinalDraws {
         }
     }
 
-    /// The draws of a posterior.
-    pub(super) fn of_posterior(posterior: &PosteriorSample) -> Self {
+    /// Takes final draws from a posterior.
+    pub(super) fn from_posterior(posterior: &PosteriorSample) -> Self {
         spread(&posterior.particles, None)
     }
 
-    /// The draws of an estimate's normal approximation; without one, the estimate alone.
+    /// Takes final draws from an estimate's normal approximation; without one, the estimate is the only draw.
     ///
     /// # Arguments
-    /// - `has_histories`: whether the model knows time, so that the estimate is simulated once more.
-    pub(super) fn of_estimate(estimate: &ModeEstimate, has_histories: bool) -> Self {
+    /// - `has_histories`: whether the model has a time axis, so that the estimate is simulated once more.
+    pub(super) fn from_estimate(estimate: &ModeEstimate, has_histories: bool) -> Self {
         match &estimate.approximation {
             Some(approximation) => spread(&approximation.draws, Some(&estimate.theta)),
             None => FinalDraws::new(
@@ -45,7 +45,7 @@ impl FinalDraws {
         }
     }
 
-    /// The evaluations of all draws.
+    /// Returns the evaluations of all draws.
     pub(super) fn keys(&self, has_holdout: bool) -> Vec<EvaluationKey> {
         let parts = if has_holdout {
             [false, true].as_slice()
@@ -61,15 +61,15 @@ impl FinalDraws {
             .collect()
     }
 
-    /// The evaluations of so many holdout runs, one by one, at the draws at which the model refuses them together.
+    /// Returns the evaluations of `runs` holdout runs, one by one, at the draws at which the model rejects them together.
     pub(super) fn keys_of_refused(&self, runs: usize) -> Vec<EvaluationKey> {
         let key = |&draw: &usize| (0..runs).map(move |run| EvaluationKey::HoldoutRun { draw, run });
         self.refused.iter().flat_map(key).collect()
     }
 }
 
-/// The draws that are simulated on every run: the most probable parameters, by default the particle's, then evenly spaced
-/// draws; and the likeliest draw once more.
+/// Selects the draws that are simulated on every run: the most probable parameters (by default those of the most probable particle), then
+/// evenly spaced draws; and the likeliest draw once more.
 fn spread(particles: &[Particle], mode: Option<&[f64]>) -> FinalDraws {
     let highest = |score: &dyn Fn(usize) -> f64| {
         (0..particles.len()).reduce(|a, b| if score(b) > score(a) { b } else { a })

@@ -1,16 +1,16 @@
-//! A calibration in progress: the one place where sampler or fit, likelihood and leases meet.
+//! A calibration in progress, which combines sampler or fit, likelihood and leases.
 //!
-//! Pure: it is told outcomes and answers with facts to store. A result of a living worker and one that is
-//! replayed from the store advance it by the same code, so a restart cannot take another path.
+//! This module is pure: it takes outcomes and returns facts to store. A result of a living worker and one that is replayed from the store
+//! pass through the same code, so a restart arrives at the same state.
 //!
 //! # Layout
-//! - `mod`: [`Calibration`], and what it asks for.
-//! - `completion`: what follows from a result. [`replay`]: the same from the store.
-//! - `phase`, `final_draws`: where a calibration is. `variants`: what it evaluates there.
+//! - `mod`: [`Calibration`], and the evaluations that it asks for.
+//! - `completion`: the consequences of a result. [`replay`]: the same for stored results.
+//! - `phase`, `final_draws`: the progress of a calibration. `variants`: the model variants that it evaluates.
 //! - `engine`: sampler, fit, evolution or search.
-//! - `faults`: evaluations that machines failed at.
+//! - `faults`: failed attempts at evaluations.
 //! - `witness`, `comparison`, `second_answer`, `verification`: whether answers of two workers agree.
-//! - `question`, `simulation_result`: what an evaluation is leased with, and its result.
+//! - `question`, `simulation_result`: the question of a lease, and its result.
 
 mod comparison;
 mod completion;
@@ -52,7 +52,7 @@ pub use witness::Witness;
 /// The largest number of effects that a search looks for together.
 const MAX_EFFECTS_TOGETHER: usize = 3;
 
-/// What the farm needs to know of a calibration besides its specification.
+/// The place of a calibration in the store.
 #[derive(Debug, Clone)]
 pub struct CalibrationIdentity {
     /// Id in the store.
@@ -72,7 +72,7 @@ pub struct Cost {
     pub busy_ms: u64,
     /// Evaluations completed, over all stages.
     pub evaluations: u64,
-    /// The number of these that the model refused.
+    /// The number of these that the model rejected.
     pub rejected: u64,
     /// Simulations completed: evaluations, and those of held-out runs.
     pub simulations: u64,
@@ -87,11 +87,11 @@ pub struct Calibration {
     pub spec: Arc<Spec>,
     /// Its state.
     pub state: CalibrationState,
-    /// Why it is paused or failed.
+    /// The reason of a pause or a failure.
     pub message: Option<String>,
     /// Version of the equations and the effects, pinned by the first result.
     pub model_version: Option<String>,
-    /// Evaluations asked for at present, and who holds them.
+    /// The evaluations of the present round, and the workers that hold them.
     pub queue: LeaseQueue,
     /// What it has cost.
     pub cost: Cost,
@@ -105,7 +105,7 @@ pub struct Calibration {
 }
 
 impl Calibration {
-    /// A fresh calibration; its first evaluations are draws from the prior.
+    /// Makes a new calibration; its first evaluations are draws from the prior.
     ///
     /// # Errors
     /// [`BeginError`]: the settings do not fit the prior, or this is a search, which [`Calibration::from_files`] begins.
@@ -113,7 +113,7 @@ impl Calibration {
         Self::begin(identity, spec, None)
     }
 
-    /// A fresh calibration or search; a search for a missing effect makes its models from the texts of job and experiment.
+    /// Makes a new calibration or search. A search for a missing effect makes its models from the texts of job and experiment.
     ///
     /// # Errors
     /// [`BeginError`]: the settings do not fit the prior, or a model of a search cannot be made.
@@ -156,12 +156,14 @@ impl Calibration {
         Ok(calibration)
     }
 
-    /// Has a share of the answers compared with those of a second worker. A model that is not ours may answer in two ways on honest
-    /// machines: a worker asks it twice itself, and nobody is blamed.
+    /// Makes the calibration compare a share of its answers with those of a second worker.
+    ///
+    /// An external model may give two answers on honest machines. Its workers evaluate it twice themselves, so its answers are not compared
+    /// here.
     ///
     /// # Arguments
     /// - `share`: the share of the evaluations that a second worker computes as well, in [0, 1].
-    /// - `key`: the key of the calibration, which the choice depends on.
+    /// - `key`: the key of the calibration, which determines the verified evaluations.
     #[must_use]
     pub fn verified(mut self, share: f64, key: SealKey) -> Self {
         let share = match &self.spec.model.external {
@@ -172,22 +174,22 @@ impl Calibration {
         self
     }
 
-    /// What asks for evaluations, for progress.
+    /// Returns the engine, for its progress.
     pub fn engine(&self) -> &CalibrationEngine {
         &self.engine
     }
 
-    /// Whether evaluations may be leased.
+    /// Returns whether evaluations may be leased.
     pub fn is_open(&self) -> bool {
         matches!(self.state, CalibrationState::Queued | CalibrationState::Running)
     }
 
-    /// Whether nothing is left but to compare answers.
+    /// Returns whether only comparisons of answers are left.
     pub fn is_concluded(&self) -> bool {
         matches!(self.phase, Phase::Comparing(_)) && !self.state.is_final()
     }
 
-    /// What an evaluation is leased with; `None` of an evaluation that is not asked for at present.
+    /// Returns the question of an evaluation; `None` for an evaluation that is not in the present round.
     pub fn question(&self, evaluation: u64) -> Option<Question<'_>> {
         let theta = self.theta(evaluation)?;
         let subchain = self.subchain(evaluation);
@@ -195,7 +197,7 @@ impl Calibration {
             (Some(searched), _) => searched,
             (None, Some(_)) => (self.variants.with_metamodel()?, theta),
             (None, None) => {
-                let variant = self.variants.of_key(self.key(evaluation))?;
+                let variant = self.variants.for_key(self.key(evaluation))?;
                 (variant, self.spec.model_theta(theta))
             }
         };
@@ -206,17 +208,18 @@ impl Calibration {
         })
     }
 
-    /// The variant of a hash, if it is one of this calibration's.
+    /// Returns the variant with a hash, if this calibration uses it.
     pub fn variant(&self, hash: &str) -> Option<&ModelVariant> {
         let searched = || self.engine.discovery()?.variant(hash);
         let repeated = || self.witness.second.variant(hash);
         self.variants.get(hash).or_else(searched).or_else(repeated)
     }
 
-    /// Asks a second worker for an evaluation that is asked for at present; what an earlier one has asked is not known any more.
+    /// Asks a second worker for an evaluation of the present round. Questions of earlier rounds are no longer known.
     ///
     /// # Arguments
-    /// - `slow`: the lease that is too slow: the first answer is enough. Without one, the answers are compared.
+    /// - `slow`: the slow lease beside which the second worker is asked, so that the first answer is enough. Without one, the answers are
+    ///   compared.
     pub fn ask_second(&mut self, evaluation: u64, slow: Option<&SlowLease>) {
         let Some(question) = self.question(evaluation) else {
             return;
@@ -231,15 +234,8 @@ impl Calibration {
         self.witness.second.ask(evaluation, question, variant, slow);
     }
 
-    /// Lets the answer to an evaluation, which is about to come, be compared with that of a second worker.
-    pub fn verify(&mut self, evaluation: u64) {
-        if self.witness.verification.is_on() && self.queue.is_asked(evaluation) {
-            self.ask_second(evaluation, None);
-        }
-    }
-
-    /// Stops asking beside slow leases that have ended, or that are suspects: a suspect is alone wherever it is. An evaluation
-    /// that has been leased anew is not slow yet.
+    /// Stops asking beside slow leases that have ended, or whose evaluations are suspects, because a suspect may have only one holder. An
+    /// evaluation that has been leased anew is not slow yet.
     pub fn drop_idle_seconds(&mut self) {
         let queue = &self.queue;
         self.witness.second.drop_idle(|evaluation, slow| {
@@ -247,7 +243,7 @@ impl Calibration {
         });
     }
 
-    /// Changes the state and says so to the store.
+    /// Changes the state and adds the fact to store.
     pub fn change_state(&mut self, state: CalibrationState, message: Option<String>, facts: &mut Vec<Fact>) {
         self.state = state;
         self.message.clone_from(&message);
@@ -259,18 +255,18 @@ impl Calibration {
         });
     }
 
-    /// Variant and parameters that a search leases an evaluation with; `None` of any other evaluation.
+    /// Returns the variant and the parameters of a search's evaluation; `None` for other algorithms.
     fn searched(&self, evaluation: u64) -> Option<(&str, &[f64])> {
         let particle = self.proposal(evaluation)?.particle;
         self.engine.discovery()?.lease(particle)
     }
 
-    /// What an evaluation is for.
+    /// Returns the purpose of an evaluation.
     fn key(&self, evaluation: u64) -> EvaluationKey {
         EvaluationKey::from_number(evaluation, self.spec.algorithm.width())
     }
 
-    /// The whole parameter vector of an evaluation that is asked for at present; of a subchain, where it starts.
+    /// Returns the whole parameter vector of an evaluation of the present round; for a subchain, its start.
     fn theta(&self, evaluation: u64) -> Option<&[f64]> {
         match (self.key(evaluation), self.phase.draws()) {
             (
@@ -282,7 +278,7 @@ impl Calibration {
         }
     }
 
-    /// The proposal of an evaluation that is asked for at present, while sampling.
+    /// Returns the proposal of an evaluation of the present round, while sampling.
     fn proposal(&self, evaluation: u64) -> Option<&Proposal> {
         let pending = self.engine.pending();
         match self.key(evaluation) {
@@ -296,7 +292,7 @@ impl Calibration {
         }
     }
 
-    /// The subchain that an evaluation asks for.
+    /// Returns the subchain of an evaluation, if it has one.
     fn subchain(&self, evaluation: u64) -> Option<Subchain> {
         self.proposal(evaluation).and_then(|p| p.subchain)
     }
@@ -307,7 +303,7 @@ impl Calibration {
         self.fill_queue();
     }
 
-    /// Asks for the evaluations of the present round.
+    /// Fills the queue with the evaluations of the present round.
     fn fill_queue(&mut self) {
         let keys: Vec<EvaluationKey> = match &self.phase {
             Phase::Sampling => {

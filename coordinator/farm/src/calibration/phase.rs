@@ -1,23 +1,23 @@
-//! Where a calibration is between its first draw and its end.
+//! The phases of a calibration between its first draw and its end.
 
 use super::final_draws::FinalDraws;
 
-/// Where a calibration is. A search has no final draws; a calibration without refused holdout runs skips their phase.
+/// The phase of a calibration. A search has no final draws; a calibration without rejected holdout runs skips their phase.
 #[derive(Debug, Default)]
 pub(super) enum Phase {
-    /// Sampler, fit, evolution or search asks for evaluations.
+    /// The engine proposes evaluations.
     #[default]
     Sampling,
     /// The final draws are simulated on fitted and holdout runs.
     FinalDraws(FinalDraws),
-    /// The holdout runs of the draws at which the model refuses them together are simulated one by one.
+    /// The holdout runs are simulated one by one, at the draws at which the model rejects them together.
     RefusedRuns(FinalDraws),
-    /// Everything is evaluated, and answers wait to be compared. The draws tell what late answers answer.
+    /// Everything is evaluated, and answers wait to be compared. The draws are kept, because late answers refer to them.
     Comparing(Option<FinalDraws>),
 }
 
 impl Phase {
-    /// The phase that follows when everything that this one asks for is there.
+    /// Returns the phase after this one.
     pub(super) fn next(self) -> Phase {
         match self {
             Phase::Sampling => Phase::Comparing(None),
@@ -31,7 +31,7 @@ impl Phase {
         matches!(self, Phase::Sampling)
     }
 
-    /// The final draws, once they are known.
+    /// Returns the final draws, once they are known.
     pub(super) fn draws(&self) -> Option<&FinalDraws> {
         match self {
             Phase::Sampling => None,

@@ -11,7 +11,7 @@ use super::second_answer::Answer;
 use job::EffectsChanged;
 use record::{EvaluationRow, Fact, Stored};
 
-/// Why a stored calibration cannot go on.
+/// The reason why a stored calibration cannot be resumed.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum ReplayError {
     /// The proposed parameter vector differs from the stored one.
@@ -21,15 +21,15 @@ pub enum ReplayError {
     OtherTheta {
         /// The evaluation.
         evaluation: u64,
-        /// What the store has.
+        /// The stored parameter vector.
         stored: Vec<f64>,
-        /// What is proposed.
+        /// The proposed parameter vector.
         proposed: Vec<f64>,
     },
-    /// The effects of the catalogue are others.
+    /// The effects of the catalogue have changed.
     #[error(transparent)]
     Effects(#[from] EffectsChanged),
-    /// The stored log-likelihood is no number.
+    /// The stored log-likelihood is not a number.
     #[error("evaluation {evaluation} was stored with a log-likelihood that is no number")]
     NotANumber {
         /// The evaluation.
@@ -38,12 +38,12 @@ pub enum ReplayError {
 }
 
 impl Calibration {
-    /// Tells the stored evaluations again, round by round, as if they had just come in.
+    /// Replays the stored evaluations, round by round, as if they had just arrived.
     ///
-    /// Returns facts that may have been lost between the last evaluation and its consequences.
+    /// Returns facts that may have been lost because a crash came between the last evaluation and its consequences.
     ///
     /// # Errors
-    /// [`ReplayError`] where the store and what is proposed disagree.
+    /// [`ReplayError`] where the stored and the proposed evaluations differ.
     pub fn replay(&mut self, stored: Stored) -> Result<Vec<Fact>, ReplayError> {
         if let Some(pinned) = &stored.model_version {
             self.spec.check_effects(pinned)?;
@@ -85,7 +85,7 @@ impl Calibration {
     ) -> Result<(), ReplayError> {
         let evaluation = row.evaluation;
         let proposed = self.theta(evaluation).unwrap_or_default().to_vec();
-        // Of a subchain the store has the end, not the start; that it was asked for is all that can be compared.
+        // The store has the end of a subchain and not its start, so only its existence can be compared.
         let is_same = match &row.end {
             Some(_) => self.subchain(evaluation).is_some(),
             None => same_bits(&proposed, &row.theta),
@@ -109,7 +109,7 @@ impl Calibration {
     }
 }
 
-/// Whether two vectors agree to the bit.
+/// Returns whether two vectors agree to the bit.
 fn same_bits(a: &[f64], b: &[f64]) -> bool {
     a.len() == b.len() && a.iter().zip(b).all(|(a, b)| a.to_bits() == b.to_bits())
 }
@@ -145,16 +145,16 @@ mod tests {
     }
 
     fn calibration(job: &str) -> Calibration {
-        of_runs(job, RUNS)
+        with_runs(job, RUNS)
     }
 
-    /// The same with two more runs held out, the first of which the model refuses.
+    /// Makes the same calibration with two more holdout runs, the first of which the model rejects.
     fn with_a_refused_run() -> Calibration {
         let more = "c,w,s,0.9,100,0.008,5.2,holdout\nd,w,s,0.3,100,0.008,5.0,holdout\n";
-        of_runs(JOB, &format!("{RUNS}{more}"))
+        with_runs(JOB, &format!("{RUNS}{more}"))
     }
 
-    fn of_runs(job: &str, runs: &str) -> Calibration {
+    fn with_runs(job: &str, runs: &str) -> Calibration {
         let files = FileSet {
             toml: EXPERIMENT.into(),
             files: [("runs.csv".into(), runs.into())].into(),
@@ -194,10 +194,10 @@ mod tests {
         );
     }
 
-    /// The toy refuses runs of more slip.
+    /// The slip above which the toy model rejects a run.
     const TOO_STEEP: f64 = 0.8;
 
-    /// A model of one line, refusing a corner of the prior.
+    /// Evaluates a linear model that rejects a corner of the prior.
     fn toy(theta: &[f64], runs: usize) -> Result<Observables, RejectionReason> {
         if theta[1] > 1.35 {
             return Err(RejectionReason("no_support: condition 0: toy".into()));
@@ -224,7 +224,7 @@ mod tests {
         }
     }
 
-    /// Completes up to `max` evaluations, the last asked for first if `backwards`.
+    /// Completes up to `max` evaluations; the last one first if `backwards`.
     fn work(calibration: &mut Calibration, max: usize, backwards: bool) -> Vec<Fact> {
         let mut facts = Vec::new();
         let mut done = 0;
@@ -286,7 +286,7 @@ mod tests {
         }
     }
 
-    /// How many rows are of fitted runs.
+    /// Counts the rows of fitted runs.
     fn vectors(facts: &[Fact]) -> u64 {
         let keys = rows(facts)
             .into_iter()
@@ -348,8 +348,8 @@ mod tests {
                 let rest = work(&mut again, usize::MAX, false);
                 let all: Vec<Fact> = begun.iter().chain(&rest).cloned().collect();
                 assert_eq!(sorted(&all), whole, "cut after {cut}");
-                let told: Vec<String> = [lost, rest].iter().flat_map(|f| estimates(f)).collect();
-                assert_eq!(told, estimates(&first), "cut after {cut}");
+                let restarted: Vec<String> = [lost, rest].iter().flat_map(|f| estimates(f)).collect();
+                assert_eq!(restarted, estimates(&first), "cut after {cut}");
             }
         }
     }

@@ -1,8 +1,8 @@
-//! Evaluations that a second worker is asked for as well: to compare the answers, or because the first worker is slow.
+//! Evaluations that a second worker computes as well: to compare the answers, or because the first worker is slow.
 //!
-//! A question is kept with everything that a lease of it needs, because its round may be over by the time of the second answer.
-//! Two equal answers of different workers settle an evaluation; whoever answered otherwise computes wrongly. While all answers
-//! differ, another worker is asked.
+//! A question is kept with all data of its lease, because its round may be over before the second answer arrives. Two equal answers of
+//! different workers settle an evaluation, and workers with other answers compute wrongly. While all answers differ, another worker is
+//! asked.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -13,11 +13,11 @@ use statistics::Subchain;
 use super::question::Question;
 use crate::lease::{LeaseQueue, SlowLease};
 
-/// The largest number of evaluations that wait for a second answer. More are not verified: a farm of one worker would gather them
+/// The largest number of evaluations that wait for a second answer. Beyond it none is verified: with a single worker, they would accumulate
 /// without end.
 const MAX_WAITING: usize = 1_000;
 
-/// Who answered, and what.
+/// A worker's answer.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Answer {
     /// The worker.
@@ -26,23 +26,23 @@ pub struct Answer {
     pub fingerprint: Fingerprint,
 }
 
-/// What is known after an answer.
+/// The state of a comparison after an answer.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Verdict {
-    /// Nobody was asked twice.
+    /// The evaluation is not compared.
     NotAsked,
-    /// There are not two equal answers, and none that differ.
+    /// All answers so far are equal, but fewer than two workers have answered.
     Open,
     /// Answers differ, and no two are equal.
     Differ,
     /// Two workers agree.
     Settled {
-        /// Who answered first: its answer is stored.
+        /// The worker that answered first; its answer is stored.
         first: String,
-        /// Who answered otherwise.
+        /// The workers with other answers.
         wrong: Vec<String>,
     },
-    /// A worker has answered in two ways.
+    /// A worker has given two different answers.
     Contradiction,
 }
 
@@ -51,7 +51,7 @@ struct Repeated {
     variant: String,
     theta: Vec<f64>,
     subchain: Option<Subchain>,
-    /// Whether answers are compared; else the first one is enough.
+    /// Whether answers are compared; otherwise the first one is enough.
     is_compared: bool,
     answers: Vec<Answer>,
 }
@@ -59,22 +59,23 @@ struct Repeated {
 /// The evaluations of a calibration that a second worker is asked for.
 #[derive(Debug, Default)]
 pub struct SecondAnswers {
-    /// Who holds them.
+    /// The leases of these evaluations.
     pub queue: LeaseQueue,
     repeated: BTreeMap<u64, Repeated>,
-    /// The repeated evaluations of which one answer is enough, each with the slow lease that it stands beside.
+    /// The evaluations for which one answer is enough, each with the slow lease beside which it is leased.
     uncompared: BTreeMap<u64, u64>,
-    /// The variants that they evaluate, which the calibration may forget.
+    /// The variants of these evaluations, which the calibration may drop.
     variants: BTreeMap<String, ModelVariant>,
 }
 
 impl SecondAnswers {
-    /// Asks for a second answer, unless too many wait for one; where that is done already, it is compared from now on if one of the two says so.
+    /// Asks for a second answer, unless too many evaluations wait for one. If the evaluation is repeated already, its answers are compared
+    /// from now on, if one of the two calls wants that.
     ///
     /// # Arguments
-    /// - `question`: what is asked.
-    /// - `variant`: the variant of its hash.
-    /// - `slow`: the lease that is too slow: the first answer is enough. Without one, the answers are compared.
+    /// - `question`: the question of the evaluation.
+    /// - `variant`: the variant that the question names.
+    /// - `slow`: the slow lease, so that the first answer is enough. Without one, the answers are compared.
     pub fn ask(
         &mut self,
         evaluation: u64,
@@ -85,7 +86,7 @@ impl SecondAnswers {
         let is_compared = slow.is_none();
         if let Some(repeated) = self.repeated.get_mut(&evaluation) {
             if is_compared && !repeated.is_compared {
-                // Whoever is slow may answer as well; only who has answered may not once more.
+                // The slow worker may still answer. A worker that has answered is not asked again.
                 repeated.is_compared = true;
                 self.uncompared.remove(&evaluation);
                 self.queue.unbar(evaluation);
@@ -115,18 +116,12 @@ impl SecondAnswers {
         );
     }
 
-    /// Whether an evaluation is asked for twice.
+    /// Returns whether a second worker is asked for an evaluation.
     pub fn contains(&self, evaluation: u64) -> bool {
         self.repeated.contains_key(&evaluation)
     }
 
-    /// Whether an evaluation is asked for twice, and nobody has answered.
-    pub fn is_unanswered(&self, evaluation: u64) -> bool {
-        let repeated = self.repeated.get(&evaluation);
-        repeated.is_some_and(|repeated| repeated.answers.is_empty())
-    }
-
-    /// What an evaluation is leased with.
+    /// Returns the question of an evaluation.
     pub fn question(&self, evaluation: u64) -> Option<Question<'_>> {
         self.repeated.get(&evaluation).map(|repeated| Question {
             variant: &repeated.variant,
@@ -135,12 +130,12 @@ impl SecondAnswers {
         })
     }
 
-    /// The variant of a hash, if something here evaluates it.
+    /// Returns the variant with a hash, if an evaluation here uses it.
     pub fn variant(&self, hash: &str) -> Option<&ModelVariant> {
         self.variants.get(hash)
     }
 
-    /// Takes an answer.
+    /// Takes an answer and compares it with the earlier ones.
     pub fn answered(&mut self, evaluation: u64, answer: Answer) -> Verdict {
         let Some(repeated) = self.repeated.get_mut(&evaluation) else {
             return Verdict::NotAsked;
@@ -174,7 +169,7 @@ impl SecondAnswers {
         }
     }
 
-    /// Asks for an evaluation no more.
+    /// Stops asking for an evaluation.
     pub fn drop(&mut self, evaluation: u64) {
         self.repeated.remove(&evaluation);
         self.uncompared.remove(&evaluation);
@@ -184,7 +179,7 @@ impl SecondAnswers {
         }
     }
 
-    /// Drops what need not be compared and nobody holds, unless it is wanted: asked of the evaluation and the slow lease.
+    /// Drops evaluations without a holder that need not be compared, unless `is_wanted` returns true for the evaluation and its slow lease.
     pub fn drop_idle(&mut self, is_wanted: impl Fn(u64, u64) -> bool) {
         let is_idle = |&(evaluation, lease): &(u64, u64)| {
             !self.queue.is_leased(evaluation) && !is_wanted(evaluation, lease)
@@ -207,8 +202,8 @@ impl SecondAnswers {
         self.queue.take_back_of(|name| name == worker);
     }
 
-    /// Ends the leases whose time has come; how many. What its workers fail at again and again is asked for no more: there is an
-    /// answer, and another one need not be had at any price.
+    /// Ends expired leases. Returns their number. An evaluation that failed repeatedly is dropped, because the second answer is not
+    /// essential.
     pub fn expire(&mut self, now_ms: u64) -> u64 {
         let expired = self.queue.expire(now_ms);
         let exhausted = expired.failures.iter().filter(|failure| failure.exhausted());
@@ -222,8 +217,9 @@ impl SecondAnswers {
         expired.unstarted + expired.failures.len() as u64
     }
 
-    /// Drops what nobody can answer: `can_answer` tells whether there is a worker besides those that have. So is a lease that has been
-    /// out for so long `[ms]`. How many.
+    /// Drops evaluations that no worker can answer, and those whose lease has been out for `hung_ms`.
+    ///
+    /// `can_answer` states whether there is a worker besides those that have answered. Returns their number.
     pub fn drop_hopeless(
         &mut self,
         can_answer: impl Fn(&[Answer]) -> bool,
@@ -240,7 +236,7 @@ impl SecondAnswers {
         hopeless.len() as u64
     }
 
-    /// Number of evaluations whose answers wait to be compared.
+    /// Returns the number of evaluations that wait for an answer.
     pub fn waiting(&self) -> usize {
         self.repeated.len()
     }
@@ -250,7 +246,7 @@ impl SecondAnswers {
 mod tests {
     use super::*;
 
-    fn asked(is_compared: bool) -> SecondAnswers {
+    fn repeated_evaluation(is_compared: bool) -> SecondAnswers {
         let mut second = SecondAnswers::default();
         let question = Question {
             variant: "00ff",
@@ -279,13 +275,13 @@ mod tests {
 
     #[test]
     fn two_equal_answers_settle_and_a_third_finds_who_is_wrong() {
-        let mut second = asked(true);
+        let mut second = repeated_evaluation(true);
         assert_eq!(answer(&mut second, "a", 1), Verdict::Open);
         assert_eq!(answer(&mut second, "a", 1), Verdict::Open, "said twice");
         assert_eq!(answer(&mut second, "b", 1), settled("a", &[]));
         assert_eq!(answer(&mut second, "c", 1), Verdict::NotAsked);
 
-        let mut second = asked(true);
+        let mut second = repeated_evaluation(true);
         answer(&mut second, "liar", 9);
         assert_eq!(answer(&mut second, "a", 1), Verdict::Differ);
         assert_eq!(answer(&mut second, "fool", 8), Verdict::Differ);
@@ -294,7 +290,7 @@ mod tests {
 
     #[test]
     fn a_worker_that_answers_in_two_ways_contradicts_itself() {
-        let mut second = asked(true);
+        let mut second = repeated_evaluation(true);
         answer(&mut second, "a", 1);
         assert_eq!(answer(&mut second, "a", 2), Verdict::Contradiction);
         second.forget("a");
@@ -307,7 +303,7 @@ mod tests {
 
     #[test]
     fn a_slow_worker_s_evaluation_needs_one_answer() {
-        let mut second = asked(false);
+        let mut second = repeated_evaluation(false);
         assert_eq!((second.waiting(), second.queue.unleased()), (1, 1));
         assert_eq!(answer(&mut second, "b", 1), Verdict::NotAsked);
         assert_eq!((second.waiting(), second.queue.len()), (0, 0));
@@ -315,7 +311,7 @@ mod tests {
 
     #[test]
     fn nobody_is_asked_beside_a_lease_that_is_out_no_more() {
-        let mut second = asked(false);
+        let mut second = repeated_evaluation(false);
         second.drop_idle(|_, lease| lease == 7);
         assert_eq!(second.waiting(), 1);
         second.drop_idle(|_, lease| lease == 8);
@@ -324,19 +320,19 @@ mod tests {
 
     #[test]
     fn what_nobody_can_answer_is_dropped() {
-        let mut second = asked(true);
+        let mut second = repeated_evaluation(true);
         answer(&mut second, "a", 1);
-        let others = |names: &'static [&'static str]| {
+        let has_other = |names: &'static [&'static str]| {
             move |answers: &[Answer]| names.iter().any(|n| !answers.iter().any(|a| a.worker == *n))
         };
-        assert_eq!(second.drop_hopeless(others(&["a", "b"]), 50, 0), 0);
-        assert_eq!(second.drop_hopeless(others(&["a"]), 50, 0), 1);
+        assert_eq!(second.drop_hopeless(has_other(&["a", "b"]), 50, 0), 0);
+        assert_eq!(second.drop_hopeless(has_other(&["a"]), 50, 0), 1);
         assert_eq!(second.waiting(), 0);
     }
 
     #[test]
     fn a_slow_worker_may_answer_once_answers_are_compared() {
-        let mut second = asked(false);
+        let mut second = repeated_evaluation(false);
         let question = Question {
             variant: "00ff",
             theta: &[1.5],

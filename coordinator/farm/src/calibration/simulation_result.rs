@@ -1,33 +1,33 @@
-//! The result of an evaluation: observables or a rejection.
+//! The result of a simulation: observables or a rejection.
 
 use record::{Fingerprint, RejectionReason};
 use shared::outcome::{Fault, Observables, Outcome};
 use statistics::{Prior, SubchainEnd};
 
-/// The result of an evaluation that no machine failed at.
+/// The result of an evaluation that did not fail.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SimulationResult {
-    /// Where the subchain ended, if one was asked for.
+    /// The end of the subchain, if the question has one.
     pub end: Option<SubchainEnd>,
-    /// Observables, or why the model refused; `None` where a subchain stayed at its start.
+    /// Observables, or the reason of a rejection; `None` where a subchain stayed at its start.
     pub outcome: Option<Result<Observables, RejectionReason>>,
 }
 
-/// Why a message is no result. It is the fault of the machine, and nothing is recorded.
+/// The reason why a message is not a result. The calibration stays unchanged; the caller counts a failed attempt of the machine.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum ResultError {
     /// The machine failed.
     #[error("{0}")]
     Fault(String),
-    /// The observables do not have one entry per run.
+    /// The observables do not have one entry for each run.
     #[error("the observables of evaluation {evaluation} do not cover the {runs} conditions of the variant")]
     WrongShape {
         /// The evaluation.
         evaluation: u64,
-        /// How many entries are expected.
+        /// The expected number of entries.
         runs: usize,
     },
-    /// A subchain's end where none was asked for, or none where one was, or one that cannot be.
+    /// The end of a subchain is missing, unexpected or impossible.
     #[error("the result of evaluation {evaluation} does not answer what its lease asked for")]
     OtherQuestion {
         /// The evaluation.
@@ -36,10 +36,10 @@ pub enum ResultError {
 }
 
 impl SimulationResult {
-    /// Turns what a worker says into what a calibration takes.
+    /// Makes a result from a worker's outcome.
     ///
     /// # Errors
-    /// [`ResultError::Fault`]: what the machine said that failed.
+    /// [`ResultError::Fault`] with the machine's message.
     pub fn new(outcome: Option<Outcome>, end: Option<SubchainEnd>) -> Result<Self, ResultError> {
         let outcome = match outcome {
             None => None,
@@ -53,7 +53,7 @@ impl SimulationResult {
         Ok(SimulationResult { end, outcome })
     }
 
-    /// A refusal of the model.
+    /// Makes the result of a rejection by the model.
     pub fn refused(reason: impl Into<String>) -> Self {
         SimulationResult {
             end: None,
@@ -61,8 +61,8 @@ impl SimulationResult {
         }
     }
 
-    /// Whether it answers what was asked: of a subchain of so many moves its end, at parameters that the prior allows, with
-    /// something evaluated there where it moved; of anything else an outcome alone.
+    /// Returns whether the result answers its question. The end of a subchain has at most `moves` moves, parameters that the prior allows,
+    /// and an outcome exactly if it moved; any other question needs an outcome alone.
     pub(super) fn answers(&self, subchain: bool, moves: usize, prior: impl FnOnce() -> Prior) -> bool {
         match &self.end {
             None => !subchain && self.outcome.is_some(),
@@ -79,12 +79,12 @@ impl SimulationResult {
         }
     }
 
-    /// What a second computation of the same evaluation must agree with.
+    /// Returns the fingerprint that a second computation of the evaluation must reproduce.
     pub fn fingerprint(&self) -> Fingerprint {
         let outcome = match &self.outcome {
             None => 0,
             Some(Ok(observables)) => observables.fingerprint().cast_signed(),
-            // A refusal is compared by its text.
+            // Rejections are compared by their texts.
             Some(Err(reason)) => reason
                 .0
                 .bytes()

@@ -1,4 +1,4 @@
-//! The variants that a calibration evaluates.
+//! The model variants that a calibration evaluates.
 
 use std::collections::BTreeMap;
 
@@ -7,19 +7,19 @@ use record::EvaluationKey;
 use shared::model::ModelVariant;
 use statistics::Metamodel;
 
-/// The variants of a calibration by hash, and which of them answers what.
+/// The variants of a calibration by hash, with their purposes.
 #[derive(Debug)]
 pub(super) struct Variants {
     by_hash: BTreeMap<String, ModelVariant>,
-    /// The hash of what is evaluated while sampling.
+    /// The hash of the variant for sampling.
     sampled: String,
     /// The hash of the fitted runs.
     fit: String,
-    /// The hash of the fitted runs with their histories; `None` of a model that knows no time.
+    /// The hash of the fitted runs with their histories; `None` for a model without a time axis.
     histories: Option<String>,
     /// The hash of all holdout runs together.
     holdout: Option<String>,
-    /// The hashes of the holdout runs one by one; empty before they are asked for.
+    /// The hashes of the holdout runs one by one; empty until they are needed.
     holdout_runs: Vec<String>,
     /// The present stage's number, and the hash of the sampled variant with the metamodel of the stage.
     stage: Option<(usize, String)>,
@@ -44,18 +44,18 @@ impl Variants {
         self.by_hash.get(hash)
     }
 
-    /// Whether the model knows time.
+    /// Returns whether the model has a time axis.
     pub(super) fn has_histories(&self) -> bool {
         self.histories.is_some()
     }
 
-    /// Number of holdout runs that are asked for one by one.
+    /// Returns the number of holdout runs that are simulated one by one.
     pub(super) fn holdout_runs(&self) -> usize {
         self.holdout_runs.len()
     }
 
-    /// The hash of the variant that an evaluation without a subchain asks for.
-    pub(super) fn of_key(&self, key: EvaluationKey) -> Option<&str> {
+    /// Returns the hash of the variant of an evaluation without a subchain.
+    pub(super) fn for_key(&self, key: EvaluationKey) -> Option<&str> {
         match key {
             EvaluationKey::Sampling { .. } => Some(&self.sampled),
             EvaluationKey::Prediction { holdout: false, .. } => Some(&self.fit),
@@ -65,7 +65,7 @@ impl Variants {
         }
     }
 
-    /// The hash of the variant that the subchains of the present stage ask for.
+    /// Returns the hash of the variant of the present stage's subchains.
     pub(super) fn with_metamodel(&self) -> Option<&str> {
         self.stage.as_ref().map(|(_, hash)| hash.as_str())
     }
@@ -92,7 +92,7 @@ impl Variants {
     }
 }
 
-/// Adds a variant; its hash.
+/// Adds a variant. Returns its hash.
 fn insert(by_hash: &mut BTreeMap<String, ModelVariant>, variant: ModelVariant) -> String {
     let hash = variant.hash();
     by_hash.insert(hash.clone(), variant);

@@ -1,15 +1,15 @@
-//! Which evaluations a second worker computes as well.
+//! The choice of the evaluations that a second worker computes as well.
 
 use record::SealKey;
 use sha2::{Digest, Sha256};
 
-/// Whether and how often answers are verified.
+/// The share of verified evaluations, and the key that selects them.
 ///
-/// The choice depends on the calibration's key, which only the coordinator knows: no worker can tell which of its answers are
+/// The choice depends on the calibration's key, which only the coordinator knows. Thus no worker can tell which of its answers are
 /// compared, and a restart chooses the same ones.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Verification {
-    /// Share of the evaluations, in [0, 1]; 0 verifies nothing.
+    /// The share of the evaluations, in [0, 1]; 0 verifies nothing.
     pub share: f64,
     /// The key of the calibration.
     pub key: SealKey,
@@ -22,12 +22,12 @@ impl Verification {
         key: SealKey([0; 16]),
     };
 
-    /// Whether anything is verified.
+    /// Returns whether anything is verified.
     pub fn is_on(self) -> bool {
         self.share > 0.0
     }
 
-    /// Whether an evaluation is among those that are verified whoever answers it.
+    /// Returns whether an evaluation is selected for verification.
     pub fn selects(self, evaluation: u64) -> bool {
         if !self.is_on() {
             return false;
@@ -49,17 +49,17 @@ mod tests {
 
     #[test]
     fn the_share_is_kept_and_the_choice_is_the_key_s() {
-        let of = |share, key| Verification {
+        let verification = |share, key| Verification {
             share,
             key: SealKey([key; 16]),
         };
         let chosen = |v: Verification| (0..20_000).filter(|&e| v.selects(e)).collect::<Vec<u64>>();
         assert!(chosen(Verification::OFF).is_empty());
-        assert_eq!(chosen(of(1.0, 1)).len(), 20_000);
-        let one = chosen(of(0.01, 1));
+        assert_eq!(chosen(verification(1.0, 1)).len(), 20_000);
+        let one = chosen(verification(0.01, 1));
         // Four standard deviations of a binomial count.
         assert!((144..=256).contains(&one.len()), "{}", one.len());
-        assert_eq!(one, chosen(of(0.01, 1)));
-        assert_ne!(one, chosen(of(0.01, 2)));
+        assert_eq!(one, chosen(verification(0.01, 1)));
+        assert_ne!(one, chosen(verification(0.01, 2)));
     }
 }

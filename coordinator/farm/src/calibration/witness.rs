@@ -1,4 +1,4 @@
-//! The record of the workers that answered: whose answers agree, and who computes wrongly.
+//! The record of answers by worker: whose answers agree, and which workers compute wrongly.
 
 use std::collections::BTreeMap;
 
@@ -10,24 +10,24 @@ use super::verification::Verification;
 /// The worker of an evaluation that was given up.
 pub(super) const NOBODY: &str = "";
 
-/// The record of the workers that answered.
+/// The record of answers by worker.
 #[derive(Debug)]
 pub struct Witness {
-    /// Which evaluations a second worker computes as well.
+    /// The choice of evaluations that a second worker computes as well.
     pub verification: Verification,
     /// Evaluations that a second worker is asked for.
     pub second: SecondAnswers,
-    /// Whether results were dropped, so that numbers of evaluations have asked something else before.
+    /// Whether results were dropped, so that numbers of evaluations stood for other questions before.
     pub is_rewound: bool,
-    /// The answers that are stored of the present round.
+    /// The stored answers of the present round.
     round: BTreeMap<u64, StoredAnswer>,
-    /// Stored answers by worker that no other worker has confirmed.
+    /// The number of unconfirmed stored answers, by worker.
     unconfirmed: BTreeMap<String, u64>,
-    /// Workers found to compute wrongly, with the evaluation, since they were last asked for.
+    /// Workers found to compute wrongly since the last call of [`Witness::take_convicted`], each with the evaluation that shows it.
     convicted: Vec<(String, u64)>,
 }
 
-/// An answer that is stored.
+/// A stored answer.
 #[derive(Debug, Clone, PartialEq, Eq)]
 struct StoredAnswer {
     answer: Answer,
@@ -49,47 +49,40 @@ impl Default for Witness {
 }
 
 impl Witness {
-    /// Forgets the answers of the round before.
+    /// Forgets the answers of the previous round.
     pub(super) fn begin_round(&mut self) {
         self.round.clear();
     }
 
-    /// Number of evaluations of the present round that are answered.
+    /// Returns the number of evaluations of the present round that are answered.
     pub(super) fn answered(&self) -> usize {
         self.round.len()
     }
 
-    /// Number of evaluations of the present round that were given up after faults.
+    /// Returns the number of evaluations of the present round that were given up after faults.
     pub(super) fn given_up(&self) -> usize {
         let answers = self.round.values();
         answers.filter(|stored| stored.answer.worker == NOBODY).count()
     }
 
-    /// Whether an evaluation of the present round is answered.
+    /// Returns whether an evaluation of the present round is answered.
     pub(super) fn is_answered(&self, evaluation: u64) -> bool {
         self.round.contains_key(&evaluation)
     }
 
-    /// The answered evaluations of the present round.
+    /// Returns the answered evaluations of the present round.
     pub(super) fn answered_evaluations(&self) -> Vec<u64> {
         self.round.keys().copied().collect()
     }
 
-    /// No answer came that could be used: nothing is compared so far.
-    pub(super) fn forget_unanswered(&mut self, evaluation: u64) {
-        if self.second.is_unanswered(evaluation) {
-            self.second.drop(evaluation);
-        }
-    }
-
-    /// Takes the answer that is stored.
+    /// Records the stored answer of an evaluation.
     pub(super) fn store(&mut self, evaluation: u64, answer: Answer, is_confirmed: bool) {
         let stored = StoredAnswer { answer, is_confirmed };
         self.round.insert(evaluation, stored);
     }
 
-    /// The stored answer that an answer which nobody asked for makes worth a comparison: it confirms the stored one as well as one
-    /// that was asked for, or brings a dispute that other workers settle.
+    /// Returns the stored answer that an unrequested answer should be compared with. The comparison confirms the stored answer, or starts a
+    /// dispute that other workers settle.
     pub(super) fn disputed(&self, evaluation: u64, answer: &Answer) -> Option<Answer> {
         let stored = self.round.get(&evaluation).map(|stored| &stored.answer);
         let stored = stored.filter(|stored| stored.worker != NOBODY && *stored != answer)?;
@@ -97,7 +90,7 @@ impl Witness {
         (self.verification.is_on() && is_open).then(|| stored.clone())
     }
 
-    /// Takes an answer to an evaluation that has one already. The facts to store.
+    /// Takes a further answer to an evaluation. Returns the facts to store.
     pub(super) fn compare(&mut self, calibration: i64, evaluation: u64, answer: Answer) -> Vec<Fact> {
         let (worker, fingerprint) = (answer.worker.clone(), answer.fingerprint);
         let duplicate = Fact::Duplicate {
@@ -124,7 +117,7 @@ impl Witness {
         }
         let is_known = is_repeated || self.is_answered(evaluation);
         match self.second.answered(evaluation, answer) {
-            // After a rewind the same number may have asked something else before.
+            // After a rewind, the number may have stood for another question before.
             Verdict::NotAsked if self.is_rewound && !is_known => Vec::new(),
             Verdict::NotAsked | Verdict::Differ => vec![duplicate],
             Verdict::Open => Vec::new(),
@@ -148,12 +141,12 @@ impl Witness {
         }
     }
 
-    /// Counts an answer of a worker that nobody has confirmed.
+    /// Counts an unconfirmed answer of a worker.
     pub(super) fn count_unconfirmed(&mut self, worker: &str) {
         *self.unconfirmed.entry(worker.to_owned()).or_default() += 1;
     }
 
-    /// Notes that another worker has given the stored answer of a worker.
+    /// Records that another worker has given the same answer as the first one.
     fn confirm(&mut self, evaluation: u64, first: &str) {
         if let Some(stored) = self.round.get_mut(&evaluation) {
             stored.is_confirmed = true;
@@ -163,12 +156,12 @@ impl Witness {
         }
     }
 
-    /// The workers found to compute wrongly since the last call, each with the evaluation that shows it.
+    /// Returns the workers found to compute wrongly since the last call, each with the evaluation that shows it.
     pub fn take_convicted(&mut self) -> Vec<(String, u64)> {
         std::mem::take(&mut self.convicted)
     }
 
-    /// Whether answers of a worker are stored that nobody has confirmed.
+    /// Returns whether a worker has unconfirmed stored answers.
     pub fn rests_on(&self, worker: &str) -> bool {
         self.unconfirmed.get(worker).is_some_and(|&count| count > 0)
     }

@@ -1,19 +1,19 @@
-//! What claims are made of and what comes of them: completions, failures, expiry.
+//! Claims and their outcomes: completions, failures, expiry.
 
-/// An evaluation is given up after so many failed leases.
+/// The number of failed leases after which an evaluation is given up.
 pub const MAX_ATTEMPTS: u32 = 3;
 
-/// A calibration pauses after an evaluation was leased so often in a row without being begun.
+/// The number of leases in a row that nobody began, after which a calibration pauses.
 pub const MAX_UNSTARTED: u32 = 20;
 
-/// How a completion was received.
+/// The effect of a completion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Completion {
-    /// The first valid one: it counts.
+    /// The first valid completion, which counts.
     First,
-    /// Already completed: acknowledged, compared, ignored.
+    /// A further completion, which is only acknowledged and compared.
     Duplicate,
-    /// Not asked for at present: of an earlier round, or never.
+    /// A completion of an evaluation that is not in the present round.
     Unknown,
 }
 
@@ -22,24 +22,24 @@ pub enum Completion {
 pub struct LeaseFailure {
     /// The evaluation.
     pub evaluation: u64,
-    /// Who held it.
+    /// The worker that held it.
     pub worker: String,
-    /// How many leases of this evaluation have failed by now.
+    /// The number of failed leases of this evaluation so far.
     pub attempt: u32,
-    /// On how many different workers.
+    /// The number of different workers on which they failed.
     pub workers: usize,
 }
 
-/// Who claims, and until when.
+/// A worker that claims evaluations.
 #[derive(Debug, Clone, Copy)]
 pub struct Claimant<'a> {
     /// The worker.
     pub worker: &'a str,
-    /// How many leases it holds, of any calibration.
+    /// The number of leases that it holds, of any calibration.
     pub holds: usize,
-    /// Now `[ms]`.
+    /// The present time `[ms]`.
     pub now_ms: u64,
-    /// When the leases expire `[ms]`.
+    /// The time at which the leases expire `[ms]`.
     pub expires_ms: u64,
 }
 
@@ -50,38 +50,38 @@ pub struct NewClaim {
     pub lease: u64,
     /// The evaluation.
     pub evaluation: u64,
-    /// Whether it is a suspect, whose start must be reported.
+    /// Whether the evaluation is a suspect, whose start must be reported.
     pub suspect: bool,
 }
 
-/// What the passing of time has ended.
+/// The leases that have expired.
 #[derive(Debug, Default, PartialEq, Eq)]
 pub struct Expired {
-    /// Started leases: failed attempts.
+    /// The started leases, which are failed attempts.
     pub failures: Vec<LeaseFailure>,
-    /// How many leases expired that nobody had started.
+    /// The number of expired leases that nobody had started.
     pub unstarted: u64,
     /// Evaluations that were leased [`MAX_UNSTARTED`] times in a row without being begun.
     pub never_begun: Vec<u64>,
 }
 
 impl LeaseFailure {
-    /// Whether the evaluation is tried no more.
+    /// Returns whether no attempt is left.
     pub fn exhausted(&self) -> bool {
         self.attempt >= MAX_ATTEMPTS
     }
 
-    /// Whether so many different workers failed that the evaluation, not a machine, is at fault.
+    /// Returns whether so many different workers failed that the evaluation is at fault, and not a machine.
     pub fn is_evaluations_own(&self) -> bool {
         self.workers >= MAX_ATTEMPTS as usize
     }
 }
 
-/// A lease that has been out for long.
+/// A lease that has been out for a long time.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct SlowLease {
     /// Its number.
     pub lease: u64,
-    /// Who holds it.
+    /// The worker that holds it.
     pub worker: String,
 }

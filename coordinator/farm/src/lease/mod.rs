@@ -1,17 +1,16 @@
-//! The rules of leasing: who may claim, renew, complete, give back; what expiry and faults cost.
+//! The rules of leasing: who may claim, renew, complete and return an evaluation, and the cost of expiry and faults.
 //!
-//! Pure: the caller brings the clock and the lease numbers. One [`LeaseQueue`] holds the evaluations of a
-//! calibration that are asked for at present.
+//! This module is pure: the caller passes the time and the lease numbers. One [`LeaseQueue`] holds the evaluations of a calibration's
+//! present round.
 //!
-//! A lost lease makes its evaluation a *suspect*: it is then leased alone, to a worker that holds nothing else and
-//! reports that it begins before it does. So a parameter vector that kills its worker is found out, and those that were
-//! merely with it are not blamed. Only the loss of a lease that was reported as started is a failed attempt: whoever dies,
-//! or is cut off, has done nothing to the evaluations that wait in its hands. An evaluation that is lost twenty times in a row
-//! before anybody begins it is told to the caller: whatever ends its workers, leasing it on ends more of them.
+//! A lost lease makes its evaluation a *suspect*: it is then leased alone, to a worker that holds nothing else and reports the start before
+//! it begins. This finds a parameter vector that kills its worker, without blaming others that the worker held. Only the loss of a lease
+//! that was reported as started is a failed attempt, because a worker that dies has not touched the evaluations that wait. An evaluation
+//! that is lost twenty times in a row before its start is reported to the caller: more leases would only end more workers.
 //!
 //! # Layout
 //! - `queue`: [`LeaseQueue`].
-//! - `failure`: what claims are made of and what comes of them.
+//! - `failure`: claims and their outcomes.
 
 mod failure;
 mod queue;

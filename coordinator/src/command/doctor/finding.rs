@@ -1,8 +1,8 @@
-//! A line of the answer: the object of a check, its result, and a remedy.
+//! A finding of the doctor: the object of a check, its result, and a remedy.
 
 use std::fmt;
 
-/// How serious it is.
+/// The severity of a finding.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Level {
     Ok,
@@ -20,7 +20,7 @@ pub(super) struct Finding {
 }
 
 impl Finding {
-    /// All is well.
+    /// Makes a finding without a problem.
     pub(super) fn ok(subject: &'static str, seen: impl Into<String>) -> Self {
         Finding {
             level: Level::Ok,
@@ -30,7 +30,7 @@ impl Finding {
         }
     }
 
-    /// It works, but not as well as it should.
+    /// Makes a finding about something that works with a limitation.
     pub(super) fn warn(subject: &'static str, seen: impl Into<String>, remedy: impl Into<String>) -> Self {
         Finding {
             level: Level::Warn,
@@ -39,7 +39,7 @@ impl Finding {
         }
     }
 
-    /// It does not work.
+    /// Makes a finding about something that does not work.
     pub(super) fn fail(subject: &'static str, seen: impl Into<String>, remedy: impl Into<String>) -> Self {
         Finding {
             level: Level::Fail,
@@ -47,7 +47,7 @@ impl Finding {
         }
     }
 
-    /// Whether it does not work.
+    /// Returns whether the finding is a failure.
     pub(super) fn is_failure(&self) -> bool {
         self.level == Level::Fail
     }

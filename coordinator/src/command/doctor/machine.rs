@@ -1,4 +1,4 @@
-//! The machine: program, processor, clock, file descriptors.
+//! Checks of the machine: program, processor, clock, file descriptors.
 
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
@@ -8,7 +8,7 @@ use super::finding::Finding;
 use crate::config::ARCHITECTURE;
 use crate::embedded::model_version;
 
-/// The beginning of 2026: an earlier clock is wrong.
+/// The beginning of 2026. A clock that shows an earlier time is wrong.
 const EARLIEST: Duration = Duration::from_secs(1_767_225_600);
 /// File descriptors that a service needs for its connections and its store.
 const DESCRIPTORS: u64 = 4_096 + 64;
@@ -57,16 +57,16 @@ fn clock(since_1970: Duration) -> Finding {
 }
 
 /// Checks the largest number of open files that a service may allow itself; `None` where there is no limit.
-fn descriptors(most: Option<u64>) -> Finding {
-    match most {
-        Some(most) if most < DESCRIPTORS => Finding::warn(
+fn descriptors(max_files: Option<u64>) -> Finding {
+    match max_files {
+        Some(max_files) if max_files < DESCRIPTORS => Finding::warn(
             "files",
             format!(
-                "at most {most} are open at once: a service takes fewer connections than its {DESCRIPTORS} need"
+                "at most {max_files} are open at once: a service takes fewer connections than its {DESCRIPTORS} need"
             ),
             format!("ulimit -n {DESCRIPTORS}, or LimitNOFILE in its unit"),
         ),
-        Some(most) => Finding::ok("files", format!("at most {most} are open at once")),
+        Some(max_files) => Finding::ok("files", format!("at most {max_files} are open at once")),
         None => Finding::ok("files", "as many are open at once as there may be"),
     }
 }

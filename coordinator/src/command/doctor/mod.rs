@@ -1,7 +1,7 @@
-//! `coordinator doctor`: whether machine, store and service are as they should be, and what to do where they are not.
+//! `coordinator doctor`: checks machine, store and service, and proposes remedies.
 //!
 //! # Layout
-//! - `finding`: a line of the answer.
+//! - `finding`: the result of a check.
 //! - `machine`: program, processor, clock, file descriptors.
 //! - `place`: the store, its disk, the listening address.
 //! - `service`: a service, the token for it, its workers.

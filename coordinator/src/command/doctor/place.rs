@@ -12,7 +12,7 @@ use super::finding::Finding;
 use super::service;
 use store::{Reader, StoreError, file_of, is_server, name_of};
 
-/// Time of one record above which a disk is slow: every acknowledged result waits for it.
+/// The time of one write to disk above which a disk is slow, because every acknowledged result waits for one.
 const SLOW: Duration = Duration::from_millis(100);
 /// Free space below which there is a warning, and below which there is a failure `[bytes]`.
 const LITTLE_BYTES: u64 = 1_000_000_000;
@@ -100,7 +100,7 @@ async fn read(store: &str) -> (Finding, bool) {
     }
 }
 
-/// Writes as a store does, and measures the time.
+/// Writes to the disk as a store does, and measures the time.
 fn writable(folder: &Path) -> Finding {
     let probe = folder.join(format!(".grouser-doctor-{}", std::process::id()));
     let begin = Instant::now();
@@ -133,7 +133,7 @@ fn writable(folder: &Path) -> Finding {
 fn space(folder: &Path) -> Finding {
     let name = folder.display();
     match statvfs(folder) {
-        Ok(disk) => of_space(&name.to_string(), disk.f_bavail.saturating_mul(disk.f_frsize)),
+        Ok(disk) => free_space(&name.to_string(), disk.f_bavail.saturating_mul(disk.f_frsize)),
         Err(error) => Finding::fail(
             "space",
             format!("{name}: {error}"),
@@ -142,7 +142,7 @@ fn space(folder: &Path) -> Finding {
     }
 }
 
-fn of_space(name: &str, free_bytes: u64) -> Finding {
+fn free_space(name: &str, free_bytes: u64) -> Finding {
     let seen = format!("{name}: {:.1} GB are free", free_bytes as f64 / 1e9);
     let remedy = "make room, or put the store elsewhere; coordinator delete STUDY frees space inside a store";
     match free_bytes {
@@ -152,7 +152,7 @@ fn of_space(name: &str, free_bytes: u64) -> Finding {
     }
 }
 
-/// Checks whether a service can listen at an address, or does.
+/// Checks whether a service can listen at an address, or already listens there.
 async fn address(listen: SocketAddr, has_token: bool) -> Finding {
     let refused = match TcpListener::bind(listen).await {
         Ok(_) if !listen.ip().is_loopback() && !has_token => {
@@ -188,12 +188,12 @@ mod tests {
 
     #[test]
     fn little_space_is_a_warning_and_none_a_failure() {
-        assert!(of_space("/", 99_999_999).is_failure());
-        let text = of_space("/", 500_000_000).to_string();
+        assert!(free_space("/", 99_999_999).is_failure());
+        let text = free_space("/", 500_000_000).to_string();
         assert!(
             text.starts_with("warn  space       /: 0.5 GB are free\n"),
             "{text}"
         );
-        assert!(of_space("/", LITTLE_BYTES).to_string().starts_with("ok"));
+        assert!(free_space("/", LITTLE_BYTES).to_string().starts_with("ok"));
     }
 }

@@ -1,4 +1,4 @@
-//! A service: whether it answers, takes the token, and has workers of this version.
+//! Checks of a service: whether it answers, accepts the token, and has workers of this version.
 
 use std::collections::BTreeMap;
 use std::net::SocketAddr;
@@ -60,7 +60,7 @@ pub(super) async fn findings(url: &str, arguments: &ClientArguments) -> Vec<Find
     match ask(&client, "/v1/workers").await {
         Ok(workers) => {
             findings.push(Finding::ok("token", "is accepted, or not asked for"));
-            findings.extend(of_workers(&workers, url));
+            findings.extend(check_workers(&workers, url));
         }
         Err(error) => findings.push(Finding::fail(
             "token",
@@ -71,7 +71,7 @@ pub(super) async fn findings(url: &str, arguments: &ClientArguments) -> Vec<Find
     findings
 }
 
-fn of_workers(workers: &BTreeMap<String, Worker>, url: &str) -> Vec<Finding> {
+fn check_workers(workers: &BTreeMap<String, Worker>, url: &str) -> Vec<Finding> {
     let (here, gone): (Vec<_>, Vec<_>) = workers
         .iter()
         .partition(|(_, worker)| worker.silent_ms < SILENT_MS);
@@ -108,7 +108,7 @@ fn of_workers(workers: &BTreeMap<String, Worker>, url: &str) -> Vec<Finding> {
     findings
 }
 
-/// The version of the coordinator that listens at an address of this machine, if one does.
+/// Returns the version of the coordinator that listens at an address of this machine, if one does.
 pub(super) async fn version_at(address: SocketAddr) -> Option<String> {
     let arguments = ClientArguments {
         token_file: None,
@@ -124,7 +124,7 @@ pub(super) async fn version_at(address: SocketAddr) -> Option<String> {
     Some(health.version)
 }
 
-/// Requests an answer from a service; another program may accept the connection and stay silent.
+/// Requests an answer from a service within [`PATIENCE`], because another program may accept the connection and stay silent.
 async fn ask<T: DeserializeOwned>(service: &Place, path: &str) -> anyhow::Result<T> {
     let answer = tokio::time::timeout(PATIENCE, service.get(path)).await;
     answer.map_err(|_| anyhow!("no answer within {} s", PATIENCE.as_secs()))?
@@ -144,7 +144,7 @@ mod tests {
             (name.to_owned(), worker)
         };
         let workers = workers.iter().map(worker).collect();
-        of_workers(&workers, "http://keeper:7070")
+        check_workers(&workers, "http://keeper:7070")
             .iter()
             .map(Finding::to_string)
             .collect()

@@ -1,4 +1,4 @@
-//! The calibrations that are simulated, each with everything that it gives when nothing goes wrong.
+//! The simulated calibrations, each with its results in a run without faults.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -19,31 +19,31 @@ const EXPERIMENT: &str = "runs = \"runs.csv\"\n[wheel.w]\nradius_m = 0.125\nwidt
 const HEAD: &str = "run,wheel,soil,slip,wheel_load_n,sled_speed_m_s,drawbar_pull_n,use\n";
 const FITTED: &str = "a,w,s,0.2,100,0.008,5.1,fit\n";
 const HELD_OUT: &str = "b,w,s,0.4,100,0.008,5.2,holdout\n";
-/// Held out as well; a refusing model refuses it at some draws.
+/// A run that is held out as well; the refusing model rejects it at some draws.
 const STEEP: &str = "c,w,s,0.9,100,0.008,5.2,holdout\n";
-/// Jobs of each kind, which differ in their seeds.
+/// The number of jobs of each kind, which differ in their seeds.
 const SEEDS: u64 = 3;
-/// Numbers of the poisonous evaluation of the kinds that have one: a draw from the prior, and one of a later round.
+/// The numbers of the poisonous evaluation, for kinds that have one: a draw from the prior, and one of a later round.
 const POISON: [u64; 2] = [2, 55];
 
-/// What sort of calibration.
+/// The kind of a calibration.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Kind {
     /// TMCMC by moves, with a run held out.
     Sample,
-    /// The same of a model that refuses a part of the prior, and beyond it one of two held-out runs.
+    /// The same with a model that rejects a part of the prior, and at further parameters one of two held-out runs.
     Refusing,
-    /// The same with an evaluation that ends every worker: it pauses, and a user skips it.
+    /// The same with an evaluation that kills every worker: the calibration pauses, and a user skips the evaluation.
     Poisoned,
-    /// Fifty particles, so that such an evaluation is given up without a pause.
+    /// Fifty particles, so that a poisonous evaluation is given up without a pause.
     Crowded,
-    /// Subchains by a metamodel between evaluations of the three-dimensional model.
+    /// TMCMC with subchains of a metamodel between evaluations of the three-dimensional model.
     Metamodel,
-    /// A fit by steps, which is told predicted values.
+    /// A fit by steps, which uses predicted values.
     Fit,
 }
 
-/// What a job asks under a number, and what is answered.
+/// An evaluation of a job, with its answer.
 #[derive(Debug)]
 pub(crate) struct Answered {
     pub(crate) variant: String,
@@ -51,17 +51,17 @@ pub(crate) struct Answered {
     pub(crate) subchain: Option<Subchain>,
     pub(crate) outcome: Option<Outcome>,
     pub(crate) end: Option<SubchainEnd>,
-    /// What the store keeps of it.
+    /// The row that the store keeps.
     pub(crate) row: EvaluationRow,
 }
 
-/// A job and everything that it gives when nothing goes wrong.
+/// A job with its results in a run without faults.
 #[derive(Debug)]
 pub(crate) struct Case {
     pub(crate) kind: Kind,
     pub(crate) spec: Arc<Spec>,
     pub(crate) answers: BTreeMap<u64, Answered>,
-    /// The evaluation that ends every worker.
+    /// The evaluation that kills every worker.
     pub(crate) poison: Option<u64>,
     /// The bits of each stage.
     pub(crate) stages: Vec<Vec<u64>>,
@@ -69,7 +69,7 @@ pub(crate) struct Case {
     pub(crate) result: CaseResult,
 }
 
-/// What a calibration ends with, to the bit.
+/// The result of a calibration, to the bit.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) enum CaseResult {
     Posterior(Vec<u64>),
@@ -120,7 +120,7 @@ impl Kind {
         }
     }
 
-    /// Observables of a model that is nothing but a line; of a refusing one, not everywhere.
+    /// Evaluates a linear model; the refusing model rejects some parameters.
     fn evaluate(self, variant: &ModelVariant, theta: &[f64]) -> Outcome {
         let is_steep = variant.conditions.iter().any(|condition| condition.slip > 0.8);
         if self == Kind::Refusing && theta[0] > if is_steep { 1.0 } else { 1.25 } {
@@ -159,7 +159,7 @@ impl Kind {
         Outcome::Evaluated(observables)
     }
 
-    /// What a worker answers to a question.
+    /// Computes a worker's answer to a question.
     fn answer(self, variant: &ModelVariant, question: Question) -> (Option<Outcome>, Option<SubchainEnd>) {
         let metamodel = variant.low_fidelity.as_ref().and_then(|c| c.metamodel.as_ref());
         let Some((subchain, metamodel)) = question.subchain.zip(metamodel) else {
@@ -174,16 +174,16 @@ impl Kind {
     }
 }
 
-/// The quasi-static values beside the three-dimensional ones.
+/// Computes the quasi-static values beside the three-dimensional ones.
 fn coarse(theta: &[f64], values: usize) -> Vec<f64> {
     vec![4.1 + 0.9 * theta[0]; values]
 }
 
 impl Case {
-    /// Every job that schedules draw from, by kind.
+    /// Makes every job of the schedules, by kind.
     ///
     /// # Errors
-    /// What is wrong with a job.
+    /// The error in a job.
     pub(crate) fn all() -> Result<Vec<Vec<Case>>, String> {
         let of_kind = |(kind, _)| (1..=SEEDS).map(|seed| Case::new(kind, seed)).collect();
         Kind::SHARES.into_iter().map(of_kind).collect()
@@ -274,10 +274,10 @@ impl Case {
         })
     }
 
-    /// The calibration before its first lease.
+    /// Makes the calibration before its first lease.
     ///
     /// # Errors
-    /// What is wrong with the job.
+    /// The error in the job.
     pub(crate) fn begin(&self, id: i64) -> Result<Calibration, String> {
         begin(id, &self.spec)
     }
@@ -300,7 +300,7 @@ fn particle_bits(particles: &[Particle]) -> impl Iterator<Item = u64> {
     })
 }
 
-/// Everything that a stage says.
+/// Returns all numbers of a stage as bits.
 pub(crate) fn stage_bits(s: &StageRecord) -> Vec<u64> {
     let numbers = [
         s.tempering_exponent,
@@ -326,7 +326,7 @@ pub(crate) fn stage_bits(s: &StageRecord) -> Vec<u64> {
         .collect()
 }
 
-/// Everything that a posterior says.
+/// Returns all numbers of a posterior as bits.
 pub(crate) fn posterior_bits(p: &PosteriorSample) -> Vec<u64> {
     let numbers = [p.log_evidence, p.log_evidence_se, p.drift_z, p.weight_drift_z];
     let counts = [u64::from(p.equilibrated), p.evaluations, p.rejected];
@@ -334,7 +334,7 @@ pub(crate) fn posterior_bits(p: &PosteriorSample) -> Vec<u64> {
     numbers.chain(counts).chain(particle_bits(&p.particles)).collect()
 }
 
-/// Whether two rows agree to the bit, whoever computed them.
+/// Returns whether two rows agree to the bit, except for their workers.
 pub(crate) fn same_row(a: &EvaluationRow, b: &EvaluationRow) -> bool {
     let bits = |values: &[f64]| values.iter().map(|x| x.to_bits()).collect::<Vec<_>>();
     bits(&a.theta) == bits(&b.theta)

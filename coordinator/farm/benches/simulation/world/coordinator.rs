@@ -1,7 +1,7 @@
-//! The simulated coordinator: the real farm between a network, a ledger and a witness.
+//! The simulated coordinator: the real farm between a simulated network, a ledger and a witness.
 //!
-//! What `farm::dispatch` and the store's writer do around the farm is done here step by step: facts are numbered in order, an answer
-//! waits until its facts are on disk, a worker that finds no work is parked. Planted bugs stand where the farm is called.
+//! It does step by step what `farm::dispatch` and the store's writer do around the farm: it numbers facts in order, holds an answer back
+//! until its facts are on disk, and parks a worker that finds no work. Planted bugs act on the calls of the farm.
 
 use std::collections::VecDeque;
 
@@ -17,13 +17,13 @@ use super::promise::{Broken, Promise, demand};
 use super::request::bare;
 use super::witness::{Source, Witness};
 
-/// A lease lasts so long without renewal `[ms]`.
+/// The duration of a lease without renewal `[ms]`.
 pub(crate) const LEASE_MS: u64 = 1_000;
 
-/// Whom an answer is for.
+/// The receiver of an answer.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Return {
-    /// The place of the worker.
+    /// The index of the worker.
     pub(crate) worker: usize,
     /// The number of the exchange.
     pub(crate) exchange: u64,
@@ -32,7 +32,7 @@ pub(crate) struct Return {
 /// An answer that waits for its facts.
 #[derive(Debug)]
 struct Held {
-    /// So many facts must be on disk.
+    /// The number of facts that must be on disk before the answer leaves.
     facts: usize,
     to: Return,
     worker: String,
@@ -40,20 +40,20 @@ struct Held {
     response: ExchangeResponse,
 }
 
-/// A request for work that waits for some.
+/// A request of a worker that waits for work.
 #[derive(Debug)]
 struct Parked {
     request: ExchangeRequest,
-    /// What its results were, which are taken.
+    /// The results of the request, which the farm has taken.
     results: Vec<WorkResult>,
     until_ms: u64,
     to: Return,
 }
 
-/// The real farm between a network, a ledger and a witness.
+/// The simulated coordinator.
 #[derive(Debug)]
 pub(crate) struct Coordinator<'a> {
-    /// `None` while it is down.
+    /// The farm; `None` while the coordinator is down.
     farm: Option<Farm>,
     epoch: u64,
     held: Vec<Held>,
@@ -63,7 +63,7 @@ pub(crate) struct Coordinator<'a> {
     plant: Option<Plant>,
     /// Share of the evaluations that a second worker computes.
     verified_share: f64,
-    /// Calibrations to replay, each as soon as so many facts are on disk.
+    /// Calibrations to replay, each with the number of facts that must be on disk before.
     rewinds: Vec<(usize, i64)>,
 }
 
@@ -86,7 +86,7 @@ impl<'a> Coordinator<'a> {
         self.plant == Some(plant)
     }
 
-    /// Whether it is up.
+    /// Returns whether the coordinator is running.
     pub(crate) fn is_up(&self) -> bool {
         self.farm.is_some()
     }
@@ -139,7 +139,7 @@ impl<'a> Coordinator<'a> {
         Ok(())
     }
 
-    /// A request arrives.
+    /// Handles a request that arrives.
     pub(crate) fn receive(
         &mut self,
         request: ExchangeRequest,
@@ -171,12 +171,12 @@ impl<'a> Coordinator<'a> {
     }
 
     fn exchange(&mut self, request: &ExchangeRequest, now_ms: u64) -> Result<ExchangeResponse, Broken> {
-        let told = self.planted_request(request.clone(), now_ms)?;
+        let planted = self.planted_request(request.clone(), now_ms)?;
         let farm = self
             .farm
             .as_mut()
             .expect("an exchange is with a coordinator that is up");
-        let response = farm.exchange(told, now_ms);
+        let response = farm.exchange(planted, now_ms);
         self.take_facts(Source::Exchange(request))?;
         self.witness.exchanged(request, &response, &self.ledger, now_ms)?;
         Ok(response)
@@ -211,7 +211,7 @@ impl<'a> Coordinator<'a> {
         Ok(())
     }
 
-    /// Time passes.
+    /// Lets time pass for the farm.
     pub(crate) fn tick(&mut self, now_ms: u64) -> Result<(), Broken> {
         if self.has(Plant::RenewedAfterExpiry) {
             self.renew_all(now_ms);
@@ -228,7 +228,7 @@ impl<'a> Coordinator<'a> {
         self.serve_parked(now_ms)
     }
 
-    /// More facts come to disk; the answers that may leave.
+    /// Brings more facts to disk. Returns the answers that may leave.
     pub(crate) fn commit(
         &mut self,
         facts: usize,
@@ -258,7 +258,7 @@ impl<'a> Coordinator<'a> {
         Ok(answers)
     }
 
-    /// A user's command; it is answered when it is on disk.
+    /// Executes a user's command, which is answered when it is on disk.
     pub(crate) fn control(&mut self, id: i64, control: Control, now_ms: u64) -> Result<(), Broken> {
         let is_lost = self.has(Plant::PauseLost) && control == Control::Pause;
         let Some(farm) = &mut self.farm else { return Ok(()) };
@@ -280,7 +280,7 @@ impl<'a> Coordinator<'a> {
         self.serve_parked(now_ms)
     }
 
-    /// The coordinator dies: what is not on disk is gone. With a backup, what was stored after it is gone, too.
+    /// Ends the coordinator: facts that are not on disk are lost. With a backup, facts after it are lost too.
     pub(crate) fn crash(&mut self, backup: Option<usize>) -> Result<(), Broken> {
         self.farm = None;
         self.held.clear();
@@ -294,7 +294,7 @@ impl<'a> Coordinator<'a> {
         self.witness.crashed(&self.ledger, backup.is_some())
     }
 
-    /// The coordinator starts and takes up what is stored.
+    /// Starts the coordinator and resumes the stored calibrations.
     pub(crate) fn restart(&mut self, now_ms: u64) -> Result<(), Broken> {
         if !self.has(Plant::FenceRepeats) {
             self.epoch += 1;
@@ -318,31 +318,29 @@ impl<'a> Coordinator<'a> {
         let Some(table) = self.ledger.table(id) else {
             return Ok(());
         };
-        {
-            let stored = match self.plant {
-                Some(plant) => plant.replayed(table.stored()),
-                None => table.stored(),
-            };
-            let key = table.key;
-            let share = self.verified_share;
-            let replayed = table.case.begin(id).and_then(|calibration| {
-                let mut calibration = calibration.verified(share, key);
-                let facts = calibration.replay(stored).map_err(|e| e.to_string())?;
-                Ok((calibration, facts))
-            });
-            let (calibration, facts) = replayed.map_err(|e| Broken::new(Promise::Replay, e))?;
-            self.witness.began(id);
-            if let Some(farm) = &mut self.farm {
-                farm.add(calibration, key, facts, now_ms);
-            }
-            self.take_facts(Source::Restart)
+        let stored = match self.plant {
+            Some(plant) => plant.replayed(table.stored()),
+            None => table.stored(),
+        };
+        let key = table.key;
+        let share = self.verified_share;
+        let replayed = table.case.begin(id).and_then(|calibration| {
+            let mut calibration = calibration.verified(share, key);
+            let facts = calibration.replay(stored).map_err(|e| e.to_string())?;
+            Ok((calibration, facts))
+        });
+        let (calibration, facts) = replayed.map_err(|e| Broken::new(Promise::Replay, e))?;
+        self.witness.began(id);
+        if let Some(farm) = &mut self.farm {
+            farm.add(calibration, key, facts, now_ms);
         }
+        self.take_facts(Source::Restart)
     }
 }
 
-/// Where bugs are planted into what reaches the farm.
+/// The planted bugs that act on requests.
 impl Coordinator<'_> {
-    /// What the farm is told of a request.
+    /// Returns the request that the farm gets under a planted bug.
     fn planted_request(
         &mut self,
         mut request: ExchangeRequest,
@@ -368,7 +366,7 @@ impl Coordinator<'_> {
         Ok(request)
     }
 
-    /// Lets a worker act on the leases of others, as if their names were not compared.
+    /// Lets a worker act on the leases of others, as if the names of workers were not compared.
     fn in_the_name_of_others(&mut self, request: &ExchangeRequest, now_ms: u64) -> Result<(), Broken> {
         let owner = |lease: u64| Some(self.witness.issued.get(&lease)?.worker.clone());
         let mut acts: Vec<ExchangeRequest> = Vec::new();

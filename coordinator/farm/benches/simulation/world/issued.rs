@@ -1,4 +1,4 @@
-//! A lease that was given, the honest answer to it, and who holds it.
+//! A lease that was given: its holder and its honest answer.
 
 use shared::exchange::{Lease, WorkResult};
 use shared::model::equations_of;
@@ -13,22 +13,22 @@ pub(crate) struct Issued<'a> {
     pub(crate) lease: Lease,
     pub(super) case: &'a Case,
     pub(crate) answered: &'a Answered,
-    /// Whether the evaluation ends every worker.
+    /// Whether the evaluation kills every worker.
     pub(crate) poison: bool,
     /// The version of the equations that its worker computes.
     pub(super) version: String,
-    /// Since so many restored backups.
+    /// The number of backups that were restored before.
     pub(super) history: u32,
 }
 
 impl Issued<'_> {
-    /// Whether it is a lease of this calibration, not of a lost one of the same number, and of the version that it is pinned to.
+    /// Returns whether the lease belongs to this calibration, and not to a lost one with the same number, and has its pinned version.
     pub(super) fn is_of(&self, table: &Table) -> bool {
         let pinned = table.model_version.as_deref().map(equations_of);
         std::ptr::eq(self.case, table.case) && pinned.is_none_or(|pinned| pinned == self.version)
     }
 
-    /// The honest answer to it.
+    /// Returns the honest answer.
     pub(crate) fn answer(&self) -> WorkResult {
         WorkResult {
             lease: self.lease.lease,

@@ -1,4 +1,4 @@
-//! What the witness sees of leases: who holds what, and whether it may be given.
+//! The checks of the witness on leases: who holds what, and whether it may be given.
 
 use shared::api::CalibrationState;
 use shared::exchange::{ExchangeRequest, ExchangeResponse, Lease};
@@ -10,11 +10,11 @@ use super::promise::{Broken, Promise, demand};
 use super::witness::Witness;
 use record::EvaluationRow;
 
-/// A lease that is out for less is not slow `[ms]`.
+/// A lease is never slow before this time `[ms]`.
 const SLOW_MS: u64 = 1_000;
 
 impl<'a> Witness<'a> {
-    /// Lets time pass for leases, before the facts of the tick.
+    /// Ends expired leases, before the facts of the tick are checked.
     pub(crate) fn tick(&mut self, now_ms: u64) {
         self.expired = self
             .live
@@ -29,7 +29,7 @@ impl<'a> Witness<'a> {
         }
     }
 
-    /// Sees an exchange once its facts are in the ledger.
+    /// Checks an exchange once its facts are in the ledger.
     pub(crate) fn exchanged(
         &mut self,
         request: &ExchangeRequest,
@@ -150,14 +150,14 @@ impl<'a> Witness<'a> {
             );
             return Err(Broken::new(Promise::OneHolder, how));
         }
-        let mut others = self
+        let mut other_leases = self
             .live
             .iter()
-            // At the end of a calibration a second answer that does not come is waited for no longer.
+            // At the end of a calibration, a second answer that does not come is not waited for.
             .filter(|((.., is_second), live)| !is_second || now_ms < live.since_ms + self.lease_ms)
             .map(|(_, live)| live)
             .filter(|live| live.worker == request.worker && live.lease != number);
-        let is_alone = others.all(|live| !lease.announce && !live.is_suspect);
+        let is_alone = other_leases.all(|live| !lease.announce && !live.is_suspect);
         demand(is_alone, Promise::Alone, || {
             format!(
                 "lease {number} makes {} hold a suspect and something else",
@@ -177,7 +177,7 @@ impl<'a> Witness<'a> {
         Ok(())
     }
 
-    /// Ends the second leases that are answered, or failed.
+    /// Ends the second leases that are answered, or that failed.
     fn second_answers(&mut self, request: &ExchangeRequest, ledger: &Ledger<'a>) {
         for result in &request.results {
             let (id, evaluation) = (result.calibration, result.evaluation);

@@ -1,7 +1,7 @@
-//! The simulated store: facts in order, of which a prefix is on disk, and the tables that they make.
+//! The simulated store: facts in order, of which a prefix is on disk, and the tables that follow from them.
 //!
-//! Tables follow from facts as in the store's `facts.rs` and `recovery.rs`; a crash cuts the facts behind any that is on disk,
-//! and a backup that is put back cuts them at any place before.
+//! Tables follow from facts as in the store's `facts.rs` and `recovery.rs`. A crash cuts facts that are not on disk, and a restored backup
+//! cuts facts that are on disk, too.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -11,7 +11,7 @@ use shared::api::CalibrationState;
 use super::case::{Case, CaseResult, posterior_bits};
 use super::promise::{Broken, Promise, demand};
 
-/// What is stored.
+/// An entry of the ledger.
 #[derive(Debug)]
 pub(crate) enum Entry<'a> {
     /// A user's new calibration.
@@ -20,7 +20,7 @@ pub(crate) enum Entry<'a> {
     Fact(Fact),
 }
 
-/// Everything stored of one calibration.
+/// The stored state of one calibration.
 #[derive(Debug)]
 pub(crate) struct Table<'a> {
     pub(crate) case: &'a Case,
@@ -29,28 +29,28 @@ pub(crate) struct Table<'a> {
     pub(crate) message: Option<String>,
     pub(crate) model_version: Option<String>,
     pub(crate) busy_ms: u64,
-    /// The rows, each with its place among the facts.
+    /// The rows, each with its index among the facts.
     pub(crate) rows: BTreeMap<u64, (usize, EvaluationRow)>,
     /// The workers of failed attempts since a user granted new ones, by evaluation.
     pub(crate) failed: BTreeMap<u64, Vec<String>>,
     pub(crate) disputes: BTreeSet<u64>,
     /// Evaluations that a second worker has confirmed.
     pub(crate) confirmed: BTreeSet<u64>,
-    /// Whether rows were dropped because their worker computes wrongly: their results are acknowledged, and asked for again.
+    /// Whether rows were dropped because their worker computes wrongly. Their results are acknowledged, and are computed again.
     pub(crate) is_rewound: bool,
-    /// How many stages are stored.
+    /// The number of stored stages.
     pub(crate) stages: usize,
     pub(crate) result: Option<CaseResult>,
 }
 
-/// Facts in order and what they make.
+/// The facts in order and the tables that follow from them.
 #[derive(Debug, Default)]
 pub(crate) struct Ledger<'a> {
     entries: Vec<Entry<'a>>,
-    /// So many of them are on disk.
+    /// The number of entries that are on disk.
     durable: usize,
     tables: BTreeMap<i64, Table<'a>>,
-    /// Workers that were found to compute wrongly.
+    /// Workers that compute wrongly.
     quarantine: BTreeMap<String, Quarantine>,
 }
 
@@ -73,7 +73,7 @@ impl<'a> Table<'a> {
         }
     }
 
-    /// Applies a fact that stands at a place.
+    /// Applies the fact at an index.
     fn apply(&mut self, fact: &Fact, place: usize) {
         match fact {
             Fact::Evaluated { row, .. } => {
@@ -118,7 +118,7 @@ impl<'a> Table<'a> {
                 self.message.clone_from(message);
                 self.busy_ms = *busy_ms;
             }
-            // Of our models nothing is asked for twice by one worker.
+            // Built-in models are not evaluated twice by one worker.
             Fact::Repeated { .. } => {}
             Fact::ModelVersion { version, .. } => self.model_version = Some(version.clone()),
             Fact::Fault {
@@ -134,17 +134,17 @@ impl<'a> Table<'a> {
         }
     }
 
-    /// Whether a row is that of a worker and nobody has confirmed it.
+    /// Returns whether a row is a worker's and unconfirmed.
     fn rests_on(&self, worker: &str, row: &EvaluationRow) -> bool {
         row.worker == worker && !self.confirmed.contains(&row.evaluation)
     }
 
-    /// Whether anything rests on a worker alone.
+    /// Returns whether there are unconfirmed rows of a worker.
     pub(super) fn has_unconfirmed_of(&self, worker: &str) -> bool {
         self.rows.values().any(|(_, row)| self.rests_on(worker, row))
     }
 
-    /// Drops what rests on a worker alone, and all later rounds.
+    /// Drops the unconfirmed rows of a worker, and all later rounds.
     fn rewind(&mut self, worker: &str, width: u64) {
         let mut rests = self.rows.values().filter(|(_, row)| self.rests_on(worker, row));
         let Some((_, first)) = rests.next() else { return };
@@ -165,7 +165,7 @@ impl<'a> Table<'a> {
         self.is_rewound = true;
     }
 
-    /// Whether it has all its rows, its stages and its result, as a finished calibration must.
+    /// Checks that a finished calibration has all its rows, its stages and its result.
     pub(crate) fn is_complete(&self, id: i64) -> Result<(), Broken> {
         let case = self.case;
         let rows = self.rows.len() == case.answers.len();
@@ -181,7 +181,7 @@ impl<'a> Table<'a> {
         })
     }
 
-    /// What a restart reads back.
+    /// Returns what a restart reads.
     pub(crate) fn stored(&self) -> Stored {
         let told_values = self.case.spec.algorithm.is_told_values();
         let evaluation = |row: &EvaluationRow| EvaluationRow {
@@ -209,7 +209,7 @@ impl<'a> Table<'a> {
     }
 }
 
-/// The calibration that a fact is about.
+/// Returns the calibration that a fact is about.
 pub(crate) fn calibration_of(fact: &Fact) -> i64 {
     match fact {
         Fact::Evaluated { calibration, .. }
@@ -229,7 +229,7 @@ pub(crate) fn calibration_of(fact: &Fact) -> i64 {
 }
 
 impl<'a> Ledger<'a> {
-    /// Takes an entry, not yet on disk.
+    /// Appends an entry that is not yet on disk.
     pub(crate) fn push(&mut self, entry: Entry<'a>) {
         self.entries.push(entry);
         self.apply(self.entries.len() - 1);
@@ -261,12 +261,12 @@ impl<'a> Ledger<'a> {
         }
     }
 
-    /// How many entries there are.
+    /// Returns the number of entries.
     pub(crate) fn len(&self) -> usize {
         self.entries.len()
     }
 
-    /// How many of them are on disk.
+    /// Returns the number of entries on disk.
     pub(crate) fn durable(&self) -> usize {
         self.durable
     }
@@ -276,7 +276,7 @@ impl<'a> Ledger<'a> {
         self.durable = self.durable.saturating_add(entries).min(self.entries.len());
     }
 
-    /// Cuts everything behind a place: what a crash, or a backup that is put back, leaves.
+    /// Cuts all entries from an index on, as a crash or a restored backup does.
     pub(crate) fn cut(&mut self, place: usize) {
         self.entries.truncate(place);
         self.durable = self.entries.len();
@@ -287,28 +287,28 @@ impl<'a> Ledger<'a> {
         }
     }
 
-    /// Loses one entry and brings the others to disk: what no store may do.
+    /// Loses one entry and brings the others to disk, which a store must never do.
     pub(crate) fn lose(&mut self, place: usize) {
         self.entries.remove(place);
         self.durable = self.entries.len();
     }
 
-    /// What all facts make, on disk or not, by calibration.
+    /// Returns the tables of all calibrations, on disk or not.
     pub(crate) fn tables(&self) -> &BTreeMap<i64, Table<'a>> {
         &self.tables
     }
 
-    /// The workers that were found to compute wrongly.
+    /// Returns the workers that compute wrongly.
     pub(crate) fn quarantine(&self) -> &BTreeMap<String, Quarantine> {
         &self.quarantine
     }
 
-    /// What all facts make of a calibration.
+    /// Returns the table of a calibration.
     pub(crate) fn table(&self, id: i64) -> Option<&Table<'a>> {
         self.tables.get(&id)
     }
 
-    /// The row of an evaluation.
+    /// Returns the row of an evaluation.
     pub(crate) fn row(&self, id: i64, evaluation: u64) -> Option<&EvaluationRow> {
         self.tables.get(&id)?.rows.get(&evaluation).map(|(_, row)| row)
     }

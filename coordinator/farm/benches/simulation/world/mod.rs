@@ -1,15 +1,15 @@
-//! A world for the farm: workers, a network, a store and users, all drawn from one seed.
+//! The simulated world of the farm: workers, a network, a store and users, all drawn from one seed.
 //!
 //! # Layout
-//! - [`case`]: the calibrations, each with what it gives when nothing goes wrong.
-//! - [`schedule`]: one schedule from its seed: what happens, step by step.
-//! - `weather`: how often what goes wrong.
+//! - [`case`]: the calibrations, each with its results in a run without faults.
+//! - [`schedule`]: one schedule from its seed, step by step.
+//! - `weather`: the probabilities of faults.
 //! - [`request`]: a request that asks for nothing. `worker`: a worker that keeps to the protocol and breaks down.
 //! - `coordinator`: the real farm, called as the farm's thread and the store's writer call it.
 //! - `ledger`: the simulated store; `issued`: the leases that were given.
-//! - `witness`, `leasing`, [`promise`]: what must hold, and who checks it.
+//! - `witness`, `leasing`, [`promise`]: the promises, and their checks.
 //! - [`plant`]: the planted bugs.
-//! - [`search`], `tally`: many schedules, and what happened in them.
+//! - [`search`], `tally`: many schedules, and the counts of their events.
 
 pub(crate) mod case;
 mod coordinator;

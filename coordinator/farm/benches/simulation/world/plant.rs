@@ -1,16 +1,29 @@
-//! Bugs planted between the network, the farm and the ledger, each as its like inside would look from outside.
+//! Bugs that are planted between the network, the farm and the ledger, where they look like bugs inside the farm.
 
 use record::{EvaluationRow, Fact, Stored};
 use shared::api::CalibrationState;
 
 use super::ledger::Ledger;
 
-/// One row in so many is lost.
+/// Of this many rows, one is lost.
 const LOST: usize = 20;
 
-/// A planted bug.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Plant {
+/// Defines the planted bugs and the list of all.
+macro_rules! plants {
+    ($($(#[$doc:meta])* $plant:ident,)+) => {
+        /// A planted bug.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+        pub(crate) enum Plant {
+            $($(#[$doc])* $plant,)+
+        }
+
+        impl Plant {
+            pub(crate) const ALL: &[Plant] = &[$(Plant::$plant),+];
+        }
+    };
+}
+
+plants! {
     /// Answers leave before their facts are on disk.
     AnswerBeforeDisk,
     /// One row in twenty is never written, though its result is acknowledged.
@@ -41,13 +54,13 @@ pub(crate) enum Plant {
     ReplayForgetsVersion,
     /// A replay forgets the quasi-static values that a metamodel learns from.
     ReplayForgetsCoarse,
-    /// A restart gives lease numbers again.
+    /// A restart repeats lease numbers.
     FenceRepeats,
     /// Leases never expire: they are renewed when their time has come.
     RenewedAfterExpiry,
     /// Leases expire when half of their time is left.
     ExpiresEarly,
-    /// Every lease of a worker is taken for lost when it speaks.
+    /// Every lease of a worker counts as lost when the worker sends a message.
     TakenForLost,
     /// A lease counts as started when it is renewed.
     RenewedIsStarted,
@@ -61,50 +74,18 @@ pub(crate) enum Plant {
     ReturnedByOthers,
     /// The version of a worker is not checked.
     VersionUnchecked,
-    /// After a restored backup, a new calibration has the key of the lost one of its number.
+    /// After a restored backup, a new calibration has the key of the lost one with the same number.
     KeyAgain,
     /// A pause is acknowledged and forgotten.
     PauseLost,
     /// A command is acknowledged before it is on disk.
     CommandBeforeDisk,
-    /// A restart forgets who computes wrongly.
+    /// A restart forgets which workers compute wrongly.
     QuarantineForgotten,
 }
 
 impl Plant {
-    pub(crate) const ALL: [Plant; 29] = [
-        Plant::AnswerBeforeDisk,
-        Plant::RowLost,
-        Plant::RowUnderOtherNumber,
-        Plant::ScoreRounded,
-        Plant::FactsSwapped,
-        Plant::AttemptTwice,
-        Plant::AttemptLost,
-        Plant::DuplicateUnseen,
-        Plant::DuplicateCounted,
-        Plant::HoleInFacts,
-        Plant::ReplaySkipsRow,
-        Plant::ReplayForgetsAttempts,
-        Plant::ReplayForgetsPause,
-        Plant::ReplayForgetsVersion,
-        Plant::ReplayForgetsCoarse,
-        Plant::FenceRepeats,
-        Plant::RenewedAfterExpiry,
-        Plant::ExpiresEarly,
-        Plant::TakenForLost,
-        Plant::RenewedIsStarted,
-        Plant::StartUnread,
-        Plant::SealUnchecked,
-        Plant::WorkerUnchecked,
-        Plant::ReturnedByOthers,
-        Plant::VersionUnchecked,
-        Plant::KeyAgain,
-        Plant::PauseLost,
-        Plant::CommandBeforeDisk,
-        Plant::QuarantineForgotten,
-    ];
-
-    /// What is written of the farm's facts.
+    /// Returns the facts that are written under this bug.
     pub(crate) fn facts(self, mut facts: Vec<Fact>, ledger: &Ledger) -> Vec<Fact> {
         let is_row = |fact: &Fact| matches!(fact, Fact::Evaluated { .. });
         match self {
@@ -162,7 +143,7 @@ impl Plant {
         }
     }
 
-    /// What a replay is given.
+    /// Returns the stored state that a replay gets under this bug.
     pub(crate) fn replayed(self, mut stored: Stored) -> Stored {
         match self {
             Plant::ReplaySkipsRow => drop(stored.evaluations.pop_last()),

@@ -1,24 +1,23 @@
-//! What the farm promises, and what is said of a promise that is broken.
+//! The promises of the farm, and the report of a broken one.
 
 use std::fmt;
 
-/// What must hold at every moment of a schedule.
+/// A condition that must hold at every moment of a schedule.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Promise {
-    /// A lease asks, to the bit, what the run without faults asks under its number.
+    /// A lease asks, to the bit, the question that the run without faults asks under its number.
     Question,
     /// Lease numbers grow, over restarts too.
     Fence,
     /// No evaluation is leased while another lease of it is out: neither answered, failed, returned by its worker, expired nor lost.
     OneHolder,
-    /// A suspect is leased to a worker that holds nothing, and whoever holds one gets nothing else.
+    /// A suspect is leased to a worker that holds nothing, and the holder of a suspect gets nothing else.
     Alone,
     /// No evaluation is leased that has its row.
     NotAgain,
-    /// Nothing of a calibration is leased that is paused or over.
+    /// No evaluation of a paused or finished calibration is leased.
     Open,
-    /// A calibration is pinned once to a version of the equations, by a result; from then on workers of that version alone lease and
-    /// answer.
+    /// A calibration is pinned once to a version of the equations, by a result. From then on only workers of that version lease and answer.
     Version,
     /// A row has the bits of the run without faults.
     Row,
@@ -29,11 +28,11 @@ pub(crate) enum Promise {
     /// Only a user, three failed attempts at an evaluation or twenty leases that nobody began pause a calibration; only failures on three
     /// workers, or a user who skips it, give an evaluation up.
     Pause,
-    /// What was acknowledged is on disk, and is there after a restart.
+    /// Acknowledged results are on disk, and are there after a restart.
     Acknowledged,
     /// Two different answers to one evaluation are a dispute.
     Dispute,
-    /// Whoever computes wrongly gets no lease, and nobody else is said to.
+    /// A worker that computes wrongly gets no lease, and no other worker is accused.
     Quarantine,
     /// Stages, draws, evidence and estimate have the bits of the run without faults.
     Result,
@@ -45,7 +44,7 @@ pub(crate) enum Promise {
     End,
 }
 
-/// A promise that was broken, and how.
+/// A broken promise, with an explanation.
 #[derive(Debug, Clone)]
 pub(crate) struct Broken {
     pub(crate) promise: Promise,
@@ -67,7 +66,7 @@ impl fmt::Display for Broken {
     }
 }
 
-/// `Err` with the promise where it does not hold.
+/// Returns `Err` with the promise where the condition does not hold.
 pub(crate) fn demand(holds: bool, promise: Promise, how: impl FnOnce() -> String) -> Result<(), Broken> {
     if holds {
         Ok(())

@@ -1,8 +1,8 @@
-//! A request of a worker that says as little as the protocol allows.
+//! A minimal request of a worker.
 
 use shared::exchange::{ExchangeRequest, PROTOCOL_VERSION};
 
-/// A request for nothing, from a worker that has received everything.
+/// Makes a request for nothing, from a worker that has received every lease.
 pub(crate) fn bare(worker: String, version: &str) -> ExchangeRequest {
     ExchangeRequest {
         worker,

@@ -1,8 +1,7 @@
-//! One schedule: a farm, its workers and a network through faults, then to the end.
+//! One schedule: a farm, its workers and a network under faults, and then a calm end.
 //!
-//! Everything that happens is drawn from one stream, which the seed of the schedule makes. At every step one thing happens: a
-//! worker acts, a message arrives, facts come to disk, time passes, or something breaks. After the faults the schedule is calm, and
-//! every calibration must end.
+//! All events are drawn from one random stream, which depends on the seed alone. In every step one event happens: a worker acts, a message
+//! arrives, facts come to disk, time passes, or something breaks. After the faults the schedule is calm, and every calibration must end.
 
 use farm::Control;
 use record::SealKey;
@@ -20,15 +19,15 @@ use super::tally::Tally;
 use super::weather::{Weather, chance};
 use super::worker::{Act, Worker, lie};
 
-/// Version of the equations of some workers that fit no calibration that others have begun.
+/// The version of the equations of workers that cannot continue a calibration of other workers.
 const OTHER_EQUATIONS: &str = "scm-5";
-/// A calibration that has not ended after so many calm steps does not end.
+/// The number of calm steps within which every calibration must end.
 const MAX_CALM_STEPS: u64 = 40_000;
-/// Steps after the end, for what is still on its way.
+/// The number of steps after the end, for messages that are still on their way.
 const STEPS_AFTER: u64 = 20;
-/// Stage of the random streams, far from those of any sampler.
+/// The stage of the random streams, which no sampler uses.
 const STAGE: u64 = 1 << 41;
-/// The place of whoever expects no answer.
+/// The index of a sender that expects no answer.
 const NOBODY: usize = usize::MAX;
 
 /// A message on its way.
@@ -38,7 +37,7 @@ enum Message {
     Answer(ExchangeResponse, Return),
 }
 
-/// Prints what happens, if anybody wants to know.
+/// Prints the events, if it is on.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Journal(pub(crate) bool);
 
@@ -58,12 +57,12 @@ struct Schedule<'a> {
     coordinator: Coordinator<'a>,
     workers: Vec<Worker>,
     births: u64,
-    /// Messages on their way, with the time before which they do not arrive.
+    /// Messages on their way, each with the earliest time of its arrival.
     network: Vec<(u64, Message)>,
     now_ms: u64,
-    /// What a backup has of the ledger.
+    /// The number of entries in the backup.
     backup: Option<usize>,
-    /// How many calibrations users submit.
+    /// The number of calibrations that users submit.
     calibrations: i64,
     /// Whether every evaluation is verified.
     verifies: bool,
@@ -74,7 +73,7 @@ struct Schedule<'a> {
 /// Runs the schedule of a seed.
 ///
 /// # Errors
-/// The promise that is broken.
+/// The broken promise.
 pub(crate) fn run(
     cases: &[Vec<Case>],
     seed: u64,
@@ -164,7 +163,7 @@ impl Schedule<'_> {
             && ledger.tables().values().all(|table| table.state.is_final())
     }
 
-    /// From here on nothing fails but the poisonous evaluations, and there is a worker for whatever a calibration is pinned to.
+    /// Begins the calm end: only poisonous evaluations fail, and there is a worker for every pinned version.
     fn calm(&mut self) {
         self.is_calm = true;
         self.weather = Weather::default();
@@ -183,12 +182,12 @@ impl Schedule<'_> {
         match self.stream.below(100) {
             0..42 => self.act(),
             42..72 => {
-                let most = if self.is_calm {
+                let max_messages = if self.is_calm {
                     usize::MAX
                 } else {
                     1 + self.stream.below(4)
                 };
-                (0..self.network.len().min(most)).try_for_each(|_| self.deliver())
+                (0..self.network.len().min(max_messages)).try_for_each(|_| self.deliver())
             }
             72..86 => {
                 let facts = if self.is_calm {
@@ -224,7 +223,7 @@ impl Schedule<'_> {
         self.coordinator.submit(id, case, key, self.now_ms)
     }
 
-    /// A new worker process.
+    /// Makes a new worker process.
     fn hire(&mut self, version: &'static str) -> Worker {
         self.births += 1;
         Worker::new(self.births, version, &mut self.stream)
@@ -244,8 +243,9 @@ impl Schedule<'_> {
             && chance(&mut self.stream, self.weather.twice)
         {
             self.tally.twice += 1;
-            let again = self.now_ms + self.stream.below(LEASE_MS as usize) as u64;
-            self.network.push((again, Message::Request(request.clone(), *to)));
+            let again_ms = self.now_ms + self.stream.below(LEASE_MS as usize) as u64;
+            self.network
+                .push((again_ms, Message::Request(request.clone(), *to)));
         }
         self.network.push((at_ms, message));
     }
@@ -289,7 +289,7 @@ impl Schedule<'_> {
             return Ok(());
         }
         match self.network.swap_remove(place).1 {
-            // A lie that would be a first answer leads to questions that the run without faults never asks.
+            // A lie as the first answer would lead to questions that the run without faults never asks.
             Message::Request(request, _) if self.is_first_lie(&request) => Ok(()),
             Message::Request(request, to) => self.coordinator.receive(request, to, self.now_ms),
             Message::Answer(response, to) => {
@@ -302,7 +302,7 @@ impl Schedule<'_> {
         }
     }
 
-    /// Whether a request has the lie of a worker about an evaluation without a row.
+    /// Returns whether a request contains a worker's lie about an evaluation without a row.
     fn is_first_lie(&self, request: &ExchangeRequest) -> bool {
         let Coordinator { ledger, witness, .. } = &self.coordinator;
         let is_lie = |r: &WorkResult| {
@@ -320,7 +320,7 @@ impl Schedule<'_> {
         Ok(())
     }
 
-    /// What users and keepers do when nothing fails: the coordinator runs, and what is paused goes on.
+    /// Repairs what faults have left: the coordinator runs, and paused calibrations are resumed.
     fn mend(&mut self) -> Result<(), Broken> {
         if !self.coordinator.is_up() {
             return self.restart();
@@ -337,7 +337,7 @@ impl Schedule<'_> {
     }
 
     fn submit_next(&mut self) -> Result<(), Broken> {
-        // What is submitted later is newer than the backup.
+        // Later submissions are newer than the backup.
         self.backup.get_or_insert(self.coordinator.ledger.durable());
         let stored = self.coordinator.ledger.tables().len() as i64;
         if stored < self.calibrations {
@@ -427,14 +427,14 @@ impl Schedule<'_> {
         Ok(())
     }
 
-    /// A worker sends a result again that was acknowledged, with other values.
+    /// Sends an acknowledged result again with other values.
     fn lie(&mut self, place: usize) {
-        // One liar to a schedule: two could agree.
+        // There is one liar in a schedule, because two could agree.
         let liars = &self.coordinator.witness.liars;
         if self.verifies && !liars.is_empty() && !liars.contains(&self.workers[place].name) {
             return;
         }
-        let Some(again) = self.workers[place].sent.as_ref().and_then(lie) else {
+        let Some(again_ms) = self.workers[place].sent.as_ref().and_then(lie) else {
             return;
         };
         self.tally.lies += 1;
@@ -444,12 +444,12 @@ impl Schedule<'_> {
             .insert(self.workers[place].name.clone());
         let request = bare(self.workers[place].name.clone(), self.workers[place].version);
         self.inject(ExchangeRequest {
-            results: vec![again],
+            results: vec![again_ms],
             ..request
         });
     }
 
-    /// Somebody sends a result or a return that is not theirs to send, or not of this lease.
+    /// Sends a result or a return of a lease of another worker, or of another lease.
     fn forge(&mut self, place: usize) {
         let issued = &self.coordinator.witness.issued;
         let Some(theirs) = issued.values().nth(self.stream.below(issued.len())) else {
@@ -482,12 +482,12 @@ impl Schedule<'_> {
             _ => {
                 let leases: Vec<u64> = self.coordinator.witness.live().map(|(lease, _)| lease).collect();
                 let name = self.workers[place].name.clone();
-                let others = self
+                let foreign = self
                     .coordinator
                     .witness
                     .live()
                     .filter(|(_, worker)| *worker != name);
-                let returned = others.map(|(lease, _)| lease).collect();
+                let returned = foreign.map(|(lease, _)| lease).collect();
                 ExchangeRequest {
                     returned,
                     started: leases.clone(),

@@ -1,4 +1,4 @@
-//! Many schedules on all cores, until a promise is broken.
+//! A search over many schedules on all cores for a broken promise.
 
 use std::ops::Range;
 use std::sync::Mutex;
@@ -11,22 +11,22 @@ use super::promise::Broken;
 use super::schedule::{self, Journal};
 use super::tally::Tally;
 
-/// What many schedules gave.
+/// The result of a search.
 #[derive(Debug)]
 pub(crate) struct Search {
-    /// Of the schedules that kept every promise.
+    /// The counts of the schedules that kept every promise.
     pub(crate) tally: Tally,
     /// The lowest seed found that breaks a promise.
     pub(crate) broken: Option<(u64, Broken)>,
     pub(crate) time: Duration,
 }
 
-/// Runs the schedules of some seeds on all cores, until a promise is broken or the time is up.
+/// Runs the schedules of some seeds on all cores, until a promise is broken or the time is over.
 pub(crate) fn search(
     cases: &[Vec<Case>],
     plant: Option<Plant>,
     seeds: Range<u64>,
-    most: Option<Duration>,
+    max_time: Option<Duration>,
 ) -> Search {
     let began = Instant::now();
     let next = AtomicU64::new(seeds.start);
@@ -36,7 +36,7 @@ pub(crate) fn search(
         let mut broken = None;
         while broken.is_none() {
             let seed = next.fetch_add(1, Ordering::Relaxed);
-            if seed >= seeds.end || most.is_some_and(|most| began.elapsed() > most) {
+            if seed >= seeds.end || max_time.is_some_and(|max_time| began.elapsed() > max_time) {
                 break;
             }
             match schedule::run(cases, seed, plant, Journal(false)) {
@@ -45,7 +45,7 @@ pub(crate) fn search(
             }
         }
         if broken.is_some() {
-            // The others stop, too.
+            // This ends the other threads, too.
             next.store(u64::MAX / 2, Ordering::Relaxed);
         }
         let mut found = found.lock().expect("no schedule panics while it is held");

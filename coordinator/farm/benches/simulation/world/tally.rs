@@ -1,95 +1,52 @@
-//! What happened in schedules, counted.
+//! Counts of the events in schedules.
 
 use std::fmt;
 use std::ops::AddAssign;
 
-/// What happened in schedules, counted.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub(crate) struct Tally {
-    pub(crate) schedules: u64,
-    pub(crate) steps: u64,
-    pub(crate) leases: u64,
-    pub(crate) rows: u64,
-    pub(crate) lost: u64,
-    pub(crate) twice: u64,
-    pub(crate) delayed: u64,
-    pub(crate) crashes: u64,
-    pub(crate) restores: u64,
-    pub(crate) deaths: u64,
-    pub(crate) stops: u64,
-    pub(crate) jumps: u64,
-    pub(crate) forged: u64,
-    pub(crate) lies: u64,
-    pub(crate) commands: u64,
-    pub(crate) disputes: u64,
-    pub(crate) confirmed: u64,
-    pub(crate) quarantined: u64,
-    pub(crate) finished: u64,
-    pub(crate) cancelled: u64,
-    pub(crate) given_up: u64,
+/// Defines the counts with their labels.
+macro_rules! tally {
+    ($($count:ident: $label:literal,)+) => {
+        /// Counts of the events in schedules.
+        #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+        pub(crate) struct Tally {
+            $(pub(crate) $count: u64,)+
+        }
+
+        impl AddAssign for Tally {
+            fn add_assign(&mut self, other: Tally) {
+                $(self.$count += other.$count;)+
+            }
+        }
+
+        impl fmt::Display for Tally {
+            fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+                $(writeln!(f, "{:>14}  {}", self.$count, $label)?;)+
+                Ok(())
+            }
+        }
+    };
 }
 
-impl Tally {
-    fn counts(&self) -> [(&'static str, u64); 21] {
-        [
-            ("schedules", self.schedules),
-            ("steps", self.steps),
-            ("leases", self.leases),
-            ("rows", self.rows),
-            ("messages lost", self.lost),
-            ("requests doubled", self.twice),
-            ("messages delayed beyond a lease", self.delayed),
-            ("coordinators killed", self.crashes),
-            ("backups put back", self.restores),
-            ("workers killed", self.deaths),
-            ("workers stopped beyond a lease", self.stops),
-            ("clock jumps", self.jumps),
-            ("forged messages", self.forged),
-            ("second, other answers", self.lies),
-            ("commands of users", self.commands),
-            ("disputes", self.disputes),
-            ("rows confirmed by a second worker", self.confirmed),
-            ("workers quarantined", self.quarantined),
-            ("calibrations finished with the same bits", self.finished),
-            ("calibrations cancelled", self.cancelled),
-            (
-                "schedules that end with an evaluation given up after faults on three workers",
-                self.given_up,
-            ),
-        ]
-    }
-}
-
-impl AddAssign for Tally {
-    fn add_assign(&mut self, other: Tally) {
-        self.schedules += other.schedules;
-        self.steps += other.steps;
-        self.leases += other.leases;
-        self.rows += other.rows;
-        self.lost += other.lost;
-        self.twice += other.twice;
-        self.delayed += other.delayed;
-        self.crashes += other.crashes;
-        self.restores += other.restores;
-        self.deaths += other.deaths;
-        self.stops += other.stops;
-        self.jumps += other.jumps;
-        self.forged += other.forged;
-        self.lies += other.lies;
-        self.commands += other.commands;
-        self.disputes += other.disputes;
-        self.confirmed += other.confirmed;
-        self.quarantined += other.quarantined;
-        self.finished += other.finished;
-        self.cancelled += other.cancelled;
-        self.given_up += other.given_up;
-    }
-}
-
-impl fmt::Display for Tally {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        self.counts()
-            .iter()
-            .try_for_each(|(what, count)| writeln!(f, "{count:>14}  {what}"))
-    }
+tally! {
+    schedules: "schedules",
+    steps: "steps",
+    leases: "leases",
+    rows: "rows",
+    lost: "messages lost",
+    twice: "requests doubled",
+    delayed: "messages delayed beyond a lease",
+    crashes: "coordinators killed",
+    restores: "backups put back",
+    deaths: "workers killed",
+    stops: "workers stopped beyond a lease",
+    jumps: "clock jumps",
+    forged: "forged messages",
+    lies: "second, other answers",
+    commands: "commands of users",
+    disputes: "disputes",
+    confirmed: "rows confirmed by a second worker",
+    quarantined: "workers quarantined",
+    finished: "calibrations finished with the same bits",
+    cancelled: "calibrations cancelled",
+    given_up: "schedules that end with an evaluation given up after faults on three workers",
 }

@@ -1,8 +1,8 @@
-//! The weather of a schedule: how often what goes wrong.
+//! The weather of a schedule: the probability of each fault.
 
 use statistics::rng::Stream;
 
-/// Probabilities, each at one occasion.
+/// The probability of each fault at one occasion.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Weather {
     /// A message is lost.
@@ -13,19 +13,19 @@ pub(crate) struct Weather {
     pub(crate) delay: f64,
     /// The coordinator dies.
     pub(crate) crash: f64,
-    /// It comes back with an older file.
+    /// The coordinator restarts with an older file.
     pub(crate) restore: f64,
     /// A worker dies.
     pub(crate) death: f64,
     /// A worker stands still for longer than a lease.
     pub(crate) stop: f64,
-    /// An evaluation takes another turn.
+    /// An evaluation takes longer.
     pub(crate) slow: f64,
     /// A machine fails at an evaluation.
     pub(crate) fault: f64,
     /// A lease is returned.
     pub(crate) returned: f64,
-    /// A worker renews nothing.
+    /// A worker does not renew its leases.
     pub(crate) unrenewed: f64,
     /// The clock jumps ahead.
     pub(crate) jump: f64,
@@ -33,25 +33,25 @@ pub(crate) struct Weather {
     pub(crate) user: f64,
     /// A user cancels.
     pub(crate) cancel: f64,
-    /// Somebody sends what is not theirs to send.
+    /// A foreign or forged message is sent.
     pub(crate) forged: f64,
-    /// A worker answers again, and otherwise.
+    /// A worker answers again, with other values.
     pub(crate) lie: f64,
 }
 
-/// Whether what has a probability happens.
+/// Draws whether an event of this probability happens.
 pub(crate) fn chance(stream: &mut Stream, probability: f64) -> bool {
     probability > 0.0 && stream.uniform() < probability
 }
 
 impl Weather {
-    /// Draws a weather: each fault is absent in half of the schedules, else anything from rare to frequent.
+    /// Draws a weather: each fault is absent in half of the schedules, else its probability is drawn from rare to frequent.
     pub(crate) fn draw(stream: &mut Stream) -> Weather {
-        let mut often = |most: f64| {
+        let mut often = |max: f64| {
             if stream.uniform() < 0.5 {
                 0.0
             } else {
-                most * libm::exp(-3.0 * stream.uniform())
+                max * libm::exp(-3.0 * stream.uniform())
             }
         };
         let mut weather = Weather {
@@ -72,7 +72,7 @@ impl Weather {
             forged: often(0.4),
             lie: often(0.3),
         };
-        // After a restored backup a lie may be the first answer, which nothing tells from the truth.
+        // After a restored backup, a lie may be the first answer, which cannot be distinguished from the truth.
         if weather.lie > 0.0 {
             weather.restore = 0.0;
         }

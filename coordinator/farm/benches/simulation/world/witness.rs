@@ -1,4 +1,4 @@
-//! The witness of a schedule: sees what reaches the farm and what leaves it, and says which promise is broken.
+//! The witness of a schedule: it checks everything that reaches and leaves the farm against the promises.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -14,12 +14,12 @@ use super::issued::{Issued, Live};
 use super::ledger::{Ledger, Table, calibration_of};
 use super::promise::{Broken, Promise, demand};
 
-/// Attempts that may fail before a calibration pauses.
+/// The number of failed attempts after which a calibration pauses.
 const ATTEMPTS: usize = 3;
-/// Leases that may expire in a row before they are begun.
+/// The number of leases in a row that expire before they are begun, after which a calibration pauses.
 const UNSTARTED: u32 = 20;
 
-/// Where a fact comes from.
+/// The origin of a fact.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Source<'b> {
     /// A worker's exchange.
@@ -32,28 +32,29 @@ pub(crate) enum Source<'b> {
     Restart,
 }
 
-/// Sees what reaches the farm and what leaves it.
+/// The checks of everything that reaches and leaves the farm.
 #[derive(Debug)]
 pub(crate) struct Witness<'a> {
     /// Every lease that was ever given, by number.
     pub(crate) issued: BTreeMap<u64, Issued<'a>>,
     /// The leases that are out, by calibration, evaluation and whether it is a second one.
     pub(super) live: BTreeMap<(i64, u64, bool), Live>,
-    /// Leases that time has ended since the last fact of a tick.
+    /// Leases that have expired since the last fact of a tick.
     pub(super) expired: Vec<((i64, u64, bool), Live)>,
     /// Workers that have answered in two ways.
     pub(crate) liars: BTreeSet<String>,
     /// Whether second workers verify.
     pub(super) verifies: bool,
-    /// How many leases of an evaluation expired in a row before they were begun.
+    /// The number of leases of an evaluation that expired in a row before they were begun.
     pub(super) unstarted: BTreeMap<(i64, u64), u32>,
     /// Results acknowledged since the last restored backup.
     acknowledged: BTreeSet<(i64, u64)>,
     /// Calibrations that this start of the farm knows.
-    known: BTreeSet<i64>,
+    begun: BTreeSet<i64>,
     pub(super) lease_ms: u64,
     pub(super) history: u32,
-    /// An evaluation was given up after honest failures on three workers: as promised, but what follows has other bits.
+    /// Whether an evaluation was given up after honest failures on three workers. The results then differ from those of the run without
+    /// faults.
     pub(crate) is_given_up: bool,
 }
 
@@ -67,19 +68,19 @@ impl<'a> Witness<'a> {
             verifies,
             unstarted: BTreeMap::new(),
             acknowledged: BTreeSet::new(),
-            known: BTreeSet::new(),
+            begun: BTreeSet::new(),
             lease_ms,
             history: 0,
             is_given_up: false,
         }
     }
 
-    /// Numbers of the leases that are out, with their workers.
+    /// Returns the numbers of the leases that are out, with their workers.
     pub(crate) fn live(&self) -> impl Iterator<Item = (u64, &str)> {
         self.live.values().map(|live| (live.lease, live.worker.as_str()))
     }
 
-    /// The lease that a result carries with its seal, where its own worker sends it.
+    /// Returns the lease that a result belongs to, if its seal and its worker match.
     pub(super) fn lease_of(&self, result: &WorkResult, worker: &str) -> Option<&Issued<'a>> {
         self.issued.get(&result.lease).filter(|issued| {
             let lease = &issued.lease;
@@ -88,7 +89,7 @@ impl<'a> Witness<'a> {
         })
     }
 
-    /// Sees a fact before it is in the ledger.
+    /// Checks a fact before it is in the ledger.
     pub(crate) fn fact(&mut self, fact: &Fact, source: Source, ledger: &Ledger<'a>) -> Result<(), Broken> {
         let id = calibration_of(fact);
         let Some(table) = ledger.table(id) else {
@@ -153,8 +154,8 @@ impl<'a> Witness<'a> {
             }
             Fact::Rewound { worker, .. } => {
                 if table.has_unconfirmed_of(worker) {
-                    self.live.retain(|(of, ..), _| *of != id);
-                    self.unstarted.retain(|(of, _), _| *of != id);
+                    self.live.retain(|(calibration, ..), _| *calibration != id);
+                    self.unstarted.retain(|(calibration, _), _| *calibration != id);
                 }
                 Ok(())
             }
@@ -177,12 +178,12 @@ impl<'a> Witness<'a> {
                 })
             }
             Fact::State { state, message, .. } => self.state(id, table, *state, message.as_deref(), source),
-            // Of our models nothing is asked for twice by one worker.
+            // Built-in models are not evaluated twice by one worker.
             Fact::Repeated { .. } => Ok(()),
             Fact::ModelVersion { version, .. } => {
                 let equations = equations_of(version);
                 self.live
-                    .retain(|(of, ..), live| *of != id || live.version == equations);
+                    .retain(|(calibration, ..), live| *calibration != id || live.version == equations);
                 let by_result = matches!(source, Source::Exchange(r) if r.model_version == equations && !r.results.is_empty());
                 demand(
                     table.model_version.is_none() && by_result,
@@ -223,7 +224,7 @@ impl<'a> Witness<'a> {
         if row.worker.is_empty() {
             let failed = table.failed.get(&evaluation);
             let workers: BTreeSet<&String> = failed.into_iter().flatten().collect();
-            // A user who skips faults does so where the poisonous evaluation alone has failed.
+            // A user skips faults only where just the poisonous evaluation has failed.
             self.is_given_up = table.case.poison != Some(evaluation);
             return demand(
                 !self.is_given_up || workers.len() >= ATTEMPTS,
@@ -251,9 +252,9 @@ impl<'a> Witness<'a> {
     ) -> Result<(), Broken> {
         let is_resumed = state == CalibrationState::Running && matches!(source, Source::Command);
         if state.is_final() || is_resumed {
-            // Leases from before are forgotten; what was resumed is asked anew.
-            self.live.retain(|(of, ..), _| *of != id);
-            self.unstarted.retain(|(of, _), _| *of != id);
+            // Earlier leases are forgotten; after the resumption, the evaluations are leased again.
+            self.live.retain(|(calibration, ..), _| *calibration != id);
+            self.unstarted.retain(|(calibration, _), _| *calibration != id);
         }
         match state {
             CalibrationState::Finished => table.is_complete(id),
@@ -266,7 +267,7 @@ impl<'a> Witness<'a> {
                     || self
                         .unstarted
                         .iter()
-                        .any(|((of, _), &count)| *of == id && count >= UNSTARTED);
+                        .any(|((calibration, _), &count)| *calibration == id && count >= UNSTARTED);
                 let by_user = matches!(source, Source::Command);
                 demand(exhausted || by_user, Promise::Pause, || {
                     format!("calibration {id} pauses after {:?}", table.failed)
@@ -302,10 +303,9 @@ impl<'a> Witness<'a> {
                         matches!(r.outcome, Some(Outcome::Fault(_))) && self.lease_of(r, worker).is_some()
                     })
             }
-            Source::Tick => self
-                .expired
-                .iter()
-                .any(|(of, live)| *of == (id, evaluation, false) && live.worker == worker && live.started),
+            Source::Tick => self.expired.iter().any(|(calibration, live)| {
+                *calibration == (id, evaluation, false) && live.worker == worker && live.started
+            }),
             Source::Command | Source::Restart => false,
         };
         demand(is_its_own, Promise::Attempt, || {
@@ -315,19 +315,20 @@ impl<'a> Witness<'a> {
         })
     }
 
-    /// Sees the results that were dropped.
+    /// Notes that results were dropped.
     pub(crate) fn rewound(&mut self, id: i64, ledger: &Ledger) {
         if let Some(table) = ledger.table(id) {
-            self.acknowledged
-                .retain(|(of, evaluation)| *of != id || table.rows.contains_key(evaluation));
+            self.acknowledged.retain(|(calibration, evaluation)| {
+                *calibration != id || table.rows.contains_key(evaluation)
+            });
         }
     }
 
-    /// Where an answer differs from the row of its evaluation, there is a dispute.
+    /// Checks that an answer that differs from the row of its evaluation is a dispute.
     pub(super) fn disputed(&self, request: &ExchangeRequest, ledger: &Ledger) -> Result<(), Broken> {
         for result in &request.results {
             let (id, evaluation) = (result.calibration, result.evaluation);
-            let Some(table) = ledger.table(id).filter(|_| self.known.contains(&id)) else {
+            let Some(table) = ledger.table(id).filter(|_| self.begun.contains(&id)) else {
                 continue;
             };
             let row = table
@@ -337,14 +338,14 @@ impl<'a> Witness<'a> {
             let issued = self.lease_of(result, &request.worker);
             let issued = issued.filter(|issued| issued.is_of(table));
             let Some((_, row)) = row else { continue };
-            // An honest answer has the bits of the row, whoever gave it.
+            // An honest answer has the bits of the row, whichever worker gave it.
             if issued.is_none_or(|issued| issued.answered.outcome == result.outcome) {
                 continue;
             }
             let differs = SimulationResult::new(result.outcome.clone(), result.end.clone())
                 .is_ok_and(|c| c.fingerprint() != row.fingerprint);
             demand(
-                // After a rewind nobody knows what a number of an earlier round had asked.
+                // After a rewind, the question under a number of an earlier round is unknown.
                 !differs
                     || table.is_rewound
                     || table.disputes.contains(&evaluation)
@@ -361,7 +362,7 @@ impl<'a> Witness<'a> {
         Ok(())
     }
 
-    /// Sees the answer to a worker's results leave the coordinator.
+    /// Checks the answer to a worker's results when it leaves the coordinator.
     pub(crate) fn acknowledged(
         &mut self,
         worker: &str,
@@ -400,16 +401,16 @@ impl<'a> Witness<'a> {
         Ok(())
     }
 
-    /// Sees a calibration given to the farm.
+    /// Notes that a calibration was given to the farm.
     pub(crate) fn began(&mut self, id: i64) {
-        self.known.insert(id);
+        self.begun.insert(id);
     }
 
-    /// Sees what a crash has left; `restored`: a backup was put back.
+    /// Checks what a crash has left; `restored` states whether a backup was restored.
     pub(crate) fn crashed(&mut self, ledger: &Ledger, restored: bool) -> Result<(), Broken> {
         self.live.clear();
         self.unstarted.clear();
-        self.known.clear();
+        self.begun.clear();
         if restored {
             self.history += 1;
             self.acknowledged.clear();

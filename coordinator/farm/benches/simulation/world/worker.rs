@@ -1,4 +1,4 @@
-//! A simulated worker: keeps to the protocol as `worker::pull` does, and breaks down in every way that a process can.
+//! A simulated worker: it keeps to the protocol as `worker::pull` does, and breaks down in every way that a process can.
 
 use std::collections::BTreeMap;
 
@@ -10,35 +10,35 @@ use super::issued::Issued;
 use super::request::bare;
 use super::weather::{Weather, chance};
 
-/// A worker waits so long for an answer before it sends again `[ms]`.
+/// The time that a worker waits for an answer before it sends the request again `[ms]`.
 const PATIENCE_MS: u64 = 1_200;
 
-/// How far a worker is with a lease.
+/// The progress of a worker with a lease.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Phase {
     /// Its evaluation may begin.
     Waiting,
-    /// Its start must be answered before it begins.
+    /// The coordinator must acknowledge its start before it begins.
     Suspect,
     /// Its evaluation runs.
     Begun,
 }
 
-/// An exchange without an answer so far.
+/// An exchange that is not answered yet.
 #[derive(Debug)]
-struct Asked {
+struct PendingExchange {
     exchange: u64,
     sent_ms: u64,
     results: Vec<WorkResult>,
     announced: Vec<u64>,
 }
 
-/// What a worker does next.
+/// The next action of a worker.
 #[derive(Debug)]
 pub(crate) enum Act {
-    /// It computes, or waits.
+    /// The worker computes or waits.
     Nothing,
-    /// It sends a request, by the number of its exchange.
+    /// The worker sends a request; the number is that of the exchange.
     Send(u64, Box<ExchangeRequest>),
     /// The process ends.
     Die,
@@ -49,24 +49,24 @@ pub(crate) enum Act {
 pub(crate) struct Worker {
     pub(crate) name: String,
     pub(crate) version: &'static str,
-    /// Evaluations at a time.
+    /// The number of evaluations at a time.
     threads: usize,
-    /// Most leases that it holds.
+    /// The largest number of leases that it holds.
     want: usize,
     held: BTreeMap<u64, (Lease, Phase)>,
     outbox: Vec<WorkResult>,
     returned: Vec<u64>,
     received: u64,
     exchanges: u64,
-    asked: Option<Asked>,
-    /// It stands still until then `[ms]`.
+    pending: Option<PendingExchange>,
+    /// The time until which it stands still `[ms]`.
     pub(crate) stopped_until_ms: u64,
-    /// A result that was acknowledged, to be sent again.
+    /// An acknowledged result, which may be sent again.
     pub(crate) sent: Option<WorkResult>,
 }
 
 impl Worker {
-    /// The `birth`-th worker of a schedule.
+    /// Makes the `birth`-th worker of a schedule.
     pub(crate) fn new(birth: u64, version: &'static str, stream: &mut Stream) -> Self {
         let threads = 1 + stream.below(3);
         Worker {
@@ -78,15 +78,15 @@ impl Worker {
             outbox: Vec::new(),
             returned: Vec::new(),
             received: 0,
-            // No two workers number an exchange alike.
+            // The numbers of exchanges of two workers never coincide.
             exchanges: birth << 32,
-            asked: None,
+            pending: None,
             stopped_until_ms: 0,
             sent: None,
         }
     }
 
-    /// Computes, and exchanges when it is time.
+    /// Computes, and sends an exchange when it is due.
     pub(crate) fn act(
         &mut self,
         issued: &BTreeMap<u64, Issued>,
@@ -141,15 +141,15 @@ impl Worker {
             self.returned.push(number);
         }
         if self
-            .asked
+            .pending
             .as_ref()
-            .is_some_and(|asked| now_ms < asked.sent_ms + PATIENCE_MS)
+            .is_some_and(|pending| now_ms < pending.sent_ms + PATIENCE_MS)
         {
             return Act::Nothing;
         }
-        // No answer: the results go out once more.
-        if let Some(asked) = self.asked.take() {
-            self.outbox.splice(0..0, asked.results);
+        // Without an answer, the results are sent once more.
+        if let Some(pending) = self.pending.take() {
+            self.outbox.splice(0..0, pending.results);
         }
         self.exchange(now_ms, chance(stream, weather.unrenewed))
     }
@@ -183,7 +183,7 @@ impl Worker {
             },
             ..bare(self.name.clone(), self.version)
         };
-        self.asked = Some(Asked {
+        self.pending = Some(PendingExchange {
             exchange: self.exchanges,
             sent_ms: now_ms,
             results,
@@ -192,17 +192,17 @@ impl Worker {
         Act::Send(self.exchanges, Box::new(request))
     }
 
-    /// Takes an answer; one that it no longer waits for is thrown away, as that of a closed connection.
+    /// Takes an answer. An answer to an exchange that the worker has given up is ignored, as that of a closed connection.
     pub(crate) fn accept(&mut self, exchange: u64, response: ExchangeResponse) {
-        let Some(asked) = self.asked.take_if(|asked| asked.exchange == exchange) else {
+        let Some(pending) = self.pending.take_if(|pending| pending.exchange == exchange) else {
             return;
         };
-        for number in asked.announced {
+        for number in pending.announced {
             if let Some((_, phase)) = self.held.get_mut(&number) {
                 *phase = Phase::Begun;
             }
         }
-        self.sent = asked.results.into_iter().next_back().or(self.sent.take());
+        self.sent = pending.results.into_iter().next_back().or(self.sent.take());
         for lease in response.leases {
             self.received = self.received.max(lease.lease);
             let phase = if lease.announce {
@@ -215,7 +215,7 @@ impl Worker {
     }
 }
 
-/// The same result with another value, where there is one to change.
+/// Returns the same result with another value, if it has a value to change.
 pub(crate) fn lie(result: &WorkResult) -> Option<WorkResult> {
     let mut lie = result.clone();
     match lie.outcome.as_mut()? {

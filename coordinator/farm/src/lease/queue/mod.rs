@@ -1,4 +1,4 @@
-//! The evaluations of one calibration that are asked for at present, and who holds them.
+//! The queue of a calibration's present evaluations, and the workers that hold them.
 
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 
@@ -24,11 +24,11 @@ enum State {
 
 #[derive(Debug, Clone)]
 struct Entry {
-    /// The workers of the leases that failed: started and expired, or ended in a reported fault.
+    /// The workers of failed leases, which started and expired, or ended in a reported fault.
     failed: Vec<String>,
-    /// Leases in a row that expired before they were begun.
+    /// The number of leases in a row that expired before they were begun.
     unstarted: u32,
-    /// Whether a lease of it was lost or failed.
+    /// Whether a lease of the evaluation was lost or failed.
     suspect: bool,
     /// The workers that may not claim it.
     barred: Vec<String>,
@@ -47,19 +47,19 @@ impl Entry {
     }
 }
 
-/// The evaluations of one calibration that are asked for at present.
+/// The evaluations of a calibration's present round.
 #[derive(Debug, Default)]
 pub struct LeaseQueue {
     entries: BTreeMap<u64, Entry>,
     ready: VecDeque<u64>,
     suspects: VecDeque<u64>,
     leased: BTreeMap<u64, u64>,
-    /// Leases out by worker.
+    /// The number of leases by worker.
     held: BTreeMap<String, usize>,
 }
 
 impl LeaseQueue {
-    /// Replaces what is asked for; `failed` tells on which workers leases of an evaluation failed before a restart.
+    /// Replaces the evaluations. `failed` returns the workers on which leases of an evaluation failed before a restart.
     pub fn ask(&mut self, evaluations: impl IntoIterator<Item = u64>, failed: impl Fn(u64) -> Vec<String>) {
         *self = LeaseQueue::default();
         for evaluation in evaluations {
@@ -69,14 +69,14 @@ impl LeaseQueue {
         }
     }
 
-    /// Asks for one evaluation more, which some workers may not claim.
+    /// Adds an evaluation, which the barred workers may not claim.
     pub fn add(&mut self, evaluation: u64, barred: Vec<String>) {
         self.remove(evaluation);
         self.entries.insert(evaluation, Entry::ready(Vec::new(), barred));
         self.ready.push_back(evaluation);
     }
 
-    /// Keeps a worker from claiming an evaluation, and takes its lease of it back.
+    /// Bars a worker from an evaluation, and takes back its lease.
     pub fn bar(&mut self, evaluation: u64, worker: &str) {
         let Some(entry) = self.entries.get_mut(&evaluation) else {
             return;
@@ -97,13 +97,13 @@ impl LeaseQueue {
         }
     }
 
-    /// Asks for an evaluation no more.
+    /// Removes an evaluation.
     pub fn remove(&mut self, evaluation: u64) {
         self.complete(evaluation);
         self.entries.remove(&evaluation);
     }
 
-    /// The queue that an evaluation waits in.
+    /// Returns the queue that an evaluation waits in.
     fn queue_of(&mut self, suspect: bool) -> &mut VecDeque<u64> {
         if suspect {
             &mut self.suspects
@@ -112,29 +112,29 @@ impl LeaseQueue {
         }
     }
 
-    /// Evaluations that nobody holds and that are not done.
+    /// Returns the number of evaluations that are neither leased nor done.
     pub fn unleased(&self) -> usize {
         self.ready.len() + self.suspects.len()
     }
 
-    /// Leases that a worker holds.
+    /// Returns the number of leases that a worker holds.
     pub fn held_by(&self, worker: &str) -> usize {
         self.held.get(worker).copied().unwrap_or(0)
     }
 
-    /// Whether somebody holds an evaluation.
+    /// Returns whether an evaluation is leased.
     pub fn is_leased(&self, evaluation: u64) -> bool {
         let entry = self.entries.get(&evaluation);
         entry.is_some_and(|entry| matches!(entry.state, State::Leased(_)))
     }
 
-    /// Whether an evaluation is asked for and not done.
+    /// Returns whether an evaluation is in the queue and not done.
     pub fn is_asked(&self, evaluation: u64) -> bool {
         let entry = self.entries.get(&evaluation);
         entry.is_some_and(|entry| entry.state != State::Done)
     }
 
-    /// Takes a lease off the books; its evaluation keeps its state.
+    /// Removes a lease from the indices; the state of its evaluation is not changed.
     fn release(&mut self, lease: u64, worker: &str) {
         self.leased.remove(&lease);
         if let Some(held) = self.held.get_mut(worker) {
@@ -145,7 +145,7 @@ impl LeaseQueue {
         }
     }
 
-    /// Whether a worker holds a suspect.
+    /// Returns whether a worker holds a suspect.
     pub fn holds_suspect(&self, worker: &str) -> bool {
         self.leased.values().any(|evaluation| {
             let entry = &self.entries[evaluation];
@@ -153,41 +153,41 @@ impl LeaseQueue {
         })
     }
 
-    /// Whether an evaluation is a suspect.
+    /// Returns whether an evaluation is a suspect.
     pub fn is_suspect(&self, evaluation: u64) -> bool {
         self.entries.get(&evaluation).is_some_and(|entry| entry.suspect)
     }
 
-    /// Suspects that nobody holds.
+    /// Returns the number of suspects that are not leased.
     pub fn suspects(&self) -> usize {
         self.suspects.len()
     }
 
-    /// Leases that are out.
+    /// Returns the number of leases that are out.
     pub fn leased(&self) -> usize {
         self.leased.len()
     }
 
-    /// Evaluations asked for, done or not.
+    /// Returns the number of evaluations, done or not.
     pub fn len(&self) -> usize {
         self.entries.len()
     }
 
-    /// The evaluations asked for, done or not, in order.
+    /// Returns the numbers of the evaluations, done or not, in order.
     pub fn asked(&self) -> Vec<u64> {
         self.entries.keys().copied().collect()
     }
 
-    /// Whether nothing is asked for.
+    /// Returns whether the queue is empty.
     pub fn is_empty(&self) -> bool {
         self.entries.is_empty()
     }
 
     /// Claims up to `want` evaluations.
     ///
-    /// A suspect goes out alone, to a worker with empty hands; for a worker that holds one ([`LeaseQueue::holds_suspect`]), of any
-    /// calibration, the caller claims nothing. A worker that failed at it gets it again only if there is no other: `has_other`
-    /// tells whether a worker is there that is not among those that failed.
+    /// A suspect is leased alone, to a worker that holds nothing. For a worker that holds a suspect of any calibration
+    /// ([`LeaseQueue::holds_suspect`]), the caller claims nothing. A worker that failed at an evaluation gets it again only if there is no
+    /// other worker: `has_other` returns whether there is a worker besides those that failed.
     pub fn claim(
         &mut self,
         claimant: Claimant,
@@ -200,7 +200,7 @@ impl LeaseQueue {
         let may = |evaluation: &u64| !is_one(&self.entries[evaluation].barred);
         let suits = |evaluation: &u64| {
             let failed = &self.entries[evaluation].failed;
-            // A worker that may not claim the evaluation is no other worker for it.
+            // A barred worker does not count as another worker.
             let others_failed = || has_other(&[&**failed, &*self.entries[evaluation].barred].concat());
             may(evaluation) && (!is_one(failed) || !others_failed())
         };
@@ -248,13 +248,13 @@ impl LeaseQueue {
             .collect()
     }
 
-    /// How long a lease of a worker has been out `[ms]`.
+    /// Returns how long a lease of a worker has been out `[ms]`.
     pub fn age_ms(&self, lease: u64, worker: &str, now_ms: u64) -> Option<u64> {
         let claim = self.claim_of(lease).filter(|claim| claim.worker == worker)?;
         Some(now_ms.saturating_sub(claim.since_ms))
     }
 
-    /// The lease of an evaluation that is out.
+    /// Returns the lease of an evaluation that is out.
     pub fn lease_of(&self, evaluation: u64) -> Option<u64> {
         match &self.entries.get(&evaluation)?.state {
             State::Leased(claim) => Some(claim.lease),
@@ -262,7 +262,7 @@ impl LeaseQueue {
         }
     }
 
-    /// The leases that have been out for so long `[ms]`, the longest first, each with its evaluation.
+    /// Returns the leases that have been out for `age_ms`, the longest first, each with its evaluation.
     pub fn older_than(&self, age_ms: u64, now_ms: u64) -> impl Iterator<Item = (u64, SlowLease)> {
         self.leased.iter().filter_map(move |(lease, &evaluation)| {
             let claim = self.claim_of(*lease)?;
@@ -287,7 +287,7 @@ impl LeaseQueue {
         }
     }
 
-    /// Notes that a worker has begun to evaluate a lease of its own, and extends the lease.
+    /// Records that a worker has begun its leased evaluation, and extends the lease.
     pub fn start(&mut self, lease: u64, worker: &str, until_ms: u64) -> bool {
         let held = self.renew(lease, worker, until_ms);
         let evaluation = self.leased.get(&lease).filter(|_| held);
@@ -300,10 +300,10 @@ impl LeaseQueue {
         held
     }
 
-    /// Takes back the leases of some workers, at no cost.
+    /// Takes back the leases of some workers, which costs no attempts.
     pub fn take_back_of(&mut self, is_one: impl Fn(&str) -> bool) {
         let leases: Vec<u64> = self.leased.keys().copied().collect();
-        // The first given is the first to go out again.
+        // In this order, the lease that was given first is also the first to be leased again.
         for lease in leases.into_iter().rev() {
             let holder = self.claim_of(lease).map(|claim| claim.worker.clone());
             if let Some(worker) = holder.filter(|worker| is_one(worker)) {
@@ -312,21 +312,21 @@ impl LeaseQueue {
         }
     }
 
-    /// Takes back the leases of a worker above a number: the answer that gave them never arrived. How many.
+    /// Takes back the leases of a worker above a number, because the answer that gave them never arrived. Returns how many.
     pub fn take_back_above(&mut self, lease: u64, worker: &str) -> u64 {
         let above = self.leased.range(lease.saturating_add(1)..);
         let lost: Vec<u64> = above
             .map(|(&lease, _)| lease)
             .filter(|&l| self.is_held_by(l, worker))
             .collect();
-        // The first given is the first to go out again.
+        // In this order, the lease that was given first is also the first to be leased again.
         lost.into_iter()
             .rev()
             .map(|lease| u64::from(self.give_back(lease, worker)))
             .sum()
     }
 
-    /// Extends a lease of a worker; `false` where it is no longer out, or another worker's.
+    /// Extends a lease of a worker. Returns `false` if it is no longer out, or another worker's.
     pub fn renew(&mut self, lease: u64, worker: &str, until_ms: u64) -> bool {
         let Some(evaluation) = self.leased.get(&lease) else {
             return false;
@@ -340,7 +340,7 @@ impl LeaseQueue {
         }
     }
 
-    /// Takes a completion, whether or not its lease is still out: the first valid one wins.
+    /// Completes an evaluation, whether or not its lease is still out: the first valid result wins.
     pub fn complete(&mut self, evaluation: u64) -> Completion {
         let Some(entry) = self.entries.get_mut(&evaluation) else {
             return Completion::Unknown;
@@ -352,7 +352,7 @@ impl LeaseQueue {
                 Completion::First
             }
             State::Ready => {
-                // A replay completes what is asked for in its order: no queue is searched for the first of it.
+                // A replay completes evaluations in their order, so the first one is found without a search.
                 if self.ready.front() == Some(&evaluation) {
                     self.ready.pop_front();
                 } else {
@@ -364,8 +364,8 @@ impl LeaseQueue {
         }
     }
 
-    /// Takes back a lease that its worker returns unevaluated; it costs no attempt. `false` where it is no longer out, or
-    /// another worker's.
+    /// Takes back a lease that its worker returns unevaluated, which costs no attempt. Returns `false` if it is no longer out, or another
+    /// worker's.
     pub fn give_back(&mut self, lease: u64, worker: &str) -> bool {
         if !self.is_held_by(lease, worker) {
             return false;
@@ -375,12 +375,12 @@ impl LeaseQueue {
         };
         self.release(lease, &claim.worker);
         let suspect = self.entries[&evaluation].suspect;
-        // In front: what was leased earlier is waited for earlier.
+        // It goes to the front, because evaluations that were leased earlier are needed earlier.
         self.queue_of(suspect).push_front(evaluation);
         true
     }
 
-    /// Records the failure of a lease: the evaluation becomes a suspect, or is given up.
+    /// Records the failure of a lease: the evaluation becomes a suspect.
     pub fn fail(&mut self, lease: u64) -> Option<LeaseFailure> {
         let (evaluation, claim) = self.take_claim(lease)?;
         self.release(lease, &claim.worker);
@@ -402,7 +402,7 @@ impl LeaseQueue {
         self.claim_of(lease).is_some_and(|claim| claim.worker == worker)
     }
 
-    /// Ends a claim; its evaluation is ready again.
+    /// Ends a claim. Its evaluation can be leased again.
     fn take_claim(&mut self, lease: u64) -> Option<(u64, Claim)> {
         let evaluation = *self.leased.get(&lease)?;
         let entry = self.entries.get_mut(&evaluation)?;
@@ -415,7 +415,7 @@ impl LeaseQueue {
         }
     }
 
-    /// Ends every lease whose time has come: a started one has failed, of another the evaluation becomes a suspect.
+    /// Ends every expired lease. A started one has failed; the evaluation of any other becomes a suspect.
     pub fn expire(&mut self, now_ms: u64) -> Expired {
         let mut due: Vec<(u64, bool)> = Vec::new();
         for (&lease, evaluation) in &self.leased {

@@ -7,7 +7,7 @@ fn queue(evaluations: u64) -> LeaseQueue {
     queue
 }
 
-/// Claims for the only worker there is.
+/// Claims for the only worker.
 fn claim(queue: &mut LeaseQueue, worker: &str, want: usize, holds: usize, first: u64) -> Vec<(u64, u64)> {
     claim_beside(queue, worker, want, holds, first, &[])
 }
@@ -18,10 +18,14 @@ fn claim_beside(
     want: usize,
     holds: usize,
     first: u64,
-    others: &[&str],
+    other_workers: &[&str],
 ) -> Vec<(u64, u64)> {
     let mut next = first;
-    let has_other = |failed: &[String]| others.iter().any(|other| !failed.iter().any(|f| f == other));
+    let has_other = |failed: &[String]| {
+        other_workers
+            .iter()
+            .any(|other| !failed.iter().any(|f| f == other))
+    };
     let claimant = Claimant {
         worker,
         holds,
@@ -122,8 +126,8 @@ fn an_evaluation_that_nobody_begins_is_told_after_twenty_leases_in_a_row() {
                 assert!(queue.start(lease, "a", 100));
                 queue.give_back(lease, "a");
             } else {
-                let told = queue.expire(100).never_begun;
-                assert_eq!(told.len(), usize::from(!begun && lost == 10), "{lost}");
+                let never_begun = queue.expire(100).never_begun;
+                assert_eq!(never_begun.len(), usize::from(!begun && lost == 10), "{lost}");
             }
         }
     }
@@ -152,7 +156,7 @@ fn a_renewed_lease_outlives_its_first_time() {
 }
 
 proptest! {
-    /// Whatever happens in whatever order, no evaluation is held twice, none is lost, each completes once.
+    /// For events in any order, no evaluation is held twice, none is lost, and each completes once.
     #[test]
     fn random_histories_lose_nothing(steps in prop::collection::vec((0u8..7, 0u64..12), 1..200)) {
         let mut queue = queue(12);
