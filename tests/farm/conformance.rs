@@ -199,7 +199,10 @@ fn a_status_has_one_form() {
         ),
         "{position:?}"
     );
-    let names = CalibrationState::ALL.map(CalibrationState::name);
+    let names = CalibrationState::ALL
+        .iter()
+        .map(|state| state.name())
+        .collect::<Vec<_>>();
     assert_eq!(
         names.join(" "),
         "queued running paused waiting finished failed cancelled"

@@ -98,8 +98,9 @@ pub fn with_held_out_runs(count: usize, error: f64) -> FinishedCalibration {
     calibration
 }
 
-/// Returns a calibration with nine fitted runs over slip, two holdout runs between them and one at another speed. The model misses the
-/// pull by `3 sin(3 slip)` `[N]`; the draws lie alternately 1 N above and below that in every run.
+/// Returns a calibration with nine fitted runs over slip, two holdout runs between them and one at another speed.
+///
+/// The model misses the pull by `3 sin(3 slip)` `[N]`; the draws lie alternately 1 N above and below that in every run.
 pub fn with_smooth_misfit() -> FinishedCalibration {
     let mut runs =
         "run,wheel,soil,slip,wheel_load_n,sled_speed_m_s,drawbar_pull_n,sinkage_m,use\n".to_owned();

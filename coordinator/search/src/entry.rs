@@ -63,7 +63,9 @@ impl CandidateEntry {
     /// Makes the candidate that frees a parameter of the model itself; `None` if the job does not hold it fixed.
     pub(super) fn plain(plain: &PlainParameter, base: &Spec) -> Option<Self> {
         let (neutral, density) = plain.held_by(base)?;
-        let unit = model_parameters().find(|parameter| parameter.name == plain.name)?.unit;
+        let unit = model_parameters()
+            .find(|parameter| parameter.name == plain.name)?
+            .unit;
         let name = plain.name.to_owned();
         Some(Self {
             candidate: Candidate {

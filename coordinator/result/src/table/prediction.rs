@@ -7,6 +7,7 @@ use super::combined_row::CombinedRow;
 use crate::study::Study;
 
 /// The measurement of a run and channel with its predictions: by the current model, corrected, by all models combined, and interpolated.
+///
 /// Values are in the channel's SI unit; `None` if there is no prediction.
 #[derive(Debug, Clone, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
 pub struct PredictionRow {
