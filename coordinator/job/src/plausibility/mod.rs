@@ -20,7 +20,7 @@ use crate::Spec;
 
 /// Returns every question about a calibration, answered or not, in the order of their names.
 ///
-/// Checked by `farm-tests mistakes::no_mistake_is_silent` and, for no question where none is due, by
+/// Checked by `farm-tests bad_input::gallery::no_mistake_of_a_user_is_silent` and, for no question where none is due, by
 /// `farm-tests mistakes::the_examples_raise_no_question`.
 pub fn questions(spec: &Spec) -> Vec<Question> {
     let mut questions = typed::questions(spec);

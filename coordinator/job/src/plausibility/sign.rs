@@ -29,7 +29,7 @@ const LIKE_LOADS: f64 = 0.15;
 
 /// Returns the questions about the signs of all channels.
 ///
-/// Checked by `tests` below, `farm-tests mistakes::no_mistake_is_silent` and, for no question where none is due, by
+/// Checked by `tests` below, `farm-tests bad_input::gallery::no_mistake_of_a_user_is_silent` and, for no question where none is due, by
 /// `farm-tests mistakes::the_examples_raise_no_question`.
 pub(super) fn questions(experiment: &Experiment) -> impl Iterator<Item = Question> {
     let of_channel = |channel: Channel| {
