@@ -59,7 +59,7 @@ pub fn worker<S: AsRef<OsStr>>(arguments: impl IntoIterator<Item = S>) -> Comman
     command("worker".as_ref(), arguments)
 }
 
-/// Runs a command line; see [`line`].
+/// Runs a command line; see [`line()`].
 pub fn call(template: &str, arguments: &[&dyn AsRef<OsStr>]) -> Ended {
     run(line(template, arguments))
 }
