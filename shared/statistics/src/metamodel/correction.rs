@@ -1,4 +1,5 @@
-//! The regression of the difference between fine and coarse model on the parameters.
+//! The correction of the low-fidelity (coarse) model: a regression of the difference `fine - coarse` on the parameters, where the
+//! fine model is the high-fidelity one.
 
 use nalgebra::{Cholesky, DMatrix, DVector};
 use serde::{Deserialize, Serialize};
@@ -12,7 +13,7 @@ const STATES_PER_COEFFICIENT: f64 = 4.0;
 /// has no extent the slope 0.
 const RIDGE: f64 = 1e-9;
 
-/// The mean of fine less coarse, as a polynomial in whitened coordinates, for each predicted value.
+/// The correction of the coarse model: for each predicted value, the mean of `fine - coarse` as a polynomial in whitened coordinates.
 ///
 /// The whitened coordinates are `w = A^-1 (u - m)`, m and A A' mean and covariance of the pool. Beyond `|w| = sqrt(d) + 2`,
 /// outside the data, the correction has the value at that border, because a polynomial must not extrapolate.
@@ -70,7 +71,7 @@ impl Correction {
             .zip(weights)
             .filter_map(|(state, &weight)| {
                 let pair = state.pair.as_deref()?;
-                Some((within(factor.whiten(&state.coordinates)?), pair, weight))
+                Some((clamped_to_pool(factor.whiten(&state.coordinates)?), pair, weight))
             })
             .collect();
         let squares: f64 = pairs.iter().map(|(_, _, w)| w * w).sum();
@@ -103,17 +104,17 @@ impl Correction {
         let cholesky = Cholesky::new(normal)?;
         let mut coefficients = Vec::with_capacity(values);
         let mut residual_sd = Vec::with_capacity(values);
-        let freedom = effective / (effective - count as f64);
+        let variance_inflation = effective / (effective - count as f64);
         for value in 0..values {
-            let mut right = DVector::<f64>::zeros(count);
+            let mut right_side = DVector::<f64>::zeros(count);
             for (row, (_, pair, weight)) in features.iter().zip(pairs) {
                 let scaled = weight / sum * (pair.fine[value] - pair.coarse[value]);
-                for (target, feature) in right.iter_mut().zip(row) {
+                for (target, feature) in right_side.iter_mut().zip(row) {
                     *target += scaled * feature;
                 }
             }
-            let solution: Vec<f64> = cholesky.solve(&right).iter().copied().collect();
-            let left: f64 = features
+            let solution: Vec<f64> = cholesky.solve(&right_side).iter().copied().collect();
+            let residual_variance: f64 = features
                 .iter()
                 .zip(pairs)
                 .map(|(row, (_, pair, weight))| {
@@ -122,7 +123,7 @@ impl Correction {
                 })
                 .sum();
             coefficients.push(solution);
-            residual_sd.push((left * freedom).sqrt());
+            residual_sd.push((residual_variance * variance_inflation).sqrt());
         }
         let finite = coefficients
             .iter()
@@ -146,15 +147,15 @@ impl Correction {
         let Some(whitened) = factor.whiten(coordinates) else {
             return;
         };
-        let features = self.degree.features(&within(whitened));
+        let features = self.degree.features(&clamped_to_pool(whitened));
         for (value, coefficients) in values.iter_mut().zip(&self.coefficients) {
             *value += dot(&features, coefficients);
         }
     }
 }
 
-/// Moves coordinates beyond the region to its border.
-fn within(mut whitened: Vec<f64>) -> Vec<f64> {
+/// Returns whitened coordinates, moved to the border of the pool's region if they lie beyond it.
+fn clamped_to_pool(mut whitened: Vec<f64>) -> Vec<f64> {
     let radius = whitened.iter().map(|w| w * w).sum::<f64>().sqrt();
     let border = (whitened.len() as f64).sqrt() + 2.0;
     if radius > border {

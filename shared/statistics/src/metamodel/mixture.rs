@@ -1,4 +1,4 @@
-//! The proposals of a stage: random walk, differential evolution, autoregressive jumps.
+//! The mixture of proposals of a stage: random walk, differential evolution, autoregressive jumps.
 
 use serde::{Deserialize, Serialize};
 
@@ -18,7 +18,7 @@ const LENGTH_SPREAD: f64 = 0.7;
 /// mixes worse in a funnel, because jumps miss its neck.
 const JUMPS: f64 = 0.1;
 
-/// Weight of the new deviation in a jump; the old one has sqrt(1 - 0.9^2).
+/// Weight of the new deviation in a jump; the weight of the old deviation is sqrt(1 - 0.9^2).
 const JUMP_NOVELTY: f64 = 0.9;
 
 /// A mixture of proposals, fixed for a stage.

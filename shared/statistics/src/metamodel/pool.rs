@@ -1,4 +1,4 @@
-//! Evaluated states, with the predictions of both models.
+//! The pool of a stage: evaluated states, with the predictions of both models.
 
 use std::sync::Arc;
 

@@ -1,4 +1,5 @@
-//! The coarse model, corrected towards the fine one and frozen for a stage.
+//! The metamodel of a stage: the low-fidelity (coarse) model, corrected towards the high-fidelity (fine) one, and then
+//! frozen.
 
 use serde::{Deserialize, Serialize};
 
@@ -28,7 +29,7 @@ pub struct MetamodelStage<'a> {
     pub seed: u64,
     /// Number of the stage.
     pub stage: usize,
-    /// Its tempering exponent.
+    /// Tempering exponent of the stage.
     pub exponent: f64,
     /// Number of moves of a subchain.
     pub moves: usize,

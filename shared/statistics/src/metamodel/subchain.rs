@@ -9,12 +9,12 @@ use crate::rng::Stream;
 /// Offset that separates the random streams of subchains from those of the accepting steps.
 const SUBCHAINS: u64 = 1 << 32;
 
-/// The request for a subchain; its metamodel holds the rest.
+/// The request for a subchain; the metamodel of the stage holds its other inputs.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Subchain {
     /// The chain that it belongs to.
     pub chain: u64,
-    /// The step of that chain.
+    /// Number of the step of this chain.
     pub step: u64,
     /// Scale of the proposals.
     pub scale: f64,
