@@ -1,4 +1,4 @@
-//! The forward model of a variant: shared names are converted to the physics' types.
+//! The forward model of a variant: simulates every condition, and predicts plates and rings, at one parameter vector.
 
 use scm::spatial::SpatialRun;
 use scm::{Averages, Condition, Wheel};
@@ -10,7 +10,7 @@ use super::bevameter::CompiledBevameter;
 use super::effects::{ActiveEffects, EffectMap};
 use super::error::CompileError;
 use super::parameters::Radius;
-use super::physics::{Physics, Run, Settled, Simulated};
+use super::physics::{Physics, PhysicsAt, Run, Simulated};
 use super::recording;
 
 /// The forward model of a variant with its names resolved, so that an evaluation looks up nothing.
@@ -94,14 +94,14 @@ impl ForwardModel {
     /// Simulates every condition at one parameter vector; the first rejection ends it. `keep` receives each run of a
     /// time-dependent model, in the order of the conditions.
     pub(super) fn evaluate(&self, theta: &[f64], mut keep: impl FnMut(SpatialRun)) -> Outcome {
-        let settled = match self.settle(theta) {
-            Ok(settled) => settled,
+        let physics = match self.physics_at(theta) {
+            Ok(physics) => physics,
             Err(rejection) => return Outcome::Rejected(rejection),
         };
         let mut effects = self.effects.at(theta);
         let mut observables = Observables::with_capacity(self.runs());
         for position in 0..self.runs() {
-            match self.simulate(theta, &settled, &mut effects, position) {
+            match self.simulate(theta, &physics, &mut effects, position) {
                 Ok(Simulated::Steady(averages)) => push(&mut observables, &averages),
                 Ok(Simulated::Rolled(run)) => {
                     push(&mut observables, &run.averages);
@@ -120,7 +120,8 @@ impl ForwardModel {
             }
         }
         if self.stiffness_sensitivity
-            && let Err(rejection) = self.differentiate(theta, &settled, &mut effects, &mut observables)
+            && let Err(rejection) =
+                self.differentiate_by_stiffness(theta, &physics, &mut effects, &mut observables)
         {
             return Outcome::Rejected(rejection);
         }
@@ -134,14 +135,14 @@ impl ForwardModel {
     }
 
     /// Simulates every condition on stiffer soil: derivatives of the channels by ln k*.
-    fn differentiate(
+    fn differentiate_by_stiffness(
         &self,
         theta: &[f64],
-        settled: &Settled,
+        physics: &PhysicsAt,
         effects: &mut ActiveEffects,
         observables: &mut Observables,
     ) -> Result<(), ParameterRejection> {
-        let stiffer = settled.stiffer(1.0 + STIFFER);
+        let stiffer = physics.stiffer(1.0 + STIFFER);
         let step = libm::log1p(STIFFER);
         for position in 0..self.runs() {
             let averages = match self.simulate(theta, &stiffer, effects, position) {
@@ -149,7 +150,7 @@ impl ForwardModel {
                 Ok(Simulated::Rolled(run)) => run.averages,
                 Err(rejection) => {
                     let message = format!("on soil stiffer by {STIFFER}: {rejection}");
-                    return Err(refusal(rejection.kind(), position, message));
+                    return Err(parameter_rejection(rejection.kind(), position, message));
                 }
             };
             let o = &mut *observables;
@@ -174,12 +175,12 @@ impl ForwardModel {
         let readings = bevameter.at(theta);
         let positive = |position: usize, what: &str, stress: Result<f64, scm::Rejection>| match stress {
             Ok(stress) if stress > 0.0 => Ok(stress),
-            Ok(stress) => Err(refusal(
+            Ok(stress) => Err(parameter_rejection(
                 "no_support",
                 position,
                 format!("{what}: {stress} Pa must be above 0"),
             )),
-            Err(rejection) => Err(refusal(
+            Err(rejection) => Err(parameter_rejection(
                 rejection.kind(),
                 position,
                 format!("{what}: {rejection}"),
@@ -200,42 +201,46 @@ impl ForwardModel {
     }
 
     /// Simulates every condition at one parameter vector; a rejection of one does not affect the rest.
-    pub(super) fn each(&self, theta: &[f64]) -> Vec<Result<Averages, ParameterRejection>> {
-        let settled = match self.settle(theta) {
-            Ok(settled) => settled,
+    pub(super) fn evaluate_each(&self, theta: &[f64]) -> Vec<Result<Averages, ParameterRejection>> {
+        let physics = match self.physics_at(theta) {
+            Ok(physics) => physics,
             Err(rejection) => return vec![Err(rejection); self.runs()],
         };
         let mut effects = self.effects.at(theta);
-        let averages = |position| match self.simulate(theta, &settled, &mut effects, position) {
+        let averages = |position| match self.simulate(theta, &physics, &mut effects, position) {
             Ok(Simulated::Steady(averages)) => Ok(averages),
             Ok(Simulated::Rolled(run)) => Ok(run.averages),
-            Err(rejection) => Err(refusal(rejection.kind(), position, rejection.to_string())),
+            Err(rejection) => Err(parameter_rejection(
+                rejection.kind(),
+                position,
+                rejection.to_string(),
+            )),
         };
         (0..self.runs()).map(averages).collect()
     }
 
-    fn settle(&self, theta: &[f64]) -> Result<Settled<'_>, ParameterRejection> {
+    fn physics_at(&self, theta: &[f64]) -> Result<PhysicsAt<'_>, ParameterRejection> {
         if theta.len() != self.dimension {
             let message = format!(
                 "theta has {} entries, the variant has {}",
                 theta.len(),
                 self.dimension
             );
-            return Err(refusal("invalid_parameter", 0, message));
+            return Err(parameter_rejection("invalid_parameter", 0, message));
         }
-        let settled = self.physics.at(theta);
-        settled.map_err(|rejection| refusal(rejection.kind(), 0, rejection.to_string()))
+        let physics = self.physics.at(theta);
+        physics.map_err(|rejection| parameter_rejection(rejection.kind(), 0, rejection.to_string()))
     }
 
     fn simulate(
         &self,
         theta: &[f64],
-        settled: &Settled,
+        physics: &PhysicsAt,
         effects: &mut ActiveEffects,
         position: usize,
     ) -> Result<Simulated, scm::Rejection> {
-        let (place, condition) = &self.conditions[position];
-        let (wheel, radius) = &self.wheels[*place];
+        let (wheel_index, condition) = &self.conditions[position];
+        let (wheel, radius) = &self.wheels[*wheel_index];
         let wheel = Wheel {
             radius_m: radius.value(theta).unwrap_or(wheel.radius_m),
             ..*wheel
@@ -243,12 +248,12 @@ impl ForwardModel {
         let run = Run {
             theta,
             position,
-            place: *place,
+            wheel_index: *wheel_index,
             wheel: &wheel,
             condition,
             site: self.effects.site(position),
         };
-        settled.simulate(&run, effects.on_wheel(*place))
+        physics.simulate(&run, effects.on_wheel(*wheel_index))
     }
 }
 
@@ -275,7 +280,7 @@ fn push(o: &mut Observables, a: &Averages) {
     o.simulated_travel_m.push(a.simulated_travel_m);
 }
 
-fn refusal(kind: &str, condition: usize, message: String) -> ParameterRejection {
+fn parameter_rejection(kind: &str, condition: usize, message: String) -> ParameterRejection {
     ParameterRejection {
         kind: kind.to_owned(),
         condition: condition as u32,
@@ -284,5 +289,5 @@ fn refusal(kind: &str, condition: usize, message: String) -> ParameterRejection 
 }
 
 fn rejected(kind: &str, condition: usize, message: String) -> Outcome {
-    Outcome::Rejected(refusal(kind, condition, message))
+    Outcome::Rejected(parameter_rejection(kind, condition, message))
 }

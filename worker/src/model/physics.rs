@@ -25,7 +25,7 @@ pub(super) enum Physics {
 
 /// The equations at one parameter vector.
 #[derive(Debug, Clone, Copy)]
-pub(super) enum Settled<'p> {
+pub(super) enum PhysicsAt<'p> {
     QuasiStatic(Soil, &'p [StraightGrousers]),
     WongReece(Soil, WongReece),
     Scm(Soil, &'p SpatialModel),
@@ -41,9 +41,10 @@ pub(super) enum Simulated {
 /// One condition to simulate.
 pub(super) struct Run<'r> {
     pub(super) theta: &'r [f64],
-    /// Position of the condition in the variant, and of its wheel.
+    /// Index of the condition in the variant.
     pub(super) position: usize,
-    pub(super) place: usize,
+    /// Index of the condition's wheel in the variant.
+    pub(super) wheel_index: usize,
     pub(super) wheel: &'r Wheel,
     pub(super) condition: &'r Condition,
     pub(super) site: &'r Site,
@@ -71,35 +72,37 @@ impl Physics {
     }
 
     /// Returns the equations at a parameter vector; [`Rejection::InvalidParameter`] if a number is outside its bounds.
-    pub(super) fn at(&self, theta: &[f64]) -> Result<Settled<'_>, Rejection> {
+    pub(super) fn at(&self, theta: &[f64]) -> Result<PhysicsAt<'_>, Rejection> {
         Ok(match self {
             Physics::QuasiStatic(soil, grousers) => {
-                Settled::QuasiStatic(soil.soil(theta).checked()?, grousers)
+                PhysicsAt::QuasiStatic(soil.soil(theta).checked()?, grousers)
             }
-            Physics::WongReece(soil, law) => Settled::WongReece(soil.soil(theta).checked()?, law.law(theta)),
-            Physics::Scm(soil, model) => Settled::Scm(soil.soil(theta).checked()?, model),
-            Physics::Rft(soil, shapes) => Settled::Rft(soil.soil(theta).checked()?, shapes),
+            Physics::WongReece(soil, law) => {
+                PhysicsAt::WongReece(soil.soil(theta).checked()?, law.law(theta))
+            }
+            Physics::Scm(soil, model) => PhysicsAt::Scm(soil.soil(theta).checked()?, model),
+            Physics::Rft(soil, shapes) => PhysicsAt::Rft(soil.soil(theta).checked()?, shapes),
         })
     }
 }
 
-impl Settled<'_> {
+impl PhysicsAt<'_> {
     /// Simulates one condition; a [`Rejection`] if the model has no answer for these parameters.
     pub(super) fn simulate(&self, run: &Run, effects: &mut Active) -> Result<Simulated, Rejection> {
         let (wheel, condition, site) = (run.wheel, run.condition, run.site);
         let averages = match self {
-            Settled::QuasiStatic(soil, grousers) => {
-                let grousers = &grousers[run.place];
+            PhysicsAt::QuasiStatic(soil, grousers) => {
+                let grousers = &grousers[run.wheel_index];
                 quasi_static::simulate_with_grousers(soil, wheel, grousers, condition, effects, site)
             }
-            Settled::WongReece(soil, law) => {
+            PhysicsAt::WongReece(soil, law) => {
                 quasi_static::simulate_wong_reece(soil, wheel, condition, law, effects, site)
             }
-            Settled::Rft(soil, shapes) => {
-                rft::simulate(soil, wheel, &shapes[run.place], condition, effects, site)
+            PhysicsAt::Rft(soil, shapes) => {
+                rft::simulate(soil, wheel, &shapes[run.wheel_index], condition, effects, site)
             }
-            Settled::Scm(soil, model) => {
-                let (on, with) = ((run.place, wheel), (&*effects, site));
+            PhysicsAt::Scm(soil, model) => {
+                let (on, with) = ((run.wheel_index, wheel), (&*effects, site));
                 let rolled = model.run(run.theta, run.position, soil, on, condition, with)?;
                 return Ok(Simulated::Rolled(Box::new(rolled)));
             }
@@ -115,12 +118,12 @@ impl Settled<'_> {
             ..*soil
         };
         match *self {
-            Settled::QuasiStatic(ref soil, grousers) => Settled::QuasiStatic(stiffer(soil), grousers),
-            Settled::WongReece(ref soil, law) => Settled::WongReece(stiffer(soil), law),
-            Settled::Scm(ref soil, model) => Settled::Scm(stiffer(soil), model),
-            Settled::Rft(soil, shapes) => {
+            PhysicsAt::QuasiStatic(ref soil, grousers) => PhysicsAt::QuasiStatic(stiffer(soil), grousers),
+            PhysicsAt::WongReece(ref soil, law) => PhysicsAt::WongReece(stiffer(soil), law),
+            PhysicsAt::Scm(ref soil, model) => PhysicsAt::Scm(stiffer(soil), model),
+            PhysicsAt::Rft(soil, shapes) => {
                 let xi_n_pa_m = soil.xi_n_pa_m * factor;
-                Settled::Rft(RftSoil { xi_n_pa_m, ..soil }, shapes)
+                PhysicsAt::Rft(RftSoil { xi_n_pa_m, ..soil }, shapes)
             }
         }
     }

@@ -72,7 +72,7 @@ impl CompiledVariant {
     /// Simulates every condition at one parameter vector; a rejection of one does not affect the rest.
     pub fn each(&self, theta: &[f64]) -> Vec<Result<Averages, ParameterRejection>> {
         match &self.model {
-            Model::Ours(forward) => forward.each(theta),
+            Model::Ours(forward) => forward.evaluate_each(theta),
             Model::Outside(model) => vec![Err(model.no_single_runs()); model.runs()],
         }
     }
