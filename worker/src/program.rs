@@ -1,4 +1,4 @@
-//! Execution of the command line of `worker`, for that program and for the verb of the coordinator.
+//! The program `worker`: the execution of its command line, also as a verb of the coordinator.
 
 use std::io::{self, Write as _};
 use std::net::SocketAddr;
@@ -135,7 +135,7 @@ async fn pull(serve: &PullArguments) -> Result<(), ProgramError> {
     )?;
     let cores = std::thread::available_parallelism().map_or(1, Into::into);
     let threads = serve.threads.map_or(cores, Into::into);
-    let name = name();
+    let name = unique_name();
     tracing::info!(
         name,
         threads,
@@ -164,7 +164,7 @@ async fn pull(serve: &PullArguments) -> Result<(), ProgramError> {
 }
 
 /// Builds a name from host, process and time: fresh for every process, so that a new worker never inherits a dead worker's leases.
-fn name() -> String {
+fn unique_name() -> String {
     let host = std::fs::read_to_string("/etc/hostname").unwrap_or_default();
     let host = host.trim();
     let since = std::time::SystemTime::now()

@@ -1,17 +1,17 @@
-//! The table of the wheel's runs, with the columns of `runs.csv`.
+//! The table of simulated averages in the form of `runs.csv`: one row for each run.
 
 use shared::channel::Channel;
 use shared::experiment::{CONDITION_COLUMNS, Experiment, TestRun};
 use shared::outcome::Observables;
 
-/// Writes the averages of each run, in the form of the experiment's `runs.csv`.
+/// Writes the averages of each run plus its `errors` in the order of the channels, in the form of the experiment's `runs.csv`.
 ///
 /// A value in the table counts as measured, and a measurement needs its noise. Channels without a stated noise are therefore
 /// blank, unless the experiment states none at all: then no calibration can use it, and all channels are written.
 pub(super) fn averages(
     experiment: &Experiment,
     observables: &Observables,
-    noise: &[[f64; 4]],
+    errors: &[[f64; 4]],
 ) -> Result<Vec<u8>, csv::Error> {
     let runs = &experiment.runs;
     let states_sd = |channel: Channel| runs.iter().any(|run| run.sd[channel.index()].is_some());
@@ -46,7 +46,7 @@ pub(super) fn averages(
         // A channel that an external model lacks is not measured.
         let noisy = |c: Channel| {
             let value = observables.channel(c).get(i).filter(|_| has_noise(run, c))?;
-            Some((value + noise[i][c.index()]).to_string())
+            Some((value + errors[i][c.index()]).to_string())
         };
         let blank_or = |value: Option<String>| value.unwrap_or_default();
         row.extend(Channel::ALL.map(|c| blank_or(noisy(c))));

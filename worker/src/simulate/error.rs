@@ -27,7 +27,7 @@ pub enum SimulateError {
     /// The result cannot be written.
     #[error("{path}: {source}")]
     Write {
-        /// The file.
+        /// Path of the file.
         path: String,
         /// The operating system's reason.
         source: std::io::Error,

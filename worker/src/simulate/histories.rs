@@ -68,7 +68,7 @@ fn table(history: &History) -> Result<Vec<u8>, SimulateError> {
     writer.write_record(COLUMNS)?;
     for row in 0..rows {
         writer.write_record(columns.iter().enumerate().map(|(i, column)| {
-            // one decimal states the tenth of a second
+            // Times are multiples of 0.1 s: one decimal hides the rounding of `i * 0.1`.
             if i == 0 {
                 format!("{:.1}", column[row])
             } else {
