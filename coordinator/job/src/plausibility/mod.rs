@@ -2,17 +2,17 @@
 //!
 //! # Layout
 //! - `question`: [`Question`], and [`Unanswered`], the questions that a user must answer before anything is calibrated.
-//! - `typed`: numbers outside the usual range of their quantity. `measured`: measurements and noise against each other, and against
-//!   load and wheel. `sign`: channels with the opposite sign. `effects`: effects that change the model at their neutral values.
+//! - `unusual`: numbers outside the usual range of their quantity. `comparison`: values that do not fit other values. `sign`: channels
+//!   with the opposite sign. `effects`: effects that change the model at their neutral values.
 //!
 //! [`shared::limit`] states the usual ranges, and the physical limits beyond which a value is refused. A user answers a question by
 //! correcting the value, or by listing the question's name under `accept` in the job.
 
+mod comparison;
 mod effects;
-mod measured;
 pub(crate) mod question;
 mod sign;
-mod typed;
+mod unusual;
 
 pub use question::{Question, Unanswered};
 
@@ -23,8 +23,8 @@ use crate::Spec;
 /// Checked by `farm-tests bad_input::gallery::no_mistake_of_a_user_is_silent` and, for no question where none is due, by
 /// `farm-tests mistakes::the_examples_raise_no_question`.
 pub fn questions(spec: &Spec) -> Vec<Question> {
-    let mut questions = typed::questions(spec);
-    questions.extend(measured::questions(spec));
+    let mut questions = unusual::questions(spec);
+    questions.extend(comparison::questions(spec));
     questions.extend(sign::questions(&spec.experiment));
     questions.extend(effects::questions(spec));
     questions.sort_by(|a, b| a.name.cmp(&b.name));

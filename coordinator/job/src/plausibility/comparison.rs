@@ -1,11 +1,12 @@
-//! Questions about measurements and noise, compared with each other and with load and wheel.
+//! Questions about values that do not fit other values: measurements against load and wheel, noise against measurements, rig radius
+//! against wheel radius, data against parameters.
 
 use shared::channel::Channel;
 use shared::experiment::{Experiment, NoiseSd, TestRun};
 use shared::limit::{self, number};
 use shared::parameters::noise_parameter;
 
-use super::question::{DATA_FEW, Question, SLIP_ANGLE};
+use super::question::{DATA_FEW, Question};
 use crate::Spec;
 
 /// The bounds of the largest pull, in shares of the load.
@@ -23,14 +24,14 @@ pub(super) fn questions(spec: &Spec) -> Vec<Question> {
     let experiment = &spec.experiment;
     let mut questions = Vec::new();
     let load_and_arm = |run: &TestRun| run.wheel_load_n * experiment.wheels[&run.wheel].radius_m;
-    questions.extend(share(
+    questions.extend(relative_size(
         experiment,
         Channel::DrawbarPull,
         PULL,
         "wheel loads",
         |run| run.wheel_load_n,
     ));
-    questions.extend(share(
+    questions.extend(relative_size(
         experiment,
         Channel::Torque,
         TORQUE,
@@ -39,7 +40,6 @@ pub(super) fn questions(spec: &Spec) -> Vec<Question> {
     ));
     questions.extend(sinkage(experiment));
     questions.extend(rig_radius(experiment));
-    questions.extend(slip_angle(experiment));
     for channel in Channel::ALL {
         questions.extend(noise(experiment, channel));
     }
@@ -53,10 +53,10 @@ pub(super) fn questions(spec: &Spec) -> Vec<Question> {
 }
 
 /// Returns the question about the largest absolute value of a channel, relative to its scale.
-fn share(
+fn relative_size(
     experiment: &Experiment,
     channel: Channel,
-    [least, most]: [f64; 2],
+    [lower, upper]: [f64; 2],
     scale_words: &str,
     scale: impl Fn(&TestRun) -> f64,
 ) -> Option<Question> {
@@ -69,7 +69,7 @@ fn share(
     });
     let (run, value, size) = sizes.max_by(|a, b| a.2.total_cmp(&b.2))?;
     let (what, units) = match size {
-        size if size > most => (
+        size if size > upper => (
             "is",
             match channel {
                 Channel::Torque => "N mm or N cm",
@@ -77,7 +77,7 @@ fn share(
             },
         ),
         // All readings of a channel may be zero, as for a free-rolling wheel.
-        size if size < least && size > 0.0 => (
+        size if size < lower && size > 0.0 => (
             "is the largest, and only",
             match channel {
                 Channel::Torque => "kN m",
@@ -119,7 +119,7 @@ fn sinkage(experiment: &Experiment) -> Option<Question> {
 
 /// Returns the question about a rig radius that differs from the radius of its wheel.
 fn rig_radius(experiment: &Experiment) -> Option<Question> {
-    let [least, most] = RIG_RADIUS;
+    let [lower, upper] = RIG_RADIUS;
     experiment.wheels.iter().find_map(|(name, wheel)| {
         let ratio = wheel.rig_radius_m / wheel.radius_m;
         let words = format!(
@@ -128,21 +128,8 @@ fn rig_radius(experiment: &Experiment) -> Option<Question> {
             number(ratio),
             number(wheel.radius_m)
         );
-        (!(least..=most).contains(&ratio)).then(|| Question::new("rig_radius_m", words))
+        (!(lower..=upper).contains(&ratio)).then(|| Question::new("rig_radius_m", words))
     })
-}
-
-/// Returns the question about slip angles that would all be at most right angles if they were in radians.
-fn slip_angle(experiment: &Experiment) -> Option<Question> {
-    let angles = experiment.runs.iter().map(|run| run.slip_angle_deg.abs());
-    let largest = angles.reduce(f64::max)?;
-    let words = format!(
-        "the largest slip_angle_deg is {} deg: was it typed in rad ({} deg)?",
-        number(largest),
-        number(largest.to_degrees())
-    );
-    let in_radians = largest > 0.0 && largest <= std::f64::consts::FRAC_PI_2;
-    in_radians.then(|| Question::new(SLIP_ANGLE, words))
 }
 
 /// Returns the question about a noise sd, compared with the largest measurement of its channel.
@@ -156,7 +143,7 @@ fn noise(experiment: &Experiment, channel: Channel) -> Option<Question> {
         .filter_map(|run| run.measured[channel.index()]);
     let largest = values.map(f64::abs).reduce(f64::max)?;
     let ratio = sd / largest;
-    let [least, most] = NOISE;
+    let [lower, upper] = NOISE;
     let words = format!(
         "[noise] {} {} {} is {} times the largest measurement: was it typed in another unit?",
         channel.column(),
@@ -164,6 +151,6 @@ fn noise(experiment: &Experiment, channel: Channel) -> Option<Question> {
         channel.unit(),
         number(ratio)
     );
-    (largest > 0.0 && !(least..=most).contains(&ratio))
+    (largest > 0.0 && !(lower..=upper).contains(&ratio))
         .then(|| Question::new(noise_parameter(channel), words))
 }

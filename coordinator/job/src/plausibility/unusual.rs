@@ -1,19 +1,20 @@
-//! Questions about numbers outside the usual range of their quantity.
+//! Questions about unusual values: numbers outside the usual range of their quantity, slip angles that look like radians, and
+//! radii that contradict the wheel.
 
-use shared::experiment::TestRun;
+use shared::experiment::{Experiment, TestRun};
 use shared::limit::{self, Limit};
 use shared::parameters::{WHEEL_RADIUS, behind};
 
-use super::question::Question;
+use super::question::{Question, SLIP_ANGLE};
 use crate::Spec;
 use crate::table::prior_entry::FreeParameter;
 
-/// Probability of a prior within the values that are judged.
+/// Probability of the central interval of a prior that is compared with the usual range.
 const CENTRAL: f64 = 0.9;
-/// Probability of the prior of a wheel's radius within the values that are judged.
-const OF_RADIUS: f64 = 0.998;
-/// Relative difference up to which a radius belongs to the wheel.
-const ABOUT: f64 = 0.02;
+/// Probability of the central interval of the prior of a wheel's radius that is compared with the wheel.
+const CENTRAL_OF_RADIUS: f64 = 0.998;
+/// Relative difference up to which a radius counts as the wheel's.
+const RADIUS_TOLERANCE: f64 = 0.02;
 
 /// Returns one question for each quantity, with its first odd value and the number of its other odd values.
 pub(super) fn questions(spec: &Spec) -> Vec<Question> {
@@ -50,12 +51,13 @@ pub(super) fn questions(spec: &Spec) -> Vec<Question> {
     questions.extend(typed.filter_map(|p| radius_prior_question(spec, p)));
     let fixed = spec.model.fixed.iter();
     questions.extend(fixed.filter_map(|(name, &value)| fixed_radius_question(spec, name, value)));
+    questions.extend(slip_angle(&spec.experiment));
     questions
 }
 
 /// Returns the question about a prior of a wheel's radius whose 99.8 % interval excludes the wheel's radius.
 fn radius_prior_question(spec: &Spec, parameter: &FreeParameter) -> Option<Question> {
-    let end = 0.5 * (1.0 - OF_RADIUS);
+    let end = 0.5 * (1.0 - CENTRAL_OF_RADIUS);
     let [low, high] = [end, 1.0 - end].map(|p| parameter.marginal.quantile(p));
     let (wheel, radius_m) = elsewhere(spec, &parameter.name, [low, high])?;
     let words = format!(
@@ -94,7 +96,7 @@ fn elsewhere<'a>(spec: &'a Spec, parameter: &str, [low, high]: [f64; 2]) -> Opti
             false => rim,
         };
         let is_meant = stated_wheel.is_none_or(|stated| stated == wheel.as_str());
-        is_meant && (high < rim * (1.0 - ABOUT) || low > largest * (1.0 + ABOUT))
+        is_meant && (high < rim * (1.0 - RADIUS_TOLERANCE) || low > largest * (1.0 + RADIUS_TOLERANCE))
     })?;
     Some((wheel, geometry.radius_m))
 }
@@ -116,7 +118,20 @@ fn prior_question(parameter: &FreeParameter) -> Option<Question> {
     Some(Question::new(limit.name, words))
 }
 
-/// Returns the name of a parameter without that of a wheel.
+/// Returns the question about slip angles that would all be at most right angles if they were in radians.
+fn slip_angle(experiment: &Experiment) -> Option<Question> {
+    let angles = experiment.runs.iter().map(|run| run.slip_angle_deg.abs());
+    let largest = angles.reduce(f64::max)?;
+    let words = format!(
+        "the largest slip_angle_deg is {} deg: was it typed in rad ({} deg)?",
+        limit::number(largest),
+        limit::number(largest.to_degrees())
+    );
+    let in_radians = largest > 0.0 && largest <= std::f64::consts::FRAC_PI_2;
+    in_radians.then(|| Question::new(SLIP_ANGLE, words))
+}
+
+/// Returns the name of a parameter without the name of its wheel.
 fn base(name: &str) -> &str {
     name.split_once('.').map_or(name, |(base, _)| base)
 }
