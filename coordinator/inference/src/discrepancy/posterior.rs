@@ -16,15 +16,16 @@ const LOCAL_SDS: [f64; 4] = [0.0, 1.0, 2.0, 4.0];
 const BETWEEN: [f64; 4] = [0.0, 0.5, 0.8, 0.95];
 /// Length scales over the range of a coordinate.
 const LENGTHS: [f64; 6] = [0.1, 0.2, 0.4, 0.8, 1.6, 3.2];
-/// The search does not continue from parameters less probable than the best by this many nats.
+/// Difference of log density from the best parameters beyond which the search does not continue `[nats]`.
 const REACH: f64 = 6.0;
 /// Maximum number of parameters that are evaluated.
 const MAX_PLACES: usize = 2000;
-/// With more misfits, this many represent all: the cost grows with the cube of their number.
+/// Maximum number of misfits that enter: if there are more, this many represent them, because the cost grows with the cube of the number.
 const MAX_MISFITS: usize = 100;
-/// Share of the probability that is kept, and the maximum number of parameters that hold it. With more misfits fewer are kept,
-/// because each takes memory proportional to the square of their number.
+/// Share of the probability that the kept parameters hold together.
 const KEPT: f64 = 0.99;
+/// Maximum number of kept parameters. With more misfits than [`MAX_MISFITS`] fewer are kept, because each takes memory proportional to
+/// the square of the number of misfits.
 const MAX_KEPT: usize = 64;
 
 /// Places on the grid: sd, local sd, correlation of groups, then the lengths.

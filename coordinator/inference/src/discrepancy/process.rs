@@ -46,7 +46,7 @@ pub struct Discrepancy {
     pub components: Vec<DiscrepancyComponent>,
 }
 
-/// A normal law.
+/// A component of a mixture: a normal distribution of the discrepancy.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DiscrepancyComponent {
     /// Mean [unit of the channel].

@@ -6,7 +6,7 @@ const SPREAD: f64 = 8.0;
 const TRIALS: [f64; 3] = [1.0, SPREAD, SPREAD * SPREAD];
 /// The initial damping: a tenth of the curvature.
 const FIRST: f64 = 0.1;
-/// The smallest damping; less has no effect.
+/// The smallest damping; a damping below this has no effect.
 const MIN_DAMPING: f64 = 1e-9;
 
 /// The damping of the next trials.

@@ -30,11 +30,11 @@ pub struct LmFit {
     pub(super) stencil: Stencil,
     /// The sides of the last differences.
     pub(super) sides: Sides,
-    /// Their steps along the axes.
+    /// Steps of the differences along the axes.
     pub(super) lengths: Vec<f64>,
     pub(super) damping: Damping,
     /// Whether the last step decreased f too little to continue.
-    pub(super) settled: bool,
+    pub(super) is_stagnant: bool,
     pub(super) steps: usize,
     pub(super) count: EvaluationCount,
 }
@@ -71,7 +71,7 @@ impl LmFit {
             sides: Sides::One,
             lengths: Vec::new(),
             damping: Damping::default(),
-            settled: false,
+            is_stagnant: false,
             steps: 0,
             count: EvaluationCount::default(),
         };
@@ -165,7 +165,11 @@ impl LmFit {
     pub(super) fn finish(&mut self, stop: StopReason) {
         let Some(point) = &self.best else { return };
         // A step that converged ends the fit even where the budget has no room for another Jacobian.
-        let stop = if self.settled { StopReason::Decrease } else { stop };
+        let stop = if self.is_stagnant {
+            StopReason::Decrease
+        } else {
+            stop
+        };
         let mut estimate = self.objective.estimate(point, &self.columns, stop);
         estimate.evaluations = self.count.evaluations as u64;
         estimate.rejected = self.count.rejected as u64;

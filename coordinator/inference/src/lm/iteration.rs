@@ -10,7 +10,7 @@ use crate::round::Proposal;
 use crate::tell::InferenceFailure;
 use statistics::rng::Stream;
 
-/// A further Jacobian is worth its evaluations if its differences are this many times longer.
+/// Ratio of the new to the old length of a difference above which a further Jacobian is worth its evaluations.
 const MUCH_LONGER: f64 = 1.5;
 
 impl LmFit {
@@ -146,7 +146,7 @@ impl LmFit {
         let promised = parabola
             .step(0.0)
             .map_or(f64::INFINITY, |step| parabola.decrease(&step));
-        if self.settled || promised <= self.min_decrease(point) {
+        if self.is_stagnant || promised <= self.min_decrease(point) {
             // A better Jacobian confirms the optimum or gives one more step.
             if !self.refine() {
                 self.finish(StopReason::Decrease);
@@ -214,10 +214,10 @@ impl LmFit {
         };
         let decrease = best.value - point.value;
         let (damping, promised) = trials[proposal.particle];
-        self.settled = decrease <= self.min_decrease(best);
+        self.is_stagnant = decrease <= self.min_decrease(best);
         self.damping.accept(damping, decrease / promised);
         self.steps += 1;
-        let sides = if self.settled { Sides::Both } else { Sides::One };
+        let sides = if self.is_stagnant { Sides::Both } else { Sides::One };
         self.continue_from(point, sides);
     }
 }

@@ -6,13 +6,14 @@ use statistics::prior::{LN_SQRT_TAU, Prior};
 
 /// Normal scores between which an sd without a closed form is searched.
 const FARTHEST_SCORE: f64 = 4.0;
-/// A score this close to an end of that interval counts as lying at the end.
+/// Distance from an end of the searched interval of scores within which a score counts as lying at the end.
 const AT_END: f64 = 0.01;
-/// Number of golden sections of that interval, down to a width of 2e-4.
+/// Number of golden sections of the searched interval of scores, down to a width of 2e-4.
 const SECTIONS: u32 = 22;
-/// Maximum number of passes over the sds, and the change of the scores at which they end.
+/// Maximum number of passes over the sds.
 const PASSES: u32 = 6;
-const SETTLED: f64 = 1e-3;
+/// Change of every score in a pass below which the passes end.
+const MIN_SCORE_CHANGE: f64 = 1e-3;
 /// Half the width of the second difference along a score.
 const DIFFERENCE: f64 = 1e-2;
 const GOLDEN: f64 = 0.618_033_988_749_894_8;
@@ -128,7 +129,11 @@ fn entangled(
         for i in 0..scores.len() {
             scores[i] = golden_maximum(|score| along(&scores, i, score));
         }
-        if scores.iter().zip(&before).all(|(a, b)| (a - b).abs() < SETTLED) {
+        if scores
+            .iter()
+            .zip(&before)
+            .all(|(a, b)| (a - b).abs() < MIN_SCORE_CHANGE)
+        {
             break;
         }
     }

@@ -13,9 +13,11 @@ use statistics::rng::Stream;
 const DRAWS: u64 = 1 << 42;
 /// A parameter at a bound begins at this score: the score of the bound itself is infinite.
 const FARTHEST_START: f64 = 3.0;
-/// Maximum number of steps to the mode of the scores, and of halvings of a step; the gain at which the mode is reached \[nats\].
+/// Maximum number of steps to the mode of the scores.
 const STEPS: u32 = 50;
+/// Maximum number of halvings of a step.
 const HALVINGS: u32 = 30;
+/// Gain of a step below which the mode is reached \[nats\].
 const NO_GAIN: f64 = 1e-9;
 /// Half the width of differences along the score of an sd.
 const DIFFERENCE: f64 = 1e-3;

@@ -1,4 +1,4 @@
-//! The negative log-posterior at a point, and its parabola there.
+//! The objective of a fit: the negative log-posterior at a point, and its quadratic approximation there.
 
 use nalgebra::DMatrix;
 
@@ -29,7 +29,7 @@ pub(super) struct FitPoint {
     pub(super) position: Vec<f64>,
     pub(super) theta: Vec<f64>,
     pub(super) predicted: Vec<f64>,
-    /// f, in nats.
+    /// Value of the objective f, in nats.
     pub(super) value: f64,
     pub(super) log_likelihood: f64,
     pub(super) log_prior: f64,

@@ -1,4 +1,4 @@
-//! The minimum of a damped parabola in a box.
+//! The quadratic model of an objective, and its damped minimum in a box.
 
 use nalgebra::{Cholesky, DMatrix, DVector};
 
@@ -67,7 +67,7 @@ impl QuadraticModel {
         Some(step)
     }
 
-    /// Returns the free components of the minimum, the others given.
+    /// Returns the free components of the minimum, given the other components.
     fn solve(&self, free: &[usize], step: &[f64], damping: f64) -> Option<Vec<f64>> {
         let matrix = DMatrix::from_fn(free.len(), free.len(), |row, column| {
             let (k, l) = (free[row], free[column]);

@@ -46,12 +46,12 @@ impl Default for LmSettings {
     }
 }
 
-/// Minimum number of draws: intervals are their quantiles.
+/// Minimum number of draws, because their quantiles are the intervals.
 const MIN_DRAWS: usize = 20;
 
-/// A step grows with the uncertainty to at most this multiple of the setting.
+/// Largest ratio of a difference's length, which grows with the uncertainty, to the stated length.
 const LONGER: f64 = 10.0;
-/// One-sided steps as a share of the uncertainty: short, because the model's curvature biases them.
+/// Length of a one-sided difference as a share of the uncertainty: short, because the model's curvature biases it.
 const SHARE_TO_ONE_SIDE: f64 = 0.25;
 
 /// A setting outside its bounds.
@@ -60,7 +60,7 @@ pub enum LmSettingsError {
     /// The prior has no parameters.
     #[error("the prior has no parameters")]
     NoParameters,
-    /// There is no start.
+    /// The fit has no start.
     #[error("starts = 0 is below 1")]
     NoStart,
     /// The budget does not suffice for a first step.
@@ -101,7 +101,7 @@ pub enum LmSettingsError {
         /// The draws as given.
         draws: usize,
     },
-    /// There are more draws than a store should keep.
+    /// The number of draws exceeds what a store should keep.
     #[error("particles = {draws} must be at most {MAX_PARTICLES}")]
     TooManyDraws {
         /// The draws as given.

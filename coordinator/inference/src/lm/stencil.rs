@@ -1,4 +1,4 @@
-//! The finite differences of a Jacobian.
+//! The stencil of a Jacobian: the finite differences that it is computed from.
 
 use super::objective::Column;
 use crate::point_estimate::PriorAxis;

@@ -49,7 +49,7 @@ impl Drift {
     }
 
     /// Returns whether a stage may end here.
-    pub(super) fn is_settled(self) -> bool {
+    pub(super) fn may_end(self) -> bool {
         self.correlation < CORRELATION_LIMIT
             && self.z.abs() < DRIFT_LIMIT
             && self.weight_z.abs() < DRIFT_LIMIT

@@ -116,7 +116,7 @@ impl Sampler {
             && stage.step >= min_moves
             && (stage.step - min_moves).is_multiple_of(if stage.metamodel.is_some() { 1 } else { BLOCK })
         {
-            drift = Some(self.drift(&stage)).filter(|drift| drift.is_settled());
+            drift = Some(self.drift(&stage)).filter(|drift| drift.may_end());
         }
         if drift.is_none() && !stage.is_exhausted() {
             return Ok(RunPhase::Waiting(SamplerRound::Moves(stage)));

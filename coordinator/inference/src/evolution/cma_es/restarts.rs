@@ -1,4 +1,4 @@
-//! The sequence of runs, each with twice the population of the last.
+//! The restarts of CMA-ES: a sequence of runs, each with twice the population of the last.
 
 use super::run::{CmaEsRun, End};
 use super::settings::CmaEsSettings;
@@ -11,7 +11,7 @@ use statistics::rng::Stream;
 /// Stream of a restart's start; individuals never reach this number.
 const START: u64 = u64::MAX;
 
-/// The runs.
+/// The sequence of CMA-ES runs, each with twice the population of the last.
 #[derive(Debug, Clone)]
 pub(crate) struct Restarts {
     settings: CmaEsSettings,
@@ -22,7 +22,7 @@ pub(crate) struct Restarts {
     starts: u64,
     /// Generations asked for so far, over all runs.
     generation: u64,
-    /// The best of the earlier runs, and whether one of them converged there.
+    /// Best log-posterior of the earlier runs, and whether one of these runs converged there.
     earlier: (f64, bool),
 }
 

@@ -1,4 +1,4 @@
-//! One run of CMA-ES from its start to its end.
+//! One run of CMA-ES from a start, until it converges or is lost.
 
 use std::collections::VecDeque;
 
@@ -13,14 +13,14 @@ const FIRST_STEP: f64 = 1.0;
 /// A run ends when its standard deviations are below this, in prior widths: no simulation resolves such differences,
 /// and the thinnest ridge, between the literal moduli of Bekker's law, is 1e-5 wide.
 const SHORTEST: f64 = 1e-7;
-/// A run ends beyond this step: it has left the prior.
+/// A run ends when its step exceeds this, in prior widths: it has left the prior.
 const LONGEST: f64 = 1e4;
 /// A run ends when the condition number of its covariance exceeds this: rounding dominates.
 const THINNEST: f64 = 1e14;
 /// A run ends after this many consecutive generations that the model rejected as a whole.
 const LOST: usize = 5;
 
-/// A run.
+/// One run of CMA-ES from a start, until it converges or is lost.
 #[derive(Debug, Clone)]
 pub(super) struct CmaEsRun {
     distribution: SearchDistribution,
@@ -40,9 +40,9 @@ pub(super) struct CmaEsRun {
 /// How a run ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum End {
-    /// It converged.
+    /// The run converged.
     Converged,
-    /// The model rejected everything around it, or it left the prior.
+    /// The model rejected every individual of several generations, or the run left the prior.
     Lost,
 }
 

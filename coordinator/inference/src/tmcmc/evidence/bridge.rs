@@ -4,7 +4,7 @@ use crate::tmcmc::transition::Weights;
 
 /// Maximum number of iterations for the ratio; Newton's method takes about five.
 const MAX_STEPS: usize = 60;
-/// The iteration ends when a step changes the ratio by less, relative to its size or to 1.
+/// Change of the ratio by a step, relative to the larger of its size and 1, below which the iteration ends.
 const TOLERANCE: f64 = 1e-13;
 
 /// The ratio Z(after) / Z(before) and each state's share of its error.

@@ -16,12 +16,12 @@ pub(crate) struct Evidence {
     pub(crate) log: f64,
     /// Variance of the initial estimate: the surviving fraction, or an earlier estimate.
     first_variance: f64,
-    levels: Vec<Level>,
+    pools: Vec<EvidencePool>,
 }
 
-/// One pool.
+/// One pool of states at one tempering exponent.
 #[derive(Debug, Clone)]
-struct Level {
+struct EvidencePool {
     log_likelihoods: Vec<f64>,
     chains: Vec<usize>,
     /// The chain of the pool before that each chain came from; empty for independent draws.
@@ -35,7 +35,7 @@ impl Evidence {
         Self {
             log,
             first_variance: variance,
-            levels: Vec::new(),
+            pools: Vec::new(),
         }
     }
 
@@ -53,46 +53,46 @@ impl Evidence {
         let chains = pool.chains.clone();
         let count = chains.iter().max().map_or(0, |max| max + 1);
         let log_likelihoods = pool.log_likelihoods();
-        let mut level = Level {
+        let mut current = EvidencePool {
             log_likelihoods,
             chains,
             ancestors,
             shares: vec![0.0; count],
         };
         let mut increment = 0.0;
-        if let Some(before) = self.levels.last_mut() {
-            let bridge = Bridge::between(&before.log_likelihoods, &level.log_likelihoods, step);
+        if let Some(before) = self.pools.last_mut() {
+            let bridge = Bridge::between(&before.log_likelihoods, &current.log_likelihoods, step);
             for (&chain, error) in before.chains.iter().zip(&bridge.errors_before) {
                 before.shares[chain] += error;
             }
-            for (&chain, error) in level.chains.iter().zip(&bridge.errors_after) {
-                level.shares[chain] += error;
+            for (&chain, error) in current.chains.iter().zip(&bridge.errors_after) {
+                current.shares[chain] += error;
             }
             before.log_likelihoods = Vec::new();
             before.chains = Vec::new();
             increment = bridge.log_ratio;
         }
-        self.levels.push(level);
+        self.pools.push(current);
         self.log += increment;
         increment
     }
 
     pub(crate) fn standard_error(&self) -> f64 {
         let mut variance = self.first_variance;
-        for (index, level) in self.levels.iter().enumerate() {
+        for (index, pool) in self.pools.iter().enumerate() {
             // The family of each chain: its siblings and all their descendants.
-            let mut family = if level.ancestors.is_empty() {
-                (0..level.shares.len()).collect()
+            let mut family = if pool.ancestors.is_empty() {
+                (0..pool.shares.len()).collect()
             } else {
-                level.ancestors.clone()
+                pool.ancestors.clone()
             };
             let size = family.iter().max().map_or(0, |max| max + 1);
             let mut siblings = vec![0.0; size];
-            for (&member, share) in family.iter().zip(&level.shares) {
+            for (&member, share) in family.iter().zip(&pool.shares) {
                 siblings[member] += share;
             }
             let mut descendants = vec![0.0; size];
-            for later in &self.levels[index + 1..] {
+            for later in &self.pools[index + 1..] {
                 family = later.ancestors.iter().map(|&parent| family[parent]).collect();
                 for (&member, share) in family.iter().zip(&later.shares) {
                     descendants[member] += share;
