@@ -28,7 +28,7 @@ pub struct Farm {
     pub(super) workers: BTreeMap<String, WorkerRecord>,
     /// Workers that compute wrongly, with the reason.
     pub(super) quarantine: BTreeMap<String, String>,
-    /// Calibrations to replay without the results of such workers, since the last call of [`Farm::take_rewinds`].
+    /// Calibrations to replay without the results of quarantined workers, since the last call of [`Farm::take_rewinds`].
     pub(super) rewinds: Vec<i64>,
     pub(super) counters: FarmCounters,
     pub(super) facts: Vec<Fact>,
@@ -41,7 +41,7 @@ pub(super) struct Entry {
     pub(super) calibration: Calibration,
     pub(super) key: SealKey,
     pub(super) pace: Pace,
-    /// The number of replays that the calibration waits for. It leases and takes nothing before the last of them.
+    /// The number of replays that the calibration waits for. It gives out no lease and takes no result before the last replay.
     pub(super) rewinds: u32,
     /// Whether the last replay failed, so that a user has to ask for another.
     pub(super) is_replay_due: bool,
@@ -262,7 +262,7 @@ impl Farm {
             .retain(|_, w| now_ms.saturating_sub(w.last_seen_ms) < WORKER_SILENCE_MS);
         self.ask_beside_slow_workers(now_ms);
         for id in self.ids() {
-            self.settle(id, now_ms);
+            self.finish_if_compared(id, now_ms);
         }
         self.account(now_ms);
     }

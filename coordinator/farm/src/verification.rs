@@ -88,7 +88,7 @@ impl Farm {
     }
 
     /// Finishes a calibration with only comparisons left, once they are made or no worker can make them.
-    pub(super) fn settle(&mut self, id: i64, now_ms: u64) {
+    pub(super) fn finish_if_compared(&mut self, id: i64, now_ms: u64) {
         let Some(entry) = self.calibrations.get_mut(&id) else {
             return;
         };
@@ -113,7 +113,7 @@ impl Farm {
             .witness
             .second
             .drop_hopeless(can_answer, hung_ms, now_ms);
-        calibration.settle(&mut self.facts);
+        calibration.finish_if_compared(&mut self.facts);
     }
 
     /// Asks another worker for evaluations of slow leases, where nothing else waits. The first answer counts.

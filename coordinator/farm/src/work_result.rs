@@ -94,7 +94,7 @@ impl Farm {
         for (worker, evaluation) in convicted.into_iter().flatten() {
             self.convict(&worker, id, evaluation);
         }
-        self.settle(id, now_ms);
+        self.finish_if_compared(id, now_ms);
         taken
     }
 

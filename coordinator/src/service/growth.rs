@@ -145,15 +145,15 @@ impl Service {
         let mut changes = self.study_changes();
         loop {
             changes.next().await;
-            let settled = match self.store().reader().settled_studies().await {
-                Ok(settled) => settled,
+            let finished = match self.store().reader().finished_studies().await {
+                Ok(finished) => finished,
                 Err(error) => {
                     tracing::error!(%error, "failed to read the studies");
                     changes.look_again();
                     continue;
                 }
             };
-            for (study, members) in settled {
+            for (study, members) in finished {
                 if at_rest.get(&study) == Some(&members) {
                     continue;
                 }

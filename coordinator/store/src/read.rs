@@ -28,22 +28,22 @@ const CALIBRATION: &str = "SELECT c.*, coalesce(c.experiment, s.experiment) AS o
 /// A study with its members.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct StoredStudy {
-    /// Its number.
+    /// Id of the study.
     pub id: i64,
     /// The experiment that it is about.
     pub experiment: i64,
-    /// Its calibrations, oldest first.
+    /// Ids of the study's calibrations, oldest first.
     pub calibrations: Vec<i64>,
 }
 
 /// The address that a calibration's pauses and ends are posted to.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct StoredWebhook {
-    /// The study.
+    /// Id of the study.
     pub study: i64,
     /// Name of the calibration.
     pub name: String,
-    /// The URL.
+    /// URL of the web hook.
     pub url: String,
 }
 
@@ -176,7 +176,7 @@ impl Reader {
     }
 
     /// Reads the studies whose calibrations are all over, each with the number of its calibrations; archived studies are left out.
-    pub async fn settled_studies(&self) -> Result<Vec<(i64, i64)>, StoreError> {
+    pub async fn finished_studies(&self) -> Result<Vec<(i64, i64)>, StoreError> {
         let rows = query(
             "SELECT study, count(*) AS members FROM calibrations c JOIN studies s ON s.id = c.study
              WHERE s.archived_at_ms IS NULL GROUP BY study

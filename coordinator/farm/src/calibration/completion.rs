@@ -274,13 +274,13 @@ impl Calibration {
     fn end_phase(&mut self, facts: &mut Vec<Fact>) {
         self.phase = std::mem::take(&mut self.phase).next();
         match self.phase {
-            Phase::Comparing(_) => self.settle(facts),
+            Phase::Comparing(_) => self.finish_if_compared(facts),
             Phase::Sampling | Phase::FinalDraws(_) | Phase::RefusedRuns(_) => self.ask(),
         }
     }
 
     /// Finishes a calibration that has no evaluations and no comparisons left.
-    pub fn settle(&mut self, facts: &mut Vec<Fact>) {
+    pub fn finish_if_compared(&mut self, facts: &mut Vec<Fact>) {
         if self.is_concluded() && self.witness.second.waiting() == 0 {
             self.finish(CalibrationState::Finished, None, facts);
         }

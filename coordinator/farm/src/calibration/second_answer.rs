@@ -20,7 +20,7 @@ const MAX_WAITING: usize = 1_000;
 /// A worker's answer.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Answer {
-    /// The worker.
+    /// Name of the worker.
     pub worker: String,
     /// The fingerprint of its result.
     pub fingerprint: Fingerprint,
@@ -36,7 +36,7 @@ pub enum Verdict {
     /// Answers differ, and no two are equal.
     Differ,
     /// Two workers agree.
-    Settled {
+    Agreed {
         /// The worker that answered first; its answer is stored.
         first: String,
         /// The workers with other answers.
@@ -161,7 +161,7 @@ impl SecondAnswers {
             let wrong = other.iter().map(|a| a.worker.clone()).collect();
             let first = repeated.answers[0].worker.clone();
             self.drop(evaluation);
-            return Verdict::Settled { first, wrong };
+            return Verdict::Agreed { first, wrong };
         }
         match other.is_empty() {
             true => Verdict::Open,
@@ -266,8 +266,8 @@ mod tests {
         second.answered(3, Answer { worker, fingerprint })
     }
 
-    fn settled(first: &str, wrong: &[&str]) -> Verdict {
-        Verdict::Settled {
+    fn agreed(first: &str, wrong: &[&str]) -> Verdict {
+        Verdict::Agreed {
             first: first.to_owned(),
             wrong: wrong.iter().map(|w| (*w).to_owned()).collect(),
         }
@@ -278,14 +278,14 @@ mod tests {
         let mut second = repeated_evaluation(true);
         assert_eq!(answer(&mut second, "a", 1), Verdict::Open);
         assert_eq!(answer(&mut second, "a", 1), Verdict::Open, "said twice");
-        assert_eq!(answer(&mut second, "b", 1), settled("a", &[]));
+        assert_eq!(answer(&mut second, "b", 1), agreed("a", &[]));
         assert_eq!(answer(&mut second, "c", 1), Verdict::NotAsked);
 
         let mut second = repeated_evaluation(true);
         answer(&mut second, "liar", 9);
         assert_eq!(answer(&mut second, "a", 1), Verdict::Differ);
         assert_eq!(answer(&mut second, "fool", 8), Verdict::Differ);
-        assert_eq!(answer(&mut second, "b", 1), settled("liar", &["liar", "fool"]));
+        assert_eq!(answer(&mut second, "b", 1), agreed("liar", &["liar", "fool"]));
     }
 
     #[test]

@@ -31,7 +31,7 @@ pub struct Witness {
 #[derive(Debug, Clone, PartialEq, Eq)]
 struct StoredAnswer {
     answer: Answer,
-    /// Whether another worker has given the same.
+    /// Whether another worker has given the same answer.
     is_confirmed: bool,
 }
 
@@ -125,7 +125,7 @@ impl Witness {
                 self.convicted.push((worker, evaluation));
                 vec![duplicate]
             }
-            Verdict::Settled { wrong, first } => {
+            Verdict::Agreed { wrong, first } => {
                 let convicted = wrong.iter().map(|name| (name.clone(), evaluation));
                 self.convicted.extend(convicted);
                 if wrong.contains(&first) {
