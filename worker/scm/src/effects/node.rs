@@ -105,7 +105,7 @@ impl<'a> NodeLaws<'a> {
     ///
     /// # Arguments
     /// - `counts`: whether a point is a node in contact; other points may hold any value.
-    /// - `variables`: the settled ones, for messages.
+    /// - `variables`: those of the last call of [`NodeLaws::settle`], for messages.
     pub(crate) fn apply(
         &mut self,
         hook: Hook,

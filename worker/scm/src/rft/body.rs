@@ -1,4 +1,4 @@
-//! The surface of a wheel as small flat elements.
+//! The body of a wheel: its surface as small flat elements.
 
 use core::f64::consts::TAU;
 
@@ -7,8 +7,9 @@ use crate::spatial::SurfaceMesh;
 
 /// Angle that an element of a rim spans `[rad]`: half a degree.
 const STEP: f64 = TAU / 720.0;
-/// Number of rings of a side wall, which are closer together towards the rim, and angle that an element of it spans `[rad]`.
+/// Number of rings of a side wall, which are closer together towards the rim.
 const RINGS: usize = 24;
+/// Angle that an element of a side wall spans `[rad]`.
 const SIDE_STEP: f64 = TAU / 240.0;
 /// Number of elements along the height of a grouser.
 const ALONG_GROUSER: usize = 6;
@@ -20,11 +21,11 @@ const MAX_HALVINGS: u32 = 16;
 /// A small flat part of a surface, by its middle; the axle is the y axis.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Element {
-    /// Middle `[m]`.
+    /// Centre of the element `[m]`.
     pub(super) at: [f64; 3],
     /// Normal, out of the body, of length 1.
     pub(super) normal: [f64; 3],
-    /// Area `[m²]`.
+    /// Area of the element `[m²]`.
     pub(super) area: f64,
 }
 

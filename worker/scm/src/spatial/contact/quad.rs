@@ -1,4 +1,4 @@
-//! Four neighbouring nodes under the wheel.
+//! A quad: four neighbouring nodes under the wheel.
 
 use super::super::pack::{PACK, Pack, max, max_lane, splat};
 use super::super::wheel::envelope::NOWHERE;

@@ -1,4 +1,4 @@
-//! Gaps and runs of lanes of a footprint along the travel.
+//! The spans of a footprint: gaps and runs of lanes along the travel.
 
 use super::super::pack::Pack;
 
@@ -7,7 +7,8 @@ use super::super::pack::Pack;
 pub(crate) struct Span {
     /// The gap behind a run that begins in the strip `[m]`.
     pub(crate) gap: Pack,
-    /// The largest pressure behind that gap, and in the run so far `[Pa]`.
+    /// The largest pressure behind the gap `[Pa]`.
     pub(crate) behind: Pack,
+    /// The largest pressure in the present run of lanes so far `[Pa]`.
     pub(crate) run: Pack,
 }

@@ -37,7 +37,7 @@ pub(super) struct RunEffects<'a> {
     /// d `[m]`; 0 without digging.
     digging_m: f64,
     load_follows: bool,
-    measures: bool,
+    change_channels: bool,
 }
 
 /// The soil near the ends of its bin.
@@ -62,7 +62,7 @@ impl<'a> RunEffects<'a> {
             side: side_wall(active, case)?,
             digging_m: digging(active)?,
             load_follows: active.load_follows_reaction(),
-            measures: active.change_channels(),
+            change_channels: active.change_channels(),
         })
     }
 
@@ -105,9 +105,9 @@ impl<'a> RunEffects<'a> {
         (self.digging_m > 0.0).then_some(self.digging_m)
     }
 
-    /// Returns whether the measured channels differ from the soil's.
-    pub(super) fn measure_otherwise(&self) -> bool {
-        self.measures
+    /// Returns whether an effect changes the measured channels.
+    pub(super) fn change_channels(&self) -> bool {
+        self.change_channels
     }
 
     /// Returns the measured drawbar pull, torque, sinkage and lateral force. `b_eff` belongs to the last measured contour

@@ -79,7 +79,7 @@ impl Record {
         let (pull, torque, lateral) = (reaction.force_x, reaction.torque, -reaction.force_y);
         let mut channels = [pull, torque, rolling.sinkage(step.hub), lateral];
         let effects = rolling.effects.as_ref();
-        if let Some(effects) = effects.filter(|effects| effects.measure_otherwise()) {
+        if let Some(effects) = effects.filter(|effects| effects.change_channels()) {
             for (soil, value) in self.soil_channels.iter_mut().zip(channels) {
                 soil.push(value);
             }

@@ -21,7 +21,8 @@ use crate::spatial::wheel::pose::{Pose, Range};
 use crate::{Condition, Wheel};
 use formula::Variable;
 
-/// Distance below the highest soil that the wheel may sink within a step `[m]`; at the start it sinks from above.
+/// Distance below the highest soil that the wheel may sink within a step `[m]`; at the start of a run the wheel sinks from above the
+/// soil.
 const SINKS_PER_STEP: f64 = 1e-3;
 /// Number of columns beyond the last contact over which the wheel is laid.
 const MARGIN: usize = 3;
@@ -191,7 +192,7 @@ impl<'a> Rolling<'a> {
 
     /// Puts the wheel back to the start of its track, above its rut.
     pub(crate) fn start_again(&mut self) {
-        self.relaxation.settle_everywhere(&mut self.terrain);
+        self.relaxation.relax_everywhere(&mut self.terrain);
         self.terrain.sheared.fill(0.0);
         if let Some(path) = &mut self.shear_path {
             path.clear();
@@ -215,7 +216,7 @@ impl<'a> Rolling<'a> {
         self.advance(0.0)
     }
 
-    /// Travels one step.
+    /// Moves the wheel by one step.
     pub(crate) fn step(&mut self) -> Result<Step, Rejection> {
         let time = self.steps.time;
         self.pose.x += self.motion.forward * time;
@@ -295,7 +296,7 @@ impl<'a> Rolling<'a> {
                 fraction,
             );
             if self.heights.len().is_multiple_of(self.steps.to_slide) {
-                self.relaxation.settle(&mut self.terrain, &self.contact, self.hub);
+                self.relaxation.relax(&mut self.terrain, &self.contact, self.hub);
             }
             let strips = &self.contact.strips;
             self.touched = Some(Range {

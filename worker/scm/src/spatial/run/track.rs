@@ -7,17 +7,19 @@ use super::super::wheel::motion::Motion;
 use crate::rejection::{Rejection, require};
 use crate::{Condition, Soil, Wheel, quasi_static};
 
-/// Number of slidings of the slopes while the wheel moves by a column.
-const SLIDES_TO_COLUMN: f64 = 4.0;
+/// Number of slope relaxations while the wheel advances by one column.
+const RELAXATIONS_PER_COLUMN: f64 = 4.0;
 /// Minimum number of nodes in a contact along travel.
 const NODES_ALONG: f64 = 8.0;
 /// Minimum number of columns in a grouser's pitch for the spacing to be fitted to it.
-const COLUMNS_TO_PITCH: f64 = 4.0;
-/// Number of columns beyond the wheel's reach, at either end of the track, and length beyond it relative to the reach.
+const COLUMNS_PER_PITCH: f64 = 4.0;
+/// Number of columns beyond the wheel's reach, at either end of the track.
 const SPARE_COLUMNS: f64 = 12.0;
+/// Length beyond the wheel's reach, at either end of the track, relative to the reach.
 const SPARE_REACH: f64 = 0.1;
-/// The maximum number of nodes of a terrain (a quarter of a gigabyte) and of steps of all passes of a run.
+/// The maximum number of nodes of a terrain: a quarter of a gigabyte.
 const MAX_NODES: f64 = 1e7;
+/// The maximum number of steps of all passes of a run.
 const MAX_STEPS: f64 = 2e6;
 /// Minimum share of the travel along the heading for steps to follow columns; below it the wheel slides sideways.
 const MIN_ALONG: f64 = 1e-3;
@@ -67,7 +69,7 @@ pub(crate) fn spacing_along(
 /// two periods and nearly cancels in their mean. At any other spacing it repeats in many periods, and no mean over few of
 /// them settles. A pitch of few columns is unchanged.
 pub(crate) fn fit_to_pitch(dx: f64, pitch: f64) -> f64 {
-    if pitch < COLUMNS_TO_PITCH * dx {
+    if pitch < COLUMNS_PER_PITCH * dx {
         return dx;
     }
     pitch / (libm::ceil(pitch / dx - 0.5) + 0.5)
@@ -109,7 +111,7 @@ pub(crate) fn steps(
         time: travel / condition.sled_speed_m_s,
         travel,
         to_column: to_column as usize,
-        to_slide: libm::ceil(to_column / SLIDES_TO_COLUMN) as usize,
+        to_slide: libm::ceil(to_column / RELAXATIONS_PER_COLUMN) as usize,
     }
 }
 

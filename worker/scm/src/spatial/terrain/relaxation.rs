@@ -6,9 +6,11 @@ use super::{BERM_LANES, Terrain};
 
 /// Share of an edge's excess height that moves in one sweep; above 1/4 a checkerboard pattern would grow.
 const RATE: f64 = 0.25;
-/// Number of columns behind and ahead of the contact within which soil slides at every step.
+/// Number of columns behind the contact within which soil slides at every step.
 const BEHIND: usize = 1;
+/// Number of columns ahead of the contact within which soil slides at every step.
 const AHEAD: usize = 5;
+/// Number of sweeps over these columns at every step.
 const SWEEPS: usize = 1;
 /// Number of sweeps over the whole track before the wheel passes again.
 const SWEEPS_BETWEEN_PASSES: usize = 40;
@@ -53,7 +55,7 @@ impl Relaxation {
     ///
     /// Every sweep moves over each edge a share of the excess over the angle of repose, all computed from the surface before
     /// the sweep (Jacobi), so that left and right are alike and no soil is lost.
-    pub(crate) fn settle(&mut self, terrain: &mut Terrain, contact: &Contact, hub: f64) {
+    pub(crate) fn relax(&mut self, terrain: &mut Terrain, contact: &Contact, hub: f64) {
         let across = &contact.across;
         let first = contact.strips[contact.first].column;
         let last = contact.strips[contact.end - 1].column;
@@ -70,7 +72,7 @@ impl Relaxation {
     }
 
     /// Lets every slope of the terrain slide, away from the wheel.
-    pub(crate) fn settle_everywhere(&mut self, terrain: &mut Terrain) {
+    pub(crate) fn relax_everywhere(&mut self, terrain: &mut Terrain) {
         let window = Window {
             columns: [0, terrain.columns - 1],
             lanes: [0, terrain.lanes - PACK],
@@ -164,7 +166,7 @@ impl Relaxation {
     }
 }
 
-/// Returns the next lanes of four.
+/// Returns four lanes shifted by one: the last three, and the first of the lanes after them.
 #[inline]
 fn beside(lanes: [f64; PACK], after: [f64; PACK]) -> Pack {
     Pack::new([lanes[1], lanes[2], lanes[3], after[0]])
@@ -224,7 +226,7 @@ mod tests {
         let mut relaxation = Relaxation::new(repose);
         let mut before = steepest(&terrain);
         for _ in 0..20 {
-            relaxation.settle_everywhere(&mut terrain);
+            relaxation.relax_everywhere(&mut terrain);
             let after = steepest(&terrain);
             assert!(after <= before, "{after} after {before}");
             before = after;
@@ -240,14 +242,14 @@ mod tests {
     fn a_slope_below_the_angle_of_repose_stays_to_the_last_bit() {
         let mut terrain = heap(SPACING * 0.6);
         let before = terrain.surface.clone();
-        Relaxation::new(32_f64.to_radians()).settle_everywhere(&mut terrain);
+        Relaxation::new(32_f64.to_radians()).relax_everywhere(&mut terrain);
         assert_eq!(before, terrain.surface);
     }
 
     #[test]
     fn a_heap_slides_alike_to_all_four_sides() {
         let mut terrain = heap(0.05);
-        Relaxation::new(0.5).settle_everywhere(&mut terrain);
+        Relaxation::new(0.5).relax_everywhere(&mut terrain);
         let at = |column: usize, lane: usize| terrain.surface[column * terrain.lanes + lane];
         for k in 1..6 {
             let sides = [at(12 + k, 12), at(12 - k, 12), at(12, 12 + k), at(12, 12 - k)];

@@ -42,7 +42,7 @@ use crate::effects::NodeLaws;
 pub(crate) struct NodeFormulas<'a> {
     laws: NodeLaws<'a>,
     variables: [f64; Variable::COUNT],
-    /// True if `laws` are settled for the present `variables`.
+    /// True if `laws` hold the shared values of the present `variables`.
     settled: bool,
     /// True if formulas only scale the shear stress, and if they do so in this step.
     may_scale: bool,
