@@ -46,17 +46,17 @@ pub struct PullArguments {
         value_delimiter = ','
     )]
     pub allow_model: Vec<String>,
-    /// Ends after so long without work `[s]`.
+    /// Ends after this time without work `[s]`.
     #[arg(long, value_name = "SECONDS", env = "GROUSER_MAX_IDLE", value_parser = seconds)]
     pub max_idle: Option<Duration>,
-    /// Gives back what it has not finished and ends after so long `[s]`; by default, 30 s before Slurm ends the job that it is part
-    /// of.
+    /// Returns unfinished evaluations and ends after this time `[s]`; by default, 30 s before the end of the Slurm job that the worker
+    /// runs in.
     #[arg(long, value_name = "SECONDS", env = "GROUSER_MAX_LIFETIME", value_parser = seconds)]
     pub max_lifetime: Option<Duration>,
     /// Ends when no calibration is left that wants workers.
     #[arg(long)]
     pub once: bool,
-    /// Gives back what it has not finished and ends with status 75 when its process holds more `[MB]`.
+    /// Returns unfinished evaluations and ends with status 75 when its process uses more memory than this `[MB]`.
     #[arg(long, value_name = "MB", env = "GROUSER_MAX_MEMORY_MB")]
     pub max_memory_mb: Option<u64>,
 }
@@ -133,7 +133,7 @@ pub enum WorkerCommand {
     },
     /// Write the man pages of the program into a folder.
     Man {
-        /// The folder; it is made where there is none.
+        /// The folder; it is created if it does not exist.
         folder: PathBuf,
     },
 }

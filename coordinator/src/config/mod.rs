@@ -102,7 +102,7 @@ pub enum CoordinatorCommand {
     },
     /// Write the man pages of the program into a folder.
     Man {
-        /// The folder; it is made where there is none.
+        /// The folder; it is created if it does not exist.
         folder: PathBuf,
     },
     /// Print the JSON schema of a kind of file, or write all of them with the settings of Taplo, for editors.
@@ -273,8 +273,8 @@ pub struct ServeArguments {
     /// service that uses the store, and where nothing can be written.
     #[arg(long)]
     pub read_only: bool,
-    /// Waits while another coordinator holds the store, and takes over as soon as it ends, by whatever death; until then it does not
-    /// listen.
+    /// Waits while another coordinator holds the store, and takes over as soon as that coordinator ends for any reason; until then it
+    /// does not listen.
     #[arg(long, env = "GROUSER_STANDBY", conflicts_with = "read_only")]
     pub standby: bool,
     /// Posts web hooks of jobs to this host; may be repeated, or several between commas. By default, to none.
@@ -285,7 +285,7 @@ pub struct ServeArguments {
         value_delimiter = ','
     )]
     pub webhook_host: Vec<String>,
-    /// Deletes studies so many days after they were archived; by default, archived studies are kept.
+    /// Deletes studies this many days after they were archived; by default, archived studies are kept.
     #[arg(long, env = "GROUSER_KEEP_DAYS", value_name = "DAYS", value_parser = clap::value_parser!(u32).range(1..=36_500))]
     pub keep_days: Option<u32>,
     #[command(flatten)]
@@ -370,7 +370,7 @@ pub struct ReportArguments {
 pub struct ExportArguments {
     #[command(flatten)]
     pub target: TargetArguments,
-    /// What is written.
+    /// Format of the exported file.
     #[arg(long, value_enum, default_value_t = ExportFormat::Csv)]
     pub format: ExportFormat,
     /// Output file, of zarr a new folder; by default, standard output for csv and json.

@@ -38,22 +38,22 @@ pub struct ScaleArguments {
     /// Name of the jobs, or of the deployment; what has it counts as a pilot of this service.
     #[arg(long, default_value = "grouser-worker")]
     pub name: String,
-    /// At least so many pilots, also without work.
+    /// Minimum number of pilots, which are kept even without work.
     #[arg(long, default_value_t = 0)]
     pub min: u32,
-    /// At most so many pilots.
+    /// Maximum number of pilots.
     #[arg(long)]
     pub max: u32,
     /// Threads of each pilot.
     #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=4096))]
     pub threads: u32,
-    /// Starts as many pilots as finish the work left within so long `[s]`.
+    /// Starts as many pilots as finish the remaining work within this time `[s]`.
     #[arg(long, value_name = "SECONDS", default_value_t = 600.0, value_parser = positive)]
     pub finish_within: f64,
-    /// A pilot without work ends after so long `[s]`.
+    /// A pilot without work ends after this time `[s]`.
     #[arg(long, value_name = "SECONDS", default_value_t = 120.0, value_parser = positive)]
     pub max_idle: f64,
-    /// Cancels all pilots, and ends, when those that it saw running have cost so many hours of a thread.
+    /// Cancels all pilots, and ends, when those that it saw running have cost this many thread hours.
     #[arg(long, value_name = "HOURS", conflicts_with = "once", value_parser = positive)]
     pub cost_cap_thread_h: Option<f64>,
     /// Looks so often `[s]`.

@@ -13,25 +13,25 @@ const PATIENCE: Duration = Duration::from_secs(60);
 /// The reason why a call of an engine's program failed.
 #[derive(Debug, thiserror::Error)]
 pub enum ProgramError {
-    /// It cannot be run.
+    /// The program cannot be started.
     #[error("{program}: cannot be run; is it installed, and in PATH?")]
     Run {
         program: &'static str,
-        /// The reason.
+        /// Reason given by the operating system.
         #[source]
         source: io::Error,
     },
-    /// It has not ended in time.
+    /// The program has not ended in time.
     #[error("{program}: no answer within {} s", PATIENCE.as_secs())]
     Silent { program: &'static str },
-    /// It failed.
+    /// The program has ended with an error.
     #[error("{program}: {status}: {answer}")]
     Failed {
         program: &'static str,
         status: ExitStatus,
         answer: String,
     },
-    /// Its answer does not have the form of the supported versions.
+    /// The program's answer does not have the form of the supported versions.
     #[error("{program}: unexpected answer {answer:?}")]
     Answer { program: &'static str, answer: String },
 }

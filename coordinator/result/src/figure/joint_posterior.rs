@@ -14,7 +14,7 @@ use crate::study::Study;
 
 const GRID: usize = 32;
 /// Maximum number of pairs: all pairs of ten parameters.
-const PAIRS: usize = 45;
+const MAX_PAIRS: usize = 45;
 /// Shares of the posterior that the contours enclose.
 const SHARES: [f64; 5] = [0.95, 0.8, 0.6, 0.4, 0.2];
 /// Margin of the grid on each side, as a share of the range of the draws.
@@ -54,7 +54,7 @@ pub struct Contour {
     pub density: f64,
 }
 
-/// Returns the joint density of each pair of parameters in the order of the job, or of the [`PAIRS`] most correlated pairs. At most a
+/// Returns the joint density of each pair of parameters in the order of the job, or of the [`MAX_PAIRS`] most correlated pairs. At most a
 /// fixed number of draws enters, which bounds the cost. Pairs whose draws lie on a line have no density and are left out.
 pub(super) fn all(study: &Study, sample: &FinishedCalibration) -> Vec<JointPosterior> {
     let draws = thinned_draws(sample);
@@ -63,10 +63,10 @@ pub(super) fn all(study: &Study, sample: &FinishedCalibration) -> Vec<JointPoste
     let pairs = (0..draws.len()).flat_map(|i| (i + 1..draws.len()).map(move |j| [i, j]));
     let mut pairs: Vec<([usize; 2], f64)> = pairs.map(|pair| (pair, correlation(pair))).collect();
     pairs.sort_by(|a, b| b.1.total_cmp(&a.1));
-    pairs.truncate(PAIRS);
+    pairs.truncate(MAX_PAIRS);
     pairs.sort_by_key(|(pair, _)| *pair);
     let reference = reference::values(&sample.spec);
-    let joint = |(pair, _)| posterior(study, sample, &draws, pair, &reference);
+    let joint = |(pair, _)| joint_posterior(study, sample, &draws, pair, &reference);
     pairs
         .into_iter()
         .filter_map(joint)
@@ -87,7 +87,7 @@ impl JointPosterior {
     }
 }
 
-fn posterior(
+fn joint_posterior(
     study: &Study,
     sample: &FinishedCalibration,
     draws: &[Vec<f64>],
