@@ -5,16 +5,16 @@ const CHARACTER = 5.8;
 const LINE = 12;
 /** Between a name and the next one, and to the edge of the picture [px]. */
 const APART = 6;
-/** A slanted name has at most so many. */
+/** Maximum number of characters of a slanted name. */
 const MAX_CHARACTERS = 36;
-/** Slanted names rise to their place by so much. */
+/** Angle at which slanted names rise to their place [deg]. */
 const SLANT_DEG = 40;
 /** Room on both sides of the places, in steps between them. */
 export const PADDING = 0.7;
 
 /** @typedef {{ x: number, y: number, width: number, height: number }} Box */
 
-/** A name with at most so many characters; a longer one keeps its ends. */
+/** Shortens a name to the maximum number of characters: a longer name keeps its ends. */
 function shortened(/** @type {string} */ name) {
   return name.length <= MAX_CHARACTERS ? name : `${name.slice(0, MAX_CHARACTERS / 2)}…${name.slice(1 - MAX_CHARACTERS / 2)}`;
 }
@@ -22,7 +22,7 @@ function shortened(/** @type {string} */ name) {
 /** The width of a text [px]. */
 export const textWidth = (/** @type {string} */ text) => CHARACTER * text.length;
 
-/** Where the places of so many names stand along an axis, and how far apart [px]. */
+/** The places of a number of names along an axis, and their distance [px]. */
 export function places(/** @type {number} */ count, /** @type {number} */ left, /** @type {number} */ right) {
   const step = (right - left) / (count - 1 + 2 * PADDING);
   return { step, at: Array.from({ length: count }, (_, k) => left + step * (PADDING + k)) };

@@ -10,7 +10,7 @@ import { Table } from "./table.js";
 
 /** @typedef {import("../import_map.js").Choice} Choice */
 
-/** A change is asked about after so long without another [ms]. */
+/** Time without a further change after which a change is asked about [ms]. */
 const PAUSE_MS = 250;
 /** What the rows have where a column is absent. @type {Record<string, string>} */
 const ABSENT = { run: "(numbered)", slip_angle_deg: "(0: straight ahead)", use: "(all rows are fitted)" };
@@ -133,7 +133,7 @@ function cells(/** @type {any} */ field, /** @type {Choice} */ choice, /** @type
 
 const keep = (/** @type {string} */ name, /** @type {string} */ text) => save(name, new Blob([text], { type: "text/plain" }));
 
-/** Bytes in base64; a call takes so many arguments only. */
+/** Bytes in base64, in parts, because the number of arguments of a call is limited. */
 function base64(/** @type {Uint8Array} */ bytes) {
   const PART = 0x8000;
   let text = "";

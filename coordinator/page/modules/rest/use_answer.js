@@ -4,7 +4,7 @@ import { useCallback, useEffect, useRef, useState } from "../html.js";
 import { get } from "./answers.js";
 import { token } from "./token.js";
 
-/** A look fails while the coordinator restarts: the next one is so much later [ms]. */
+/** Pause before the next request after a failed one, as while the coordinator restarts [ms]. */
 const RETRY_MS = 1000;
 
 /** Whether the same question may be answered later: the coordinator, or a proxy before it, is away or busy. */

@@ -13,11 +13,11 @@ import { useAnswer } from "../rest/use_answer.js";
 import { CHANNELS, digits, minus, short } from "../words/quantity.js";
 import { residualSds } from "../words/residual.js";
 
-/** Residuals beyond so many sds have one colour. */
+/** Number of sds beyond which residuals have one colour. */
 const MOST_SDS = 4;
 /** Names of runs stand under cells of this width [px] at least. */
 const LEAST_CELL = 14;
-/** A character of a name below the axis, along its slant, takes so much height [px]. */
+/** Height of one character of a slanted name below the axis [px]. */
 const CHARACTER = 5.2;
 
 /** @param {{ study: any, model: any, query: Record<string, string> }} properties */

@@ -67,7 +67,7 @@ function isRepeated(/** @type {Level[]} */ all) {
 /** Neighbouring levels. */
 const neighbours = (/** @type {Level[]} */ all) => all.slice(1).map((above, k) => ({ below: all[k], above }));
 
-/** Whether every level begins beyond so many times the end of the one below it. */
+/** Whether every level begins beyond a multiple of the end of the level below it. */
 const isBeyond = (/** @type {Level[]} */ all, /** @type {number} */ ratio) => neighbours(all).every(({ below, above }) => above.low > ratio * below.high);
 
 /** The least gap between neighbouring levels over their extent, or over what a reading may differ; 0 of one level. */

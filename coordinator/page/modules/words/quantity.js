@@ -47,7 +47,7 @@ export function titled(/** @type {string} */ name, /** @type {string} */ unit) {
   return unit === "1" || unit === "" ? name : `${name} [${unit}]`;
 }
 
-/** A number to so many significant digits, without an exponent where it needs none. */
+/** A number to a count of significant digits, without an exponent where it needs none. */
 export function digits(/** @type {number | null | undefined} */ value, count = 3) {
   if (value === null || value === undefined || !Number.isFinite(value)) return "–";
   if (value === 0) return "0";
