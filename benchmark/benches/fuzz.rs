@@ -65,7 +65,7 @@ fn failed(message: &str) -> ExitCode {
     ExitCode::FAILURE
 }
 
-/// The largest memory of this program so far; 0 if the system does not provide it.
+/// Returns the largest memory of this program so far; 0 if the system does not provide it.
 fn peak_mib() -> u64 {
     memory_kb("self", "VmHWM").unwrap_or(0) / 1024
 }

@@ -112,7 +112,7 @@ impl Place {
         self.0.as_deref().unwrap_or("a file")
     }
 
-    /// An empty store.
+    /// Returns an empty store.
     async fn store(&self, folder: &Path) -> Result<String, StudyError> {
         let Some(server) = &self.0 else {
             return Ok(format!("sqlite://{}", folder.join("bench.db").display()));

@@ -11,14 +11,14 @@ pub const RUNS: &str =
 /// The number of particles. The first round alone lasts longer than a measurement, so that no step of the sampler is measured.
 const PARTICLES: usize = 50_000;
 
-/// The text of the job.
+/// Returns the text of the job.
 pub fn job() -> String {
     format!(
         "accept = [\"data_few\"]\n[model]\nkind = \"quasi_static\"\n[priors]\nlog10_p_ref = {{ uniform = [4.0, 5.6] }}\nkappa = 0.0\nn = {{ uniform = [0.8, 1.4] }}\nfriction_angle_deg = {{ uniform = [11.5, 37.3] }}\n[sampler]\nparticles = {PARTICLES}\n"
     )
 }
 
-/// A request of a worker for a number of leases, which it waits for.
+/// Returns a request of a worker for a number of leases, which it waits for.
 pub fn request(
     worker: String,
     results: Vec<WorkResult>,
@@ -58,7 +58,7 @@ pub fn results(leases: Vec<Lease>, outcome: &Outcome) -> Vec<WorkResult> {
     leases.into_iter().map(result).collect()
 }
 
-/// A quantile of sorted values.
+/// Returns a quantile of sorted values.
 pub fn quantile<T: Copy>(sorted: &[T], p: f64) -> T {
     sorted[((sorted.len() - 1) as f64 * p) as usize]
 }

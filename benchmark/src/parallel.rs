@@ -4,12 +4,12 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use super::error::StudyError;
 
-/// The number of threads of the machine.
+/// Returns the number of threads of the machine.
 pub fn threads() -> usize {
     std::thread::available_parallelism().map_or(1, usize::from)
 }
 
-/// The results of pieces of work, in their order, which does not depend on the threads; the first error ends all.
+/// Returns the results of pieces of work, in their order, which does not depend on the threads; the first error ends all.
 pub fn each<T, E>(count: u64, work: impl Fn(u64) -> Result<T, E> + Sync) -> Result<Vec<T>, StudyError>
 where
     T: Send,
@@ -19,7 +19,7 @@ where
     results.map(|result| result.map_err(Into::into)).collect()
 }
 
-/// The results of pieces of work on a number of threads, in their order, which does not depend on the threads.
+/// Returns the results of pieces of work on a number of threads, in their order, which does not depend on the threads.
 pub fn each_on<T: Send>(
     threads: usize,
     count: u64,

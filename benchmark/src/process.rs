@@ -13,7 +13,7 @@ pub fn cpu_s(process: &str) -> Result<f64, StudyError> {
     Ok(ticks?.iter().sum::<f64>() / 100.0)
 }
 
-/// A size in `/proc/PROCESS/status`, as `VmRSS` for the resident memory and `VmHWM` for its maximum \[kB\].
+/// Returns a size in `/proc/PROCESS/status`, as `VmRSS` for the resident memory and `VmHWM` for its maximum \[kB\].
 pub fn memory_kb(process: &str, key: &str) -> Result<u64, StudyError> {
     let status = std::fs::read_to_string(format!("/proc/{process}/status"))?;
     let value = status

@@ -79,7 +79,7 @@ impl Study {
         )
     }
 
-    /// The specification of a calibration of measured rows.
+    /// Returns the specification of a calibration of measured rows.
     fn spec(&self, rows: &[[f64; 3]], seed: u64) -> Result<Spec, StudyError> {
         let mut runs = "run,wheel,soil,slip,wheel_load_n,sled_speed_m_s".to_owned();
         for channel in MEASURED {
@@ -168,13 +168,13 @@ impl Study {
     }
 }
 
-/// The number of the [`RANKED`] evenly spaced draws that lie below a value.
+/// Returns the number of the [`RANKED`] evenly spaced draws that lie below a value.
 fn rank(draws: &[f64], value: f64) -> usize {
     let spaced = (0..RANKED).map(|k| draws[(2 * k + 1) * draws.len() / (2 * RANKED)]);
     spaced.filter(|draw| *draw < value).count()
 }
 
-/// Whether a value lies between the 5 % and the 95 % quantile of the draws.
+/// Returns whether a value lies between the 5 % and the 95 % quantile of the draws.
 fn covered(draws: &[f64], value: f64) -> bool {
     let at = |p: f64| quantile(draws, p);
     at(0.05).is_some_and(|low| low <= value) && at(0.95).is_some_and(|high| value <= high)

@@ -52,7 +52,7 @@ fn command(folder: &Path, experiment: &str) -> std::process::Command {
     command
 }
 
-/// The cells of each row below a header that must be this.
+/// Returns the cells of each row below a header that must be this.
 fn cells(csv: &str, header: &str) -> Vec<Vec<String>> {
     let mut lines = csv.lines();
     assert_eq!(lines.next(), Some(header));
@@ -139,7 +139,7 @@ fn effects_that_plates_and_rings_do_not_feel_are_named() {
     ended.success();
 }
 
-/// The most probable friction angle of the paper's rings and its standard deviation, the rings alone and a flat prior.
+/// Returns the most probable friction angle of the paper's rings and its standard deviation, the rings alone and a flat prior.
 fn angle_of_the_papers_rings() -> (f64, f64) {
     let paper = farm_tests::workspace::root().join("examples/paper");
     let experiment: toml::Table = text(&paper.join("bevameter-experiment.toml"))

@@ -18,12 +18,12 @@ use farm_tests::workspace::text;
 /// The number of kills.
 const KILLS: u64 = 24;
 
-/// A job with many stages, so that the kills fall into different ones, and of a few seconds.
+/// Returns a job with many stages, so that the kills fall into different ones, and of a few seconds.
 fn job() -> Job {
     Job::small().sampler(1000, [4, 10], 3)
 }
 
-/// The results of one worker with one thread: the posterior, evaluations by the end of sampling, stages.
+/// Returns the results of one worker with one thread: the posterior, evaluations by the end of sampling, stages.
 fn reference() -> &'static (String, u64, usize) {
     static REFERENCE: OnceLock<(String, u64, usize)> = OnceLock::new();
     REFERENCE.get_or_init(|| {
@@ -170,7 +170,7 @@ impl Run {
         Process::start(quiet(&self.arguments()), &self.folder.path().join("run.log"))
     }
 
-    /// The number of stages in the log of the run.
+    /// Returns the number of stages in the log of the run.
     fn stages_begun(process: &Process) -> usize {
         process
             .log()

@@ -11,7 +11,7 @@ use serde_json::Value;
 const RIVAL: &str = "slip_softened_pressure (P 0.42) in place of slip_sinkage cannot be excluded";
 const RUN: &str = "slip 0.80 under 280 N at 5.80 mm/s";
 
-/// A text without its line breaks.
+/// Returns a text without its line breaks.
 fn joined(text: &str) -> String {
     text.split_whitespace().collect::<Vec<_>>().join(" ")
 }

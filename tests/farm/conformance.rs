@@ -29,7 +29,7 @@ where
     message
 }
 
-/// The keys of a message with the kinds of their values, which are the same at every time.
+/// Returns the keys of a message with the kinds of their values, which are the same at every time.
 fn shape(value: &Value) -> Value {
     match value {
         Value::Object(table) => table.iter().map(|(k, v)| (k.clone(), shape(v))).collect(),

@@ -21,7 +21,7 @@ fn flags(job: Job) -> (Vec<(String, String, String)>, String) {
     (flags.collect(), text)
 }
 
-/// The job with 8 N more drawbar pull in run r07.
+/// Returns the job with 8 N more drawbar pull in run r07.
 fn with_outlier(job: Job) -> Job {
     job.in_runs(
         "r07,w,s,0.2,60.0,0.024,0,1,22.870089",

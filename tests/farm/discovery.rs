@@ -40,7 +40,7 @@ fn created(service: &Service, path: &str, body: &Value) -> i64 {
     response.json()["id"].as_i64().expect("an id")
 }
 
-/// The effects of each line of the ledger.
+/// Returns the effects of each line of the ledger.
 fn ledger(summary: &Value) -> Vec<String> {
     let calibrations = items(&summary["calibrations"]);
     calibrations.map(|c| c["effects"].to_string()).collect()
@@ -284,12 +284,12 @@ fn a_folder_grows_and_its_run_knows_it_again() {
     assert_contains!(report, "\"/v1/calibrations/3/comparison\"", "\"ledger\":[");
 }
 
-/// A study that finds an effect and extends its model automatically.
+/// Returns a study that finds an effect and extends its model automatically.
 fn hidden() -> Job {
     Job::hidden_shear().sampler(120, [2, 6], 1)
 }
 
-/// The calibrations of the service that are in progress: id, name, evaluations.
+/// Returns the calibrations of the service that are in progress: id, name, evaluations.
 fn in_progress(service: &Service) -> Option<Vec<(i64, String, u64)>> {
     let response = service.client.try_get("/v1/calibrations").ok()?;
     let list = (response.status == 200).then(|| response.json())?;
@@ -301,7 +301,7 @@ fn in_progress(service: &Service) -> Option<Vec<(i64, String, u64)>> {
     Some(open.collect())
 }
 
-/// The summary once the study takes no further step.
+/// Returns the summary once the study takes no further step.
 fn over(service: &Service) -> Value {
     until("the end of the study", || {
         let response = service.client.try_get("/v1/calibrations/1/summary").ok()?;

@@ -35,7 +35,7 @@ fn truth() -> String {
     text(&data("nothing-hidden/parameters.toml"))
 }
 
-/// The column of a table.
+/// Returns the column of a table.
 fn column(csv: &str, name: &str) -> Vec<f64> {
     let mut lines = csv.lines().filter(|line| !line.starts_with('#'));
     let header = lines.next().expect("a header");
@@ -44,7 +44,7 @@ fn column(csv: &str, name: &str) -> Vec<f64> {
     lines.map(|line| cell(line).expect("a number")).collect()
 }
 
-/// The small job with a tare by name, one with a prior, and the user's gain.
+/// Returns the small job with a tare by name, one with a prior, and the user's gain.
 fn job() -> Job {
     Job::small()
         .in_job(

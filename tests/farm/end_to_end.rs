@@ -11,7 +11,7 @@ use farm_tests::text::same;
 use farm_tests::wait::{until, until_true};
 use serde_json::{Value, json};
 
-/// A verb of the command line against a service.
+/// Returns a verb of the command line against a service.
 #[track_caller]
 fn verb(service: &Service, words: &[&str]) -> String {
     run(coordinator(words.iter().chain(&["--url", &service.url()]))).success()

@@ -55,7 +55,7 @@ impl Printed {
     }
 }
 
-/// The numbers of a text, those within names left out.
+/// Returns the numbers of a text, those within names left out.
 fn numbers(text: &str) -> Vec<Printed> {
     let mut found = Vec::new();
     let (mut rest, mut before) = (text, ' ');
@@ -74,7 +74,7 @@ fn numbers(text: &str) -> Vec<Printed> {
     found
 }
 
-/// A token as a number.
+/// Returns a token as a number.
 ///
 /// # Arguments
 /// - `ahead`: the text before it, without the last blanks. `before`: the character before it.
@@ -95,7 +95,7 @@ fn number(token: &str, ahead: &str, before: char) -> Option<Printed> {
     })
 }
 
-/// The value at a place of a summary.
+/// Returns the value at a place of a summary.
 fn value(summary: &Value, place: &str) -> Option<f64> {
     let (pointer, factor) = match place.split_once(" * ") {
         Some((pointer, factor)) => (pointer, factor.parse().ok()?),
@@ -116,7 +116,7 @@ fn value(summary: &Value, place: &str) -> Option<f64> {
     }
 }
 
-/// The differences between a README and a summary.
+/// Returns the differences between a README and a summary.
 fn contradictions(example: &Example, readme: &str, summary: &Value) -> Vec<String> {
     let readme = readme.split_whitespace().collect::<Vec<_>>().join(" ");
     let mut found = Vec::new();

@@ -24,7 +24,7 @@ fn simulate(out: &Path, more: &[&str]) -> Ended {
     programs::run(command)
 }
 
-/// The three channels of each run, in the order of the file.
+/// Returns the three channels of each run, in the order of the file.
 fn channels(csv: &str) -> Vec<(String, [f64; 3])> {
     let mut lines = csv.lines().filter(|line| !line.starts_with('#'));
     let header: Vec<&str> = lines.next().unwrap_or_default().split(',').collect();

@@ -18,7 +18,7 @@ const GROUSERS: StraightGrousers = StraightGrousers {
 
 const SMOOTH: StraightGrousers = StraightGrousers { count: 0, ..GROUSERS };
 
-/// The small job with a wheel of the bare radius that has these grousers, and a value of the key.
+/// Returns the small job with a wheel of the bare radius that has these grousers, and a value of the key.
 fn job(key: &str) -> Job {
     Job::small()
         .in_experiment(
@@ -33,7 +33,7 @@ fn job(key: &str) -> Job {
         .sampler(30, [1, 2], 1)
 }
 
-/// The rows of a CSV text by their columns' names.
+/// Returns the rows of a CSV text by their columns' names.
 fn rows(csv: &str) -> Vec<impl Fn(&str) -> Option<f64> + use<>> {
     let mut lines = csv.lines().filter(|line| !line.starts_with('#'));
     let header: Vec<String> = lines
@@ -56,7 +56,7 @@ fn rows(csv: &str) -> Vec<impl Fn(&str) -> Option<f64> + use<>> {
     lines.map(row).collect()
 }
 
-/// The log-likelihood of a draw, computed with the crate of the physics.
+/// Returns the log-likelihood of a draw, computed with the crate of the physics.
 fn log_likelihood(draw: &impl Fn(&str) -> Option<f64>, grousers: &StraightGrousers) -> f64 {
     let value = |name: &str| draw(name).expect("a number");
     let (k_c, k_phi) = bekker_moduli(value("log10_p_ref"), 0.0, value("n"));

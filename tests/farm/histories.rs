@@ -14,7 +14,7 @@ use shared::file::FileSet;
 
 use super::spatial::column;
 
-/// The small job with grousers, whose first run has a column for a history; the channels' fields of that run.
+/// Returns the small job with grousers, whose first run has a column for a history; the channels' fields of that run.
 fn job(channels: &str, history: &str) -> Job {
     let small = Job::small()
         .in_experiment(
@@ -32,7 +32,7 @@ fn job(channels: &str, history: &str) -> Job {
     Job { runs, ..small }
 }
 
-/// A minute at 10 Hz of a wheel that digs in and then oscillates with the passing grousers.
+/// Returns a minute at 10 Hz of a wheel that digs in and then oscillates with the passing grousers.
 fn recording() -> String {
     let mut text = "t_s,drawbar_pull_n,torque_n_m,sinkage_m\n".to_owned();
     for k in 1..=600 {
@@ -49,7 +49,7 @@ fn recording() -> String {
     text
 }
 
-/// The `posterior.csv` that `run` leaves.
+/// Returns the `posterior.csv` that `run` leaves.
 fn posterior(job: &Job) -> String {
     let folder = tempfile::tempdir().expect("a folder");
     let path = job.write(&folder.path().join("job")).display().to_string();

@@ -102,7 +102,7 @@ fn killing_the_coordinator_amid_a_fit_with_scatter_changes_no_byte() {
     assert_eq!(service.metric("grouser_determinism_faults_total"), 0);
 }
 
-/// Readings of Bekker's law at `k_c` = 2e4, `k_phi` = 1e7, n = 1, each test off by its own few per cent.
+/// Returns readings of Bekker's law at `k_c` = 2e4, `k_phi` = 1e7, n = 1, each test off by its own few per cent.
 fn plates() -> String {
     let mut csv = "test,plate_radius_m,sinkage_m,pressure_pa\n".to_owned();
     for (test, (radius, shift)) in [
@@ -126,7 +126,7 @@ fn plates() -> String {
     csv
 }
 
-/// Readings of rings at c = 500 Pa, Phi = 30 deg, K = 12 mm.
+/// Returns readings of rings at c = 500 Pa, Phi = 30 deg, K = 12 mm.
 fn shear() -> String {
     let mut csv = "test,normal_stress_pa,shear_displacement_m,shear_stress_pa\n".to_owned();
     for (test, (sigma, shift)) in [(5e3, 1.01), (2e4, 0.99), (4e4, 1.0)].into_iter().enumerate() {

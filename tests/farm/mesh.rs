@@ -15,12 +15,12 @@ const WHEEL: Cylinder = Cylinder {
     grouser_thickness_m: 0.002,
 };
 
-/// The small job with a mesh beside its wheel.
+/// Returns the small job with a mesh beside its wheel.
 fn with(file: &str, content: impl Into<Vec<u8>>) -> Job {
     Job::with_mesh(file).beside(file, content)
 }
 
-/// The mesh of a job that is written to disk and read back; its text, too.
+/// Returns the mesh of a job that is written to disk and read back; its text, too.
 fn read(file: &str, job: &Job) -> (WheelMesh, String) {
     let folder = tempfile::tempdir().expect("a folder");
     job.write(folder.path());

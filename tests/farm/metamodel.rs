@@ -16,7 +16,7 @@ fn job() -> Job {
         .in_job("moves = [2, 4]", moves)
 }
 
-/// The posterior, and what the summary says of metamodel and evaluations.
+/// Returns the posterior, and what the summary says of metamodel and evaluations.
 fn finished(service: &Service, id: i64) -> (String, [Value; 2]) {
     service.wait_for(id, "finished");
     let summary = service.result(id, "summary");

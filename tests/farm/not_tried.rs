@@ -55,7 +55,7 @@ fn write_bulldozed(folder: &Path) {
     std::fs::rename(file("measured.csv"), file("runs.csv")).expect("the runs");
 }
 
-/// The search of the job with an experiment.
+/// Returns the search of the job with an experiment.
 fn discovery(folder: &Path, experiment: &str, out: &str) -> Value {
     std::fs::write(folder.join("experiment.toml"), experiment).expect("a file");
     let out = folder.join(out);

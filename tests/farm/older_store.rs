@@ -9,7 +9,7 @@ use serde_json::Value;
 use sqlx::Connection as _;
 use tempfile::TempDir;
 
-/// The job of one of these versions in a folder, and in `out` beside it one of the stores that were kept of it.
+/// Returns the job of one of these versions in a folder, and in `out` beside it one of the stores that were kept of it.
 fn folder(version: &str, store: &str) -> (TempDir, PathBuf, PathBuf) {
     let temporary = tempfile::tempdir().expect("a folder");
     let (job, out) = (temporary.path().join("job"), temporary.path().join("out"));

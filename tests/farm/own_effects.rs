@@ -9,7 +9,7 @@ use farm_tests::service::Service;
 use farm_tests::wait::until_true;
 use serde_json::{Value, json};
 
-/// The effect with another fixed shift `[N]`.
+/// Returns the effect with another fixed shift `[N]`.
 fn gain(shift_n: &str) -> String {
     GAIN.replace("prior = 0.25", &format!("prior = {shift_n}"))
 }
@@ -30,7 +30,7 @@ fn says(response: &Response, status: u16, kind: &str, message: &str) {
     assert_eq!(error["message"], message);
 }
 
-/// The small job with these effects.
+/// Returns the small job with these effects.
 fn job(effects: &str) -> Job {
     let with = format!("shear_velocity_m_s = 0.001\neffects = {effects}");
     Job::small().in_job("shear_velocity_m_s = 0.001", &with)

@@ -5,7 +5,7 @@ use farm_tests::programs::{call, coordinator, run};
 use farm_tests::service::Service;
 use serde_json::{Map, Value};
 
-/// The paths that a text of the page names.
+/// Returns the paths that a text of the page names.
 fn named(text: &str) -> impl Iterator<Item = &str> {
     text.split('"').filter(|part| part.starts_with("/page/"))
 }
@@ -58,7 +58,7 @@ fn the_page_needs_no_token_and_nothing_from_elsewhere() {
     }
 }
 
-/// The answers that a report carries.
+/// Returns the answers that a report carries.
 fn answers(report: &str) -> Map<String, Value> {
     let (_, rest) = report.split_once("id=\"answers\">").expect("answers");
     let (answers, _) = rest.split_once("</script>").expect("their end");

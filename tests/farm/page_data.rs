@@ -8,7 +8,7 @@ use farm_tests::text::same;
 use farm_tests::wait::until;
 use serde_json::{Value, json};
 
-/// A posted document, which must be accepted.
+/// Returns a posted document, which must be accepted.
 #[track_caller]
 fn created(service: &Service, path: &str, body: &Value) -> Value {
     let response = service.client.post(path, body);

@@ -12,7 +12,7 @@ use serde_json::Value;
 
 use super::bad_input::{refusal, refused};
 
-/// The small job as a fit without draws.
+/// Returns the small job as a fit without draws.
 pub(super) fn fit() -> Job {
     Job::small().in_job(
         "algorithm = \"tmcmc\"\nparticles = 60\nmoves = [2, 4]",
@@ -28,7 +28,7 @@ const TRUTH: [(&str, f64); 4] = [
     ("wheel_radius_m", 0.1285),
 ];
 
-/// Everything that a finished fit says but its wall time.
+/// Returns everything that a finished fit says but its wall time.
 fn result(service: &Service, id: i64) -> String {
     let mut summary = service.result(id, "summary");
     summary["point_estimates"][0]["wall_s"] = Value::Null;

@@ -42,7 +42,7 @@ fn calibrated(job: &Job, folder: &Path) -> (Value, String) {
     (summary, text(&out.join("posterior.csv")))
 }
 
-/// The job of the next campaign: the posterior of the last is its prior.
+/// Returns the job of the next campaign: the posterior of the last is its prior.
 fn next(runs: String, posterior: &str) -> Job {
     let job = Job { runs, ..Job::small() };
     job.in_job(SAMPLER, FIT)

@@ -10,7 +10,7 @@ fn drifting() -> Job {
     Job::data("drift-in-slip-order")
 }
 
-/// The job without some of the last columns of its runs.
+/// Returns the job without some of the last columns of its runs.
 fn without(job: Job, columns: &[&str]) -> Job {
     let header: Vec<&str> = job.runs.lines().next().expect("a header").split(',').collect();
     let kept = |line: &str| {
@@ -24,19 +24,19 @@ fn without(job: Job, columns: &[&str]) -> Job {
     }
 }
 
-/// The text that `check` prints of a job.
+/// Returns the text that `check` prints of a job.
 fn checked(job: &Job) -> String {
     let folder = tempfile::tempdir().expect("a folder");
     let path = job.write(folder.path()).display().to_string();
     run(coordinator(["check", &path])).success()
 }
 
-/// The summary of a finished study.
+/// Returns the summary of a finished study.
 fn summary(job: &Job) -> Value {
     study(job).1
 }
 
-/// The explanations with their probabilities.
+/// Returns the explanations with their probabilities.
 fn effects(summary: &Value) -> Vec<(&str, f64)> {
     let effects = items(&summary["discovery"]["effects"]);
     effects

@@ -16,17 +16,17 @@ const SMALL: &str = "algorithm = \"tmcmc\"\nparticles = 60\nmoves = [2, 4]";
 const GA: &str = "algorithm = \"ga\"\npopulation = 40\ngenerations = 200";
 const CMA_ES: &str = "algorithm = \"cma-es\"\nmax_evaluations = 1200";
 
-/// The small job with another algorithm.
+/// Returns the small job with another algorithm.
 pub(super) fn job(sampler: &str) -> Job {
     Job::small().in_job(SMALL, sampler)
 }
 
-/// A job for `ga` and one for `cma-es`.
+/// Returns a job for `ga` and one for `cma-es`.
 pub(super) fn searches() -> [Job; 2] {
     [GA, CMA_ES].map(job)
 }
 
-/// The summary of a finished calibration without its wall time.
+/// Returns the summary of a finished calibration without its wall time.
 fn summary(service: &Service, id: i64) -> Value {
     let mut summary = service.result(id, "summary");
     summary["point_estimates"][0]["wall_s"] = Value::Null;

@@ -25,7 +25,7 @@ fn simulate(folder: &Path, model: &Path) -> Ended {
     programs::run(command)
 }
 
-/// The numbers of a column of a CSV file.
+/// Returns the numbers of a column of a CSV file.
 pub(crate) fn column(csv: &str, name: &str) -> Vec<f64> {
     let mut lines = csv.lines();
     let header = lines.next().expect("a header");

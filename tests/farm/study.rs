@@ -12,7 +12,7 @@ use serde_json::{Value, json};
 
 const SAMPLER: &str = "algorithm = \"tmcmc\"\nparticles = 60\nmoves = [2, 4]";
 
-/// The small job with two point estimates beside it.
+/// Returns the small job with two point estimates beside it.
 fn job() -> Job {
     Job::small().in_job(
         SAMPLER,
@@ -20,7 +20,7 @@ fn job() -> Job {
     )
 }
 
-/// A summary without its wall times and the numbers of the store.
+/// Returns a summary without its wall times and the numbers of the store.
 fn timeless(mut summary: Value) -> Value {
     for part in ["calibrations", "point_estimates"] {
         for calibration in summary[part].as_array_mut().expect("a list") {

@@ -58,7 +58,7 @@ fn complaints(summary: &Value) -> Vec<String> {
     complaints
 }
 
-/// The summary of a finished run.
+/// Returns the summary of a finished run.
 fn summary(job: &Job) -> Value {
     study(job).1
 }

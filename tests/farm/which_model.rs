@@ -55,7 +55,7 @@ fn the_model_that_made_the_data_is_named_with_its_probability() {
     }
 }
 
-/// A smaller job, which is computed twice.
+/// Returns a smaller job, which is computed twice.
 fn small() -> Job {
     example().in_job("particles = 500", "particles = 150\nmoves = [2, 4]")
 }

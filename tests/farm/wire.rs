@@ -44,7 +44,7 @@ fn result(lease: &Lease, observables: Observables) -> WorkResult {
     }
 }
 
-/// The answer of a worker about the fitted channels, and nothing else.
+/// Returns the answer of a worker about the fitted channels, and nothing else.
 fn fitted() -> Observables {
     Observables {
         drawbar_pull_n: vec![0.1 + 0.2; FIT_RUNS],

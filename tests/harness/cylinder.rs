@@ -24,7 +24,7 @@ pub struct Cylinder {
 }
 
 impl Cylinder {
-    /// A smooth cylinder.
+    /// Returns a smooth cylinder.
     pub fn smooth(facets: u32, radius_m: f64, width_m: f64) -> Cylinder {
         Cylinder {
             facets,
@@ -36,7 +36,7 @@ impl Cylinder {
         }
     }
 
-    /// The outline around the axle, as x and z, in order of the angle.
+    /// Returns the outline around the axle, as x and z, in order of the angle.
     fn outline(&self) -> Vec<[f64; 2]> {
         let half = (0.5 * self.grouser_thickness_m / self.radius_m).asin();
         let grousers: Vec<f64> = (0..self.grousers)
@@ -65,7 +65,7 @@ impl Cylinder {
         points.into_iter().map(|(_, point)| point).collect()
     }
 
-    /// The triangles: rim, then both sides as fans about the axle.
+    /// Returns the triangles: rim, then both sides as fans about the axle.
     pub fn triangles(&self) -> Vec<Triangle> {
         let outline = self.outline();
         let y = 0.5 * self.width_m;
@@ -80,7 +80,7 @@ impl Cylinder {
         triangles
     }
 
-    /// The surface as ASCII STL, every coordinate times `scale`.
+    /// Returns the surface as ASCII STL, every coordinate times `scale`.
     pub fn ascii_stl(&self, scale: f64) -> String {
         let mut text = String::from("solid wheel of a test\n");
         for triangle in self.triangles() {
@@ -93,7 +93,7 @@ impl Cylinder {
         text + "endsolid wheel of a test\n"
     }
 
-    /// The surface as binary STL.
+    /// Returns the surface as binary STL.
     pub fn binary_stl(&self) -> Vec<u8> {
         let triangles = self.triangles();
         let mut bytes = b"solid is how this header begins, too".to_vec();
@@ -107,7 +107,7 @@ impl Cylinder {
         bytes
     }
 
-    /// The surface as OBJ, no vertex shared.
+    /// Returns the surface as OBJ, no vertex shared.
     pub fn obj(&self) -> String {
         let mut text = String::from("o wheel\n");
         for (i, triangle) in self.triangles().into_iter().enumerate() {

@@ -32,13 +32,13 @@ impl Database {
         done.unwrap_or_else(|e| panic!("{sql}: {e}"));
     }
 
-    /// The number that a query returns.
+    /// Returns the number that a query returns.
     #[track_caller]
     pub fn number(&mut self, sql: &str) -> i64 {
         self.scalar(sql)
     }
 
-    /// The text that a query returns.
+    /// Returns the text that a query returns.
     #[track_caller]
     pub fn text(&mut self, sql: &str) -> String {
         self.scalar(sql)

@@ -19,7 +19,7 @@ pub struct FakeWorker {
 }
 
 impl FakeWorker {
-    /// A worker of the model version `fake-1` that has sent no message yet.
+    /// Returns a worker of the model version `fake-1` that has sent no message yet.
     pub fn new(client: &Client, name: &str) -> Self {
         FakeWorker {
             client: client.clone(),
@@ -29,7 +29,7 @@ impl FakeWorker {
         }
     }
 
-    /// The worker with another version of the equations than `fake-1`.
+    /// Returns the worker with another version of the equations than `fake-1`.
     pub fn computing(self, model_version: &str) -> Self {
         FakeWorker {
             model_version: model_version.into(),
@@ -37,7 +37,7 @@ impl FakeWorker {
         }
     }
 
-    /// An empty exchange.
+    /// Returns an empty exchange.
     pub fn request(&self) -> Value {
         json!({
             "worker": self.name, "protocol": PROTOCOL, "model_version": self.model_version, "threads": 1,
@@ -64,7 +64,7 @@ impl FakeWorker {
         answer
     }
 
-    /// Takes up to so many leases.
+    /// Takes up to this many leases.
     #[track_caller]
     pub fn take(&self, want: u32) -> Vec<Value> {
         let mut request = self.request();
@@ -90,7 +90,7 @@ impl FakeWorker {
     }
 }
 
-/// A result that answers a lease.
+/// Returns a result that answers a lease.
 pub fn result(lease: &Value, outcome: Value) -> Value {
     json!({
         "lease": lease["lease"], "calibration": lease["calibration"], "evaluation": lease["evaluation"],
@@ -110,7 +110,7 @@ pub fn evaluated(lease: &Value, runs: usize) -> Value {
     }})
 }
 
-/// The model's rejection of a parameter vector.
+/// Returns the model's rejection of a parameter vector.
 pub fn rejected() -> Value {
     json!({"rejected": {"kind": "no_support", "condition": 3, "message": "sinkage 0.2 m exceeds the radius 0.1 m"}})
 }

@@ -20,13 +20,13 @@ pub struct Response {
 }
 
 impl Response {
-    /// The value of a head line.
+    /// Returns the value of a head line.
     pub fn header(&self, name: &str) -> Option<&str> {
         let line = self.head.iter().find(|(n, _)| n == name);
         line.map(|(_, value)| value.as_str())
     }
 
-    /// The body as JSON.
+    /// Returns the body as JSON.
     #[track_caller]
     pub fn json(&self) -> Value {
         serde_json::from_str(&self.body).unwrap_or_else(|e| panic!("{e} in {}", self.body))
@@ -38,18 +38,18 @@ impl Response {
 pub struct Client(pub String);
 
 impl Client {
-    /// `GET path` with any status; an error means that there was no connection, or that it broke.
+    /// Returns the answer to `GET path` with any status; an error means that there was no connection, or that it broke.
     pub fn try_get(&self, path: &str) -> std::io::Result<Response> {
         self.send("GET", path, None)
     }
 
-    /// `GET path`, with any status.
+    /// Returns the answer to `GET path`, with any status.
     #[track_caller]
     pub fn get(&self, path: &str) -> Response {
         self.try_get(path).unwrap_or_else(|e| panic!("GET {path}: {e}"))
     }
 
-    /// The JSON of `GET path` that must succeed.
+    /// Returns the JSON of `GET path` that must succeed.
     #[track_caller]
     pub fn json(&self, path: &str) -> Value {
         let response = self.get(path);

@@ -23,7 +23,7 @@ pub struct Job {
 pub const FIT_RUNS: usize = 24;
 
 impl Job {
-    /// The experiment `nothing-hidden`: four free parameters, 24 fitted runs and 16 held-out ones.
+    /// Returns the experiment `nothing-hidden`: four free parameters, 24 fitted runs and 16 held-out ones.
     pub fn small() -> Job {
         let folder = data("nothing-hidden");
         Job {
@@ -34,12 +34,12 @@ impl Job {
         }
     }
 
-    /// The job of a folder of `examples`.
+    /// Returns the job of a folder of `examples`.
     pub fn example(name: &str) -> Job {
         Job::read(&root().join("examples").join(name))
     }
 
-    /// The job of a folder of `tests/data`.
+    /// Returns the job of a folder of `tests/data`.
     pub fn data(name: &str) -> Job {
         Job::read(&data(name))
     }
@@ -54,7 +54,7 @@ impl Job {
         }
     }
 
-    /// Two runs and a coarse terrain: a calibration of the three-dimensional model in seconds.
+    /// Returns two runs and a coarse terrain: a calibration of the three-dimensional model in seconds.
     pub fn rolling() -> Job {
         let small = Job::small();
         let lines = small.runs.lines().filter(|line| !line.starts_with('#')).take(3);
@@ -121,7 +121,8 @@ impl Job {
         self
     }
 
-    /// The small job with a surface mesh in place of the rim of its wheel. [`Job::beside`] adds the file of the mesh.
+    /// Returns the small job with a surface mesh in place of the rim of its wheel. [`Job::beside`] adds the file of the
+    /// mesh.
     pub fn with_mesh(file: &str) -> Job {
         let small = Job::small();
         let lines = small.experiment.lines();
@@ -131,7 +132,7 @@ impl Job {
             .in_experiment("width_m = 0.112", &format!("width_m = 0.112\nmesh = \"{file}\""))
     }
 
-    /// The name and text of each attached file that `job.toml` names.
+    /// Returns the name and text of each attached file that `job.toml` names.
     pub fn effect_files(&self) -> Value {
         let named = self.attached.iter();
         let named = named.filter(|(name, _)| self.job.contains(name.as_str()));
@@ -155,7 +156,7 @@ impl Job {
         folder.join("job.toml")
     }
 
-    /// The body of `POST /v1/experiments`.
+    /// Returns the body of `POST /v1/experiments`.
     pub fn experiment_json(&self) -> Value {
         let mut files = json!({"runs.csv": self.runs});
         for (name, content) in &self.attached {

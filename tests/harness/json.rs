@@ -4,12 +4,12 @@ use std::slice::Iter;
 
 use serde_json::Value;
 
-/// The items of a list; none where the value is not a list.
+/// Returns the items of a list; none where the value is not a list.
 pub fn items(value: &Value) -> Iter<'_, Value> {
     value.as_array().map(|list| list.iter()).unwrap_or_default()
 }
 
-/// The number of items of a list.
+/// Returns the number of items of a list.
 #[track_caller]
 pub fn item_count(value: &Value) -> usize {
     value
@@ -18,13 +18,13 @@ pub fn item_count(value: &Value) -> usize {
         .len()
 }
 
-/// A number.
+/// Returns a number.
 #[track_caller]
 pub fn float(value: &Value) -> f64 {
     value.as_f64().unwrap_or_else(|| panic!("no number: {value}"))
 }
 
-/// A whole number from 0.
+/// Returns a whole number from 0.
 #[track_caller]
 pub fn whole(value: &Value) -> u64 {
     value
@@ -32,7 +32,7 @@ pub fn whole(value: &Value) -> u64 {
         .unwrap_or_else(|| panic!("no whole number: {value}"))
 }
 
-/// A text; empty where the value is not a text.
+/// Returns a text; empty where the value is not a text.
 pub fn word(value: &Value) -> &str {
     value.as_str().unwrap_or_default()
 }

@@ -40,12 +40,12 @@ impl LyingProxy {
         LyingProxy { address, lies: count }
     }
 
-    /// URL for workers.
+    /// Returns the URL for workers.
     pub fn url(&self) -> String {
         format!("http://{}", self.address)
     }
 
-    /// The number of falsified results.
+    /// Returns the number of falsified results.
     pub fn lies(&self) -> usize {
         self.lies.load(Ordering::Relaxed)
     }

@@ -51,7 +51,7 @@ impl Process {
         Process::start(command, log)
     }
 
-    /// The number of the process.
+    /// Returns the number of the process.
     pub fn id(&self) -> u32 {
         self.child.id()
     }
@@ -72,12 +72,12 @@ impl Process {
         assert!(sent.expect("there is a shell").success(), "{line}");
     }
 
-    /// The resident memory of the process `[kB]`; `None` after its end.
+    /// Returns the resident memory of the process `[kB]`; `None` after its end.
     pub fn resident_kb(&self) -> Option<u64> {
         self.memory_kb("VmRSS:")
     }
 
-    /// The largest resident memory so far `[kB]`; `None` after the end of the process.
+    /// Returns the largest resident memory so far `[kB]`; `None` after the end of the process.
     pub fn peak_kb(&self) -> Option<u64> {
         self.memory_kb("VmHWM:")
     }
@@ -89,7 +89,7 @@ impl Process {
         value.trim_end_matches("kB").trim().parse().ok()
     }
 
-    /// Whether the process has not ended.
+    /// Returns whether the process has not ended.
     pub fn is_running(&mut self) -> bool {
         self.child.try_wait().expect("a child can be asked").is_none()
     }
@@ -109,7 +109,7 @@ impl Process {
         })
     }
 
-    /// The log, which also has the standard error of earlier processes with the same file.
+    /// Returns the log, which also has the standard error of earlier processes with the same file.
     pub fn log(&self) -> String {
         String::from_utf8_lossy(&std::fs::read(&self.log).expect("the log can be read")).into_owned()
     }

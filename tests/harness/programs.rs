@@ -23,14 +23,14 @@ pub struct Ended {
 }
 
 impl Ended {
-    /// The output of a program that must have succeeded.
+    /// Returns the output of a program that must have succeeded.
     #[track_caller]
     pub fn success(self) -> String {
         assert_eq!(self.code, Some(0), "{}\n{}", self.stderr, self.stdout);
         self.stdout
     }
 
-    /// The message of a program that must have refused: the line behind `error: `, with what follows.
+    /// Returns the message of a program that must have refused: the line behind `error: `, with what follows.
     #[track_caller]
     pub fn refusal(self) -> String {
         let Ended { code, stdout, stderr } = self;
@@ -49,12 +49,12 @@ impl Ended {
     }
 }
 
-/// A command of the program `coordinator`.
+/// Returns a command of the program `coordinator`.
 pub fn coordinator<S: AsRef<OsStr>>(arguments: impl IntoIterator<Item = S>) -> Command {
     command("coordinator".as_ref(), arguments)
 }
 
-/// A command of the program `worker`.
+/// Returns a command of the program `worker`.
 pub fn worker<S: AsRef<OsStr>>(arguments: impl IntoIterator<Item = S>) -> Command {
     command("worker".as_ref(), arguments)
 }
@@ -64,7 +64,7 @@ pub fn call(template: &str, arguments: &[&dyn AsRef<OsStr>]) -> Ended {
     run(line(template, arguments))
 }
 
-/// A command of `coordinator` or `worker` from a template of words, as `coordinator list --url {}`: each `{}` stands for the next
+/// Returns a command of `coordinator` or `worker` from a template of words, as `coordinator list --url {}`: each `{}` stands for the next
 /// argument, which may contain blanks.
 #[track_caller]
 pub fn line(template: &str, arguments: &[&dyn AsRef<OsStr>]) -> Command {
@@ -123,7 +123,7 @@ pub fn with_descriptors(count: u32, command: &Command) -> Command {
     limited
 }
 
-/// The folder of the two programs, built on the first call with the profile of the running test.
+/// Returns the folder of the two programs, built on the first call with the profile of the running test.
 fn built() -> &'static Path {
     static BUILT: OnceLock<Option<PathBuf>> = OnceLock::new();
     let built = BUILT.get_or_init(|| {
@@ -183,12 +183,12 @@ impl Study {
         }
     }
 
-    /// A file or folder below the output folder.
+    /// Returns a file or folder below the output folder.
     pub fn out(&self, name: &str) -> PathBuf {
         self.folder.path().join("out").join(name)
     }
 
-    /// `posterior.csv`.
+    /// Returns the text of `posterior.csv`.
     #[track_caller]
     pub fn posterior(&self) -> String {
         text(&self.out("posterior.csv"))

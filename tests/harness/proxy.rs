@@ -78,7 +78,7 @@ impl Proxy {
         (proxy, url)
     }
 
-    /// The network, to be disturbed.
+    /// Returns the network, to be disturbed.
     pub fn network(&self) -> MutexGuard<'_, Network> {
         self.network.lock().expect("no thread of the proxy panics")
     }

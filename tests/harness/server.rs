@@ -26,7 +26,7 @@ impl ServerDatabase {
         Some(database)
     }
 
-    /// The URL for `--store`.
+    /// Returns the URL for `--store`.
     pub fn url(&self) -> String {
         format!("{}/{}", self.server, self.name)
     }

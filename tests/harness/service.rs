@@ -35,7 +35,7 @@ impl Service {
         Service::start_at(free_address(), more)
     }
 
-    /// Starts a service on an empty store that may have so many files and connections open.
+    /// Starts a service on an empty store that may have at most this many files and connections open.
     pub fn start_with_descriptors(max_descriptors: u32) -> Service {
         let mut service = Service::start(&[]);
         service.kill();
@@ -131,7 +131,7 @@ impl Service {
         self.process.as_ref().expect("the service is running")
     }
 
-    /// URL for workers and verbs.
+    /// Returns the URL for workers and verbs.
     pub fn url(&self) -> String {
         format!("http://{}", self.client.0)
     }
@@ -141,12 +141,12 @@ impl Service {
         self.process().resident_kb().expect("the service is running")
     }
 
-    /// The largest memory that it ever held `[kB]`.
+    /// Returns the largest memory that it ever held `[kB]`.
     pub fn peak_kb(&self) -> u64 {
         self.process().peak_kb().expect("the service is running")
     }
 
-    /// The bytes of answers that the operating system holds because their clients have not read them, and the number of open
+    /// Returns the bytes of answers that the operating system holds because their clients have not read them, and the number of open
     /// connections, from proc(5).
     pub fn unread(&self) -> (u64, usize) {
         let port = self.client.0.rsplit(':').next();
@@ -170,14 +170,14 @@ impl Service {
         (bytes, open)
     }
 
-    /// The file of its store.
+    /// Returns the file of its store.
     #[track_caller]
     pub fn store(&self) -> PathBuf {
         let file = self.store_name.strip_prefix("sqlite://");
         file.expect("this test is of stores in files").into()
     }
 
-    /// The value of `--store` for its store.
+    /// Returns the value of `--store` for its store.
     pub fn store_name(&self) -> &str {
         &self.store_name
     }
@@ -188,7 +188,7 @@ impl Service {
         Database::open(&self.store_name)
     }
 
-    /// The database of its store.
+    /// Returns the database of its store.
     #[track_caller]
     pub fn server_database(&self) -> &ServerDatabase {
         let database = self.database.as_ref();
@@ -204,7 +204,7 @@ impl Service {
         Process::start(programs::coordinator(&arguments), &log)
     }
 
-    /// A folder for the files of a test.
+    /// Returns a folder for the files of a test.
     pub fn folder(&self) -> &Path {
         self.folder.path()
     }
@@ -279,26 +279,26 @@ impl Service {
             .post(&format!("/v1/calibrations/{calibration}/{verb}"), &json!({}))
     }
 
-    /// The answer to `GET` of a part of a calibration, such as `report`.
+    /// Returns the answer to `GET` of a part of a calibration, such as `report`.
     #[track_caller]
     pub fn part(&self, calibration: i64, part: &str) -> Response {
         self.client.get(&format!("/v1/calibrations/{calibration}/{part}"))
     }
 
-    /// The JSON of a result of a calibration, such as `summary`, which must be there.
+    /// Returns the JSON of a result of a calibration, such as `summary`, which must be there.
     #[track_caller]
     pub fn result(&self, calibration: i64, part: &str) -> Value {
         self.client
             .json(&format!("/v1/calibrations/{calibration}/{part}"))
     }
 
-    /// The status of a calibration.
+    /// Returns the status of a calibration.
     #[track_caller]
     pub fn status(&self, id: i64) -> Value {
         self.client.json(&format!("/v1/calibrations/{id}"))
     }
 
-    /// The number of evaluations so far; `None` while the service does not answer or the calibration is not in progress.
+    /// Returns the number of evaluations so far; `None` while the service does not answer or the calibration is not in progress.
     pub fn evaluations(&self, id: i64) -> Option<u64> {
         let response = self.client.try_get(&format!("/v1/calibrations/{id}")).ok()?;
         (response.status == 200).then(|| response.json()["progress"]["evaluations"].as_u64())?
@@ -317,13 +317,13 @@ impl Service {
         })
     }
 
-    /// The posterior of a finished calibration, as `export --format csv` writes it.
+    /// Returns the posterior of a finished calibration, as `export --format csv` writes it.
     #[track_caller]
     pub fn posterior_csv(&self, id: i64) -> String {
         programs::call("coordinator export {} --url {}", &[&id.to_string(), &self.url()]).success()
     }
 
-    /// A figure of the metrics page.
+    /// Returns a figure of the metrics page.
     #[track_caller]
     pub fn metric(&self, name: &str) -> u64 {
         let page = self.client.get("/metrics").body;
@@ -333,7 +333,7 @@ impl Service {
         value.unwrap_or_else(|| panic!("no {name} in\n{page}"))
     }
 
-    /// The record of the only worker; `None` before its first exchange.
+    /// Returns the record of the only worker; `None` before its first exchange.
     #[track_caller]
     pub fn only_worker(&self) -> Option<Value> {
         let workers = self.client.json("/v1/workers");
@@ -342,7 +342,7 @@ impl Service {
         records.values().next().cloned()
     }
 
-    /// The version of the equations that the program `worker` states to this service.
+    /// Returns the version of the equations that the program `worker` states to this service.
     #[track_caller]
     pub fn model_version(&self) -> String {
         let worker = self.worker("version", 1);
@@ -351,14 +351,14 @@ impl Service {
         record["model_version"].as_str().unwrap_or_default().to_owned()
     }
 
-    /// The standard error of the service since its first start.
+    /// Returns the standard error of the service since its first start.
     pub fn log(&self) -> String {
         let log = std::fs::read(self.folder.path().join("coordinator.log")).expect("the log can be read");
         String::from_utf8_lossy(&log).into_owned()
     }
 }
 
-/// The number under `id` in an answer.
+/// Returns the number under `id` in an answer.
 #[track_caller]
 pub fn id(answer: &Value) -> i64 {
     answer["id"]
@@ -366,8 +366,8 @@ pub fn id(answer: &Value) -> i64 {
         .unwrap_or_else(|| panic!("no id in {answer}"))
 }
 
-/// An address on which nothing listens, outside the range that the system gives to outgoing connections: it stays
-/// free while its service is down.
+/// Returns an address on which nothing listens, outside the range that the system gives to outgoing connections: it stays free while its
+/// service is down.
 pub fn free_address() -> String {
     static NEXT: AtomicU16 = AtomicU16::new(0);
     let start = (std::process::id() % 10_000) as u16;

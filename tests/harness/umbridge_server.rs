@@ -20,7 +20,7 @@ pub enum Reply {
 }
 
 impl Reply {
-    /// Three channels in one vector.
+    /// Returns three channels in one vector.
     pub fn channels(channels: [f64; 3]) -> Reply {
         Reply::Output(json!([channels]).to_string())
     }
@@ -70,7 +70,7 @@ impl UmbridgeServer {
         }
     }
 
-    /// The number of evaluations so far.
+    /// Returns the number of evaluations so far.
     pub fn evaluations(&self) -> u64 {
         self.state.evaluations.load(Ordering::SeqCst)
     }

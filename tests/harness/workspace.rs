@@ -2,25 +2,25 @@
 
 use std::path::{Path, PathBuf};
 
-/// The root of the workspace.
+/// Returns the root of the workspace.
 pub fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
         .parent()
         .expect("the crate of the tests lies in the workspace")
 }
 
-/// A file of the tests' data.
+/// Returns a file of the tests' data.
 pub fn data(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("data").join(name)
 }
 
-/// The text of a file.
+/// Returns the text of a file.
 #[track_caller]
 pub fn text(path: &Path) -> String {
     std::fs::read_to_string(path).unwrap_or_else(|e| panic!("{}: {e}", path.display()))
 }
 
-/// Every file below a folder of the workspace whose name ends with a suffix, sorted, without build outputs.
+/// Returns every file below a folder of the workspace whose name ends with a suffix, sorted, without build outputs.
 pub fn files(folder: &str, suffix: &str) -> Vec<PathBuf> {
     let mut found = Vec::new();
     let mut folders = vec![root().join(folder)];

@@ -8,7 +8,7 @@ use farm_tests::server::ServerDatabase;
 use farm_tests::service::Service;
 use farm_tests::workspace::{data, text};
 
-/// The rows of every table of a store in a file, with the bits of its numbers.
+/// Returns the rows of every table of a store in a file, with the bits of its numbers.
 fn rows(store: &str) -> Vec<(String, String)> {
     let mut database = Database::open(store);
     let tables = database.text(
@@ -28,7 +28,7 @@ fn rows(store: &str) -> Vec<(String, String)> {
     tables.split(' ').map(&mut rows).collect()
 }
 
-/// A finished study and one in progress, with a token, in a store of this run's kind.
+/// Returns a finished study and one in progress, with a token, in a store of this run's kind.
 fn filled() -> Service {
     let mut service = Service::start(&["--local-workers", "2"]);
     service.calibrate(&Job::small());

@@ -10,7 +10,7 @@ use farm_tests::wait::{until, until_true};
 /// The longest time until a calibration goes on after the end of its coordinator.
 const TAKE_OVER: Duration = Duration::from_secs(10);
 
-/// The posterior of the job without disturbance.
+/// Returns the posterior of the job without disturbance.
 fn undisturbed() -> String {
     let service = Service::start(&["--local-workers", "2"]);
     let id = service.calibrate(&Job::small());

@@ -60,7 +60,8 @@ impl Corpus {
     }
 }
 
-/// An effect of the catalogue as an effect of a user: with another name, and without the mechanism, which is reserved for the library.
+/// Returns an effect of the catalogue as an effect of a user: with another name, and without the mechanism, which is reserved for the
+/// library.
 fn as_user_effect(text: &str) -> String {
     let lines = text.replacen("name = \"", "name = \"my_", 1);
     let lines = lines.split_inclusive('\n');
@@ -91,7 +92,7 @@ fn campaign(path: &Path) -> Result<Campaign, FileError> {
     })
 }
 
-/// A message with every field, and one without results.
+/// Returns a message with every field, and one without results.
 fn messages() -> Vec<ExchangeRequest> {
     let mut observables = Observables::with_capacity(2);
     for channel in [

@@ -14,7 +14,7 @@ const REPEATS: usize = 300;
 /// The largest length of a damaged text `[bytes]`. A longer text would be refused for its length alone, and is slow to make.
 const MAX_LENGTH: usize = 200_000;
 
-/// A text with one to four damages.
+/// Returns a text with one to four damages.
 pub fn damaged(text: &str, dice: &mut Stream) -> String {
     let mut text = text.to_owned();
     for _ in 0..=dice.below(6).saturating_sub(2) {
@@ -73,7 +73,7 @@ fn once(text: &str, dice: &mut Stream) -> String {
     }
 }
 
-/// A text with a line removed, repeated or moved.
+/// Returns a text with a line removed, repeated or moved.
 fn lines(text: &str, dice: &mut Stream) -> String {
     let mut lines: Vec<&str> = text.split_inclusive('\n').collect();
     if lines.is_empty() {
@@ -88,7 +88,7 @@ fn lines(text: &str, dice: &mut Stream) -> String {
     lines.concat()
 }
 
-/// A text with a number replaced by another number.
+/// Returns a text with a number replaced by another number.
 fn number(text: &str, dice: &mut Stream) -> String {
     let is_inside = |c: char| c.is_ascii_digit() || matches!(c, '.' | '-' | '+' | 'e');
     let tokens = tokens(text, is_inside, |token| {
@@ -97,7 +97,7 @@ fn number(text: &str, dice: &mut Stream) -> String {
     replaced(text, &tokens, choice(NUMBERS, dice), dice)
 }
 
-/// A text with a word replaced by another word of it.
+/// Returns a text with a word replaced by another word of it.
 fn word(text: &str, dice: &mut Stream) -> String {
     let tokens = tokens(text, |c| c.is_alphanumeric() || c == '_', |_| true);
     let Some(&(from, to)) = tokens.get(dice.below(tokens.len())) else {
@@ -106,7 +106,7 @@ fn word(text: &str, dice: &mut Stream) -> String {
     replaced(text, &tokens, &text[from..to], dice)
 }
 
-/// A text with inserted nested brackets.
+/// Returns a text with inserted nested brackets.
 fn nested(text: &str, dice: &mut Stream) -> String {
     let (place, _) = boundaries(text, dice);
     let brackets = [
@@ -136,7 +136,7 @@ fn replaced(text: &str, tokens: &[(usize, usize)], by: &str, dice: &mut Stream) 
     }
 }
 
-/// The ends of the longest parts of a text whose characters are all `is_inside` and that are `is_wanted`.
+/// Returns the ends of the longest parts of a text whose characters are all `is_inside` and that are `is_wanted`.
 fn tokens(
     text: &str,
     is_inside: impl Fn(char) -> bool,
@@ -159,7 +159,7 @@ fn tokens(
     tokens
 }
 
-/// The ends of a random part of a text, which is usually short.
+/// Returns the ends of a random part of a text, which is usually short.
 fn boundaries(text: &str, dice: &mut Stream) -> (usize, usize) {
     let (from, to) = part(text.len(), dice);
     (text.floor_char_boundary(from), text.floor_char_boundary(to))

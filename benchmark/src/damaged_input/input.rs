@@ -84,7 +84,7 @@ impl Input {
         }
     }
 
-    /// The name of the reader.
+    /// Returns the name of the reader.
     pub fn reader(&self) -> &'static str {
         match self {
             Input::Campaign(..) => "job and experiment",
@@ -97,7 +97,7 @@ impl Input {
         }
     }
 
-    /// The files, one of which a refusal must name.
+    /// Returns the files, one of which a refusal must name.
     pub fn files(&self) -> Vec<String> {
         let all = |first: &[&str], named: &[&BTreeMap<String, String>]| {
             let named = named.iter().flat_map(|files| files.keys().cloned());

@@ -49,7 +49,7 @@ impl Tally {
         tally
     }
 
-    /// The longest time that an input took.
+    /// Returns the longest time that an input took.
     pub fn slowest(&self) -> Duration {
         let times = self.readers.values().map(|reader| reader.slowest);
         times.max().unwrap_or_default()

@@ -152,7 +152,7 @@ fn searched(
     Ok((record, answer))
 }
 
-/// The job of a plan with the parameters of a soil and the radius of the experiment's wheel.
+/// Returns the job of a plan with the parameters of a soil and the radius of the experiment's wheel.
 fn job(plan: Plan, soil: Soil) -> FileSet {
     let mut job = plan.job();
     let lines = job
@@ -166,7 +166,7 @@ fn job(plan: Plan, soil: Soil) -> FileSet {
     job
 }
 
-/// The job with a posterior as its prior.
+/// Returns the job with a posterior as its prior.
 fn after(job: &FileSet, posterior: &PosteriorSample) -> Result<FileSet, StudyError> {
     let (model, _) = job.toml.split_once("[priors]").ok_or("the job has no priors")?;
     Ok(FileSet {
@@ -221,7 +221,7 @@ impl Rig {
     }
 }
 
-/// A posterior beside the truth, and the nats by which the job falls short after each change.
+/// Returns a posterior beside the truth, and the nats by which the job falls short after each change.
 fn calibrated(posterior: &PosteriorSample, rig: &Rig) -> String {
     let parameters = posterior.moments().zip(&rig.truth);
     let parameters =
@@ -236,7 +236,7 @@ fn calibrated(posterior: &PosteriorSample, rig: &Rig) -> String {
     )
 }
 
-/// The verdict on a search, given the changes between the campaigns.
+/// Returns the verdict on a search, given the changes between the campaigns.
 fn answer(record: &Discovery, changed: &[&str]) -> Answer {
     let claims: Vec<Option<bool>> = match changed {
         [] => vec![is_right(record, None)],
@@ -257,7 +257,7 @@ fn answer(record: &Discovery, changed: &[&str]) -> Answer {
     }
 }
 
-/// The best explanations, those of the changes, and the misfit.
+/// Returns the best explanations, those of the changes, and the misfit.
 fn summary(record: &Discovery, changed: &[&str]) -> String {
     let effects = record.effects.iter();
     let is_changed = |effect: &&JudgedEffect| changed.contains(&effect.name.as_str());

@@ -81,7 +81,7 @@ pub fn one(seed: u64, number: u64) -> Result<Compared, StudyError> {
     })
 }
 
-/// A campaign, with an earlier campaign on the same soil.
+/// Returns a campaign, with an earlier campaign on the same soil.
 fn campaigns(seed: u64, number: u64) -> Result<(SyntheticCase, FileSet), StudyError> {
     let kind = if number % UNCHANGED == UNCHANGED - 1 {
         HiddenKind::None
@@ -99,7 +99,7 @@ fn campaigns(seed: u64, number: u64) -> Result<(SyntheticCase, FileSet), StudyEr
 }
 
 impl Compared {
-    /// Whether the claim of the search with the reference is right; `None` without a claim.
+    /// Returns whether the claim of the search with the reference is right; `None` without a claim.
     pub fn is_right(&self) -> Option<bool> {
         is_right(&self.with, self.truth.as_deref())
     }

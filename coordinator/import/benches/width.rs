@@ -7,7 +7,7 @@ use std::time::Instant;
 
 use import::{SourceFile, guess};
 
-/// A table with this many columns, each with a different title, and two rows.
+/// Returns a table with this many columns, each with a different title, and two rows.
 fn wide(columns: usize) -> String {
     let line = |cell: &dyn Fn(usize) -> String| (0..columns).map(cell).collect::<Vec<_>>().join(";") + "\n";
     line(&|k| format!("force {k} [N]")) + &line(&|k| k.to_string()) + &line(&|k| format!("{k},5"))

@@ -6,7 +6,7 @@ use import::{SourceFile, guess};
 
 use super::complaints;
 
-/// A table with this many columns, each with a different title and a unit.
+/// Returns a table with this many columns, each with a different title and a unit.
 fn wide(columns: usize) -> String {
     let line = |cell: &dyn Fn(usize) -> String| (0..columns).map(cell).collect::<Vec<_>>().join(";") + "\n";
     line(&|k| format!("force {k} [N]")) + &line(&|k| k.to_string()) + &line(&|k| format!("{k},5"))
@@ -20,7 +20,7 @@ fn source(text: &str) -> SourceFile<'_> {
     }
 }
 
-/// The shortest of several times.
+/// Returns the shortest of several times.
 fn cost(text: &str) -> Duration {
     let time = || {
         let begin = Instant::now();

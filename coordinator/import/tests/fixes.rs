@@ -16,7 +16,7 @@ drawbar_pull_n = { column = "Zugkraft [N]" }
 "#;
 const TITLES: &str = "Versuch;Schlupf [%];Last [N];v [mm/s];Zugkraft [N];Bemerkung\n";
 
-/// The only complaint about a table.
+/// Returns the only complaint about a table.
 #[track_caller]
 fn only(rows: &str, map: &str) -> Complaint {
     let result = converted("Sand.csv", format!("{TITLES}{rows}").as_bytes(), map);

@@ -21,7 +21,7 @@ fn converted(name: &str, bytes: &[u8], map: &str) -> Converted {
     convert(&source, ("map.toml", map), "runs")
 }
 
-/// The complaints about a file, as they are printed.
+/// Returns the complaints about a file, as they are printed.
 fn complaints(name: &str, bytes: &[u8], map: &str) -> Vec<String> {
     let result = converted(name, bytes, map);
     assert!(
@@ -31,7 +31,7 @@ fn complaints(name: &str, bytes: &[u8], map: &str) -> Vec<String> {
     result.complaints.iter().map(ToString::to_string).collect()
 }
 
-/// The text of runs.csv.
+/// Returns the text of runs.csv.
 #[track_caller]
 fn runs(name: &str, bytes: &[u8], map: &str) -> String {
     let result = converted(name, bytes, map);

@@ -64,7 +64,7 @@ sled_speed_m_s = { value = 8, unit = "mm/s" }
 drawbar_pull_n = { column = "pull", unit = "N" }
 "#;
 
-/// The only complaint about a small table.
+/// Returns the only complaint about a small table.
 #[track_caller]
 fn only(text: &str, map: &str) -> String {
     let messages = complaints("a.csv", text.as_bytes(), map);

@@ -13,7 +13,7 @@ const FILES: [&[u8]; 7] = [
     include_bytes!("files/vectors-v73.mat"),
 ];
 
-/// A file with some bytes exchanged, perhaps cut off.
+/// Returns a file with some bytes exchanged, perhaps cut off.
 fn damaged() -> impl Strategy<Value = Vec<u8>> {
     let change = (
         any::<prop::sample::Index>(),
@@ -38,7 +38,7 @@ fn damaged() -> impl Strategy<Value = Vec<u8>> {
         })
 }
 
-/// A table, or something like one.
+/// Returns a table, or something like one.
 fn text() -> impl Strategy<Value = Vec<u8>> {
     prop_oneof![
         "([a-z\\[\\]%0-9,.;\t\"#−+eE' -]{0,12}[;,\t|\n]){0,60}".prop_map(String::into_bytes),

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use super::{complaints, converted};
 
-/// Two runs of 4 s at 10 Hz with a pause between; the pull settles after 1 s.
+/// Returns two runs of 4 s at 10 Hz with a pause between; the pull settles after 1 s.
 fn recording() -> String {
     let mut text = "t [ms];marker;slip [%];load [N];v [mm/s];pull [N];rpm\n".to_owned();
     let mut t_ms = 5000;

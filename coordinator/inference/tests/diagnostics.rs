@@ -15,7 +15,7 @@ struct Linear {
 }
 
 impl Linear {
-    /// Data on a line and a parabola, `weight` times as steep as the noise is wide.
+    /// Returns data on a line and a parabola, `weight` times as steep as the noise is wide.
     fn new(data: usize, weight: f64, inferred: bool) -> Self {
         let x = |i: usize| 2.0 * i as f64 / (data - 1) as f64 - 1.0;
         Linear {
@@ -32,7 +32,7 @@ impl Linear {
             .unwrap()
     }
 
-    /// Data at one truth.
+    /// Returns data at one truth.
     fn data(&self, theta: &DVector<f64>, normals: &mut Stream) -> DVector<f64> {
         let clean = &self.design * theta;
         let count = clean.len();
@@ -85,7 +85,7 @@ fn stream(k: u64) -> Stream {
     Stream::new(7, 0, k, 0)
 }
 
-/// The conflict of a prior with draws.
+/// Returns the conflict of a prior with draws.
 fn conflict<T: AsRef<[f64]>>(prior: &Prior, draws: &[T]) -> diagnostics::Conflict {
     let draws: Vec<&[f64]> = draws.iter().map(AsRef::as_ref).collect();
     diagnostics::conflict(prior, &draws).unwrap()
@@ -342,7 +342,7 @@ fn a_uniform_prior_falls_into_equal_bins() {
     assert_eq!(counts, [200; BINS]);
 }
 
-/// Every combination of bins of three parameters, this many times.
+/// Returns every combination of bins of three parameters, this many times.
 fn grid(times: usize, failed: impl Fn(&[usize]) -> bool) -> Vec<(Vec<usize>, bool)> {
     let one = (0..BINS.pow(3)).map(|k| vec![k % BINS, k / BINS % BINS, k / BINS / BINS]);
     (0..times)

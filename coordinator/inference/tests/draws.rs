@@ -3,7 +3,7 @@
 use crate::problems::{self, Problem};
 use inference::{StageMethod, TmcmcSettings};
 
-/// Mean evaluations, root mean square error of the log-evidence and mean standard error over ten seeds.
+/// Returns the mean evaluations, root mean square error of the log-evidence and mean standard error over ten seeds.
 fn cost_and_errors(problem: &Problem) -> [f64; 3] {
     const SEEDS: u64 = 10;
     let mut sums = [0.0; 3];

@@ -34,7 +34,7 @@ fn near(computed: f64, expected: f64, tolerance: f64) {
     );
 }
 
-/// A straight line in three parameters at twelve places.
+/// Returns a straight line in three parameters at twelve places.
 fn design() -> DMatrix<f64> {
     DMatrix::from_fn(12, 3, |i, k| {
         let x = i as f64 / 6.0 - 1.0;
@@ -234,7 +234,7 @@ fn grid_noise(theta: &[f64], i: usize) -> f64 {
     (bits >> 11) as f64 / 4_503_599_627_370_496.0 - 1.0
 }
 
-/// Three forces of a wheel-like curve at eight slips, without noise.
+/// Returns three forces of a wheel-like curve at eight slips, without noise.
 fn wheel(theta: &[f64]) -> Vec<f64> {
     let (stiffness, exponent, friction) = (theta[0], theta[1], theta[2]);
     (0..24)

@@ -24,7 +24,7 @@ fn likelihood() -> Likelihood {
     data(&MEASURED, |_| ErrorSd::Known(NOISE))
 }
 
-/// A sampler at its end, the metamodel's moves, and how many of them were accepted.
+/// Returns a sampler at its end, the metamodel's moves, and how many of them were accepted.
 fn run(settings: TmcmcSettings, coarse: fn(&[f64]) -> Option<Vec<f64>>) -> (Sampler, [u64; 3]) {
     let likelihood = likelihood();
     let mut sampler = Sampler::with_metamodel(standard_normals(2), settings, likelihood.clone()).unwrap();
@@ -62,7 +62,7 @@ fn run(settings: TmcmcSettings, coarse: fn(&[f64]) -> Option<Vec<f64>>) -> (Samp
     (sampler, [moves, subchains, found_out])
 }
 
-/// Means of x, y, their squares, and ln Z, by sums over a grid.
+/// Returns the means of x, y, their squares, and ln Z, by sums over a grid.
 fn truth() -> ([f64; 4], f64) {
     let (likelihood, prior) = (likelihood(), standard_normals(2));
     let step = 0.02;
@@ -146,7 +146,7 @@ fn fewer_evaluations_are_needed_than_without() {
     assert!(2 * with < without, "{with} with, {without} without");
 }
 
-/// The fine model less a quadratic, which a regression can find.
+/// Returns the fine model less a quadratic, which a regression can find.
 fn quadratic_off(theta: &[f64]) -> Option<Vec<f64>> {
     let (x, y) = (theta[0], theta[1]);
     let off = [0.3 + 0.1 * x - 0.2 * x * y, -0.2 + 0.1 * y * y];

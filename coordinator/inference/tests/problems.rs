@@ -26,7 +26,7 @@ pub(crate) struct Problem {
 }
 
 impl Problem {
-    /// The prior.
+    /// Returns the prior.
     pub(crate) fn prior(&self) -> Prior {
         Prior::new(
             self.prior
@@ -36,7 +36,7 @@ impl Problem {
         )
     }
 
-    /// The log-likelihood of a parameter vector.
+    /// Returns the log-likelihood of a parameter vector.
     pub(crate) fn score(&self, theta: &[f64]) -> LogLikelihood {
         LogLikelihood::new((self.log_likelihood)(theta)).unwrap()
     }
@@ -83,7 +83,7 @@ fn log_normal_density(x: f64, mean: f64, sd: f64) -> f64 {
 const GAUSSIAN_MEAN: [f64; 5] = [1.0, -2.0, 0.5, 3.0, 0.0];
 const GAUSSIAN_SD: [f64; 5] = [0.05, 0.2, 0.5, 1.0, 0.1];
 
-/// The innovations of (a), each of unit variance.
+/// Returns the innovations of (a), each of unit variance.
 pub(crate) fn whitened(x: &[f64]) -> Vec<f64> {
     let z: Vec<f64> = (0..5)
         .map(|i| (x[i] - GAUSSIAN_MEAN[i]) / GAUSSIAN_SD[i])

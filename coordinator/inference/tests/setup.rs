@@ -26,7 +26,7 @@ pub(crate) fn standard_normals(count: usize) -> Prior {
     Prior::new(vec![normal(0.0, 1.0); count])
 }
 
-/// Two standard normal parameters with this correlation.
+/// Returns two standard normal parameters with this correlation.
 pub(crate) fn correlated_pair(rho: f64) -> Prior {
     standard_normals(2)
         .correlated(vec![0, 1], &[vec![1.0, rho], vec![rho, 1.0]])

@@ -30,7 +30,7 @@ fn conditions() -> Vec<[f64; 3]> {
     all
 }
 
-/// The regressors of a channel: constant, slip, load, speed, slip times speed, the last four about their means.
+/// Returns the regressors of a channel: constant, slip, load, speed, slip times speed, the last four about their means.
 fn regressor(channel: usize, which: usize) -> Vec<f64> {
     let values: Vec<f64> = conditions()
         .iter()
@@ -107,7 +107,7 @@ impl Rig {
         clean + SD * noise
     }
 
-    /// Random draws of the posterior; inferred noise sds vary about the truth by a tenth.
+    /// Returns random draws of the posterior; inferred noise sds vary about the truth by a tenth.
     fn posterior(&self, y: &DVector<f64>, draws: usize, stream: &mut Stream) -> Vec<PredictedDraw> {
         let covariance = self.covariance();
         let mean = &covariance * self.design.transpose() * y / (SD * SD);
@@ -126,7 +126,7 @@ impl Rig {
             .collect()
     }
 
-    /// Every channel against every regressor.
+    /// Returns every channel against every regressor.
     fn trends(&self, y: &DVector<f64>, stream: &mut Stream) -> Vec<Option<Trend>> {
         let likelihood = self.likelihood(y);
         let draws = self.posterior(y, 200, stream);

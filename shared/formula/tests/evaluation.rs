@@ -4,7 +4,7 @@ use formula::block::{BLOCK, Block};
 use formula::variable::Variables;
 use formula::{Effect, Hook, Variable};
 
-/// An effect whose pressure is a formula, with parameters a = 0.3 and b = −2.
+/// Returns an effect whose pressure is a formula, with parameters a = 0.3 and b = −2.
 fn effect(formula: &str) -> Effect {
     let text = format!(
         "name = \"toy\"\nsummary = \"a toy\"\nsource = \"none\"\npressure = \"{formula}\"\ntorque = \"torque * a * b\"\n\

@@ -175,7 +175,7 @@ fn swinging(mean: f64, amplitude: f64, period_s: f64, count: u32) -> Vec<f64> {
         .collect()
 }
 
-/// A history that starts at a time `[s]`.
+/// Returns a history that starts at a time `[s]`.
 fn from(start_s: f64, samples: &[f64]) -> SampledSignal<'_> {
     SampledSignal {
         start_s,

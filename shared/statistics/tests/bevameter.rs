@@ -6,8 +6,8 @@ use statistics::{CommonError, CommonErrorSize, Datum, Discrepancy, ErrorLaw, Err
 /// The logarithm of a stress as a function of the parameters.
 type Law = Box<dyn Fn(&[f64]) -> f64>;
 
-/// Standard deviations and the correlation of the first two parameters after tests, each a list of readings, from the Fisher
-/// information: errors of logarithms, 1 / J' S^-1 J.
+/// Returns the standard deviations and the correlation of the first two parameters after tests, each a list of readings, from
+/// the Fisher information: errors of logarithms, 1 / J' S^-1 J.
 fn posterior(tests: &[Vec<Law>], theta: &[f64], steps: &[f64], s_u: f64, s_e: f64) -> (Vec<f64>, f64) {
     let readings: Vec<&Law> = tests.iter().flatten().collect();
     let data = (0..readings.len())

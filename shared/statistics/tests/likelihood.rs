@@ -18,7 +18,7 @@ fn sensitivity(sd: ErrorSd, derivative: usize) -> CommonErrorSize {
 
 const DISCREPANCY: CommonErrorSize = CommonErrorSize::Discrepancy { group: 0 };
 
-/// A likelihood of normal errors, all of whose data are in one group.
+/// Returns a likelihood of normal errors, all of whose data are in one group.
 fn normal(data: &[Datum], common: &[CommonError], discrepancy: Discrepancy) -> Likelihood {
     let (data, common) = (data.to_vec(), common.to_vec());
     Likelihood::with_common(data, ErrorLaw::Gaussian, common, vec![discrepancy]).unwrap()
@@ -93,7 +93,7 @@ fn a_t_of_one_datum_has_its_hand_number() {
     assert!((value(7.0) - 2.0 * centre + 3.0 * 2.8_f64.ln()).abs() < 1e-12);
 }
 
-/// Three runs of two channels: runs 0 and 1 repeat a condition, run 2 has a different one.
+/// Returns three runs of two channels: runs 0 and 1 repeat a condition, run 2 has a different one.
 ///
 /// Data: channel 0 of every run, then channel 1 of every run. Each run has a sensitivity, each (condition, channel) a discrepancy.
 fn three_runs(scatter: ErrorSd) -> (Vec<Datum>, Vec<CommonError>) {
@@ -108,7 +108,7 @@ fn three_runs(scatter: ErrorSd) -> (Vec<Datum>, Vec<CommonError>) {
 const PREDICTED: [f64; 6] = [10.4, 10.4, 6.5, 1.1, 1.1, 0.9];
 const SENSITIVITIES: [f64; 6] = [-3.0, -3.5, -2.0, 0.4, 0.5, 0.3];
 
-/// The covariance, assembled term by term.
+/// Returns the covariance, assembled term by term.
 fn dense(data: &[Datum], tau: f64, m: f64) -> DMatrix<f64> {
     let sd = |i: usize| match data[i].sd {
         ErrorSd::Known(sd) => sd,
@@ -424,7 +424,7 @@ fn error_models_that_mean_nothing_are_refused() {
     assert_eq!(far, Ok(LogLikelihood::Impossible));
 }
 
-/// Five data: one alone, a shift over two, a derivative over two more, a discrepancy over the first of these pairs.
+/// Returns five data: one alone, a shift over two, a derivative over two more, a discrepancy over the first of these pairs.
 fn entangled(discrepancy: Discrepancy) -> Likelihood {
     let data = [0, 1, 2, 3, 4].map(|i| datum(i, i % 2, i as f64, ErrorSd::Known(0.5 + 0.1 * i as f64)));
     let common = [

@@ -9,7 +9,7 @@ use base64::prelude::BASE64_STANDARD;
 use farm_tests::service::Service;
 use serde_json::json;
 
-/// A request with two million cells, which has 5 MB and takes some hundred MB while it is read.
+/// Returns a request with two million cells, which has 5 MB and takes some hundred MB while it is read.
 fn post(service: &Service) -> Vec<u8> {
     let row = "1;".repeat(999) + "1\n";
     let table = "a;".repeat(999) + "a\n" + &row.repeat(2000);

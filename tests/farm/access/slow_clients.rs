@@ -13,7 +13,7 @@ use farm_tests::wait::until_true;
 /// The number of descriptors with which a service has room for 256 connections.
 const DESCRIPTORS: u32 = 320;
 
-/// A client that sends requests and reads no answer.
+/// Returns a client that sends requests and reads no answer.
 fn asker(service: &Service) -> TcpStream {
     let mut stream = TcpStream::connect(&service.client.0).expect("a connection");
     let requested = "GET /page/vendor/d3.js HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n".repeat(40);

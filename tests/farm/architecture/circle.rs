@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::import::Crate;
 use super::script::{self, Imports, Sources};
 
-/// The files that each file reaches by imports.
+/// Returns the files that each file reaches by imports.
 fn reached<'a>(imports: &BTreeMap<&'a str, BTreeSet<&'a str>>) -> BTreeMap<&'a str, BTreeSet<&'a str>> {
     let from = |start: &'a str| {
         let mut seen = BTreeSet::new();
@@ -20,7 +20,7 @@ fn reached<'a>(imports: &BTreeMap<&'a str, BTreeSet<&'a str>>) -> BTreeMap<&'a s
     imports.keys().map(|&start| from(start)).collect()
 }
 
-/// The groups of files in which each file reaches every other file, with the imports inside.
+/// Returns the groups of files in which each file reaches every other file, with the imports inside.
 fn circles(imports: &BTreeMap<&str, BTreeSet<&str>>) -> Vec<String> {
     let reached = reached(imports);
     let mut found = Vec::new();
@@ -44,7 +44,7 @@ fn circles(imports: &BTreeMap<&str, BTreeSet<&str>>) -> Vec<String> {
     found
 }
 
-/// The circles of imports among scripts.
+/// Returns the circles of imports among scripts.
 fn script_circles(imports: &Imports) -> Vec<String> {
     let borrowed = imports
         .iter()

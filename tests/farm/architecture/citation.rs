@@ -4,7 +4,7 @@ use farm_tests::workspace::{files, root, text};
 
 use super::{CRATES, relative};
 
-/// The documents that a line cites by name and section in brackets or parentheses, as in `(DESIGN 4.4)`.
+/// Returns the documents that a line cites by name and section in brackets or parentheses, as in `(DESIGN 4.4)`.
 fn cited(line: &str) -> Vec<&str> {
     let inside = line.split(['(', ')', '[', ']', '\\']);
     let citation = |part: &'_ str| {

@@ -56,7 +56,7 @@ impl Crate {
         Self(files(folder, ".rs").into_iter().map(module).collect())
     }
 
-    /// The files that each file imports.
+    /// Returns the files that each file imports.
     pub(super) fn imports(&self) -> BTreeMap<&str, BTreeSet<&str>> {
         let edges = self.0.iter().map(|(path, module)| {
             let imported = module.imported.values();
@@ -72,7 +72,8 @@ impl Crate {
         edges.collect()
     }
 
-    /// The module that defines the item of a path in another module; `None` for items of other crates and for modules.
+    /// Returns the module that defines the item of a path in another module; `None` for items of other crates and for
+    /// modules.
     fn definition(&self, at: &[String], path: &[String], depth: usize) -> Option<Vec<String>> {
         let (first, rest) = path.split_first()?;
         let depth = depth.checked_sub(1)?;
@@ -185,7 +186,7 @@ impl Module {
     }
 }
 
-/// The path from the crate's root that a path in the module `at` means; `None` for an empty path.
+/// Returns the path from the crate's root that a path in the module `at` means; `None` for an empty path.
 fn absolute(path: &[String], at: &[String]) -> Option<Vec<String>> {
     let mut absolute = at.to_vec();
     let mut words = path.iter().peekable();
@@ -202,7 +203,7 @@ fn absolute(path: &[String], at: &[String]) -> Option<Vec<String>> {
     Some(absolute)
 }
 
-/// The path of a module; a file with one of the names `roots` is the module of its folder.
+/// Returns the path of a module; a file with one of the names `roots` is the module of its folder.
 fn module_path(relative: &Path, roots: &[&str]) -> Vec<String> {
     let words = relative.with_extension("");
     let words = words.iter().map(|word| word.to_string_lossy().into_owned());

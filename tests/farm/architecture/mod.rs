@@ -76,7 +76,7 @@ const DIRECTION: [(&str, &str); 19] = [
     ),
 ];
 
-/// The dependencies of a crate that its products are built from.
+/// Returns the dependencies of a crate that its products are built from.
 fn dependencies(krate: &str) -> BTreeSet<String> {
     let manifest = text(&root().join(krate).join("Cargo.toml"));
     let manifest: toml::Table = manifest.parse().expect("a manifest");
@@ -85,7 +85,7 @@ fn dependencies(krate: &str) -> BTreeSet<String> {
     tables.flat_map(|table| table.keys().cloned()).collect()
 }
 
-/// The lines of a source file that are code, with their numbers, without comments, quoted text and the part below `#[cfg(test)]`.
+/// Returns the lines of a source file that are code, with their numbers, without comments, quoted text and the part below `#[cfg(test)]`.
 fn code(path: &Path) -> Vec<(usize, String)> {
     let source = text(path);
     let lines = source.lines().enumerate();
@@ -105,7 +105,7 @@ fn relative(path: &Path) -> String {
     path.display().to_string()
 }
 
-/// Whether `line` has `word` at the start of a path, so that `scm::` is not found in `my_scm::`.
+/// Returns whether `line` has `word` at the start of a path, so that `scm::` is not found in `my_scm::`.
 fn names(line: &str, word: &str) -> bool {
     line.match_indices(word).any(|(at, _)| {
         let before = line[..at].chars().next_back();
@@ -113,7 +113,7 @@ fn names(line: &str, word: &str) -> bool {
     })
 }
 
-/// Every line below `folders` with one of the words, except in the allowed files.
+/// Returns every line below `folders` with one of the words, except in the allowed files.
 fn strays(folders: &[&str], words: &[&str], allowed: &[&str]) -> Vec<String> {
     let mut found = Vec::new();
     let sources: Vec<PathBuf> = folders.iter().flat_map(|folder| files(folder, ".rs")).collect();

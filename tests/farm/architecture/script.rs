@@ -11,7 +11,7 @@ pub(super) type Sources = BTreeMap<String, String>;
 /// The files that each file imports.
 pub(super) type Imports = BTreeMap<String, BTreeSet<String>>;
 
-/// Every source of a folder of the workspace whose name ends with a suffix.
+/// Returns every source of a folder of the workspace whose name ends with a suffix.
 pub(super) fn sources(folder: &str, suffix: &str) -> Sources {
     let below = root().join(folder);
     let named = |path: PathBuf| {
@@ -21,7 +21,7 @@ pub(super) fn sources(folder: &str, suffix: &str) -> Sources {
     files(folder, suffix).into_iter().map(named).collect()
 }
 
-/// The static and dynamic imports of ES modules by relative paths, which must name files of the folder.
+/// Returns the static and dynamic imports of ES modules by relative paths, which must name files of the folder.
 #[track_caller]
 pub(super) fn module_imports(sources: &Sources) -> Imports {
     let edges = sources.iter().map(|(file, text)| {
@@ -45,7 +45,7 @@ pub(super) fn module_imports(sources: &Sources) -> Imports {
     edges.collect()
 }
 
-/// The path of a module that a file names relative to itself; `None` for a module outside the folder.
+/// Returns the path of a module that a file names relative to itself; `None` for a module outside the folder.
 fn below(file: &str, path: &str) -> Option<String> {
     if !path.starts_with('.') {
         return None;
@@ -64,7 +64,7 @@ fn below(file: &str, path: &str) -> Option<String> {
     Some(parts.join("/"))
 }
 
-/// The code of a module without its comments, which may name types of other modules that are not imported at run time.
+/// Returns the code of a module without its comments, which may name types of other modules that are not imported at run time.
 fn without_comments(text: &str) -> String {
     let mut code = String::new();
     let mut rest = text;
@@ -77,8 +77,8 @@ fn without_comments(text: &str) -> String {
     lines.collect::<Vec<_>>().join("\n")
 }
 
-/// The imports of a Python package by relative names, including those inside functions and those for types alone. `from . import A, B`
-/// imports the modules A and B, or the package itself where a name is not a module.
+/// Returns the imports of a Python package by relative names, including those inside functions and those for types alone. `from . import
+/// A, B` imports the modules A and B, or the package itself where a name is not a module.
 pub(super) fn package_imports(sources: &Sources) -> Imports {
     let module = |name: &str| {
         let file = format!("{}.py", name.replace('.', "/"));
@@ -109,7 +109,7 @@ pub(super) fn package_imports(sources: &Sources) -> Imports {
     edges.collect()
 }
 
-/// A text with each parenthesised import on one line.
+/// Returns a text with each parenthesised import on one line.
 fn on_one_line(text: &str) -> String {
     let mut joined = String::new();
     let mut is_open = false;

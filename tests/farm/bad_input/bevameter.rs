@@ -7,7 +7,7 @@ use farm_tests::workspace::data;
 
 use super::{PLATES, SHEAR};
 
-/// The refusal of `worker simulate` for a job, which leaves no table behind.
+/// Returns the refusal of `worker simulate` for a job, which leaves no table behind.
 #[track_caller]
 fn simulate(job: Job, theta: &str, tables: &[&str]) -> String {
     let folder = tempfile::tempdir().expect("a folder");

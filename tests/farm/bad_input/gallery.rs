@@ -8,7 +8,7 @@ use farm_tests::job::{GAIN, Job};
 
 use super::{PLATES, SHEAR, refusal_in};
 
-/// The mistakes of a list: changes and message of each.
+/// Returns the mistakes of a list: changes and message of each.
 fn mistakes(list: &str) -> Vec<(Vec<&str>, &str)> {
     let (mut mistakes, mut changes) = (Vec::new(), Vec::new());
     for line in list
@@ -24,7 +24,7 @@ fn mistakes(list: &str) -> Vec<(Vec<&str>, &str)> {
     mistakes
 }
 
-/// The good job, with the effect file and the readings of a bevameter that are changed.
+/// Returns the good job, with the effect file and the readings of a bevameter that are changed.
 fn good(changes: &[&str]) -> Job {
     let is_changed = |file: &str| changes.iter().any(|change| change.starts_with(file));
     let (kind, runs) = ("kind = \"quasi_static\"", "runs = \"runs.csv\"");
@@ -42,7 +42,7 @@ fn good(changes: &[&str]) -> Job {
     job
 }
 
-/// The content of a file after a change.
+/// Returns the content of a file after a change.
 fn changed(text: &str, change: &str) -> Vec<u8> {
     if let Some(form) = change.strip_prefix("as ") {
         return shaped(text, form);
@@ -61,7 +61,7 @@ fn changed(text: &str, change: &str) -> Vec<u8> {
         .into_bytes()
 }
 
-/// A file in another form.
+/// Returns a file in another form.
 fn shaped(text: &str, form: &str) -> Vec<u8> {
     let rows = || text.lines().filter(|line| !line.starts_with('#'));
     let first = |count: usize| {
@@ -96,7 +96,7 @@ fn shaped(text: &str, form: &str) -> Vec<u8> {
     }
 }
 
-/// A CSV file with every number of a column in another unit.
+/// Returns a CSV file with every number of a column in another unit.
 pub(in super::super) fn scaled(good: &str, column: &str, times: f64) -> String {
     let mut place = None;
     let mut lines = String::new();
@@ -114,7 +114,7 @@ pub(in super::super) fn scaled(good: &str, column: &str, times: f64) -> String {
     lines
 }
 
-/// The refusal of the good job with changes.
+/// Returns the refusal of the good job with changes.
 fn refusal_of(changes: &[&str]) -> String {
     let temporary = tempfile::tempdir().expect("a folder");
     let folder = temporary.path();

@@ -17,14 +17,14 @@ const PLATES: &str = "test,plate_radius_m,sinkage_m,pressure_pa\np1,0.04,0.002,9
 /// A small `shear.csv`.
 const SHEAR: &str = "test,normal_stress_pa,shear_displacement_m,shear_stress_pa\nr1,20000,0.012,\n";
 
-/// The message with which both `check` and `run` refuse a job; `run` must leave no folder behind.
+/// Returns the message with which both `check` and `run` refuse a job; `run` must leave no folder behind.
 #[track_caller]
 pub(super) fn refusal(job: &Job) -> String {
     let folder = tempfile::tempdir().expect("a folder");
     refusal_in(&job.write(folder.path()), folder.path())
 }
 
-/// The message of a job that lies in a folder and must be refused.
+/// Returns the message of a job that lies in a folder and must be refused.
 #[track_caller]
 pub(super) fn refusal_in(path: &Path, folder: &Path) -> String {
     let out = folder.join("out");

@@ -9,7 +9,7 @@ use farm_tests::proxy::Proxy;
 use farm_tests::service::Service;
 use farm_tests::wait::until;
 
-/// A job whose evaluations take tens of seconds.
+/// Returns a job whose evaluations take tens of seconds.
 pub(super) fn long() -> Job {
     Job::small().in_job(
         "kind = \"quasi_static\"",

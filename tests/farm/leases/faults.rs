@@ -81,7 +81,7 @@ fn a_poisonous_evaluation_is_given_up_and_an_innocent_one_is_not_blamed() {
     );
 }
 
-/// Waits until so many leases have failed or expired.
+/// Waits until this many leases have failed or expired.
 fn failed(service: &Service, count: u64) {
     until_true(&format!("{count} lost leases"), || {
         service.metric("grouser_leases_failed_total") >= count

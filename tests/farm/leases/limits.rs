@@ -9,7 +9,7 @@ use farm_tests::wait::until;
 
 use super::busy::{begun, long};
 
-/// A worker of one thread with limits.
+/// Returns a worker of one thread with limits.
 fn start(service: &Service, more: &[&str]) -> Process {
     service.worker_with("limited", 1, more)
 }

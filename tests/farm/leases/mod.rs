@@ -23,7 +23,7 @@ fn numbers(leases: &[Value], key: &str) -> Vec<u64> {
     leases.iter().map(|lease| whole(&lease[key])).collect()
 }
 
-/// The texts of the flags of kind `worker` in the summary of a finished calibration.
+/// Returns the texts of the flags of kind `worker` in the summary of a finished calibration.
 fn worker_flags(service: &Service, id: i64) -> Vec<String> {
     let summary = service.result(id, "summary");
     let flags = items(&summary["flags"]);

@@ -22,7 +22,7 @@ fn metamodel_job() -> Job {
         .in_job("moves = [2, 4]", moves)
 }
 
-/// The results of honest workers.
+/// Returns the results of honest workers.
 fn honest(job: &Job) -> String {
     let service = Service::start(&["--local-workers", "2"]);
     let id = service.calibrate(job);

@@ -10,7 +10,7 @@ use serde_json::Value;
 
 use super::{RUNS, answer, honest, job, program, program_job, short, write_program};
 
-/// The rejections by kind and the flags of a finished calibration.
+/// Returns the rejections by kind and the flags of a finished calibration.
 fn finished(service: &Service, id: i64) -> (u64, String) {
     service.wait_for(id, "finished");
     let summary = service.result(id, "summary");

@@ -11,7 +11,7 @@ use farm_tests::umbridge_server::{Question, Reply, UmbridgeServer};
 /// Runs of [`job`].
 const RUNS: u64 = 6;
 
-/// A job of the model `wheel` at a URL: two parameters, six runs.
+/// Returns a job of the model `wheel` at a URL: two parameters, six runs.
 fn job(url: &str) -> Job {
     Job {
         experiment: "runs = \"runs.csv\"\n[wheel.w]\nradius_m = 0.125\nwidth_m = 0.1\n[soil.s]\n[noise]\n\
@@ -25,7 +25,7 @@ fn job(url: &str) -> Job {
     }
 }
 
-/// A job with the model as a program, `wheel.py`.
+/// Returns a job with the model as a program, `wheel.py`.
 fn program_job() -> Job {
     let job = job("http://x");
     job.in_job(
@@ -34,7 +34,7 @@ fn program_job() -> Job {
     )
 }
 
-/// A job with fewer draws: a program takes some tens of milliseconds to start.
+/// Returns a job with fewer draws: a program takes some tens of milliseconds to start.
 fn short(job: Job) -> Job {
     job.in_job("particles = 60", "particles = 20")
         .in_job("moves = [2, 4]", "moves = [1, 2]")
@@ -64,7 +64,7 @@ fn wheel(run: &[f64], parameters: &[f64]) -> [f64; 3] {
     [thrust - 2.0, thrust * 0.125, softness * load]
 }
 
-/// The model as a program, with code that runs before it answers.
+/// Returns the model as a program, with code that runs before it answers.
 fn program(before: &str) -> String {
     format!(
         "#!/usr/bin/env python3\nimport json, os, sys, time\n\
@@ -76,7 +76,7 @@ fn program(before: &str) -> String {
     )
 }
 
-/// A server that answers as the model says.
+/// Returns a server that answers as the model says.
 fn honest() -> UmbridgeServer {
     UmbridgeServer::start(answer)
 }
@@ -85,7 +85,7 @@ fn answer(question: &Question) -> Reply {
     Reply::channels(wheel(&question.run, &question.parameters))
 }
 
-/// The measurements: the model at grip 0.6 and softness 1e-4, a little off.
+/// Returns the measurements: the model at grip 0.6 and softness 1e-4, a little off.
 fn measured() -> String {
     let mut rows = "run,wheel,soil,slip,wheel_load_n,sled_speed_m_s,slip_angle_deg,pass,drawbar_pull_n,torque_n_m,sinkage_m,use\n".to_owned();
     for (i, (slip, load)) in [

@@ -37,7 +37,7 @@ impl Drop for Served {
     }
 }
 
-/// The posterior of a job, of which the parameters of the model stand in this order.
+/// Returns the posterior of a job, of which the parameters of the model stand in this order.
 fn posterior(job: &Job, allowed: Option<&str>) -> String {
     let service = Service::start(&[]);
     let id = service.submit(job);

@@ -6,13 +6,13 @@ use farm_tests::assert_contains;
 use farm_tests::programs::{Ended, call, coordinator, run};
 use farm_tests::service::Service;
 
-/// The doctor on a store and an address, with further arguments.
+/// Returns the doctor on a store and an address, with further arguments.
 fn doctor(store: &str, listen: &str, more: &[&str]) -> Ended {
     let arguments = ["doctor", "--store", store, "--listen", listen];
     run(coordinator(arguments.iter().chain(more)))
 }
 
-/// The line of a subject, and the remedy behind it.
+/// Returns the line of a subject, and the remedy behind it.
 #[track_caller]
 fn line<'a>(text: &'a str, subject: &str) -> (&'a str, Option<&'a str>) {
     let mut lines = text.lines().peekable();

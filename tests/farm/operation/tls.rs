@@ -14,7 +14,8 @@ use farm_tests::wait::until_true;
 use farm_tests::workspace::data;
 use tempfile::TempDir;
 
-/// A file of the tests' certificates, which are those of `localhost` and 127.0.0.1 under an authority of their own.
+/// Returns a file of the tests' certificates, which are those of `localhost` and 127.0.0.1 under an authority of their
+/// own.
 fn pem(name: &str) -> String {
     data("tls").join(name).display().to_string()
 }
@@ -50,7 +51,7 @@ impl Encrypted {
         format!("https://{}", self.address)
     }
 
-    /// A verb that trusts the tests' authority.
+    /// Returns a verb that trusts the tests' authority.
     fn verb(&self, words: &[&str]) -> Ended {
         let (url, authority) = (self.url(), pem("authority.pem"));
         run(coordinator(

@@ -28,7 +28,7 @@ fn take(mut stream: TcpStream, status: &str) -> Value {
     serde_json::from_slice(&body).expect("JSON")
 }
 
-/// A server on a free port that fails the first POST and hands over the bodies of all.
+/// Returns a server on a free port that fails the first POST and hands over the bodies of all.
 fn server() -> (String, mpsc::Receiver<Value>) {
     let listener = TcpListener::bind("127.0.0.1:0").expect("a port");
     let url = format!(

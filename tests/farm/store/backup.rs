@@ -14,7 +14,7 @@ fn back_up(service: &Service, to: &Path) -> Ended {
     call("coordinator backup {} --store {}", &[&to, &store])
 }
 
-/// The names in a folder, in order.
+/// Returns the names in a folder, in order.
 fn names(folder: &Path) -> Vec<PathBuf> {
     let entries = std::fs::read_dir(folder).expect("a folder");
     let mut names: Vec<PathBuf> = entries.map(|entry| entry.expect("an entry").path()).collect();

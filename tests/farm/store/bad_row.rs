@@ -7,7 +7,7 @@ use farm_tests::programs::{coordinator, run};
 use farm_tests::service::Service;
 use serde_json::Value;
 
-/// Two calibrations, of which the first is spoilt by a statement while the service is away.
+/// Returns two calibrations, of which the first is spoilt by a statement while the service is away.
 fn spoilt(sql: &'static str) -> (Service, Value) {
     let mut service = Service::start(&[]);
     let bad = service.submit(&Job::small());

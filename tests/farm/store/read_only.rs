@@ -16,7 +16,7 @@ use farm_tests::wait::until;
 use serde_json::json;
 use tempfile::TempDir;
 
-/// A service with a finished calibration.
+/// Returns a service with a finished calibration.
 fn finished() -> Service {
     let service = Service::start(&["--local-workers", "2"]);
     service.calibrate(&Job::small());
@@ -48,7 +48,8 @@ impl Closed {
         Closed(folder)
     }
 
-    /// A command of the program. Permissions do not bind the superuser, so that the command switches to another user.
+    /// Returns a command of the program. Permissions do not bind the superuser, so that the command switches to another
+    /// user.
     fn command(&self, words: &[&str]) -> Command {
         let is_superuser =
             std::fs::metadata("/proc/self").is_ok_and(|process_folder| process_folder.uid() == 0);

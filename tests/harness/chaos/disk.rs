@@ -32,7 +32,7 @@ impl Disk {
         }
     }
 
-    /// The store's file.
+    /// Returns the store's file.
     pub(super) fn store(&self) -> PathBuf {
         self.folder.join("grouser.db")
     }

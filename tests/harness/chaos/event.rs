@@ -79,7 +79,7 @@ impl Event {
         }
     }
 
-    /// The name of its fault.
+    /// Returns the name of its fault.
     pub(super) fn name(&self) -> &'static str {
         let entry = FAULTS.iter().find(|(fault, ..)| *fault == self.fault);
         entry.expect("every fault has a name").1

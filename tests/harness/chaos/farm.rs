@@ -78,12 +78,12 @@ impl Farm {
         &mut self.programs[0].1
     }
 
-    /// Whether a full disk excuses a failure of the service.
+    /// Returns whether a full disk excuses a failure of the service.
     pub(super) fn may_fail(&self) -> bool {
         self.may_fail
     }
 
-    /// Whether the coordinator is running and not halted.
+    /// Returns whether the coordinator is running and not halted.
     pub(super) fn answers(&self) -> bool {
         self.programs[0].1.is_awake()
     }

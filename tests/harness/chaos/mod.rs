@@ -31,7 +31,7 @@ const INTERVAL: Duration = Duration::from_millis(30);
 /// The number of events that are reported with a broken promise.
 const LAST: usize = 12;
 
-/// The names of all faults.
+/// Returns the names of all faults.
 pub fn faults() -> impl Iterator<Item = &'static str> {
     FAULTS.iter().map(|(_, name, _)| *name)
 }

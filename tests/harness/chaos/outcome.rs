@@ -30,7 +30,7 @@ fn send(client: &Client, method: &str, path: &str, body: Option<&Value>) -> Resu
     }
 }
 
-/// `GET path`.
+/// Returns the answer to `GET path`.
 pub(super) fn get(client: &Client, path: &str) -> Result<Response, Trouble> {
     send(client, "GET", path, None)
 }
@@ -52,14 +52,14 @@ pub(super) fn succeed(
     }
 }
 
-/// The numbers of the calibrations of a study.
+/// Returns the numbers of the calibrations of a study.
 pub(super) fn members(study: &Value) -> Vec<i64> {
     let members = study["calibrations"].as_array().into_iter().flatten();
     members.filter_map(Value::as_i64).collect()
 }
 
-/// The results of a finished study without its wall times: summary, stages, populations, draws and the result of a search. Equal texts mean
-/// equal bits, because each number has all its digits. `None` before the study is finished.
+/// Returns the results of a finished study without its wall times: summary, stages, populations, draws and the result of a search. Equal
+/// texts mean equal bits, because each number has all its digits. `None` before the study is finished.
 pub(super) fn outcome(client: &Client, study: &Value) -> Result<Option<String>, Trouble> {
     let ids = members(study);
     let answer = get(client, &format!("/v1/calibrations/{}/summary", ids[0]))?;

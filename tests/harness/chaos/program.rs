@@ -29,7 +29,7 @@ impl Program {
         }
     }
 
-    /// Whether the program is running and not halted.
+    /// Returns whether the program is running and not halted.
     pub(super) fn is_awake(&self) -> bool {
         self.process.is_some() && !self.is_halted
     }
@@ -75,7 +75,7 @@ impl Program {
         is_dead
     }
 
-    /// The exit status of a program that ended without being killed; it is started again after `down`.
+    /// Returns the exit status of a program that ended without being killed; it is started again after `down`.
     pub(super) fn ended(&mut self, down: Duration) -> Option<ExitStatus> {
         if self.process.as_mut()?.is_running() {
             return None;
@@ -83,7 +83,7 @@ impl Program {
         self.take(down).map(|mut process| process.wait())
     }
 
-    /// The log since the first start.
+    /// Returns the log since the first start.
     pub(super) fn log(&self) -> String {
         String::from_utf8_lossy(&std::fs::read(&self.log).expect("the log can be read")).into_owned()
     }

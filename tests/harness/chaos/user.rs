@@ -88,7 +88,7 @@ impl User {
         self.has_listed = false;
     }
 
-    /// Whether no study is left.
+    /// Returns whether no study is left.
     pub(super) fn is_done(&self) -> bool {
         self.has_listed && self.submitted.is_empty()
     }

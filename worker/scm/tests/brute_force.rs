@@ -70,7 +70,7 @@ fn forces(case: &Case, law: Law, sinkage: f64, strips: u32) -> [f64; 4] {
     total
 }
 
-/// The first sinkage, marching down by 1 %, that carries the load; then bisection.
+/// Returns the first sinkage, marching down by 1 %, that carries the load; then bisection.
 fn first_sinkage(case: &Case, law: Law) -> Option<f64> {
     let (r, load) = (case.wheel.radius_m, case.condition.wheel_load_n);
     let mut low = 1e-6 * r;
@@ -92,7 +92,7 @@ fn first_sinkage(case: &Case, law: Law) -> Option<f64> {
     Some(0.5 * (low + high))
 }
 
-/// Largest difference in load units (forces / W, torque / (W R)) and in sinkage relative to itself.
+/// Returns the largest difference in load units (forces / W, torque / (W R)) and in sinkage relative to itself.
 fn deviation(case: &Case, law: Law, sinkage: f64, got: &Averages) -> [f64; 4] {
     let [_, drawbar_pull, torque, lateral] = forces(case, law, sinkage, STRIPS);
     let load = case.condition.wheel_load_n;
@@ -104,7 +104,8 @@ fn deviation(case: &Case, law: Law, sinkage: f64, got: &Averages) -> [f64; 4] {
     ]
 }
 
-/// The largest deviation, by channel, of a run with a law from this integrator's result; `None` if there is no support.
+/// Returns the largest deviation, by channel, of a run with a law from this integrator's result; `None` if there is no
+/// support.
 pub(crate) fn deviation_with(case: &Case, law: Law, got: &Averages) -> Option<[f64; 4]> {
     let sinkage = first_sinkage(case, law)?;
     Some(deviation(case, law, sinkage, got))

@@ -3,7 +3,7 @@
 use crate::support::{Case, base};
 use scm::Rejection;
 
-/// A case with strong friction and a low exponent: in skid the carried load peaks well before z = R.
+/// Returns a case with strong friction and a low exponent: in skid the carried load peaks well before z = R.
 fn skidding(slip: f64, n: f64, wheel_load_n: f64) -> Case {
     let mut case = base(slip, wheel_load_n, 50.0);
     case.condition.sled_speed_m_s = 0.01;

@@ -39,7 +39,7 @@ fn run(shape: &RftShape, condition: &Condition) -> Averages {
     run_on(&SOIL, shape, condition).expect("a balance")
 }
 
-/// A closed cylinder about the axle with a number of facets, or a box if `facets` is 4 and `turned` half a facet.
+/// Returns a closed cylinder about the axle with a number of facets, or a box if `facets` is 4 and `turned` half a facet.
 fn prism(facets: u32, radius: f64, width: f64, turned: f64) -> SurfaceMesh {
     let mut vertices_m = vec![[0.0, -0.5 * width, 0.0], [0.0, 0.5 * width, 0.0]];
     for i in 0..facets {

@@ -19,7 +19,7 @@ pub(crate) struct Track {
 }
 
 impl Track {
-    /// A smooth wheel on soil that compacts and does not flow, as in the quasi-static model.
+    /// Returns a smooth wheel on soil that compacts and does not flow, as in the quasi-static model.
     pub(crate) fn smooth(case: Case) -> Self {
         Self {
             case,
@@ -34,7 +34,7 @@ impl Track {
         }
     }
 
-    /// Twelve grousers of 9 mm by 2 mm, on soil a quarter of which flows.
+    /// Returns twelve grousers of 9 mm by 2 mm, on soil a quarter of which flows.
     pub(crate) fn with_grousers(case: Case) -> Self {
         Self {
             ground: Ground::default(),
@@ -120,17 +120,17 @@ pub(crate) const fn bars(count: u32, height_m: f64, thickness_m: f64) -> Grouser
     }
 }
 
-/// Twelve grousers of 9 mm at a slip, under 100 N, on sand of 30°.
+/// Returns twelve grousers of 9 mm at a slip, under 100 N, on sand of 30°.
 pub(crate) fn grousered(slip: f64) -> Track {
     Track::with_grousers(base(slip, 100.0, 30.0))
 }
 
-/// A smooth wheel and one with grousers at a slip of 0.2, under 100 N, on sand of 30°.
+/// Returns a smooth wheel and one with grousers at a slip of 0.2, under 100 N, on sand of 30°.
 pub(crate) fn both() -> [Track; 2] {
     [smooth(0.2, 100.0, 30.0), grousered(0.2)]
 }
 
-/// Largest magnitude of some values.
+/// Returns the largest magnitude of some values.
 pub(crate) fn max_abs(values: &[f64]) -> f64 {
     values.iter().fold(0.0, |largest, x| largest.max(x.abs()))
 }
@@ -141,7 +141,7 @@ pub(crate) fn range(values: &[f64]) -> f64 {
     bound(f64::max) - bound(f64::min)
 }
 
-/// A smooth wheel at a slip, under a load `[N]`, on sand of an angle of friction `[°]`.
+/// Returns a smooth wheel at a slip, under a load `[N]`, on sand of an angle of friction `[°]`.
 pub(crate) fn smooth(slip: f64, wheel_load_n: f64, friction_angle_deg: f64) -> Track {
     Track::smooth(base(slip, wheel_load_n, friction_angle_deg))
 }

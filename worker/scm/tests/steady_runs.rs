@@ -3,7 +3,7 @@
 use crate::scene::Track;
 use crate::support::{Draws, base};
 
-/// The wheel with 12 grousers at slip 0.2.
+/// Returns the wheel with 12 grousers at slip 0.2.
 fn track(wheel_load_n: f64) -> Track {
     let mut track = Track::with_grousers(base(0.2, wheel_load_n, 30.0));
     track.case.condition.sled_speed_m_s = 0.02;
@@ -32,7 +32,7 @@ pub(crate) fn draws(count: u32) -> Vec<Track> {
     (0..count).map(draw).collect()
 }
 
-/// The results of runs, each as steps, drawbar pull `[N]`, torque \[N m\] and sinkage `[mm]`.
+/// Returns the results of runs, each as steps, drawbar pull `[N]`, torque \[N m\] and sinkage `[mm]`.
 pub(crate) fn outcomes(tracks: &[Track]) -> Vec<[f64; 4]> {
     let outcome = |track: &Track| {
         let run = track.roll();
@@ -52,7 +52,7 @@ pub(crate) fn mean(outcomes: &[[f64; 4]], quantity: usize) -> f64 {
     outcomes.iter().map(|outcome| outcome[quantity]).sum::<f64>() / outcomes.len() as f64
 }
 
-/// Standard deviation of a quantity about a straight line over evenly spaced runs.
+/// Returns the standard deviation of a quantity about a straight line over evenly spaced runs.
 pub(crate) fn scatter(outcomes: &[[f64; 4]], quantity: usize) -> f64 {
     let count = outcomes.len() as f64;
     let middle = mean(outcomes, quantity);

@@ -97,7 +97,7 @@ impl Draws {
         self.uniform(low.ln(), high.ln()).exp()
     }
 
-    /// A normal number within bounds: the sum of twelve uniform ones, drawn again if it is outside.
+    /// Returns a normal number within bounds: the sum of twelve uniform ones, drawn again if it is outside.
     pub(crate) fn normal(&mut self, mean: f64, sd: f64, [low, high]: [f64; 2]) -> f64 {
         loop {
             let sum: f64 = (0..12).map(|_| self.uniform(-0.5, 0.5)).sum();
@@ -108,7 +108,7 @@ impl Draws {
         }
     }
 
-    /// A number from one of the ranges with equal probability; an empty range is a fixed value.
+    /// Returns a number from one of the ranges with equal probability; an empty range is a fixed value.
     fn any_of(&mut self, ranges: &[(f64, f64)]) -> f64 {
         let (low, high) = ranges[self.uniform(0.0, ranges.len() as f64) as usize];
         self.uniform(low, high)

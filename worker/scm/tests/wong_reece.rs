@@ -13,7 +13,7 @@ fn simulate(case: &Case, law: &WongReece) -> Result<Averages, Rejection> {
     quasi_static::simulate_wong_reece(&case.soil, &case.wheel, &case.condition, law, &mut none, &site)
 }
 
-/// The law of this peak with a shear modulus `[m]`.
+/// Returns the law of this peak with a shear modulus `[m]`.
 fn law(c1: f64, c2: f64, shear_modulus_m: f64) -> WongReece {
     WongReece {
         c1,

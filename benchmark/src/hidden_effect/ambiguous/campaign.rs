@@ -49,7 +49,7 @@ impl Campaign {
         &self.case.hidden[0]
     }
 
-    /// The runs so far.
+    /// Returns the runs so far.
     pub fn made(&self) -> &[PlannedRun] {
         &self.case.rows
     }
@@ -77,7 +77,7 @@ impl Campaign {
         })
     }
 
-    /// The possible runs in one of several random orders.
+    /// Returns the possible runs in one of several random orders.
     pub fn at_random(&self, possible: &[RunCondition], which: u64) -> Vec<RunCondition> {
         let stage = ORDERS + which;
         let mut stream = Stream::new(self.seed, stage, self.number, self.case.rows.len() as u64);
@@ -117,18 +117,18 @@ impl Campaign {
 }
 
 impl Answer {
-    /// Whether something is missing and the data do not decide what.
+    /// Returns whether something is missing and the data do not decide what.
     pub fn is_open(&self) -> bool {
         self.conclusion.verdict == SearchVerdict::Undecided && !self.conclusion.next_runs.is_empty()
     }
 
-    /// The runs that the search proposes.
+    /// Returns the runs that the search proposes.
     pub fn proposed(&self) -> Vec<RunCondition> {
         let runs = self.conclusion.next_runs.iter();
         runs.map(|run| self.possible[run.run].clone()).collect()
     }
 
-    /// Whether the class of the truth is claimed; `None` without a claim.
+    /// Returns whether the class of the truth is claimed; `None` without a claim.
     pub fn is_right(&self) -> Option<bool> {
         let class = |k: usize| self.conclusion.ranking.effect(Some(k)).map(|effect| effect.class);
         let truth = self.truth.map(|(_, _, class)| class);

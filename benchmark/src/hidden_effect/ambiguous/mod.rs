@@ -66,7 +66,7 @@ pub fn run(count: u64, seed: u64) -> Result<(), StudyError> {
     Ok(())
 }
 
-/// The case of a number; `None` if the first runs decide.
+/// Returns the case of a number; `None` if the first runs decide.
 fn case(seed: u64, number: u64) -> Result<Option<Case>, StudyError> {
     let campaign = Campaign::new(seed, number)?;
     let first = campaign.search()?;
@@ -90,7 +90,7 @@ fn case(seed: u64, number: u64) -> Result<Option<Case>, StudyError> {
     Ok(Some(Case { stories, pairs }))
 }
 
-/// The share of random pairs of runs after which the class of the truth is named.
+/// Returns the share of random pairs of runs after which the class of the truth is named.
 fn pairs_at_random(campaign: &Campaign, first: &Answer) -> Result<Rate, StudyError> {
     let mut right = Vec::new();
     for pair in 0..PAIRS {

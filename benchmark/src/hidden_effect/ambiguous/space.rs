@@ -45,7 +45,7 @@ impl Space {
         std::array::from_fn(|k| (raw[k] - self.least[k]) / self.range[k])
     }
 
-    /// The order of the possible runs in which each is the one farthest from all earlier ones and from the runs already made.
+    /// Returns the order of the possible runs in which each is the one farthest from all earlier ones and from the runs already made.
     pub fn filling(&self, made: &[PlannedRun]) -> Vec<usize> {
         let scaled = |row: &PlannedRun| self.scaled(&raw(row.slip, row.wheel_load_n, row.sled_speed_m_s));
         let mut taken: Vec<Point> = made.iter().map(scaled).collect();

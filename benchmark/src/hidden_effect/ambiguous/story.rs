@@ -1,4 +1,4 @@
-//! One campaign, continued by one strategy until the search makes a claim.
+//! The story of one campaign, continued by one strategy until the search makes a claim.
 
 use super::campaign::{Answer, Campaign};
 use super::strategy::Strategy;

@@ -39,12 +39,12 @@ impl Strategy {
         matches!(self, Self::Proposed | Self::Batch)
     }
 
-    /// The number of runs that are made before each search.
+    /// Returns the number of runs that are made before each search.
     pub fn at_once(self) -> usize {
         if self == Self::Batch { 2 } else { 1 }
     }
 
-    /// The numbers of runs after which a search is made.
+    /// Returns the numbers of runs after which a search is made.
     pub fn counts(self) -> RangeInclusive<usize> {
         if self == Self::Batch {
             2..=2
@@ -53,7 +53,7 @@ impl Strategy {
         }
     }
 
-    /// The runs to make, the next one first.
+    /// Returns the runs to make, the next one first.
     ///
     /// # Arguments
     /// - `possible`: the runs among which the first search could choose. `answer`: the conclusion of the last search.

@@ -77,7 +77,7 @@ impl RigCampaign {
         PLAN.job()
     }
 
-    /// The files of the experiment; with `is_stated`, the runs have the column that states the flaw.
+    /// Returns the files of the experiment; with `is_stated`, the runs have the column that states the flaw.
     pub fn experiment(&self, is_stated: bool) -> FileSet {
         let column = self.flaw.column().filter(|_| is_stated);
         let mut rows = self.rows.clone();
@@ -89,7 +89,7 @@ impl RigCampaign {
     }
 }
 
-/// The preparation of each run, from 1, with a separate preparation for each load and rim speed.
+/// Returns the preparation of each run, from 1, with a separate preparation for each load and rim speed.
 fn preparations(rows: &[PlannedRun]) -> Vec<usize> {
     let mut prepared: Vec<(f64, i64)> = Vec::new();
     let preparation = |row: &PlannedRun| {

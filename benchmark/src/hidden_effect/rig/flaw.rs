@@ -54,7 +54,7 @@ impl Flaw {
         }
     }
 
-    /// The column of the runs that states the flaw.
+    /// Returns the column of the runs that states the flaw.
     pub fn column(self) -> Option<&'static str> {
         match self {
             Flaw::SortedDrift | Flaw::RandomDrift => Some("order"),
@@ -71,7 +71,7 @@ impl Flaw {
         }
     }
 
-    /// The ratio of the noise to the declared noise.
+    /// Returns the ratio of the noise to the declared noise.
     pub fn noise(self) -> f64 {
         if self == Flaw::Understated {
             UNDERSTATED
@@ -80,7 +80,7 @@ impl Flaw {
         }
     }
 
-    /// The effect of the flaw on each run.
+    /// Returns the effect of the flaw on each run.
     ///
     /// # Arguments
     /// - `preparations`: the preparation of each run, with a separate one for each load and speed.

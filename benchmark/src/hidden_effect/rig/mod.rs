@@ -30,7 +30,7 @@ pub fn run(flaws: &[Flaw], count: u64, seed: u64) -> Result<(), StudyError> {
     Ok(())
 }
 
-/// The claims on campaigns of these numbers, whose experiments state the flaw if they can.
+/// Returns the claims on campaigns of these numbers, whose experiments state the flaw if they can.
 pub fn stated(flaw: Flaw, numbers: Range<u64>, seed: u64) -> Result<Tally, StudyError> {
     tally(flaw, numbers, seed, &flaw.statements()[..1])
 }

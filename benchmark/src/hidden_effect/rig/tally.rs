@@ -47,7 +47,7 @@ fn statement(flaw: Flaw, is_stated: bool) -> String {
     }
 }
 
-/// A search in one line.
+/// Returns a search in one line.
 pub fn line(flaw: Flaw, number: u64, is_stated: bool, record: &Discovery) -> String {
     let (statement, claim) = (statement(flaw, is_stated), claim(flaw, record));
     format!(
@@ -71,7 +71,7 @@ impl Tally {
         }
     }
 
-    /// The number of campaigns in which missing physics is claimed, with the flaw stated if the experiment can state it.
+    /// Returns the number of campaigns in which missing physics is claimed, with the flaw stated if the experiment can state it.
     pub fn false_claims(&self) -> usize {
         let (_, claims) = &self.claims[0];
         claims.iter().filter(|claim| **claim == Claim::False).count()

@@ -40,7 +40,7 @@ pub fn spec(job: &FileSet, experiment: &FileSet) -> Result<Spec, StudyError> {
     Ok(Spec::new("job.toml", job, "experiment.toml", experiment)?)
 }
 
-/// The values of each run.
+/// Returns the values of each run.
 pub fn values(seen: &Observables, runs: usize) -> Vec<RunValues> {
     let channels = [Channel::DrawbarPull, Channel::Torque, Channel::Sinkage];
     (0..runs)
@@ -56,7 +56,7 @@ fn evaluated(variant: &ModelVariant, theta: &[f64]) -> Result<Option<Vec<RunValu
     }
 }
 
-/// The files of an experiment whose runs are not measured yet: every value is zero.
+/// Returns the files of an experiment whose runs are not measured yet: every value is zero.
 pub fn blank(rows: &[PlannedRun]) -> FileSet {
     experiment(rows, &vec![[0.0; CHANNELS]; rows.len()], [1.0; CHANNELS])
 }
@@ -118,7 +118,7 @@ impl SyntheticCase {
         Err(format!("the model rejected {MAX_REJECTED} draws of the prior in a row").into())
     }
 
-    /// The files of a campaign on the same soil without the hidden effects; `None` if the model rejects it.
+    /// Returns the files of a campaign on the same soil without the hidden effects; `None` if the model rejects it.
     ///
     /// # Arguments
     /// - `noise`: the random stream of its noise.
@@ -141,12 +141,12 @@ impl SyntheticCase {
         Ok(Some(experiment(&self.rows, &values, self.sds)))
     }
 
-    /// The files of the measured experiment.
+    /// Returns the files of the measured experiment.
     pub fn experiment(&self) -> FileSet {
         experiment(&self.rows, &self.measured, self.sds)
     }
 
-    /// The files of the experiment without noise.
+    /// Returns the files of the experiment without noise.
     pub fn noise_free(&self) -> FileSet {
         experiment(&self.rows, &self.noise_free, self.sds)
     }

@@ -45,7 +45,7 @@ pub struct PlannedRun {
 }
 
 impl Plan {
-    /// The design in which the data can distinguish an effect of the catalogue from the soil's stiffness.
+    /// Returns the design in which the data can distinguish an effect of the catalogue from the soil's stiffness.
     pub fn for_effect(effect: &str) -> Self {
         match effect {
             "multipass_hardening" => Plan::Passes,
@@ -99,7 +99,7 @@ impl Plan {
         rows
     }
 
-    /// The job of the base model.
+    /// Returns the job of the base model.
     pub fn job(self) -> FileSet {
         let (model, priors) = match self {
             Plan::Spatial => (SPATIAL, SPATIAL_PRIORS),
@@ -121,7 +121,7 @@ impl Plan {
     }
 }
 
-/// The files of an experiment with its measured values and the noise's standard deviations.
+/// Returns the files of an experiment with its measured values and the noise's standard deviations.
 pub fn experiment(rows: &[PlannedRun], values: &[[f64; CHANNELS]], sds: [f64; CHANNELS]) -> FileSet {
     let wheel = |name: &str, radius: f64, width: f64| {
         format!(

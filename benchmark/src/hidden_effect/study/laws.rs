@@ -39,7 +39,7 @@ pub const LAWS: [HiddenLaw; 14] = [
 ];
 
 impl HiddenLaw {
-    /// The name of the law with its addition to a job.
+    /// Returns the name of the law with its addition to a job.
     pub fn hidden(&self) -> (String, Extension) {
         let extension = Extension::File {
             name: format!("{}.toml", self.name),

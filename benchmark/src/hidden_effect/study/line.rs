@@ -5,7 +5,7 @@ use discovery::{Conclusion, RankedEffect, SearchTask};
 use super::case::SyntheticCase;
 use super::score::TrialScore;
 
-/// The line of a trial.
+/// Returns the line of a trial.
 pub fn line(
     score: &TrialScore,
     case: &SyntheticCase,

@@ -7,7 +7,7 @@ use super::design::CHANNELS;
 /// The values of a run, in the order of the channels.
 pub type RunValues = [f64; CHANNELS];
 
-/// Noise sds that are a share of the root mean square of each channel.
+/// Returns noise sds that are a share of the root mean square of each channel.
 pub fn noise_sds<'a>(share: f64, values: impl Iterator<Item = &'a RunValues> + Clone) -> RunValues {
     let count = values.clone().count() as f64;
     std::array::from_fn(|channel| {

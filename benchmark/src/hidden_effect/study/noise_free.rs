@@ -15,7 +15,7 @@ use crate::error::StudyError;
 /// Nats by which the truth must exceed every rival in a trial that counts.
 pub const MIN_SEPARATION: f64 = 10.0;
 
-/// The log-likelihood of the truth for noise-free data, which is the maximum.
+/// Returns the log-likelihood of the truth for noise-free data, which is the maximum.
 fn perfect(likelihood: &Likelihood) -> Result<f64, StudyError> {
     let values: Vec<f64> = likelihood.data().iter().map(|d| d.value).collect();
     match likelihood.log_likelihood(&values, &[]) {

@@ -17,13 +17,13 @@ pub struct PosteriorSample {
 }
 
 impl PosteriorSample {
-    /// The highest ln p(data | theta) among the draws.
+    /// Returns the highest ln p(data | theta) among the draws.
     pub fn highest(&self) -> f64 {
         let all = self.log_likelihoods.iter().copied();
         all.fold(f64::NEG_INFINITY, f64::max)
     }
 
-    /// The name of each parameter, the mean of its draws and their sd.
+    /// Returns the name of each parameter, the mean of its draws and their sd.
     pub fn moments(&self) -> impl Iterator<Item = (&str, f64, f64)> {
         let count = self.draws.len() as f64;
         self.parameters.iter().enumerate().map(move |(k, name)| {
@@ -33,7 +33,7 @@ impl PosteriorSample {
         })
     }
 
-    /// The draws in the form of `posterior.csv`.
+    /// Returns the draws in the form of `posterior.csv`.
     pub fn csv(&self) -> String {
         let mut text = self.parameters.join(",");
         for draw in &self.draws {

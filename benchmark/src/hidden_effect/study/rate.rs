@@ -66,7 +66,7 @@ impl std::iter::Sum for Rate {
     }
 }
 
-/// Mean and standard error; 0 without a value.
+/// Returns the mean and standard error; 0 without a value.
 pub fn mean(values: &[f64]) -> [f64; 2] {
     let n = values.len().max(1) as f64;
     let mean = values.iter().sum::<f64>() / n;
@@ -74,7 +74,7 @@ pub fn mean(values: &[f64]) -> [f64; 2] {
     [mean, (squares / (n - 1.0).max(1.0) / n).sqrt()]
 }
 
-/// The median; 0 without a value.
+/// Returns the median; 0 without a value.
 pub fn median(values: &[f64]) -> f64 {
     let mut values = values.to_vec();
     values.sort_by(f64::total_cmp);

@@ -50,7 +50,7 @@ pub fn record(
     }
 }
 
-/// Whether the class of the truth is claimed; `None` without a claim.
+/// Returns whether the class of the truth is claimed; `None` without a claim.
 ///
 /// # Arguments
 /// - `truth`: the hidden effect; `None`: nothing is hidden.
@@ -65,7 +65,7 @@ pub fn is_right(record: &Discovery, truth: Option<&str>) -> Option<bool> {
     }
 }
 
-/// The word for the correctness of a claim.
+/// Returns the word for the correctness of a claim.
 pub fn word(is_right: Option<bool>) -> &'static str {
     match is_right {
         Some(true) => "right",
@@ -74,14 +74,14 @@ pub fn word(is_right: Option<bool>) -> &'static str {
     }
 }
 
-/// The name and probability of the most probable explanation.
+/// Returns the name and probability of the most probable explanation.
 pub fn leader(record: &Discovery) -> String {
     let effect = record.effects.first();
     let (name, probability) = effect.map_or(("", 0.0), |effect| (effect.name.as_str(), effect.probability));
     format!("{name} P {probability:.3}")
 }
 
-/// The class of an effect.
+/// Returns the class of an effect.
 pub fn class(record: &Discovery, name: &str) -> Option<u32> {
     let effect = record.effects.iter().find(|effect| effect.name == name);
     effect.map(|effect| effect.class)

@@ -70,7 +70,7 @@ pub struct TrialFacts {
     pub seconds: f64,
 }
 
-/// The probability of each class, the most probable first.
+/// Returns the probability of each class, the most probable first.
 fn by_class(conclusion: &Conclusion) -> Vec<(TrialClass, f64)> {
     let effects = &conclusion.ranking.effects;
     let classes = effects.iter().map(|j| j.class).max().unwrap_or(0);
@@ -90,7 +90,7 @@ fn class_of(conclusion: &Conclusion, candidate: Option<usize>) -> Option<TrialCl
     Some(TrialClass::Library(judged.class))
 }
 
-/// Whether two combinations have equally many effects of each class.
+/// Returns whether two combinations have equally many effects of each class.
 fn is_same(conclusion: &Conclusion, a: &[Option<usize>], b: &[Option<usize>]) -> bool {
     let classes = |set: &[Option<usize>]| -> Option<Vec<usize>> {
         let class = |k: &Option<usize>| Some(conclusion.ranking.effect(Some((*k)?))?.class);
@@ -172,12 +172,13 @@ impl TrialScore {
         }
     }
 
-    /// Whether a law outside the library is claimed.
+    /// Returns whether a law outside the library is claimed.
     pub fn is_outside(&self) -> bool {
         self.verdict == SearchVerdict::NotInLibrary
     }
 
-    /// Whether the result is as good as possible. An effect may be confused with a rival that the data cannot distinguish from it.
+    /// Returns whether the result is as good as possible. An effect may be confused with a rival that the data cannot distinguish from
+    /// it.
     pub fn is_good(&self) -> bool {
         match self.kind {
             HiddenKind::None => !self.is_claimed,

@@ -16,7 +16,7 @@ const ONE_WHEEL: usize = 49;
 /// The scores of all trials.
 pub struct Tally<'a>(pub &'a [TrialScore]);
 
-/// The share of trials with a property.
+/// Returns the share of trials with a property.
 fn rate(all: &[&TrialScore], holds: impl Fn(&TrialScore) -> bool) -> Rate {
     Rate::new(all.iter().map(|x| holds(x)))
 }
@@ -25,7 +25,7 @@ fn numbers(all: &[&TrialScore], value: impl Fn(&TrialScore) -> f64) -> Vec<f64> 
     all.iter().map(|x| value(x)).collect()
 }
 
-/// A target for the share of trials with a property.
+/// Returns a target for the share of trials with a property.
 fn share(
     what: &'static str,
     all: &[&TrialScore],
@@ -35,14 +35,14 @@ fn share(
     Target::rate(what, rate(all, holds), goals)
 }
 
-/// The held-out errors of each trial with the best model, and with the base.
+/// Returns the held-out errors of each trial with the best model, and with the base.
 fn errors(all: &[&TrialScore]) -> Vec<[f64; 2]> {
     all.iter()
         .map(|x| [x.held_out.after, x.held_out.before])
         .collect()
 }
 
-/// The share of holdout measurements within their intervals.
+/// Returns the share of holdout measurements within their intervals.
 fn inside(all: &[&TrialScore]) -> Rate {
     all.iter().map(|x| x.held_out.covered).sum()
 }
@@ -57,12 +57,12 @@ impl Tally<'_> {
         self.matching(&[kind], |_| true)
     }
 
-    /// The trials in which noise-free data separate the truth from every rival.
+    /// Returns the trials in which noise-free data separate the truth from every rival.
     fn clear(&self, kind: HiddenKind) -> Vec<&TrialScore> {
         self.matching(&[kind], |x| x.separation >= MIN_SEPARATION)
     }
 
-    /// Every target to which these trials contribute.
+    /// Returns every target to which these trials contribute.
     pub fn targets(&self) -> Vec<Target> {
         let all = [self.one(), self.several(), self.laws(), self.any()];
         all.into_iter().flatten().flatten().collect()

@@ -18,7 +18,7 @@ pub struct Target {
 }
 
 impl Target {
-    /// A share with Wilson's interval; `None` without a case.
+    /// Returns a share with Wilson's interval; `None` without a case.
     pub fn rate(what: &'static str, rate: Rate, [floor, aim]: [f64; 2]) -> Option<Self> {
         let [low, high] = rate.interval();
         (rate.total > 0).then(|| Self {
@@ -31,7 +31,7 @@ impl Target {
         })
     }
 
-    /// The same target, of which smaller values are better.
+    /// Returns the same target, of which smaller values are better.
     pub fn least(self) -> Self {
         Self {
             is_bounded_above: true,
@@ -39,7 +39,7 @@ impl Target {
         }
     }
 
-    /// A mean with its standard error, of which smaller values are better; `None` without a value.
+    /// Returns a mean with its standard error, of which smaller values are better; `None` without a value.
     pub fn mean(what: &'static str, values: &[f64], [floor, aim]: [f64; 2]) -> Option<Self> {
         let [average, error] = mean(values);
         let max = values.iter().copied().fold(0.0, f64::max);
@@ -53,7 +53,8 @@ impl Target {
         })
     }
 
-    /// A ratio of sums, which is robust against a few extreme ratios and of which smaller values are better; `None` without a pair.
+    /// Returns a ratio of sums, which is robust against a few extreme ratios and of which smaller values are better; `None` without a
+    /// pair.
     pub fn ratio(what: &'static str, pairs: &[[f64; 2]], [floor, aim]: [f64; 2]) -> Option<Self> {
         let sum = |k: usize| pairs.iter().map(|pair| pair[k]).sum::<f64>();
         let ratios: Vec<f64> = pairs.iter().map(|[after, before]| after / before).collect();
@@ -71,7 +72,7 @@ impl Target {
         })
     }
 
-    /// Whether the floor is reached.
+    /// Returns whether the floor is reached.
     pub fn holds(&self) -> bool {
         self.reaches(self.floor)
     }

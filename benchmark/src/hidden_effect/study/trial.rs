@@ -122,7 +122,7 @@ pub fn draw_from(
     Err(format!("each of {MAX_DRAWN} combinations of {count} effects has one that is not detectable").into())
 }
 
-/// The effects of the catalogue that the experiment of a plan can show, each with its addition to the job.
+/// Returns the effects of the catalogue that the experiment of a plan can show, each with its addition to the job.
 fn expressible(plan: Plan) -> Result<Vec<(String, Extension)>, StudyError> {
     let job = Job::read("job.toml", &plan.job())?.into_search();
     let experiment = Experiment::parse("experiment.toml", &blank(&plan.rows()))?;
@@ -134,7 +134,7 @@ fn expressible(plan: Plan) -> Result<Vec<(String, Extension)>, StudyError> {
     Ok(plain.map(|e| (e.name, e.extension)).collect())
 }
 
-/// Whether the model falls short by the required nats if any one of the effects is left out.
+/// Returns whether the model falls short by the required nats if any one of the effects is left out.
 fn each_is_detectable(case: &SyntheticCase, hidden: &[(String, Extension)]) -> Result<bool, StudyError> {
     for left_out in 0..hidden.len() {
         let others = hidden.iter().enumerate().filter(|(k, _)| *k != left_out);

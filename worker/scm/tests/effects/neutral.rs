@@ -24,7 +24,7 @@ fn assert_neutral<'a>(effects: impl Iterator<Item = &'a Effect> + Clone, seed: u
     }
 }
 
-/// The effects of the catalogue that the quasi-static model has.
+/// Returns the effects of the catalogue that the quasi-static model has.
 fn expressible() -> impl Iterator<Item = &'static Effect> + Clone {
     let has_form = |effect: &&Effect| effect.mechanism != Some(Mechanism::SideWall);
     catalogue().iter().filter(has_form)

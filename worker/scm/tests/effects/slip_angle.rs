@@ -5,7 +5,7 @@ use scm::Averages;
 use crate::support::{Case, base, compiled, law};
 use crate::validation::effects::{SITE, with_effect};
 
-/// The base case at a slip angle.
+/// Returns the base case at a slip angle.
 fn at(slip: f64, degrees: f64) -> Case {
     let mut case = base(slip, 100.0, 30.0);
     case.condition.slip_angle_rad = degrees.to_radians();

@@ -51,7 +51,7 @@ fn narrow() -> Track {
     Track::with_grousers(case)
 }
 
-/// The last kappa at which a wheel finds a balance at both slips, on sand of a reference pressure `[log10 Pa]`.
+/// Returns the last kappa at which a wheel finds a balance at both slips, on sand of a reference pressure `[log10 Pa]`.
 fn limit(wheel: &Track, log10_p_ref: f64, footprint: Footprint) -> Option<i32> {
     let balanced = |kappa: i32| {
         [0.05, 0.4].into_iter().all(|slip| {

@@ -7,7 +7,7 @@ use formula::Effect;
 use scm::spatial::{Displacement, Shape, SpatialRun};
 use scm::{Averages, Rejection};
 
-/// An effect with one dimensionless parameter `a` and these formulas.
+/// Returns an effect with one dimensionless parameter `a` and these formulas.
 fn effect(formulas: &str) -> Effect {
     let text = format!(
         "name = \"trial\"\nsummary = \"for a test\"\nsource = \"none\"\n{formulas}\n\
@@ -16,7 +16,7 @@ fn effect(formulas: &str) -> Effect {
     Effect::read(&text).unwrap_or_else(|error| panic!("{error}: {text}"))
 }
 
-/// A short run on a coarse grid.
+/// Returns a short run on a coarse grid.
 fn short(mut track: Track) -> Track {
     track.settings.dem_spacing_m = 0.008;
     track.settings.travel_step_m = 0.002;
@@ -31,7 +31,7 @@ fn short_with_grousers() -> Track {
     short(grousered(0.2))
 }
 
-/// A smooth wheel of 45 facets, a model of which keeps lanes apart.
+/// Returns a smooth wheel of 45 facets, a model of which keeps lanes apart.
 fn short_mesh() -> Track {
     let mut track = short_smooth();
     track.shape = Shape::from(Surface::default().rim(0.125, 45, &across(0.112, 14), |_| 1.0).0);
@@ -84,7 +84,7 @@ fn neutral(effect: &Effect) -> Vec<f64> {
         .collect()
 }
 
-/// The values at which tables show an effect.
+/// Returns the values at which tables show an effect.
 pub(super) fn typical(effect: &Effect) -> Vec<f64> {
     let values = effect.parameters.iter().map(|parameter| {
         let fixed = parameter.prior.as_float();

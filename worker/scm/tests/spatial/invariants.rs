@@ -7,7 +7,7 @@ use scm::spatial::{Displacement, Shape};
 
 const RUNS: u64 = 120;
 
-/// A random case: half of them with grousers, a third with a displacement law, with a random flow of soil.
+/// Returns a random case: half of them with grousers, a third with a displacement law, with a random flow of soil.
 fn random(seed: u64) -> Track {
     let mut draws = Draws(seed);
     let case = draws.case();

@@ -28,7 +28,7 @@ fn roll(case: &Case, shape: &Shape, settings: RunSettings) -> SpatialRun {
         .unwrap_or_else(|rejection| panic!("{rejection}"))
 }
 
-/// A window of 0.3 m after a transient of 0.2 m.
+/// Returns a window of 0.3 m after a transient of 0.2 m.
 fn fixed(case: &Case) -> RunSettings {
     let second = 1.0 / case.condition.sled_speed_m_s;
     RunSettings {
@@ -64,12 +64,12 @@ fn differences(case: &Case, got: &SpatialRun, expected: &SpatialRun) -> [f64; 3]
     ]
 }
 
-/// A smooth wheel of flat facets.
+/// Returns a smooth wheel of flat facets.
 fn cylinder(facets: u32) -> SurfaceMesh {
     Surface::default().rim(R, facets, &across(B, 4), |_| 1.0).0
 }
 
-/// A wheel of flat facets with boxes for grousers.
+/// Returns a wheel of flat facets with boxes for grousers.
 fn with_boxes(facets: u32) -> SurfaceMesh {
     let rim = Surface::default().rim(R, facets, &across(B, 4), |_| 1.0);
     rim.grousers(R, 12, 0.009, 0.002, &across(B, 4)).0
@@ -153,7 +153,7 @@ fn the_period_is_found_from_the_vertices() {
     assert_eq!(found, given);
 }
 
-/// A barrel: 3 mm lower at the sides than in the middle, with grousers.
+/// Returns a barrel: 3 mm lower at the sides than in the middle, with grousers.
 fn barrel() -> SurfaceMesh {
     let round = |y: f64| 1.0 - 0.05 * (2.0 * y / B).powi(2);
     let rim = Surface::default().rim(R, 180, &across(B, 32), round);

@@ -6,7 +6,7 @@ use crate::validation::side_wall::{closed_form, entered};
 use scm::Averages;
 use scm::spatial::Shape;
 
-/// A smooth wheel, 18 mm deep at a slip angle `[rad]`, that travels 0.3 m.
+/// Returns a smooth wheel, 18 mm deep at a slip angle `[rad]`, that travels 0.3 m.
 fn track(slip_angle_rad: f64) -> Track {
     let mut track = smooth(0.2, 100.0, 30.0).for_a_travel_of(0.3, 0.15);
     track.case.condition.slip_angle_rad = slip_angle_rad;

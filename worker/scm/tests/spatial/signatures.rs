@@ -18,7 +18,7 @@ const ORDER: f64 = 3.0;
 /// Changes of drawbar pull `[N]`, torque \[N m\] and sinkage `[mm]`, slip by slip.
 type Changes = [[f64; 3]; 3];
 
-/// The effect of each row, the parameter that it holds at 0, and the prototype's changes.
+/// Returns the effect of each row, the parameter that it holds at 0, and the prototype's changes.
 fn rows() -> Vec<(&'static Effect, &'static str, Changes)> {
     let lines = include_str!("../reference/spatial_signatures.csv").lines();
     let row = |line: &'static str| {
@@ -42,7 +42,7 @@ fn rows() -> Vec<(&'static Effect, &'static str, Changes)> {
 /// what it dug has to climb out of it, and soil ahead of it, not dug yet, bears some of the load.
 const DIGGING: Changes = [[-0.7, 0.0, 0.6], [-2.8, -0.04, 1.8], [-16.8, -0.34, 10.0]];
 
-/// Drawbar pull `[N]`, torque \[N m\] and sinkage `[mm]` of a wheel of 130 mm at the rig's 125 mm.
+/// Returns drawbar pull `[N]`, torque \[N m\] and sinkage `[mm]` of a wheel of 130 mm at the rig's 125 mm.
 fn roll(slip: f64, effect: Option<(&Effect, &[f64])>) -> [f64; 3] {
     let mut track = smooth(slip, 100.0, 30.0);
     track.case.wheel.radius_m = 0.130;

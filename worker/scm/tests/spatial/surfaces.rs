@@ -31,7 +31,7 @@ impl Surface {
         }
     }
 
-    /// A rim of flat facets, its corners on the circle.
+    /// Returns a rim of flat facets, its corners on the circle.
     pub(crate) fn rim(
         mut self,
         radius: f64,
@@ -102,7 +102,7 @@ fn profile(radius: f64, height: f64, thickness: f64, angle: f64) -> [Point; 4] {
     [at(foot, -half), at(tip, -half), at(tip, half), at(foot, half)]
 }
 
-/// The point of a circle at an angle from straight down, positive forward.
+/// Returns the point of a circle at an angle from straight down, positive forward.
 fn on_circle(radius: f64, angle: f64) -> Point {
     [radius * angle.sin(), -radius * angle.cos()]
 }

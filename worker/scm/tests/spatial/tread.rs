@@ -102,7 +102,7 @@ fn little_stagger_and_small_angles_join_on_to_straight_grousers() {
     }
 }
 
-/// The wheel of a tread as triangles, with bars along those of the tread.
+/// Returns the wheel of a tread as triangles, with bars along those of the tread.
 fn mesh(tread: Tread) -> Shape {
     let mut surface = Surface::default().rim(R, 360, &across(B, 4), |_| 1.0);
     let pitch = std::f64::consts::TAU * R / 12.0;

@@ -54,7 +54,7 @@ pub(crate) fn values(effect: &Effect, strength: &str, value: f64) -> Vec<f64> {
     effect.parameters.iter().map(value).collect()
 }
 
-/// A run with one effect of the catalogue.
+/// Returns a run with one effect of the catalogue.
 pub(crate) fn with_effect(case: &Case, name: &str, strength: &str, value: f64, site: &Site) -> Averages {
     let effect = find(name).expect("an effect of the catalogue");
     assert!(effect.parameter(strength).is_some(), "{name} has no {strength}");

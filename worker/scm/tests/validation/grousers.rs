@@ -20,7 +20,7 @@ pub(super) fn prototype(slip: f64, flow_fraction: f64, bearing_credit: f64) -> T
     track.for_a_travel_of(0.6, 0.36)
 }
 
-/// Half of the peak-to-peak swing over the last half of a run.
+/// Returns half of the peak-to-peak swing over the last half of a run.
 fn amplitude(history: &[f64]) -> f64 {
     let steady = &history[history.len() / 2..];
     0.5 * range(steady)

@@ -51,7 +51,7 @@ pub(crate) const ORACLES: [Oracle; 15] = [
     ("other implementation", other_implementation::add),
 ];
 
-/// The rows of one oracle.
+/// Returns the rows of one oracle.
 pub(crate) fn rows(add: fn(&mut Rows)) -> Vec<Row> {
     let mut rows = Rows::default();
     add(&mut rows);

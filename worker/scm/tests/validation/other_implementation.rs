@@ -27,7 +27,7 @@ pub(crate) fn track(dem_spacing_m: f64) -> Track {
     track
 }
 
-/// Drawbar pull `[N]`, torque \[N m\] and sinkage `[m]` of the equations, without a grid.
+/// Returns drawbar pull `[N]`, torque \[N m\] and sinkage `[m]` of the equations, without a grid.
 fn on_paper(track: &Track) -> [f64; 3] {
     let profile = Profile::in_balance(track);
     let case = &track.case;

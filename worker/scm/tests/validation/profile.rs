@@ -20,7 +20,7 @@ pub(super) struct Profile {
 }
 
 impl Profile {
-    /// The profile whose pressure alone carries the load: no friction, or shear that acts horizontally.
+    /// Returns the profile whose pressure alone carries the load: no friction, or shear that acts horizontally.
     pub(super) fn in_balance(track: &Track) -> Self {
         let case = &track.case;
         let mut profile = Self {

@@ -11,7 +11,7 @@ pub(crate) fn entered(mut track: Track, scale: f64, friction: f64) -> Track {
     track
 }
 
-/// The lateral force of cohesionless soil on a frictionless side at a sinkage `[m]` `[N]`.
+/// Returns the lateral force of cohesionless soil on a frictionless side at a sinkage `[m]` `[N]`.
 pub(crate) fn closed_form(track: &Track, sinkage_m: f64) -> f64 {
     let r = track.case.wheel.radius_m;
     let hub = r - sinkage_m;

@@ -16,11 +16,11 @@ const PATIENCE_MS: u64 = 1_200;
 /// The progress of a worker with a lease.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Phase {
-    /// Its evaluation may begin.
+    /// The lease may be evaluated.
     Waiting,
     /// The coordinator must acknowledge its start before it begins.
     Suspect,
-    /// Its evaluation runs.
+    /// The evaluation has begun.
     Begun,
 }
 
