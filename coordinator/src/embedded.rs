@@ -142,7 +142,7 @@ impl LocalWorkers {
         }
     }
 
-    /// Returns a future that is ready with the reason when the workers have failed, and never otherwise.
+    /// Returns a future that yields the reason once the workers have failed, and never otherwise.
     pub fn failure(&self) -> impl Future<Output = String> + Send + 'static {
         let mut failure = self.failure.clone();
         async move {

@@ -6,15 +6,15 @@ type NamedFile = (&'static str, &'static str);
 /// A job with its experiment.
 #[derive(Debug, Clone, Copy)]
 pub struct Example {
-    /// Its name.
+    /// Name of the example.
     pub name: &'static str,
-    /// Its title.
+    /// Title of the example.
     pub title: &'static str,
     /// A sentence about its content.
     pub summary: &'static str,
-    /// The job.
+    /// File of the job.
     pub job: NamedFile,
-    /// The experiment.
+    /// File of the experiment.
     pub experiment: NamedFile,
     /// The files that the experiment names.
     pub files: &'static [NamedFile],

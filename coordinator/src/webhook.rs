@@ -40,7 +40,7 @@ pub struct Announcement {
     pub calibration: i64,
     /// Name of the calibration.
     pub name: String,
-    /// Its new state: paused, finished, failed or cancelled.
+    /// New state of the calibration: paused, finished, failed or cancelled.
     pub state: CalibrationState,
     /// The reason of a pause or a failure.
     pub message: Option<String>,

@@ -39,18 +39,18 @@ pub struct NewCalibration {
 /// Answer to a new experiment.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 pub struct ExperimentCreated {
-    /// Its id.
+    /// Id of the experiment.
     pub id: i64,
 }
 
 /// Answer to a new calibration.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 pub struct CalibrationCreated {
-    /// Its id.
+    /// Id of the calibration.
     pub id: i64,
-    /// The study that it opens.
+    /// The study that the calibration opens.
     pub study: i64,
-    /// Ids of the point estimates that the job asks for beside it.
+    /// Ids of the point estimates that the job requests beside the sample.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub point_estimates: Vec<i64>,
 }
@@ -89,7 +89,7 @@ pub struct NewEffect {
 pub struct NamedText {
     /// Name without folders.
     pub name: String,
-    /// Content.
+    /// Content of the file.
     pub text: String,
 }
 
@@ -99,7 +99,7 @@ pub struct NamedText {
 pub struct NewRuns {
     /// Rows with a header, as in `runs.csv`.
     pub runs: String,
-    /// The calibration of the study whose model is fitted to all runs; the last of its ledger where nothing is said.
+    /// The calibration of the study whose model is fitted to all runs; by default, the last one of the ledger.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub calibration: Option<i64>,
 }
@@ -117,27 +117,27 @@ pub struct WhatIf {
 pub struct RunsAdded {
     /// The calibration of all runs.
     pub id: i64,
-    /// Its study.
+    /// Id of the study.
     pub study: i64,
-    /// The enlarged experiment.
+    /// Id of the enlarged experiment.
     pub experiment: i64,
 }
 
 /// Answer to `POST /v1/studies/ID/archive` and `/restore`.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 pub struct StudyArchived {
-    /// The study.
+    /// Id of the study.
     pub id: i64,
-    /// Whether it is out of the lists now.
+    /// Whether lists now omit the study.
     pub archived: bool,
 }
 
 /// Answer to `DELETE /v1/studies/ID`.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 pub struct StudyDeleted {
-    /// The study.
+    /// Id of the study.
     pub id: i64,
-    /// The calibrations that went with it.
+    /// The calibrations that were deleted with the study.
     pub calibrations: Vec<i64>,
 }
 
@@ -164,11 +164,11 @@ pub enum CalibrationState {
     Running,
     /// Stopped by a user, or because a machine's faults used up an evaluation's attempts.
     Paused,
-    /// It waits for a decision of the user.
+    /// The calibration waits for a decision of the user.
     Waiting,
     /// The posterior is complete.
     Finished,
-    /// It cannot continue; the message says why.
+    /// The calibration cannot continue; the message says why.
     Failed,
     /// Stopped permanently by a user.
     Cancelled,
@@ -200,17 +200,17 @@ impl CalibrationState {
 /// `GET /v1/calibrations/ID`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct CalibrationStatus {
-    /// Its id.
+    /// Id of the calibration.
     pub id: i64,
-    /// Its name.
+    /// Name of the calibration.
     pub name: String,
     /// The study it belongs to.
     pub study: i64,
     /// The experiment it is about.
     pub experiment: i64,
-    /// Its state.
+    /// State of the calibration.
     pub state: CalibrationState,
-    /// Why it is paused or failed.
+    /// Reason for which the calibration is paused or has failed.
     pub message: Option<String>,
     /// `quasi_static` or `scm`; `None` where this version does not understand the job.
     pub model_kind: Option<String>,
@@ -273,38 +273,39 @@ pub enum Position {
     },
 }
 
-/// `GET /v1/work/demand`: how much work there is, for whatever starts workers.
+/// `GET /v1/work/demand`: the amount of work, for programs that start workers.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct WorkDemand {
     /// Evaluations that wait for a worker.
     pub queued: u64,
     /// Evaluations that workers hold.
     pub leased: u64,
-    /// Evaluations until all calibrations are over, estimated: from the second stage of each on beyond the present round.
+    /// Estimated number of evaluations until all calibrations are over; from its second stage on, a calibration counts
+    /// beyond the present round.
     pub evaluations_left: u64,
     /// Calibrations that are neither over nor paused.
     pub in_hand: u64,
-    /// Workers heard of lately that are not quarantined.
+    /// Number of workers that were heard of recently and are not quarantined.
     pub workers: u64,
-    /// Their threads.
+    /// Number of threads of these workers.
     pub threads: u64,
-    /// Mean time of an evaluation on one of their threads `[s]`, once there has been one.
+    /// Mean time of an evaluation on one thread of these workers `[s]`, once there has been an evaluation.
     pub evaluation_s: Option<f64>,
     /// Results of workers that are part of a queue's job, since the service started.
     pub completed_in_queues: u64,
 }
 
-/// Every error answer: `{"error": {"type": …, "message": …}}`.
+/// The body of every error response: `{"error": {"type": …, "message": …}}`.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 pub struct ErrorBody {
     /// The error.
     pub error: ErrorDetail,
 }
 
-/// The error in an answer.
+/// The error in a response.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 pub struct ErrorDetail {
-    /// One of a closed list.
+    /// The type of the error.
     #[serde(rename = "type")]
     pub kind: ErrorKind,
     /// Field, value, unit, bound.
@@ -327,7 +328,7 @@ pub enum ErrorKind {
     Forbidden,
     /// A file in the body is malformed.
     InvalidFile,
-    /// No such thing.
+    /// The requested resource does not exist.
     NotFound,
     /// The request does not fit the state of the thing.
     Conflict,

@@ -61,7 +61,7 @@ pub struct WorkResult {
     pub calibration: i64,
     /// The evaluation within the calibration.
     pub evaluation: u64,
-    /// The seal of the lease, as it came.
+    /// The seal of the lease, as the worker received it.
     pub seal: String,
     /// The end of the subchain, if the lease asked for one.
     #[serde(default, skip_serializing_if = "Option::is_none")]

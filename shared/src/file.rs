@@ -16,7 +16,7 @@ use crate::toml_message::plain;
 pub struct FileSet {
     /// Text of the TOML file itself.
     pub toml: String,
-    /// Texts of the files it names, by the name used in it.
+    /// Texts of the files that the TOML file names, by the names used there.
     pub files: BTreeMap<String, String>,
 }
 
@@ -146,7 +146,7 @@ fn line_of(text: &str, offset: usize) -> usize {
     text.bytes().take(offset).filter(|&b| b == b'\n').count() + 1
 }
 
-/// Returns a value as a number; an integer counts as one.
+/// Returns a value as a number; an integer counts as a number.
 pub fn number(value: &toml::Value) -> Option<f64> {
     value.as_float().or_else(|| value.as_integer().map(|i| i as f64))
 }

@@ -1,4 +1,4 @@
-//! The possible and the usual values of quantities: a value outside was probably typed in another unit.
+//! The limits of quantities: their possible and their usual values. A value outside was probably typed in another unit.
 //!
 //! Bounds are wide: wheels from a pebble's to a mining truck's, soils from regolith to clay, gravity from an asteroid's to a
 //! centrifuge's. They do not describe a soil; they distinguish a number in kN from one in N.

@@ -15,7 +15,8 @@ use crate::channel::Channel;
 pub enum Outcome {
     /// The model gave observables.
     Evaluated(Observables),
-    /// The model rejects these parameters: a property of them, recorded and never retried.
+    /// The model rejects these parameters; the rejection is a property of the parameters, so it is recorded and never
+    /// retried.
     Rejected(ParameterRejection),
     /// The machine failed; the evaluation is leased again elsewhere.
     Fault(Fault),

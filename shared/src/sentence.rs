@@ -1,4 +1,4 @@
-//! Messages: an error and its causes in one sentence, and untrusted text in one line.
+//! Sentences for messages: an error and its causes in one sentence, and untrusted text in one line.
 
 use std::borrow::Cow;
 

@@ -15,7 +15,7 @@ use crate::sentence::one_line;
 /// A form of the messages.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum WireForm {
-    /// JSON.
+    /// JSON text.
     Json,
     /// MessagePack, <https://msgpack.org>, with structures as maps.
     MessagePack,

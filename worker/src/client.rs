@@ -33,7 +33,7 @@ pub enum ClientError {
     Certificate {
         /// Path of the certificate.
         file: String,
-        /// The reason.
+        /// Message of the coordinator.
         message: String,
     },
     /// The HTTP client cannot be set up.
@@ -41,7 +41,7 @@ pub enum ClientError {
     Client(reqwest::Error),
 }
 
-/// The timeout of a request, longer than the longest poll: a connection that is silent for so long is dead.
+/// The timeout of a request, longer than the longest poll: a connection that is silent for this time is dead.
 const TIMEOUT: Duration = Duration::from_secs(60);
 
 impl HttpCoordinator {

@@ -13,9 +13,9 @@ pub enum ExportError {
     Shape {
         /// Name of the variable.
         name: String,
-        /// Lengths of its dimensions.
+        /// Lengths of the variable's dimensions.
         shape: Vec<usize>,
-        /// Number of its values.
+        /// Number of the variable's values.
         actual: usize,
         /// Number of values that its dimensions require.
         expected: usize,

@@ -8,13 +8,13 @@ use crate::error::ExportError;
 /// Values over named dimensions, the last one varying fastest.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Variable {
-    /// Name; that of a dimension if the variable labels one.
+    /// Name of the variable; if it labels a dimension, the name of the dimension.
     pub name: String,
     /// Names of the dimensions.
     pub dims: Vec<String>,
     /// Lengths of the dimensions.
     pub shape: Vec<usize>,
-    /// Unit of the values; empty if they have none.
+    /// Unit of the values; empty for values without a unit.
     pub unit: String,
     /// Meaning in words.
     pub meaning: String,

@@ -11,19 +11,19 @@ pub enum ControlError {
     /// The calibration has no result yet, or never will.
     #[error("calibration {id} is {}; results are available when it is finished", state.name())]
     NotFinished {
-        /// The calibration.
+        /// Id of the calibration.
         id: i64,
-        /// Its state.
+        /// State of the calibration.
         state: CalibrationState,
     },
     /// The command does not fit the state.
     #[error("calibration {id} is {}; it cannot be {verb}", state.name())]
     WrongState {
-        /// The calibration.
+        /// Id of the calibration.
         id: i64,
-        /// Its state.
+        /// State of the calibration.
         state: CalibrationState,
-        /// The command.
+        /// Verb of the refused command.
         verb: &'static str,
     },
 }

@@ -223,7 +223,7 @@ struct Thread {
     sink: FactSink,
     rewinds: UnboundedSender<Durable<i64>>,
     parked: VecDeque<Parked>,
-    /// The earliest time at which one of them has waited long enough `[ms]`.
+    /// The earliest `until_ms` of the parked exchanges `[ms]`.
     parked_until_ms: u64,
     began: Instant,
 }

@@ -3,15 +3,15 @@
 /// Counters for the metrics page.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct FarmCounters {
-    /// Results that counted.
+    /// Number of results that were accepted.
     pub completed: u64,
-    /// The number of these that came from workers of a queue's job.
+    /// Number of accepted results from workers of a queue's job.
     pub completed_in_queues: u64,
     /// Results that changed nothing.
     pub duplicates: u64,
     /// Results whose seal does not match.
     pub refused: u64,
-    /// Leases given out.
+    /// Number of leases given out.
     pub leased: u64,
     /// Leases that never reached their worker.
     pub lost: u64,
@@ -32,9 +32,9 @@ pub struct FarmMetrics {
     pub queued: u64,
     /// Leases that are out.
     pub leased: usize,
-    /// Calibrations in progress.
+    /// Number of calibrations in progress.
     pub calibrations: usize,
-    /// Connected workers.
+    /// Number of connected workers.
     pub workers: usize,
     /// Results that wait for a second answer.
     pub unconfirmed: usize,

@@ -1,4 +1,4 @@
-//! A mistake in a file or a map: its place, the expectation, and the nearest fix.
+//! A complaint: a mistake in a file or a map with its place, the expectation, and the nearest fix.
 
 use serde::Serialize;
 use shared::sentence::one_line;

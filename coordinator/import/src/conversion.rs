@@ -1,4 +1,4 @@
-//! A file and its map to runs.csv, with every mistake at once.
+//! The conversion of a file by its map to runs.csv, with every mistake at once.
 
 use std::collections::{BTreeMap, BTreeSet};
 

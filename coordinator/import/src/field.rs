@@ -8,11 +8,11 @@ use crate::unit::Quantity;
 /// The content of a column of runs.csv.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Kind {
-    /// A name.
+    /// Text that names something.
     Name,
     /// A whole number with this minimum.
     Whole(i64),
-    /// `fit` or `holdout`.
+    /// Use of a run: `fit` or `holdout`.
     Use,
     /// A quantity; the column is in its SI unit, angles in degrees.
     Measured(Quantity),
@@ -63,7 +63,7 @@ pub(crate) struct Field {
 }
 
 impl Field {
-    /// One of the column's units in SI units.
+    /// Returns the SI value of one of the column's unit.
     pub(crate) fn si_per_unit(&self) -> f64 {
         match self.kind {
             Kind::Measured(Quantity::Angle) => std::f64::consts::PI / 180.0,

@@ -1,4 +1,4 @@
-//! From users' tables of measurements to `runs.csv`.
+//! The import: from users' tables of measurements to `runs.csv`.
 //!
 //! # Layout
 //! - `read`: the bytes of a file (text, spreadsheet, MATLAB) to a `table` of cells with their places.

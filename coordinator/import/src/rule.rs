@@ -1,4 +1,4 @@
-//! The valid values of runs.csv.
+//! The rules of runs.csv: the valid values of its columns.
 
 use crate::field::{Field, Kind};
 use crate::unit::Quantity;

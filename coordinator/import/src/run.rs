@@ -12,7 +12,7 @@ const DIGITS: usize = 12;
 /// One row of runs.csv.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Run {
-    /// The row of the file that contains it, or with which it begins.
+    /// The row of the file that contains the run, or with which the run begins.
     pub(crate) line: usize,
     pub(crate) name: String,
     /// Values by column of runs.csv; a blank one is absent.

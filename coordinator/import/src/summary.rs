@@ -32,7 +32,7 @@ const WORDS: [&str; 24] = [
     "ø",
     "∅",
 ];
-/// Further first words, which count only if nothing follows: a remark may begin so.
+/// Further first words, which count only if nothing follows, because a remark may begin with the same word.
 const WHOLE: [&str; 8] = [
     "min",
     "max",

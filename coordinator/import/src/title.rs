@@ -23,7 +23,7 @@ pub(crate) enum Stated {
 /// The title of a column.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Title {
-    /// The text in the file; the letters of the column without one.
+    /// The title in the file; without a title, the letters of the column.
     pub(crate) text: String,
     /// The name without its unit.
     pub(crate) name: String,

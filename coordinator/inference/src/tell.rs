@@ -42,9 +42,9 @@ pub enum InferenceFailure {
     /// The next exponent equals the last in floating point.
     #[error("tempering exponent {exponent} cannot grow by {step}: the log-likelihoods differ too much")]
     ExponentStuck {
-        /// The last exponent.
+        /// The tempering exponent of the last stage.
         exponent: f64,
-        /// The step.
+        /// The step of the tempering exponent that is too small.
         step: f64,
     },
 }

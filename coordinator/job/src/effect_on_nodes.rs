@@ -28,7 +28,7 @@ impl EffectOnNodes {
         uses_displacement.then_some(Self { effect, setting })
     }
 
-    /// Returns the candidate of a name, such as `janosi_hanamoto_node`.
+    /// Returns the candidate with this name, for example `janosi_hanamoto_node`.
     pub fn find(name: &str) -> Option<Self> {
         Self::new(find(name.strip_suffix(ON_NODES)?)?)
     }

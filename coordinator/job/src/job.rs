@@ -51,7 +51,7 @@ pub struct Job {
     pub discovery: DiscoverySettings,
     /// Priors of candidates of a search, by the full names of their parameters: `[discovery.priors]`.
     pub candidate_priors: BTreeMap<String, toml::Value>,
-    /// The texts of the files that it names; empty until [`Job::beside`] gives them.
+    /// The texts of the files that the job names; empty until [`Job::beside`] gives them.
     pub files: NamedFiles,
     /// Effect files of the other models.
     also_named: Vec<String>,

@@ -74,7 +74,7 @@ impl ModelSwitch {
         matches!(self.name, "pressure_direction_wheel_normal" | "displacement_rim")
     }
 
-    /// Returns whether a job has it.
+    /// Returns whether a job has the setting.
     pub fn is_on(&self, spec: &Spec) -> bool {
         let spatial = spec.model.spatial.as_ref();
         let displacement = spatial.map(|s| s.displacement);

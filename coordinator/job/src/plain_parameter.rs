@@ -96,8 +96,8 @@ impl PlainParameter {
         Some((value, density))
     }
 
-    /// Returns the value at which a job holds it, with the density of its prior; `None` if it is free, if the model does not have it,
-    /// if its value lies outside its prior, or if an effect is the candidate in its place.
+    /// Returns the value at which a job holds the parameter, with the density of its prior; `None` if it is free, if the model does not
+    /// have it, if its value lies outside its prior, or if an effect is the candidate in its place.
     pub fn held_by(&self, spec: &Spec) -> Option<(f64, Marginal)> {
         let is_free = spec.parameters.iter().any(|p| p.name == self.name);
         let known = match &spec.model.external {

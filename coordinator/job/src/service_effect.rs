@@ -16,7 +16,7 @@ pub struct ServiceEffect {
 }
 
 impl ServiceEffect {
-    /// Returns a version of an effect, as a job lists it.
+    /// Makes the effect file `NAME@VERSION.toml` from one stored version.
     pub fn new(listed_as: String, name: &str, version: i64, text: String) -> ServiceEffect {
         ServiceEffect {
             listed_as,

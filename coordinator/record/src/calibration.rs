@@ -41,7 +41,7 @@ pub struct CalibrationRow {
     pub job: FileSet,
     /// Progress: queued, running, finished and so on.
     pub state: CalibrationState,
-    /// Reason for which it is paused or failed.
+    /// Reason for which the calibration is paused or has failed.
     pub message: Option<String>,
     /// Version of the equations.
     pub model_version: Option<String>,

@@ -19,7 +19,7 @@ pub const NEXT_RUNS: usize = 3;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Verdict {
-    /// No explanation beats the searched model by 3 nats, or that nothing is missing is the most probable one.
+    /// No explanation beats the searched model by 3 nats, or the most probable explanation is that nothing is missing.
     NothingDetectable,
     /// One effect has a probability above 0.9.
     Named,
@@ -133,14 +133,14 @@ pub enum Extension {
     },
 }
 
-/// One explanation.
+/// One explanation with its probability.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct JudgedEffect {
     /// The effect, `EFFECT.WHEEL` on one wheel of several; or `none`, or `not_in_library`.
     pub name: String,
     /// Log evidence over that of the searched model, with the stated prior of its strength \[nats\].
     pub log_bayes_factor: f64,
-    /// Distance of its fitted strength from the middle of that prior, in standard deviations; null of `none` and `not_in_library`.
+    /// Distance of the fitted strength from the middle of its prior, in standard deviations; null for `none` and `not_in_library`.
     #[serde(default)]
     pub prior_sds: Option<f64>,
     /// Posterior probability among all explanations.
@@ -179,7 +179,7 @@ pub struct JudgedSet {
 /// The misfit of a channel under the best explanation.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct RemainingMisfit {
-    /// Channel without unit.
+    /// Channel, by its name without unit.
     #[schema(value_type = String)]
     pub channel: Channel,
     /// Root mean square of measured less predicted values, in declared noise sds.
@@ -229,7 +229,7 @@ pub struct NotTried {
     pub name: String,
     /// The missing quantity, and the value that is assumed to weigh the effect.
     pub why: String,
-    /// The line of the experiment that would state it, or the runs that would show it: `runs at a slip angle`.
+    /// The line of the experiment that would state the missing property, or the runs that would show it: `runs at a slip angle`.
     pub needs: String,
 }
 
@@ -335,7 +335,7 @@ impl Discovery {
 /// Squared residuals in units of the noise.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct ChiSquare {
-    /// Sum of the squares; null where the noise was inferred from them.
+    /// Sum of the squares; null if the noise was inferred from the residuals.
     pub value: Option<f64>,
     /// Number of data minus the effective number of fitted parameters.
     pub degrees_of_freedom: f64,

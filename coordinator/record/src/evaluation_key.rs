@@ -7,7 +7,7 @@ pub const PREDICTIONS_FROM: u64 = 1 << 40;
 /// Number of the evaluation at the most probable parameters.
 pub const LIKELIEST: u64 = 2 * PREDICTIONS_FROM;
 
-/// Numbers from here on are single holdout runs of final draws: run r of draw k is 65536 r + k further.
+/// Numbers from here on are single holdout runs of final draws: run r of draw k is number `HOLDOUT_RUNS_FROM + 65536 r + k`.
 pub const HOLDOUT_RUNS_FROM: u64 = 3 * PREDICTIONS_FROM;
 
 /// Bound on the number of final draws.
@@ -31,8 +31,8 @@ pub enum EvaluationKey {
     Prediction {
         /// Index among the draws.
         draw: usize,
-        /// Whether its holdout runs are evaluated, or its fitted ones. They are separate, so that a rejected holdout run does not
-        /// reject the fitted ones.
+        /// Whether the holdout runs of the draw are evaluated, or the fitted runs. They are separate, so that a rejected holdout run does
+        /// not reject the fitted ones.
         holdout: bool,
     },
     /// One holdout run of a final draw whose holdout runs the model refused together.

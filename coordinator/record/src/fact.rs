@@ -16,7 +16,7 @@ pub enum Fact {
     Evaluated {
         /// Id of the calibration.
         calibration: i64,
-        /// The stored result.
+        /// Row of the evaluation in the store.
         row: EvaluationRow,
     },
     /// A late result of a stored evaluation; it is compared with the stored one, which it must equal.
@@ -27,7 +27,7 @@ pub enum Fact {
         evaluation: u64,
         /// Fingerprint that must agree with the stored one.
         fingerprint: Fingerprint,
-        /// Name of the worker that computed it.
+        /// Name of the worker that computed the evaluation.
         worker: String,
     },
     /// A stage ended.
@@ -64,7 +64,7 @@ pub enum Fact {
     State {
         /// Id of the calibration.
         calibration: i64,
-        /// The new state.
+        /// New state of the calibration.
         state: CalibrationState,
         /// The reason, if there is one.
         message: Option<String>,
@@ -89,7 +89,7 @@ pub enum Fact {
         /// Number of the evaluation that shows it.
         evaluation: u64,
     },
-    /// The unconfirmed results of a worker that computes wrongly are dropped, and all that followed from them.
+    /// The unconfirmed results of a worker that computes wrongly are dropped, with all later results that depend on them.
     Rewound {
         /// Id of the calibration.
         calibration: i64,
@@ -109,7 +109,7 @@ pub enum Fact {
     ModelVersion {
         /// Id of the calibration.
         calibration: i64,
-        /// The version.
+        /// Pinned version of the model.
         version: String,
     },
     /// A machine failed at an evaluation.
@@ -134,7 +134,7 @@ pub struct Dispute {
     pub evaluation: u64,
     /// Name of the worker whose answer is stored.
     pub first: String,
-    /// Name of the worker whose answer differs; it may be the same.
+    /// Name of the worker whose answer differs; it may be the first worker.
     pub second: String,
 }
 
@@ -155,7 +155,7 @@ pub struct EvaluationRow {
     pub end: Option<SubchainEnd>,
     /// Fingerprint that a second computation must reproduce.
     pub fingerprint: Fingerprint,
-    /// Name of the worker that computed it.
+    /// Name of the worker that computed the evaluation.
     pub worker: String,
 }
 

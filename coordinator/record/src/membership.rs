@@ -37,13 +37,13 @@ impl Role {
 pub enum Change {
     /// The model and the measurements are the same; this algorithm calibrates them.
     Algorithm(String),
-    /// It is another of the models that the submitted job compares, by its number in the job, from 0.
+    /// The calibration uses another of the models that the submitted job compares, by its number in the job, from 0.
     Model(usize),
     /// The model has an addition.
     Add(Extension),
     /// The model lacks these effects.
     Drop(Vec<String>),
-    /// The experiment has so many runs more.
+    /// Number of runs that the experiment has gained.
     Runs(usize),
 }
 
@@ -52,9 +52,9 @@ pub enum Change {
 pub struct Membership {
     /// Kind of result that the calibration computes.
     pub role: Role,
-    /// The calibration whose model it changes or searches; `None` for the submitted one.
+    /// The calibration whose model the member changes or searches; `None` for the submitted calibration.
     pub parent: Option<i64>,
-    /// The change from its parent's job. `None` for the submitted calibration, for a search, and where an earlier version did not
+    /// The change from the parent's job. `None` for the submitted calibration, for a search, and where an earlier version did not
     /// store enough to know it.
     pub change: Option<Change>,
 }

@@ -17,8 +17,7 @@ pub struct Stored {
     pub model_version: Option<String>,
     /// Wall time spent before the restart `[ms]`.
     pub busy_ms: u64,
-    /// Stored evaluations by number, without what no replay needs: values of fitted measurements are read back only where an engine
-    /// is told them, observables never.
+    /// Stored evaluations by number. Observables are not loaded; values of fitted measurements only where an engine needs them.
     pub evaluations: BTreeMap<u64, EvaluationRow>,
     /// The evaluations whose answer another worker has reproduced.
     pub confirmed: BTreeSet<u64>,

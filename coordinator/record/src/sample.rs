@@ -52,7 +52,7 @@ pub struct PriorDraw {
     pub theta: Vec<f64>,
     /// The predicted values that the likelihood takes, or the rejection by the model.
     pub result: Result<Vec<f64>, RejectionReason>,
-    /// Number of leases of it that failed before one succeeded.
+    /// Number of leases of this evaluation that failed before one succeeded.
     pub faults: u64,
 }
 

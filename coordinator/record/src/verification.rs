@@ -22,7 +22,7 @@ pub struct Verified {
     pub results: u64,
     /// Number of these that a second worker has reproduced.
     pub confirmed: u64,
-    /// Number of workers that computed them.
+    /// Number of workers that computed these results.
     pub workers: u64,
     /// Number of results of workers that were quarantined after the calibration ended, and that nobody has confirmed.
     pub resting_on: BTreeMap<String, u64>,

@@ -24,7 +24,7 @@ use result::words::data_channel::DataChannel;
 /// A study with its finished results and its unfinished members.
 #[derive(Debug, Clone, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
 pub struct StudyOverview {
-    /// Its id.
+    /// Id of the study.
     pub id: i64,
     /// Name of the submitted calibration.
     pub name: String,
@@ -54,7 +54,7 @@ pub struct StudyOverview {
     pub point_estimates: Vec<PointEstimate>,
     /// Comparison of the job's models; null if the job has one model, and until all are finished.
     pub models: Option<ModelComparison>,
-    /// The flags.
+    /// Flags of the study.
     pub flags: Vec<StudyFlag>,
     /// Verdict of the search of the current model, else of the last search; null if no search is finished.
     pub verdict: Option<StudyVerdict>,
@@ -65,7 +65,7 @@ pub struct StudyOverview {
 /// A member of a study with its story.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
 pub struct MemberOverview {
-    /// The member.
+    /// Member of the study.
     #[serde(flatten)]
     pub member: StudyMember,
     /// What is wrong, what is missing, what to do next; null for a search and for an unfinished member.
@@ -77,7 +77,7 @@ pub struct MemberOverview {
 pub struct StudyFlag {
     /// Calibration that the flag is about; null if it is about several.
     pub calibration: Option<i64>,
-    /// Its kind.
+    /// Kind of the flag.
     #[schema(value_type = String)]
     pub kind: FlagKind,
     /// Channel that the flag is about.
@@ -88,7 +88,7 @@ pub struct StudyFlag {
     pub against: Option<TrendVariable>,
     /// Probability of the observation if nothing were wrong.
     pub p: Option<f64>,
-    /// Meaning in words.
+    /// Meaning of the flag in words.
     pub text: String,
 }
 
@@ -108,7 +108,7 @@ pub struct StudyVerdict {
 /// A study in a list.
 #[derive(Debug, Clone, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
 pub struct StudyListItem {
-    /// Its id.
+    /// Id of the study.
     pub id: i64,
     /// Name of the submitted calibration.
     pub name: String,

@@ -23,7 +23,7 @@ pub enum StudyFile {
     Predictions,
     /// Predictions of every run, as JSON.
     PredictionRows,
-    /// Report.
+    /// The report, as HTML.
     Report,
     /// Tables and flags, as text for a terminal.
     Details,
@@ -33,7 +33,7 @@ pub enum StudyFile {
     Story,
     /// Members, error ledger and flags for the page, as JSON.
     Overview,
-    /// Its line in a list of studies, as JSON.
+    /// The study's entry in a list of studies, as JSON.
     ListItem,
     /// The numbers of a finished calibration's figures, as JSON.
     Figures(i64),
@@ -66,7 +66,7 @@ impl StudyFile {
 /// A JSON file of a finished calibration that does not depend on the rest of its study.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum CalibrationFile {
-    /// Diagnostics.
+    /// The diagnostics of a calibration, as JSON.
     Diagnostics,
     /// The comparison of a model with the measurements.
     Comparison,

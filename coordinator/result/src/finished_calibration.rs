@@ -66,13 +66,13 @@ impl Outcome {
 /// A finished calibration.
 #[derive(Debug)]
 pub struct FinishedCalibration {
-    /// Its row in the store.
+    /// Row of the calibration in the store.
     pub row: CalibrationRow,
-    /// Its specification.
+    /// Specification of the calibration.
     pub spec: Spec,
     /// Name of its experiment.
     pub experiment: String,
-    /// Result.
+    /// Result of the algorithm.
     pub outcome: Outcome,
     /// Predictions of the fitted measurements at the draw with the highest likelihood.
     pub likeliest_values: Option<Vec<f64>>,
@@ -162,7 +162,7 @@ impl FinishedCalibration {
         self.sampled()?.subchains
     }
 
-    /// Returns the draw with the highest likelihood; the first of equal ones.
+    /// Returns the draw with the highest likelihood; of equal draws, the first.
     pub fn likeliest(&self) -> Option<&Particle> {
         likeliest(self.posterior())
     }
@@ -210,7 +210,7 @@ pub fn first_population(spec: &Spec, draws: &[PriorDraw]) -> Vec<Particle> {
     draws.iter().map(particle).collect()
 }
 
-/// Returns the draw with the highest likelihood; the first of equal ones.
+/// Returns the draw with the highest likelihood; of equal draws, the first.
 pub fn likeliest(draws: &[Particle]) -> Option<&Particle> {
     let score = |p: &Particle| p.log_likelihood.value();
     let best = draws

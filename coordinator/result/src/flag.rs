@@ -6,7 +6,7 @@ use crate::words::data_channel::DataChannel;
 /// A warning about a result.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
 pub struct Flag {
-    /// Its kind.
+    /// Kind of the flag.
     #[schema(value_type = String)]
     pub kind: FlagKind,
     /// Channel that the flag is about.
@@ -17,7 +17,7 @@ pub struct Flag {
     pub against: Option<TrendVariable>,
     /// Probability of the observation if nothing were wrong.
     pub p: Option<f64>,
-    /// Meaning in words.
+    /// Meaning of the flag in words.
     pub text: String,
 }
 

@@ -61,9 +61,9 @@ pub struct GenerationSummary {
 pub struct FittedParameter<'a> {
     /// The parameter as the job states it.
     pub free: &'a FreeParameter,
-    /// Its most probable value, in the unit of the parameter.
+    /// Most probable value of the parameter, in its unit.
     pub value: f64,
-    /// Its standard deviation by the Laplace approximation, in the unit of the parameter; `None` if nothing determines it.
+    /// Standard deviation of the parameter by the Laplace approximation, in its unit; `None` if nothing determines it.
     pub sd: Option<f64>,
     /// Whether the parameter lies at a bound of its prior.
     pub at_bound: bool,

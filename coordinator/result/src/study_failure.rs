@@ -7,11 +7,11 @@ use crate::study_member::{Rejections, StudyMember};
 /// The failed member of a study.
 #[derive(Debug, Clone, PartialEq, Eq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
 pub struct StudyFailure {
-    /// Its id.
+    /// Id of the failed calibration.
     pub calibration: i64,
     /// Reason, with the counts of rejections.
     pub reason: String,
-    /// Advice.
+    /// Advice on what to do.
     pub advice: String,
     /// Reason and advice in a sentence.
     pub text: String,

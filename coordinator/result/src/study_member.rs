@@ -10,17 +10,17 @@ use crate::words::number;
 /// A calibration or a search of a study.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
 pub struct StudyMember {
-    /// Its id.
+    /// Id of the member.
     pub id: i64,
-    /// Its name.
+    /// Name of the member.
     pub name: String,
-    /// Its state.
+    /// State of the member.
     pub state: CalibrationState,
     /// Role in the study.
     pub kind: Role,
     /// Effects (`EFFECT.WHEEL` if one wheel of several has it) and freed parameters of its model that the submitted job does not have.
     pub effects: Vec<String>,
-    /// The calibration whose model it searches; null for a sample or a fit.
+    /// The calibration whose model the member searches; null for a sample or a fit.
     pub searches: Option<i64>,
     /// Reason for a pause or a failure.
     pub message: Option<String>,
@@ -31,14 +31,14 @@ pub struct StudyMember {
 /// Counts of the parameter vectors that the model rejected.
 #[derive(Debug, Clone, PartialEq, Eq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
 pub struct Rejections {
-    /// Number by kind.
+    /// Number of rejections by kind.
     pub kinds: BTreeMap<String, u64>,
     /// Message of the first rejection.
     pub first: Option<String>,
 }
 
 impl Rejections {
-    /// Returns the most frequent kind; the first of equal ones.
+    /// Returns the most frequent kind; of several equally frequent kinds, the first.
     pub fn usual(&self) -> Option<&str> {
         let kinds = self.kinds.iter().rev();
         kinds

@@ -17,7 +17,7 @@ use crate::effect::{EffectCard, Group};
 use job::check_effect;
 use result::number;
 
-/// Longest line `[columns]`.
+/// Maximum length of a line `[columns]`.
 const COLUMNS: usize = 100;
 /// The characters for the heights of a curve.
 const BARS: [char; 8] = ['▁', '▂', '▃', '▄', '▅', '▆', '▇', '█'];

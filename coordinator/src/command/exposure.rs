@@ -1,4 +1,4 @@
-//! The decision whether a service may listen at an address, and whether it requires tokens.
+//! The exposure of a service: whether it may listen at an address, and whether it requires tokens.
 
 use std::net::SocketAddr;
 

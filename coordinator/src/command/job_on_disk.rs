@@ -19,7 +19,7 @@ pub(super) struct JobOnDisk {
     pub(super) name: String,
     /// The job with its effect files and the effects of the command line.
     pub(super) job: FileSet,
-    /// Its experiment.
+    /// Experiment of the job.
     pub(super) experiment: FileSet,
     /// The specification; with the first model where the job compares several.
     pub(super) spec: Spec,

@@ -7,7 +7,7 @@ use tokio::sync::watch;
 pub(super) enum StopSignal {
     /// SIGINT, as from Ctrl-C.
     Interrupt,
-    /// SIGTERM.
+    /// The signal SIGTERM.
     Terminate,
 }
 

@@ -50,13 +50,13 @@ pub enum Origin {
 pub struct ParameterCard {
     /// Name within the effect; `EFFECT.NAME` in jobs.
     pub name: String,
-    /// Unit.
+    /// Unit of the parameter.
     pub unit: String,
     /// The value at which the effect is absent; null for a parameter that only shapes it.
     pub neutral: Option<f64>,
     /// The value at which tables show the effect; null for a shape.
     pub typical: Option<f64>,
-    /// A number, which fixes it, or a distribution, as in `[priors]`.
+    /// Prior of the parameter as in `[priors]`: a number, which fixes the parameter, or a distribution.
     #[schema(value_type = Value)]
     pub prior: serde_json::Value,
 }

@@ -44,7 +44,7 @@ const POINTS: usize = 25;
 /// The changes by each strength of an effect.
 #[derive(Debug, Clone, Serialize, Deserialize, ToSchema)]
 pub struct Signature {
-    /// The model.
+    /// Kind of the model that computes the signature.
     pub model_kind: String,
     /// Number of the shown pass over the track.
     pub pass: u32,
@@ -100,9 +100,9 @@ pub struct StrengthSignature {
 /// The change of one channel; null where the model refuses.
 #[derive(Debug, Clone, Serialize, Deserialize, ToSchema)]
 pub struct ChannelSignature {
-    /// The channel.
+    /// Name of the channel.
     pub channel: String,
-    /// Unit.
+    /// Unit of the channel.
     pub unit: String,
     /// Values without the effect, by condition.
     pub base: Vec<Option<f64>>,

@@ -14,7 +14,7 @@ use super::page;
 use record::{Token, TokenHash, TokenRole};
 use store::Reader;
 
-/// The interval between two reads of the tokens, after which a change takes effect.
+/// The interval between two reads of the tokens, and so the delay with which a changed token takes effect.
 const LOOK: Duration = Duration::from_secs(1);
 /// The answer where a token is required and none is sent.
 const NEEDED: &str =
@@ -25,11 +25,11 @@ const UNKNOWN: &str = "the token is unknown or revoked";
 /// The rule that decides whether a token is required.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum TokenRule {
-    /// Always.
+    /// A token is always required.
     Always,
-    /// Once the store has had a token. This is for a service that only this machine can reach.
+    /// A token is required once the store has had one. This is for a service that only this machine can reach.
     OnceThereIsOne,
-    /// Never.
+    /// No token is required.
     Never,
 }
 

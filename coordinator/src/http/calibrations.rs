@@ -98,7 +98,7 @@ async fn status(State(service): State<Service>, Id(id): Id) -> Result<Json<Calib
 /// The state after a command.
 #[derive(Debug, serde::Serialize, utoipa::ToSchema)]
 struct NewState {
-    /// The state.
+    /// State of the calibration after the command.
     state: CalibrationState,
 }
 
@@ -175,13 +175,13 @@ async fn stages(State(service): State<Service>, Id(id): Id) -> Result<Json<Vec<S
     Ok(Json(service.store().reader().stages(id).await?))
 }
 
-/// Which population, and how much of it.
+/// The population to return, and the maximum number of its draws.
 #[derive(Debug, Deserialize, utoipa::IntoParams)]
 #[serde(deny_unknown_fields)]
 struct WhichSamples {
-    /// Stage, counted from 0; the last one where nothing is said.
+    /// Stage, counted from 0; by default, the last stage.
     stage: Option<u32>,
-    /// Largest number of draws: of a larger population, as many equally spaced ones.
+    /// Maximum number of draws; from a larger population, this many equally spaced draws are returned.
     #[serde(rename = "most")]
     max_draws: Option<u32>,
 }
@@ -213,18 +213,18 @@ impl From<Particle> for Sample {
 struct Population {
     /// Names of the parameters, in the order of `theta`.
     parameters: Vec<String>,
-    /// Their units, in the same order; `1` of a number without one.
+    /// Units of the parameters, in the same order; `1` for a dimensionless parameter.
     units: Vec<String>,
     /// Size of the population.
     #[serde(rename = "of")]
     size: u64,
-    /// Its draws in their order, or equally spaced ones of them.
+    /// Draws of the population in their order, or equally spaced ones.
     samples: Vec<Sample>,
 }
 
 /// The population at the end of a stage.
 ///
-/// By default that of the last stage. With `most`, at most so many equally spaced draws of it.
+/// By default, the population of the last stage is returned. With `most`, at most this many of its draws are returned, equally spaced.
 #[utoipa::path(get, path = "/calibrations/{id}/samples", operation_id = "get_samples", tag = "results",
     params(("id" = i64, Path), WhichSamples), responses(
     (status = 200, description = "parameter names, units, size and draws", body = Population),

@@ -29,11 +29,11 @@ pub(super) fn routes() -> OpenApiRouter<Service> {
 /// An effect of the catalogue, with its file and what it does.
 #[derive(Debug, Serialize, utoipa::ToSchema)]
 struct EffectPage {
-    /// Its card.
+    /// Entry of the effect in the catalogue.
     effect: EffectCard,
-    /// The text of its file.
+    /// The text of the effect file.
     text: String,
-    /// What it does in the quasi-static model; null where that cannot express it.
+    /// Influence of the effect in the quasi-static model; null if this model cannot express it.
     signature: Option<Signature>,
     /// Why there is no signature.
     no_signature: Option<String>,
@@ -44,7 +44,7 @@ struct EffectPage {
 /// An effect that was added.
 #[derive(Debug, Serialize, utoipa::ToSchema)]
 struct EffectAdded {
-    /// Its name.
+    /// Name of the effect.
     name: String,
     /// The version that has its text.
     version: EffectVersion,
@@ -52,7 +52,8 @@ struct EffectAdded {
 
 /// Lists the effects of the catalogue.
 ///
-/// The library's in the order of evaluation, then the last versions of those that users have added, by name.
+/// First come the effects of the library in the order of evaluation, then the last versions of the effects that users have
+/// added, by name.
 #[utoipa::path(get, path = "/effects", operation_id = "list_effects", tag = "effects",
     responses((status = 200, description = "cards of the effects", body = Vec<EffectCard>)))]
 async fn list(State(service): State<Service>) -> Result<Json<Vec<EffectCard>>, HttpError> {
@@ -69,7 +70,7 @@ async fn list(State(service): State<Service>) -> Result<Json<Vec<EffectCard>>, H
 
 /// An effect with its file and influence.
 ///
-/// What it does to the measured quantities is computed in the quasi-static model, where that can express it.
+/// The influence on the measured quantities is computed in the quasi-static model, if this model can express the effect.
 #[utoipa::path(get, path = "/effects/{name}", operation_id = "get_effect", tag = "effects",
     params(("name" = String, Path, description = "`NAME`; of one that a user has added also `NAME@VERSION`")),
     responses((status = 200, description = "the effect", body = EffectPage), (status = 404, body = ErrorBody)))]

@@ -15,14 +15,14 @@ pub(super) fn routes() -> OpenApiRouter<Service> {
     OpenApiRouter::new().routes(routes!(list)).routes(routes!(files))
 }
 
-/// An example.
+/// An example in the list of examples.
 #[derive(Debug, serde::Serialize, utoipa::ToSchema)]
 struct ListedExample {
-    /// Its name.
+    /// Name of the example.
     name: &'static str,
-    /// Its name for people.
+    /// Title of the example for people.
     title: &'static str,
-    /// What it shows.
+    /// Sentence on what the example shows.
     summary: &'static str,
     /// Text of its job.
     job: &'static str,
@@ -31,11 +31,11 @@ struct ListedExample {
 /// The files of an example.
 #[derive(Debug, serde::Serialize, utoipa::ToSchema)]
 struct ExampleFiles {
-    /// Its name.
+    /// Name of the example.
     name: &'static str,
-    /// The job.
+    /// File of the job.
     job: NamedText,
-    /// The experiment.
+    /// File of the experiment.
     experiment: NamedText,
     /// Texts of the files that the experiment names, by name.
     files: BTreeMap<&'static str, &'static str>,

@@ -37,7 +37,7 @@ async fn create(
 /// A stored experiment.
 #[derive(Debug, serde::Serialize, utoipa::ToSchema)]
 struct ListedExperiment {
-    /// Its id.
+    /// Id of the experiment.
     id: i64,
     /// The studies that have a calibration on it.
     studies: Vec<i64>,
@@ -46,7 +46,7 @@ struct ListedExperiment {
 /// The files of an experiment.
 #[derive(Debug, serde::Serialize, utoipa::ToSchema)]
 struct ExperimentFiles {
-    /// Its id.
+    /// Id of the experiment.
     id: i64,
     /// Text of `experiment.toml`.
     toml: String,

@@ -22,8 +22,8 @@ pub(super) fn routes() -> OpenApiRouter<Service> {
 
 /// Calibrates with one more effect.
 ///
-/// Adds a calibration to the study of another: the same job with an effect more, of the catalogue or of a file. One
-/// that the study has already is answered with that.
+/// Adds a calibration to the study of another: the same job with one more effect, of the catalogue or of a file. If the
+/// study already has such a calibration, the answer names it.
 #[utoipa::path(post, path = "/calibrations/{id}/extend", operation_id = "extend_calibration", tag = "studies",
     params(("id" = i64, Path)), request_body = NewExtension, responses(
     (status = 201, description = "the new calibration", body = CalibrationCreated), (status = 404, body = ErrorBody),
@@ -76,7 +76,8 @@ async fn discover(
 
 /// What the search found.
 ///
-/// Probabilities of the effects and sets, what each predicts of the measurements, and what a further run would tell.
+/// Probabilities of the effects and of the sets of effects, their predictions of the measurements, and what a further run
+/// would distinguish.
 #[utoipa::path(get, path = "/calibrations/{id}/discovery", operation_id = "get_discovery", tag = "results",
     params(("id" = i64, Path)), responses(
     (status = 200, description = "the outcome of the search", body = Discovery),

@@ -28,7 +28,7 @@ pub(super) fn routes() -> OpenApiRouter<Service> {
 struct ImportRequest {
     /// Name of the file, for messages: `Messung.xlsx`.
     name: String,
-    /// Its bytes in base64: text with separators, .xlsx, .ods, or .mat.
+    /// Content of the file in base64: text with separators, .xlsx, .ods, or .mat.
     content_base64: String,
     /// Text of the map, TOML.
     map: String,
@@ -40,7 +40,7 @@ struct ImportRequest {
 struct GuessRequest {
     /// Name of the file, for messages: `Messung.xlsx`.
     name: String,
-    /// Its bytes in base64: text with separators, .xlsx, .ods, or .mat.
+    /// Content of the file in base64: text with separators, .xlsx, .ods, or .mat.
     content_base64: String,
     /// The sheet, or the struct of a MATLAB file; the largest one where none is named.
     sheet: Option<String>,

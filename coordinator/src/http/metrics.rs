@@ -172,10 +172,10 @@ async fn metrics(
     Ok(text)
 }
 
-/// What `/health` says.
+/// The body of the answer of `/health`.
 #[derive(serde::Serialize, utoipa::ToSchema)]
 struct Health {
-    /// `ok`.
+    /// State of the service; always `ok`.
     status: &'static str,
     /// Version of the coordinator.
     version: &'static str,

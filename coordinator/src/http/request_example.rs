@@ -12,7 +12,7 @@ const FURTHER_RUNS: &str =
 more,w,s,0.25,80.0,0.015,11.9,1.62,0.0071,fit
 ";
 
-/// An effect file.
+/// Text of an effect file.
 const EFFECT: &str = "name = \"stiffer_pull\"
 summary = \"the drawbar pull is larger by a constant share\"
 source = \"an example\"

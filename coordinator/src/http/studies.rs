@@ -43,7 +43,7 @@ async fn list(
 
 /// Deletes a study for good.
 ///
-/// With its calibrations and results, and with its experiments where no other study has them.
+/// Deletes its calibrations and results, too, and its experiments if no other study has them.
 #[utoipa::path(delete, path = "/studies/{id}", operation_id = "delete_study", tag = "studies",
     params(("id" = i64, Path)), responses(
     (status = 200, description = "what was deleted", body = StudyDeleted), (status = 404, body = ErrorBody),

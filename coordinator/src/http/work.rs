@@ -188,9 +188,9 @@ async fn variant(State(service): State<Service>, Name(hash): Name) -> Result<Jso
     })
 }
 
-/// How much work there is.
+/// The amount of work.
 ///
-/// For whatever starts workers: evaluations, workers, and the mean time of an evaluation.
+/// Evaluations, workers, and the mean time of an evaluation, for programs that start workers.
 #[utoipa::path(get, path = "/work/demand", operation_id = "get_work_demand", tag = "work",
     responses((status = 200, description = "work and workers", body = WorkDemand)))]
 async fn demand(State(service): State<Service>) -> Result<Json<WorkDemand>, HttpError> {

@@ -7,7 +7,7 @@ use serde::Deserialize;
 use super::pilot::{PilotSettings, Pilots};
 use super::program::{Invocation, ProgramError};
 
-/// A deployment.
+/// The fields of a Kubernetes deployment that are read.
 #[derive(Deserialize)]
 struct Deployment {
     spec: Spec,

@@ -40,7 +40,7 @@ pub enum ServiceError {
     #[error("calibration {calibration} of study {study} is {}; the study cannot be {verb}: wait, or cancel it first", state.name())]
     InProgress {
         study: i64,
-        /// Its first unfinished calibration.
+        /// Id of the first unfinished calibration of the study.
         calibration: i64,
         state: CalibrationState,
         verb: &'static str,

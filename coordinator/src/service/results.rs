@@ -1,4 +1,4 @@
-//! Texts about studies and calibrations: computed on request, then kept under a stamp.
+//! The results of studies and calibrations as texts: computed on request, then kept under a stamp.
 
 use std::collections::BTreeMap;
 

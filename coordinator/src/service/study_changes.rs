@@ -19,7 +19,7 @@ pub(super) struct StudyChanges {
 }
 
 impl Service {
-    /// Begins to listen.
+    /// Subscribes to the changes of studies.
     pub(super) fn study_changes(&self) -> StudyChanges {
         let notices = (!self.store().is_read_only()).then(|| self.store().writer().study_changes());
         StudyChanges {

@@ -1,4 +1,4 @@
-//! Studies that repeat a calibration without some of its fitted runs.
+//! What-if studies, which repeat a calibration without some of its fitted runs.
 
 use shared::api::{CalibrationCreated, NewCalibration, NewExperiment};
 use shared::experiment::Experiment;

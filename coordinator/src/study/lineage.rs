@@ -35,8 +35,8 @@ impl<'a> Lineage<'a> {
             .map_or(id, |row| row.id)
     }
 
-    /// Returns the search of a calibration's model, if there is one. If several exist, because one failed, it is the last. The search of a
-    /// search is itself.
+    /// Returns the search of a calibration's model, if there is one. If there are several, because one failed, returns the last. For a
+    /// search, returns the search itself.
     pub fn search_of(self, id: i64) -> Option<&'a CalibrationRow> {
         let model = self.model_of(id);
         self.rows.iter().rev().find(|row| {

@@ -1,4 +1,4 @@
-//! Vectors of numbers as bytes: little-endian `f64`.
+//! The form of blobs: vectors of numbers as little-endian `f64`.
 
 use std::borrow::Cow;
 

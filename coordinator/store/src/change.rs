@@ -7,9 +7,9 @@ use tokio::sync::{broadcast, watch};
 /// A stored change of state.
 #[derive(Debug, Clone)]
 pub struct StateChange {
-    /// The calibration.
+    /// Id of the calibration.
     pub calibration: i64,
-    /// Its new state.
+    /// New state of the calibration.
     pub state: CalibrationState,
     /// The reason of a pause or a failure.
     pub message: Option<String>,

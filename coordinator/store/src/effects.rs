@@ -10,28 +10,28 @@ use super::sql::{Connection, Row, query};
 /// An effect to store.
 #[derive(Debug, Clone)]
 pub struct NewEffect {
-    /// Its name.
+    /// Name of the effect.
     pub name: String,
-    /// Its file.
+    /// Text of the effect file.
     pub text: String,
     /// SHA-256 of the file, in hexadecimal digits.
     pub digest: String,
-    /// The name of the token that it came with.
+    /// The name of the token with which the effect was sent.
     pub created_by: Option<String>,
-    /// Now.
+    /// Time of the insertion, in milliseconds since 1970.
     pub now_ms: i64,
 }
 
 /// A version of an effect that a user has added.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
 pub struct EffectVersion {
-    /// Its number, from 1.
+    /// Number of the version, from 1.
     pub version: i64,
-    /// SHA-256 of its file, in hexadecimal digits.
+    /// SHA-256 of the effect file, in hexadecimal digits.
     pub digest: String,
-    /// When it was added, in milliseconds since 1970.
+    /// Time at which the version was added, in milliseconds since 1970.
     pub created_at_ms: i64,
-    /// The name of the token that it came with; null where none was asked for.
+    /// The name of the token with which the effect was sent; null if no token was required.
     pub created_by: Option<String>,
 }
 
@@ -40,9 +40,9 @@ pub struct EffectVersion {
 pub struct StoredEffect {
     /// Name of the effect.
     pub name: String,
-    /// Its file.
+    /// Text of the effect file.
     pub text: String,
-    /// Which version that is.
+    /// Number, digest and origin of the version.
     pub version: EffectVersion,
 }
 
@@ -51,7 +51,7 @@ pub struct StoredEffect {
 pub struct AddedEffect {
     /// Name of the effect.
     pub name: String,
-    /// The version that has its text.
+    /// The version that has the effect's text.
     pub version: EffectVersion,
     /// Whether the text is new.
     pub is_new: bool,

@@ -47,7 +47,7 @@ pub enum StoreError {
         path: String,
         /// The first damaged table.
         table: String,
-        /// What SQLite says.
+        /// Message of SQLite.
         what: String,
     },
     /// Another program holds a lock of SQLite.

@@ -1,4 +1,4 @@
-//! One statement for each kind of fact. Evaluations are inserted in groups instead.
+//! The statements that write facts: one for each kind of fact. Evaluations are inserted in groups instead.
 
 use std::sync::atomic::Ordering;
 
@@ -23,7 +23,7 @@ const SAMPLE: [&str; 6] = [
     "log_likelihood",
     "log_prior",
 ];
-/// The key of tables that have one row for each calibration.
+/// The conflict rule of tables that have one row for each calibration: a new row replaces the old one.
 const ITS_OWN: Conflict<'static> = Conflict::Replace(&["calibration"]);
 
 /// Writes a fact within the present transaction. Stages and states may be written again after a restart. Returns whether the fact makes

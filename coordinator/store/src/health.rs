@@ -11,9 +11,9 @@ pub(super) const PATIENCE: Duration = Duration::from_secs(5);
 pub struct StoreHealth {
     /// Facts sent to the writer.
     pub sent: AtomicU64,
-    /// Commits.
+    /// Number of commits.
     pub commits: AtomicU64,
-    /// Facts committed.
+    /// Number of committed facts.
     pub facts: AtomicU64,
     /// Time spent writing and committing `[us]`.
     pub busy_us: AtomicU64,

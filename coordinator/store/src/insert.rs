@@ -30,27 +30,28 @@ const EVALUATION: [&str; 11] = [
 pub struct NewStudy {
     /// The experiment that it is about.
     pub experiment: i64,
-    /// Its calibrations.
+    /// Calibrations of the study.
     pub calibrations: Vec<NewCalibrationRow>,
     /// The address that pauses and ends are posted to, if the user gave one.
     pub webhook: Option<String>,
-    /// Now.
+    /// Time of the insertion, in milliseconds since 1970.
     pub now_ms: i64,
 }
 
 /// Ids of a new study and its calibrations, in their order.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct StudyIds {
-    /// The study.
+    /// Id of the study.
     pub study: i64,
-    /// Its calibrations.
+    /// Ids of the study's calibrations.
     pub calibrations: Vec<i64>,
 }
 
 /// A calibration to store.
 #[derive(Debug, Clone)]
 pub struct NewCalibrationRow {
-    /// Its place in the study. For the first calibrations of a new study, the store fills in the parent, which is the first of them.
+    /// Place of the calibration in the study. For the first calibrations of a new study, the store fills in the parent, which is the
+    /// first calibration of the study.
     pub membership: Membership,
     /// Name for lists.
     pub name: String,

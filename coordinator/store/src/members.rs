@@ -194,7 +194,7 @@ fn follower(row: &EarlierRow, lead: &EarlierRow, earlier: &[&EarlierRow]) -> Mem
     }
 }
 
-/// Returns the change that the rest of a name stands for.
+/// Returns the change that the remaining part of a calibration's name states.
 fn change(row: &EarlierRow, parent: &EarlierRow, rest: &str) -> Option<Change> {
     if let Some(effect) = rest.strip_prefix('+') {
         return Some(Change::Add(addition(row, parent, effect)));

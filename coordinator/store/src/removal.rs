@@ -11,7 +11,7 @@ const LARGE: [(&str, &str); 2] = [
     ("evaluations", "calibration, evaluation"),
     ("samples", "calibration, stage, particle"),
 ];
-/// The number of rows of these tables that one commit deletes. Results of workers wait no longer than for one such commit.
+/// The number of rows of the large tables that one commit deletes. Results of workers wait no longer than for one such commit.
 const PART: u64 = 1000;
 /// Tables that have few rows for a calibration.
 const SMALL: [&str; 7] = [

@@ -10,7 +10,7 @@ use super::stamp::Stamp;
 /// Files of a study, computed by one build of the program from one state of the study.
 #[derive(Debug, Clone)]
 pub struct StudyResults {
-    /// The study.
+    /// Id of the study.
     pub study: i64,
     /// The build and the state of the study from which they were computed.
     pub stamp: Stamp,

@@ -13,9 +13,10 @@ use super::sql::{Connection, query, query_scalar};
 
 /// How often an idle writer checks whether its connection still exists.
 pub(super) const PROBE: Duration = Duration::from_secs(2);
-/// The time within which the server must answer this check. Later, the connection counts as lost.
+/// The time within which the server must answer a check of the connection. After this time, the connection counts as lost.
 pub(super) const ANSWER_TIME: Duration = Duration::from_secs(5);
-/// The time within which the server must store a group of facts, which takes milliseconds. Later, the connection counts as lost.
+/// The time within which the server must store a group of facts, which takes milliseconds. After this time, the connection counts as
+/// lost.
 pub(super) const GROUP_TIME: Duration = Duration::from_secs(30);
 
 /// Awaits the result of a statement. Returns an error if it takes longer than `max`.

@@ -22,7 +22,7 @@ pub(super) enum Connection {
     Postgres(PgConnection),
 }
 
-/// Connections that read.
+/// The connections that read, by kind of database.
 #[derive(Debug, Clone)]
 pub(super) enum Pool {
     Sqlite(SqlitePool),

@@ -26,7 +26,7 @@ pub struct Stamp {
 pub struct Doubts(u64);
 
 impl Doubts {
-    /// A store of before migration 18, in which workers are not compared.
+    /// The digest for a store of before migration 18, in which workers are not compared.
     pub const NONE: Doubts = Doubts(0);
 }
 
@@ -84,7 +84,7 @@ pub fn members_stamp(build: &str, members: impl Iterator<Item = (i64, Calibratio
     format!("{stamp} of {count}")
 }
 
-/// Returns whether the text of a stamp names this build and these members, whatever doubts it names.
+/// Returns whether the text of a stamp names this build and these members; its disputes and quarantined workers may differ.
 pub fn is_of_members(stamp: &str, members: &str) -> bool {
     stamp.split(';').next() == Some(members)
 }

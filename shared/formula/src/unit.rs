@@ -43,7 +43,7 @@ impl Unit {
     /// A number without unit.
     pub const ONE: Unit = Unit { halves: [0; 4] };
 
-    /// A degree.
+    /// The unit degree.
     pub(crate) const DEGREE: Unit = Unit { halves: [0, 0, 0, 2] };
 
     /// Parses a unit: names of SI units, `^` with a whole power, products by spaces, quotients by `/` (which applies to

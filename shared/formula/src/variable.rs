@@ -116,7 +116,7 @@ const TABLE: [(Variable, &str, &str); Variable::COUNT] = [
 ];
 
 impl Variable {
-    /// The number of variables; `variable as usize` is below it.
+    /// The number of variables; `variable as usize` is less than this.
     pub const COUNT: usize = 34;
 
     /// The number of variables that may differ from node to node; they come first.
@@ -138,12 +138,12 @@ impl Variable {
         TABLE[self as usize].1
     }
 
-    /// Its unit; `None` if it depends on a parameter.
+    /// Returns the unit of the variable; `None` if it depends on a parameter.
     pub fn unit(self) -> Option<Unit> {
         Unit::parse(self.unit_name()).ok()
     }
 
-    /// Its unit in words.
+    /// Returns the unit of the variable in words.
     pub fn unit_name(self) -> &'static str {
         TABLE[self as usize].2
     }

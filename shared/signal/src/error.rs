@@ -21,7 +21,7 @@ pub enum SignalError {
         position: usize,
         /// The offending time `[s]`.
         time_s: f64,
-        /// The time before it `[s]`.
+        /// The time of the sample before `[s]`.
         before_s: f64,
     },
     /// A setting lies outside its bounds.

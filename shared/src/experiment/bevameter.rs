@@ -42,7 +42,8 @@ pub const SHEAR_COLUMNS: [&str; 4] = [
 
 /// Upper bound on the sinkage of a plate: no bevameter presses deeper, but a number in millimetres is larger.
 const DEEPEST_PLATE_M: f64 = 1.0;
-/// Upper bound on the displacement of a ring: no ring is turned so far; a number in millimetres usually exceeds it.
+/// Upper bound on the displacement of a ring: no ring is turned as far as this; a number in millimetres usually exceeds
+/// it.
 const LARGEST_SHEAR_M: f64 = 10.0;
 
 /// Parses `plates.csv`.

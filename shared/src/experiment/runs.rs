@@ -48,7 +48,7 @@ pub struct TestRun {
 #[serde(rename_all = "snake_case")]
 #[strum(serialize_all = "snake_case")]
 pub enum RunUse {
-    /// Enters the likelihood.
+    /// The run enters the likelihood.
     Fit,
     /// Never fitted; scores the prediction.
     Holdout,

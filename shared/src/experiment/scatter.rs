@@ -24,7 +24,7 @@ pub enum Scatter {
 /// A relative standard deviation.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum ScatterSd {
-    /// A stated value.
+    /// The scatter is stated as a number.
     Known(f64),
     /// A parameter of the calibration: `noise.` and the key.
     Unknown,

@@ -105,7 +105,7 @@ pub struct AveragingProtocol {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum ProtocolKind {
-    /// Once the averages have settled.
+    /// The run ends once its averages have settled.
     Steady,
     /// After 50 s, as in the source paper.
     Paper,

@@ -13,7 +13,7 @@ pub(super) const MAX_ROWS: usize = 10_000;
 /// The columns that a file may and must have.
 pub(super) struct Columns<'a> {
     pub(super) allowed: Vec<&'a str>,
-    /// The required names.
+    /// Names of the required columns.
     pub(super) required: &'a [&'a str],
     /// The maximum number of rows.
     pub(super) max_rows: usize,

@@ -1,4 +1,4 @@
-//! Check that a forward model can express a variant.
+//! The capabilities of forward models: the check that a model can express a variant.
 
 use std::collections::BTreeSet;
 

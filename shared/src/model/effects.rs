@@ -40,7 +40,7 @@ pub struct Chosen {
 /// A parameter of an effect for which a job states neither prior nor value.
 #[derive(Debug, Clone)]
 pub struct UnstatedParameter<'a> {
-    /// Its name in the job: `EFFECT.PARAMETER`, or `EFFECT.PARAMETER.WHEEL`.
+    /// Name of the parameter in the job: `EFFECT.PARAMETER`, or `EFFECT.PARAMETER.WHEEL`.
     pub name: String,
     /// The effect, with its file.
     pub chosen: &'a Chosen,

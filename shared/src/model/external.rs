@@ -170,7 +170,7 @@ impl ExternalModel {
         self.parameter(name).is_some_and(same)
     }
 
-    /// Returns whether it takes a property of a run.
+    /// Returns whether the model takes a property of a run.
     pub fn takes(&self, input: RunInput) -> bool {
         self.inputs.contains(&input)
     }

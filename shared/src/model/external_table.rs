@@ -11,7 +11,7 @@ use crate::parameters;
 
 /// The default of the maximum time of a run `[s]`.
 const TIME_S: f64 = 60.0;
-/// The upper bound of that time: a day `[s]`.
+/// The upper bound of a run's maximum time: a day `[s]`.
 const MAX_TIME_S: f64 = 86_400.0;
 /// The default of a program's address space \[MB\].
 const MEMORY_MB: u64 = 4096;

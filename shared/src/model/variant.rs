@@ -231,7 +231,8 @@ impl ModelVariant {
         hash_of(&self.text())
     }
 
-    /// Its JSON. Struct fields and ordered maps serialise in one order, so equal variants have equal text.
+    /// Returns the JSON of the variant. Struct fields and ordered maps serialise in one order, so equal variants have
+    /// equal text.
     pub fn text(&self) -> Vec<u8> {
         serde_json::to_vec(self).expect("a variant holds only numbers, text and ordered maps")
     }

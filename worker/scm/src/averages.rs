@@ -1,4 +1,4 @@
-//! The result of a run: steady means of the measured channels, and diagnostics of the contact.
+//! The averages of a run: steady means of the measured channels, and diagnostics of the contact.
 
 /// Steady averages of one run and the diagnostics of the contact behind them.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]

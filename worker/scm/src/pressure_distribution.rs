@@ -12,11 +12,11 @@ use crate::elementary::fraction_pow;
 /// formula; this power law is a choice of this crate.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum PressureDistribution {
-    /// m = 0.
+    /// The exponent m is 0.
     Uniform,
     /// m = 1/2: a square root instead of a power.
     Root,
-    /// m = 1.
+    /// The exponent m is 1.
     Linear,
     /// Any other m > 0.
     Power(f64),

@@ -5,7 +5,7 @@
 //! where a slip velocity changes sign. A panel of zero length contributes zero, so an integral stays continuous when a
 //! breakpoint enters or leaves the contact.
 
-/// Nodes per panel.
+/// Number of nodes per panel.
 pub(crate) const NODES: usize = 8;
 
 /// S(s) at the nodes: place within the panel, from 0 to 1.

@@ -33,7 +33,7 @@ use crate::shear::ShearDisplacement;
 pub struct WongReece {
     /// Share of the entry angle at which the pressure peaks without slip, c1 `[–]`.
     pub c1: f64,
-    /// Increase of that share with slip, c2 `[–]`.
+    /// Increase of the peak's share of the entry angle with slip, c2 `[–]`.
     pub c2: f64,
     /// Displacement at which 1 − 1/e of the strength is mobilised, K `[m]`, ≥ 0; 0: any displacement mobilises the whole strength.
     pub shear_modulus_m: f64,

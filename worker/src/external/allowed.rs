@@ -40,7 +40,7 @@ type FileState = (u64, u64, i64, i64);
 /// Why a model cannot be allowed.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum AllowedModelError {
-    /// There is no such file.
+    /// The file of the program does not exist.
     #[error("--allow-model {0}: no such file; a server begins with http:// or https://")]
     NoFile(String),
     /// Two files have the same name.

@@ -36,7 +36,7 @@ pub(super) struct UmbridgeServer {
 enum Layout {
     /// One vector: properties, then parameters.
     One,
-    /// Two vectors.
+    /// Two output vectors.
     Two,
 }
 

@@ -10,7 +10,7 @@ use super::parameters::{ParameterSource, SoilMap};
 
 /// The only effect that acts on a ring.
 const SHEAR_DISPLACEMENT: &str = "janosi_hanamoto";
-/// The K of that effect for all wheels, because a ring is not a wheel.
+/// The parameter of that effect for all wheels, because a ring is not a wheel.
 const SHEAR_MODULUS: &str = "janosi_hanamoto.shear_modulus_m";
 
 /// Returns the effects of a variant that do not act on plates and rings.

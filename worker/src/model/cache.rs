@@ -22,14 +22,14 @@ pub struct VariantCache {
 #[derive(Debug)]
 struct CachedVariant {
     compiled: Arc<CompiledVariant>,
-    /// Length of its text, which for a metamodel grows with the particles, as does its compiled size.
+    /// Length of the variant's text, which for a metamodel grows with the particles, as does its compiled size.
     bytes: usize,
 }
 
 impl VariantCache {
     /// The maximum number of variants: a round of a search needs hundreds, and the next round almost the same ones.
     pub const MAX_VARIANTS: usize = 1024;
-    /// The maximum total length of their texts, unless there is a single one.
+    /// The maximum total length of the texts of the variants, unless there is a single variant.
     pub const MAX_BYTES: usize = 64 << 20;
 
     /// Creates an empty cache; `models` are the external models that may be run.

@@ -1,4 +1,4 @@
-//! Time histories of a run, at the rate of a rig's data logger.
+//! The recording of a run: its time histories at the rate of a rig's data logger.
 
 use scm::Rejection;
 use scm::spatial::History;

@@ -11,7 +11,7 @@ pub struct WorkerLimits {
     pub ends_at: Option<Instant>,
     /// The worker ends when no calibration has wanted workers for some seconds.
     pub once: bool,
-    /// The worker ends when its process holds more memory `[MB]`.
+    /// The worker ends when its process uses more memory than this `[MB]`.
     pub max_memory_mb: Option<u64>,
 }
 

@@ -10,7 +10,7 @@ use crate::external::allowed::AllowedModels;
 pub struct PullSettings {
     /// Name of this worker process, fresh at every start.
     pub name: String,
-    /// The queue's job that started it, such as `slurm 1234_5`.
+    /// The queue's job that started the worker, such as `slurm 1234_5`.
     pub queue_job: Option<String>,
     /// Number of threads that simulate.
     pub threads: usize,

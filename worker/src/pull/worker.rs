@@ -31,16 +31,16 @@ const LULL: Duration = Duration::from_secs(5);
 const MAX_RUNS: usize = 100_000;
 /// The maximum time between two messages with results, even while there is work left.
 const FLUSH: Duration = Duration::from_secs(1);
-/// The time that a stopping worker waits for running evaluations; slower ones are given back unfinished.
+/// The time that a stopping worker waits for running evaluations; those that take longer are returned unfinished.
 const GRACE: Duration = Duration::from_secs(3);
-/// The maximum time of its last message.
+/// The maximum time of the last message of a stopping worker.
 const FAREWELL: Duration = Duration::from_millis(1500);
 /// The time that a stopping worker waits for an answer that may be under way.
 const PARTING: Duration = Duration::from_millis(300);
 /// Pauses between attempts to reach a coordinator that is away: doubled from the first to the last value.
 const BACK_OFF: [Duration; 2] = [Duration::from_millis(100), Duration::from_secs(5)];
 
-/// The interval at which external models are asked for their identity.
+/// The interval between two requests for the identity of external models.
 const ASK: Duration = Duration::from_secs(5);
 
 /// The state of the farm by the coordinator's last answer.

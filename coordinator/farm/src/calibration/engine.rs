@@ -15,7 +15,7 @@ use search::{DiscoveryError, RunningDiscovery, SearchModels};
 pub enum CalibrationEngine {
     /// Samples the posterior; it is told log-likelihoods.
     Sampler(Box<Sampler>),
-    /// Fits the most probable parameters by steps; it is told predicted values.
+    /// Fits the most probable parameters by steps, from predicted values.
     Fit(Box<LmFit>),
     /// Finds the most probable parameters by generations; it is told log-likelihoods.
     Evolution(Box<Evolution>),
@@ -40,13 +40,13 @@ pub enum BeginError {
 /// A result that an engine cannot take.
 #[derive(Debug, thiserror::Error)]
 pub(super) enum EngineError {
-    /// It does not belong to a pending proposal.
+    /// The result does not belong to a pending proposal.
     #[error(transparent)]
     Tell(#[from] TellError),
     /// The next round of the search cannot be proposed.
     #[error(transparent)]
     Discovery(#[from] DiscoveryError),
-    /// Its log-likelihood is not a number.
+    /// The log-likelihood of the result is not a number.
     #[error(transparent)]
     Score(#[from] NotANumber),
 }
@@ -145,7 +145,7 @@ impl CalibrationEngine {
         })
     }
 
-    /// Returns the search for a missing effect, if the engine is one.
+    /// Returns the search for a missing effect, if the engine runs a search.
     pub(super) fn discovery(&self) -> Option<&RunningDiscovery> {
         match self {
             CalibrationEngine::Discovery(discovery) => Some(discovery),

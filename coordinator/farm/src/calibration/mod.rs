@@ -81,11 +81,11 @@ pub struct Cost {
 /// A calibration in progress.
 #[derive(Debug)]
 pub struct Calibration {
-    /// Its identity.
+    /// Identity of the calibration.
     pub identity: CalibrationIdentity,
-    /// Its specification.
+    /// Specification of the calibration.
     pub spec: Arc<Spec>,
-    /// Its state.
+    /// State of the calibration.
     pub state: CalibrationState,
     /// The reason of a pause or a failure.
     pub message: Option<String>,
@@ -93,7 +93,7 @@ pub struct Calibration {
     pub model_version: Option<String>,
     /// The evaluations of the present round, and the workers that hold them.
     pub queue: LeaseQueue,
-    /// What it has cost.
+    /// Cost of the calibration so far.
     pub cost: Cost,
     /// The record of the workers that answered.
     pub witness: Witness,

@@ -19,7 +19,7 @@ pub enum ReplayError {
         "evaluation {evaluation} was stored at {stored:?}, but this version proposes {proposed:?}: the calibration was started by another version of the sampler"
     )]
     OtherTheta {
-        /// The evaluation.
+        /// Number of the evaluation.
         evaluation: u64,
         /// The stored parameter vector.
         stored: Vec<f64>,
@@ -32,7 +32,7 @@ pub enum ReplayError {
     /// The stored log-likelihood is not a number.
     #[error("evaluation {evaluation} was stored with a log-likelihood that is no number")]
     NotANumber {
-        /// The evaluation.
+        /// Number of the evaluation.
         evaluation: u64,
     },
 }

@@ -22,7 +22,7 @@ pub enum ResultError {
     /// The observables do not have one entry for each run.
     #[error("the observables of evaluation {evaluation} do not cover the {runs} conditions of the variant")]
     WrongShape {
-        /// The evaluation.
+        /// Number of the evaluation.
         evaluation: u64,
         /// The expected number of entries.
         runs: usize,
@@ -30,7 +30,7 @@ pub enum ResultError {
     /// The end of a subchain is missing, unexpected or impossible.
     #[error("the result of evaluation {evaluation} does not answer what its lease asked for")]
     OtherQuestion {
-        /// The evaluation.
+        /// Number of the evaluation.
         evaluation: u64,
     },
 }

@@ -20,22 +20,22 @@ pub enum Completion {
 /// A lease that failed.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct LeaseFailure {
-    /// The evaluation.
+    /// Number of the evaluation.
     pub evaluation: u64,
-    /// The worker that held it.
+    /// The worker that held the lease.
     pub worker: String,
     /// The number of failed leases of this evaluation so far.
     pub attempt: u32,
-    /// The number of different workers on which they failed.
+    /// The number of different workers on which leases of this evaluation failed.
     pub workers: usize,
 }
 
 /// A worker that claims evaluations.
 #[derive(Debug, Clone, Copy)]
 pub struct Claimant<'a> {
-    /// The worker.
+    /// Name of the worker.
     pub worker: &'a str,
-    /// The number of leases that it holds, of any calibration.
+    /// The number of leases that the worker holds, of any calibration.
     pub holds: usize,
     /// The present time `[ms]`.
     pub now_ms: u64,
@@ -46,9 +46,9 @@ pub struct Claimant<'a> {
 /// A claim on an evaluation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct NewClaim {
-    /// The lease.
+    /// Number of the lease.
     pub lease: u64,
-    /// The evaluation.
+    /// Number of the evaluation.
     pub evaluation: u64,
     /// Whether the evaluation is a suspect, whose start must be reported.
     pub suspect: bool,
@@ -80,8 +80,8 @@ impl LeaseFailure {
 /// A lease that has been out for a long time.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct SlowLease {
-    /// Its number.
+    /// Number of the lease.
     pub lease: u64,
-    /// The worker that holds it.
+    /// The worker that holds the lease.
     pub worker: String,
 }

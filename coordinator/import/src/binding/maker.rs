@@ -1,4 +1,4 @@
-//! Binds the entries of a map to the columns of a table, and collects every mistake.
+//! The maker of a binding: it binds the entries of a map to the columns of a table, and collects every mistake.
 
 use formula::expression::Expression;
 use formula::unit::Unit as Dimension;

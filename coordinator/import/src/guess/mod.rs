@@ -1,4 +1,4 @@
-//! Proposes a map from the titles of a file; missing statements become questions.
+//! The guess of a map: it is proposed from the titles of a file, and missing statements become questions.
 //!
 //! # Layout
 //! - this file: the column of each field.

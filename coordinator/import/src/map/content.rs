@@ -45,7 +45,7 @@ pub(crate) struct Recording {
     pub(crate) time_unit: String,
     /// Column that changes from run to run.
     pub(crate) marker: String,
-    /// Value of that column between runs.
+    /// Values of the marker column between runs.
     pub(crate) between: BTreeSet<String>,
     /// Interval that is averaged, from the beginning of each run `[s]`.
     pub(crate) window_s: Option<(f64, f64)>,

@@ -1,4 +1,4 @@
-//! Parses the text of a map.
+//! The reader of a map: it parses the map's text.
 
 use std::collections::BTreeMap;
 

@@ -1,4 +1,4 @@
-//! From bytes to characters.
+//! The encoding of a text file: its bytes decoded to characters.
 
 use encoding_rs::{Encoding, UTF_8, UTF_16BE, UTF_16LE, WINDOWS_1252};
 

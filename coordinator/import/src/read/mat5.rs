@@ -15,7 +15,7 @@ const MAX_BYTES: u64 = 256 << 20;
 /// Maximum nesting of structs and cells.
 const DEEPEST: usize = 8;
 
-/// Types of elements.
+/// Type codes of elements (miMATRIX and others).
 const MATRIX: u32 = 14;
 const COMPRESSED: u32 = 15;
 

@@ -1,4 +1,4 @@
-//! From the bytes of a file to a table of cells.
+//! The readers of files: from the bytes of a file to a table of cells.
 //!
 //! # Layout
 //! - `source_file`: the file, and the map's statements about it. `any`: a file of any format, recognised by its content.

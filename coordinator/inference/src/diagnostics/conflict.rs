@@ -5,7 +5,7 @@ use super::tail::chi_square_tail;
 use statistics::likelihood::ErrorLaw;
 use statistics::prior::Prior;
 
-/// Directions whose posterior variance is above this share of the prior's are left out: too little information.
+/// Ratio of posterior to prior variance above which a direction is left out: the data say too little about it.
 const INFORMED: f64 = 0.75;
 
 /// The distance of the posterior from the prior.

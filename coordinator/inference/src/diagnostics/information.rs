@@ -1,4 +1,4 @@
-//! Whether a channel can be informative, by its prior predictive spread against its errors.
+//! The information of a channel: whether its prior predictive spread is large enough, compared with its errors.
 
 use std::collections::BTreeMap;
 

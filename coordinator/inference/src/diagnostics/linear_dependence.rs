@@ -2,9 +2,9 @@
 
 use nalgebra::{Cholesky, DMatrix, DVector};
 
-/// A remaining share of a quantity's variance below this is rounding.
+/// Unexplained share of a quantity's variance below which earlier quantities determine it: a smaller share is rounding.
 const REMAINING: f64 = 1e-12;
-/// Weight, in standard deviations, from which a quantity counts.
+/// Absolute regression weight `[1]` at and above which a quantity belongs to a dependence.
 const WEIGHT: f64 = 1e-6;
 
 /// Returns the first quantity that is a linear function of earlier ones, with the quantities that it depends on.

@@ -10,9 +10,9 @@ pub const BINS: usize = 5;
 pub struct Side {
     /// Position of the parameter.
     pub parameter: usize,
-    /// First bin.
+    /// First bin of the region.
     pub from: usize,
-    /// The bin after the last.
+    /// The bin after the region's last bin.
     pub to: usize,
 }
 

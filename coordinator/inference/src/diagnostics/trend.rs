@@ -50,7 +50,7 @@ pub struct TrendTest<'a> {
     whitening: Whitening,
     /// Measured minus predicted.
     residuals: Vec<f64>,
-    /// Columns of X.
+    /// Sensitivities of the predictions, the columns of X.
     sensitivities: Vec<Vec<f64>>,
     /// Columns of X, whitened.
     whitened: Vec<Vec<f64>>,

@@ -1,4 +1,4 @@
-//! All parameters in units of their priors' widths.
+//! The prior space: all parameters in units of their priors' widths.
 
 use super::individual::Individual;
 use crate::point_estimate::PriorAxis;

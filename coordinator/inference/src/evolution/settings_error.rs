@@ -30,7 +30,7 @@ pub enum EvolutionSettingsError {
     Elite {
         /// The elite as given.
         elite: usize,
-        /// The population.
+        /// The size of the population as given.
         population: usize,
     },
     /// The budget is too large, or too small for a second generation.

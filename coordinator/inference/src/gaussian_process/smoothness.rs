@@ -1,4 +1,4 @@
-//! Length scales and noise, chosen by leaving out one observation after the other.
+//! The smoothness of a process: length scales and noise, chosen by leaving out one observation after the other.
 
 use nalgebra::{Cholesky, DVector};
 
@@ -10,11 +10,11 @@ use super::representative::{levels, representative};
 const LENGTHS: [f64; 6] = [0.1, 0.2, 0.4, 0.8, 1.6, 3.2];
 /// Variances of the noise of one measurement that are tried, over that of the process.
 const NOISES: [f64; 5] = [1e-4, 1e-3, 1e-2, 1e-1, 1.0];
-/// A coordinate of fewer levels does not determine its scale, and has the longest.
+/// Number of distinct values below which a coordinate does not determine its length scale, and has the longest one.
 const MIN_LEVELS: usize = 3;
 /// Maximum number of rounds over all coordinates.
 const ROUNDS: usize = 8;
-/// With more observations this many determine the kernel: the cost grows with the cube of their number.
+/// Maximum number of observations that determine the kernel: the cost grows with the cube of their number.
 const MAX_OBSERVATIONS: usize = 150;
 
 /// Returns the kernel with the least squared errors of the observations left out one by one, by steps along one coordinate at a
@@ -51,7 +51,7 @@ pub(super) fn smoothest(observations: &[Observation], dimension: usize) -> Kerne
     best
 }
 
-/// Returns a kernel with every other value of one coordinate, the noise being the last.
+/// Returns copies of a kernel, one with each value that is tried for a coordinate; the coordinate after the last one is the noise.
 fn trials(kernel: &Kernel, coordinate: usize) -> Vec<Kernel> {
     let values: &[f64] = match coordinate < kernel.lengths.len() {
         true => &LENGTHS,

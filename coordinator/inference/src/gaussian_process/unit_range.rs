@@ -1,4 +1,4 @@
-//! Coordinates over their range.
+//! The unit range: coordinates divided by their range.
 
 /// The least value and the range of each coordinate of some points.
 #[derive(Debug, Clone)]

@@ -5,7 +5,7 @@ use nalgebra::{Cholesky, DMatrix};
 /// Degrees of freedom: heavier tails than a normal density, with a finite covariance.
 pub(super) const DEGREES_OF_FREEDOM: usize = 5;
 
-/// Smallest diagonal entry of a correlation's factor: below, rounding decides.
+/// Smallest diagonal entry of a correlation's factor: below this, rounding decides.
 const MIN_PIVOT: f64 = 1e-7;
 
 /// A weighted t-density.
@@ -13,7 +13,7 @@ const MIN_PIVOT: f64 = 1e-7;
 pub(super) struct Component {
     pub(super) weight: f64,
     pub(super) mean: Vec<f64>,
-    /// C, by rows.
+    /// Scatter matrix C, by rows.
     pub(super) scatter: Vec<f64>,
     /// L of C = L L', by rows.
     factor: Vec<f64>,

@@ -5,7 +5,7 @@ use super::density::Mixture;
 use super::points::WeightedPoints;
 use statistics::rng::Stream;
 
-/// Effective points below which a component is dropped.
+/// Number of effective points below which a component is dropped.
 const MIN_POINTS: f64 = 0.2;
 
 /// Number of effective points, for each dimension and two more, with which the mean scatter within components enters each

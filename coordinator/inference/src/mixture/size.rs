@@ -9,7 +9,7 @@ use statistics::rng::Stream;
 const TRIAL_ROUNDS: usize = 12;
 /// Rounds of the fit that is used.
 const ROUNDS: usize = 25;
-/// Sizes in a row that may predict worse before the search ends.
+/// Number of sizes in a row that may predict worse than the best one before the search ends.
 const PATIENCE: usize = 2;
 
 /// Returns the mixture of 1, 2, 4, ... up to `max` components whose fit to one half of the points predicts the other best, and

@@ -1,4 +1,4 @@
-//! One parameter in units of its prior's width.
+//! An axis: one parameter in units of its prior's width.
 
 use statistics::prior::Marginal;
 

@@ -21,7 +21,7 @@ pub enum StopReason {
 }
 
 impl StopReason {
-    /// All reasons.
+    /// All reasons for which an optimisation stops.
     pub const ALL: [Self; 5] = [
         Self::Decrease,
         Self::Step,
@@ -30,7 +30,7 @@ impl StopReason {
         Self::Generations,
     ];
 
-    /// Returns whether it stopped before convergence.
+    /// Returns whether the optimisation stopped before convergence.
     #[must_use]
     pub fn is_early(self) -> bool {
         matches!(self, Self::Budget | Self::Generations)
@@ -64,7 +64,7 @@ impl StopReason {
 /// Tierney & Kadane 1986, J. Am. Stat. Assoc. 81:82, doi:10.1080/01621459.1986.10478240.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Laplace {
-    /// Standard deviation of each parameter with the others free; `None` at a bound and where it is not determined.
+    /// Standard deviation of each parameter while the other parameters vary; `None` at a bound and where it is not determined.
     pub sd: Vec<Option<f64>>,
     /// Covariance in the units of the parameters: the inverse of the curvature of f, without the model's own curvature.
     /// Rows and columns of parameters without a standard deviation are 0.

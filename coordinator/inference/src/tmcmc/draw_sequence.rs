@@ -12,12 +12,12 @@ use crate::phase::RunPhase;
 use crate::tell::InferenceFailure;
 use statistics::metamodel::Pool;
 
-/// The last stage's draws are not trusted if |z| of their difference from the prediction of the stage before is larger. Earlier
-/// stages only lead to them, and raise no alarm. Weights have heavier tails than a normal variable: over 180 runs with right
-/// answers the largest is 5.2.
+/// Absolute z-score of the difference between the last stage's draws and the prediction of the stage before, at and above which the draws
+/// are not trusted. Earlier stages only lead to the last one, and raise no alarm. Weights have heavier tails than a normal variable: over
+/// 180 runs with right answers the largest is 5.2.
 const DISAGREEMENT: f64 = 6.0;
 
-/// A smaller relative difference counts as none.
+/// Relative difference of two numbers below which they count as equal.
 const ROUNDING: f64 = 1e-9;
 
 impl Sampler {

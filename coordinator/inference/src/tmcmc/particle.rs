@@ -10,7 +10,7 @@ pub struct Particle {
     pub theta: Vec<f64>,
     /// ln p(data | theta).
     pub log_likelihood: LogLikelihood,
-    /// ln p(theta).
+    /// Log density of the prior, ln p(theta).
     pub log_prior: f64,
 }
 

@@ -42,7 +42,7 @@ pub struct StageRecord {
 pub struct StageProgress {
     /// Index of the stage; 0 during the prior draws.
     pub stage: usize,
-    /// Its tempering exponent.
+    /// Tempering exponent of the stage.
     pub tempering_exponent: f64,
     /// Steps completed in this stage.
     pub step: usize,
@@ -55,7 +55,7 @@ pub struct StageProgress {
 pub struct PosteriorSample {
     /// Equally weighted draws.
     pub particles: Vec<Particle>,
-    /// ln p(data).
+    /// Log-evidence, ln p(data).
     pub log_evidence: f64,
     /// Standard error of the log-evidence within the run.
     pub log_evidence_se: f64,

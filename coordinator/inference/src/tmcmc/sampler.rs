@@ -36,7 +36,7 @@ pub struct Sampler {
 /// The pending evaluations of the sampler.
 #[derive(Debug, Clone)]
 pub(super) enum SamplerRound {
-    /// The prior draws.
+    /// The draws from the prior that start the sampler.
     Prior,
     /// Independent draws of a stage.
     Draws(Box<DrawStage>),

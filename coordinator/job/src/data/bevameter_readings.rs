@@ -21,7 +21,7 @@ const TRANSFER_SD: f64 = 0.1;
 pub struct Reading<C> {
     /// The test that the reading belongs to.
     pub test: String,
-    /// Plate or ring.
+    /// Conditions of the plate or ring.
     pub condition: C,
     /// Measured pressure or shear stress `[Pa]`, > 0.
     pub stress_pa: f64,

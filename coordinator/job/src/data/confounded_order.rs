@@ -2,7 +2,7 @@
 
 use shared::experiment::{Experiment, TestRun};
 
-/// Values closer than this share of their range are one level `[1]`.
+/// Difference of values, as a share of their range, up to which they are one level `[1]`.
 const SAME_LEVEL: f64 = 0.02;
 /// Absolute rank correlation beyond which at most one pair of runs in ten separates an effect from a drift.
 const CONFOUNDED: f64 = 0.8;

@@ -14,7 +14,7 @@ pub(crate) enum DataError {
     /// A prior for a noise sd that the experiment states.
     #[error("{name} has a prior, but the experiment does not say {key} = \"unknown\" under [noise]")]
     NotUnknown {
-        /// The parameter.
+        /// Name of the parameter.
         name: String,
         /// The key of the experiment.
         key: String,
@@ -22,7 +22,7 @@ pub(crate) enum DataError {
     /// A prior for a noise sd that no fitted measurement has.
     #[error("{name} has a prior, but {nothing} needs it")]
     NotNeeded {
-        /// The parameter.
+        /// Name of the parameter.
         name: String,
         /// The measurements that would need it.
         nothing: &'static str,
@@ -32,9 +32,9 @@ pub(crate) enum DataError {
         "[noise] {column} is missing: {column} of run \"{run}\" is measured, so its sd in {unit}, \"replicates\" or \"unknown\" must be given there"
     )]
     NoNoise {
-        /// The channel.
+        /// Column of the channel.
         column: &'static str,
-        /// The run.
+        /// Name of the run.
         run: String,
         /// Unit of the channel.
         unit: &'static str,
@@ -44,7 +44,7 @@ pub(crate) enum DataError {
         "[noise] {column} = \"replicates\": the fit runs repeat conditions only {freedom} times, at least {MIN_FREEDOM} repeats are needed"
     )]
     FewRepeats {
-        /// The channel.
+        /// Column of the channel.
         column: &'static str,
         /// Repeats beyond the first of each condition.
         freedom: usize,
@@ -63,7 +63,7 @@ pub(crate) enum DataError {
         "test \"{test}\": {stress} {stress_pa} Pa at {displacement} {displacement_m} m has no logarithm: both must be > 0, or leave the reading blank"
     )]
     NoLogarithm {
-        /// The test.
+        /// Name of the test.
         test: String,
         /// Column of the stress.
         stress: &'static str,

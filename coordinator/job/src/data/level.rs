@@ -1,6 +1,6 @@
 //! Levels of a condition: values that differ by less than the accuracy of a setting are one level.
 
-/// Values closer than this share of their range are one level `[1]`.
+/// Difference of neighbouring values, as a share of the range of all values, up to which they are one level `[1]`.
 const SAME_LEVEL: f64 = 0.02;
 
 /// Returns the level of each value, ascending from 0: a gap of more than 2 % of the range begins another level.

@@ -10,9 +10,9 @@ use super::error::DataError;
 use super::noise::{preparations, scatter_sd};
 use crate::table::prior_entry::FreeParameter;
 
-/// The derivative by ln k*, k* the soil's stiffness, among those of a datum.
+/// Index, among a datum's derivatives, of the one with respect to ln k*, where k* is the soil's stiffness.
 pub(crate) const BY_STIFFNESS: usize = 0;
-/// The derivative by the logarithm of the soil's shear strength.
+/// Index, among a datum's derivatives, of the one with respect to the logarithm of the soil's shear strength.
 pub(crate) const BY_STRENGTH: usize = 1;
 
 /// A scatter of the soil, from run to run or from preparation to preparation.

@@ -1,4 +1,4 @@
-//! The measurements that are fitted, with their likelihood.
+//! The split into fitted and holdout runs, with the likelihood of the fitted measurements.
 
 use shared::experiment::{Experiment, RunUse};
 use shared::predicted::PredictedValue;
@@ -12,7 +12,7 @@ use crate::data::soil_scatter::SoilScatter;
 use crate::table::likelihood_settings::LikelihoodSettings;
 use crate::table::prior_entry::FreeParameter;
 
-/// The measurements that are fitted.
+/// The split into fitted and holdout runs, with the likelihood of the fitted measurements.
 pub(super) struct Fitted {
     /// The fitted runs, as positions in the experiment.
     pub(super) fit_runs: Vec<usize>,

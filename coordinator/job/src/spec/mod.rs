@@ -45,7 +45,7 @@ pub struct Spec {
     pub model: ModelSettings,
     /// The free parameters with their priors, in the order of every parameter vector.
     pub parameters: Vec<FreeParameter>,
-    /// The posterior of another calibration that is the prior of the first of them, if there is one.
+    /// The posterior of another calibration that is the prior of the first parameters, if the job states one.
     pub joint_prior: Option<JointPrior>,
     /// The algorithm with its settings.
     pub algorithm: AlgorithmSettings,

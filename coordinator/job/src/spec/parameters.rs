@@ -20,7 +20,7 @@ pub(super) struct Parameters {
     pub(super) effects: EffectSet,
     /// The free parameters with their priors, in the order of every parameter vector.
     pub(super) free: Vec<FreeParameter>,
-    /// The posterior of another calibration that is the prior of the first of them, if there is one.
+    /// The posterior of another calibration that is the prior of the first parameters, if the job states one.
     pub(super) joint_prior: Option<JointPrior>,
 }
 

@@ -27,13 +27,13 @@ const DISCOVERY_WIDTH: usize = 100_000;
 /// Settings that the prior's number of parameters does not allow.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum AlgorithmSettingsError {
-    /// The sampler's.
+    /// Error of the sampler's settings.
     #[error(transparent)]
     Sample(#[from] TmcmcSettingsError),
-    /// The fit's.
+    /// Error of the fit's settings.
     #[error(transparent)]
     Fit(#[from] LmSettingsError),
-    /// The evolution's.
+    /// Error of the evolution's settings.
     #[error(transparent)]
     Evolve(#[from] EvolutionSettingsError),
 }
@@ -50,13 +50,13 @@ pub enum AlgorithmName {
     /// TMCMC as published by Ching and Chen in 2007.
     #[strum(serialize = "ching-chen-2007")]
     ChingChen2007,
-    /// BASIS.
+    /// Bayesian annealed sequential importance sampling (BASIS).
     Basis,
     /// Levenberg-Marquardt.
     Lm,
-    /// Genetic algorithm.
+    /// Genetic algorithm (GA).
     Ga,
-    /// Covariance matrix adaptation.
+    /// Covariance matrix adaptation evolution strategy (CMA-ES).
     CmaEs,
     /// Search for a missing effect; a study starts it, and no job states it.
     Discovery,

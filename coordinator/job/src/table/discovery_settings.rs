@@ -16,7 +16,7 @@ const MAX_EFFECTS: usize = 10;
 /// The settings of the search for effects that a model misses.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct DiscoverySettings {
-    /// Who decides.
+    /// Whether the program or the user decides on an extension.
     pub apply: Apply,
     /// Largest number of effects that are added to those of the job.
     pub max_effects: usize,

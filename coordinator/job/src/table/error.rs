@@ -11,7 +11,7 @@ pub(crate) enum TableError {
     Value {
         /// The key.
         key: &'static str,
-        /// Its value as written.
+        /// Value of the key as written.
         value: String,
         /// The rule that the value breaks.
         rule: String,
@@ -22,13 +22,13 @@ pub(crate) enum TableError {
     /// A key of other algorithms.
     #[error("{key} belongs to algorithm {owners}; {algorithm} takes {keys}")]
     ForeignKey {
-        /// The key.
+        /// The key that does not belong to the job's algorithm.
         key: String,
         /// The algorithms that it belongs to.
         owners: String,
         /// The job's algorithm.
         algorithm: &'static str,
-        /// The keys of that algorithm.
+        /// The keys of the job's algorithm.
         keys: String,
     },
     /// A point estimate is named twice.
@@ -47,7 +47,7 @@ pub(crate) enum TableError {
     Type {
         /// The key.
         key: &'static str,
-        /// Its value as written.
+        /// Value of the key as written.
         value: String,
         /// The value that is expected, with a verb.
         expected: &'static str,

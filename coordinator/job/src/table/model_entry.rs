@@ -23,7 +23,7 @@ pub(crate) struct ModelEntry {
     /// The table without its priors.
     pub(crate) table: toml::Table,
     pub(crate) settings: ModelSettings,
-    /// The lines of the common `[priors]` that concern it, then the lines of its table.
+    /// The lines of the common `[priors]` that concern the model, then the lines of the model's table.
     pub(crate) priors: Vec<PriorEntry>,
 }
 

@@ -59,7 +59,7 @@ pub struct ImpliedModuli {
     pub k_c: (f64, f64),
     /// Mean and standard deviation of `k_phi` `[N/m^(n+2)]`, n each draw's own.
     pub k_phi: (f64, f64),
-    /// Their correlation.
+    /// Correlation of the two moduli.
     pub correlation: f64,
     /// Share of the draws with `k_c < 0`.
     pub negative: f64,

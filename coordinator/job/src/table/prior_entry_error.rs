@@ -31,7 +31,7 @@ pub enum PriorEntryError {
     InParameter {
         /// The parameter.
         name: String,
-        /// The error.
+        /// Error of the parameter's entry.
         error: Box<PriorEntryError>,
     },
     /// Neither a number nor a table.
@@ -48,7 +48,7 @@ pub enum PriorEntryError {
     Arguments {
         /// The distribution, or `bounds`.
         key: String,
-        /// Its value as written.
+        /// Value of the entry as written.
         value: String,
         /// The arguments that it takes.
         expected: &'static str,

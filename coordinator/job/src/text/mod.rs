@@ -215,7 +215,7 @@ pub fn earlier_search(name: &str, job: &FileSet) -> Result<FileSet, FileError> {
     Ok(text.beside(&job.files))
 }
 
-/// Returns the job of such a search as this version reads it: its model by the default algorithm.
+/// Returns the job whose model an earlier search searched, from the job of that search: the model with the default algorithm.
 ///
 /// # Errors
 /// [`FileError`] if the text is no job.

@@ -16,7 +16,7 @@ use result::words::probability::{LEVEL, p_words};
 const OF_PLATES: [&str; 5] = ["log10_p_ref", "kappa", "n", "k_c", "k_phi"];
 /// Number of standard deviations of the plates' estimate within which the prior must have probability.
 const ALLOWED: f64 = 2.0;
-/// Ratio of the readings' error with the plates' parameters to the error with common parameters, above which no flag is raised.
+/// Ratio of the readings' error with the plates' parameters to the error with common parameters at and above which no flag is raised.
 const MUCH: f64 = 0.8;
 
 /// Returns at most one flag for each source of plate tests: another calibration's posterior, and the readings of this experiment.

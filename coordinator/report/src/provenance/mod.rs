@@ -13,7 +13,7 @@ use result::words::number;
 /// The provenance of a calibration.
 #[derive(Debug, Clone, PartialEq, Eq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
 pub struct Provenance {
-    /// Its name.
+    /// Name of the calibration.
     pub name: String,
     /// Results in sentences.
     pub sentences: Vec<String>,
@@ -29,7 +29,7 @@ pub struct Provenance {
     pub errors: Vec<String>,
     /// The algorithm with its settings, in words.
     pub algorithm: String,
-    /// Its seed.
+    /// Seed of the algorithm.
     pub seed: u64,
     /// The program that computed these words.
     pub program: String,

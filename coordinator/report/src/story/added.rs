@@ -48,8 +48,8 @@ impl AddedEffect {
         }
     }
 
-    /// Describes the rivals: `slip_softened_pressure (P 0.32) in place of slip_sinkage cannot be excluded; slip 0.60 under 80.0 N at 20.0
-    /// mm/s would tell`; `None` without rivals.
+    /// Describes the rival explanations: `slip_softened_pressure (P 0.32) in place of slip_sinkage cannot be excluded; slip 0.60 under
+    /// 80.0 N at 20.0 mm/s would tell`; `None` without rivals.
     pub(crate) fn open_question(&self) -> Option<String> {
         let rivals: Vec<String> = self.rivals.iter().map(Alternative::words).collect();
         let run = self.deciding_run.as_ref();

@@ -12,7 +12,7 @@ pub(super) const LEAST: f64 = 0.01;
 pub struct Alternative {
     /// The effect (`EFFECT.WHEEL` if one wheel of several has it), `none` or `not_in_library`.
     pub name: String,
-    /// Its probability.
+    /// Posterior probability of the explanation.
     pub probability: f64,
 }
 

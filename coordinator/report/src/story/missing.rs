@@ -21,8 +21,8 @@ pub struct Missing {
     pub verdict: Option<Verdict>,
     /// The effect that the verdict names, or the members of a class.
     pub named: Vec<NamedEffect>,
-    /// Sum of the probabilities of the named effects; if nothing was detected, the probability that nothing is missing; if undecided,
-    /// that of the leading explanation.
+    /// Sum of the probabilities of the named effects; if nothing was detected, the probability that nothing is missing; if undecided, the
+    /// probability of the leading explanation.
     pub probability: Option<f64>,
     /// At most three other explanations: those that the verdict does not name, or for an undecided verdict those outside the 95 % set.
     pub alternatives: Vec<Alternative>,
@@ -37,7 +37,7 @@ pub struct Missing {
 /// An effect that a search names.
 #[derive(Debug, Clone, PartialEq, Eq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
 pub struct NamedEffect {
-    /// Its name.
+    /// Name of the effect.
     pub name: String,
     /// The only wheel with the effect; null if all wheels have it.
     pub wheel: Option<String>,

@@ -26,11 +26,11 @@ pub use wrong::{BesideInterpolation, ChannelFailure, Wrong};
 /// The story of a calibration within its study.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
 pub struct Story {
-    /// The calibration.
+    /// Id of the calibration.
     pub calibration: i64,
     /// A sentence on the comparison of the job's models; null if the job has one model.
     pub model: Option<String>,
-    /// What its model gets wrong.
+    /// What the calibration's model gets wrong.
     pub wrong: Wrong,
     /// What is missing, with its probability.
     pub missing: Missing,

@@ -18,7 +18,7 @@ const POSTERIOR: &str = "posterior.csv";
 /// The next steps of a study, in order; at least one.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
 pub struct Next {
-    /// The steps.
+    /// Next steps, in the order of their benefit.
     pub steps: Vec<NextStep>,
     /// The first step in a sentence.
     pub text: String,
@@ -27,7 +27,7 @@ pub struct Next {
 /// A next step.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
 pub struct NextStep {
-    /// Its kind.
+    /// Kind of the step.
     pub kind: StepKind,
     /// What to do, in a sentence.
     pub text: String,
@@ -70,9 +70,9 @@ pub enum StepKind {
 /// An effect file.
 #[derive(Debug, Clone, PartialEq, Eq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
 pub struct EffectFile {
-    /// Its name.
+    /// Name of the effect file.
     pub name: String,
-    /// Its text.
+    /// Text of the effect file.
     pub text: String,
 }
 

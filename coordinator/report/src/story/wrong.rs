@@ -28,16 +28,16 @@ pub struct Wrong {
 /// The error of a channel: on the holdout runs if they measured it, else on the fitted runs.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
 pub struct ChannelFailure {
-    /// Channel without unit.
+    /// Channel, by its name without unit.
     #[schema(value_type = String)]
     pub channel: Channel,
-    /// `fit` or `holdout`.
+    /// Use of the runs: `fit` or `holdout`.
     #[serde(rename = "use")]
     #[schema(value_type = String)]
     pub usage: RunUse,
     /// Root mean square of measured minus predicted \[SI\].
     pub rmse: f64,
-    /// SI unit.
+    /// SI unit of the channel.
     pub unit: String,
     /// The error in the noise standard deviation of the study; null if it is unknown.
     pub noise_sds: Option<f64>,

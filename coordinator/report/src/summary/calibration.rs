@@ -35,7 +35,7 @@ pub struct CalibrationSummary {
     pub normal_approximation: bool,
     /// Log-evidence `[nats]`.
     pub log_evidence: Option<f64>,
-    /// Its standard error; null for a normal approximation.
+    /// Standard error of the log-evidence; null for a normal approximation.
     pub log_evidence_se: Option<f64>,
     /// Whether every stage reached equilibrium.
     pub equilibrated: Option<bool>,
@@ -68,7 +68,7 @@ pub struct CalibrationSummary {
 pub struct MetamodelSummary {
     /// Number of moves that the metamodel proposed; each is an evaluation of `quasi_static` in place of `scm`.
     pub moves: u64,
-    /// Number of subchains of such moves.
+    /// Number of subchains, each of which consists of several moves of the metamodel.
     pub subchains: u64,
     /// Number of subchains that moved, so that `scm` was evaluated at their end.
     pub moved: u64,
@@ -79,7 +79,7 @@ pub struct MetamodelSummary {
 pub struct StageSummary {
     /// Tempering exponent.
     pub tempering_exponent: f64,
-    /// Acceptance rate.
+    /// Acceptance rate of the moves.
     pub acceptance: f64,
     /// Drift of the log-likelihood during the moves, as a z-score.
     pub drift_z: f64,

@@ -41,7 +41,7 @@ pub struct StudySummary {
     pub point_estimates: Vec<PointEstimate>,
     /// Comparison of the job's models; null if the job has one model, and until all are finished.
     pub models: Option<ModelComparison>,
-    /// The flags.
+    /// Flags of the study.
     pub flags: Vec<Flag>,
     /// Results of the searches for missing effects; null if none is finished.
     pub discovery: Option<DiscoverySummary>,

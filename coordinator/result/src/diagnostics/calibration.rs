@@ -36,6 +36,6 @@ pub struct Diagnostics {
     pub verification: VerificationDiagnostics,
     /// The findings, one sentence each.
     pub findings: Vec<String>,
-    /// The flags.
+    /// Flags of the calibration.
     pub flags: Vec<Flag>,
 }

@@ -99,7 +99,7 @@ pub struct CoverageCount {
     pub of: usize,
     /// Lower end of the range of counts that correct intervals give 95 % of the time.
     pub expected_from: usize,
-    /// Upper end of that range.
+    /// Upper end of the range of counts that correct intervals give 95 % of the time.
     pub expected_to: usize,
 }
 

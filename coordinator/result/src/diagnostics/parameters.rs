@@ -8,9 +8,9 @@ use crate::finished_calibration::FinishedCalibration;
 /// The posterior of a parameter compared with its prior.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
 pub struct ParameterDiagnostics {
-    /// Name.
+    /// Name of the parameter.
     pub name: String,
-    /// Unit.
+    /// Unit of the parameter.
     pub unit: String,
     /// One minus the ratio of posterior to prior standard deviation, in the sampler's coordinate (the logarithm of lognormal and
     /// log-uniform parameters): 0 if the data are uninformative, 1 if they determine the parameter. Null for a fit.

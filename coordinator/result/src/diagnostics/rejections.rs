@@ -32,9 +32,9 @@ pub struct RejectionDiagnostics {
 /// The prior of a parameter, divided into bins of equal probability.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
 pub struct BinnedParameter {
-    /// Name.
+    /// Name of the parameter.
     pub name: String,
-    /// Unit.
+    /// Unit of the parameter.
     pub unit: String,
     /// The bins in ascending order.
     pub bins: Vec<PriorBin>,
@@ -73,7 +73,7 @@ pub struct PriorRegion {
 pub struct RegionSide {
     /// Name of the parameter.
     pub parameter: String,
-    /// Unit.
+    /// Unit of the parameter.
     pub unit: String,
     /// Lower bound; null without one.
     pub above: Option<f64>,

@@ -14,7 +14,7 @@ const LARGEST: usize = 5;
 pub struct ResidualDiagnostics {
     /// Name of the run, or of the plate or ring test.
     pub run: String,
-    /// Channel without unit.
+    /// Channel, by its name without unit.
     #[schema(value_type = String)]
     pub channel: DataChannel,
     /// Unit of residual and error; for plates and rings they are those of the natural logarithm.

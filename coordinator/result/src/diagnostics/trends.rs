@@ -87,10 +87,10 @@ impl TrendVariable {
 /// The trend of a channel's residuals with a condition.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
 pub struct TrendDiagnostics {
-    /// Channel without unit.
+    /// Channel, by its name without unit.
     #[schema(value_type = String)]
     pub channel: Channel,
-    /// The condition.
+    /// Condition against which the residuals are tested.
     pub against: TrendVariable,
     /// Unit of the change and its standard deviation.
     pub unit: String,

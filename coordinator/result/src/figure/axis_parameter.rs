@@ -5,9 +5,9 @@ use job::FreeParameter;
 /// Name and unit of a parameter, to label an axis of a figure.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, utoipa::ToSchema)]
 pub struct AxisParameter {
-    /// Its name.
+    /// Name of the parameter.
     pub name: String,
-    /// Its unit.
+    /// Unit of the parameter.
     pub unit: String,
 }
 

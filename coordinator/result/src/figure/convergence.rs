@@ -32,7 +32,7 @@ pub struct StageConvergence {
     pub tempering_exponent: f64,
     /// Number of evaluations up to the end of the stage.
     pub evaluations: u64,
-    /// Log-likelihoods of its population; null if the model rejected all of it.
+    /// Log-likelihoods of the population; null if the model rejected every member.
     pub log_likelihood: Option<LogLikelihoodRange>,
 }
 

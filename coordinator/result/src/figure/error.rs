@@ -17,7 +17,7 @@ const GRID: usize = 160;
 /// kernel that is reflected at 0, with the bandwidth that is optimal for a normal density.
 #[derive(Debug, Clone, serde::Serialize, utoipa::ToSchema)]
 pub struct ErrorDensity {
-    /// Channel without unit.
+    /// Channel, by its name without unit.
     #[schema(value_type = String)]
     pub channel: Channel,
     /// Unit of the errors.

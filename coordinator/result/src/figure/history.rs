@@ -16,7 +16,7 @@ pub struct ChannelHistory {
     /// Name of the channel without its unit.
     #[schema(value_type = String)]
     pub channel: Channel,
-    /// SI unit.
+    /// SI unit of the channel.
     pub unit: &'static str,
     /// Name of the run.
     pub run: String,

@@ -21,7 +21,7 @@ const WIDE: f64 = 10.0;
 /// Posterior and prior of a parameter.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, utoipa::ToSchema)]
 pub struct MarginalDensity {
-    /// The parameter.
+    /// Name and unit of the parameter.
     pub parameter: AxisParameter,
     /// Whether the grid is logarithmic; the densities are then those of the natural logarithm.
     pub logarithmic: bool,

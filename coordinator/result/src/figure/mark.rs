@@ -17,11 +17,11 @@ pub enum MarkKind {
 /// A labelled point.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, utoipa::ToSchema)]
 pub struct Mark<T> {
-    /// Its kind.
+    /// Kind of the mark.
     pub kind: MarkKind,
     /// Label in the figure.
     pub label: String,
-    /// Coordinates.
+    /// Coordinates of the mark.
     pub at: T,
 }
 

@@ -42,17 +42,17 @@ pub struct ModelComparison {
 /// A model of the comparison.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct ComparedModel {
-    /// Its calibration.
+    /// Id of the model's calibration.
     pub calibration: i64,
-    /// Its kind, with a number if another model has the same kind.
+    /// Kind of the model, with a number if another model has the same kind.
     pub name: String,
-    /// Its kind.
+    /// Kind of the model.
     pub kind: String,
-    /// Its effects.
+    /// Effects of the model.
     pub effects: Vec<String>,
     /// Log-evidence `[nats]`.
     pub log_evidence: Option<f64>,
-    /// Its standard error.
+    /// Standard error of the log-evidence.
     pub log_evidence_se: Option<f64>,
     /// Posterior probability among these models, from equal prior probabilities.
     pub probability: f64,
@@ -62,7 +62,7 @@ pub struct ComparedModel {
     pub left_out_by: LeftOutBy,
     /// Errors of the prediction of left-out data, by channel.
     pub left_out: Option<ErrorTable>,
-    /// Sum of the log-densities of each condition's data given the others; null if the draws cannot give it.
+    /// Sum of the log-densities of each condition's data given the other conditions; null if the draws cannot give it.
     pub log_predictive: Option<f64>,
 }
 

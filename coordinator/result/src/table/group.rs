@@ -14,7 +14,7 @@ type Condition = fn(&ComparisonRow) -> f64;
 /// The errors of the rows at one level of a condition, or of one wheel.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
 pub struct ErrorGroup {
-    /// `fit` or `holdout`.
+    /// Use of the runs: `fit` or `holdout`.
     #[serde(rename = "use")]
     #[schema(value_type = String)]
     pub usage: RunUse,

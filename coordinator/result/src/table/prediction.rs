@@ -13,13 +13,13 @@ use crate::study::Study;
 pub struct PredictionRow {
     /// Name of the run.
     pub run: String,
-    /// `fit` or `holdout`.
+    /// Use of the run: `fit` or `holdout`.
     #[serde(rename = "use")]
     #[schema(value_type = String)]
     pub usage: RunUse,
-    /// Wheel.
+    /// Name of the wheel.
     pub wheel: String,
-    /// Slip.
+    /// Slip of the run.
     pub slip: f64,
     /// Slip angle `[deg]`.
     pub slip_angle_deg: f64,
@@ -27,7 +27,7 @@ pub struct PredictionRow {
     pub wheel_load_n: f64,
     /// Sled speed `[m/s]`.
     pub sled_speed_m_s: f64,
-    /// Channel without unit.
+    /// Channel, by its name without unit.
     #[schema(value_type = String)]
     pub channel: Channel,
     /// Unit of the following values.

@@ -12,13 +12,13 @@ use super::refusal::Refusal;
 pub struct ComparisonRow {
     /// Name of the run.
     pub run: String,
-    /// `fit` or `holdout`.
+    /// Use of the run: `fit` or `holdout`.
     #[serde(rename = "use")]
     #[schema(value_type = String)]
     pub usage: RunUse,
-    /// Wheel.
+    /// Name of the wheel.
     pub wheel: String,
-    /// Slip.
+    /// Slip of the run.
     pub slip: f64,
     /// Wheel load `[N]`.
     pub wheel_load_n: f64,
@@ -26,7 +26,7 @@ pub struct ComparisonRow {
     pub sled_speed_m_s: f64,
     /// Slip angle `[deg]`.
     pub slip_angle_deg: f64,
-    /// Channel without unit.
+    /// Channel, by its name without unit.
     #[schema(value_type = String)]
     pub channel: Channel,
     /// Unit of the following values.
@@ -85,7 +85,7 @@ impl ComparisonRow {
         Some((self.corrected_q05?..=self.corrected_q95?).contains(&self.measured))
     }
 
-    /// Returns whether the model and interpolation both predict the row, the latter without extrapolation, so that their errors compare.
+    /// Returns whether both the model and interpolation (without extrapolation) predict the row, so that their errors compare.
     pub fn is_interpolated(&self) -> bool {
         let is_within = self
             .interpolated_over

@@ -9,7 +9,7 @@ use crate::table::row::ComparisonRow;
 /// Errors and coverage of the predictions of left-out measurements.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Judgement {
-    /// Errors of the model; null if it refuses every run.
+    /// Errors of the model; null if the model refuses every run.
     pub model: Option<ErrorTable>,
     /// Errors of interpolation without physics on the measurements that the model predicts too; null if there are none.
     pub interpolation: Option<ErrorTable>,

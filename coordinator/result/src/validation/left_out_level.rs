@@ -16,7 +16,7 @@ pub struct LeftOutLevel {
     pub from: Option<f64>,
     /// Largest value.
     pub to: Option<f64>,
-    /// Its runs.
+    /// Runs of the level.
     pub runs: Vec<String>,
 }
 

@@ -17,9 +17,9 @@ use crate::table::row::ComparisonRow;
 pub struct Validation {
     /// The calibration whose model predicts.
     pub calibration: i64,
-    /// Its name.
+    /// Name of the validated calibration.
     pub name: String,
-    /// The effects of its model.
+    /// The effects of the calibration's model.
     pub effects: Vec<String>,
     /// Factor whose levels are left out.
     pub leave_out: Factor,

@@ -14,8 +14,9 @@ use store::{Reader, StoreError, file_of, is_server, name_of};
 
 /// The time of one write to disk above which a disk is slow, because every acknowledged result waits for one.
 const SLOW: Duration = Duration::from_millis(100);
-/// Free space below which there is a warning, and below which there is a failure `[bytes]`.
+/// Free space below which there is a warning `[bytes]`.
 const LITTLE_BYTES: u64 = 1_000_000_000;
+/// Free space below which there is a failure `[bytes]`.
 const TOO_LITTLE_BYTES: u64 = 100_000_000;
 
 pub(super) async fn findings(store: &str, listen: SocketAddr) -> Vec<Finding> {

@@ -19,7 +19,7 @@ const SILENT_MS: u64 = 60_000;
 /// Longest time to wait for an answer.
 const PATIENCE: Duration = Duration::from_secs(5);
 
-/// Answer of `/health`.
+/// The fields of the answer of `/health` that the doctor uses.
 #[derive(Deserialize)]
 struct Health {
     version: String,

@@ -1,4 +1,4 @@
-//! One operation, at one point or at many, with the same bits.
+//! The arithmetic of formulas: one operation, at one point or at many, with the same bits.
 //!
 //! The functions that vectorise (module [`elementary`]) are used wherever they are defined, and those of `libm`
 //! elsewhere, at one point as in a block, so that the result does not depend on how a formula is evaluated.

@@ -1,4 +1,4 @@
-//! Check of the units of a formula.
+//! The dimensions of a formula: the check of its units.
 //!
 //! Only a certain contradiction is an error. A number takes the unit that its neighbour needs, as in `v_t / 0.02` or
 //! `1.5 * p`; so does a quantity whose unit depends on a parameter, such as `k_star` or `z^n`.

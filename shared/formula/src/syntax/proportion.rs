@@ -1,4 +1,4 @@
-//! Check that a formula only scales the quantity that it replaces.
+//! The proportions in a formula: the check that it only scales the quantity that it replaces.
 
 use crate::syntax::graph::{Binary, Graph, Id, Node, Unary};
 use crate::variable::Variable;
@@ -7,12 +7,13 @@ use crate::variable::Variable;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Dependence {
     Free,
-    /// Proportional: the variable times a factor free of it.
+    /// Proportional to the variable: the variable times a factor that does not depend on it.
     Proportional,
     Other,
 }
 
-/// Returns whether the form of a result shows that it is the variable times a factor free of it.
+/// Returns whether the form of a result shows that it is the variable times a factor that does not depend on the
+/// variable.
 pub(crate) fn is_proportional(graph: &Graph, result: Id, variable: Variable) -> bool {
     use Dependence::{Free, Other, Proportional};
     let mut dependences = vec![Other; graph.len()];

@@ -8,10 +8,10 @@ pub enum MeshError {
     /// The ending of the file's name is not known.
     #[error("mesh = \"{0}\" must end in .stl or .obj")]
     Ending(String),
-    /// There is no triangle.
+    /// The mesh has no triangle.
     #[error("the file has no triangle")]
     Empty,
-    /// There are too many triangles.
+    /// The mesh has too many triangles.
     #[error("the surface has {triangles} triangles, at most {max} are allowed")]
     TooMany {
         /// Number of triangles.
@@ -24,7 +24,7 @@ pub enum MeshError {
     NotFinite {
         /// Number of the vertex.
         vertex: usize,
-        /// Its coordinate `[m]`.
+        /// Coordinate of the vertex `[m]`.
         value: f64,
     },
     /// A face refers to a vertex that does not exist.

@@ -9,7 +9,7 @@ pub const MAX_TRIANGLES: usize = 200_000;
 
 /// Relative tolerance of the radius: coordinates of STL files have 24 bits.
 const ROUNDING: f64 = 1e-6;
-/// The maximum distance of the surface from the axle, in units of `radius_m`: grousers are no longer.
+/// The maximum distance of the surface from the axle, in units of `radius_m`, which grousers do not exceed.
 const LARGEST_REACH: f64 = 1.5;
 /// The maximum width of the surface, in units of `width_m`.
 const LARGEST_WIDTH: f64 = 1.05;

@@ -9,7 +9,7 @@ use super::law::ErrorLaw;
 #[derive(Debug, Clone, Copy)]
 pub(super) struct CommonShift {
     count: usize,
-    /// `sum ln d_i^2`.
+    /// Log-determinant of the noise, `sum ln d_i^2`.
     log_determinant: f64,
     /// `u^2 sum 1 / d_i^2`.
     information: f64,

@@ -11,7 +11,7 @@ pub enum ErrorSd {
     Known(f64),
     /// An inferred standard deviation.
     Inferred {
-        /// Its index in theta.
+        /// Index of the sd in theta.
         parameter: usize,
     },
 }
@@ -25,7 +25,7 @@ pub struct Datum {
     pub channel: usize,
     /// The measured value, in the unit of the channel.
     pub value: f64,
-    /// Its noise sd.
+    /// Noise sd of the datum.
     pub sd: ErrorSd,
 }
 
@@ -49,13 +49,13 @@ pub enum LikelihoodError {
         run: usize,
         /// Index of the channel.
         channel: usize,
-        /// The sd.
+        /// The refused sd.
         value: f64,
     },
     /// An inferred sd names a parameter that theta lacks.
     #[error("noise sd is parameter {parameter}, but theta has {dimension}")]
     MissingParameter {
-        /// The index.
+        /// Index of the parameter in theta.
         parameter: usize,
         /// The length of theta.
         dimension: usize,
@@ -75,7 +75,7 @@ pub enum LikelihoodError {
     Length {
         /// The number by [`Likelihood::values`](super::Likelihood::values).
         expected: usize,
-        /// The number given.
+        /// Number of values that were given.
         given: usize,
     },
     /// A number of the error model is outside its bounds.
@@ -91,7 +91,7 @@ pub enum LikelihoodError {
     /// A common error names a datum that does not exist, or one twice.
     #[error("a common error names datum {datum} of {data}, or names it twice")]
     Membership {
-        /// The index.
+        /// Index of the datum.
         datum: usize,
         /// The number of data.
         data: usize,
@@ -99,7 +99,7 @@ pub enum LikelihoodError {
     /// A common error is the discrepancy of a group that does not exist.
     #[error("a common error names the discrepancy of group {group} of {groups}")]
     Group {
-        /// The index.
+        /// Index of the group.
         group: usize,
         /// The number of groups.
         groups: usize,

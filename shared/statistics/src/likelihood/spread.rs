@@ -1,4 +1,4 @@
-//! The covariance of a block: the noise of each datum, and the common errors.
+//! The spread of a block's errors: their covariance from the noise of each datum and the common errors.
 
 use super::common_error::{CommonError, CommonErrorSize, Discrepancy, ErrorBlock, Sensitive};
 use super::datum::{Datum, LikelihoodError};

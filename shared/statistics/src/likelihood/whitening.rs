@@ -8,7 +8,7 @@ use super::factor::CholeskyFactor;
 use super::law::ErrorLaw;
 use super::spread::CERTAIN;
 
-/// A value of the discrepancy with less probability changes slope and curvature by less than rounding.
+/// Probability of a value of the discrepancy below which it changes slope and curvature by less than rounding, and is left out.
 const MIN_PROBABILITY: f64 = 1e-12;
 
 /// The linear transform of errors to independent ones of sd 1, at one point.
@@ -44,7 +44,7 @@ enum BlockTransform {
 struct ShiftTransform {
     sds: Vec<f64>,
     along: Vec<f64>,
-    /// `1 - sqrt(k)`.
+    /// Share that whitening takes from the mean, `1 - sqrt(k)`.
     taken: f64,
 }
 

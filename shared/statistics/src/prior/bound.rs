@@ -1,6 +1,6 @@
 //! Test whether a posterior touches a bound of its prior.
 
-/// Distance that counts as touching, as a share of the range.
+/// Distance of an outer quantile from a bound up to which it touches the bound, as a share of the range.
 const NEAR: f64 = 0.02;
 
 /// Returns whether `q05` or `q95` lies within 2 % of the range of a bound. False if the range is not finite.

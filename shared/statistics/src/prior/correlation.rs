@@ -13,13 +13,13 @@ use super::marginal::Marginal;
 pub(super) struct Correlation {
     /// The parameters, ascending.
     parameters: Vec<usize>,
-    /// R.
+    /// Correlation matrix R.
     correlations: Vec<Vec<f64>>,
     /// L of R = L L'.
     factor: DMatrix<f64>,
-    /// R^-1 - I.
+    /// The matrix R^-1 - I of the exponent of the joint density.
     excess: DMatrix<f64>,
-    /// -ln|R| / 2.
+    /// Logarithm of the normalisation of the joint density, -ln|R| / 2.
     log_volume: f64,
 }
 

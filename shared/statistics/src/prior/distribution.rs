@@ -37,7 +37,7 @@ pub enum Distribution {
     },
     /// The absolute value of a normal variable with mean 0.
     HalfNormal {
-        /// Standard deviation of that normal variable, above 0.
+        /// Standard deviation of the normal variable, above 0.
         scale: f64,
     },
 }

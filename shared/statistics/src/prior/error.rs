@@ -18,7 +18,7 @@ pub enum PriorError {
         name: &'static str,
         /// The refused value.
         value: f64,
-        /// The bound it must exceed.
+        /// The bound that the number must exceed.
         bound: f64,
     },
     /// A lower end is not below its upper end.

@@ -15,7 +15,7 @@ use crate::rng::Stream;
 #[serde(try_from = "SerialisedMarginal", into = "SerialisedMarginal")]
 pub struct Marginal {
     distribution: Distribution,
-    /// Support of x.
+    /// Support of x, from `lower` to `upper`.
     lower: f64,
     upper: f64,
     coordinate: SamplingCoordinate,

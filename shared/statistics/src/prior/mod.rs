@@ -163,7 +163,7 @@ impl Prior {
         self.correlation.is_some()
     }
 
-    /// Draws theta.
+    /// Draws a parameter vector theta from the prior.
     pub fn sample(&self, stream: &mut Stream) -> Vec<f64> {
         let mut theta: Vec<f64> = self
             .marginals

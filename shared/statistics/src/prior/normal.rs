@@ -1,6 +1,6 @@
 //! The standard normal distribution, both tails to full relative accuracy.
 
-/// ln sqrt(2 pi).
+/// The logarithm of sqrt(2 pi).
 pub const LN_SQRT_TAU: f64 = 0.918_938_533_204_672_8;
 
 /// Number of Newton steps after which the quantile has converged for every representable probability.

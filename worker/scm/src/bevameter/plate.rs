@@ -7,7 +7,7 @@ use crate::soil::Soil;
 /// A rigid, flat plate.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Plate {
-    /// A round plate.
+    /// A circular plate.
     Circle {
         /// Radius `[m]`, > 0.
         radius_m: f64,

@@ -1,4 +1,4 @@
-//! A run after the effects on slip, dimensions, exponent and load.
+//! The case to simulate: a run after the effects on slip, dimensions, exponent and load.
 
 use formula::variable::Variables;
 use formula::{Hook, Program, Variable};

@@ -1,4 +1,4 @@
-//! An effect compiled for one model.
+//! The law of an effect: its formulas, compiled for one model.
 
 use formula::effect::Mechanism;
 use formula::{Effect, Hook, Program, Variable};

@@ -1,4 +1,4 @@
-//! The first of several balances that a sinking wheel meets.
+//! The crossing of load and carried load: the first of several balances that a sinking wheel meets.
 //!
 //! A driving rim presses harder the deeper it is, so there is one balance. In skid the shear stress pulls the rim down where
 //! it slopes, and the carried load may rise, fall and rise again with depth.

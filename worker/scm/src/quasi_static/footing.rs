@@ -1,4 +1,4 @@
-//! The wheel on the soil, with or without effects.
+//! The footing of a wheel: its rim on the soil, with or without effects.
 
 use super::reaction::Reaction;
 use super::reshaped::Reshaping;
@@ -9,7 +9,7 @@ use crate::Rejection;
 #[derive(Debug)]
 pub(super) struct Footing<'r, 'e> {
     pub(super) rim: Rim,
-    /// `None`: the base.
+    /// Effects that reshape the stresses; `None` for the base model.
     pub(super) reshaping: Option<Reshaping<'r, 'e>>,
 }
 

@@ -7,9 +7,9 @@ use crate::{Condition, Wheel};
 pub(super) struct RimMotion {
     /// omega R `[m/s]`, with the model's radius R.
     pub(super) rim_speed: f64,
-    /// v cos(beta) `[m/s]`.
+    /// Component of the velocity along the heading, v cos(beta) `[m/s]`.
     pub(super) forward: f64,
-    /// v sin(beta) `[m/s]`.
+    /// Component of the velocity across the heading, v sin(beta) `[m/s]`.
     pub(super) lateral: f64,
 }
 

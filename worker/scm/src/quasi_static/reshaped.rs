@@ -338,7 +338,7 @@ impl<'r, 'e> Reshaping<'r, 'e> {
         shape
     }
 
-    /// Adds the forces on the current panels, from rear to front, and clears them.
+    /// Adds the forces on the current panels, from rear to front, and clears the panels.
     fn sum(&mut self, rim: &Rim, shape: &Shape, sum: &mut Reaction) -> Result<(), Rejection> {
         let (panels, variables) = (&mut self.panels[..self.used], &self.case.variables);
         if let Some(laws) = &mut self.laws {

@@ -283,7 +283,7 @@ struct Positions<'a> {
     width_m: f64,
 }
 
-/// A leading element.
+/// A surface element that moves into the soil.
 #[derive(Debug, Clone, Copy)]
 struct Pushed {
     /// Height above the lowest element `[m]`.

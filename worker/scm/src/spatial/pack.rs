@@ -1,11 +1,11 @@
-//! Arithmetic on four lanes at a time, with the same bits on every machine.
+//! A pack: arithmetic on four lanes at a time, with the same bits on every machine.
 
 use wide::f64x4;
 
 /// Four neighbouring lanes of one strip or column.
 pub(crate) type Pack = f64x4;
 
-/// Lanes in a [`Pack`].
+/// Number of lanes in a [`Pack`].
 pub(crate) const PACK: usize = 4;
 
 /// The lanes of one pack in a mask.

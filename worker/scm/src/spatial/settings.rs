@@ -74,7 +74,7 @@ pub enum Shape {
     /// Any surface, in its given size. The [`Wheel`]'s radius is the reference of sinkage and grid; its width matters for
     /// the grid only.
     Mesh {
-        /// The surface.
+        /// Surface of the wheel.
         surface: SurfaceMesh,
         /// Number of identical sectors in one turn, ≥ 1, such as the number of grousers; averages cover whole periods.
         ///

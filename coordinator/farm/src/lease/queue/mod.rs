@@ -30,7 +30,7 @@ struct Entry {
     unstarted: u32,
     /// Whether a lease of the evaluation was lost or failed.
     suspect: bool,
-    /// The workers that may not claim it.
+    /// The workers that may not claim the evaluation.
     barred: Vec<String>,
     state: State,
 }
@@ -326,7 +326,7 @@ impl LeaseQueue {
             .sum()
     }
 
-    /// Extends a lease of a worker. Returns `false` if it is no longer out, or another worker's.
+    /// Extends a lease of a worker. Returns `false` if the lease is no longer out, or is another worker's.
     pub fn renew(&mut self, lease: u64, worker: &str, until_ms: u64) -> bool {
         let Some(evaluation) = self.leased.get(&lease) else {
             return false;

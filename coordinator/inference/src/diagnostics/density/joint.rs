@@ -79,7 +79,7 @@ struct Kernel {
     /// L: first diagonal element, the one below it, second diagonal element.
     factor: [f64; 3],
     sd: [f64; 2],
-    /// |H|^(1/2).
+    /// Square root of the determinant of H.
     root: f64,
 }
 

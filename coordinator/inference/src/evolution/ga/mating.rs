@@ -1,4 +1,4 @@
-//! Two children of two parents.
+//! The mating of a genetic algorithm: two children of two parents, by crossover and mutation.
 
 use statistics::rng::Stream;
 

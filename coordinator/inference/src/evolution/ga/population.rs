@@ -1,4 +1,4 @@
-//! The population: who survives and who has children.
+//! The population of a genetic algorithm: the choice of survivors and of parents.
 
 use super::mating::{MatingPair, children};
 use super::settings::GaSettings;
@@ -20,7 +20,7 @@ pub(crate) struct Population {
     generation: usize,
     /// The best log-posterior at the last improvement by more than the tolerance.
     mark: f64,
-    /// Number of generations since then.
+    /// Number of generations since that improvement.
     idle: usize,
 }
 

@@ -1,4 +1,4 @@
-//! The next tempering exponent of weighted draws.
+//! The schedule of a stage of draws: the next tempering exponent of weighted draws.
 
 use super::sample::WeightedSample;
 
@@ -11,7 +11,7 @@ const DRAWS_A_NUMBER: f64 = 6.0;
 /// If the fit at the present exponent was poor, the next exponent must leave at least this share of its effective draws.
 const KEPT: f64 = 0.1;
 
-/// Bisections on the logarithm of the step: to 1e-12 of it.
+/// Number of bisections on the logarithm of the step, which determine it to a relative 1e-12.
 const BISECTIONS: usize = 48;
 
 /// Returns the exponent above `exponent` that leaves enough effective draws for the next fit; at most 1.

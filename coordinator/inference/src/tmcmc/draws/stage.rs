@@ -11,7 +11,7 @@ use crate::round::Proposal;
 use crate::tmcmc::evaluation::EvaluationResult;
 use crate::tmcmc::settings::TmcmcSettings;
 
-/// A proposal has missed its target if ESS/N of its draws is smaller.
+/// ESS/N of a proposal's draws below which the proposal has missed its target.
 const MIN_SHARE: f64 = 0.05;
 
 /// At exponent 1 every further draw is one of the posterior, so a larger ESS/N is worth a refit.

@@ -1,4 +1,4 @@
-//! The next tempering exponent.
+//! The schedule of the stages: the next tempering exponent.
 
 use super::weights::Weights;
 

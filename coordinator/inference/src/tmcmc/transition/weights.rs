@@ -7,7 +7,7 @@ pub(crate) struct Weights {
     pub(crate) relative: Vec<f64>,
     /// ln of the mean weight: the increment of the log-evidence.
     pub(crate) log_mean: f64,
-    /// Coefficient of variation.
+    /// Coefficient of variation of the weights.
     pub(crate) cov: f64,
 }
 

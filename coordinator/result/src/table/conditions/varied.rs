@@ -39,7 +39,7 @@ impl Conditions {
         self.axes.iter().map(mean).collect()
     }
 
-    /// Names of those that vary, as a list in a sentence.
+    /// Names of the conditions that vary, as a list in a sentence.
     pub(crate) fn names(&self) -> String {
         let names: Vec<String> = self.axes.iter().map(|axis| axis.words().to_owned()).collect();
         number::list(&names)

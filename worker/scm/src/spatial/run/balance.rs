@@ -11,7 +11,7 @@ const MIN_SLOPE: f64 = -10.0;
 /// Search with the last step's slope; `load` falls as the hub rises.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Search {
-    /// Start height `[m]`.
+    /// Height of the hub at which the search starts `[m]`.
     pub(crate) guess: f64,
     /// d load / d height at the start `[N/m]`, < 0.
     pub(crate) slope: f64,

@@ -2,7 +2,7 @@
 
 use super::super::pack::Pack;
 
-/// The rise beside the wheel: so high that no soil touches it `[m]`.
+/// The rise beside the wheel `[m]`: that of a surface 1 km above the hub, which no soil touches.
 pub(crate) const NOWHERE: f64 = -1e3;
 
 /// A piece of one column of the terrain under one piece of the wheel, measured ahead of the hub `[m]`.

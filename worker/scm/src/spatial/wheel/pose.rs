@@ -1,4 +1,4 @@
-//! The place of the wheel, and the columns of the terrain that it may touch.
+//! The pose of the wheel: its place, and the columns of the terrain that it may touch.
 
 /// The place of the wheel.
 #[derive(Debug, Clone, Copy)]

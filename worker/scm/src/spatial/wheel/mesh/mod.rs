@@ -21,13 +21,14 @@ use super::envelope::Envelope;
 use super::pose::{Pose, Range};
 use core::f64::consts::{FRAC_PI_2, TAU};
 
-/// Half the angle about the axle within which a triangle must lie to be found by angle `[rad]`; wider ones are always examined.
+/// Half the angle about the axle within which a triangle must lie to be found by angle `[rad]`; triangles wider than this are always
+/// examined.
 const WIDEST: f64 = 0.2;
 /// Number of sectors of a turn with a stored distance of the surface from the axle.
 const SECTORS: usize = 240;
 /// Longest distance from sample to sample along travel `[m]`: half a thin grouser.
 const COARSEST: f64 = 1e-3;
-/// Number of columns searched beyond the deepest that may touch, because the contact's ends lie between.
+/// Number of columns searched beyond the deepest column that may touch, because the ends of the contact lie between columns.
 const COLUMNS_BEYOND: f64 = 3.0;
 
 /// A surface of triangles about the axle.
