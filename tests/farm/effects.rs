@@ -306,7 +306,7 @@ fn the_catalogue_is_listed_and_shown() {
 fn the_catalogue_is_there_over_rest() {
     let service = Service::start(&[]);
     let list = service.client.json("/v1/effects");
-    assert_eq!(item_count(&list), 50);
+    assert_eq!(item_count(&list), 52);
     let one = service.client.json("/v1/effects/sled_tare");
     let listed = items(&list).find(|e| e["name"] == "sled_tare");
     assert_eq!(Some(&one["effect"]), listed);

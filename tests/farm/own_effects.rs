@@ -66,7 +66,7 @@ fn each_text_of_a_name_is_a_version_and_survives_a_restart() {
     service.crash();
     let list = service.client.json("/v1/effects");
     let last = list.as_array().and_then(|list| list.last()).expect("effects");
-    assert_eq!(item_count(&list), 51);
+    assert_eq!(item_count(&list), 53);
     assert_eq!(last["name"], "my_gain");
     assert_eq!(last["origin"], "own");
     assert_eq!(last["version"], 2);
@@ -183,7 +183,7 @@ fn what_is_no_effect_of_one_s_own_is_refused_with_the_reason() {
         "too_large",
         "the body is above the limit of 65536 bytes for this route",
     );
-    assert_eq!(item_count(&service.client.json("/v1/effects")), 50);
+    assert_eq!(item_count(&service.client.json("/v1/effects")), 52);
 
     add(&service, GAIN);
     let experiment = service

@@ -13,7 +13,7 @@ struct RigTest {
     decides: &'static [&'static str],
 }
 
-const TESTS: [RigTest; 6] = [
+const TESTS: [RigTest; 7] = [
     RigTest {
         what: "tare run: move the sled without soil under the wheel; the force sensor then shows the rig's own force",
         decides: &["sled_tare", "sled_drag", "bulldozing", "bin_slope", "end_wall"],
@@ -50,6 +50,10 @@ const TESTS: [RigTest; 6] = [
     RigTest {
         what: "the radius that the rig's encoder uses, and the flattening of the rim under load",
         decides: &["slip_radius_error", "wheel_flexibility"],
+    },
+    RigTest {
+        what: "radius and width of the wheel by a caliper, over the rim and over the grousers",
+        decides: &["wheel_radius_error", "wheel_width_error"],
     },
 ];
 

@@ -6,7 +6,7 @@ use crate::effect::Effect;
 
 /// The files, in the order in which effects follow each other at a hook: pressure, shear strength and its mobilisation,
 /// wheel and rig, and last the errors of the instruments, offsets after gains.
-const FILES: [&str; 50] = [
+const FILES: [&str; 52] = [
     include_str!("../catalogue/pressure_distribution_shape.toml"),
     include_str!("../catalogue/peak_pressure_angle.toml"),
     include_str!("../catalogue/slip_sinkage.toml"),
@@ -36,6 +36,8 @@ const FILES: [&str; 50] = [
     include_str!("../catalogue/stick_slip.toml"),
     include_str!("../catalogue/elastic_rebound.toml"),
     include_str!("../catalogue/wheel_flexibility.toml"),
+    include_str!("../catalogue/wheel_radius_error.toml"),
+    include_str!("../catalogue/wheel_width_error.toml"),
     include_str!("../catalogue/edge_loss.toml"),
     include_str!("../catalogue/slip_radius_error.toml"),
     include_str!("../catalogue/load_scale.toml"),

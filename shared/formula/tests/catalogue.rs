@@ -11,14 +11,15 @@ const NAMES: &str = "janosi_hanamoto shear_velocity_scale interface_friction adh
     load_scale bearing_torque bearing_friction bin_slope end_wall peak_pressure_angle pressure_distribution_shape edge_loss \
     small_diameter reece_pressure saturating_pressure moisture friction_rate_weakening stick_slip slip_radius_error \
     stress_dependent_friction gravity_scaling slip_softened_pressure drift_stiffness drift_drawbar_pull_zero drift_torque_zero \
-    drift_sinkage_zero drift_lateral_force_zero skid_sinkage lateral_slip_sinkage stretched_mobilisation side_bulldozing side_drag";
+    drift_sinkage_zero drift_lateral_force_zero skid_sinkage lateral_slip_sinkage stretched_mobilisation side_bulldozing side_drag \
+    wheel_radius_error wheel_width_error";
 
 #[test]
 fn every_effect_is_there_once_under_its_name() {
     let expected: BTreeSet<&str> = NAMES.split_whitespace().collect();
     let names: BTreeSet<&str> = catalogue().iter().map(|e| e.name.as_str()).collect();
     assert_eq!(names, expected);
-    assert_eq!(catalogue().len(), 50);
+    assert_eq!(catalogue().len(), 52);
 }
 
 #[test]

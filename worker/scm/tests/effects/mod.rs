@@ -1,6 +1,7 @@
 //! Effects in the quasi-static model.
 
 mod brute_force;
+mod dimensions;
 mod hidden;
 mod neutral;
 mod refusals;
