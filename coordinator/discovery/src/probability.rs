@@ -5,8 +5,7 @@ use crate::laplace::evidence::log_sum_exp;
 /// A log Bayes factor above this is a detection; an effect of the model that gains less may be dropped \[nats\].
 pub const DETECTED: f64 = 3.0;
 /// Prior probability that nothing is missing.
-const PRIOR_OF_NONE: f64 = 0.5;
-/// Probability of the credible set.
+pub(crate) const PRIOR_OF_NONE: f64 = 0.5;
 const CREDIBLE: f64 = 0.95;
 
 /// The evidence for one explanation: nothing is missing, or one effect is.
@@ -20,10 +19,20 @@ pub(crate) struct Explanation {
     pub(crate) combinations: Vec<(f64, f64)>,
 }
 
+/// The evidence for a law outside the library.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct OutsideEvidence {
+    /// Log evidence over that of the base, the mean over all laws.
+    pub(crate) log_bayes_factor: f64,
+    /// Log Bayes factor and log prior cost of each combination that counts for the law.
+    pub(crate) combinations: Vec<(f64, f64)>,
+}
+
 /// One model: an explanation alone, or one of the combinations that count for it.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct ModelProbability {
-    pub(crate) explanation: usize,
+    /// Index of the explanation; `None`: the law outside the library.
+    pub(crate) explanation: Option<usize>,
     /// Index among the combinations of the explanation; `None`: the explanation alone.
     pub(crate) combination: Option<usize>,
     pub(crate) prior: f64,
@@ -36,66 +45,73 @@ pub(crate) struct Probabilities {
     /// Probability of each explanation, the sum over its models.
     pub(crate) explanations: Vec<f64>,
     pub(crate) models: Vec<ModelProbability>,
-    /// Prior probability of a law outside the library; `None`: not searched.
-    pub(crate) outside_prior: Option<f64>,
-    /// Posterior probability of a law outside the library.
+    /// Posterior probability of a law outside the library; `None`: not searched.
     pub(crate) outside: Option<f64>,
     /// The smallest set of classes with 95 % probability, the most probable first; `None` in it is the law outside the library.
     pub(crate) credible: Vec<Option<usize>>,
 }
 
 impl Probabilities {
-    /// Weighs the explanations. The prior is 1/2 for nothing missing. The rest is shared equally by the classes and the law
-    /// outside the library, and within a class by its members.
+    /// The prior is that of `none` for nothing missing. The rest is shared equally by the classes and the law outside the library, and within
+    /// a class by its members.
     ///
     /// # Arguments
-    /// - `outside`: log Bayes factor of a law outside the library; `None`: not searched.
-    /// - `misfit`: chi-square of the best explanation over its degrees of freedom, 1 where it fits. Log Bayes factors are divided
-    ///   by it, as if the noise were larger by its root: where every explanation is wrong, differences between them mean less.
+    /// - `outside`: evidence for a law outside the library; `None`: not searched.
+    /// - `none`: prior probability that nothing is missing.
+    /// - `misfit`: chi-square of the best explanation over its degrees of freedom, 1 where it fits. Log Bayes factors are divided by it,
+    ///   as if the noise were larger by its root: where every explanation is wrong, differences between them mean less.
     ///
     /// # Source
     /// Kass & Raftery 1995, section 5.3, doi:10.1080/01621459.1995.10476572. Checked by
     /// `effect_search::probabilities_sum_to_one_and_follow_the_prior_over_classes`.
-    pub(crate) fn new(explanations: &[Explanation], outside: Option<f64>, misfit: f64) -> Self {
+    pub(crate) fn new(
+        explanations: &[Explanation],
+        outside: Option<&OutsideEvidence>,
+        none: f64,
+        misfit: f64,
+    ) -> Self {
         let classes = explanations.iter().map(|e| e.class).max().unwrap_or(0);
         let alternatives = classes + usize::from(outside.is_some());
-        let each = (1.0 - PRIOR_OF_NONE) / alternatives.max(1) as f64;
+        let each = (1.0 - none) / alternatives.max(1) as f64;
         let members = |class: usize| explanations.iter().filter(|e| e.class == class).count() as f64;
         let prior = |class: usize| match class {
             // Without an alternative nothing can be missing.
             0 if alternatives == 0 => 1.0,
-            0 => PRIOR_OF_NONE,
+            0 => none,
             class => each / members(class),
         };
         // Log prior and log weight of the explanation alone, then of its combinations.
-        let models = |explanation: &Explanation| -> Vec<(f64, f64)> {
-            let log_prior = libm::log(prior(explanation.class));
-            let alone = (log_prior, log_prior + explanation.log_bayes_factor / misfit);
-            let combinations = explanation.combinations.iter();
+        let models = |prior: f64, log_bayes_factor: f64, combinations: &[(f64, f64)]| -> Vec<(f64, f64)> {
+            let log_prior = libm::log(prior);
+            let alone = (log_prior, log_prior + log_bayes_factor / misfit);
+            let combinations = combinations.iter();
             let combinations =
                 combinations.map(|(factor, cost)| (log_prior - cost, log_prior + factor / misfit - cost));
             std::iter::once(alone).chain(combinations).collect()
         };
-        let models: Vec<Vec<(f64, f64)>> = explanations.iter().map(models).collect();
-        let weight = |models: &Vec<(f64, f64)>| log_sum_exp(models.iter().map(|(_, weight)| *weight));
-        let weights: Vec<f64> = models.iter().map(weight).collect();
-        let outside_prior = outside.map(|_| each);
-        let outside = outside.map(|factor| libm::log(each) + factor / misfit);
-        let sum = log_sum_exp(weights.iter().copied().chain(outside));
-        let each_probability: Vec<f64> = weights.iter().map(|w| libm::exp(w - sum)).collect();
-        let weighed = models.iter().enumerate().flat_map(|(explanation, models)| {
-            models
-                .iter()
-                .enumerate()
-                .map(move |(place, (log_prior, weight))| ModelProbability {
-                    explanation,
-                    combination: place.checked_sub(1),
-                    prior: libm::exp(*log_prior),
-                    posterior: libm::exp(weight - sum),
-                })
+        let of_explanation = |e: &Explanation| models(prior(e.class), e.log_bayes_factor, &e.combinations);
+        let mut weighed: Vec<(Option<usize>, Vec<(f64, f64)>)> = explanations
+            .iter()
+            .enumerate()
+            .map(|(k, explanation)| (Some(k), of_explanation(explanation)))
+            .collect();
+        let of_law = outside.map(|law| models(each, law.log_bayes_factor, &law.combinations));
+        weighed.extend(of_law.map(|models| (None, models)));
+        let weight = |models: &[(f64, f64)]| log_sum_exp(models.iter().map(|(_, weight)| *weight));
+        let weights: Vec<f64> = weighed.iter().map(|(_, models)| weight(models)).collect();
+        let sum = log_sum_exp(weights.iter().copied());
+        let mut each_probability: Vec<f64> = weights.iter().map(|w| libm::exp(w - sum)).collect();
+        let models = weighed.iter().flat_map(|(explanation, models)| {
+            let places = models.iter().enumerate();
+            places.map(move |(place, (log_prior, weight))| ModelProbability {
+                explanation: *explanation,
+                combination: place.checked_sub(1),
+                prior: libm::exp(*log_prior),
+                posterior: libm::exp(weight - sum),
+            })
         });
-        let models = weighed.collect();
-        let outside = outside.map(|w| libm::exp(w - sum));
+        let models = models.collect();
+        let outside = outside.and_then(|_| each_probability.pop());
         let class_probability = |class: usize| -> f64 {
             let members = explanations.iter().zip(&each_probability);
             members.filter(|(e, _)| e.class == class).map(|(_, p)| p).sum()
@@ -108,7 +124,6 @@ impl Probabilities {
             credible: credible(by_class),
             explanations: each_probability,
             models,
-            outside_prior,
             outside,
         }
     }
@@ -133,6 +148,13 @@ mod tests {
     fn explanation(class: usize, log_bayes_factor: f64) -> Explanation {
         Explanation {
             class,
+            log_bayes_factor,
+            combinations: Vec::new(),
+        }
+    }
+
+    fn law(log_bayes_factor: f64) -> OutsideEvidence {
+        OutsideEvidence {
             log_bayes_factor,
             combinations: Vec::new(),
         }
@@ -169,7 +191,7 @@ mod tests {
             .collect();
         let sum = log_sum_exp(weights.iter().copied());
         let expected: Vec<u64> = weights.iter().map(|w| libm::exp(w - sum).to_bits()).collect();
-        let probabilities = Probabilities::new(&all, None, 1.0);
+        let probabilities = Probabilities::new(&all, None, PRIOR_OF_NONE, 1.0);
         let computed: Vec<u64> = probabilities.explanations.iter().map(|p| p.to_bits()).collect();
         assert_eq!(computed, expected);
     }
@@ -182,7 +204,7 @@ mod tests {
             explanation(2, 2.0),
             explanation(3, -9.0),
         ];
-        let probabilities = Probabilities::new(&all, Some(4.0), 1.0);
+        let probabilities = Probabilities::new(&all, Some(&law(4.0)), PRIOR_OF_NONE, 1.0);
         assert_eq!(probabilities.credible, [None, Some(1), Some(2)]);
         let total = probabilities.explanations.iter().sum::<f64>() + probabilities.outside.unwrap();
         assert!((total - 1.0).abs() < 1e-12);
@@ -191,7 +213,7 @@ mod tests {
     #[test]
     fn without_an_alternative_nothing_is_missing() {
         assert_eq!(
-            Probabilities::new(&[explanation(0, 0.0)], None, 1.0).explanations,
+            Probabilities::new(&[explanation(0, 0.0)], None, PRIOR_OF_NONE, 1.0).explanations,
             [1.0]
         );
     }
@@ -200,7 +222,7 @@ mod tests {
     fn a_misfit_brings_explanations_closer() {
         let all = [explanation(0, 0.0), explanation(1, 12.0), explanation(2, 4.0)];
         let odds = |misfit: f64| {
-            let p = Probabilities::new(&all, None, misfit).explanations;
+            let p = Probabilities::new(&all, None, PRIOR_OF_NONE, misfit).explanations;
             libm::log(p[1] / p[2])
         };
         assert!((odds(1.0) - 8.0).abs() < 1e-9 && (odds(4.0) - 2.0).abs() < 1e-9);
@@ -210,8 +232,8 @@ mod tests {
     fn the_models_of_an_explanation_share_its_probability() {
         let mut all = [explanation(0, 0.0), explanation(1, 3.0)];
         all[1].combinations = vec![(9.0, 3.5), (2.0, 3.5)];
-        let probabilities = Probabilities::new(&all, Some(1.0), 1.0);
-        let models = probabilities.models.iter().filter(|m| m.explanation == 1);
+        let probabilities = Probabilities::new(&all, Some(&law(1.0)), PRIOR_OF_NONE, 1.0);
+        let models = probabilities.models.iter().filter(|m| m.explanation == Some(1));
         let sum: f64 = models.clone().map(|m| m.posterior).sum();
         assert!((sum - probabilities.explanations[1]).abs() < 1e-12);
         let places: Vec<Option<usize>> = models.map(|m| m.combination).collect();

@@ -159,17 +159,26 @@ fn find(truth: impl Fn(f64, f64) -> f64) -> Conclusion {
 }
 
 #[test]
-fn a_law_beyond_an_effect_is_found_beside_it() {
+fn a_law_and_an_effect_that_act_together_are_fitted_together() {
     let line_over_w = OVER_W + 1;
     let conclusion = find(|x, w| 0.3 + 0.5 * x + 1.2 * x * x + 0.8 * w);
-    assert_eq!(conclusion.verdict, SearchVerdict::Named(SQUARE));
-    assert_eq!(conclusion.combination, [SQUARE, line_over_w]);
-    assert_eq!(
-        conclusion.sets[0].effects.as_deref(),
-        Some(&[SQUARE, line_over_w][..])
+    let mut best = conclusion.sets[0].effects.clone().unwrap();
+    best.sort_unstable();
+    assert_eq!(best, [SQUARE, line_over_w]);
+    // All good sets have both; the law explains more alone, so it is claimed first, with its parameters beside the effect.
+    assert_eq!(conclusion.verdict, SearchVerdict::NotInLibrary);
+    let law = conclusion.outside.unwrap();
+    assert_eq!(law.candidate, line_over_w);
+    assert!((law.parameters[0] - 0.8).abs() < 0.1, "{:?}", law.parameters);
+    assert!(
+        law.left_out_nats.iter().all(|nats| *nats > DETECTED),
+        "{:?}",
+        law.left_out_nats
     );
     assert_eq!(conclusion.complete, Some(true));
     assert!(conclusion.explained.unwrap() > 0.99 && conclusion.remaining.is_empty());
+    let sum: f64 = conclusion.sets.iter().map(|set| set.probability).sum();
+    assert!((sum - 1.0).abs() < 1e-9, "{sum}");
 }
 
 #[test]
@@ -301,6 +310,39 @@ fn a_law_that_every_good_explanation_has_is_claimed() {
 }
 
 #[test]
+fn an_effect_is_not_named_where_its_strength_is_far_out_in_its_prior() {
+    let truth = |x: f64, w: f64| 0.3 + 0.5 * x + 1.2 * w * x;
+    let mut narrow = task(&measured(truth));
+    narrow.laws.clear();
+    let named = search(narrow.clone(), false, answer);
+    assert_eq!(
+        (named.verdict, named.implausible),
+        (SearchVerdict::Named(WIDTH), None)
+    );
+    narrow.library[WIDTH].parameters = vec![normal(0.2)];
+    let withheld = search(narrow, false, answer);
+    let (place, sds) = withheld.implausible.unwrap();
+    assert_eq!((withheld.verdict, place), (SearchVerdict::Undecided, 2));
+    assert!((5.0..7.0).contains(&sds), "{sds}");
+}
+
+#[test]
+fn a_name_is_weighed_under_other_priors() {
+    let probabilities = |strength: f64| -> Vec<f64> {
+        let conclusion = find(|x, w| 0.3 + 0.5 * x + strength * w * x);
+        conclusion.under_other_priors(Some(WIDTH)).collect()
+    };
+    let strong = probabilities(0.8);
+    assert!(
+        strong.len() == 4 && strong.iter().all(|p| *p > 0.99),
+        "{strong:?}"
+    );
+    let weak = probabilities(0.12);
+    // Narrower priors and lower odds of "nothing is missing" favour a weak effect.
+    assert!(weak[0] > weak[1] && weak[2] > weak[3], "{weak:?}");
+}
+
+#[test]
 fn a_law_that_fails_the_cross_validation_is_not_claimed() {
     // One level is off by itself: a curve follows it, and predicts nothing.
     let conclusion = find(|x, _| 0.3 + 0.5 * x + if (x - 1.0 / 7.0).abs() < 0.01 { 1.2 } else { 0.0 });
@@ -327,8 +369,11 @@ fn cross_validations_ask_nothing_of_the_base_twice() {
 }
 
 /// Searches the data on x >= 0 alone.
-fn found_on_half(truth: impl Fn(f64, f64) -> f64) -> Conclusion {
+fn found_on_half(truth: impl Fn(f64, f64) -> f64, has_laws: bool) -> Conclusion {
     let mut task = task(&measured(truth));
+    if !has_laws {
+        task.laws.clear();
+    }
     let half: Vec<usize> = (DATA / 2..DATA).collect();
     let (part, _) = task.likelihood.subset(&half).unwrap();
     task.likelihood = part;
@@ -346,7 +391,7 @@ fn found_on_half(truth: impl Fn(f64, f64) -> f64) -> Conclusion {
 #[test]
 fn open_effects_are_distinguished_by_the_run_where_their_predictions_differ() {
     // On x >= 0 alone, square and cube are hard to distinguish.
-    let conclusion = found_on_half(|x, _| 0.3 + 0.5 * x + 2.0 * x * x);
+    let conclusion = found_on_half(|x, _| 0.3 + 0.5 * x + 2.0 * x * x, true);
     assert!(!matches!(
         conclusion.verdict,
         SearchVerdict::NothingDetectable | SearchVerdict::NotInLibrary
@@ -367,7 +412,10 @@ fn open_effects_are_distinguished_by_the_run_where_their_predictions_differ() {
 #[test]
 fn an_open_effect_is_compared_by_the_set_that_it_leads() {
     // The width acts beside either; without it neither explains the data.
-    let conclusion = found_on_half(|x, w| 0.3 + 0.5 * x + 2.0 * x * x + x * x * x + 0.3 * w * x);
+    let conclusion = found_on_half(
+        |x, w| 0.3 + 0.5 * x + 2.0 * x * x + x * x * x + 0.3 * w * x,
+        false,
+    );
     let first = conclusion.next_runs.first().expect("something is open");
     let sets: Vec<Vec<usize>> = first
         .separates
@@ -379,6 +427,19 @@ fn an_open_effect_is_compared_by_the_set_that_it_leads() {
         })
         .collect();
     assert_eq!(sets, [[SQUARE, WIDTH], [CUBE, WIDTH]]);
+}
+
+#[test]
+fn sets_that_a_law_leads_are_compared_by_further_runs() {
+    // The law over w acts beside the square or the cube, which are hard to distinguish on x >= 0 alone.
+    let conclusion = found_on_half(|x, w| 0.3 + 0.5 * x + 2.0 * x * x + 2.0 * w, true);
+    let first = conclusion.next_runs.first().expect("something is open");
+    let has_law = |set: &Vec<usize>| set.iter().any(|k| *k >= LIBRARY);
+    assert!(
+        first.separates.len() > 1 && first.separates.iter().all(has_law),
+        "{:?}",
+        first.separates
+    );
 }
 
 #[test]

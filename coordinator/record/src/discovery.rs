@@ -107,7 +107,7 @@ pub struct Discovery {
 pub struct ImplausibleParameter {
     /// Name of the parameter.
     pub name: String,
-    /// Normal score of its value in its prior, beyond 6.5 in size; with a joint prior, given the parameters before it.
+    /// Normal score of its value in its prior, beyond 6.5 in size, or 5 of a strength; with a joint prior, given the parameters before it.
     pub prior_sds: f64,
 }
 
@@ -145,6 +145,10 @@ pub struct JudgedEffect {
     pub prior_sds: Option<f64>,
     /// Posterior probability among all explanations.
     pub probability: f64,
+    /// Whether the probability stays above 0.9 with the priors of all strengths half and twice as wide, and with prior odds of 1 to 4 and
+    /// 4 to 1 that nothing is missing; null where it is not above 0.9, and in records of earlier versions.
+    #[serde(default)]
+    pub robust: Option<bool>,
     /// Number of the class, in which these data cannot distinguish explanations; 0 is `none`.
     pub class: u32,
     /// Whether its class belongs to the smallest set of classes with 95 % probability.

@@ -5,10 +5,11 @@ use std::sync::Arc;
 
 use formula::catalogue::{catalogue, find};
 use formula::slip::variables;
-use formula::{Effect, Parameter};
+use formula::{Effect, Hook, Parameter};
 use shared::experiment::{Experiment, RunUse};
 use shared::file::{FileError, FileSet, unknown_word};
 use shared::model::effects::parameter_name;
+use shared::parameters::WHEEL_RADIUS;
 
 use job::{
     Addition, EffectOnNodes, FreeParameter, Job, ModelChange, ModelSwitch, NamedFile, NamedFiles,
@@ -35,6 +36,9 @@ pub enum ExclusionReason {
     /// Its strength is fixed.
     #[error("no strength is free")]
     NoFreeStrength,
+    /// The job infers the radius of the wheel.
+    #[error("the radius of the wheel is free in the job")]
+    FreeRadius,
     /// It changes nothing at the conditions of the fitted runs.
     #[error("it changes nothing at the slips and slip angles of the fitted runs")]
     AbsentEverywhere,
@@ -152,9 +156,11 @@ pub fn library(
     experiment: &Arc<Experiment>,
 ) -> (Vec<LibraryEffect>, Vec<(String, ExclusionReason)>) {
     let (mut existing, mut on_nodes, mut runs) = (BTreeSet::new(), Vec::new(), [].as_slice());
+    let mut infers_radius = false;
     // An invalid job excludes every effect, each with the reason.
     if let Ok(base) = spec(job, experiment) {
         on_nodes.extend(EffectOnNodes::all_of(&base));
+        infers_radius = base.parameters.iter().any(|p| p.name.starts_with(WHEEL_RADIUS));
         existing.extend(base.fit_variant.effects.into_iter().map(|e| e.name));
         runs = &experiment.runs;
     }
@@ -176,6 +182,7 @@ pub fn library(
         // The model may lack the mechanism that the effect changes; then no runs would show the effect.
         let is_mechanism = effect.hooks().next().is_none();
         let checked = match acts(effect, wheel) {
+            true if infers_radius && scales_radius(effect) => Err(ExclusionReason::FreeRadius),
             true => check(job, experiment, &candidate.extension, effect, wheel),
             false if is_mechanism => check(job, experiment, &candidate.extension, effect, wheel)
                 .and(Err(ExclusionReason::AbsentEverywhere)),
@@ -194,6 +201,11 @@ pub fn library(
         }
     }
     (candidates, excluded)
+}
+
+/// Returns whether an effect changes nothing but the radius of the wheel.
+fn scales_radius(effect: &Effect) -> bool {
+    effect.hooks().eq([Hook::Radius])
 }
 
 /// Returns the candidate of a name, with its effect; `None` for a name that is not in the catalogue.

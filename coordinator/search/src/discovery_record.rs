@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use discovery::{
-    Conclusion, EvidenceMethod, FitChiSquare, OutsideLaw, RankedEffect, SearchVerdict, WeighedSet,
+    Conclusion, EvidenceMethod, FitChiSquare, NAMED, OutsideLaw, RankedEffect, SearchVerdict, WeighedSet,
 };
 use job::PlainParameter;
 use record::{
@@ -19,7 +19,7 @@ use super::entry::CandidateEntry;
 use super::law::curve;
 use super::law::file::free_name;
 use super::models::SearchModels;
-use super::narrative::sentence;
+use super::narrative::{parameter_name, sentence};
 use super::remaining_misfit::remaining_misfit;
 
 /// A law outside the library with more probability is in the credible set.
@@ -88,7 +88,7 @@ pub(super) fn discovery_record(models: &SearchModels, conclusion: &Conclusion) -
         verdict,
         text: sentence(models, conclusion, &effects, outside.as_ref()),
         implausible: conclusion.implausible.and_then(|(k, prior_sds)| {
-            let name = models.base.parameters.get(k)?.name.clone();
+            let name = parameter_name(models, conclusion, k)?;
             Some(ImplausibleParameter { name, prior_sds })
         }),
         unsupported_noise: unsupported_noise(models, conclusion),
@@ -128,7 +128,12 @@ fn unsupported_noise(models: &SearchModels, conclusion: &Conclusion) -> Vec<Stri
         .collect()
 }
 
-/// Returns the numerical noise of each channel that has any, by its column.
+/// Whether an explanation that is probable enough to be named would be under other priors, too.
+fn robust(probability: f64, mut under_other_priors: impl Iterator<Item = f64>) -> Option<bool> {
+    (probability > NAMED).then(|| under_other_priors.all(|p| p > NAMED))
+}
+
+/// The channels that scatter, by their columns.
 fn numerical_noise(sds: &[f64]) -> BTreeMap<String, f64> {
     let by_column = Channel::ALL
         .iter()
@@ -172,6 +177,10 @@ fn effects(models: &SearchModels, conclusion: &Conclusion) -> Vec<JudgedEffect> 
                 .filter(|entry| !entry.candidate.strengths.is_empty())
                 .map(|_| effect.prior_sds),
             probability: effect.probability,
+            robust: robust(
+                effect.probability,
+                conclusion.under_other_priors(effect.candidate),
+            ),
             class: effect.class as u32,
             in_credible_set: effect.is_credible,
             strength_prior: entry.and_then(|entry| strength_prior(&entry.effect, models)),
@@ -189,6 +198,7 @@ fn effects(models: &SearchModels, conclusion: &Conclusion) -> Vec<JudgedEffect> 
             log_bayes_factor,
             prior_sds: None,
             probability,
+            robust: robust(probability, conclusion.law_under_other_priors()),
             class: classes + 1,
             in_credible_set: probability > MIN_CREDIBLE,
             strength_prior: None,

@@ -1,6 +1,7 @@
 //! The narrative of a search: its verdict in one sentence for a test engineer.
 
 use discovery::{Conclusion, DETECTED, SearchVerdict, WeighedSet};
+use formula::Hook;
 use job::{EffectOnNodes, ModelSwitch, PlainParameter};
 use record::{JudgedEffect, NONE, NOT_IN_LIBRARY, Outside};
 use statistics::ErrorSd;
@@ -40,6 +41,9 @@ pub(super) fn sentence(
             chi.value, chi.degrees_of_freedom
         );
     }
+    if is_claim && effects.iter().any(|effect| effect.robust == Some(false)) {
+        text += "; under other priors (strengths half or twice as wide, nothing missing with 0.2 or 0.8) its probability falls below 0.9";
+    }
     let remaining = remaining_misfit(models, &conclusion.remaining);
     if let Some(worst) = remaining.first() {
         text += &format!("; what remains is largest in {}", worst.words());
@@ -59,12 +63,53 @@ fn implausible(models: &SearchModels, conclusion: &Conclusion) -> Option<String>
     let best = conclusion.best.effects.iter().map(|&k| models.name(k));
     let best: Vec<String> = best.collect();
     let side = if sds < 0.0 { "below" } else { "above" };
-    Some(format!(
-        "the best fit ({}) puts {} {:.1} sds of its prior {side} the middle, so the probabilities tell little; widen that prior and search again",
+    let mut text = format!(
+        "the best fit ({}) puts {} {:.1} sds of its prior {side} the middle, so ",
         list(best.iter().map(String::as_str)),
-        models.base.parameters.get(k)?.name,
+        parameter_name(models, conclusion, k)?,
         sds.abs()
+    );
+    text += if k < models.base.parameters.len() {
+        "the probabilities tell little; widen that prior and search again"
+    } else {
+        "the effect is not named: something else may act that it imitates; if you expect such a strength, state a wider prior under [discovery.priors]"
+    };
+    Some(text)
+}
+
+/// Returns what an error of a wheel's dimension comes to: `: it may be 131 mm, not 125 mm; measure it`. `None` for other effects, and
+/// where several wheels share the error.
+fn dimension(models: &SearchModels, name: &str, judged: &JudgedEffect) -> Option<String> {
+    let (effect, _) = candidate_of(name)?;
+    let wheels = &models.base.experiment.wheels;
+    let wheel = match name.split_once('.') {
+        Some((_, wheel)) => wheels.get(wheel)?,
+        None if wheels.len() == 1 => wheels.values().next()?,
+        None => return None,
+    };
+    let stated_m = match effect.hooks().next()? {
+        Hook::Radius => wheel.radius_m,
+        Hook::Width => wheel.width_m,
+        _ => return None,
+    };
+    let error = judged
+        .parameters
+        .values()
+        .next()
+        .filter(|_| judged.parameters.len() == 1)?;
+    Some(format!(
+        ": it may be {:.1} mm, not {:.1} mm; measure it",
+        1e3 * stated_m * (1.0 + error),
+        1e3 * stated_m
     ))
+}
+
+/// Returns the name of a parameter of the best explanation by its place.
+pub(super) fn parameter_name(models: &SearchModels, conclusion: &Conclusion, place: usize) -> Option<String> {
+    let base = models.base.parameters.iter().map(|p| p.name.clone());
+    let effects = conclusion.best.effects.iter().filter_map(|&k| models.entry(k));
+    base.chain(effects.flat_map(|entry| entry.names.clone()))
+        .nth(place)
 }
 
 /// Names the inferred noise that does not support a claim, with advice.
@@ -143,7 +188,11 @@ fn verdict(
                     let summary = effect.map_or("", |effect| effect.summary.as_str());
                     let place =
                         EffectOnNodes::find(&name).map_or("", |_| ", counted where the soil is sheared");
-                    format!("{name} is missing: {summary}{place}")
+                    let dimension = judged.and_then(|judged| dimension(models, &name, judged));
+                    format!(
+                        "{name} is missing: {summary}{place}{}",
+                        dimension.unwrap_or_default()
+                    )
                 }
             };
             format!(
@@ -260,6 +309,7 @@ mod tests {
             log_bayes_factor: 1.0,
             prior_sds: None,
             probability,
+            robust: None,
             class: 0,
             in_credible_set,
             strength_prior: None,

@@ -48,6 +48,15 @@ fn starts(frame: &NormalFrame, base: &LaplaceFit) -> Vec<Vec<f64>> {
     strengths.iter().enumerate().map(start).collect()
 }
 
+/// Returns the start with every parameter in the middle of its prior, and the effect one standard deviation from its absence.
+fn middle(frame: &NormalFrame) -> Vec<f64> {
+    let mut position = vec![0.0; frame.dimension()];
+    for &(k, neutral) in &frame.strengths {
+        position[k] = neutral + 1.0;
+    }
+    position
+}
+
 impl EffectSearch {
     /// Returns the depth at which a candidate is confirmed now; `None` if nothing is confirmed.
     pub(super) fn confirmation(&self) -> Option<&'static Confirmation> {
@@ -63,7 +72,7 @@ impl EffectSearch {
     pub(super) fn begin_confirmation(&mut self, candidates: Vec<usize>) {
         let Some(base) = &self.base else { return };
         // A base that contradicts the data may lie at an end of its prior, and is then a poor start.
-        let is_wrong = self.is_wrong();
+        let (is_wrong, is_pressed) = (self.is_wrong(), self.is_pressed());
         let mut requests = Vec::new();
         for &k in &candidates {
             // With numerical noise each fit may stop at another local maximum.
@@ -79,6 +88,9 @@ impl EffectSearch {
             if is_wrong {
                 let anywhere = base::starts(frame, ANYWHERE);
                 requests.extend(PositionRequest::all_for_model(Some(k), anywhere));
+            }
+            if is_pressed {
+                requests.push(PositionRequest::for_model(Some(k), middle(frame)));
             }
             // The base may also improve from the extension's mode: a Bayes factor compares their best fits.
             if let Some(fit) = self.fit_of(k) {

@@ -58,6 +58,8 @@ pub(crate) struct ConfirmationDepth {
     /// A candidate whose fitted or screened log Bayes factor lies within this distance of the best is confirmed too, because a fit
     /// that has not converged may be the best \[nats\].
     pub(crate) within: f64,
+    /// The same distance where a parameter of the base lies at a bound \[nats\].
+    pub(crate) within_if_pressed: f64,
     /// Whether uncertain evidences are computed by importance sampling. The weights of a rough model scatter as its log-likelihood
     /// does, so that few draws dominate.
     pub(crate) samples: bool,
@@ -133,6 +135,7 @@ pub(crate) const FULL: Depth = Depth {
     },
     confirmation: Some(ConfirmationDepth {
         within: 10.0,
+        within_if_pressed: 30.0,
         samples: true,
         usual: THOROUGH,
         if_wrong: THOROUGH,
@@ -157,6 +160,7 @@ pub(crate) const SPARING: Depth = Depth {
     },
     confirmation: Some(ConfirmationDepth {
         within: 5.0,
+        within_if_pressed: 5.0,
         samples: false,
         usual: Confirmation {
             min_count: 2,

@@ -2,7 +2,7 @@
 
 use crate::effect_search::depth::ExtensionDepth;
 use crate::effect_search::ranking::EvidenceMethod;
-use crate::effect_search::screened::Screened;
+use crate::effect_search::screen_result::Screened;
 use crate::effect_search::state::{EffectSearch, FitPhase, Phase};
 use crate::laplace::batch::FitBatch;
 use crate::laplace::coordinate::NormalFrame;

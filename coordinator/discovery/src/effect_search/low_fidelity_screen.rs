@@ -2,7 +2,8 @@
 //! evaluations of the model.
 
 use crate::effect_search::ranking::EvidenceMethod;
-use crate::effect_search::screened::{self, Evaluated, Screened};
+use crate::effect_search::screen;
+use crate::effect_search::screen_result::{self, Evaluated, Screened};
 use crate::effect_search::state::{CandidateState, EffectSearch, EvidenceEstimate, Phase};
 use crate::laplace::batch::PositionRequest;
 use crate::laplace::correction::Correction;
@@ -20,7 +21,7 @@ impl EffectSearch {
         let mut requests = vec![low_fidelity(None, base.clone())];
         for (k, state) in self.candidates.iter().enumerate() {
             if state.frame.has_low_fidelity {
-                let at = screened::positions(&state.frame, base, &self.depth.screen, None, 0);
+                let at = screen::positions(&state.frame, base, &self.depth.screen, None, 0);
                 requests.extend(at.into_iter().map(|position| low_fidelity(Some(k), position)));
             }
         }
@@ -53,7 +54,7 @@ impl EffectSearch {
             if evaluated.is_empty() {
                 continue;
             }
-            let screened = screened::screened(&state.frame, base, &self.likelihood, &evaluated);
+            let screened = screen_result::screened(&state.frame, base, &self.likelihood, &evaluated);
             // A candidate that does not change the low-fidelity predictions must be screened on the model.
             state.low_fidelity =
                 screened.filter(|screened| screened.change.iter().any(|change| *change != 0.0));

@@ -8,7 +8,7 @@
 //!    along a line through the best fit give the numerical noise (`numerical_noise`), which is added to the noise of the data
 //!    before the fit continues.
 //! 2. **Screen** (`screen`). Each candidate is evaluated at a few strengths and shapes about the base's fit. Its log Bayes factor
-//!    (`screened`) is that of the model linear in the strength, after projection out of the changes that the base can imitate. If
+//!    (`screen_result`) is that of the model linear in the strength, after projection out of the changes that the base can imitate. If
 //!    a rough model has a low-fidelity model, that screens all candidates first (`low_fidelity_screen`), and only the best are
 //!    screened on the model.
 //! 3. **Extensions** (`extension`). The best candidates are fitted together with the base, by Gauss-Newton steps with Broyden's
@@ -23,7 +23,7 @@
 //! - `ask_tell`: how the search is asked and told. `state`: its state, and the phases. `depth`: how many evaluations each phase may
 //!   spend: for the whole library of a smooth or a rough model, and fewer beyond a combination, for curves and for simple forms.
 //! - `base`, `screen`, `low_fidelity_screen`, `extension`, `refinement`, `confirmation`, `sampling`: the phases.
-//! - `numerical_noise`, `screened`: the results of one evaluated line or candidate.
+//! - `numerical_noise`, `screen_result`: the results of one evaluated line or candidate.
 //! - `selection`: the candidates that are kept, confirmed and ranked. `ranking`: the result.
 //! - `projection`: changes of the predictions beyond those of the base. `class`: effects that the data cannot distinguish.
 
@@ -40,6 +40,6 @@ pub(crate) mod ranking;
 mod refinement;
 mod sampling;
 mod screen;
-mod screened;
+mod screen_result;
 mod selection;
 pub(crate) mod state;

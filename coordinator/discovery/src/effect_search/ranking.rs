@@ -1,6 +1,6 @@
 //! The result of a search for one effect: the base and every candidate, with evidence and probability.
 
-use crate::probability::{Explanation, Probabilities};
+use crate::probability::{Explanation, OutsideEvidence, Probabilities};
 
 /// How the evidence was computed, from the least to the most accurate method.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -96,12 +96,13 @@ impl EffectRanking {
     /// Sets the probabilities and the credible set.
     ///
     /// # Arguments
-    /// - `combinations`: log Bayes factor and log prior cost of the combinations that count for a candidate. `outside`: log Bayes
-    ///   factor of a law outside the library; `None`: not searched. `misfit`: see [`Probabilities::new`].
+    /// - `combinations`: log Bayes factor and log prior cost of the combinations that count for a candidate. `outside`: evidence
+    ///   for a law outside the library; `None`: not searched. `none`, `misfit`: see [`Probabilities::new`].
     pub(crate) fn weigh(
         &mut self,
         combinations: impl Fn(usize) -> Vec<(f64, f64)>,
-        outside: Option<f64>,
+        outside: Option<&OutsideEvidence>,
+        none: f64,
         misfit: f64,
     ) -> Probabilities {
         let explanation = |effect: &RankedEffect| Explanation {
@@ -110,7 +111,7 @@ impl EffectRanking {
             combinations: effect.candidate.map_or(Vec::new(), &combinations),
         };
         let explanations: Vec<Explanation> = self.effects.iter().map(explanation).collect();
-        let probabilities = Probabilities::new(&explanations, outside, misfit);
+        let probabilities = Probabilities::new(&explanations, outside, none, misfit);
         for (effect, &probability) in self.effects.iter_mut().zip(&probabilities.explanations) {
             effect.probability = probability;
             effect.is_credible = probabilities.credible.contains(&Some(effect.class));

@@ -6,9 +6,9 @@ use crate::laplace::batch::PositionRequest;
 use crate::laplace::fit::LaplaceFit;
 use crate::laplace::importance::ImportanceSampler;
 
-/// Two effects whose log Bayes factors differ by less are compared by importance sampling \[nats\].
+/// Two effects whose log Bayes factors differ by less than this are compared by importance sampling \[nats\].
 const CLOSE: f64 = 3.0;
-/// Importance sampling is worth its evaluations if the log Bayes factor of the best effect is higher \[nats\].
+/// Importance sampling is used only if the log Bayes factor of the best effect exceeds this \[nats\].
 const MIN_CLAIMED: f64 = 1.0;
 /// Beyond this log Bayes factor the posterior of a strength excludes its absence \[nats\].
 const CERTAINLY_PRESENT: f64 = 10.0;

@@ -1,32 +1,92 @@
-//! Phase 2, the screen: each candidate is evaluated at a few strengths and shapes about the base's fit.
+//! Phase 2, the screen: each candidate is evaluated at a few strengths and shapes about the base's fit, and at a smaller step if the
+//! model rejects these.
 
-use crate::effect_search::screened::{Evaluated, LEVELS, positions, screened};
+use crate::effect_search::depth::ScreenDepth;
+use crate::effect_search::screen_result::{Evaluated, screened};
 use crate::effect_search::state::{EffectSearch, Phase};
 use crate::laplace::batch::PositionRequest;
+use crate::laplace::coordinate::NormalFrame;
+
+/// Steps of each of several strengths; the next one is tried if the model rejects the last. A single strength has the steps of the
+/// [`ScreenDepth`], and then the last of these.
+pub(super) const STEPS: [f64; 4] = [1.0, 0.3, 0.1, 0.03];
+
+/// Returns the positions to evaluate: every strength at the first shape and the first strength at the other shapes; a step along
+/// each of several strengths; or, for a switch, the base's fit.
+///
+/// # Arguments
+/// - `shape`: the best coordinate of the shapes, if it is known; no other is evaluated then.
+pub(super) fn positions(
+    frame: &NormalFrame,
+    base: &[f64],
+    depth: &ScreenDepth,
+    shape: Option<f64>,
+    step_index: usize,
+) -> Vec<Vec<f64>> {
+    if frame.is_switch() {
+        return if step_index == 0 {
+            vec![base.to_vec()]
+        } else {
+            Vec::new()
+        };
+    }
+    let Some((k, neutral)) = frame.strength() else {
+        let mut absent = base.to_vec();
+        absent.resize(frame.dimension(), 0.0);
+        let absent = frame.without(&absent);
+        let along = |&(k, neutral): &(usize, f64)| {
+            let mut position = absent.clone();
+            position[k] = neutral + STEPS[step_index];
+            position
+        };
+        return frame.strengths.iter().map(along).collect();
+    };
+    let shapes = match &shape {
+        Some(best) => std::slice::from_ref(best),
+        None if frame.dimension() > base.len() + 1 => depth.shapes,
+        None => &depth.shapes[..1],
+    };
+    let at = |shape: f64, strength: f64| {
+        let mut position = base.to_vec();
+        position.resize(frame.dimension(), shape);
+        position[k] = neutral + strength;
+        position
+    };
+    let last = STEPS.len() - 1;
+    match step_index {
+        0 => {
+            let strengths = depth.strengths.iter().map(|&strength| at(shapes[0], strength));
+            let shapes = shapes[1..].iter().map(|&shape| at(shape, depth.strengths[0]));
+            strengths.chain(shapes).collect()
+        }
+        index if index == last => vec![at(shapes[0], STEPS[last])],
+        _ => Vec::new(),
+    }
+}
 
 impl EffectSearch {
-    /// Evaluates candidates at the strengths of a level.
-    pub(super) fn screen(&mut self, level: usize, candidates: Vec<usize>) {
+    /// Evaluates candidates at the strengths of a step.
+    pub(super) fn screen(&mut self, step_index: usize, candidates: Vec<usize>) {
         let Some(base) = &self.base else { return };
         let mut requests = Vec::new();
         for &k in &candidates {
             let frame = &self.candidates[k].frame;
             let base = &base.fit.point.position;
-            let positions = positions(frame, base, &self.depth.screen, self.best_shape(k), level);
+            let positions = positions(frame, base, &self.depth.screen, self.best_shape(k), step_index);
             requests.extend(PositionRequest::all_for_model(Some(k), positions));
         }
-        if requests.is_empty() && level + 1 < LEVELS.len() {
-            return self.screen(level + 1, candidates);
+        if requests.is_empty() && step_index + 1 < STEPS.len() {
+            return self.screen(step_index + 1, candidates);
         }
         if requests.is_empty() {
             return self.begin_extensions();
         }
         self.ask(requests);
-        self.phase = Phase::Screen(level);
+        self.phase = Phase::Screen(step_index);
     }
 
-    /// Keeps the results of a level; candidates that the model refused at it are screened at the next.
-    pub(super) fn take_screen(&mut self, level: usize, answers: Vec<Option<Vec<f64>>>) {
+    /// Keeps the results of a step; candidates that the model rejected there are evaluated at the next, smaller step.
+    pub(super) fn take_screen(&mut self, step_index: usize, answers: Vec<Option<Vec<f64>>>) {
         let Some(base) = &self.base else { return };
         self.evaluations.screen += answers.len();
         let mut evaluated: Vec<Vec<Evaluated>> = vec![Vec::new(); self.candidates.len()];
@@ -46,8 +106,8 @@ impl EffectSearch {
                 refused.push(k);
             }
         }
-        if level + 1 < LEVELS.len() && !refused.is_empty() {
-            self.screen(level + 1, refused);
+        if step_index + 1 < STEPS.len() && !refused.is_empty() {
+            self.screen(step_index + 1, refused);
         } else {
             self.begin_extensions();
         }

@@ -13,7 +13,7 @@ use crate::laplace::batch::FitBatch;
 use crate::laplace::coordinate::NormalFrame;
 use crate::laplace::fit::{FittedModel, LaplaceFit};
 use crate::laplace::point::FitPoint;
-use crate::probability::DETECTED;
+use crate::probability::{DETECTED, PRIOR_OF_NONE};
 use crate::settings::Smoothness;
 
 /// A projected change of the predictions shorter than this many noise standard deviations is invisible.
@@ -125,8 +125,9 @@ impl EffectSearch {
         near.map(|(k, _)| k).collect()
     }
 
-    /// Returns candidates to confirm next: those near the best that are not confirmed. Once there are none and the model has
-    /// numerical noise: those whose fits got stuck (once), then members of the best candidate's class that fall short of it.
+    /// Candidates to confirm next: those near the best that are not confirmed, and where the base lies at a bound those to which the
+    /// screen promises most. Once there are none, those whose fits got stuck (once). Last, with numerical noise, members of the best
+    /// candidate's class that fall short of it.
     pub(super) fn unconfirmed(&mut self) -> Vec<usize> {
         let promises = self.promises();
         let (Some(&(_, best)), Some(depth)) = (promises.first(), &self.depth.confirmation) else {
@@ -145,25 +146,65 @@ impl EffectSearch {
             let accepted = above.filter(|(k, promise)| accepts(*k, *promise));
             accepted.map(|(k, _)| *k).take(confirmation::COUNT).collect()
         };
-        let near = (best - depth.within).max(confirmation::MIN_PROMISE);
+        let is_pressed = self.is_pressed();
+        let within = if is_pressed {
+            depth.within_if_pressed
+        } else {
+            depth.within
+        };
+        let near = (best - within).max(confirmation::MIN_PROMISE);
         let next = first(&|k, _| unconfirmed(k).is_some(), near);
-        // With numerical noise fits get stuck more often.
-        if !next.is_empty() || self.numerical_noise_sds.is_empty() {
+        if !next.is_empty() {
             return next;
+        }
+        if is_pressed {
+            let leaders = self.leaders_of_screen().into_iter();
+            let open: Vec<usize> = leaders.filter(|k| unconfirmed(*k).is_some()).collect();
+            if !open.is_empty() {
+                return open;
+            }
         }
         let stuck = if std::mem::replace(&mut self.has_confirmed_stuck, true) {
             Vec::new()
         } else {
             first(&is_stuck, confirmation::STUCK * best.max(0.0))
         };
-        if !stuck.is_empty() {
+        // With numerical noise fits get stuck more often.
+        if !stuck.is_empty() || self.numerical_noise_sds.is_empty() {
             return stuck;
         }
         self.same_class()
     }
 
-    /// Returns members of the best candidate's class that fall short of it, once for each of the first few best candidates.
-    /// Effects that change the predictions alike fit alike, unless a fit got stuck.
+    /// Whether a parameter of the base lies at a bound of its prior. The base's fit is then a poor start: an effect that takes the
+    /// pressure from the bound has its optimum far away.
+    pub(super) fn is_pressed(&self) -> bool {
+        let is_smooth = self.base_frame.smoothness == Smoothness::Smooth;
+        let at_bound = |model: &FittedModel| model.fit.frame.at_bound(&model.fit.point.position);
+        is_smooth
+            && self
+                .base
+                .as_ref()
+                .is_some_and(|model| at_bound(model).contains(&true))
+    }
+
+    /// The candidates to which the screen promises most.
+    fn leaders_of_screen(&self) -> Vec<usize> {
+        let states = self.candidates.iter().enumerate();
+        let screened = states.filter_map(|(k, state)| Some((k, state.screened.as_ref()?.log_bayes_factor)));
+        let mut leaders: Vec<(usize, f64)> = screened
+            .filter(|(_, promise)| *promise > confirmation::MIN_PROMISE)
+            .collect();
+        leaders.sort_by(|a, b| b.1.total_cmp(&a.1));
+        leaders
+            .into_iter()
+            .take(confirmation::COUNT)
+            .map(|(k, _)| k)
+            .collect()
+    }
+
+    /// Members of the best candidate's class that fall short of it, once for each of the first few best candidates. Effects that
+    /// change the predictions alike fit alike, unless a fit got stuck.
     fn same_class(&mut self) -> Vec<usize> {
         let promises = self.promises();
         let Some(&(best, nats)) = promises.first() else {
@@ -261,7 +302,7 @@ impl EffectSearch {
             refused: refused.collect(),
             evaluations: self.evaluations,
         };
-        ranking.weigh(|_| Vec::new(), None, 1.0);
+        ranking.weigh(|_| Vec::new(), None, PRIOR_OF_NONE, 1.0);
         self.phase = Phase::Done(Box::new(ranking));
     }
 

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use crate::candidate::Candidate;
 use crate::effect_search::depth::{Depth, FULL};
 use crate::effect_search::ranking::{EffectRanking, EvaluationCounts, EvidenceMethod};
-use crate::effect_search::screened::Screened;
+use crate::effect_search::screen_result::Screened;
 use crate::laplace::batch::{FitBatch, PositionRequest};
 use crate::laplace::coordinate::NormalFrame;
 use crate::laplace::fit::{FittedModel, LaplaceFit};
@@ -90,7 +90,7 @@ pub(super) enum Phase {
     /// Holds the base's fits, and the distance of neighbouring positions on the line through the best of them.
     NumericalNoise(FitBatch, f64),
     LowFidelityScreen,
-    /// Holds the index of the strengths in [`LEVELS`](crate::effect_search::screened::LEVELS).
+    /// Holds the index of the strengths in [`STEPS`](crate::effect_search::screen::STEPS).
     Screen(usize),
     /// Holds the likelihood with the reduced discrepancy.
     ReducedDiscrepancy(Likelihood, FitBatch),

@@ -10,8 +10,9 @@ const FARTHEST: f64 = 7.5;
 /// A parameter of the best fit within this distance from the limit \[standard deviations\] contradicts its prior: a better fit may
 /// lie beyond.
 const NEAR_LIMIT: f64 = 1.0;
-/// A position counts as the end of a support if both lie no farther apart, in the sampling coordinate, than this share of the
-/// distance from -1 to 1 sd.
+/// A strength of an effect farther out in its prior contradicts what is known of the effect \[standard deviations\].
+const MAX_STRENGTH: f64 = 5.0;
+/// A support ends at a place if its end, in the sampling coordinate, lies no farther away than this share of the distance from -1 to 1 sd.
 const BEYOND: f64 = 0.01;
 
 /// The map from a parameter to its coordinate.
@@ -85,7 +86,7 @@ impl NormalCoordinate {
         }
     }
 
-    /// Returns whether the support ends at a coordinate, as that of a uniform density does at a far one.
+    /// Returns whether a coordinate lies practically at a bound of the support, as a far coordinate of a uniform prior does.
     fn ends_at(&self, t: f64) -> bool {
         let (lower, upper) = self.marginal.support();
         let end = self.marginal.coordinate(if t < 0.0 { lower } else { upper });
@@ -255,8 +256,23 @@ impl NormalFrame {
             .max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))
     }
 
-    /// Returns whether each parameter lies within 2 % of a bound of its range, or at the value at which a half-normal strength is
-    /// absent.
+    /// The strength of an added effect that lies farthest out in its prior, and its coordinate. `None` if none is more than 5
+    /// standard deviations out; a declared bound is no contradiction.
+    pub(crate) fn implausible_strength(&self, position: &[f64]) -> Option<(usize, f64)> {
+        let strengths = self.widened.iter().map(|&k| (k, position[k]));
+        let far = strengths.filter(|(k, t)| t.abs() > MAX_STRENGTH && !self.coordinates[*k].ends_at(*t));
+        far.max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))
+    }
+
+    /// The largest distance of a strength of the added effects from the middle of its prior, in standard deviations.
+    pub(crate) fn largest_strength(&self, position: &[f64]) -> f64 {
+        self.widened
+            .iter()
+            .map(|&k| position[k].abs())
+            .fold(0.0, f64::max)
+    }
+
+    /// Whether each parameter lies within 2 % of a bound of its range, or at the value at which a half-normal strength is absent.
     pub(crate) fn at_bound(&self, position: &[f64]) -> Vec<bool> {
         let near = |((coordinate, x), &t): ((&NormalCoordinate, f64), &f64)| {
             coordinate.marginal.at_bound(x, x) || (coordinate.is_half() && t <= 0.0)

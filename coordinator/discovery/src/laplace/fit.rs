@@ -460,7 +460,7 @@ impl LaplaceFit {
     pub(crate) fn log_evidence(&self, likelihood: &Likelihood) -> Option<f64> {
         let quadratic = self.at_mode(likelihood);
         let (position, value) = (&self.point.position, self.point.value);
-        mixed_evidence(&self.frame, position, &quadratic, value, MAX_UNREACHED)
+        mixed_evidence(&self.frame, position, &quadratic, value, MAX_UNREACHED, 1.0)
     }
 
     /// Returns the log evidence with the stated priors of the strengths less that with the widened ones; `None` if the Hessian is
@@ -469,6 +469,16 @@ impl LaplaceFit {
         let quadratic = self.at_mode(likelihood);
         let (position, value) = (&self.point.position, self.point.value);
         stated_less_mixed(&self.frame, position, &quadratic, value, MAX_UNREACHED)
+    }
+
+    /// The log evidence with the widths of all strengths' priors multiplied by a factor, less that with the priors of the search; `None`
+    /// if the Hessian is not positive definite.
+    pub(crate) fn gain_by_width(&self, likelihood: &Likelihood, width: f64) -> Option<f64> {
+        let quadratic = self.at_mode(likelihood);
+        let (position, value) = (&self.point.position, self.point.value);
+        let evidence =
+            |width: f64| mixed_evidence(&self.frame, position, &quadratic, value, MAX_UNREACHED, width);
+        Some(evidence(width)? - evidence(1.0)?)
     }
 
     fn at_mode(&self, likelihood: &Likelihood) -> QuadraticModel {

@@ -23,8 +23,9 @@ const WEAK: f64 = 0.5;
 /// Random streams of the draws, separate from those of any sampler.
 const STAGE: u64 = 1 << 42;
 
-/// The evidence of one model, from draws of a t about its fit that is adapted after each round. If the effect may be absent, a
-/// second t lies about its absence, where its shape is unconstrained.
+/// Adaptive importance sampling of the evidence of one model. Draws come from a Student t distribution about the fit, adapted after
+/// each round. If the effect may be absent, a second t distribution is centred on its absence, where the data do not constrain its
+/// shape.
 ///
 /// All rounds count. A draw is weighted by prior times likelihood over the mean density of all t's, so that a draw in a tail that
 /// the adapted t misses keeps a bounded weight.

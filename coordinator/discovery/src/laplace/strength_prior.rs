@@ -51,6 +51,7 @@ struct MixturePart {
 /// Returns the log evidence under the mixture: its components are normal priors, whose evidences add.
 ///
 /// # Arguments
+/// - `width`: factor on the width of every component; 1 for the mixture of the search.
 /// - `quadratic`, `value`: the expansion at `position`, with the prior of [`add`] and [`penalty`].
 /// - `max_gain`: how far the likelihood may rise above that at `position`, in nats, where a component is wider than the mixture
 ///   there. The expansion of a fit that a narrow component holds near absence predicts any gain, but no step has reached it.
@@ -66,6 +67,7 @@ pub(crate) fn mixed_evidence(
     quadratic: &QuadraticModel,
     value: f64,
     max_gain: f64,
+    width: f64,
 ) -> Option<f64> {
     let mut parts = vec![MixturePart {
         quadratic: quadratic.clone(),
@@ -76,12 +78,15 @@ pub(crate) fn mixed_evidence(
         let t = position[k];
         let log_mixture = -log_sum_exp(log_parts(t));
         let with = |part: &MixturePart| {
-            let component = |(log_part, (weight, scale)): (f64, (f64, f64))| MixturePart {
-                quadratic: with_precision(&part.quadratic, k, t, 1.0 / (scale * scale)),
-                value: part.value - log_mixture - log_part,
-                log_peak: part.log_peak + libm::log(weight / scale),
+            let component = |(weight, scale): (f64, f64)| {
+                let scale = scale * width;
+                MixturePart {
+                    quadratic: with_precision(&part.quadratic, k, t, 1.0 / (scale * scale)),
+                    value: part.value - log_mixture - log_part(t, weight, scale),
+                    log_peak: part.log_peak + libm::log(weight / scale),
+                }
             };
-            log_parts(t).zip(PARTS).map(component).collect::<Vec<_>>()
+            PARTS.map(component)
         };
         parts = parts.iter().flat_map(with).collect();
     }
@@ -122,7 +127,7 @@ pub(crate) fn stated_less_mixed(
     let stated_value = value - penalty(frame, position) + 0.5 * squares;
     let limit = max_gain + highest(frame, position, value) + log_volume(&stated)?;
     let evidence = log_evidence(&stated, stated_value, &frame.halves())?.min(limit);
-    Some(evidence - mixed_evidence(frame, position, quadratic, value, max_gain)?)
+    Some(evidence - mixed_evidence(frame, position, quadratic, value, max_gain, 1.0)?)
 }
 
 /// Returns the expansion with the stated priors of the strengths.
@@ -146,7 +151,12 @@ fn with_precision(quadratic: &QuadraticModel, k: usize, t: f64, new_precision: f
 fn log_parts(t: f64) -> impl Iterator<Item = f64> + Clone {
     PARTS
         .iter()
-        .map(move |&(weight, scale)| libm::log(weight / scale) - 0.5 * (t / scale) * (t / scale))
+        .map(move |&(weight, scale)| log_part(t, weight, scale))
+}
+
+/// `ln (w / s) - t^2 / (2 s^2)`.
+fn log_part(t: f64, weight: f64, scale: f64) -> f64 {
+    libm::log(weight / scale) - 0.5 * (t / scale) * (t / scale)
 }
 
 fn precision(t: f64) -> f64 {
@@ -181,7 +191,8 @@ mod tests {
             held: vec![false],
         };
         let value = penalty(&frame, &position);
-        let evidence = |max_gain| mixed_evidence(&frame, &position, &quadratic, value, max_gain).unwrap();
+        let evidence =
+            |max_gain| mixed_evidence(&frame, &position, &quadratic, value, max_gain, 1.0).unwrap();
         assert!(evidence(f64::INFINITY) > 100.0);
         assert!(evidence(3.0) < 3.0 && evidence(3.0) > 0.0);
         let stated = |max_gain| stated_less_mixed(&frame, &position, &quadratic, value, max_gain).unwrap();

@@ -1,4 +1,4 @@
-//! How a discovery is asked and told: the queries of a round, and the answers, which select the next stage.
+//! The ask-and-tell interface of a discovery: the queries of a round, and the answers, which select the next stage.
 
 use crate::candidate::{Candidate, CandidateError};
 use crate::effect_search::state::EffectSearch;
@@ -165,6 +165,11 @@ impl DiscoverySearch {
             Stage::Curves(branch) => state.after_curves(branch),
             Stage::Forms(branch) => state.after_forms(branch),
             Stage::CrossValidation(rank, validation) => state.after_cross_validation(*rank, validation),
+            Stage::EffectsBesideLaw(size, branches) => state.after_effects_beside_law(*size, branches),
+            Stage::LawElimination(branches) => state.after_law_elimination(branches),
+            Stage::LawBesideEffects(effects, validation) => {
+                state.after_law_beside_effects(effects, validation)
+            }
             Stage::Predictions(sets, validation) => state.after_predictions(sets, validation),
             Stage::NextRuns(runs) => state.done(runs.best()),
             Stage::Done(_) | Stage::Failed(_) => return,

@@ -2,6 +2,7 @@
 
 use crate::effect_search::state::EffectSearch;
 use crate::stages::branch::SearchBranch;
+use crate::stages::hypotheses::EffectCombination;
 use crate::stages::stage::Stage;
 use crate::stages::state::SearchState;
 
@@ -11,11 +12,17 @@ impl SearchState {
         let Some(best) = self.hypotheses.best().filter(|best| best.effects.len() > 1) else {
             return self.exchanges(0);
         };
-        let branches = best.effects.iter().map(|&dropped| {
+        Stage::BackwardElimination(self.without_each(best))
+    }
+
+    /// Returns fits of a set without each of its members, from its mode.
+    pub(super) fn without_each(&self, set: &EffectCombination) -> Vec<SearchBranch> {
+        let has_law = |effects: &[usize]| effects.iter().any(|k| *k >= self.task.library.len());
+        let branches = set.effects.iter().map(|&dropped| {
             let mut frame = self.task.frame();
-            let mut start = best.fit.point.position[..self.task.prior.dimension()].to_vec();
+            let mut start = set.fit.point.position[..self.task.prior.dimension()].to_vec();
             let mut effects = Vec::new();
-            for (k, coordinates) in self.coordinates(best) {
+            for (k, coordinates) in self.coordinates(set) {
                 if k != dropped {
                     frame = frame.with(&self.hypotheses.candidates[k]);
                     start.extend_from_slice(coordinates);
@@ -24,9 +31,10 @@ impl SearchState {
             }
             let seed = self.task.settings.seed;
             let search = EffectSearch::refit(frame, vec![start], self.task.likelihood.clone(), seed);
-            SearchBranch::new(effects, Vec::new(), search)
+            let choice = if has_law(&effects) { set.choice } else { 0.0 };
+            SearchBranch::new(effects, Vec::new(), search).with_choice(choice)
         });
-        Stage::BackwardElimination(branches.collect())
+        branches.collect()
     }
 
     /// Keeps the reduced combinations, and begins the exchanges.

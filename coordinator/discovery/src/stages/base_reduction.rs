@@ -1,4 +1,5 @@
-//! Steps 1 to 6: the results of the search for one effect are kept, and the base is fitted without each of its effects.
+//! Step 6, the base reduction: the results of the search for one effect (steps 1 to 5) are kept, and the base is fitted without each of
+//! its effects.
 
 use crate::effect_search::state::EffectSearch;
 use crate::settings::{SearchSettings, Starts};
@@ -16,7 +17,7 @@ impl SearchState {
         self.take_numerical_noise(&branch.search);
         self.hypotheses.base = branch.search.base_fit().cloned();
         self.hypotheses.ranking = branch.search.ranking().cloned().unwrap_or_default();
-        self.add_combinations(branch, 0.0);
+        self.add_combinations(branch);
         let Some(base) = self.hypotheses.base_fit() else {
             return Stage::Failed(InferenceFailure::AllImpossible {
                 draws: self.evaluations,

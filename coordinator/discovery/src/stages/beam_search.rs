@@ -66,13 +66,8 @@ impl SearchState {
 
     /// Keeps the extended combinations, and extends them once more if the best has grown.
     pub(super) fn after_beam_search(&mut self, size: usize, branches: &[SearchBranch]) -> Stage {
-        let base = self.hypotheses.base_evidence();
         for branch in branches {
-            let extended = branch
-                .search
-                .base_fit()
-                .map_or(0.0, |model| model.log_evidence - base);
-            self.add_combinations(branch, extended);
+            self.add_combinations(branch);
         }
         let has_grown = self
             .hypotheses

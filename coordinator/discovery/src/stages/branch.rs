@@ -4,7 +4,7 @@ use crate::effect_search::ranking::RankedEffect;
 use crate::effect_search::state::EffectSearch;
 use crate::stages::query::{QueriedModel, Query};
 
-/// A search beyond a combination of effects, or a fit of the base without one of its effects.
+/// A search for one more effect beyond a combination, a fit of a combination, or a fit of the base without one of its effects.
 #[derive(Debug, Clone)]
 pub(super) struct SearchBranch {
     /// The effects of its model beyond the base.
@@ -14,6 +14,8 @@ pub(super) struct SearchBranch {
     /// The index in the task of each candidate of this search.
     candidates: Vec<usize>,
     pub(super) search: EffectSearch,
+    /// Cost of the choice of the law among its effects \[nats\]; 0 without a law.
+    pub(super) choice: f64,
 }
 
 impl SearchBranch {
@@ -23,7 +25,13 @@ impl SearchBranch {
             reduction: None,
             candidates,
             search,
+            choice: 0.0,
         }
+    }
+
+    /// This branch, with the cost of the choice of a law among its effects.
+    pub(super) fn with_choice(self, choice: f64) -> Self {
+        Self { choice, ..self }
     }
 
     /// Returns the fit of the base without one of its effects.

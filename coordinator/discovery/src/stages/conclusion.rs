@@ -4,17 +4,16 @@ use crate::chi_square::{FitChiSquare, residuals};
 use crate::effect_search::ranking::EffectRanking;
 use crate::laplace::draws::draws;
 use crate::laplace::fit::LaplaceFit;
-use crate::probability::DETECTED;
-use crate::stages::hypotheses::{FittedLaw, Hypotheses};
+use crate::probability::{DETECTED, PRIOR_OF_NONE};
+use crate::stages::claimable_law::ClaimableLaw;
 use crate::stages::next_run::{InformativeRun, RunChoice};
 use crate::stages::noise_support::unsupported_noise;
+use crate::stages::prior_sensitivity::{AlternativePrior, alternative_priors};
 use crate::stages::state::SearchState;
 use crate::stages::verdict::SearchVerdict;
 use crate::stages::weighing::{WeighedSet, Weighing};
 use crate::task::SearchTask;
 
-/// A law outside the library explains the misfit if it leaves at most this share of the library's chi-square excess.
-const MAX_LEFT: f64 = 0.25;
 /// Number of posterior draws of a model, and the numbers of their random streams, which follow those of the open explanations.
 const DRAWS: usize = 33;
 const BASE_STREAM: u64 = 1000;
@@ -59,13 +58,13 @@ pub struct OutsideLaw {
 }
 
 impl OutsideLaw {
-    fn new(task: &SearchTask, law: &FittedLaw) -> Self {
+    fn new(law: &ClaimableLaw) -> Self {
         Self {
             law: law.law,
             candidate: law.candidate,
             log_bayes_factor: law.log_bayes_factor,
-            parameters: law.fit.theta()[task.prior.dimension()..].to_vec(),
-            left_out_nats: law.left_out.unwrap_or([0.0; 2]),
+            parameters: law.parameters.clone(),
+            left_out_nats: law.left_out,
         }
     }
 }
@@ -75,8 +74,9 @@ impl OutsideLaw {
 pub struct Conclusion {
     /// The verdict that the data support.
     pub verdict: SearchVerdict,
-    /// Index and normal score of the base's parameter that the best explanation puts near the limit of the search. Evidences then
-    /// measure how each explanation relieves that prior, so nothing is claimed. `None` if there is none.
+    /// Index and normal score of a parameter of the best explanation: of the base, near the limit of the search, or a strength more than
+    /// 5 sds out in its prior. Evidences then measure how each explanation relieves a prior, so no effect is claimed. `None` if there is
+    /// none.
     pub implausible: Option<(usize, f64)>,
     /// Indices of the inferred noise sds that are too uncertain for a claim; nothing is claimed then. Empty if nothing was
     /// detected.
@@ -89,6 +89,8 @@ pub struct Conclusion {
     pub predicted_by_law: Option<Vec<f64>>,
     /// Every model that was compared, by falling probability.
     pub sets: Vec<WeighedSet>,
+    /// The probabilities of all explanations under other priors.
+    pub alternative_priors: Vec<AlternativePrior>,
     /// The effect to begin with, if the verdict is open but evidence and prediction agree on the best set.
     pub agreed: Option<usize>,
     /// Whether the best explanation fits the declared noise; `None` where the noise is not known.
@@ -146,8 +148,13 @@ impl Objections {
         supported: SearchVerdict,
     ) -> Self {
         let explanation = explanation.filter(|_| supported != SearchVerdict::NothingDetectable);
+        let names_effect = supported != SearchVerdict::NotInLibrary;
         Self {
-            implausible: explanation.and_then(|fit| fit.frame.implausible(&fit.point.position)),
+            implausible: explanation.and_then(|fit| {
+                let position = &fit.point.position;
+                let strength = || fit.frame.implausible_strength(position).filter(|_| names_effect);
+                fit.frame.implausible(position).or_else(strength)
+            }),
             unsupported_noise: match (base, explanation) {
                 (Some(base), Some(best)) => unsupported_noise(task, base, best),
                 _ => Vec::new(),
@@ -184,30 +191,20 @@ impl Remainder {
     }
 }
 
-/// Returns the confirmed law, if it fits or leaves little of the chi-square excess of the library's best.
-fn explaining_law<'a>(task: &SearchTask, hypotheses: &'a Hypotheses) -> Option<&'a FittedLaw> {
-    let library = hypotheses.detected_of_library(task.library.len());
-    let library = library.map(|best| &best.fit).or(hypotheses.base_fit());
-    let chi_square = |fit: &LaplaceFit| FitChiSquare::of_fit(fit, &task.likelihood);
-    let law = hypotheses.confirmed_law()?;
-    let explains = match (library.and_then(chi_square), chi_square(&law.fit)) {
-        (Some(library), Some(law)) => !law.is_wrong() || law.excess() < MAX_LEFT * library.excess(),
-        _ => true,
-    };
-    explains.then_some(law)
-}
-
 impl Conclusion {
     pub(super) fn new(state: &SearchState, choice: RunChoice) -> Self {
         let (task, hypotheses) = (&state.task, &state.hypotheses);
         let likelihood = &task.likelihood;
         let weighing = Weighing::new(task, hypotheses);
-        let law = explaining_law(task, hypotheses);
+        let law = ClaimableLaw::new(task, hypotheses, weighing.best_with_law());
         let is_incomplete = hypotheses.is_incomplete(likelihood);
-        let supported = SearchVerdict::new(task, &weighing, hypotheses, law, is_incomplete);
+        let supported = SearchVerdict::new(task, &weighing, hypotheses, law.as_ref(), is_incomplete);
         let law = law.filter(|_| supported == SearchVerdict::NotInLibrary);
         let (base, detected) = (hypotheses.base_fit(), hypotheses.detected());
-        let explanation = law.map(|law| &law.fit).or(detected.map(|best| &best.fit));
+        let explanation = law
+            .as_ref()
+            .map(|law| &law.fit)
+            .or(detected.map(|best| &best.fit));
         let objections = Objections::new(task, base, explanation, supported);
         let is_withheld = objections.any();
         let verdict = if is_withheld && supported.is_claim() {
@@ -217,7 +214,9 @@ impl Conclusion {
         };
         let remainder = Remainder::new(task, base, explanation.or(base));
         let combination = detected.map_or(Vec::new(), |best| best.effects.clone());
-        let effects = law.map_or_else(|| combination.clone(), |law| vec![law.candidate]);
+        let effects = law
+            .as_ref()
+            .map_or_else(|| combination.clone(), |law| law.effects.clone());
         let chi_square = |fit: &LaplaceFit| FitChiSquare::of_fit(fit, likelihood);
         Self {
             verdict,
@@ -229,6 +228,7 @@ impl Conclusion {
             agreed: weighing
                 .agreed()
                 .filter(|_| verdict == SearchVerdict::Undecided && !is_withheld),
+            alternative_priors: alternative_priors(task, hypotheses, PRIOR_OF_NONE, weighing.misfit),
             ranking: weighing.ranking,
             not_in_library: weighing.not_in_library,
             predicted_by_law: hypotheses.laws.as_ref().and_then(|scan| {
@@ -238,12 +238,14 @@ impl Conclusion {
             sets: weighing.sets,
             misfit: weighing.misfit,
             outside: law
+                .as_ref()
                 .filter(|_| verdict == SearchVerdict::NotInLibrary)
-                .map(|law| OutsideLaw::new(task, law)),
+                .map(OutsideLaw::new),
             combination,
             gains: hypotheses.gains.clone(),
             chi_square: base.and_then(chi_square),
             chi_square_best: law
+                .as_ref()
                 .map_or_else(|| hypotheses.chi_square(likelihood), |law| chi_square(&law.fit)),
             base: PosteriorModel::new(task, Vec::new(), base, BASE_STREAM),
             best: PosteriorModel::new(task, effects, explanation.or(base), BEST_STREAM),
@@ -254,7 +256,25 @@ impl Conclusion {
         }
     }
 
-    /// Returns the reductions that cost no detectable evidence: their effects may be dropped.
+    /// The probability of an explanation under each other prior; `None`: nothing is missing.
+    pub fn under_other_priors(&self, candidate: Option<usize>) -> impl Iterator<Item = f64> {
+        let priors = self.alternative_priors.iter();
+        priors.filter_map(move |prior| {
+            let mut effects = prior.effects.iter();
+            effects
+                .find(|(k, _)| *k == candidate)
+                .map(|(_, probability)| *probability)
+        })
+    }
+
+    /// The probability of a law outside the library under each other prior.
+    pub fn law_under_other_priors(&self) -> impl Iterator<Item = f64> {
+        self.alternative_priors
+            .iter()
+            .filter_map(|prior| prior.not_in_library)
+    }
+
+    /// The reductions that cost no detectable evidence: their effects may be dropped.
     pub fn redundant(&self) -> impl Iterator<Item = usize> {
         let gains = self.gains.iter().enumerate();
         gains

@@ -10,9 +10,9 @@ use crate::stages::state::SearchState;
 /// Families with more members are not tried: their subsets are too many.
 const MAX_MEMBERS: usize = 4;
 /// Distances of all strengths from their neutral values at the starts about the base's fit, in standard deviations of their priors.
-const STRENGTHS: [f64; 2] = [0.3, 1.0];
+const START_DISTANCES: [f64; 2] = [0.3, 1.0];
 /// Number of further starts, which fill the prior.
-const ANYWHERE: usize = 6;
+const PRIOR_STARTS: usize = 6;
 
 impl SearchState {
     /// Fits every subset of a family. Each member alone may explain little, such as a sinkage that grows with slip in drive, in
@@ -24,7 +24,7 @@ impl SearchState {
         let branches = self
             .subsets()
             .into_iter()
-            .filter_map(|subset| self.together(subset));
+            .filter_map(|subset| self.fit_together(subset));
         Stage::Families(branches.collect())
     }
 
@@ -63,7 +63,7 @@ impl SearchState {
                         .iter()
                         .all(|l| k == l || library[*k].combines_with(&library[*l]))
                 };
-                // A set counts for a member that has an evidence alone.
+                // A set is fitted only if at least one member was ranked as a single effect.
                 let is_ranked = effects
                     .iter()
                     .any(|k| self.hypotheses.ranking.effect(Some(*k)).is_some());
@@ -77,20 +77,20 @@ impl SearchState {
     }
 
     /// Fits a set of effects together with the base.
-    fn together(&self, effects: Vec<usize>) -> Option<SearchBranch> {
+    fn fit_together(&self, effects: Vec<usize>) -> Option<SearchBranch> {
         let mut frame = self.task.frame();
         let base = &self.hypotheses.base_fit()?.point.position;
-        let mut at_base = vec![base.clone(); STRENGTHS.len()];
+        let mut at_base = vec![base.clone(); START_DISTANCES.len()];
         for &k in &effects {
             frame = frame.with(&self.task.library[k]);
-            for (position, distance) in at_base.iter_mut().zip(STRENGTHS) {
+            for (position, distance) in at_base.iter_mut().zip(START_DISTANCES) {
                 position.resize(frame.dimension(), 0.0);
                 for &(strength, neutral) in &frame.strengths {
                     position[strength] = neutral + distance;
                 }
             }
         }
-        at_base.extend(starts(&frame, ANYWHERE));
+        at_base.extend(starts(&frame, PRIOR_STARTS));
         let likelihood = self.task.likelihood.clone();
         let search = EffectSearch::refit(frame, at_base, likelihood, self.task.settings.seed);
         Some(SearchBranch::new(effects, Vec::new(), search))

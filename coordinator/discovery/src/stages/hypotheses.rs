@@ -31,8 +31,12 @@ pub(super) struct Hypotheses {
     pub(super) gains: Vec<Option<f64>>,
     /// Laws outside the library beyond the base; `None`: not searched.
     pub(super) laws: Option<LawScan>,
-    /// Laws outside the library beyond the best combination; `None`: not searched.
-    pub(super) further_laws: Option<LawScan>,
+    /// Laws outside the library beyond sets of effects, in the order in which they were scanned.
+    pub(super) further_laws: Vec<LawScan>,
+    /// The sets beyond which laws are still to be scanned; `None` before they are chosen.
+    pub(super) unscanned: Option<Vec<Vec<usize>>>,
+    /// The cross-validation of the best set that has a law beside effects; `None`: there is no such set.
+    pub(super) law_beside_effects: Option<LawBesideEffects>,
     /// The leading sets with their log predictive density of left-out levels over that of the base.
     pub(super) predictive: Vec<(Vec<usize>, f64)>,
 }
@@ -50,9 +54,27 @@ pub(super) fn candidate_set(effects: &[usize]) -> CandidateSet {
 pub(super) struct EffectCombination {
     /// The effects in the order in which their parameters follow the base's.
     pub(super) effects: Vec<usize>,
-    /// Log evidence over that of the base.
+    /// Log evidence over that of the base, less `choice`.
     pub(super) log_bayes_factor: f64,
+    /// Cost of the choice of a law among all laws and of its form \[nats\]; 0 without a law.
+    pub(super) choice: f64,
     pub(super) fit: LaplaceFit,
+}
+
+impl EffectCombination {
+    /// Log evidence over that of the base, of this law in this form.
+    pub(super) fn fitted_log_bayes_factor(&self) -> f64 {
+        self.log_bayes_factor + self.choice
+    }
+}
+
+/// The cross-validation of a law that acts together with effects.
+#[derive(Debug, Clone)]
+pub(super) struct LawBesideEffects {
+    /// The effects and the law.
+    pub(super) effects: Vec<usize>,
+    /// Log predictive density of the left-out data over that of the base, and over that of the library's best combination.
+    pub(super) left_out: [f64; 2],
 }
 
 /// Laws outside the library, fitted beyond one model.
@@ -80,6 +102,16 @@ pub(super) struct FittedLaw {
     pub(super) left_out: Option<[f64; 2]>,
 }
 
+impl FittedLaw {
+    /// Cost of the choice of this law among all laws and of its form \[nats\].
+    ///
+    /// # Arguments
+    /// - `possible`: number of all laws.
+    pub(super) fn choice(&self, possible: usize) -> f64 {
+        self.log_bayes_factor - self.mean_log_bayes_factor + libm::log(possible.max(1) as f64)
+    }
+}
+
 impl LawScan {
     /// Returns the log Bayes factor of a law outside the library over the model that was scanned: the mean over all possible
     /// laws, where one that could not be fitted counts as without evidence.
@@ -100,7 +132,9 @@ impl Hypotheses {
             exchanged: BTreeSet::new(),
             gains: Vec::new(),
             laws: None,
-            further_laws: None,
+            further_laws: Vec::new(),
+            unscanned: None,
+            law_beside_effects: None,
             predictive: Vec::new(),
         }
     }
@@ -148,7 +182,10 @@ impl Hypotheses {
             .filter(|best| best.log_bayes_factor > DETECTED)
     }
 
-    fn best_of(&self, is_eligible: impl Fn(&EffectCombination) -> bool) -> Option<&EffectCombination> {
+    pub(super) fn best_of(
+        &self,
+        is_eligible: impl Fn(&EffectCombination) -> bool,
+    ) -> Option<&EffectCombination> {
         let score =
             |c: &EffectCombination| c.log_bayes_factor - COST_OF_CHOICE * (c.effects.len() as f64 - 1.0);
         self.combinations
@@ -181,7 +218,7 @@ impl Hypotheses {
 
     /// Returns the scan for laws that is in progress, or the last one.
     pub(super) fn current_scan(&mut self) -> Option<&mut LawScan> {
-        self.further_laws.as_mut().or(self.laws.as_mut())
+        self.further_laws.last_mut().or(self.laws.as_mut())
     }
 
     /// Returns the law beyond the base that passed the cross-validation.

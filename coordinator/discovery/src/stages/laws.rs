@@ -5,7 +5,7 @@ use crate::chi_square::{FURTHER_EFFECT, FitChiSquare, OUTSIDE_LAW};
 use crate::effect_search::depth::{ALL_CURVES, CURVES, Depth, FORMS};
 use crate::effect_search::state::EffectSearch;
 use crate::laplace::evidence::log_sum_exp;
-use crate::laplace::fit::{FittedModel, LaplaceFit};
+use crate::laplace::fit::LaplaceFit;
 use crate::probability::DETECTED;
 use crate::stages::branch::SearchBranch;
 use crate::stages::cross_validation::CrossValidation;
@@ -14,7 +14,11 @@ use crate::stages::stage::Stage;
 use crate::stages::state::SearchState;
 
 /// Number of laws, the best, whose simple forms are fitted and that are cross-validated.
-const LAWS: usize = 3;
+pub(super) const LAWS: usize = 3;
+/// A strength farther out in its prior may stand for a law \[standard deviations\].
+const FAR_OUT: f64 = 3.0;
+/// Number of single effects, the best, beyond which laws are scanned.
+const SINGLES: usize = 3;
 /// A curve is kept if its log Bayes factor exceeds that of the best simple form by more \[nats\].
 const CURVE_BEATS_FORM: f64 = 5.0;
 
@@ -22,7 +26,10 @@ impl SearchState {
     /// Searches curves outside the library if the library leaves misfit, or if it needs several effects, which one law may replace.
     pub(super) fn curves(&mut self) -> Stage {
         let chi_square = self.hypotheses.chi_square(&self.task.likelihood);
+        let is_far_out =
+            |best: &EffectCombination| best.fit.frame.largest_strength(&best.fit.point.position) > FAR_OUT;
         let leaves_misfit = match (chi_square, self.hypotheses.detected()) {
+            (_, Some(best)) if is_far_out(best) => true,
             (Some(chi), None) => chi.p() < OUTSIDE_LAW,
             (Some(chi), Some(best)) => best.effects.len() > 1 || chi.p() < FURTHER_EFFECT,
             (None, detected) => detected.is_some(),
@@ -33,25 +40,45 @@ impl SearchState {
         self.scan(Vec::new(), chi_square)
     }
 
-    /// Searches curves beyond the best combination, if it contradicts the data and no law beyond the base explains them.
+    /// Searches curves beyond the best combination, if it contradicts the data and no law beyond the base explains them, and beyond the
+    /// leading effects where a law may act beside one of them.
     fn further_curves(&mut self) -> Stage {
-        let chi_square = |fit: &LaplaceFit| FitChiSquare::of_declared_noise(fit, &self.task.likelihood);
-        let law = self
-            .hypotheses
-            .confirmed_law()
-            .and_then(|law| chi_square(&law.fit));
-        let is_explained = law.is_some_and(|chi| chi.is_complete());
-        let is_switch = |k: &usize| self.hypotheses.candidates[*k].is_switch();
-        let best = self.hypotheses.detected().filter(|_| !is_explained);
-        let best = best.filter(|best| !best.effects.iter().any(is_switch));
-        let incomplete = best.and_then(|best| {
-            let chi = chi_square(&best.fit).filter(|chi| !chi.is_complete())?;
-            Some((best.effects.clone(), chi))
-        });
-        match incomplete {
-            Some((effects, chi)) => self.scan(effects, Some(chi)),
-            None => self.predictions(),
+        if self.hypotheses.unscanned.is_none() {
+            self.hypotheses.unscanned = Some(self.sets_beside_laws());
         }
+        match self.hypotheses.unscanned.as_mut().and_then(Vec::pop) {
+            Some(effects) => {
+                let combination = self.hypotheses.combination(&effects);
+                let chi =
+                    combination.and_then(|c| FitChiSquare::of_declared_noise(&c.fit, &self.task.likelihood));
+                self.scan(effects, chi)
+            }
+            None => self.effects_beside_law(1),
+        }
+    }
+
+    /// Returns the sets of effects beyond which laws are scanned, the last first.
+    fn sets_beside_laws(&self) -> Vec<Vec<usize>> {
+        let hypotheses = &self.hypotheses;
+        let chi_square = |fit: &LaplaceFit| FitChiSquare::of_declared_noise(fit, &self.task.likelihood);
+        let law = hypotheses.confirmed_law().and_then(|law| chi_square(&law.fit));
+        let is_explained = law.is_some_and(|chi| chi.is_complete());
+        let is_switch = |k: &usize| hypotheses.candidates[*k].is_switch();
+        let combines = |c: &&EffectCombination| !c.effects.iter().any(is_switch);
+        let best = hypotheses.detected().filter(|_| !is_explained);
+        let best = best.filter(|best| chi_square(&best.fit).is_some_and(|chi| !chi.is_complete()));
+        let mut sets = Vec::new();
+        if self.seeks_laws_beside_effects() {
+            let singles = hypotheses.combinations.iter().filter(|c| c.effects.len() == 1);
+            let singles = singles.filter(|c| c.log_bayes_factor > DETECTED).filter(combines);
+            sets.extend(singles.take(SINGLES).map(|c| c.effects.clone()));
+        }
+        if let Some(best) = best.filter(combines)
+            && !sets.contains(&best.effects)
+        {
+            sets.push(best.effects.clone());
+        }
+        sets
     }
 
     /// Fits the curves of all laws beyond a model.
@@ -69,12 +96,12 @@ impl SearchState {
             .collect();
         match self.branch(beyond, curves, depth) {
             Some(branch) => Stage::Curves(branch),
-            None => self.predictions(),
+            None => self.further_curves(),
         }
     }
 
-    /// Returns a search of some candidates beyond a combination; `None` without candidates.
-    fn branch(
+    /// A search of some candidates beyond a combination; `None` without candidates.
+    pub(super) fn branch(
         &self,
         beyond: Vec<usize>,
         candidates: Vec<usize>,
@@ -84,15 +111,7 @@ impl SearchState {
             .iter()
             .map(|&k| self.hypotheses.candidates[k].clone())
             .collect();
-        let base = if beyond.is_empty() {
-            self.hypotheses.base.clone()?
-        } else {
-            let combination = self.hypotheses.combination(&beyond)?;
-            FittedModel {
-                fit: combination.fit.clone(),
-                log_evidence: self.hypotheses.base_evidence() + combination.log_bayes_factor,
-            }
-        };
+        let base = self.fitted(&beyond)?;
         if chosen.is_empty() {
             return None;
         }
@@ -125,7 +144,7 @@ impl SearchState {
         if scan.beyond.is_empty() {
             self.hypotheses.laws = Some(scan);
         } else {
-            self.hypotheses.further_laws = Some(scan);
+            self.hypotheses.further_laws.push(scan);
         }
         match forms {
             Some(branch) => Stage::Forms(branch),
@@ -160,22 +179,29 @@ impl SearchState {
         let handicap = |law: &FittedLaw| f64::from(u8::from(task.laws[law.law].is_description)) * DETECTED;
         let score = |law: &FittedLaw| law.log_bayes_factor - handicap(law);
         scan.laws.sort_by(|a, b| score(b).total_cmp(&score(a)));
-        self.cross_validation(0)
+        if scan.beyond.is_empty() {
+            self.cross_validation(0)
+        } else {
+            self.after_scan()
+        }
     }
 
     /// Cross-validates the law of this rank if it is a detection.
     fn cross_validation(&mut self, rank: usize) -> Stage {
-        let scan = self.hypotheses.current_scan();
+        let scan = self.hypotheses.laws.as_ref();
         let law = scan.and_then(|scan| Some((scan.beyond.clone(), scan.laws.get(rank)?.clone())));
         let law = law.filter(|(_, law)| rank < LAWS && law.log_bayes_factor > DETECTED);
         let (Some((beyond, law)), Some(base)) = (law, self.hypotheses.base_fit()) else {
             return self.after_scan();
         };
         let parameters = |k: usize| self.hypotheses.candidates[k].parameters.len();
-        let library = self.hypotheses.best().map_or((Vec::new(), 0, base), |best| {
-            let last = best.effects.last().map_or(0, |&k| parameters(k));
-            (best.effects.clone(), last, &best.fit)
-        });
+        let library =
+            self.hypotheses
+                .best_of_library(self.task.library.len())
+                .map_or((Vec::new(), 0, base), |best| {
+                    let last = best.effects.last().map_or(0, |&k| parameters(k));
+                    (best.effects.clone(), last, &best.fit)
+                });
         let mut effects = beyond;
         effects.push(law.candidate);
         let with_law = (effects, parameters(law.candidate), &law.fit);
@@ -194,11 +220,9 @@ impl SearchState {
         let Some(scan) = self.hypotheses.current_scan() else {
             return self.predictions();
         };
-        // A law that replaces the library's best must not predict worse; a law beyond it must predict better by a detectable
-        // amount.
-        let min_gain = if scan.beyond.is_empty() { 0.0 } else { DETECTED };
+        // A law that replaces the library's best must not predict worse.
         let passes =
-            gains.is_some_and(|[over_base, over_library]| over_base > DETECTED && over_library > min_gain);
+            gains.is_some_and(|[over_base, over_library]| over_base > DETECTED && over_library > 0.0);
         if let Some(law) = scan.laws.get_mut(rank) {
             law.left_out = gains;
         }
@@ -209,23 +233,31 @@ impl SearchState {
         self.after_scan()
     }
 
-    /// Ends a scan; a law confirmed beyond the best combination joins it.
+    /// Ends a scan. Laws that gain a detectable amount beyond a set join it.
     fn after_scan(&mut self) -> Stage {
-        let Some(scan) = &self.hypotheses.further_laws else {
-            return self.further_curves();
-        };
-        let law = scan.confirmed.and_then(|rank| scan.laws.get(rank));
-        let scanned = self.hypotheses.combination(&scan.beyond);
-        if let (Some(law), Some(scanned)) = (law, scanned) {
-            let mut effects = scan.beyond.clone();
-            effects.push(law.candidate);
-            let with = EffectCombination {
-                effects,
-                log_bayes_factor: scanned.log_bayes_factor + scan.log_bayes_factor(self.task.laws.len()),
-                fit: law.fit.clone(),
+        if let Some(scan) = self.hypotheses.further_laws.last() {
+            let scanned = self.hypotheses.combination(&scan.beyond);
+            let possible = self.task.laws.len();
+            let with = |law: &FittedLaw| {
+                let mut effects = scan.beyond.clone();
+                effects.push(law.candidate);
+                let scanned = scanned?.log_bayes_factor;
+                let choice = law.choice(possible);
+                Some(EffectCombination {
+                    effects,
+                    log_bayes_factor: scanned + law.log_bayes_factor - choice,
+                    choice,
+                    fit: law.fit.clone(),
+                })
             };
-            self.hypotheses.add(with);
+            let laws = scan
+                .laws
+                .iter()
+                .take(LAWS)
+                .filter(|law| law.log_bayes_factor > DETECTED);
+            let sets: Vec<EffectCombination> = laws.filter_map(with).collect();
+            sets.into_iter().for_each(|set| self.hypotheses.add(set));
         }
-        self.predictions()
+        self.further_curves()
     }
 }

@@ -13,10 +13,10 @@
 //! | 8 | exchanges: with numerical noise, each effect is replaced by a member of its class | `exchanges` |
 //! | 9 | curves and forms of laws outside the library, if misfit remains | `laws` |
 //! | 10 | cross-validation of the best laws by levels of the design that were left out | `laws`, `cross_validation` |
-//! | 11 | steps 9 and 10 beyond the best combination, if it contradicts the data | `laws` |
+//! | 11 | laws beyond the leading effects, effects beyond the best laws, and the cross-validation of the best such set | `laws`, `law_beside_effects` |
 //! | 12 | predictions of left-out levels by the leading sets | `last_stages`, `cross_validation` |
 //! | 13 | next runs: the runs that discriminate best between the explanations | `last_stages`, `next_run`, `run_information` |
-//! | 13 | probabilities, verdict and conclusion | `weighing`, `noise_support`, `verdict`, `conclusion` |
+//! | 13 | probabilities, verdict and conclusion | `weighing`, `prior_sensitivity`, `noise_support`, `claimable_law`, `verdict`, `conclusion` |
 //!
 //! # Layout
 //! - `ask_tell`: how a discovery is asked and told. `query`: a request to the model.
@@ -28,15 +28,18 @@ mod backward_elimination;
 mod base_reduction;
 mod beam_search;
 mod branch;
+mod claimable_law;
 pub(crate) mod conclusion;
 mod cross_validation;
 mod exchanges;
 mod families;
 mod hypotheses;
 mod last_stages;
+mod law_beside_effects;
 mod laws;
 pub(crate) mod next_run;
 mod noise_support;
+pub(crate) mod prior_sensitivity;
 pub(crate) mod query;
 mod run_information;
 mod stage;

@@ -7,7 +7,7 @@ use statistics::rng::Stream;
 
 /// Number of simulated outcomes, for each explanation, over which the information is averaged.
 const OUTCOMES: usize = 200;
-/// A run distinguishes two explanations whose predictions differ by more standard deviations.
+/// A run distinguishes two explanations whose predictions differ by more standard deviations than this.
 const APART: f64 = 2.0;
 /// Random streams of the outcomes, beside those of the posterior draws.
 const STAGE: u64 = (1 << 43) + 1;

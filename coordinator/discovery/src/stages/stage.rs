@@ -22,6 +22,12 @@ pub(super) enum Stage {
     Forms(SearchBranch),
     /// Holds the rank of the law.
     CrossValidation(usize, CrossValidation),
+    /// Effects beyond sets that have a law; holds the size of these sets.
+    EffectsBesideLaw(usize, Vec<SearchBranch>),
+    /// The best set that has a law, without each of its effects.
+    LawElimination(Vec<SearchBranch>),
+    /// Holds the effects and the law.
+    LawBesideEffects(Vec<usize>, CrossValidation),
     /// Holds the effects of the leading sets.
     Predictions(Vec<Vec<usize>>, CrossValidation),
     NextRuns(RunSelection),
@@ -38,8 +44,12 @@ impl Stage {
             | Self::Families(branches)
             | Self::BeamSearch(_, branches)
             | Self::BackwardElimination(branches)
-            | Self::Exchanges(_, branches) => branches.iter().flat_map(SearchBranch::queries).collect(),
-            Self::CrossValidation(_, validation) | Self::Predictions(_, validation) => validation.queries(),
+            | Self::Exchanges(_, branches)
+            | Self::EffectsBesideLaw(_, branches)
+            | Self::LawElimination(branches) => branches.iter().flat_map(SearchBranch::queries).collect(),
+            Self::CrossValidation(_, validation)
+            | Self::LawBesideEffects(_, validation)
+            | Self::Predictions(_, validation) => validation.queries(),
             Self::NextRuns(runs) => runs.queries(),
             Self::Done(_) | Self::Failed(_) => Vec::new(),
         }
@@ -53,14 +63,18 @@ impl Stage {
             | Self::Families(branches)
             | Self::BeamSearch(_, branches)
             | Self::BackwardElimination(branches)
-            | Self::Exchanges(_, branches) => {
+            | Self::Exchanges(_, branches)
+            | Self::EffectsBesideLaw(_, branches)
+            | Self::LawElimination(branches) => {
                 let mut answers = answers.into_iter();
                 for branch in branches {
                     let count = branch.queries().len();
                     branch.take(answers.by_ref().take(count).collect());
                 }
             }
-            Self::CrossValidation(_, validation) | Self::Predictions(_, validation) => {
+            Self::CrossValidation(_, validation)
+            | Self::LawBesideEffects(_, validation)
+            | Self::Predictions(_, validation) => {
                 validation.take(&answers);
             }
             Self::NextRuns(runs) => runs.take(answers),

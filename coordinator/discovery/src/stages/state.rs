@@ -72,7 +72,8 @@ impl SearchState {
             if let Some(fitted) = branch.search.base_fit() {
                 self.hypotheses.add(EffectCombination {
                     effects: branch.effects.clone(),
-                    log_bayes_factor: fitted.log_evidence - base,
+                    log_bayes_factor: fitted.log_evidence - base - branch.choice,
+                    choice: branch.choice,
                     fit: fitted.fit.clone(),
                 });
             }
@@ -80,7 +81,12 @@ impl SearchState {
     }
 
     /// Keeps the results of a branch: all single effects, and the combinations with a detectable gain.
-    pub(super) fn add_combinations(&mut self, branch: &SearchBranch, extended: f64) {
+    pub(super) fn add_combinations(&mut self, branch: &SearchBranch) {
+        let base = self.hypotheses.base_evidence();
+        let extended = branch
+            .search
+            .base_fit()
+            .map_or(0.0, |model| model.log_evidence - base);
         for (candidate, ranked) in branch.ranked() {
             let improves = branch.effects.is_empty() || ranked.log_bayes_factor > DETECTED;
             let fit = ranked.candidate.and_then(|k| branch.search.fit_of(k));
@@ -89,7 +95,8 @@ impl SearchState {
                 effects.push(candidate);
                 self.hypotheses.add(EffectCombination {
                     effects,
-                    log_bayes_factor: extended + ranked.log_bayes_factor,
+                    log_bayes_factor: extended + ranked.log_bayes_factor - branch.choice,
+                    choice: branch.choice,
                     fit: fit.clone(),
                 });
             }

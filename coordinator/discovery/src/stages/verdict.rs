@@ -1,12 +1,13 @@
 //! The verdict of a discovery, from the probabilities (step 13).
 
 use crate::probability::DETECTED;
-use crate::stages::hypotheses::{FittedLaw, Hypotheses};
+use crate::stages::claimable_law::ClaimableLaw;
+use crate::stages::hypotheses::Hypotheses;
 use crate::stages::weighing::Weighing;
 use crate::task::SearchTask;
 
-/// A class or an effect is named if its probability is higher.
-const NAMED: f64 = 0.9;
+/// An effect, a class or a law is claimed if its probability is higher.
+pub const NAMED: f64 = 0.9;
 
 /// The conclusion that the data support.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -30,28 +31,28 @@ impl SearchVerdict {
     }
 
     /// Derives the verdict from the probabilities. They account for a misfit that remains with the best explanation, so a misfit
-    /// does not prevent a name.
+    /// prevents a name only where a law acts beside effects.
     ///
     /// # Arguments
-    /// - `law`: the law that passed the cross-validation and explains the misfit. `is_incomplete`: whether the best explanation
-    ///   contradicts the data; with a model discrepancy, the declared noise.
+    /// - `law`: the law that may be claimed. `is_incomplete`: whether the best explanation contradicts the data; with a model
+    ///   discrepancy, the declared noise.
     pub(super) fn new(
         task: &SearchTask,
         weighing: &Weighing,
         hypotheses: &Hypotheses,
-        law: Option<&FittedLaw>,
+        law: Option<&ClaimableLaw>,
         is_incomplete: bool,
     ) -> Self {
         let effects = &weighing.ranking.effects;
         let library = hypotheses.best_of_library(task.library.len());
         let library = library.map_or(0.0, |best| best.log_bayes_factor);
         let is_detected = |log_bayes_factor: f64| log_bayes_factor / weighing.misfit > DETECTED;
-        let probability = weighing
+        let law = law.filter(|law| is_detected(law.log_bayes_factor - library.max(0.0)));
+        let of_law = weighing
             .not_in_library
             .map_or(0.0, |(_, probability)| probability);
-        let law = law.filter(|law| is_detected(law.log_bayes_factor - library.max(0.0)));
         // Without a detection in the library, one of many laws may fit by chance; the probability accounts for their number.
-        if law.is_some() && probability > if is_detected(library) { 0.5 } else { NAMED } {
+        if law.is_some() && of_law > if is_detected(library) { 0.5 } else { NAMED } {
             return Self::NotInLibrary;
         }
         let nothing = if is_incomplete {
@@ -65,26 +66,41 @@ impl SearchVerdict {
         {
             return nothing;
         }
+        // The law of the best set may be what acts, and the effects make up for its form.
+        let may_be_named = |is_named: &dyn Fn(usize) -> bool| {
+            weighing.stands_beside_law(is_named) && !(is_incomplete && weighing.best_with_law().is_some())
+        };
+        // A law that does not lead is claimed only if nothing contradicts the set in which it stands.
+        let is_law = law.is_some() && !is_incomplete && weighing.law_probability() > NAMED;
+        let open = if is_law {
+            Self::NotInLibrary
+        } else {
+            Self::Undecided
+        };
         let best = effects
             .iter()
             .reduce(|a, b| if b.probability > a.probability { b } else { a });
         match best {
             // Evidence and prediction contradict each other.
-            Some(best) if best.candidate.is_some_and(|k| weighing.is_disputed(k)) => Self::Undecided,
+            Some(best) if best.candidate.is_some_and(|k| weighing.is_disputed(k)) => open,
             // If "nothing is missing" is the most probable explanation, no effect is claimed.
-            Some(best) if best.probability > NAMED || best.candidate.is_none() => {
-                best.candidate.map_or(nothing, Self::Named)
-            }
+            Some(best) if best.probability > NAMED || best.candidate.is_none() => match best.candidate {
+                None => nothing,
+                Some(k) if may_be_named(&|named| named == k) => Self::Named(k),
+                Some(_) => open,
+            },
             Some(_) => {
                 let classes = effects.iter().map(|e| e.class).max().unwrap_or(0);
                 let class = (1..=classes).find(|&class| weighing.ranking.class_probability(class) > NAMED);
-                // The remaining probability may belong to the effects beside a law, not to the law.
-                let is_shared =
-                    |law: &FittedLaw| probability + weighing.beside_effects(task, law.law) > NAMED;
+                let is_member = |class: usize, k: usize| {
+                    weighing
+                        .ranking
+                        .effect(Some(k))
+                        .is_some_and(|effect| effect.class == class)
+                };
                 match class {
-                    Some(class) => Self::Class(class),
-                    None if law.is_some_and(is_shared) => Self::NotInLibrary,
-                    None => Self::Undecided,
+                    Some(class) if may_be_named(&|k| is_member(class, k)) => Self::Class(class),
+                    _ => open,
                 }
             }
             None => Self::NothingDetectable,

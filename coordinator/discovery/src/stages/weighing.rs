@@ -2,9 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use crate::effect_search::ranking::{EffectRanking, EvidenceMethod, RankedEffect};
+use crate::effect_search::ranking::{EffectRanking, EvidenceMethod};
 use crate::laplace::evidence::log_sum_exp;
-use crate::probability::{DETECTED, ModelProbability, Probabilities};
+use crate::probability::{DETECTED, ModelProbability, OutsideEvidence, PRIOR_OF_NONE};
 use crate::stages::hypotheses::{EffectCombination, Hypotheses};
 use crate::stages::next_run::OpenHypothesis;
 use crate::task::SearchTask;
@@ -44,6 +44,8 @@ pub(super) struct Weighing {
     /// Chi-square of the best explanation over its degrees of freedom; 1 where it fits.
     pub(super) misfit: f64,
     inclusion: Inclusion,
+    /// Number of the library's effects, which come first among the candidates.
+    library: usize,
 }
 
 /// A combination that counts for its leading effect.
@@ -54,47 +56,84 @@ struct LedCombination<'a> {
     cost: f64,
 }
 
-/// Log of the summed weights of the combinations that include each effect of the library.
-type Inclusion = BTreeMap<usize, f64>;
+/// The member of a set for which the set counts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Leader {
+    Effect(usize),
+    /// A law outside the library.
+    Law,
+}
+
+/// Log of the summed weights of the sets that include each effect of the library, or a law.
+type Inclusion = BTreeMap<Leader, f64>;
+
+/// Sets whose log weight is lower than that of the best by more than this are no rivals of it \[nats\].
+const NEAR: f64 = 5.0;
 
 /// Two effects whose log inclusion weights differ by less count as equally included: such a difference depends on which poor
 /// combinations were tried.
 const SAME_WEIGHT: f64 = 0.01;
 
-/// Sums the weights of the combinations that include each effect.
-fn inclusion(hypotheses: &Hypotheses, cost: f64, misfit: f64) -> Inclusion {
-    let mut weights: BTreeMap<usize, Vec<f64>> = BTreeMap::new();
+fn inclusion(hypotheses: &Hypotheses, library: usize, law: Option<f64>, cost: f64, misfit: f64) -> Inclusion {
+    let mut weights: BTreeMap<Leader, Vec<f64>> = BTreeMap::new();
     for combination in &hypotheses.combinations {
         let cost = cost * (combination.effects.len() as f64 - 1.0);
         for &k in &combination.effects {
+            let member = if k < library {
+                Leader::Effect(k)
+            } else {
+                Leader::Law
+            };
             let factor = combination.log_bayes_factor / misfit - cost;
-            weights.entry(k).or_default().push(factor);
+            weights.entry(member).or_default().push(factor);
         }
     }
-    let sum = |(k, weights): (usize, Vec<f64>)| (k, log_sum_exp(weights.into_iter()));
+    if let Some(law) = law {
+        weights.entry(Leader::Law).or_default().push(law / misfit);
+    }
+    let sum = |(k, weights): (Leader, Vec<f64>)| (k, log_sum_exp(weights.into_iter()));
     weights.into_iter().map(sum).collect()
 }
 
-/// Returns the effect of a combination with the highest inclusion weight; among equals, the one with the highest Bayes factor
-/// alone. `None` without an effect of the library. Of the effects of a combination, the one that all good combinations share is
-/// named, not one that only some have.
-fn leader(ranking: &EffectRanking, inclusion: &Inclusion, effects: &[usize]) -> Option<usize> {
-    let ranked = || effects.iter().filter_map(|&k| ranking.effect(Some(k)));
-    let weight = |effect: &RankedEffect| {
-        let weight = effect.candidate.and_then(|k| inclusion.get(&k));
-        weight.copied().unwrap_or(f64::NEG_INFINITY)
-    };
-    let highest = ranked().map(weight).fold(f64::NEG_INFINITY, f64::max);
-    let best = ranked().filter(|effect| weight(effect) >= highest - SAME_WEIGHT);
-    let best = best.reduce(|a, b| {
-        let by_factor = b.log_bayes_factor.total_cmp(&a.log_bayes_factor);
-        if by_factor.then(a.candidate.cmp(&b.candidate)).is_gt() {
-            b
-        } else {
-            a
-        }
-    });
-    best.and_then(|effect| effect.candidate)
+/// What decides for which of its members a set counts.
+struct Leadership<'a> {
+    ranking: &'a EffectRanking,
+    inclusion: &'a Inclusion,
+    /// Number of the library's effects, which come first among the candidates.
+    library: usize,
+    /// Log Bayes factor of a law alone; `None`: not searched.
+    law: Option<f64>,
+}
+
+impl Leadership<'_> {
+    /// The member of a set with the highest inclusion weight; among equals, the one with the highest Bayes factor alone. `None`
+    /// without one. An effect that all good sets have is thus not named after a rival that some have.
+    fn leader(&self, effects: &[usize]) -> Option<Leader> {
+        let member = |k: &usize| -> Option<(Leader, f64)> {
+            if *k < self.library {
+                let factor = self.ranking.effect(Some(*k))?.log_bayes_factor;
+                Some((Leader::Effect(*k), factor))
+            } else {
+                Some((Leader::Law, self.law?))
+            }
+        };
+        let members: Vec<(Leader, f64)> = effects.iter().filter_map(member).collect();
+        let weight = |member: &Leader| self.inclusion.get(member).copied().unwrap_or(f64::NEG_INFINITY);
+        let weights = members.iter().map(|(member, _)| weight(member));
+        let highest = weights.fold(f64::NEG_INFINITY, f64::max);
+        let best = members
+            .into_iter()
+            .filter(|(member, _)| weight(member) >= highest - SAME_WEIGHT);
+        let best = best.reduce(|a, b| {
+            let by_factor = b.1.total_cmp(&a.1);
+            if by_factor.then(a.0.cmp(&b.0)).is_gt() {
+                b
+            } else {
+                a
+            }
+        });
+        best.map(|(member, _)| member)
+    }
 }
 
 /// Returns whether a set without an effect predicts left-out levels better than every set with it. Sets that have the effect
@@ -136,18 +175,18 @@ fn updated_ranking(task: &SearchTask, hypotheses: &Hypotheses) -> EffectRanking 
     ranking
 }
 
-/// The combinations of two effects and more, by their leading effect.
-struct LedCombinations<'a>(BTreeMap<usize, Vec<LedCombination<'a>>>);
+/// The combinations of two members and more, by their leader.
+struct LedCombinations<'a>(BTreeMap<Leader, Vec<LedCombination<'a>>>);
 
 impl<'a> LedCombinations<'a> {
     /// Groups the combinations by their leading effect.
     ///
     /// # Arguments
-    /// - `cost`: log prior cost of each effect after the first.
-    fn new(hypotheses: &'a Hypotheses, ranking: &EffectRanking, inclusion: &Inclusion, cost: f64) -> Self {
-        let mut led: BTreeMap<usize, Vec<LedCombination>> = BTreeMap::new();
+    /// - `cost`: log prior cost of each member after the first.
+    fn new(hypotheses: &'a Hypotheses, leadership: &Leadership, cost: f64) -> Self {
+        let mut led: BTreeMap<Leader, Vec<LedCombination>> = BTreeMap::new();
         for combination in hypotheses.combinations.iter().filter(|c| c.effects.len() > 1) {
-            if let Some(leader) = leader(ranking, inclusion, &combination.effects) {
+            if let Some(leader) = leadership.leader(&combination.effects) {
                 led.entry(leader).or_default().push(LedCombination {
                     effects: &combination.effects,
                     log_bayes_factor: combination.log_bayes_factor,
@@ -158,23 +197,42 @@ impl<'a> LedCombinations<'a> {
         Self(led)
     }
 
-    fn led_by(&self, effect: usize) -> &[LedCombination<'a>] {
-        self.0.get(&effect).map_or(&[], Vec::as_slice)
+    fn led_by(&self, leader: Leader) -> &[LedCombination<'a>] {
+        self.0.get(&leader).map_or(&[], Vec::as_slice)
     }
 
-    /// Returns the set of a model; `None` if the model is unknown.
-    fn set(&self, ranking: &EffectRanking, model: &ModelProbability) -> Option<WeighedSet> {
-        let effect = ranking.effects.get(model.explanation)?;
-        let (effects, log_bayes_factor) = match (model.combination, effect.candidate) {
-            (None, candidate) => (candidate.into_iter().collect(), effect.log_bayes_factor),
-            (Some(place), Some(k)) => {
-                let combination = self.led_by(k).get(place)?;
-                (combination.effects.to_vec(), combination.log_bayes_factor)
+    /// Log Bayes factor and log prior cost of each combination that counts for a leader.
+    fn weights(&self, leader: Leader) -> Vec<(f64, f64)> {
+        let led = self.led_by(leader).iter();
+        led.map(|c| (c.log_bayes_factor, c.cost)).collect()
+    }
+
+    /// The set of a model; `None` if the model is unknown.
+    ///
+    /// # Arguments
+    /// - `law`: log Bayes factor of a law alone.
+    fn set(&self, ranking: &EffectRanking, law: Option<f64>, model: &ModelProbability) -> Option<WeighedSet> {
+        let (leader, alone, log_bayes_factor) = match model.explanation {
+            Some(place) => {
+                let effect = ranking.effects.get(place)?;
+                let alone: Vec<usize> = effect.candidate.into_iter().collect();
+                (
+                    effect.candidate.map(Leader::Effect),
+                    Some(alone),
+                    effect.log_bayes_factor,
+                )
             }
-            (Some(_), None) => return None,
+            None => (Some(Leader::Law), None, law?),
+        };
+        let (effects, log_bayes_factor) = match model.combination {
+            None => (alone, log_bayes_factor),
+            Some(place) => {
+                let combination = self.led_by(leader?).get(place)?;
+                (Some(combination.effects.to_vec()), combination.log_bayes_factor)
+            }
         };
         Some(WeighedSet {
-            effects: Some(effects),
+            effects,
             log_bayes_factor,
             prior: model.prior,
             probability: model.posterior,
@@ -183,36 +241,37 @@ impl<'a> LedCombinations<'a> {
     }
 }
 
-/// Returns the set of a law outside the library, if it was searched.
-fn outside_set(outside: Option<f64>, probabilities: &Probabilities) -> Option<WeighedSet> {
-    Some(WeighedSet {
-        effects: None,
-        log_bayes_factor: outside?,
-        prior: probabilities.outside_prior?,
-        probability: probabilities.outside?,
-        predictive: None,
-    })
-}
-
 impl Weighing {
     /// Computes all probabilities. A combination counts for its leading effect; each further effect has the prior 1 / number of
     /// candidates.
     pub(super) fn new(task: &SearchTask, hypotheses: &Hypotheses) -> Self {
+        let misfit = hypotheses.misfit(&task.likelihood);
+        Self::with_prior(task, hypotheses, PRIOR_OF_NONE, misfit)
+    }
+
+    /// # Arguments
+    /// - `none`: prior probability that nothing is missing. `misfit`: chi-square of the best explanation over its degrees of freedom.
+    pub(super) fn with_prior(task: &SearchTask, hypotheses: &Hypotheses, none: f64, misfit: f64) -> Self {
         let mut ranking = updated_ranking(task, hypotheses);
         let cost = libm::log(task.library.len().max(1) as f64);
-        let misfit = hypotheses.misfit(&task.likelihood);
-        let inclusion = inclusion(hypotheses, cost, misfit);
-        let led = LedCombinations::new(hypotheses, &ranking, &inclusion, cost);
-        let outside = hypotheses.laws.as_ref();
-        let outside = outside.map(|scan| scan.log_bayes_factor(task.laws.len()));
-        let weights = |k: usize| {
-            let combinations = led.led_by(k).iter();
-            combinations.map(|c| (c.log_bayes_factor, c.cost)).collect()
+        let library = task.library.len();
+        let law = hypotheses.laws.as_ref();
+        let law = law.map(|scan| scan.log_bayes_factor(task.laws.len()));
+        let inclusion = inclusion(hypotheses, library, law, cost, misfit);
+        let leadership = Leadership {
+            ranking: &ranking,
+            inclusion: &inclusion,
+            library,
+            law,
         };
-        let probabilities = ranking.weigh(weights, outside, misfit);
+        let led = LedCombinations::new(hypotheses, &leadership, cost);
+        let outside = law.map(|log_bayes_factor| OutsideEvidence {
+            log_bayes_factor,
+            combinations: led.weights(Leader::Law),
+        });
+        let probabilities = ranking.weigh(|k| led.weights(Leader::Effect(k)), outside.as_ref(), none, misfit);
         let models = probabilities.models.iter();
-        let mut sets: Vec<WeighedSet> = models.filter_map(|model| led.set(&ranking, model)).collect();
-        sets.extend(outside_set(outside, &probabilities));
+        let mut sets: Vec<WeighedSet> = models.filter_map(|model| led.set(&ranking, law, model)).collect();
         for set in &mut sets {
             let mut predictive = hypotheses.predictive.iter();
             set.predictive = predictive
@@ -225,10 +284,11 @@ impl Weighing {
         });
         Self {
             ranking,
-            not_in_library: outside.zip(probabilities.outside),
+            not_in_library: law.zip(probabilities.outside),
             sets,
             misfit,
             inclusion,
+            library,
         }
     }
 
@@ -259,21 +319,63 @@ impl Weighing {
             .iter()
             .filter(|set| set.predictive.is_none())
             .all(|set| set.probability < LEADING);
-        let leader = leader(&self.ranking, &self.inclusion, effects);
+        let leader = match self.leadership().leader(effects)? {
+            Leader::Effect(k) => Some(k),
+            Leader::Law => None,
+        };
         leader.filter(|_| predicted.all(is_beaten) && unpredicted_are_improbable)
     }
 
     /// Returns the sets that count for an effect, by falling probability.
     fn led_by(&self, effect: usize) -> impl Iterator<Item = &[usize]> {
         let sets = self.sets.iter().filter_map(|set| set.effects.as_deref());
-        sets.filter(move |effects| leader(&self.ranking, &self.inclusion, effects) == Some(effect))
+        sets.filter(move |effects| self.leadership().leader(effects) == Some(Leader::Effect(effect)))
     }
 
-    /// Returns the probability of the sets that contain both this law and effects.
-    pub(super) fn beside_effects(&self, task: &SearchTask, law: usize) -> f64 {
-        let is_law = |k: &usize| *k == task.curve(law) || task.forms(law).contains(k);
-        let has_law = |set: &&WeighedSet| set.effects.as_ref().is_some_and(|k| k.iter().any(is_law));
-        self.sets.iter().filter(has_law).map(|set| set.probability).sum()
+    fn leadership(&self) -> Leadership<'_> {
+        Leadership {
+            ranking: &self.ranking,
+            inclusion: &self.inclusion,
+            library: self.library,
+            law: self.not_in_library.map(|(factor, _)| factor),
+        }
+    }
+
+    /// Whether a set has a law outside the library.
+    fn has_law(&self, set: &WeighedSet) -> bool {
+        let effects = set.effects.as_ref();
+        effects.is_none_or(|effects| effects.iter().any(|k| *k >= self.library))
+    }
+
+    /// Probability of the sets that have a law outside the library.
+    pub(super) fn law_probability(&self) -> f64 {
+        let with_law = self.sets.iter().filter(|set| self.has_law(set));
+        with_law.map(|set| set.probability).sum()
+    }
+
+    /// The effects of the most probable set, if a law is among them.
+    pub(super) fn best_with_law(&self) -> Option<&[usize]> {
+        let best = self.sets.first().filter(|set| self.has_law(set))?;
+        best.effects.as_deref()
+    }
+
+    /// The most probable set, and those that are not far less probable.
+    fn near(&self) -> impl Iterator<Item = &WeighedSet> {
+        let highest = self.sets.first().map_or(0.0, |set| set.probability);
+        self.sets
+            .iter()
+            .filter(move |set| set.probability > highest * libm::exp(-NEAR))
+    }
+
+    /// Whether an effect may be named beside the law of the most probable set: all sets near it have the effect, and the effect was
+    /// fitted with a law alone. Without a law in that set, every effect may be.
+    pub(super) fn stands_beside_law(&self, is_named: impl Fn(usize) -> bool) -> bool {
+        let has_effect = |set: &WeighedSet| set.effects.iter().flatten().any(|k| is_named(*k));
+        let is_pair = |set: &WeighedSet| {
+            set.effects.as_ref().is_some_and(|e| e.len() == 2) && self.has_law(set) && has_effect(set)
+        };
+        let has_law = self.sets.first().is_some_and(|set| self.has_law(set));
+        !has_law || (self.near().all(has_effect) && self.sets.iter().any(is_pair))
     }
 
     /// Returns whether a set without an effect predicts left-out levels better, by a detectable amount, than every set with it.
@@ -306,23 +408,41 @@ impl Weighing {
             }
         });
         let mut open: Vec<OpenHypothesis> = open.collect();
-        let outside = self.not_in_library.filter(|(_, p)| *p > OPEN);
-        if let (Some(law), Some((_, probability))) = (hypotheses.confirmed_law(), outside) {
-            open.push(OpenHypothesis {
-                effects: vec![law.candidate],
-                probability,
-                fit: &law.fit,
-            });
-        }
+        open.extend(self.open_laws(hypotheses));
         open.sort_by(|a, b| b.probability.total_cmp(&a.probability));
         open.truncate(MAX_OPEN);
         open
     }
 }
 
+impl Weighing {
+    /// Returns the law alone and the sets that it leads, as far as they are open. A law alone that was not cross-validated is none.
+    fn open_laws<'a>(&self, hypotheses: &'a Hypotheses) -> impl Iterator<Item = OpenHypothesis<'a>> {
+        let sets = self.sets.iter().filter(|set| set.probability > OPEN);
+        sets.filter_map(|set| {
+            let (effects, fit) = match &set.effects {
+                None => {
+                    let law = hypotheses.confirmed_law()?;
+                    (vec![law.candidate], &law.fit)
+                }
+                Some(effects) if self.leadership().leader(effects) == Some(Leader::Law) => {
+                    (effects.clone(), &hypotheses.combination(effects)?.fit)
+                }
+                Some(_) => return None,
+            };
+            Some(OpenHypothesis {
+                effects,
+                probability: set.probability,
+                fit,
+            })
+        })
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::effect_search::ranking::RankedEffect;
 
     fn set(effects: &[usize], predictive: Option<f64>) -> WeighedSet {
         WeighedSet {
@@ -360,12 +480,25 @@ mod tests {
             ..EffectRanking::default()
         };
         // The third has a little more weight than the first, as poor combinations add.
-        let inclusion = BTreeMap::from([(1, 30.0), (2, 29.9), (3, 30.0 + 1e-6)]);
-        assert_eq!(leader(&ranking, &inclusion, &[1, 2]), Some(1));
-        assert_eq!(leader(&ranking, &inclusion, &[3, 1]), Some(1));
-        assert_eq!(leader(&ranking, &inclusion, &[1, 3]), Some(1));
-        assert_eq!(leader(&ranking, &inclusion, &[3, 2]), Some(3));
-        assert_eq!(leader(&ranking, &inclusion, &[7]), None);
+        let weights = [(1, 30.0), (2, 29.9), (3, 30.0 + 1e-6)];
+        let mut inclusion: Inclusion = weights.map(|(k, weight)| (Leader::Effect(k), weight)).into();
+        inclusion.insert(Leader::Law, 30.0);
+        let leadership = Leadership {
+            ranking: &ranking,
+            inclusion: &inclusion,
+            library: 8,
+            law: Some(10.0),
+        };
+        let leader = |effects: &[usize]| leadership.leader(effects);
+        let effect = |k: usize| Some(Leader::Effect(k));
+        assert_eq!(leader(&[1, 2]), effect(1));
+        assert_eq!(leader(&[3, 1]), effect(1));
+        assert_eq!(leader(&[1, 3]), effect(1));
+        assert_eq!(leader(&[3, 2]), effect(3));
+        assert_eq!(leader(&[7]), None);
+        // The law has the weight of the first, and more evidence alone.
+        assert_eq!(leader(&[1, 9]), Some(Leader::Law));
+        assert_eq!(leader(&[2, 9]), Some(Leader::Law));
     }
 
     #[test]

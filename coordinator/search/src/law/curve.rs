@@ -47,7 +47,7 @@ pub(crate) enum CurveError {
         value: f64,
         /// The variable.
         variable: &'static str,
-        /// Where.
+        /// The value of the variable at which it is not finite.
         x: f64,
         /// The unit of the variable.
         unit: &'static str,

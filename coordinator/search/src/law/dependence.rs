@@ -21,15 +21,15 @@ pub(super) const SOURCE: &str = "found by the constitutive scan";
 /// The quantity that a law changes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum ActsOn {
-    /// The normal pressure, multiplied.
+    /// The normal pressure; the law is a factor.
     Pressure,
-    /// The shear stress, multiplied.
+    /// The shear stress; the law is a factor.
     Shear,
-    /// The drawbar pull, added to.
+    /// The drawbar pull; the law is an addition.
     DrawbarPull,
-    /// The torque, added to.
+    /// The torque; the law is an addition.
     Torque,
-    /// The sinkage of the wheel, added to.
+    /// The sinkage of the wheel; the law is an addition.
     Sinkage,
 }
 

@@ -50,7 +50,7 @@ pub(crate) enum DependsOn {
 }
 
 impl DependsOn {
-    /// The variables of stresses.
+    /// The variables on which a factor on a stress may depend.
     pub(crate) const OF_STRESSES: [DependsOn; 8] = [
         DependsOn::Z,
         DependsOn::Vn,
@@ -62,7 +62,7 @@ impl DependsOn {
         DependsOn::WheelLoad,
     ];
 
-    /// The variables of channels.
+    /// The variables on which an addition to a channel may depend.
     pub(crate) const OF_CHANNELS: [DependsOn; 4] = [
         DependsOn::Slip,
         DependsOn::SledSpeed,

@@ -1,0 +1,86 @@
+//! The law outside the library that the verdict may claim: alone, or beside effects.
+
+use crate::chi_square::FitChiSquare;
+use crate::laplace::fit::LaplaceFit;
+use crate::probability::DETECTED;
+use crate::stages::hypotheses::Hypotheses;
+use crate::task::SearchTask;
+
+/// A law outside the library explains the misfit if it leaves at most this share of the library's chi-square excess.
+const MAX_LEFT: f64 = 0.25;
+
+/// A law that predicts left-out levels well enough to be claimed.
+#[derive(Debug, Clone)]
+pub(super) struct ClaimableLaw {
+    /// Index of the law in the task.
+    pub(super) law: usize,
+    /// Index of its form or curve among the candidates.
+    pub(super) candidate: usize,
+    /// The law and the effects beside it, in the order of their parameters.
+    pub(super) effects: Vec<usize>,
+    /// Log evidence over that of the base.
+    pub(super) log_bayes_factor: f64,
+    pub(super) fit: LaplaceFit,
+    /// The most probable parameters of the law.
+    pub(super) parameters: Vec<f64>,
+    /// Log predictive density of left-out levels over that of the base, and over that of the library's best.
+    pub(super) left_out: [f64; 2],
+}
+
+impl ClaimableLaw {
+    /// The law of the most probable set if it has one beside effects, otherwise the law alone; `None` if it does not predict left-out
+    /// levels, or leaves much of the misfit.
+    ///
+    /// # Arguments
+    /// - `best`: the effects of the most probable set, if a law is among them.
+    pub(super) fn new(task: &SearchTask, hypotheses: &Hypotheses, best: Option<&[usize]>) -> Option<Self> {
+        let beside = best.and_then(|effects| Self::beside_effects(task, hypotheses, effects));
+        beside.or_else(|| Self::alone(task, hypotheses))
+    }
+
+    fn alone(task: &SearchTask, hypotheses: &Hypotheses) -> Option<Self> {
+        let library = hypotheses.detected_of_library(task.library.len());
+        let library = library.map(|best| &best.fit).or(hypotheses.base_fit());
+        let chi_square = |fit: &LaplaceFit| FitChiSquare::of_fit(fit, &task.likelihood);
+        let law = hypotheses.confirmed_law()?;
+        let explains = match (library.and_then(chi_square), chi_square(&law.fit)) {
+            (Some(library), Some(law)) => !law.is_wrong() || law.excess() < MAX_LEFT * library.excess(),
+            _ => true,
+        };
+        explains.then(|| Self {
+            law: law.law,
+            candidate: law.candidate,
+            effects: vec![law.candidate],
+            log_bayes_factor: law.log_bayes_factor,
+            fit: law.fit.clone(),
+            parameters: law.fit.theta()[task.prior.dimension()..].to_vec(),
+            left_out: law.left_out.unwrap_or([0.0; 2]),
+        })
+    }
+
+    fn beside_effects(task: &SearchTask, hypotheses: &Hypotheses, effects: &[usize]) -> Option<Self> {
+        let validated = hypotheses.law_beside_effects.as_ref()?;
+        let set = hypotheses.combination(effects)?;
+        let place = effects.iter().position(|k| *k >= task.library.len())?;
+        let candidate = effects[place];
+        let law = (0..task.laws.len())
+            .find(|&law| candidate == task.curve(law) || task.forms(law).contains(&candidate))?;
+        let passes = validated.left_out.iter().all(|gain| *gain > DETECTED);
+        if validated.effects != effects || !passes {
+            return None;
+        }
+        let parameters = |k: &usize| hypotheses.candidates[*k].parameters.len();
+        let before: usize = effects[..place].iter().map(parameters).sum();
+        let first = task.prior.dimension() + before;
+        let theta = set.fit.theta();
+        Some(Self {
+            law,
+            candidate,
+            effects: effects.to_vec(),
+            log_bayes_factor: set.log_bayes_factor,
+            fit: set.fit.clone(),
+            parameters: theta[first..first + parameters(&candidate)].to_vec(),
+            left_out: validated.left_out,
+        })
+    }
+}

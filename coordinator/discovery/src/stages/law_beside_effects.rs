@@ -1,0 +1,157 @@
+//! The stages in which a law outside the library and effects of the library act together: effects beyond the best laws, and the
+//! cross-validation of the best set that has both.
+
+use crate::chi_square::{FURTHER_EFFECT, FitChiSquare};
+use crate::effect_search::depth::QUICK;
+use crate::laplace::fit::FittedModel;
+use crate::probability::DETECTED;
+use crate::settings::Smoothness;
+use crate::stages::branch::SearchBranch;
+use crate::stages::cross_validation::CrossValidation;
+use crate::stages::hypotheses::{EffectCombination, LawBesideEffects};
+use crate::stages::laws::LAWS;
+use crate::stages::stage::Stage;
+use crate::stages::state::SearchState;
+
+impl SearchState {
+    /// Returns whether laws and effects are searched together: laws were scanned, and the model's evaluations are cheap.
+    pub(super) fn seeks_laws_beside_effects(&self) -> bool {
+        let is_smooth = self.task.settings.smoothness == Smoothness::Smooth;
+        is_smooth && self.task.max_effects > 0 && self.hypotheses.laws.is_some()
+    }
+
+    /// Returns the fit of the base, of a set of effects, or of a law alone.
+    pub(super) fn fitted(&self, effects: &[usize]) -> Option<FittedModel> {
+        let base = self.hypotheses.base.as_ref()?;
+        if effects.is_empty() {
+            return Some(base.clone());
+        }
+        if let Some(combination) = self.hypotheses.combination(effects) {
+            return Some(FittedModel {
+                fit: combination.fit.clone(),
+                log_evidence: base.log_evidence + combination.fitted_log_bayes_factor(),
+            });
+        }
+        let laws = self.hypotheses.laws.as_ref()?.laws.iter();
+        let law = laws.filter(|law| effects == [law.candidate]).next()?;
+        Some(FittedModel {
+            fit: law.fit.clone(),
+            log_evidence: base.log_evidence + law.log_bayes_factor,
+        })
+    }
+
+    /// Returns the best sets that have a law and this number of members, with the cost of the choice of that law.
+    fn sets_with_law(&self, size: usize) -> Vec<(Vec<usize>, f64)> {
+        let hypotheses = &self.hypotheses;
+        if size == 1 {
+            let laws = hypotheses.laws.iter().flat_map(|scan| &scan.laws);
+            let laws = laws.filter(|law| law.log_bayes_factor > DETECTED).take(LAWS);
+            let possible = self.task.laws.len();
+            return laws
+                .map(|law| (vec![law.candidate], law.choice(possible)))
+                .collect();
+        }
+        let sets = hypotheses.combinations.iter().filter(|c| c.effects.len() == size);
+        let sets = sets.filter(|c| self.has_law(c)).take(LAWS);
+        sets.map(|c| (c.effects.clone(), c.choice)).collect()
+    }
+
+    /// Searches one more effect beyond the best sets of a size that have a law.
+    pub(super) fn effects_beside_law(&mut self, size: usize) -> Stage {
+        if !self.seeks_laws_beside_effects() || size > self.task.max_effects {
+            return self.law_elimination();
+        }
+        let library = &self.task.library;
+        let branch = |(effects, choice): &(Vec<usize>, f64)| {
+            let combines = |k: usize| {
+                let in_library = effects.iter().filter(|effect| **effect < library.len());
+                in_library
+                    .clone()
+                    .all(|effect| *effect != k && library[k].combines_with(&library[*effect]))
+            };
+            let further = (0..library.len()).filter(|k| combines(*k) && !library[*k].is_switch());
+            let branch = self.branch(effects.clone(), further.collect(), &QUICK)?;
+            Some(branch.with_choice(*choice))
+        };
+        let branches: Vec<SearchBranch> = self.sets_with_law(size).iter().filter_map(branch).collect();
+        Stage::EffectsBesideLaw(size, branches)
+    }
+
+    pub(super) fn after_effects_beside_law(&mut self, size: usize, branches: &[SearchBranch]) -> Stage {
+        for branch in branches {
+            self.add_combinations(branch);
+        }
+        let best = self.best_with_law();
+        let has_grown = best.is_some_and(|best| best.effects.len() > size);
+        let leaves_misfit = best
+            .and_then(|best| FitChiSquare::of_fit(&best.fit, &self.task.likelihood))
+            .is_none_or(|chi| chi.p() < FURTHER_EFFECT);
+        if has_grown && leaves_misfit {
+            self.effects_beside_law(size + 1)
+        } else {
+            self.law_elimination()
+        }
+    }
+
+    fn has_law(&self, set: &EffectCombination) -> bool {
+        set.effects.iter().any(|k| *k >= self.task.library.len())
+    }
+
+    /// Returns the best set that has a law and effects.
+    pub(super) fn best_with_law(&self) -> Option<&EffectCombination> {
+        self.hypotheses
+            .best_of(|c| c.effects.len() > 1 && self.has_law(c))
+    }
+
+    /// Fits the best set that has a law without each of its effects.
+    fn law_elimination(&mut self) -> Stage {
+        match self.best_with_law() {
+            Some(best) if best.effects.len() > 2 => Stage::LawElimination(self.without_each(best)),
+            _ => self.law_validation(),
+        }
+    }
+
+    pub(super) fn after_law_elimination(&mut self, branches: &[SearchBranch]) -> Stage {
+        self.add_fitted(branches);
+        self.law_validation()
+    }
+
+    /// Cross-validates the best set that has a law against the library's best.
+    fn law_validation(&mut self) -> Stage {
+        let parameters = |k: usize| self.hypotheses.candidates[k].parameters.len();
+        let (Some(best), Some(base)) = (self.best_with_law(), self.hypotheses.base_fit()) else {
+            return self.predictions();
+        };
+        let compared = |set: &EffectCombination| {
+            let last = set.effects.last().map_or(0, |&k| parameters(k));
+            (set.effects.clone(), last)
+        };
+        let library = self.hypotheses.best_of_library(self.task.library.len());
+        let (library, last, fit) = library.map_or((Vec::new(), 0, base), |set| {
+            let (effects, last) = compared(set);
+            (effects, last, &set.fit)
+        });
+        let (effects, last_of_best) = compared(best);
+        let fits = [
+            (Vec::new(), 0, base),
+            (library, last, fit),
+            (effects.clone(), last_of_best, &best.fit),
+        ];
+        Stage::LawBesideEffects(effects, self.validated(&fits))
+    }
+
+    pub(super) fn after_law_beside_effects(
+        &mut self,
+        effects: &[usize],
+        validation: &CrossValidation,
+    ) -> Stage {
+        self.keep_refits(validation);
+        if let Some(&[base, library, law]) = validation.gains().as_deref() {
+            self.hypotheses.law_beside_effects = Some(LawBesideEffects {
+                effects: effects.to_vec(),
+                left_out: [law - base, law - library],
+            });
+        }
+        self.predictions()
+    }
+}
