@@ -39,6 +39,9 @@ pub(crate) struct ModelProbability {
     pub(crate) posterior: f64,
 }
 
+/// Log prior and log weight of each model of an explanation: the explanation alone, then its combinations.
+type LogWeights = Vec<(f64, f64)>;
+
 /// Posterior probabilities.
 #[derive(Debug)]
 pub(crate) struct Probabilities {
@@ -81,7 +84,7 @@ impl Probabilities {
             class => each / members(class),
         };
         // Log prior and log weight of the explanation alone, then of its combinations.
-        let models = |prior: f64, log_bayes_factor: f64, combinations: &[(f64, f64)]| -> Vec<(f64, f64)> {
+        let models = |prior: f64, log_bayes_factor: f64, combinations: &[(f64, f64)]| -> LogWeights {
             let log_prior = libm::log(prior);
             let alone = (log_prior, log_prior + log_bayes_factor / misfit);
             let combinations = combinations.iter();
@@ -90,7 +93,7 @@ impl Probabilities {
             std::iter::once(alone).chain(combinations).collect()
         };
         let of_explanation = |e: &Explanation| models(prior(e.class), e.log_bayes_factor, &e.combinations);
-        let mut weighed: Vec<(Option<usize>, Vec<(f64, f64)>)> = explanations
+        let mut weighed: Vec<(Option<usize>, LogWeights)> = explanations
             .iter()
             .enumerate()
             .map(|(k, explanation)| (Some(k), of_explanation(explanation)))

@@ -32,8 +32,8 @@ impl SearchState {
                 log_evidence: base.log_evidence + combination.fitted_log_bayes_factor(),
             });
         }
-        let laws = self.hypotheses.laws.as_ref()?.laws.iter();
-        let law = laws.filter(|law| effects == [law.candidate]).next()?;
+        let mut laws = self.hypotheses.laws.as_ref()?.laws.iter();
+        let law = laws.find(|law| effects == [law.candidate])?;
         Some(FittedModel {
             fit: law.fit.clone(),
             log_evidence: base.log_evidence + law.log_bayes_factor,

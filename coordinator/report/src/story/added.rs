@@ -8,6 +8,9 @@ use result::finished_calibration::FinishedCalibration;
 use result::study::Study;
 use result::words::number;
 
+/// A larger error on unseen runs, in noise standard deviations, casts doubt on the names of the added effects.
+const MAX_HELD_OUT_ERROR: f64 = 1.3;
+
 /// An effect that the study added.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
 pub struct AddedEffect {
@@ -192,15 +195,35 @@ fn alike<'a>(
 /// Returns the holdout errors of a calibration, and of the one with the same measurements and these parts.
 fn errors(study: &Study, before: &FinishedCalibration, parts: &[String]) -> Option<[f64; 2]> {
     let after = alike(study, before, parts)?;
-    let sigmas = study.fixed_sigmas();
-    let error = |calibration: &FinishedCalibration| {
-        let table = calibration.comparison().holdout.clone()?;
-        let table = table.in_fixed_sigmas(&sigmas);
-        Some((table.all.unpredicted, table.all.rmse_fixed_sigma?))
-    };
-    let ((before_lacks, before), (after_lacks, after)) = (error(before)?, error(after)?);
+    let ((before_lacks, before), (after_lacks, after)) = (held_out(study, before)?, held_out(study, after)?);
     // Errors of models that refuse different runs are not comparable.
     (before_lacks == after_lacks).then_some([before, after])
+}
+
+/// Returns the number of holdout measurements without a prediction, and the error of the others in the noise standard deviations of the
+/// study.
+fn held_out(study: &Study, calibration: &FinishedCalibration) -> Option<(usize, f64)> {
+    let table = calibration.comparison().holdout.clone()?;
+    let table = table.in_fixed_sigmas(&study.fixed_sigmas());
+    Some((table.all.unpredicted, table.all.rmse_fixed_sigma?))
+}
+
+/// Returns a caution where searches named what a model has, and the model predicts unseen runs clearly worse than the noise.
+///
+/// Of models that were complete and right, 2 of 66 had a larger error than this; of models with a wrong name, 16 of 23.
+pub(super) fn unseen_runs(
+    study: &Study,
+    calibration: &FinishedCalibration,
+    added: &[AddedEffect],
+) -> Option<String> {
+    let is_named = added.iter().any(|effect| effect.probability.is_some());
+    let (_, error) = held_out(study, calibration).filter(|_| is_named)?;
+    (error > MAX_HELD_OUT_ERROR).then(|| {
+        format!(
+            "named, but the model predicts unseen runs {} times worse than the noise",
+            number::significant(error, 2)
+        )
+    })
 }
 
 #[cfg(test)]

@@ -3,7 +3,7 @@
 use job::effect_name;
 use record::{Discovery, Extension, NONE, NOT_IN_LIBRARY, Verdict, effect_of};
 
-use super::added::{AddedEffect, added};
+use super::added::{AddedEffect, added, unseen_runs};
 use super::explanation::{Alternative, LEAST, class, p, split};
 use result::finished_calibration::FinishedCalibration;
 use result::study::Study;
@@ -54,6 +54,7 @@ impl Missing {
     pub(super) fn new(study: &Study, calibration: &FinishedCalibration) -> Missing {
         let already_added = added(study, calibration);
         let mut text: Vec<String> = already_added.iter().map(AddedEffect::words).collect();
+        text.extend(unseen_runs(study, calibration, &already_added));
         let Some(record) = search_of(study, calibration) else {
             text.push("this model was not searched".into());
             return Missing {

@@ -37,7 +37,17 @@ pub struct DiscoverySummary {
     /// Number of evaluations in all searches.
     pub evaluations: u64,
     /// The records of all searches, without their curves.
-    pub rounds: Vec<Discovery>,
+    pub rounds: Vec<RoundSummary>,
+}
+
+/// A search in the block.
+#[derive(Debug, Clone, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
+pub struct RoundSummary {
+    /// The calibration whose model was searched.
+    pub calibration: i64,
+    /// Its result.
+    #[serde(flatten)]
+    pub record: Discovery,
 }
 
 impl DiscoverySummary {
@@ -85,7 +95,14 @@ impl DiscoverySummary {
             next_runs: last.next_runs.clone(),
             other_tests: last.other_tests.clone(),
             evaluations: records.iter().map(|record| record.evaluations).sum(),
-            rounds: records,
+            rounds: rounds
+                .iter()
+                .zip(records)
+                .map(|(round, record)| RoundSummary {
+                    calibration: round.calibration,
+                    record,
+                })
+                .collect(),
         })
     }
 }
@@ -145,6 +162,8 @@ mod tests {
         assert_eq!(summary.effects, record().effects);
         assert_eq!(summary.cannot_exclude, ["adhesion"]);
         assert!(summary.next_runs.is_empty());
-        assert_eq!((summary.evaluations, summary.rounds.len()), (8000, 2));
+        assert_eq!(summary.evaluations, 8000);
+        let searched: Vec<i64> = summary.rounds.iter().map(|round| round.calibration).collect();
+        assert_eq!(searched, [1, 3]);
     }
 }
