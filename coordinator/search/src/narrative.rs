@@ -4,6 +4,7 @@ use discovery::{Conclusion, DETECTED, SearchVerdict, WeighedSet};
 use formula::Hook;
 use job::{EffectOnNodes, ModelSwitch, PlainParameter};
 use record::{JudgedEffect, NONE, NOT_IN_LIBRARY, Outside};
+use shared::parameters::WHEEL_RADIUS;
 use statistics::ErrorSd;
 
 use super::candidate::candidate_of;
@@ -41,7 +42,14 @@ pub(super) fn sentence(
             chi.value, chi.degrees_of_freedom
         );
     }
-    if is_claim && effects.iter().any(|effect| effect.robust == Some(false)) {
+    let claimed = match conclusion.verdict {
+        SearchVerdict::Named(k) => Some(models.name(k)),
+        SearchVerdict::NotInLibrary => Some(NOT_IN_LIBRARY.to_owned()),
+        _ => None,
+    };
+    let is_fragile =
+        |effect: &JudgedEffect| effect.robust == Some(false) && claimed.as_ref() == Some(&effect.name);
+    if effects.iter().any(is_fragile) {
         text += "; under other priors (strengths half or twice as wide, nothing missing with 0.2 or 0.8) its probability falls below 0.9";
     }
     let remaining = remaining_misfit(models, &conclusion.remaining);
@@ -87,8 +95,16 @@ fn dimension(models: &SearchModels, name: &str, judged: &JudgedEffect) -> Option
         None if wheels.len() == 1 => wheels.values().next()?,
         None => return None,
     };
+    let fixed = &models.base.model.fixed;
+    let held = |name: &str| fixed.get(name).copied();
     let stated_m = match effect.hooks().next()? {
-        Hook::Radius => wheel.radius_m,
+        Hook::Radius => {
+            let on_wheel = wheels
+                .iter()
+                .find(|(_, candidate)| std::ptr::eq(*candidate, wheel));
+            let on_wheel = on_wheel.and_then(|(wheel, _)| held(&format!("{WHEEL_RADIUS}.{wheel}")));
+            on_wheel.or(held(WHEEL_RADIUS)).unwrap_or(wheel.radius_m)
+        }
         Hook::Width => wheel.width_m,
         _ => return None,
     };

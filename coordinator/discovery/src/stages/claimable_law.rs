@@ -35,7 +35,12 @@ impl ClaimableLaw {
     /// - `best`: the effects of the most probable set, if a law is among them.
     pub(super) fn new(task: &SearchTask, hypotheses: &Hypotheses, best: Option<&[usize]>) -> Option<Self> {
         let beside = best.and_then(|effects| Self::beside_effects(task, hypotheses, effects));
-        beside.or_else(|| Self::alone(task, hypotheses))
+        // The probability of a set supports no other law than its own.
+        let is_in_best = |law: &Self| {
+            let of_law = |k: &usize| *k == task.curve(law.law) || task.forms(law.law).contains(k);
+            best.is_none_or(|effects| effects.iter().any(of_law))
+        };
+        beside.or_else(|| Self::alone(task, hypotheses).filter(is_in_best))
     }
 
     fn alone(task: &SearchTask, hypotheses: &Hypotheses) -> Option<Self> {

@@ -85,6 +85,8 @@ impl SearchVerdict {
             Some(best) if best.candidate.is_some_and(|k| weighing.is_disputed(k)) => open,
             // If "nothing is missing" is the most probable explanation, no effect is claimed.
             Some(best) if best.probability > NAMED || best.candidate.is_none() => match best.candidate {
+                // The law and the sets that it leads are none of these explanations.
+                None if weighing.law_probability() > best.probability => open,
                 None => nothing,
                 Some(k) if may_be_named(&|named| named == k) => Self::Named(k),
                 Some(_) => open,

@@ -309,6 +309,10 @@ impl Weighing {
     /// predicts left-out levels worse by a detectable amount.
     pub(super) fn agreed(&self) -> Option<usize> {
         let best = self.sets.first()?;
+        // An effect beside a law is named or not; it is never added without that law.
+        if self.has_law(best) {
+            return None;
+        }
         let (effects, best_gain) = (best.effects.as_ref()?, best.predictive?);
         let rivals = self.sets.iter().skip(1);
         let mut predicted = rivals.filter_map(|rival| rival.predictive).peekable();

@@ -216,11 +216,13 @@ pub(super) fn unseen_runs(
     calibration: &FinishedCalibration,
     added: &[AddedEffect],
 ) -> Option<String> {
-    let is_named = added.iter().any(|effect| effect.probability.is_some());
+    let is_named = added
+        .iter()
+        .any(|effect| effect.probability.is_some() && effect.rivals.is_empty());
     let (_, error) = held_out(study, calibration).filter(|_| is_named)?;
     (error > MAX_HELD_OUT_ERROR).then(|| {
         format!(
-            "named, but the model predicts unseen runs {} times worse than the noise",
+            "named, but the error on unseen runs is {} times the noise",
             number::significant(error, 2)
         )
     })
