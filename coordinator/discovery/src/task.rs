@@ -99,4 +99,14 @@ impl SearchTask {
         let first = self.curve(law) + 1;
         first..first + self.laws[law].forms.len()
     }
+
+    /// Returns whether a candidate is a law outside the library.
+    pub(crate) fn is_law(&self, candidate: usize) -> bool {
+        candidate >= self.library.len()
+    }
+
+    /// Returns the law whose curve or form a candidate is; `None` for an effect of the library.
+    pub(crate) fn law_of(&self, candidate: usize) -> Option<usize> {
+        (0..self.laws.len()).find(|&law| candidate == self.curve(law) || self.forms(law).contains(&candidate))
+    }
 }

@@ -17,7 +17,6 @@ impl SearchState {
 
     /// Returns fits of a set without each of its members, from its mode.
     pub(super) fn without_each(&self, set: &EffectCombination) -> Vec<SearchBranch> {
-        let has_law = |effects: &[usize]| effects.iter().any(|k| *k >= self.task.library.len());
         let branches = set.effects.iter().map(|&dropped| {
             let mut frame = self.task.frame();
             let mut start = set.fit.point.position[..self.task.prior.dimension()].to_vec();
@@ -31,7 +30,7 @@ impl SearchState {
             }
             let seed = self.task.settings.seed;
             let search = EffectSearch::refit(frame, vec![start], self.task.likelihood.clone(), seed);
-            let choice = if has_law(&effects) { set.choice } else { 0.0 };
+            let choice = if self.has_law(&effects) { set.choice } else { 0.0 };
             SearchBranch::new(effects, Vec::new(), search).with_choice(choice)
         });
         branches.collect()

@@ -2,8 +2,6 @@
 
 use crate::chi_square::FURTHER_EFFECT;
 use crate::effect_search::depth::{GLANCE, QUICK};
-use crate::effect_search::state::EffectSearch;
-use crate::laplace::fit::FittedModel;
 use crate::probability::DETECTED;
 use crate::stages::branch::SearchBranch;
 use crate::stages::hypotheses::{EffectCombination, candidate_set};
@@ -41,25 +39,10 @@ impl SearchState {
         if size >= self.task.max_effects || best.is_empty() || !leaves_misfit {
             return self.backward_elimination();
         }
-        let branches = best.into_iter().enumerate().map(|(rank, combination)| {
-            let library = &self.task.library;
-            let combines = |k: usize| {
-                let mut effects = combination.effects.iter();
-                effects.all(|effect| *effect != k && library[k].combines_with(&library[*effect]))
-            };
-            let further: Vec<usize> = (0..library.len())
-                .filter(|k| combines(*k) && !library[*k].is_switch())
-                .collect();
-            let candidates: Vec<_> = further.iter().map(|&k| self.task.library[k].clone()).collect();
-            let base = FittedModel {
-                fit: combination.fit.clone(),
-                log_evidence: hypotheses.base_evidence() + combination.log_bayes_factor,
-            };
-            let likelihood = self.task.likelihood.clone();
-            let seed = self.task.settings.seed;
+        let branches = best.into_iter().enumerate().filter_map(|(rank, combination)| {
+            let effects = &combination.effects;
             let depth = if rank < BEAM { &QUICK } else { &GLANCE };
-            let search = EffectSearch::beyond(base, likelihood, &candidates, depth, seed);
-            SearchBranch::new(combination.effects.clone(), further, search)
+            self.branch(effects.clone(), self.further_effects(effects), depth)
         });
         Stage::BeamSearch(size, branches.collect())
     }

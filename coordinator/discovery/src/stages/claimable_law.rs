@@ -37,8 +37,8 @@ impl ClaimableLaw {
         let beside = best.and_then(|effects| Self::beside_effects(task, hypotheses, effects));
         // The probability of a set supports no other law than its own.
         let is_in_best = |law: &Self| {
-            let of_law = |k: &usize| *k == task.curve(law.law) || task.forms(law.law).contains(k);
-            best.is_none_or(|effects| effects.iter().any(of_law))
+            let is_same = |k: &usize| task.law_of(*k) == Some(law.law);
+            best.is_none_or(|effects| effects.iter().any(is_same))
         };
         beside.or_else(|| Self::alone(task, hypotheses).filter(is_in_best))
     }
@@ -66,10 +66,9 @@ impl ClaimableLaw {
     fn beside_effects(task: &SearchTask, hypotheses: &Hypotheses, effects: &[usize]) -> Option<Self> {
         let validated = hypotheses.law_beside_effects.as_ref()?;
         let set = hypotheses.combination(effects)?;
-        let place = effects.iter().position(|k| *k >= task.library.len())?;
+        let place = effects.iter().position(|k| task.is_law(*k))?;
         let candidate = effects[place];
-        let law = (0..task.laws.len())
-            .find(|&law| candidate == task.curve(law) || task.forms(law).contains(&candidate))?;
+        let law = task.law_of(candidate)?;
         let passes = validated.left_out.iter().all(|gain| *gain > DETECTED);
         if validated.effects != effects || !passes {
             return None;

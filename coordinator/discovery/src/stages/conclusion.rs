@@ -4,7 +4,7 @@ use crate::chi_square::{FitChiSquare, residuals};
 use crate::effect_search::ranking::EffectRanking;
 use crate::laplace::draws::draws;
 use crate::laplace::fit::LaplaceFit;
-use crate::probability::{DETECTED, PRIOR_OF_NONE};
+use crate::probability::DETECTED;
 use crate::stages::claimable_law::ClaimableLaw;
 use crate::stages::next_run::{InformativeRun, RunChoice};
 use crate::stages::noise_support::unsupported_noise;
@@ -228,7 +228,7 @@ impl Conclusion {
             agreed: weighing
                 .agreed()
                 .filter(|_| verdict == SearchVerdict::Undecided && !is_withheld),
-            alternative_priors: alternative_priors(task, hypotheses, PRIOR_OF_NONE, weighing.misfit),
+            alternative_priors: alternative_priors(task, hypotheses, weighing.misfit),
             ranking: weighing.ranking,
             not_in_library: weighing.not_in_library,
             predicted_by_law: hypotheses.laws.as_ref().and_then(|scan| {

@@ -19,11 +19,7 @@ impl SearchState {
             return self.next_runs();
         }
         let mut models: Vec<ComparedModel> = vec![(Vec::new(), 0, base)];
-        for set in &leading {
-            let last = set.effects.last();
-            let last_parameters = last.map_or(0, |&k| self.hypotheses.candidates[k].parameters.len());
-            models.push((set.effects.clone(), last_parameters, &set.fit));
-        }
+        models.extend(leading.iter().map(|set| self.compared(set)));
         let validation = self.validated(&models);
         let sets = leading.iter().map(|set| set.effects.clone()).collect();
         Stage::Predictions(sets, validation)

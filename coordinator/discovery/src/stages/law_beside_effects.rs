@@ -3,11 +3,10 @@
 
 use crate::chi_square::{FURTHER_EFFECT, FitChiSquare};
 use crate::effect_search::depth::QUICK;
-use crate::laplace::fit::FittedModel;
 use crate::probability::DETECTED;
 use crate::settings::Smoothness;
 use crate::stages::branch::SearchBranch;
-use crate::stages::cross_validation::CrossValidation;
+use crate::stages::cross_validation::{ComparedModel, CrossValidation};
 use crate::stages::hypotheses::{EffectCombination, LawBesideEffects};
 use crate::stages::laws::LAWS;
 use crate::stages::stage::Stage;
@@ -18,26 +17,6 @@ impl SearchState {
     pub(super) fn seeks_laws_beside_effects(&self) -> bool {
         let is_smooth = self.task.settings.smoothness == Smoothness::Smooth;
         is_smooth && self.task.max_effects > 0 && self.hypotheses.laws.is_some()
-    }
-
-    /// Returns the fit of the base, of a set of effects, or of a law alone.
-    pub(super) fn fitted(&self, effects: &[usize]) -> Option<FittedModel> {
-        let base = self.hypotheses.base.as_ref()?;
-        if effects.is_empty() {
-            return Some(base.clone());
-        }
-        if let Some(combination) = self.hypotheses.combination(effects) {
-            return Some(FittedModel {
-                fit: combination.fit.clone(),
-                log_evidence: base.log_evidence + combination.fitted_log_bayes_factor(),
-            });
-        }
-        let mut laws = self.hypotheses.laws.as_ref()?.laws.iter();
-        let law = laws.find(|law| effects == [law.candidate])?;
-        Some(FittedModel {
-            fit: law.fit.clone(),
-            log_evidence: base.log_evidence + law.log_bayes_factor,
-        })
     }
 
     /// Returns the best sets that have a law and this number of members, with the cost of the choice of that law.
@@ -52,7 +31,7 @@ impl SearchState {
                 .collect();
         }
         let sets = hypotheses.combinations.iter().filter(|c| c.effects.len() == size);
-        let sets = sets.filter(|c| self.has_law(c)).take(LAWS);
+        let sets = sets.filter(|c| self.has_law(&c.effects)).take(LAWS);
         sets.map(|c| (c.effects.clone(), c.choice)).collect()
     }
 
@@ -61,16 +40,8 @@ impl SearchState {
         if !self.seeks_laws_beside_effects() || size > self.task.max_effects {
             return self.law_elimination();
         }
-        let library = &self.task.library;
         let branch = |(effects, choice): &(Vec<usize>, f64)| {
-            let combines = |k: usize| {
-                let in_library = effects.iter().filter(|effect| **effect < library.len());
-                in_library
-                    .clone()
-                    .all(|effect| *effect != k && library[k].combines_with(&library[*effect]))
-            };
-            let further = (0..library.len()).filter(|k| combines(*k) && !library[*k].is_switch());
-            let branch = self.branch(effects.clone(), further.collect(), &QUICK)?;
+            let branch = self.branch(effects.clone(), self.further_effects(effects), &QUICK)?;
             Some(branch.with_choice(*choice))
         };
         let branches: Vec<SearchBranch> = self.sets_with_law(size).iter().filter_map(branch).collect();
@@ -93,14 +64,10 @@ impl SearchState {
         }
     }
 
-    fn has_law(&self, set: &EffectCombination) -> bool {
-        set.effects.iter().any(|k| *k >= self.task.library.len())
-    }
-
     /// Returns the best set that has a law and effects.
     pub(super) fn best_with_law(&self) -> Option<&EffectCombination> {
         self.hypotheses
-            .best_of(|c| c.effects.len() > 1 && self.has_law(c))
+            .best_of(|c| c.effects.len() > 1 && self.has_law(&c.effects))
     }
 
     /// Fits the best set that has a law without each of its effects.
@@ -118,26 +85,14 @@ impl SearchState {
 
     /// Cross-validates the best set that has a law against the library's best.
     fn law_validation(&mut self) -> Stage {
-        let parameters = |k: usize| self.hypotheses.candidates[k].parameters.len();
         let (Some(best), Some(base)) = (self.best_with_law(), self.hypotheses.base_fit()) else {
             return self.predictions();
         };
-        let compared = |set: &EffectCombination| {
-            let last = set.effects.last().map_or(0, |&k| parameters(k));
-            (set.effects.clone(), last)
-        };
+        let base: ComparedModel = (Vec::new(), 0, base);
         let library = self.hypotheses.best_of_library(self.task.library.len());
-        let (library, last, fit) = library.map_or((Vec::new(), 0, base), |set| {
-            let (effects, last) = compared(set);
-            (effects, last, &set.fit)
-        });
-        let (effects, last_of_best) = compared(best);
-        let fits = [
-            (Vec::new(), 0, base),
-            (library, last, fit),
-            (effects.clone(), last_of_best, &best.fit),
-        ];
-        Stage::LawBesideEffects(effects, self.validated(&fits))
+        let library = library.map_or_else(|| base.clone(), |set| self.compared(set));
+        let fits = [base, library, self.compared(best)];
+        Stage::LawBesideEffects(best.effects.clone(), self.validated(&fits))
     }
 
     pub(super) fn after_law_beside_effects(

@@ -2,13 +2,12 @@
 //! and then beyond the best combination if that leaves misfit.
 
 use crate::chi_square::{FURTHER_EFFECT, FitChiSquare, OUTSIDE_LAW};
-use crate::effect_search::depth::{ALL_CURVES, CURVES, Depth, FORMS};
-use crate::effect_search::state::EffectSearch;
+use crate::effect_search::depth::{ALL_CURVES, CURVES, FORMS};
 use crate::laplace::evidence::log_sum_exp;
 use crate::laplace::fit::LaplaceFit;
 use crate::probability::DETECTED;
 use crate::stages::branch::SearchBranch;
-use crate::stages::cross_validation::CrossValidation;
+use crate::stages::cross_validation::{ComparedModel, CrossValidation};
 use crate::stages::hypotheses::{EffectCombination, FittedLaw, LawScan};
 use crate::stages::stage::Stage;
 use crate::stages::state::SearchState;
@@ -100,32 +99,11 @@ impl SearchState {
         }
     }
 
-    /// A search of some candidates beyond a combination; `None` without candidates.
-    pub(super) fn branch(
-        &self,
-        beyond: Vec<usize>,
-        candidates: Vec<usize>,
-        depth: &'static Depth,
-    ) -> Option<SearchBranch> {
-        let chosen: Vec<_> = candidates
-            .iter()
-            .map(|&k| self.hypotheses.candidates[k].clone())
-            .collect();
-        let base = self.fitted(&beyond)?;
-        if chosen.is_empty() {
-            return None;
-        }
-        let likelihood = self.task.likelihood.clone();
-        let search = EffectSearch::beyond(base, likelihood, &chosen, depth, self.task.settings.seed);
-        Some(SearchBranch::new(beyond, candidates, search))
-    }
-
     /// Keeps the curves, and fits the simple forms of the best.
     pub(super) fn after_curves(&mut self, branch: &SearchBranch) -> Stage {
-        let law_of = |candidate| (0..self.task.laws.len()).find(|&law| self.task.curve(law) == candidate);
         let laws = branch.ranked().into_iter().filter_map(|(candidate, ranked)| {
             Some(FittedLaw {
-                law: law_of(candidate)?,
+                law: self.task.law_of(candidate)?,
                 candidate,
                 log_bayes_factor: ranked.log_bayes_factor,
                 mean_log_bayes_factor: ranked.log_bayes_factor,
@@ -194,18 +172,13 @@ impl SearchState {
         let (Some((beyond, law)), Some(base)) = (law, self.hypotheses.base_fit()) else {
             return self.after_scan();
         };
-        let parameters = |k: usize| self.hypotheses.candidates[k].parameters.len();
-        let library =
-            self.hypotheses
-                .best_of_library(self.task.library.len())
-                .map_or((Vec::new(), 0, base), |best| {
-                    let last = best.effects.last().map_or(0, |&k| parameters(k));
-                    (best.effects.clone(), last, &best.fit)
-                });
+        let base: ComparedModel = (Vec::new(), 0, base);
+        let library = self.hypotheses.best_of_library(self.task.library.len());
+        let library = library.map_or_else(|| base.clone(), |best| self.compared(best));
         let mut effects = beyond;
         effects.push(law.candidate);
-        let with_law = (effects, parameters(law.candidate), &law.fit);
-        let fits = [(Vec::new(), 0, base), library, with_law];
+        let with_law = (effects, self.last_parameters(&[law.candidate]), &law.fit);
+        let fits = [base, library, with_law];
         Stage::CrossValidation(rank, self.validated(&fits))
     }
 

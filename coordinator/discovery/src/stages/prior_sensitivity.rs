@@ -1,6 +1,7 @@
 //! Probabilities under other priors: a name that rests on the width of a prior, or on the odds that something is missing, is weak.
 
-use crate::stages::hypotheses::{Hypotheses, LawScan};
+use crate::probability::PRIOR_OF_NONE;
+use crate::stages::hypotheses::Hypotheses;
 use crate::stages::weighing::Weighing;
 use crate::task::SearchTask;
 use statistics::likelihood::Likelihood;
@@ -13,17 +14,14 @@ const NONE: [f64; 2] = [0.2, 0.8];
 /// The probabilities of all explanations under another prior.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AlternativePrior {
-    /// Factor on the widths of all strengths' priors; 1 as stated.
-    pub width: f64,
-    /// Prior probability that nothing is missing.
-    pub none: f64,
     /// Probability of each candidate that is an explanation; `None`: nothing is missing.
     pub effects: Vec<(Option<usize>, f64)>,
     /// Probability of a law outside the library; `None`: not searched.
     pub not_in_library: Option<f64>,
 }
 
-/// The probabilities under priors of half and twice the width, and under other odds that something is missing.
+/// Weighs all explanations with the priors of the strengths half and twice as wide, then with lower and higher odds that nothing is
+/// missing.
 ///
 /// # Arguments
 /// - `misfit`: chi-square of the best explanation over its degrees of freedom.
@@ -34,15 +32,12 @@ pub struct AlternativePrior {
 pub(super) fn alternative_priors(
     task: &SearchTask,
     hypotheses: &Hypotheses,
-    none: f64,
     misfit: f64,
 ) -> Vec<AlternativePrior> {
-    let alternative = |hypotheses: &Hypotheses, width: f64, none: f64| {
+    let alternative = |hypotheses: &Hypotheses, none: f64| {
         let weighing = Weighing::with_prior(task, hypotheses, none, misfit);
         let effects = weighing.ranking.effects.iter();
         AlternativePrior {
-            width,
-            none,
             effects: effects
                 .map(|effect| (effect.candidate, effect.probability))
                 .collect(),
@@ -51,13 +46,13 @@ pub(super) fn alternative_priors(
     };
     let by_width = WIDTHS.map(|width| {
         let scaled = with_width(hypotheses, &task.likelihood, width);
-        alternative(&scaled, width, none)
+        alternative(&scaled, PRIOR_OF_NONE)
     });
-    let by_odds = NONE.map(|none| alternative(hypotheses, 1.0, none));
+    let by_odds = NONE.map(|none| alternative(hypotheses, none));
     by_width.into_iter().chain(by_odds).collect()
 }
 
-/// The hypotheses with the widths of all strengths' priors multiplied by a factor. A fit without a positive definite Hessian keeps its
+/// Returns the hypotheses with the widths of all strengths' priors multiplied by a factor. A fit without a positive definite Hessian keeps its
 /// evidence.
 fn with_width(hypotheses: &Hypotheses, likelihood: &Likelihood, width: f64) -> Hypotheses {
     let mut scaled = hypotheses.clone();
@@ -71,8 +66,7 @@ fn with_width(hypotheses: &Hypotheses, likelihood: &Likelihood, width: f64) -> H
             }
         }
     }
-    let scans: Vec<&mut LawScan> = scaled.laws.iter_mut().collect();
-    for law in scans.into_iter().flat_map(|scan| &mut scan.laws) {
+    for law in scaled.laws.iter_mut().flat_map(|scan| &mut scan.laws) {
         let gain = law.fit.gain_by_width(likelihood, width).unwrap_or(0.0);
         law.log_bayes_factor += gain;
         law.mean_log_bayes_factor += gain;

@@ -35,50 +35,58 @@ pub(super) enum Stage {
     Failed(InferenceFailure),
 }
 
+/// What a stage waits for.
+enum Work<'a> {
+    Branches(&'a mut [SearchBranch]),
+    Validation(&'a mut CrossValidation),
+    Runs(&'a mut RunSelection),
+    Nothing,
+}
+
 impl Stage {
-    /// Returns the queries of the next round; none once the stage is complete.
-    pub(super) fn queries(&mut self) -> Vec<Query> {
+    fn work(&mut self) -> Work<'_> {
         match self {
-            Self::SingleEffects(branch) | Self::Curves(branch) | Self::Forms(branch) => branch.queries(),
+            Self::SingleEffects(branch) | Self::Curves(branch) | Self::Forms(branch) => {
+                Work::Branches(std::slice::from_mut(branch))
+            }
             Self::BaseReduction(branches)
             | Self::Families(branches)
             | Self::BeamSearch(_, branches)
             | Self::BackwardElimination(branches)
             | Self::Exchanges(_, branches)
             | Self::EffectsBesideLaw(_, branches)
-            | Self::LawElimination(branches) => branches.iter().flat_map(SearchBranch::queries).collect(),
+            | Self::LawElimination(branches) => Work::Branches(branches),
             Self::CrossValidation(_, validation)
             | Self::LawBesideEffects(_, validation)
-            | Self::Predictions(_, validation) => validation.queries(),
-            Self::NextRuns(runs) => runs.queries(),
-            Self::Done(_) | Self::Failed(_) => Vec::new(),
+            | Self::Predictions(_, validation) => Work::Validation(validation),
+            Self::NextRuns(runs) => Work::Runs(runs),
+            Self::Done(_) | Self::Failed(_) => Work::Nothing,
+        }
+    }
+
+    /// Returns the queries of the next round; none once the stage is complete.
+    pub(super) fn queries(&mut self) -> Vec<Query> {
+        match self.work() {
+            Work::Branches(branches) => branches.iter().flat_map(SearchBranch::queries).collect(),
+            Work::Validation(validation) => validation.queries(),
+            Work::Runs(runs) => runs.queries(),
+            Work::Nothing => Vec::new(),
         }
     }
 
     /// Takes the answers to [`queries`](Self::queries), in their order.
     pub(super) fn take(&mut self, answers: Vec<Option<Vec<f64>>>) {
-        match self {
-            Self::SingleEffects(branch) | Self::Curves(branch) | Self::Forms(branch) => branch.take(answers),
-            Self::BaseReduction(branches)
-            | Self::Families(branches)
-            | Self::BeamSearch(_, branches)
-            | Self::BackwardElimination(branches)
-            | Self::Exchanges(_, branches)
-            | Self::EffectsBesideLaw(_, branches)
-            | Self::LawElimination(branches) => {
+        match self.work() {
+            Work::Branches(branches) => {
                 let mut answers = answers.into_iter();
                 for branch in branches {
                     let count = branch.queries().len();
                     branch.take(answers.by_ref().take(count).collect());
                 }
             }
-            Self::CrossValidation(_, validation)
-            | Self::LawBesideEffects(_, validation)
-            | Self::Predictions(_, validation) => {
-                validation.take(&answers);
-            }
-            Self::NextRuns(runs) => runs.take(answers),
-            Self::Done(_) | Self::Failed(_) => {}
+            Work::Validation(validation) => validation.take(&answers),
+            Work::Runs(runs) => runs.take(answers),
+            Work::Nothing => {}
         }
     }
 }

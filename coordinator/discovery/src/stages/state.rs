@@ -2,7 +2,9 @@
 
 use std::collections::BTreeMap;
 
+use crate::effect_search::depth::Depth;
 use crate::effect_search::state::EffectSearch;
+use crate::laplace::fit::FittedModel;
 use crate::probability::DETECTED;
 use crate::settings::Smoothness;
 use crate::stages::branch::SearchBranch;
@@ -63,6 +65,73 @@ impl SearchState {
     pub(super) fn searches_widely(&self) -> bool {
         let is_smooth = self.task.settings.smoothness == Smoothness::Smooth;
         is_smooth && self.task.max_effects > 1 && self.hypotheses.is_incomplete(&self.task.likelihood)
+    }
+
+    /// Returns the fit of the base, of a set of effects, or of a law alone.
+    pub(super) fn fitted(&self, effects: &[usize]) -> Option<FittedModel> {
+        let base = self.hypotheses.base.as_ref()?;
+        if effects.is_empty() {
+            return Some(base.clone());
+        }
+        if let Some(combination) = self.hypotheses.combination(effects) {
+            return Some(FittedModel {
+                fit: combination.fit.clone(),
+                log_evidence: base.log_evidence + combination.fitted_log_bayes_factor(),
+            });
+        }
+        let mut laws = self.hypotheses.laws.as_ref()?.laws.iter();
+        let law = laws.find(|law| effects == [law.candidate])?;
+        Some(FittedModel {
+            fit: law.fit.clone(),
+            log_evidence: base.log_evidence + law.log_bayes_factor,
+        })
+    }
+
+    /// Returns a search of some candidates beyond a combination; `None` without candidates.
+    pub(super) fn branch(
+        &self,
+        beyond: Vec<usize>,
+        candidates: Vec<usize>,
+        depth: &'static Depth,
+    ) -> Option<SearchBranch> {
+        let chosen: Vec<_> = candidates
+            .iter()
+            .map(|&k| self.hypotheses.candidates[k].clone())
+            .collect();
+        let base = self.fitted(&beyond)?;
+        if chosen.is_empty() {
+            return None;
+        }
+        let likelihood = self.task.likelihood.clone();
+        let search = EffectSearch::beyond(base, likelihood, &chosen, depth, self.task.settings.seed);
+        Some(SearchBranch::new(beyond, candidates, search))
+    }
+
+    /// Returns the effects of the library that can join a set: they act together with each of its effects, and turn no setting.
+    pub(super) fn further_effects(&self, effects: &[usize]) -> Vec<usize> {
+        let library = &self.task.library;
+        let combines = |k: usize| {
+            let mut of_library = effects.iter().filter(|effect| !self.task.is_law(**effect));
+            of_library.all(|effect| *effect != k && library[k].combines_with(&library[*effect]))
+        };
+        let further = (0..library.len()).filter(|k| combines(*k) && !library[*k].is_switch());
+        further.collect()
+    }
+
+    /// Returns whether a law is among the members of a set.
+    pub(super) fn has_law(&self, effects: &[usize]) -> bool {
+        effects.iter().any(|k| self.task.is_law(*k))
+    }
+
+    /// Returns a combination as a model for the cross-validation.
+    pub(super) fn compared<'a>(&self, set: &'a EffectCombination) -> ComparedModel<'a> {
+        (set.effects.clone(), self.last_parameters(&set.effects), &set.fit)
+    }
+
+    /// Returns the number of parameters of the last member of a set.
+    pub(super) fn last_parameters(&self, effects: &[usize]) -> usize {
+        let last = effects.last();
+        last.map_or(0, |&k| self.hypotheses.candidates[k].parameters.len())
     }
 
     /// Keeps the combinations that branches without candidates have fitted.
