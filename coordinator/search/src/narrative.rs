@@ -89,30 +89,28 @@ fn implausible(models: &SearchModels, conclusion: &Conclusion) -> Option<String>
 /// where several wheels share the error.
 fn dimension(models: &SearchModels, name: &str, judged: &JudgedEffect) -> Option<String> {
     let (effect, _) = candidate_of(name)?;
-    let wheels = &models.base.experiment.wheels;
-    let wheel = match name.split_once('.') {
-        Some((_, wheel)) => wheels.get(wheel)?,
-        None if wheels.len() == 1 => wheels.values().next()?,
+    let [error] = effect.parameters.as_slice() else {
+        return None;
+    };
+    // Another effect takes a length from the wheel.
+    if error.unit != "1" {
+        return None;
+    }
+    let mut wheels = models.base.experiment.wheels.iter();
+    let (wheel, geometry) = match name.split_once('.') {
+        Some((_, only)) => wheels.find(|(wheel, _)| *wheel == only)?,
+        None if wheels.len() == 1 => wheels.next()?,
         None => return None,
     };
-    let fixed = &models.base.model.fixed;
-    let held = |name: &str| fixed.get(name).copied();
+    let held = |parameter: &str| models.base.model.fixed.get(parameter).copied();
     let stated_m = match effect.hooks().next()? {
-        Hook::Radius => {
-            let on_wheel = wheels
-                .iter()
-                .find(|(_, candidate)| std::ptr::eq(*candidate, wheel));
-            let on_wheel = on_wheel.and_then(|(wheel, _)| held(&format!("{WHEEL_RADIUS}.{wheel}")));
-            on_wheel.or(held(WHEEL_RADIUS)).unwrap_or(wheel.radius_m)
-        }
-        Hook::Width => wheel.width_m,
+        Hook::Radius => held(&format!("{WHEEL_RADIUS}.{wheel}"))
+            .or(held(WHEEL_RADIUS))
+            .unwrap_or(geometry.radius_m),
+        Hook::Width => geometry.width_m,
         _ => return None,
     };
-    let error = judged
-        .parameters
-        .values()
-        .next()
-        .filter(|_| judged.parameters.len() == 1)?;
+    let error = judged.parameters.values().next()?;
     Some(format!(
         ": it may be {:.1} mm, not {:.1} mm; measure it",
         1e3 * stated_m * (1.0 + error),
@@ -317,10 +315,10 @@ fn list<'a>(names: impl Iterator<Item = &'a str>) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::fixture::read;
 
-    #[test]
-    fn where_nothing_may_be_missing_it_is_not_said_that_something_is() {
-        let effect = |name: &str, probability: f64, in_credible_set: bool| JudgedEffect {
+    fn effect(name: &str, probability: f64, in_credible_set: bool) -> JudgedEffect {
+        JudgedEffect {
             name: name.into(),
             log_bayes_factor: 1.0,
             prior_sds: None,
@@ -332,7 +330,32 @@ mod tests {
             parameters: Default::default(),
             units: Default::default(),
             method: "confirmed".into(),
+        }
+    }
+
+    #[test]
+    fn an_error_of_a_dimension_is_said_in_millimetres() {
+        let (job, files, _) = read("tests/data/shear-mobilisation");
+        let sentence = |name: &str, parameter: &str, value: f64| {
+            let models = SearchModels::new(&job, &files, 1).unwrap();
+            let judged = JudgedEffect {
+                parameters: [(format!("{name}.{parameter}"), value)].into(),
+                ..effect(name, 0.99, true)
+            };
+            dimension(&models, name, &judged)
         };
+        assert_eq!(
+            sentence("wheel_radius_error", "relative_error", -0.05).as_deref(),
+            Some(": it may be 118.8 mm, not 125.0 mm; measure it")
+        );
+        let width = sentence("wheel_width_error", "relative_error", 0.05);
+        assert!(width.is_some_and(|text| text.contains("measure it")));
+        // It changes the width by a length, which is no error of the statement.
+        assert_eq!(sentence("edge_loss", "loss_m", 0.005), None);
+    }
+
+    #[test]
+    fn where_nothing_may_be_missing_it_is_not_said_that_something_is() {
         let with_none = [effect(NONE, 0.6, true), effect("stick_slip", 0.36, true)];
         assert_eq!(
             undecided(&with_none),
