@@ -73,6 +73,13 @@ pub(super) fn outcome(client: &Client, study: &Value) -> Result<Option<String>, 
             calibration["calibration"] = Value::Null;
         }
     }
+    for round in summary["discovery"]["rounds"]
+        .as_array_mut()
+        .into_iter()
+        .flatten()
+    {
+        round["calibration"] = Value::Null;
+    }
     let mut text = format!("{summary:#}\n");
     for (place, id) in ids.iter().enumerate() {
         let stages = get(client, &format!("/v1/calibrations/{id}/stages"))?;
