@@ -91,8 +91,8 @@ impl PlainParameter {
 
     fn read_prior(&self) -> Option<(toml::Value, Marginal)> {
         let value: toml::Value = self.prior.parse().ok()?;
-        let known = model_parameters().find(|p| p.name == self.name)?;
-        let density = marginal(&value, &known.into()).ok()?;
+        let parameter = model_parameters().find(|p| p.name == self.name)?;
+        let density = marginal(&value, &parameter.into()).ok()?;
         Some((value, density))
     }
 
@@ -100,7 +100,7 @@ impl PlainParameter {
     /// have it, if its value lies outside its prior, or if an effect is the candidate in its place.
     pub fn held_by(&self, spec: &Spec) -> Option<(f64, Marginal)> {
         let is_free = spec.parameters.iter().any(|p| p.name == self.name);
-        let known = match &spec.model.external {
+        let parameter = match &spec.model.external {
             None => spec.model.kind.parameters().find(|p| p.name == self.name)?,
             Some(model) if model.shares(self.name) => model_parameters().find(|p| p.name == self.name)?,
             Some(_) => return None,
@@ -108,7 +108,7 @@ impl PlainParameter {
         if is_free || self.covered_by.is_some() || spec.fit_variant.conditions.is_empty() {
             return None;
         }
-        let value = spec.model.fixed.get(self.name).copied().or(known.default)?;
+        let value = spec.model.fixed.get(self.name).copied().or(parameter.default)?;
         let (_, density) = self.prior()?;
         let (lower, upper) = density.support();
         (lower..=upper).contains(&value).then(|| (value, density.clone()))
@@ -146,10 +146,10 @@ mod tests {
     fn every_one_is_a_parameter_whose_default_its_prior_holds() {
         for plain in &PLAIN_PARAMETERS {
             let (_, density) = plain.prior().unwrap_or_else(|| panic!("{}", plain.name));
-            let known = model_parameters().find(|p| p.name == plain.name).unwrap();
+            let parameter = model_parameters().find(|p| p.name == plain.name).unwrap();
             let (lower, upper) = density.support();
             assert!(
-                (lower..=upper).contains(&known.default.unwrap()),
+                (lower..=upper).contains(&parameter.default.unwrap()),
                 "{}",
                 plain.name
             );

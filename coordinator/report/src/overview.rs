@@ -68,7 +68,7 @@ pub struct MemberOverview {
     /// Member of the study.
     #[serde(flatten)]
     pub member: StudyMember,
-    /// What is wrong, what is missing, what to do next; null for a search and for an unfinished member.
+    /// The story says what is wrong, what is missing and what to do next; null for a search and for an unfinished member.
     pub story: Option<Story>,
 }
 

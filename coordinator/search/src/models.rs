@@ -292,7 +292,7 @@ impl SearchModels {
             QueriedModel::Without(k) => self.reductions[*k].1.iter().map(String::as_str).collect(),
         };
         let value = |name: &String| {
-            let place = names.iter().position(|known| known == name);
+            let place = names.iter().position(|candidate| candidate == name);
             place.map_or(f64::NAN, |i| query.theta[i])
         };
         variant.parameters.iter().map(value).collect()
@@ -501,13 +501,16 @@ mod tests {
             "flow_fraction",
             "janosi_hanamoto_node",
         ] {
-            let own = candidates.iter().filter(|own| own.name == name);
-            assert!(own.clone().all(|own| !own.has_low_fidelity), "{name}");
+            let named = candidates.iter().filter(|candidate| candidate.name == name);
+            assert!(
+                named.clone().all(|candidate| !candidate.has_low_fidelity),
+                "{name}"
+            );
         }
         for (k, candidate) in candidates
             .iter()
             .enumerate()
-            .filter(|(_, own)| own.has_low_fidelity)
+            .filter(|(_, candidate)| candidate.has_low_fidelity)
         {
             for is_proposed in [false, true] {
                 let query = Query {

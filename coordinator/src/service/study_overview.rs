@@ -89,7 +89,9 @@ impl Service {
             let stamp = members_stamp(members.iter().map(|member| (member.id, member.state)));
             let lead = members.first()?;
             let unfinished = members.iter().find(|m| m.state != CalibrationState::Finished);
-            let kept = listed.remove(&id).filter(|(of, _)| is_of_members(of, &stamp));
+            let kept = listed
+                .remove(&id)
+                .filter(|(list_stamp, _)| is_of_members(list_stamp, &stamp));
             let kept = kept.and_then(|(_, text)| serde_json::from_str::<StudyListItem>(&text).ok());
             let mut item = kept.unwrap_or_else(|| {
                 let kind = lead.model_kind.clone();
@@ -150,7 +152,9 @@ impl Service {
                 .map(|(study, members)| (study, members_stamp(members.into_iter()))),
         );
         stamps.retain(|study, stamp| {
-            let is_listed = listed.get(study).is_some_and(|(of, _)| is_of_members(of, stamp));
+            let is_listed = listed
+                .get(study)
+                .is_some_and(|(list_stamp, _)| is_of_members(list_stamp, stamp));
             !is_listed && !deleted.contains(study)
         });
         Ok(stamps)

@@ -32,7 +32,7 @@ pub struct Story {
     pub model: Option<String>,
     /// What the calibration's model gets wrong.
     pub wrong: Wrong,
-    /// What is missing, with its probability.
+    /// The effect that is missing, with its probability.
     pub missing: Missing,
     /// What to do next.
     pub next: Next,

@@ -5,7 +5,7 @@ use shared::api::CalibrationState;
 
 use super::ledger::Ledger;
 
-/// Of this many rows, one is lost.
+/// The planted bug loses one row of this many.
 const LOST: usize = 20;
 
 /// Defines the planted bugs and the list of all.
