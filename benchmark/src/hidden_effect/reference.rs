@@ -9,7 +9,7 @@ use super::study::kind::HiddenKind;
 use super::study::posterior::sample;
 use super::study::rate::Rate;
 use super::study::record::{is_right, leader, record, word};
-use super::study::trial::draw;
+use super::study::trial::{draw, draw_named};
 use crate::error::StudyError;
 use crate::parallel::each;
 
@@ -65,7 +65,30 @@ pub fn run(count: u64, seed: u64) -> Result<(), StudyError> {
 
 /// Draws the two campaigns of a number, and searches the second.
 pub fn one(seed: u64, number: u64) -> Result<Compared, StudyError> {
-    let (case, reference) = campaigns(seed, number)?;
+    let kind = if number % UNCHANGED == UNCHANGED - 1 {
+        HiddenKind::None
+    } else {
+        HiddenKind::One
+    };
+    // The effect depends on the number alone, so that every attempt has the same one.
+    compare(seed, number, |seed| draw(kind, seed, FIRST + number))
+}
+
+/// Draws a campaign in which an effect acts, and its reference, and searches the campaign.
+pub fn named(effect: &str, seed: u64) -> Result<Compared, StudyError> {
+    compare(seed, FIRST, |seed| draw_named(effect, seed))
+}
+
+/// Searches a campaign with and without its reference.
+///
+/// # Arguments
+/// - `number`: of the stream of the reference. `draw`: draws the campaign by a seed.
+fn compare(
+    seed: u64,
+    number: u64,
+    draw: impl Fn(u64) -> Result<SyntheticCase, StudyError>,
+) -> Result<Compared, StudyError> {
+    let (case, reference) = campaigns(seed, number, draw)?;
     let job = case.plan.job();
     let posterior = sample(&job, &reference, SAMPLER, seed)?;
     let (model, _) = job.toml.split_once("[priors]").ok_or("the job has no priors")?;
@@ -82,15 +105,13 @@ pub fn one(seed: u64, number: u64) -> Result<Compared, StudyError> {
 }
 
 /// Returns a campaign, with an earlier campaign on the same soil.
-fn campaigns(seed: u64, number: u64) -> Result<(SyntheticCase, FileSet), StudyError> {
-    let kind = if number % UNCHANGED == UNCHANGED - 1 {
-        HiddenKind::None
-    } else {
-        HiddenKind::One
-    };
+fn campaigns(
+    seed: u64,
+    number: u64,
+    draw: impl Fn(u64) -> Result<SyntheticCase, StudyError>,
+) -> Result<(SyntheticCase, FileSet), StudyError> {
     for attempt in 0..MAX_DRAWN {
-        // The effect depends on the number alone, so that every attempt has the same one.
-        let case = draw(kind, seed + attempt, FIRST + number)?;
+        let case = draw(seed + attempt)?;
         if let Some(reference) = case.reference(Stream::new(seed, STAGE, number, attempt))? {
             return Ok((case, reference));
         }

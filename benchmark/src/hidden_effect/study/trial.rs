@@ -22,6 +22,8 @@ use crate::error::StudyError;
 
 /// The random stream of combinations of effects.
 const STAGE: u64 = 1 << 44;
+/// The number of the truths that are drawn by the name of their effect.
+const NAMED: u64 = 9_000_000;
 /// The largest number of combinations that are drawn until each effect is detectable.
 const MAX_DRAWN: u64 = 1000;
 /// The largest number of effects in a combination of the search.
@@ -76,14 +78,35 @@ pub fn draw(kind: HiddenKind, seed: u64, number: u64) -> Result<SyntheticCase, S
         HiddenKind::None => draw(Plan::Full, &[]),
         HiddenKind::One => {
             let effects = expressible(Plan::Full)?;
-            let effect = &effects[turn(effects.len())];
-            draw(Plan::for_effect(&effect.0), std::slice::from_ref(effect))
+            draw_effect(&effects[turn(effects.len())], seed, truth_number)
         }
         HiddenKind::Outside => draw(Plan::Full, &[LAWS[turn(LAWS.len())].hidden()]),
         HiddenKind::Two => draw_detectable(Plan::Full, 2, seed, truth_number),
         HiddenKind::Three => draw_detectable(Plan::Full, 3, seed, truth_number),
         HiddenKind::Spatial => draw_detectable(Plan::Spatial, 1, seed, truth_number),
     }
+}
+
+/// Draws a truth with one effect of the catalogue by its name. The truth is the same in a larger catalogue.
+pub fn draw_named(name: &str, seed: u64) -> Result<SyntheticCase, StudyError> {
+    let mut effects = expressible(Plan::Full)?.into_iter();
+    let effect = effects.find(|(effect, _)| effect == name);
+    let effect = effect.ok_or(format!("the experiment cannot show \"{name}\""))?;
+    draw_effect(&effect, seed, NAMED)
+}
+
+fn draw_effect(
+    effect: &(String, Extension),
+    seed: u64,
+    truth_number: u64,
+) -> Result<SyntheticCase, StudyError> {
+    SyntheticCase::draw(
+        Plan::for_effect(&effect.0),
+        std::slice::from_ref(effect),
+        seed,
+        truth_number,
+        0,
+    )
 }
 
 /// Draws effects of the catalogue at random until each of them is detectable in noise-free data.
