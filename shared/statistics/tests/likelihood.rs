@@ -240,6 +240,82 @@ fn errors_of_a_preparation_couple_its_runs() {
     assert_eq!(part.values(), places.len());
 }
 
+/// Three channels of 30 runs: every three runs repeat a condition, six sessions share an offset of each channel and one sensitivity.
+#[test]
+fn a_large_block_has_the_density_of_its_covariance() {
+    let [runs, count] = [30, 90];
+    let wave = |i: usize, k: f64| (1.7 * k * (i as f64 + 1.0)).sin();
+    let data: Vec<Datum> = (0..count)
+        .map(|i| {
+            datum(
+                i % runs,
+                i / runs,
+                wave(i, 1.0),
+                ErrorSd::Known(0.5 + 0.1 * wave(i, 2.0)),
+            )
+        })
+        .collect();
+    let group = |members: &dyn Fn(&Datum) -> bool| -> Vec<usize> {
+        (0..count).filter(|&i| members(&data[i])).collect()
+    };
+    let mut errors = Vec::new();
+    for session in 0..6 {
+        errors.push(common(
+            &group(&|d| d.run % 6 == session),
+            sensitivity(ErrorSd::Known(0.7), 0),
+        ));
+        for channel in 0..3 {
+            let members = group(&|d| d.run % 6 == session && d.channel == channel);
+            errors.push(common(
+                &members,
+                CommonErrorSize::Shift(ErrorSd::Known(0.3 + 0.2 * channel as f64)),
+            ));
+        }
+    }
+    for condition in 0..10 {
+        for channel in 0..3 {
+            let members = group(&|d| d.run / 3 == condition && d.channel == channel);
+            errors.push(common(&members, DISCREPANCY));
+        }
+    }
+    let values: Vec<f64> = (0..2 * count).map(|i| 0.5 * wave(i, 3.0)).collect();
+    let m = 1.5;
+    let likelihood = normal(&data, &errors, Discrepancy::Known(m));
+    let sd = |i: usize| 0.5 + 0.1 * wave(i, 2.0);
+    let mut covariance = DMatrix::from_diagonal(&DVector::from_fn(count, |i, _| sd(i) * sd(i)));
+    for error in &errors {
+        let squares: f64 = error.data.iter().map(|&i| sd(i) * sd(i)).sum();
+        let size = |i: usize| match error.size {
+            CommonErrorSize::Shift(ErrorSd::Known(sd)) => sd,
+            CommonErrorSize::Discrepancy { .. } => m * (squares / error.data.len() as f64).sqrt(),
+            _ => 0.7 * values[count + i],
+        };
+        for &i in &error.data {
+            for &j in &error.data {
+                covariance[(i, j)] += size(i) * size(j);
+            }
+        }
+    }
+    let residuals = DVector::from_fn(count, |i, _| data[i].value - values[i]);
+    let cholesky = covariance.cholesky().unwrap();
+    let distance = residuals.dot(&cholesky.solve(&residuals));
+    let expected =
+        -0.5 * (distance + cholesky.ln_determinant() + count as f64 * (2.0 * std::f64::consts::PI).ln());
+    let value = likelihood.log_likelihood(&values, &[]).unwrap().value();
+    assert!(
+        (value - expected).abs() < 1e-9 * expected.abs(),
+        "{value} {expected}"
+    );
+    let whitening = likelihood.whitening(&values, &[]).unwrap();
+    let [c, d] = [4.0, 5.0].map(|k| (0..count).map(|i| wave(i, k)).collect::<Vec<f64>>());
+    let curvature = whitening.curvature(&whitening.apply(&c), &whitening.apply(&d));
+    let expected = DVector::from_vec(c).dot(&cholesky.solve(&DVector::from_vec(d)));
+    assert!(
+        (curvature - expected).abs() < 1e-9 * expected.abs().max(1.0),
+        "{curvature} {expected}"
+    );
+}
+
 #[test]
 fn an_unknown_discrepancy_is_the_mean_over_its_values() {
     let (data, common) = three_runs(ErrorSd::Known(0.3));

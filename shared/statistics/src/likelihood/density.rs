@@ -3,15 +3,14 @@
 use super::common_error::{Discrepancy, ErrorBlock, discrepancy_levels};
 use super::datum::LikelihoodError;
 use super::error_model::Likelihood;
-use super::factor::CholeskyFactor;
+use super::factor::CovarianceFactor;
 use super::law::ErrorLaw;
-use super::spread::Spread;
 use crate::log_likelihood::LogLikelihood;
 use crate::prior::LN_SQRT_TAU;
 
 /// A block with its factored covariance and whitened residuals.
 pub(super) struct ScoredBlock {
-    pub(super) factor: CholeskyFactor,
+    pub(super) factor: CovarianceFactor,
     pub(super) whitened: Vec<f64>,
     pub(super) squared_distance: f64,
 }
@@ -151,8 +150,8 @@ impl Likelihood {
         values: &[f64],
         theta: &[f64],
     ) -> Result<Option<ScoredBlock>, LikelihoodError> {
-        let Spread { sds, common } = self.spread(block, m, values, theta)?;
-        Ok(CholeskyFactor::new(&sds, &common).map(|factor| {
+        let spread = self.spread(block, m, values, theta)?;
+        Ok(CovarianceFactor::new(spread).map(|factor| {
             let residuals = block.data.iter().map(|&i| self.data[i].value - values[i]);
             let whitened = factor.whiten(residuals.collect());
             ScoredBlock {

@@ -1,4 +1,44 @@
-//! The Cholesky factor of a small covariance, with sums in a fixed order.
+//! The factor of a block's covariance, with sums in a fixed order.
+
+use super::low_rank_factor::LowRankFactor;
+use super::spread::Spread;
+
+/// Number of data above which a covariance with few common errors is factored by these.
+const MAX_DENSE: usize = 64;
+
+/// W of `S^-1 = W' W`.
+#[derive(Debug, Clone)]
+pub(super) enum CovarianceFactor {
+    Dense(CholeskyFactor),
+    LowRank(LowRankFactor),
+}
+
+impl CovarianceFactor {
+    /// Factors the covariance of a block; `None` if that overflows.
+    pub(super) fn new(spread: Spread) -> Option<Self> {
+        let Spread { sds, common } = spread;
+        if sds.len() > MAX_DENSE && common.len() < sds.len() {
+            return LowRankFactor::new(sds, common).map(Self::LowRank);
+        }
+        CholeskyFactor::new(&sds, &common).map(Self::Dense)
+    }
+
+    /// Returns ln det S.
+    pub(super) fn log_determinant(&self) -> f64 {
+        match self {
+            Self::Dense(factor) => factor.log_determinant(),
+            Self::LowRank(factor) => factor.log_determinant(),
+        }
+    }
+
+    /// Returns `W v`.
+    pub(super) fn whiten(&self, v: Vec<f64>) -> Vec<f64> {
+        match self {
+            Self::Dense(factor) => factor.whiten(v),
+            Self::LowRank(factor) => factor.whiten(v),
+        }
+    }
+}
 
 /// L of `S = L L'`, row by row.
 #[derive(Debug, Clone)]

@@ -7,7 +7,7 @@
 //! - `datum`: a measured value with its noise. `law`: normal or Student's t.
 //! - `common_error`: common errors, and the blocks that they create. `spread`: the covariance of a block.
 //! - `error_model`: data, law and common errors together. `density`: their log-density.
-//! - `factor`: the Cholesky factor of a block's covariance; `common_shift`: a block that needs none. `subset`: the
+//! - `factor`: the factor of a block's covariance; `low_rank_factor`: that of a large block; `common_shift`: a block that needs none. `subset`: the
 //!   likelihood of selected data.
 //! - `numerical_noise`: the likelihood of a model whose predictions scatter.
 //! - `whitening`: residuals and derivatives transformed to independence, for least squares.
@@ -19,6 +19,7 @@ mod density;
 mod error_model;
 mod factor;
 mod law;
+mod low_rank_factor;
 mod numerical_noise;
 mod spread;
 mod subset;

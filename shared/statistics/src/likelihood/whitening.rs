@@ -4,7 +4,7 @@ use super::common_error::ErrorBlock;
 use super::common_shift::CommonShift;
 use super::datum::LikelihoodError;
 use super::error_model::Likelihood;
-use super::factor::CholeskyFactor;
+use super::factor::CovarianceFactor;
 use super::law::ErrorLaw;
 use super::spread::CERTAIN;
 
@@ -29,7 +29,7 @@ pub struct Whitening {
 
 #[derive(Debug, Clone)]
 enum BlockTransform {
-    Factor(CholeskyFactor),
+    Factor(CovarianceFactor),
     Shift(ShiftTransform),
 }
 
