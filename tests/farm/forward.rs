@@ -132,9 +132,9 @@ fn simulated_runs_are_read_by_their_own_experiment() {
     let header = small.runs.lines().find(|line| line.starts_with("run,")).unwrap();
     let more = |line: &str| match line {
         comment if comment.starts_with('#') => comment.to_owned(),
-        line if line == header => format!("{line},lateral_force_n_sd,order,prepared"),
-        line if line.starts_with("r00") => format!("{line},0.5,1,bed 1"),
-        line => format!("{line},,2,bed 2"),
+        line if line == header => format!("{line},lateral_force_n_sd,order,prepared,session,zero,operator"),
+        line if line.starts_with("r00") => format!("{line},0.5,1,bed 1,day 1,tare 1,Ada"),
+        line => format!("{line},,2,bed 2,day 2,,"),
     };
     let runs: String = small.runs.lines().map(|line| more(line) + "\n").collect();
     // The second job has the noise of a channel in one row alone, and preparations.

@@ -54,7 +54,7 @@ test("a wrong unit is complained about at its field, with the cell", async () =>
   await choose("unit of slip", "%");
   await page.getByRole("button", { name: "Use these 40 runs" }).waitFor();
   assert.equal(await page.locator('[data-field="slip"]').count(), 0);
-  await page.getByText("kept as notes, no columns of runs.csv: Drehzahl [U/min], Bediener, Bemerkung").waitFor();
+  await page.getByText("kept as notes, no columns of runs.csv: Drehzahl [U/min], Bemerkung").waitFor();
   await shot(page, "import-answered");
 });
 
@@ -76,10 +76,10 @@ test("the runs are those of the command, and become a calibration", async () => 
 
 test("a text in another encoding keeps its letters, and a file that is no table says so", async () => {
   await page.getByRole("link", { name: "New calibration" }).first().click();
-  await files(buffer("Sand.csv", "Versuch;Schlupf [%];Last [N];Geschwindigkeit [mm/s];Einsinkung [mm];Prüfer\nA;20;100;8;5,5;Jürgen\nB;30;100;8;6,5;Zoë\n"));
+  await files(buffer("Sand.csv", "Versuch;Schlupf [%];Last [N];Geschwindigkeit [mm/s];Einsinkung [mm];Prüfstand\nA;20;100;8;5,5;Jürgen\nB;30;100;8;6,5;Zoë\n"));
   await page.getByLabel("wheel of all rows", { exact: true }).fill("w");
   await page.getByLabel("soil of all rows", { exact: true }).fill("s");
-  await page.getByText("kept as notes, no columns of runs.csv: Prüfer").waitFor();
+  await page.getByText("kept as notes, no columns of runs.csv: Prüfstand").waitFor();
   await page.getByRole("button", { name: "remove Sand.csv" }).click();
   await files({ name: "broken.xlsx", mimeType: "application/octet-stream", buffer: Buffer.from("PK\x03\x04rubbish") });
   await page.locator(".card.mapping .error").first().waitFor();

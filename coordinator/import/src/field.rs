@@ -151,7 +151,7 @@ const CONDITIONS: [Entry; 8] = [
     ("pass", "pass", Kind::Whole(1), false, &["pass", "ueberfahrt"]),
 ];
 
-const OTHERS: [Entry; 4] = [
+const OTHERS: [Entry; 7] = [
     (
         "order",
         "order in time",
@@ -165,6 +165,27 @@ const OTHERS: [Entry; 4] = [
         Kind::Name,
         false,
         &["prepared", "preparation", "aufbereitung"],
+    ),
+    (
+        "session",
+        "session (day or mounting)",
+        Kind::Name,
+        false,
+        &["session", "day", "mounting", "sitzung", "tag", "messtag"],
+    ),
+    (
+        "zero",
+        "taring of the sensors",
+        Kind::Name,
+        false,
+        &["zero", "tare", "taring", "nullung", "tara"],
+    ),
+    (
+        "operator",
+        "operator",
+        Kind::Name,
+        false,
+        &["operator", "bediener", "pruefer"],
     ),
     ("history", "recording", Kind::Name, false, &["history"]),
     (

@@ -16,8 +16,8 @@ fn guessed(name: &str, bytes: &[u8]) -> Guess {
     .expect("a table")
 }
 
-const GERMAN: &str = "Versuch;Radlast [kN];Schlupf [%];Geschwindigkeit (mm/s);Zugkraft [N];Drehmoment [Ncm];Einsinkung mm;Bediener\n\
-A;0,1;20;8;35,2;590;5,6;Ada\nB;0,1;40;8;;660;;Ada\n";
+const GERMAN: &str = "Versuch;Radlast [kN];Schlupf [%];Geschwindigkeit (mm/s);Zugkraft [N];Drehmoment [Ncm];Einsinkung mm;Wetter\n\
+A;0,1;20;8;35,2;590;5,6;trocken\nB;0,1;40;8;;660;;trocken\n";
 
 #[test]
 fn german_titles_with_units_need_no_more_than_wheel_and_soil() {
@@ -31,7 +31,7 @@ fn german_titles_with_units_need_no_more_than_wheel_and_soil() {
     assert_eq!(open, ["wheel", "soil"]);
     assert_eq!(proposal.decimal.as_deref(), Some(","));
     assert!(
-        proposal.map.ends_with("# Kept as notes: \"Bediener\"\n"),
+        proposal.map.ends_with("# Kept as notes: \"Wetter\"\n"),
         "{}",
         proposal.map
     );
@@ -47,7 +47,7 @@ fn german_titles_with_units_need_no_more_than_wheel_and_soil() {
 
 #[test]
 fn a_column_whose_words_mark_held_out_runs_is_proposed_with_what_they_mean() {
-    let text = "run;wheel;soil;slip [%];load [N];speed [mm/s];pull [N];Bediener;Bemerkung\na;w;s;20;100;8;1,5;Ada;\nb;w;s;30;100;8;1,7;Bob;Kontrolle\nc;w;s;40;100;8;1,8;Ada;neu aufbereitet\n";
+    let text = "run;wheel;soil;slip [%];load [N];speed [mm/s];pull [N];Wetter;Bemerkung\na;w;s;20;100;8;1,5;Ada;\nb;w;s;30;100;8;1,7;Bob;Kontrolle\nc;w;s;40;100;8;1,8;Ada;neu aufbereitet\n";
     let proposal = guessed("a.csv", text.as_bytes());
     assert!(
         proposal.map.contains("[columns.use]\ncolumn = \"Bemerkung\"\nwords = { \"Kontrolle\" = \"holdout\", \"neu aufbereitet\" = \"fit\" }   # fit, holdout"),
@@ -73,12 +73,43 @@ fn a_column_whose_words_mark_held_out_runs_is_proposed_with_what_they_mean() {
     let proposal = guessed("a.csv", quiet.as_bytes());
     assert!(
         proposal.map.contains(
-            "# [columns.use]\n# column = \"Bediener\"\n# words = { \"Ada\" = \"?\", \"Bob\" = \"?\" }"
+            "# [columns.use]\n# column = \"Wetter\"\n# words = { \"Ada\" = \"?\", \"Bob\" = \"?\" }"
         ),
         "{}",
         proposal.map
     );
     assert_eq!(complaints("a.csv", quiet.as_bytes(), &proposal.map), [""; 0]);
+}
+
+#[test]
+fn ids_of_sessions_tarings_and_operators_are_taken_from_english_and_german_titles() {
+    for [session, zero, operator] in [
+        ["Session", "Zero", "Operator"],
+        ["day", "tare", "operator"],
+        ["mounting", "taring", "operator"],
+        ["Sitzung", "Nullung", "Bediener"],
+        ["Messtag", "Tara", "Prüfer"],
+        ["Tag", "Nullung", "Prüfer"],
+    ] {
+        let text = format!(
+            "run;wheel;soil;slip [%];load [N];speed [mm/s];pull [N];{operator};{session};{zero}\na;w;s;20;100;8;1,5;Ada;11-16-20;1\nb;w;s;30;100;8;1,7;;11-17-20;\n"
+        );
+        let proposal = guessed("a.csv", text.as_bytes());
+        assert_eq!(
+            runs("a.csv", text.as_bytes(), &proposal.map),
+            "run,wheel,soil,slip,wheel_load_n,sled_speed_m_s,drawbar_pull_n,session,zero,operator\na,w,s,0.2,100,0.008,1.5,11-16-20,1,Ada\nb,w,s,0.3,100,0.008,1.7,11-17-20,,\n",
+            "{session}"
+        );
+    }
+    // A word of these inside a longer title names another thing.
+    let text =
+        "run;wheel;soil;slip [%];load [N];speed [mm/s];pull [N];time of day\na;w;s;20;100;8;1,5;noon\n";
+    let proposal = guessed("a.csv", text.as_bytes());
+    assert!(
+        proposal.map.ends_with("# Kept as notes: \"time of day\"\n"),
+        "{}",
+        proposal.map
+    );
 }
 
 #[test]

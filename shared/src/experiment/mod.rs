@@ -4,7 +4,8 @@
 //! - `settings`: the tables of `experiment.toml`; `wheel`: the tables of the wheels; `tread`: the arrangement of their
 //!   grousers; `scatter`: relative noise; `campaign`: the origin of the measurements.
 //! - `mesh`: a wheel given as a surface of triangles.
-//! - `runs`: the rows of `runs.csv`; `history`: the recorded time history of a run, and its averages.
+//! - `runs`: the rows of `runs.csv`; `rig_column`: the columns of ids of sessions, tarings and operators; `history`: the recorded
+//!   time history of a run, and its averages.
 //! - `more_runs`: an experiment with further runs. `fewer_runs`: with fitted runs held out.
 //! - `bevameter`: the rows of `plates.csv` and `shear.csv`.
 //! - `check`: checks of single numbers.
@@ -17,6 +18,7 @@ mod fewer_runs;
 mod history;
 mod mesh;
 mod more_runs;
+mod rig_column;
 mod runs;
 mod scatter;
 mod settings;
@@ -31,6 +33,7 @@ pub use bevameter::{PLATE_COLUMNS, PlateReading, SHEAR_COLUMNS, ShearReading};
 pub use campaign::Campaign;
 pub use history::{MeasuredHistory, Recorded};
 pub use mesh::{MAX_BYTES, MAX_TRIANGLES, MeshError, WheelMesh};
+pub use rig_column::RigColumn;
 pub use runs::{CONDITION_COLUMNS, RunUse, TestRun};
 pub use scatter::{Scatter, ScatterSd};
 pub use settings::{AveragingProtocol, ExperimentKeys, Noise, NoiseSd, ProtocolKind, Rig, SoilProperties};
@@ -279,6 +282,17 @@ mod tests {
             let wrong = read(&rows.replace(",5,", order)).unwrap_err();
             assert_eq!(wrong, format!("runs.csv line 4: {message}"));
         }
+    }
+
+    #[test]
+    fn sessions_tarings_and_operators_are_ids_of_runs() {
+        let header = HEADER.replace("use", "use,operator,zero,session");
+        let rows = "a,w,s,0.2,100,0.01,1,,fit,Ada,2,day 1\nb,w,s,0.3,100,0.01,1,,holdout,,3,\n";
+        let experiment = parse(TOML, &format!("{header}{rows}")).unwrap();
+        let ids = |run: &TestRun| RigColumn::ALL.map(|column| column.id(run).map(str::to_owned));
+        let stated = |ids: [&str; 3]| ids.map(|id| (!id.is_empty()).then(|| id.to_owned()));
+        assert_eq!(ids(&experiment.runs[0]), stated(["day 1", "2", "Ada"]));
+        assert_eq!(ids(&experiment.runs[1]), stated(["", "3", ""]));
     }
 
     #[test]

@@ -95,7 +95,7 @@ mod tests {
 
     const TOML: &str = "runs = \"runs.csv\"\n[wheel.a]\nradius_m = 0.1\nwidth_m = 0.05\n[soil.sand]\n[noise]\ndrawbar_pull_n = 1.0\ntorque_n_m = 0.1\n";
     const RUNS: &str = "# first day\nrun,wheel,soil,slip,wheel_load_n,sled_speed_m_s,drawbar_pull_n,use\n\"one, two\",a,sand,0.2,25,0.01,0.5,fit\n";
-    const MORE: &str = "# second day\nuse,run,wheel,soil,slip,wheel_load_n,sled_speed_m_s,torque_n_m\n# sunny\nholdout,three,a,sand,0.4,25,0.02,0.7\n";
+    const MORE: &str = "# second day\nuse,session,zero,operator,run,wheel,soil,slip,wheel_load_n,sled_speed_m_s,torque_n_m\n# sunny\nholdout,day 2,tare 3,Ada,three,a,sand,0.4,25,0.02,0.7\n";
 
     const PLATES: &str = "test,plate_radius_m,sinkage_m,pressure_pa\na,0.03,0.01,8000\n";
 
@@ -126,7 +126,7 @@ mod tests {
             ),
             ("0.4,25", "1.4,25", "line 4: slip 1.4 must be at most 1"),
             ("torque_n_m", "torque", "line 2: unknown column \"torque\""),
-            ("0.02,0.7", "0.02", "line 4: 7 fields where the header has 8"),
+            ("0.02,0.7", "0.02", "line 4: 10 fields where the header has 11"),
         ] {
             let new_rows = MORE.replace(old, new);
             let error = Experiment::with_runs("experiment.toml", &files(RUNS), &new_rows).unwrap_err();

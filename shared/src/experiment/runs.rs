@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::check::{ValueError, possible};
 use super::history::{MeasuredHistory, averaged};
+use super::rig_column::RigColumn;
 use super::settings::{AveragingProtocol, SoilProperties};
 use super::table::{self, Columns, Row};
 use super::wheel::WheelGeometry;
@@ -33,6 +34,12 @@ pub struct TestRun {
     pub order: Option<i32>,
     /// Id of the soil's preparation; runs of one preparation share its error.
     pub prepared: Option<String>,
+    /// Id of the session on the rig: a day, or a mounting of the wheel.
+    pub session: Option<String>,
+    /// Id of the taring of the sensors that the measurements rest on.
+    pub zero: Option<String>,
+    /// Id of the person who ran the rig.
+    pub operator: Option<String>,
     /// Measured value by channel [channel's unit], stated or averaged from the history; `None` = unmeasured.
     pub measured: [Option<f64>; 4],
     /// The recorded history from which some of the measured values are averaged.
@@ -85,7 +92,9 @@ fn columns<'a>(sd_columns: &'a [String; 4]) -> Columns<'a> {
     let mut allowed: Vec<&str> = CONDITION_COLUMNS.to_vec();
     allowed.extend(Channel::ALL.iter().map(|c| c.column()));
     allowed.extend(sd_columns.iter().map(String::as_str));
-    allowed.extend([ORDER, PREPARED, HISTORY, "use"]);
+    allowed.extend([ORDER, PREPARED]);
+    allowed.extend(RigColumn::ALL.map(RigColumn::name));
+    allowed.extend([HISTORY, "use"]);
     Columns {
         allowed,
         required: &CONDITION_COLUMNS[..REQUIRED],
@@ -215,6 +224,7 @@ impl Row<'_> {
         if let Some(z) = measured[Channel::Sinkage.index()] {
             wheels[&wheel].check_sinkage(z)?;
         }
+        let id = |column: &str| self.text(column).map(str::to_owned);
         Ok(TestRun {
             name: self.word("run")?.to_owned(),
             wheel,
@@ -225,7 +235,10 @@ impl Row<'_> {
             slip_angle_deg,
             pass,
             order,
-            prepared: self.text(PREPARED).map(str::to_owned),
+            prepared: id(PREPARED),
+            session: id(RigColumn::Session.name()),
+            zero: id(RigColumn::Zero.name()),
+            operator: id(RigColumn::Operator.name()),
             measured,
             history: None,
             sd,

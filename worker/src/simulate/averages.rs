@@ -1,7 +1,7 @@
 //! The table of simulated averages in the form of `runs.csv`: one row for each run.
 
 use shared::channel::Channel;
-use shared::experiment::{CONDITION_COLUMNS, Experiment, TestRun};
+use shared::experiment::{CONDITION_COLUMNS, Experiment, RigColumn, TestRun};
 use shared::outcome::Observables;
 
 /// Writes the averages of each run plus its `errors` in the order of the channels, in the form of the experiment's `runs.csv`.
@@ -29,11 +29,14 @@ pub(super) fn averages(
     }
     let has_order = runs.iter().any(|run| run.order.is_some());
     let has_prepared = runs.iter().any(|run| run.prepared.is_some());
+    let mut stated = RigColumn::ALL.to_vec();
+    stated.retain(|column| runs.iter().any(|run| column.id(run).is_some()));
     let mut header: Vec<String> = CONDITION_COLUMNS.map(str::to_owned).to_vec();
     header.extend(Channel::ALL.map(|c| c.column().to_owned()));
     header.extend(with_sd.iter().map(|c| format!("{}_sd", c.column())));
     header.extend(has_order.then(|| "order".to_owned()));
     header.extend(has_prepared.then(|| "prepared".to_owned()));
+    header.extend(stated.iter().map(|column| column.name().to_owned()));
     header.push("use".into());
     let mut writer = csv::Writer::from_writer(Vec::new());
     writer.write_record(&header)?;
@@ -57,6 +60,11 @@ pub(super) fn averages(
         );
         row.extend(has_order.then(|| blank_or(run.order.map(|order| order.to_string()))));
         row.extend(has_prepared.then(|| blank_or(run.prepared.clone())));
+        row.extend(
+            stated
+                .iter()
+                .map(|column| blank_or(column.id(run).map(str::to_owned))),
+        );
         row.push(run.usage.name().to_owned());
         writer.write_record(&row)?;
     }

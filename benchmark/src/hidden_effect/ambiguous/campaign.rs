@@ -101,6 +101,9 @@ impl Campaign {
             is_holdout: false,
             order: None,
             prepared: None,
+            session: None,
+            zero: None,
+            operator: None,
         };
         let made = run_truth(&case.truth_job, std::slice::from_ref(&row), &case.theta)?;
         let Some(&[noise_free]) = made.as_deref() else {

@@ -39,9 +39,12 @@ pub struct PlannedRun {
     pub sled_speed_m_s: f64,
     pub pass: u32,
     pub is_holdout: bool,
-    /// The place in time and the soil preparation, if the experiment states them.
+    /// The place in time, the soil preparation, and the session, taring and operator of the rig, if the experiment states them.
     pub order: Option<usize>,
     pub prepared: Option<usize>,
+    pub session: Option<usize>,
+    pub zero: Option<usize>,
+    pub operator: Option<usize>,
 }
 
 impl Plan {
@@ -92,6 +95,9 @@ impl Plan {
                         is_holdout,
                         order: None,
                         prepared: None,
+                        session: None,
+                        zero: None,
+                        operator: None,
                     });
                 }
             }
@@ -143,6 +149,9 @@ pub fn experiment(rows: &[PlannedRun], values: &[[f64; CHANNELS]], sds: [f64; CH
     let columns = [
         ("order", rows.iter().map(|row| row.order).collect::<Vec<_>>()),
         ("prepared", rows.iter().map(|row| row.prepared).collect()),
+        ("session", rows.iter().map(|row| row.session).collect()),
+        ("zero", rows.iter().map(|row| row.zero).collect()),
+        ("operator", rows.iter().map(|row| row.operator).collect()),
     ];
     let mut stated = columns.to_vec();
     stated.retain(|(_, values)| values.iter().any(Option::is_some));
