@@ -5,7 +5,7 @@
 //! `EFFECT.PARAMETER.WHEEL`, and is described in the effect's file ([`EffectSet`](crate::model::EffectSet)).
 
 use crate::channel::Channel;
-use crate::experiment::Scatter;
+use crate::experiment::{RigError, Scatter};
 
 /// The description of a base parameter of the wheel-soil models.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -158,6 +158,11 @@ pub fn noise_parameter(channel: Channel) -> String {
 /// Returns the parameter for a relative scatter: `noise.run_scatter`.
 pub fn scatter_parameter(scatter: Scatter) -> String {
     format!("{NOISE_PREFIX}{}", scatter.key())
+}
+
+/// Returns the parameter for the sd of an error of the rig: `noise.session_sinkage_m`.
+pub fn rig_parameter(error: RigError) -> String {
+    format!("{NOISE_PREFIX}{}", error.key())
 }
 
 /// Returns a unit after a number in a sentence: ` m`, or nothing for a dimensionless number.

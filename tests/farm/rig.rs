@@ -1,4 +1,4 @@
-//! Rigs with a drift or uneven preparations, where no effect is missing from the model.
+//! Rigs with a drift, uneven preparations or sessions that differ, where no effect is missing from the model.
 
 use farm_tests::job::Job;
 use farm_tests::json::{float, items, word};
@@ -93,4 +93,64 @@ fn preparations_that_differ_are_no_missing_effect() {
         "{parameters}"
     );
     assert!(flags(&summary, "chi2").is_empty(), "{:?}", summary["flags"]);
+}
+
+/// Offsets of the drawbar pull in four sessions [N]; its noise is 1.2 N.
+const OFFSETS_N: [f64; 4] = [3.0, -2.0, -3.0, 2.0];
+
+/// Returns a job whose runs were made in four sessions, each with conditions of all kinds, with an offset of the drawbar pull in each.
+fn of_sessions(job: Job) -> Job {
+    let mut rows = job.runs.lines().filter(|line| !line.starts_with('#'));
+    let header = rows.next().expect("a header");
+    let pull = header.split(',').position(|column| column == "drawbar_pull_n");
+    let pull = pull.expect("a column of the drawbar pull");
+    let row = |(i, line): (usize, &str)| {
+        let session = (i + i / 4) % OFFSETS_N.len();
+        let mut fields: Vec<String> = line.split(',').map(str::to_owned).collect();
+        let measured: f64 = fields[pull].parse().expect("a number");
+        fields[pull] = (measured + OFFSETS_N[session]).to_string();
+        format!("{},day {session}\n", fields.join(","))
+    };
+    let rows: String = rows.enumerate().map(row).collect();
+    Job {
+        runs: format!("{header},session\n{rows}"),
+        job: format!("{}\n[discovery]\napply = \"auto\"\n", job.job),
+        ..job
+    }
+}
+
+#[test]
+fn sessions_with_other_zeros_are_no_missing_effect() {
+    let job = of_sessions(Job::data("nothing-hidden"));
+    let unstated = summary(&without(job.clone(), &["session"]));
+    // Without the column the offsets pass for physics.
+    assert_ne!(word(&unstated["discovery"]["verdict"]), "nothing_detectable");
+    let stated = summary(&job);
+    assert_eq!(word(&stated["discovery"]["verdict"]), "nothing_detectable");
+    let errors: Vec<&Value> = items(&stated["discovery"]["rounds"][0]["rig"]).collect();
+    let (pull, others): (Vec<&Value>, Vec<&Value>) = errors
+        .into_iter()
+        .partition(|error| error["name"] == "session_drawbar_pull_n");
+    let [pull] = pull[..] else { panic!("{pull:?}") };
+    assert!(float(&pull["probability"]) > 0.99, "{pull}");
+    for offset in items(&pull["offsets"]) {
+        let session = word(&offset["id"]).trim_start_matches("day ");
+        let expected = OFFSETS_N[session.parse::<usize>().expect("a number")];
+        let [mean, sd] = ["mean", "sd"].map(|key| float(&offset[key]));
+        assert!((mean - expected).abs() < 2.5 * sd && sd < 1.0, "{offset}");
+    }
+    assert!(!others.is_empty());
+    for error in others {
+        assert!(float(&error["probability"]) < 0.8, "{error}");
+    }
+}
+
+#[test]
+fn an_effect_is_named_beside_sessions_with_other_zeros() {
+    let stated = summary(&of_sessions(Job::data("shear-mobilisation")));
+    assert_eq!(word(&stated["discovery"]["verdict"]), "named");
+    assert_eq!(
+        stated["discovery"]["chosen"],
+        serde_json::json!(["janosi_hanamoto"])
+    );
 }

@@ -3,6 +3,7 @@
 use crate::candidate::Candidate;
 use crate::laplace::coordinate::NormalFrame;
 use crate::settings::SearchSettings;
+use crate::stages::shared_errors::SuspectedError;
 use statistics::likelihood::Likelihood;
 use statistics::prior::Prior;
 
@@ -25,6 +26,8 @@ pub struct SearchTask {
     pub conditions: Vec<Vec<usize>>,
     /// Runs that the rig could make.
     pub proposed: ProposedRuns,
+    /// Errors that runs may share, beyond those of the likelihood: each is judged beside the best explanation.
+    pub suspected_errors: Vec<SuspectedError>,
     /// Maximum number of effects in a combination.
     pub max_effects: usize,
     /// Starts, seed and properties of the model.

@@ -9,3 +9,4 @@ mod pairs;
 mod rough_model;
 mod search;
 mod setup;
+mod shared_errors;

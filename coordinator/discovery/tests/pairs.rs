@@ -78,6 +78,7 @@ fn found_in(library: Vec<Candidate>, wave: f64, sd: f64, has_discrepancy: bool) 
         levels: Vec::new(),
         conditions: Vec::new(),
         proposed: ProposedRuns::default(),
+        suspected_errors: Vec::new(),
         max_effects: 2,
         settings: SearchSettings::default(),
     };

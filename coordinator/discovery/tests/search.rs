@@ -144,6 +144,7 @@ pub(crate) fn task(values: &[f64]) -> SearchTask {
             channels: vec![0],
             noise_sds: vec![SD],
         },
+        suspected_errors: Vec::new(),
         max_effects: 3,
         settings: SearchSettings::default(),
     }

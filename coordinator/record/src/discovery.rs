@@ -89,6 +89,10 @@ pub struct Discovery {
     pub curves: Option<EffectCurves>,
     /// Tests without a rolling wheel that would distinguish the explanations.
     pub other_tests: Vec<String>,
+    /// The errors that runs share, by falling probability, beside the best explanation; empty if no column of the runs states what they
+    /// share.
+    #[serde(default)]
+    pub rig: Vec<JudgedRigError>,
     /// Numerical noise sd of each channel by its column, in its unit, which counts as noise of the data; empty where it is negligible.
     #[serde(default)]
     pub numerical_noise: BTreeMap<String, f64>,
@@ -194,6 +198,47 @@ pub struct RemainingMisfit {
     pub along: Option<String>,
     /// Correlation with the condition.
     pub correlation: Option<f64>,
+}
+
+/// What the data say of an error that runs share.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct JudgedRigError {
+    /// Key of its sd under `[noise]`, as `session_sinkage_m`; or `wear_` with a column, or `guide_friction`.
+    pub name: String,
+    /// Unit of sd and offsets; 1 if they are relative.
+    pub unit: String,
+    /// Log evidence with the error over that without it.
+    pub log_bayes_factor: f64,
+    /// Probability that it acts; one half before the data.
+    pub probability: f64,
+    /// Posterior mean of its sd if it acts.
+    pub sd: f64,
+    /// The error of each group of runs.
+    pub offsets: Vec<RigOffset>,
+}
+
+/// The error that a group of runs shares.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct RigOffset {
+    /// Id of the session, taring, operator or preparation; the name of the run where it states none. For wear the session from which the
+    /// change counts.
+    pub id: String,
+    /// Posterior mean.
+    pub mean: f64,
+    /// Posterior sd.
+    pub sd: f64,
+}
+
+impl JudgedRigError {
+    /// `session_sinkage_m: sd 0.00041 m, P 0.998`.
+    #[must_use]
+    pub fn words(&self) -> String {
+        let unit = if self.unit == "1" { "" } else { &self.unit };
+        format!("{}: sd {} {unit}", self.name, shared::limit::number(self.sd))
+            .trim_end()
+            .to_owned()
+            + &format!(", P {:.3}", self.probability)
+    }
 }
 
 impl RemainingMisfit {

@@ -21,6 +21,7 @@ use super::law::file::free_name;
 use super::models::SearchModels;
 use super::narrative::{parameter_name, sentence};
 use super::remaining_misfit::remaining_misfit;
+use super::rig_errors::rig_errors;
 
 /// A law outside the library with more probability is in the credible set.
 const MIN_CREDIBLE: f64 = 0.05;
@@ -113,6 +114,7 @@ pub(super) fn discovery_record(models: &SearchModels, conclusion: &Conclusion) -
         information: information.collect(),
         curves: curves(models, conclusion),
         remaining: remaining_misfit(models, &conclusion.remaining),
+        rig: rig_errors(&models.base, &conclusion.shared_errors),
         numerical_noise: numerical_noise(&conclusion.numerical_noise_sds),
         chi2: chi_square(conclusion.chi_square, models),
         chi2_best: chi_square(conclusion.chi_square_best, models),

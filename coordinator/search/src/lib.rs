@@ -8,7 +8,7 @@
 //!   together. `design`: levels of the design, and runs that the rig could make.
 //! - `search`: a search in progress, as leases take it.
 //! - `discovery_record`: its result as it is stored. `curves`: the predictions of its explanations. `narrative`: its verdict in one
-//!   sentence. `remaining_misfit`: the misfit that remains.
+//!   sentence. `remaining_misfit`: the misfit that remains. `rig_errors`: errors that sessions and tarings share.
 //! - `bench_measurement`: measurements without a rolling wheel that distinguish explanations.
 
 mod bench_measurement;
@@ -24,6 +24,7 @@ mod law;
 mod models;
 mod narrative;
 mod remaining_misfit;
+mod rig_errors;
 mod search;
 pub mod untried;
 

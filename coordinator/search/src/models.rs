@@ -26,6 +26,7 @@ use super::entry::{CandidateEntry, LawEntry};
 use super::family::set_families;
 use super::law::dependence::{Dependence, dependences};
 use super::law::file::LawFiles;
+use super::rig_errors::suspects;
 use super::untried::{UntriedEffect, untried};
 use job::{
     EffectOnNodes, Job, MODEL_SWITCHES, NamedFile, NamedFiles, PLAIN_PARAMETERS, Spec, free_parameters,
@@ -160,6 +161,7 @@ impl SearchModels {
                 channels: self.channels.iter().map(|(channel, _)| channel.index()).collect(),
                 noise_sds: self.channels.iter().map(|(_, sd)| *sd).collect(),
             },
+            suspected_errors: suspects(base).into_iter().map(|suspect| suspect.error).collect(),
             max_effects: self.max_effects,
             settings: SearchSettings {
                 starts: Starts::Even(STARTS),

@@ -1,15 +1,16 @@
 //! The narrative of a search: its verdict in one sentence for a test engineer.
 
-use discovery::{Conclusion, DETECTED, SearchVerdict, WeighedSet};
+use discovery::{Conclusion, DETECTED, NAMED, SearchVerdict, WeighedSet};
 use formula::Hook;
 use job::{EffectOnNodes, ModelSwitch, PlainParameter};
-use record::{JudgedEffect, NONE, NOT_IN_LIBRARY, Outside};
+use record::{JudgedEffect, JudgedRigError, NONE, NOT_IN_LIBRARY, Outside};
 use shared::parameters::WHEEL_RADIUS;
 use statistics::ErrorSd;
 
 use super::candidate::candidate_of;
 use super::models::SearchModels;
 use super::remaining_misfit::remaining_misfit;
+use super::rig_errors::rig_errors;
 
 /// Members of a class with less probability are not listed.
 const MIN_LISTED: f64 = 0.005;
@@ -56,6 +57,7 @@ pub(super) fn sentence(
     if let Some(worst) = remaining.first() {
         text += &format!("; what remains is largest in {}", worst.words());
     }
+    text += &rig(models, conclusion);
     if let Some(k) = conclusion.agreed {
         text += &format!(
             "; the most probable set also predicts left-out levels best, and {} is its leading effect",
@@ -63,6 +65,23 @@ pub(super) fn sentence(
         );
     }
     text
+}
+
+/// Names the errors of the rig that act.
+fn rig(models: &SearchModels, conclusion: &Conclusion) -> String {
+    let errors = rig_errors(&models.base, &conclusion.shared_errors);
+    let acting: Vec<String> = errors
+        .iter()
+        .filter(|error| error.probability > NAMED)
+        .map(JudgedRigError::words)
+        .collect();
+    if acting.is_empty() {
+        return String::new();
+    }
+    format!(
+        "; runs share errors of the rig, which count as noise: {}",
+        acting.join("; ")
+    )
 }
 
 /// Names the parameter that contradicts its prior in the best explanation, with advice.

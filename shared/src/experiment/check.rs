@@ -26,6 +26,16 @@ pub(super) enum RawScatter {
     Word(String),
 }
 
+/// A standard deviation of errors that runs share: a number in its unit, or inferred.
+#[derive(Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub(super) enum RawSharedSd {
+    #[schemars(extend("minimum" = 0))]
+    Number(f64),
+    #[schemars(extend("enum" = ["unknown"]))]
+    Word(String),
+}
+
 /// An error of a key or a field.
 #[derive(Debug, thiserror::Error)]
 pub(super) enum ValueError {

@@ -4,7 +4,7 @@
 //! - `settings`: the tables of `experiment.toml`; `wheel`: the tables of the wheels; `tread`: the arrangement of their
 //!   grousers; `scatter`: relative noise; `campaign`: the origin of the measurements.
 //! - `mesh`: a wheel given as a surface of triangles.
-//! - `runs`: the rows of `runs.csv`; `rig_column`: the columns of ids of sessions, tarings and operators; `history`: the recorded
+//! - `runs`: the rows of `runs.csv`; `rig_column`: the columns of ids of sessions, tarings and operators; `rig_error`: the errors that their runs share; `history`: the recorded
 //!   time history of a run, and its averages.
 //! - `more_runs`: an experiment with further runs. `fewer_runs`: with fitted runs held out.
 //! - `bevameter`: the rows of `plates.csv` and `shear.csv`.
@@ -19,6 +19,7 @@ mod history;
 mod mesh;
 mod more_runs;
 mod rig_column;
+mod rig_error;
 mod runs;
 mod scatter;
 mod settings;
@@ -34,6 +35,7 @@ pub use campaign::Campaign;
 pub use history::{MeasuredHistory, Recorded};
 pub use mesh::{MAX_BYTES, MAX_TRIANGLES, MeshError, WheelMesh};
 pub use rig_column::RigColumn;
+pub use rig_error::{RigError, RigQuantity};
 pub use runs::{CONDITION_COLUMNS, RunUse, TestRun};
 pub use scatter::{Scatter, ScatterSd};
 pub use settings::{AveragingProtocol, ExperimentKeys, Noise, NoiseSd, ProtocolKind, Rig, SoilProperties};
@@ -141,6 +143,15 @@ impl Experiment {
                     "[noise] {} needs the column prepared in runs.csv: the preparation of each run",
                     scatter.key()
                 );
+                return Err(FileError::whole(name, message));
+            }
+        }
+        for error in RigError::ALL {
+            let states = matches!(file.noise.rig(error), ScatterSd::Known(sd) if sd > 0.0);
+            if states && runs.iter().all(|run| error.column.id(run).is_none()) {
+                let (key, column) = (error.key(), error.column.name());
+                let message =
+                    format!("[noise] {key} needs the column {column} in runs.csv: the {column} of each run");
                 return Err(FileError::whole(name, message));
             }
         }

@@ -6,7 +6,8 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::campaign::Campaign;
-use super::check::{RawScatter, RawSd, ValueError, not_negative, positive, require};
+use super::check::{RawScatter, RawSd, RawSharedSd, ValueError, not_negative, positive, require};
+use super::rig_error::RigError;
 use super::scatter::{Scatter, ScatterSd};
 use super::wheel::{RawWheel, WheelGeometry};
 use crate::channel::Channel;
@@ -63,6 +64,8 @@ pub struct Noise {
     pub sd: [Option<NoiseSd>; 4],
     /// Relative standard deviations, in the order of [`Scatter::ALL`].
     pub scatter: [ScatterSd; 7],
+    /// Standard deviations of the errors of sessions, tarings and operators, in the order of [`RigError::ALL`].
+    pub rig: [ScatterSd; 10],
 }
 
 impl Default for Noise {
@@ -70,6 +73,7 @@ impl Default for Noise {
         Noise {
             sd: [None; 4],
             scatter: Scatter::ALL.map(Scatter::usual),
+            rig: [ScatterSd::Unknown; 10],
         }
     }
 }
@@ -78,6 +82,12 @@ impl Noise {
     /// Returns a relative standard deviation.
     pub fn scatter(&self, scatter: Scatter) -> ScatterSd {
         self.scatter[scatter.index()]
+    }
+
+    /// Returns the standard deviation of an error of the rig, in its unit.
+    pub fn rig(&self, error: RigError) -> ScatterSd {
+        let place = RigError::ALL.iter().position(|known| *known == error);
+        self.rig[place.expect("every error is among all of them")]
     }
 }
 
@@ -185,6 +195,16 @@ struct RawNoise {
     plate_noise: Option<RawScatter>,
     ring_scatter: Option<RawScatter>,
     ring_noise: Option<RawScatter>,
+    session_drawbar_pull_n: Option<RawSharedSd>,
+    session_torque_n_m: Option<RawSharedSd>,
+    session_sinkage_m: Option<RawSharedSd>,
+    session_lateral_force_n: Option<RawSharedSd>,
+    session_stiffness: Option<RawSharedSd>,
+    zero_drawbar_pull_n: Option<RawSharedSd>,
+    zero_torque_n_m: Option<RawSharedSd>,
+    zero_lateral_force_n: Option<RawSharedSd>,
+    operator_sinkage_m: Option<RawSharedSd>,
+    operator_stiffness: Option<RawSharedSd>,
 }
 
 /// Parses and validates `experiment.toml` alone.
@@ -285,6 +305,22 @@ fn noise(raw: RawNoise) -> Result<Noise, ValueError> {
     for (kind, entry) in Scatter::ALL.into_iter().zip(relative) {
         scatter[kind.index()] = kind.read(entry)?;
     }
+    let shared = [
+        raw.session_drawbar_pull_n,
+        raw.session_torque_n_m,
+        raw.session_sinkage_m,
+        raw.session_lateral_force_n,
+        raw.session_stiffness,
+        raw.zero_drawbar_pull_n,
+        raw.zero_torque_n_m,
+        raw.zero_lateral_force_n,
+        raw.operator_sinkage_m,
+        raw.operator_stiffness,
+    ];
+    let mut rig = Noise::default().rig;
+    for ((error, entry), sd) in RigError::ALL.into_iter().zip(shared).zip(&mut rig) {
+        *sd = error.read(entry)?;
+    }
     let entries = [
         raw.drawbar_pull_n,
         raw.torque_n_m,
@@ -311,5 +347,5 @@ fn noise(raw: RawNoise) -> Result<Noise, ValueError> {
             },
         };
     }
-    Ok(Noise { sd, scatter })
+    Ok(Noise { sd, scatter, rig })
 }

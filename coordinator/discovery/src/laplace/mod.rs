@@ -6,9 +6,11 @@
 //! - `fit`: the posterior mode of one model; `correction`: its derivatives with a low-fidelity model. `batch`: several fits in
 //!   parallel.
 //! - `evidence`: the integral over a quadratic. `importance`: the same integral by importance sampling. `draws`: posterior draws.
+//! - `conditional`: the evidence of a fitted model under another error model.
 //! - `spread`: points one standard deviation from the mode. `reduced_discrepancy`: the likelihood of preliminary fits.
 
 pub(crate) mod batch;
+pub(crate) mod conditional;
 pub(crate) mod coordinate;
 pub(crate) mod correction;
 pub(crate) mod draws;

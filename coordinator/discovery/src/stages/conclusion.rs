@@ -9,6 +9,7 @@ use crate::stages::claimable_law::ClaimableLaw;
 use crate::stages::next_run::{InformativeRun, RunChoice};
 use crate::stages::noise_support::unsupported_noise;
 use crate::stages::prior_sensitivity::{AlternativePrior, alternative_priors};
+use crate::stages::shared_errors::{JudgedError, judged_errors};
 use crate::stages::state::SearchState;
 use crate::stages::verdict::SearchVerdict;
 use crate::stages::weighing::{WeighedSet, Weighing};
@@ -122,6 +123,8 @@ pub struct Conclusion {
     pub next_runs: Vec<InformativeRun>,
     /// Index of each proposed run with its information when made alone \[nats\]; empty where no explanations are compared.
     pub information: Vec<(usize, f64)>,
+    /// The errors that runs share, judged beside the best explanation.
+    pub shared_errors: Vec<JudgedError>,
     /// Numerical noise sd of each channel by its index, in its unit, which counts as noise of the data; empty where it is
     /// negligible.
     pub numerical_noise_sds: Vec<f64>,
@@ -251,6 +254,9 @@ impl Conclusion {
             best: PosteriorModel::new(task, effects, explanation.or(base), BEST_STREAM),
             next_runs: choice.runs,
             information: choice.alone,
+            shared_errors: explanation
+                .or(base)
+                .map_or(Vec::new(), |fit| judged_errors(task, fit)),
             numerical_noise_sds: state.numerical_noise_sds.clone(),
             evaluations: state.evaluations,
         }

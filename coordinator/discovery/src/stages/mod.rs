@@ -16,6 +16,7 @@
 //! | 11 | laws beyond the leading effects, effects beyond the best laws, and the cross-validation of the best such set | `laws`, `law_beside_effects` |
 //! | 12 | predictions of left-out levels by the leading sets | `last_stages`, `cross_validation` |
 //! | 13 | next runs: the runs that discriminate best between the explanations | `last_stages`, `next_run`, `run_information` |
+//! | 13 | errors that runs share, beside the best explanation | `shared_errors` |
 //! | 13 | probabilities, verdict and conclusion | `weighing`, `prior_sensitivity`, `noise_support`, `claimable_law`, `verdict`, `conclusion` |
 //!
 //! # Layout
@@ -42,6 +43,7 @@ mod noise_support;
 pub(crate) mod prior_sensitivity;
 pub(crate) mod query;
 mod run_information;
+pub(crate) mod shared_errors;
 mod stage;
 mod state;
 pub(crate) mod verdict;

@@ -5,8 +5,9 @@ use statistics::{CommonError, CommonErrorSize, Datum, Discrepancy, Likelihood};
 
 use super::bevameter_readings::BevameterReadings;
 use super::error::DataError;
-use super::noise::{self, scatter_sd};
-use super::soil_scatter::SoilScatter;
+use super::noise;
+use super::shared_error::SharedError;
+use super::shared_sd::scatter_sd;
 use crate::table::likelihood_settings::LikelihoodSettings;
 use crate::table::prior_entry::FreeParameter;
 
@@ -16,7 +17,7 @@ pub(crate) fn likelihood(
     fit_runs: &[usize],
     bevameter: &BevameterReadings,
     parameters: &[FreeParameter],
-    scatters: &[SoilScatter],
+    shared: &[SharedError],
     settings: LikelihoodSettings,
 ) -> Result<Likelihood, DataError> {
     let mut data = noise::data(experiment, fit_runs, parameters)?;
@@ -24,8 +25,8 @@ pub(crate) fn likelihood(
     let members = |data: &[Datum], is_one: &dyn Fn(&Datum) -> bool| -> Vec<usize> {
         (0..data.len()).filter(|&i| is_one(&data[i])).collect()
     };
-    for scatter in scatters {
-        let errors = scatter.errors(&data);
+    for shared in shared {
+        let errors = shared.errors(&data);
         common.extend(errors.into_iter().map(|error| (error.data, error.size)));
     }
     if settings.has_discrepancy() {

@@ -8,4 +8,6 @@ pub(crate) mod likelihood;
 pub(crate) mod noise;
 pub(crate) mod outside_model;
 pub(crate) mod predicted_values;
-pub(crate) mod soil_scatter;
+pub(crate) mod rig_groups;
+pub(crate) mod shared_error;
+pub(crate) mod shared_sd;

@@ -1,54 +1,47 @@
 //! The noise standard deviation of each measurement: stated, pooled from repeats, or inferred.
 
 use shared::channel::Channel;
-use shared::experiment::{Experiment, NoiseSd, RunUse, Scatter, ScatterSd, TestRun};
-use shared::parameters::{NOISE_PREFIX, noise_parameter, scatter_parameter};
+use shared::experiment::{Experiment, NoiseSd, RunUse, ScatterSd, TestRun};
+use shared::parameters::{NOISE_PREFIX, noise_parameter};
 use statistics::{Datum, Distribution, ErrorSd, Marginal};
 
-use super::bevameter_readings::BevameterReadings;
 use super::error::{DataError, MIN_FREEDOM};
+use super::shared_sd::SharedSd;
 use crate::table::prior_entry::FreeParameter;
 
 /// Default prior scale of an unknown noise sd: the typical run-to-run scatter of single-wheel rigs, 2 N, 0.2 N m, 1 mm, 2 N.
 const USUAL_SD: [f64; 4] = [2.0, 0.2, 0.001, 2.0];
 
-/// Adds a half-normal prior for every unknown noise sd and scatter that the job does not mention, and moves all noise
+/// Adds a half-normal prior for every unknown noise sd and sd of shared errors that the job does not mention, and moves all noise
 /// parameters behind the model's.
 pub(crate) fn add_unknown_sds(
     experiment: &Experiment,
-    bevameter: &BevameterReadings,
+    shared: &[SharedSd],
     parameters: &mut Vec<FreeParameter>,
 ) {
-    for scatter in Scatter::ALL {
-        let name = scatter_parameter(scatter);
-        let unknown = experiment.noise.scatter(scatter) == ScatterSd::Unknown;
-        if unknown
-            && needs_scatter(experiment, bevameter, scatter)
-            && !parameters.iter().any(|p| p.name == name)
-        {
-            let scale = scatter.prior_scale();
-            let marginal = Marginal::new(Distribution::HalfNormal { scale }, None)
-                .expect("the usual scales are positive and finite");
-            parameters.push(FreeParameter {
-                name,
-                unit: "1".to_owned(),
-                marginal,
-            });
+    let mut add = |name: String, unit: &str, scale: f64| {
+        if parameters.iter().any(|p| p.name == name) {
+            return;
         }
+        let marginal = Marginal::new(Distribution::HalfNormal { scale }, None)
+            .expect("the usual scales are positive and finite");
+        parameters.push(FreeParameter {
+            name,
+            unit: unit.to_owned(),
+            marginal,
+        });
+    };
+    for sd in shared.iter().filter(|sd| sd.is_inferred()) {
+        add(sd.name.clone(), sd.unit, sd.prior_scale);
     }
     for channel in Channel::ALL {
         let unknown = experiment.noise.sd[channel.index()] == Some(NoiseSd::Unknown);
-        let name = noise_parameter(channel);
-        let stated = parameters.iter().any(|p| p.name == name);
-        if unknown && !stated && needs_experiment_sd(experiment, channel) {
-            let scale = USUAL_SD[channel.index()];
-            let marginal = Marginal::new(Distribution::HalfNormal { scale }, None)
-                .expect("the usual scales are positive and finite");
-            parameters.push(FreeParameter {
-                name,
-                unit: channel.unit().to_owned(),
-                marginal,
-            });
+        if unknown && needs_experiment_sd(experiment, channel) {
+            add(
+                noise_parameter(channel),
+                channel.unit(),
+                USUAL_SD[channel.index()],
+            );
         }
     }
     // A stable sort keeps the order of the file within each part.
@@ -58,73 +51,36 @@ pub(crate) fn add_unknown_sds(
 /// Refuses a prior for a noise sd that is not inferred.
 pub(crate) fn check_names(
     experiment: &Experiment,
-    bevameter: &BevameterReadings,
+    shared: &[SharedSd],
     parameters: &[FreeParameter],
 ) -> Result<(), DataError> {
-    for scatter in Scatter::ALL {
-        let (name, key) = (scatter_parameter(scatter), scatter.key());
-        if !parameters.iter().any(|p| p.name == name) {
-            continue;
-        }
-        if experiment.noise.scatter(scatter) != ScatterSd::Unknown {
-            let key = key.to_owned();
+    let is_stated = |name: &str| parameters.iter().any(|p| p.name == name);
+    for sd in shared.iter().filter(|sd| is_stated(&sd.name)) {
+        let name = sd.name.clone();
+        if sd.stated != ScatterSd::Unknown {
+            let key = sd.key().to_owned();
             return Err(DataError::NotUnknown { name, key });
         }
-        if !needs_scatter(experiment, bevameter, scatter) {
+        if !sd.is_needed {
             let nothing = "nothing that is fitted";
             return Err(DataError::NotNeeded { name, nothing });
         }
     }
     for channel in Channel::ALL {
         let name = noise_parameter(channel);
-        let stated = parameters.iter().any(|p| p.name == name);
-        if stated && experiment.noise.sd[channel.index()] != Some(NoiseSd::Unknown) {
+        if !is_stated(&name) {
+            continue;
+        }
+        if experiment.noise.sd[channel.index()] != Some(NoiseSd::Unknown) {
             let key = channel.column().to_owned();
             return Err(DataError::NotUnknown { name, key });
         }
-        if stated && !needs_experiment_sd(experiment, channel) {
+        if !needs_experiment_sd(experiment, channel) {
             let nothing = "no fit run";
             return Err(DataError::NotNeeded { name, nothing });
         }
     }
     Ok(())
-}
-
-/// Returns whether any fitted measurement has this scatter.
-fn needs_scatter(experiment: &Experiment, bevameter: &BevameterReadings, scatter: Scatter) -> bool {
-    let fitted = || Channel::ALL.iter().any(|&c| experiment.measures(c, RunUse::Fit));
-    match scatter {
-        Scatter::Run => fitted(),
-        Scatter::Preparation | Scatter::PreparationStrength => {
-            let fit_runs: Vec<usize> = (0..experiment.runs.len())
-                .filter(|&i| experiment.runs[i].usage == RunUse::Fit)
-                .collect();
-            fitted() && preparations(experiment, &fit_runs).len() > 1
-        }
-        Scatter::PlateTest | Scatter::PlateReading | Scatter::RingTest | Scatter::RingReading => {
-            bevameter.scatters(scatter)
-        }
-    }
-}
-
-/// Returns the fitted runs by preparation, as positions among them; none if no run names one. A run without an id is a
-/// preparation with one run.
-pub(crate) fn preparations(experiment: &Experiment, fit_runs: &[usize]) -> Vec<Vec<usize>> {
-    let mut preparations: Vec<(Option<&str>, Vec<usize>)> = Vec::new();
-    for (position, &i) in fit_runs.iter().enumerate() {
-        let id = experiment.runs[i].prepared.as_deref();
-        match preparations
-            .iter_mut()
-            .find(|(known, _)| known.is_some() && *known == id)
-        {
-            Some((_, positions)) => positions.push(position),
-            None => preparations.push((id, vec![position])),
-        }
-    }
-    match preparations.iter().any(|(id, _)| id.is_some()) {
-        true => preparations.into_iter().map(|(_, positions)| positions).collect(),
-        false => Vec::new(),
-    }
 }
 
 /// Returns whether any fitted measurement of the channel has no stated standard deviation.
@@ -134,23 +90,6 @@ fn needs_experiment_sd(experiment: &Experiment, channel: Channel) -> bool {
         .runs
         .iter()
         .any(|r| r.usage == RunUse::Fit && r.measured[c].is_some() && r.sd[c].is_none())
-}
-
-/// Returns the relative sd of a scatter; `None` if it is 0.
-pub(crate) fn scatter_sd(
-    experiment: &Experiment,
-    parameters: &[FreeParameter],
-    scatter: Scatter,
-) -> Result<Option<ErrorSd>, DataError> {
-    match experiment.noise.scatter(scatter) {
-        ScatterSd::Known(sd) => Ok((sd > 0.0).then_some(ErrorSd::Known(sd))),
-        ScatterSd::Unknown => {
-            let name = scatter_parameter(scatter);
-            let parameter = parameters.iter().position(|p| p.name == name);
-            let parameter = parameter.ok_or(DataError::NoPrior(name))?;
-            Ok(Some(ErrorSd::Inferred { parameter }))
-        }
-    }
 }
 
 /// Returns the fitted measurements with their standard deviations.

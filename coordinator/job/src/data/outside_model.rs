@@ -5,7 +5,7 @@ use shared::experiment::Experiment;
 use shared::model::{ExternalModel, RunInput};
 use statistics::Likelihood;
 
-use super::soil_scatter::BY_STIFFNESS;
+use super::shared_error::BY_STIFFNESS;
 
 /// Checks that the model predicts the measured channels, and that nothing needs a property that only built-in models have.
 ///

@@ -5,7 +5,7 @@ use shared::predicted::PredictedValue;
 use statistics::{Datum, Likelihood};
 
 use super::bevameter_readings::{PLATE, RING};
-use super::soil_scatter::BY_STRENGTH;
+use super::shared_error::BY_STRENGTH;
 
 /// Returns the predicted values of a likelihood: one for each datum, then the derivatives.
 ///

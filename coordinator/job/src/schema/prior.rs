@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use formula::catalogue::catalogue;
 use serde_json::{Map, Value, json};
 use shared::channel::Channel;
-use shared::experiment::Scatter;
+use shared::experiment::{RigError, Scatter};
 use shared::model::effects::parameter_name;
 use shared::parameters::{self, BaseParameter, RING_TRANSFER};
 
@@ -127,12 +127,17 @@ impl JobParameter {
     pub(super) fn all() -> impl Iterator<Item = Self> {
         let noise = Channel::ALL.map(|channel| (parameters::noise_parameter(channel), channel.unit()));
         let scatter = Scatter::ALL.map(|scatter| (parameters::scatter_parameter(scatter), "1"));
-        let noise = noise.into_iter().chain(scatter).map(|(name, unit)| JobParameter {
-            name,
-            words: format!("standard deviation [{unit}]; only if [noise] says \"unknown\""),
-            lower: 0.0,
-            upper: f64::INFINITY,
-        });
+        let rig = RigError::ALL.map(|error| (parameters::rig_parameter(error), error.unit()));
+        let noise = noise
+            .into_iter()
+            .chain(scatter)
+            .chain(rig)
+            .map(|(name, unit)| JobParameter {
+                name,
+                words: format!("standard deviation [{unit}]; only if [noise] says \"unknown\""),
+                lower: 0.0,
+                upper: f64::INFINITY,
+            });
         let ring = JobParameter {
             name: RING_TRANSFER.to_owned(),
             words: "logarithm of the ratio of tan phi under the ring to tan phi under the wheel".to_owned(),

@@ -19,12 +19,13 @@ use shared::file::{FileError, FileSet};
 use shared::model::{ModelSettings, ModelVariant, equations_of};
 use shared::outcome::Observables;
 use shared::predicted::PredictedValue;
-use statistics::{Likelihood, Prior};
+use statistics::{Discrepancy, Likelihood, Prior};
 
 use crate::data::bevameter_readings::{BevameterReadings, PLATE};
 use crate::data::error::DataError;
-use crate::data::noise;
-use crate::data::soil_scatter::SoilScatter;
+use crate::data::rig_groups::preparations;
+use crate::data::shared_error::SharedError;
+use crate::data::shared_sd::StiffnessErrors;
 use crate::job::{Job, JobModels};
 use crate::named_files::NamedFiles;
 use crate::table::algorithm_settings::AlgorithmSettings;
@@ -61,8 +62,8 @@ pub struct Spec {
     pub holdout_variant: Option<ModelVariant>,
     /// The likelihood of the measurements that are fitted; runs count within [`Spec::fit_runs`].
     pub likelihood: Likelihood,
-    /// The scatter of the soil from run to run and from preparation to preparation.
-    pub scatters: Vec<SoilScatter>,
+    /// The errors that fitted runs share: scatter of the soil, offsets of sessions, tarings and operators.
+    pub shared_errors: Vec<SharedError>,
     /// The observables that the likelihood takes.
     predicted: Vec<PredictedValue>,
     /// Values of parameters by independent tests. The figures alone show them.
@@ -126,8 +127,18 @@ impl Spec {
         let in_job = |message: String| FileError::whole(job_name, message);
         let in_data = |error: DataError| FileError::whole(experiment_name, error.to_string());
         let bevameter = BevameterReadings::new(&experiment).map_err(in_data)?;
-        let parameters = Parameters::new(job_name, &job, &experiment, &bevameter)?;
-        let fitted = Fitted::new(&experiment, &bevameter, &parameters.free, job.likelihood);
+        let stiffness = StiffnessErrors {
+            has_derivatives: job.model.external.is_none(),
+            has_unknown_discrepancy: job.likelihood.discrepancies.contains(&Discrepancy::Unknown),
+        };
+        let parameters = Parameters::new(job_name, &job, &experiment, &bevameter, stiffness)?;
+        let fitted = Fitted::new(
+            &experiment,
+            &bevameter,
+            &parameters.free,
+            job.likelihood,
+            stiffness,
+        );
         let fitted = fitted.map_err(in_data)?;
         check_algorithms(&job, parameters.free.len(), fitted.predicted.len()).map_err(in_job)?;
         let variants = Variants::new(&job, &experiment, &bevameter, &parameters, &fitted).map_err(in_job)?;
@@ -143,7 +154,7 @@ impl Spec {
             fit_variant: variants.fit,
             holdout_variant: variants.holdout,
             likelihood: fitted.likelihood,
-            scatters: fitted.scatters,
+            shared_errors: fitted.shared_errors,
             predicted: fitted.predicted,
             reference: job.reference,
             likelihood_settings: job.likelihood,
@@ -209,7 +220,7 @@ impl Spec {
 
     /// Returns the number of preparations of the soil of the fitted runs; each run without an id counts as one.
     pub fn preparations(&self) -> usize {
-        noise::preparations(&self.experiment, &self.fit_runs).len()
+        preparations(&self.experiment, &self.fit_runs).len()
     }
 
     /// Returns the fitted measurements of wheels.

@@ -10,6 +10,7 @@ use statistics::{Prior, PriorError};
 
 use crate::data::bevameter_readings::BevameterReadings;
 use crate::data::noise;
+use crate::data::shared_sd::{SharedSd, StiffnessErrors};
 use crate::job::Job;
 use crate::table::posterior_prior::JointPrior;
 use crate::table::prior_entry::{FreeParameter, ParsedPrior};
@@ -32,6 +33,7 @@ impl Parameters {
         job: &Job,
         experiment: &Experiment,
         bevameter: &BevameterReadings,
+        stiffness: StiffnessErrors,
     ) -> Result<Parameters, FileError> {
         let in_job = |message: String| FileError::whole(name, message);
         let wheels = experiment.wheel_names();
@@ -56,8 +58,9 @@ impl Parameters {
         bevameter
             .add_transfer(&model.fixed, &mut free)
             .map_err(|e| in_job(e.to_string()))?;
-        noise::add_unknown_sds(experiment, bevameter, &mut free);
-        noise::check_names(experiment, bevameter, &free).map_err(|e| in_job(e.to_string()))?;
+        let shared = SharedSd::all(experiment, bevameter, stiffness);
+        noise::add_unknown_sds(experiment, &shared, &mut free);
+        noise::check_names(experiment, &shared, &free).map_err(|e| in_job(e.to_string()))?;
         if joint_prior.is_some() {
             joint(&joint_prior, &free).map_err(|e| in_job(format!("[priors] posterior: {e}")))?;
         }

@@ -8,7 +8,7 @@ use super::fitted::Fitted;
 use super::parameters::Parameters;
 use crate::data::bevameter_readings::BevameterReadings;
 use crate::data::outside_model;
-use crate::data::soil_scatter::BY_STIFFNESS;
+use crate::data::shared_error::BY_STIFFNESS;
 use crate::job::Job;
 
 /// The variants of a calibration.

@@ -2,8 +2,10 @@
 
 use std::collections::BTreeSet;
 
-use shared::experiment::{Scatter, ScatterSd};
+use shared::experiment::{RigQuantity, Scatter, ScatterSd};
+use shared::parameters::behind;
 
+use crate::data::shared_error::SharedError;
 use crate::spec::Spec;
 
 impl Spec {
@@ -68,6 +70,11 @@ impl Spec {
                 sd(Scatter::PreparationStrength)
             ));
         }
+        words.extend(
+            self.shared_errors
+                .iter()
+                .filter_map(|error| self.rig_words(error)),
+        );
         for (what, readings, tests) in [
             (
                 "pressures under plates",
@@ -89,5 +96,23 @@ impl Spec {
             }
         }
         words
+    }
+
+    /// Returns a sentence for an error of the rig; `None` for the scatter of the soil.
+    fn rig_words(&self, error: &SharedError) -> Option<String> {
+        let rig = error.rig?;
+        let what = match rig.quantity {
+            RigQuantity::Offset(channel) => format!("an offset of {}", channel.column()),
+            RigQuantity::Stiffness => "an error of the soil's stiffness".to_owned(),
+        };
+        let sd = match self.experiment.noise.rig(rig) {
+            ScatterSd::Known(sd) => format!("{sd}{}", behind(rig.unit())),
+            ScatterSd::Unknown => "unknown".to_owned(),
+        };
+        Some(format!(
+            "the runs of each of {} ids in the column {} share {what}, sd {sd}",
+            error.groups.len(),
+            rig.column.name()
+        ))
     }
 }

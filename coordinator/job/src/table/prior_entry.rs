@@ -5,7 +5,7 @@ use std::sync::LazyLock;
 
 use formula::{Effect, Parameter};
 use shared::channel::Channel;
-use shared::experiment::Scatter;
+use shared::experiment::{RigError, Scatter};
 use shared::file::{FileError, number, unknown_word};
 use shared::model::effects::parameter_name;
 use shared::model::{EffectSet, ParameterScope};
@@ -95,7 +95,8 @@ impl PriorEntry {
         };
         let dotted = |key: &&String| {
             let is_noise = Channel::ALL.iter().any(|c| c.column() == *key)
-                || Scatter::ALL.iter().any(|s| s.key() == *key);
+                || Scatter::ALL.iter().any(|s| s.key() == *key)
+                || RigError::find(key).is_some();
             let is_ring = parameters::RING_TRANSFER == format!("{}.{key}", self.name);
             wheels.contains(key.as_str()) || is_noise || is_ring || is_effect(key)
         };
@@ -216,11 +217,16 @@ fn quantity(name: &str, scope: &ParameterScope) -> Result<ParameterBounds, Prior
     let unit = match Channel::ALL.into_iter().find(|c| c.column() == column) {
         Some(channel) => channel.unit(),
         None if Scatter::ALL.iter().any(|s| s.key() == column) => "1",
-        None => {
-            let known = Channel::ALL.map(Channel::column).into_iter();
-            let known = known.chain(Scatter::ALL.map(Scatter::key));
-            return Err(PriorEntryError::Unknown(unknown_word("noise", column, known)));
-        }
+        None => match RigError::find(column) {
+            Some(error) => error.unit(),
+            None => {
+                let rig = RigError::ALL.map(RigError::key);
+                let known = Channel::ALL.map(Channel::column).into_iter();
+                let known = known.chain(Scatter::ALL.map(Scatter::key));
+                let known = known.chain(rig.iter().map(String::as_str));
+                return Err(PriorEntryError::Unknown(unknown_word("noise", column, known)));
+            }
+        },
     };
     Ok(ParameterBounds {
         unit: unit.to_owned(),

@@ -12,7 +12,7 @@ use super::conditions::{Conditions, repeated};
 use super::corrected::Corrected;
 use super::fixed_sigma::FixedSigmas;
 use super::mixture::{Component, quantile};
-use super::predictive::{Predictive, RunPosition, accepted, soil_scatter};
+use super::predictive::{Predictive, RunPosition, accepted, shared_error};
 use crate::finished_calibration::FinishedCalibration;
 use crate::words::number;
 
@@ -230,14 +230,14 @@ fn values(calibration: &FinishedCalibration, run: usize, channel: Channel) -> BT
     accepted(calibration, place).filter_map(of_draw).collect()
 }
 
-/// Returns the variance of one measurement of a run: noise plus the scatter of the soil.
+/// Returns the variance of one measurement of a run: noise plus the errors that runs share.
 fn noise_variance(calibration: &FinishedCalibration, run: usize, channel: Channel, noise_sd: f64) -> f64 {
     let sd = calibration.spec.experiment.runs[run].sd[channel.index()].unwrap_or(noise_sd);
     let place = RunPosition::find(&calibration.spec, run);
     let draws = place.into_iter().flat_map(|place| accepted(calibration, place));
     let squares: Vec<f64> = draws
         .map(|(_, theta, observables, position)| {
-            let soil = soil_scatter(calibration, run, channel, (theta, observables, position));
+            let soil = shared_error(calibration, run, channel, (theta, observables, position));
             soil * soil
         })
         .collect();

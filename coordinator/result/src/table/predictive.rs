@@ -142,7 +142,7 @@ fn new_measurements(
         });
         // An external model may not predict the channel.
         let mean = *observables.channel(channel).get(position)?;
-        let soil = soil_scatter(calibration, run, channel, (theta, observables, position));
+        let soil = shared_error(calibration, run, channel, (theta, observables, position));
         let component = |&(m, weight): &(f64, f64)| {
             let scale = noise_sd.map(|sd| widened(sd, [m * sd, soil]));
             Component { mean, scale, weight }
@@ -156,11 +156,11 @@ fn new_measurements(
     Some(accepted(calibration, place).filter_map(of_draw).collect())
 }
 
-/// Returns the standard deviation of a channel of a run that the scatter of the soil causes [channel's unit].
+/// Returns the standard deviation of a channel of a run that the errors cause that runs share [channel's unit].
 ///
 /// # Arguments
 /// - `draw`: parameters, observables, position of the run in them.
-pub(super) fn soil_scatter(
+pub(super) fn shared_error(
     calibration: &FinishedCalibration,
     run: usize,
     channel: Channel,
@@ -169,9 +169,9 @@ pub(super) fn soil_scatter(
     let spec = &calibration.spec;
     let radius_m = spec.experiment.wheels[&spec.experiment.runs[run].wheel].radius_m;
     let shifts = spec
-        .scatters
+        .shared_errors
         .iter()
-        .map(|scatter| scatter.shift(theta, observables, (channel, position), radius_m));
+        .map(|error| error.shift(theta, observables, (channel, position), radius_m));
     shifts.map(|shift| shift * shift).sum::<f64>().sqrt()
 }
 

@@ -121,11 +121,12 @@ fn factored(mut rows: Vec<ProfileRow>) -> Option<Vec<ProfileRow>> {
     for i in 0..rows.len() {
         let (done, rest) = rows.split_at_mut(i);
         let row = &mut rest[0];
-        for j in row.first..i {
-            let from = row.first.max(done[j].first);
-            let products = (from..j).map(|k| row.element(k) * done[j].element(k));
+        let first = row.first;
+        for (j, earlier) in done.iter().enumerate().skip(first) {
+            let from = first.max(earlier.first);
+            let products = (from..j).map(|k| row.element(k) * earlier.element(k));
             let sum = row.element(j) - products.sum::<f64>();
-            row.elements[j - row.first] = sum / done[j].diagonal();
+            row.elements[j - first] = sum / earlier.diagonal();
         }
         let squares: f64 = row.before().map(|(_, l)| l * l).sum();
         let square = row.diagonal() - squares;

@@ -1,0 +1,269 @@
+//! The probability of each error that runs share: an offset of sessions, a taring, wear, a load that the guide carries (step 13).
+//!
+//! Errors of sessions and tarings are part of the likelihood of every model, with inferred sds, so that no effect is credited with what
+//! they explain. Here it is asked, beside the best explanation, whether each sd differs from 0. Errors that are not part of the
+//! likelihood are added to it for the question. Nothing is simulated: predictions are linear in the parameters about the fit.
+
+use crate::laplace::conditional::LinearisedModel;
+use crate::laplace::evidence::log_sum_exp;
+use crate::laplace::fit::LaplaceFit;
+use crate::laplace::point::FitPoint;
+use crate::task::SearchTask;
+use statistics::likelihood::{CommonError, CommonErrorSize, ErrorSd, Likelihood, Sensitive};
+use statistics::prior::{Distribution, Marginal};
+
+/// Normal scores, in the prior of an sd, of the values that are compared: from a tenth of its scale to five scales.
+const SCORES: [f64; 14] = [
+    -1.5, -1.0, -0.5, 0.0, 0.5, 1.0, 1.5, 2.0, 2.5, 3.0, 3.5, 4.0, 4.5, 5.0,
+];
+/// Index of the derivative by a factor on a datum. The job numbers those of the soil, 0 and 1.
+const BY_FACTOR: usize = 2;
+
+/// An error that runs may share, which is not part of the likelihood.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SuspectedError {
+    /// The data of each group that shares an error, ascending.
+    pub groups: Vec<Vec<usize>>,
+    /// What the error does to its data.
+    pub shift: SuspectedShift,
+    /// Scale of the half-normal prior of its sd: relative, or in the unit of the data.
+    pub prior_scale: f64,
+}
+
+/// What a suspected error does to its data.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SuspectedShift {
+    /// It shifts them by an offset.
+    Offset,
+    /// It multiplies them.
+    Factor,
+}
+
+/// An error that runs share.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SharedErrorSource {
+    /// The error whose sd is this parameter of the base.
+    Parameter(usize),
+    /// The error of this index among [`SearchTask::suspected_errors`].
+    Suspected(usize),
+}
+
+/// What the data say of an error that runs share.
+#[derive(Debug, Clone, PartialEq)]
+pub struct JudgedError {
+    /// The error.
+    pub source: SharedErrorSource,
+    /// Log evidence with the error over that without it.
+    pub log_bayes_factor: f64,
+    /// Probability that it acts; one half before the data.
+    pub probability: f64,
+    /// Posterior mean of its sd if it acts: in the unit of the data, or relative.
+    pub sd: f64,
+    /// The error of each group.
+    pub groups: Vec<GroupError>,
+}
+
+/// The error of one group of data.
+#[derive(Debug, Clone, PartialEq)]
+pub struct GroupError {
+    /// The data that share it.
+    pub data: Vec<usize>,
+    /// Posterior mean: in the unit of the data, or relative.
+    pub mean: f64,
+    /// Posterior sd, in the unit of the mean.
+    pub sd: f64,
+}
+
+/// The question whether one error acts, about one fit.
+struct SharedErrorQuestion<'a> {
+    task: &'a SearchTask,
+    fit: &'a LaplaceFit,
+    source: SharedErrorSource,
+    /// Prior of the sd.
+    prior: Marginal,
+    /// Derivatives that the likelihood takes beyond those of the fit.
+    further_values: Vec<f64>,
+}
+
+/// Judges every inferred and suspected error beside the best explanation. Checked by
+/// `shared_errors::an_offset_of_sessions_is_found_and_where_none_acts_none_is`.
+pub(super) fn judged_errors(task: &SearchTask, fit: &LaplaceFit) -> Vec<JudgedError> {
+    let mut parameters: Vec<usize> = task.likelihood.common().iter().filter_map(inferred_sd).collect();
+    parameters.sort_unstable();
+    parameters.dedup();
+    let parameters = parameters.into_iter().map(SharedErrorSource::Parameter);
+    let suspected = (0..task.suspected_errors.len()).map(SharedErrorSource::Suspected);
+    let sources = parameters.chain(suspected);
+    sources
+        .filter_map(|source| SharedErrorQuestion::new(task, fit, source)?.judged())
+        .collect()
+}
+
+/// Returns the parameter that is the sd of a common error.
+fn inferred_sd(error: &CommonError) -> Option<usize> {
+    match error.size {
+        CommonErrorSize::Shift(ErrorSd::Inferred { parameter })
+        | CommonErrorSize::Sensitivity {
+            sd: ErrorSd::Inferred { parameter },
+            ..
+        } => Some(parameter),
+        _ => None,
+    }
+}
+
+impl<'a> SharedErrorQuestion<'a> {
+    fn new(task: &'a SearchTask, fit: &'a LaplaceFit, source: SharedErrorSource) -> Option<Self> {
+        let (prior, further_values) = match source {
+            SharedErrorSource::Parameter(k) => (task.prior.marginals().get(k)?.clone(), Vec::new()),
+            SharedErrorSource::Suspected(k) => {
+                let error = task.suspected_errors.get(k)?;
+                let scale = error.prior_scale;
+                let prior = Marginal::new(Distribution::HalfNormal { scale }, None).ok()?;
+                (prior, factor_derivatives(error, &fit.point.values))
+            }
+        };
+        Some(Self {
+            task,
+            fit,
+            source,
+            prior,
+            further_values,
+        })
+    }
+
+    /// Returns the likelihood with a given sd of the error.
+    fn likelihood(&self, sd: f64) -> Option<Likelihood> {
+        let whole = &self.task.likelihood;
+        let sd = ErrorSd::Known(sd);
+        let mut common = whole.common().to_vec();
+        match self.source {
+            SharedErrorSource::Parameter(k) => {
+                for error in common.iter_mut().filter(|error| inferred_sd(error) == Some(k)) {
+                    error.size = with_sd(error.size, sd);
+                }
+            }
+            SharedErrorSource::Suspected(k) => {
+                let suspected = &self.task.suspected_errors[k];
+                let size = match suspected.shift {
+                    SuspectedShift::Offset => CommonErrorSize::Shift(sd),
+                    SuspectedShift::Factor => CommonErrorSize::Sensitivity {
+                        sd,
+                        derivative: BY_FACTOR,
+                    },
+                };
+                let groups = suspected.groups.iter().cloned();
+                common.extend(groups.map(|data| CommonError { data, size }));
+            }
+        }
+        let discrepancies = whole.discrepancies().to_vec();
+        Likelihood::with_common(whole.data().to_vec(), whole.law(), common, discrepancies).ok()
+    }
+
+    /// Returns the errors in question among those of a likelihood.
+    fn errors<'b>(&self, likelihood: &'b Likelihood) -> impl Iterator<Item = &'b CommonError> {
+        let whole = self.task.likelihood.common();
+        let source = self.source;
+        let errors = likelihood.common().iter().enumerate();
+        errors.filter_map(move |(place, error)| {
+            let is_asked = match source {
+                SharedErrorSource::Parameter(k) => inferred_sd(&whole[place]) == Some(k),
+                SharedErrorSource::Suspected(_) => place >= whole.len(),
+            };
+            is_asked.then_some(error)
+        })
+    }
+
+    /// Returns the mode and its log evidence for an sd.
+    fn at(&self, sd: f64, start: Vec<f64>) -> Option<(FitPoint, f64)> {
+        let likelihood = self.likelihood(sd)?;
+        let model = self.model(&likelihood);
+        let mode = model.mode(start)?;
+        let evidence = model.log_evidence(&mode)?;
+        Some((mode, evidence))
+    }
+
+    fn model<'b>(&'b self, likelihood: &'b Likelihood) -> LinearisedModel<'b> {
+        LinearisedModel {
+            fit: self.fit,
+            likelihood,
+            further_values: &self.further_values,
+        }
+    }
+
+    fn judged(&self) -> Option<JudgedError> {
+        let (absent, without) = self.at(0.0, self.fit.point.position.clone())?;
+        let mut start = absent.position;
+        let mut weighed = Vec::new();
+        for t in SCORES {
+            let sd = self.prior.from_normal_score(t);
+            let (mode, evidence) = self.at(sd, start)?;
+            start = mode.position;
+            weighed.push((sd, evidence - without - 0.5 * t * t));
+        }
+        let prior = log_sum_exp(SCORES.into_iter().map(|t| -0.5 * t * t));
+        let posterior = log_sum_exp(weighed.iter().map(|(_, weight)| *weight));
+        let shares = weighed
+            .iter()
+            .map(|(sd, weight)| sd * libm::exp(weight - posterior));
+        let (log_bayes_factor, sd) = (posterior - prior, shares.sum());
+        Some(JudgedError {
+            source: self.source,
+            log_bayes_factor,
+            probability: 1.0 / (1.0 + libm::exp(-log_bayes_factor)),
+            sd,
+            groups: self.groups(sd)?,
+        })
+    }
+
+    /// Returns the error of each group for an sd.
+    fn groups(&self, sd: f64) -> Option<Vec<GroupError>> {
+        let likelihood = self.likelihood(sd)?;
+        let model = self.model(&likelihood);
+        let mode = model.mode(self.fit.point.position.clone())?;
+        let group = |error: &CommonError| {
+            let direction = direction(&likelihood, error, sd, &mode.values);
+            let [mean, spread] = model.factor(&mode, &direction)?;
+            Some(GroupError {
+                data: error.data.clone(),
+                mean: sd * mean,
+                sd: sd * spread,
+            })
+        };
+        self.errors(&likelihood).map(group).collect()
+    }
+}
+
+fn with_sd(size: CommonErrorSize, sd: ErrorSd) -> CommonErrorSize {
+    match size {
+        CommonErrorSize::Sensitivity { derivative, .. } => CommonErrorSize::Sensitivity { sd, derivative },
+        CommonErrorSize::Shift(_) => CommonErrorSize::Shift(sd),
+        discrepancy @ CommonErrorSize::Discrepancy { .. } => discrepancy,
+    }
+}
+
+/// Returns the derivatives by a factor on each datum of a suspected error: the predictions, in the order of the data.
+fn factor_derivatives(error: &SuspectedError, values: &[f64]) -> Vec<f64> {
+    if error.shift == SuspectedShift::Offset {
+        return Vec::new();
+    }
+    let mut data: Vec<usize> = error.groups.iter().flatten().copied().collect();
+    data.sort_unstable();
+    data.dedup();
+    data.into_iter().map(|i| values[i]).collect()
+}
+
+/// Returns the shift of each datum by one sd of a common error.
+fn direction(likelihood: &Likelihood, error: &CommonError, sd: f64, values: &[f64]) -> Vec<f64> {
+    let mut direction = vec![0.0; likelihood.data().len()];
+    for &datum in &error.data {
+        direction[datum] = match error.size {
+            CommonErrorSize::Sensitivity { derivative, .. } => {
+                let sensitive = Sensitive { derivative, datum };
+                let place = likelihood.sensitive().binary_search(&sensitive);
+                place.map_or(0.0, |place| sd * values[likelihood.data().len() + place])
+            }
+            _ => sd,
+        };
+    }
+    direction
+}
