@@ -156,7 +156,7 @@ fn summaries_of_searches_keep_the_contract() {
 fn the_check_notices_what_breaks_the_contract() {
     let good: Value = serde_json::json!({
         "experiment": "e", "seed": 1, "model_version": "1", "model_kind": "quasi_static", "status": "finished",
-        "calibrations": [], "point_estimates": [], "flags": [], "discovery": null,
+        "calibrations": [], "point_estimates": [], "rig": null, "flags": [], "discovery": null,
     });
     assert_eq!(complaints(&good), Vec::<String>::new());
     let broken = |key: &str, value: Value| {

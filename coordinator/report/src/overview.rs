@@ -6,9 +6,9 @@ use record::Verdict;
 use shared::api::{CalibrationState, Progress};
 
 use crate::flag::study::flags_by_calibration;
-use crate::story::{AddedEffect, Story, added};
+use crate::story::{AddedEffect, Story, added, rig_sentences};
 use crate::summary::calibration::CalibrationSummary;
-use crate::summary::study::{combined_summary, ledger_summaries, point_estimate_summaries};
+use crate::summary::study::{combined_summary, ledger_summaries, point_estimate_summaries, study_rig};
 use result::diagnostics::trends::TrendVariable;
 use result::error_summary::{CombinedSummary, ErrorSummary};
 use result::flag::{Flag, FlagKind};
@@ -54,6 +54,8 @@ pub struct StudyOverview {
     pub point_estimates: Vec<PointEstimate>,
     /// Comparison of the job's models; null if the job has one model, and until all are finished.
     pub models: Option<ModelComparison>,
+    /// What the rig did in the fitted runs of the current model, in sentences; empty if no run states a session, a taring or an operator.
+    pub rig: Vec<String>,
     /// Flags of the study.
     pub flags: Vec<StudyFlag>,
     /// Verdict of the search of the current model, else of the last search; null if no search is finished.
@@ -158,6 +160,7 @@ impl StudyOverview {
             fixed_sigma: BTreeMap::new(),
             point_estimates: Vec::new(),
             models: None,
+            rig: Vec::new(),
             flags: Vec::new(),
             verdict: None,
         }
@@ -212,6 +215,7 @@ pub fn overview(study: &Study) -> StudyOverview {
         combined: combined_summary(study, &sigmas),
         fixed_sigma: sigmas.by_name(),
         models: study.model_comparison(),
+        rig: rig_sentences(&study_rig(study).unwrap_or_default()),
         flags: flags_by_calibration(study)
             .into_iter()
             .map(StudyFlag::from)

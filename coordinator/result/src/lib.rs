@@ -13,6 +13,7 @@
 //! - [`validation`]: the levels of a factor, each predicted from the others.
 //! - [`discovery`]: the searches for missing effects.
 //! - [`figure`]: the numbers of the source paper's figures.
+//! - [`rig`]: offsets of sessions, tarings and operators that repeats show.
 //! - [`words`]: numbers, units, probabilities and citations as people read them.
 
 pub mod coverage_summary;
@@ -29,6 +30,7 @@ pub mod flag;
 pub mod model_comparison;
 pub mod parameter_summary;
 pub mod point_estimate;
+pub mod rig;
 pub mod study;
 pub mod study_failure;
 pub mod study_member;
@@ -44,6 +46,7 @@ pub use flag::{Flag, FlagKind};
 pub use model_comparison::{ComparedModel, LeftOutBy, ModelComparison};
 pub use parameter_summary::ParameterSummary;
 pub use point_estimate::PointEstimate;
+pub use rig::{RepeatOffset, RepeatOffsets, RepeatedQuantity, repeat_offsets};
 pub use study::Study;
 pub use study_failure::StudyFailure;
 pub use study_member::{Rejections, StudyMember};

@@ -47,6 +47,7 @@ pub(super) async fn check(config: &CheckArguments) -> anyhow::Result<()> {
     for order in confounded_orders(&job.spec.experiment, &job.spec.fit_runs) {
         text += &format!("warning: {}\n", order.words());
     }
+    text += &terminal::rig(&job.spec);
     say(&text)?;
     let several = models.len() > 1;
     let mut core_s = 0.0;

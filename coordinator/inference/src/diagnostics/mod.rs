@@ -9,6 +9,7 @@
 //! - `density`: kernel densities, and highest-density regions.
 //! - `predicted_draw`: draws with their predictions. `information`: the prior signal of a channel. `residual`: studentised
 //!   residuals and their chi-square. `trend`: trends of residuals with a regressor.
+//! - `group_offsets`: offsets that groups of repeats share, beside the scatter of the repeats.
 //! - `linear_dependence`: a quantity that is a linear function of others.
 //! - `region`: where in the prior failures concentrate.
 //! - `subset_shift`: the shift of parameters if some of the data were fitted alone.
@@ -17,6 +18,7 @@
 mod conflict;
 mod density;
 mod ess;
+mod group_offsets;
 mod information;
 mod linear_dependence;
 mod moments;
@@ -32,6 +34,7 @@ mod trend;
 pub use conflict::{Conflict, conflict};
 pub use density::{bandwidth, density, highest_density_levels, joint_density};
 pub use ess::{kish_ess, rank_correlation, weight_cov};
+pub use group_offsets::{GroupOffset, GroupOffsets, NoGroupOffsets, group_offsets};
 pub use information::{ChannelSignal, signals};
 pub use linear_dependence::linear_dependence;
 pub use moments::{mean, mean_and_sd};

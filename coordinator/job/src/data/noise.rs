@@ -6,6 +6,7 @@ use shared::parameters::{NOISE_PREFIX, noise_parameter};
 use statistics::{Datum, Distribution, ErrorSd, Marginal};
 
 use super::error::{DataError, MIN_FREEDOM};
+use super::level::SAME_LOAD;
 use super::shared_sd::SharedSd;
 use crate::table::prior_entry::FreeParameter;
 
@@ -197,12 +198,20 @@ pub fn conditions(experiment: &Experiment, fit_runs: &[usize]) -> Vec<Vec<usize>
 /// Returns whether two runs repeat one condition, within the accuracy of a rig: slip to 0.02, slip angle to 0.5 degrees, load to 15 %, speed
 /// to 5 %.
 pub fn repeats(a: &TestRun, b: &TestRun) -> bool {
-    let close = |x: f64, y: f64, share: f64| (x - y).abs() <= share * x.abs().max(y.abs());
+    repeats_but_for_load(a, b) && is_close(a.wheel_load_n, b.wheel_load_n, SAME_LOAD)
+}
+
+/// Returns whether two runs repeat all that the rig sets but the load, within the same accuracy.
+pub fn repeats_but_for_load(a: &TestRun, b: &TestRun) -> bool {
     a.wheel == b.wheel
         && a.soil == b.soil
         && a.pass == b.pass
         && (a.slip - b.slip).abs() <= 0.02
         && (a.slip_angle_deg - b.slip_angle_deg).abs() <= 0.5
-        && close(a.wheel_load_n, b.wheel_load_n, 0.15)
-        && close(a.sled_speed_m_s, b.sled_speed_m_s, 0.05)
+        && is_close(a.sled_speed_m_s, b.sled_speed_m_s, 0.05)
+}
+
+/// Returns whether two values differ by at most a share of the larger one.
+fn is_close(x: f64, y: f64, share: f64) -> bool {
+    (x - y).abs() <= share * x.abs().max(y.abs())
 }

@@ -8,7 +8,7 @@ import { useAnswer } from "../rest/use_answer.js";
 import { digits, probability, shown, words } from "../words/quantity.js";
 
 /** @param {{ study: any, model: any }} properties */
-export function Trust({ model }) {
+export function Trust({ study, model }) {
   const { answer: provenance, error } = useAnswer(model ? path.provenance(model.id) : null);
   const { answer: diagnostics } = useAnswer(model ? path.diagnostics(model.id) : null);
   if (!model) return html`<p class="empty">No calibration of this study is finished yet.</p>`;
@@ -17,6 +17,8 @@ export function Trust({ model }) {
     ${provenance.sentences.map((/** @type {string} */ s) => html`<p>${s}</p>`)}
     <ul class="note">${provenance.notes.map((/** @type {string} */ n) => html`<li>${n}</li>`)}</ul>
     ${diagnostics && html`<${Data} diagnostics=${diagnostics} /><${Refused} rejections=${diagnostics.rejections} />`}
+    ${study.rig.length > 0 && html`<h2>What the rig did</h2>${study.rig.map((/** @type {string} */ s) => html`<p>${s}.</p>`)}
+      <p class="note">From repeats of a condition alone, without a model of the contact.</p>`}
     <h2>What it was computed from</h2>
     <dl>
       <dt>Model</dt><dd>${provenance.model}, version ${provenance.model_version ?? "unknown"}</dd>

@@ -3,13 +3,14 @@
 //! # Layout
 //! - `wrong`: the errors, worst first. `pattern`: the conditions at which they are largest.
 //! - `missing`: the verdict of the search; `added`: effects that the study added before. `explanation`: explanations in words.
-//! - `next`: the next steps with their commands.
+//! - `next`: the next steps with their commands. `rig`: what the rig did, for a study.
 
 mod added;
 mod explanation;
 mod missing;
 mod next;
 mod pattern;
+mod rig;
 mod wrong;
 
 use next::Facts;
@@ -21,6 +22,7 @@ pub(crate) use added::added;
 pub use explanation::Alternative;
 pub use missing::{Missing, NamedEffect};
 pub use next::{EffectFile, Next, NextStep, StepKind};
+pub use rig::rig_sentences;
 pub use wrong::{BesideInterpolation, ChannelFailure, Wrong};
 
 /// The story of a calibration within its study.

@@ -13,6 +13,7 @@ use result::finished_calibration::FinishedCalibration;
 use result::flag::Flag;
 use result::model_comparison::ModelComparison;
 use result::point_estimate::PointEstimate;
+use result::rig::{RepeatOffsets, repeat_offsets};
 use result::study::Study;
 use result::table::fixed_sigma::{FixedSigma, FixedSigmas};
 
@@ -41,6 +42,8 @@ pub struct StudySummary {
     pub point_estimates: Vec<PointEstimate>,
     /// Comparison of the job's models; null if the job has one model, and until all are finished.
     pub models: Option<ModelComparison>,
+    /// Offsets of sessions, tarings and operators in the fitted runs of the current model; null if no run states one.
+    pub rig: Option<Vec<RepeatOffsets>>,
     /// Flags of the study.
     pub flags: Vec<Flag>,
     /// Results of the searches for missing effects; null if none is finished.
@@ -93,6 +96,12 @@ pub(crate) fn combined_summary(study: &Study, sigmas: &FixedSigmas) -> Option<Co
     CombinedSummary::new(study.combined(), sigmas)
 }
 
+/// Returns what the rig did in the fitted runs of the current model.
+pub(crate) fn study_rig(study: &Study) -> Option<Vec<RepeatOffsets>> {
+    let spec = &study.current().unwrap_or(&study.lead).spec;
+    repeat_offsets(&spec.experiment, &spec.fit_runs)
+}
+
 /// Summarises a study for `summary.json`.
 pub fn summary(study: &Study) -> StudySummary {
     let lead = &study.lead;
@@ -109,6 +118,7 @@ pub fn summary(study: &Study) -> StudySummary {
         combined: combined_summary(study, &sigmas),
         fixed_sigma: sigmas.by_name(),
         models: study.model_comparison(),
+        rig: study_rig(study),
         flags: flags(study),
         discovery: DiscoverySummary::new(&study.rounds, added(study)),
     }

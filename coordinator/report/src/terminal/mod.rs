@@ -5,6 +5,7 @@
 //! - `brief`: a study in a few lines; `story`: what is wrong, what is missing, what next; `ending`: where the files are.
 //! - `study`: the complete text of a study; `models`: its compared models; `ledger`: the errors of its calibrations.
 //! - `calibration`: one calibration; `comparison`: its rows and errors; `diagnostics`: its diagnostics.
+//! - `rig`: offsets of sessions, tarings and operators.
 //! - [`discovery`]: a search for a missing effect. `validation`: the levels of a factor, each left out in turn.
 //! - `table`: tables of columns; `column`: widths, cells that may be empty, sentences with a label.
 
@@ -18,6 +19,7 @@ pub mod discovery;
 mod ending;
 mod ledger;
 mod models;
+mod rig;
 mod specification;
 mod status;
 mod story;
@@ -29,6 +31,7 @@ pub use brief::brief;
 pub use comparison::{comparison, groups};
 pub use diagnostics::diagnostics;
 pub use ending::ending;
+pub use rig::rig;
 pub use specification::specification;
 pub use status::status_table;
 pub use story::story;

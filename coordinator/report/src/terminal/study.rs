@@ -9,14 +9,15 @@ use super::calibration::{headline, summary};
 use super::campaign::campaign;
 use super::ledger::ledger;
 use super::models::models;
+use super::rig::rig_of_study;
 use crate::flag::interpolation::interpolation_beats;
 use crate::flag::study::missed_modes;
 use result::discovery::word;
 use result::study::Study;
 use result::words::number;
 
-/// Prints the source of the measurements, the tables and flags of each calibration, then the calibrations and searches, a line each, and
-/// the error ledger.
+/// Prints the source of the measurements, the tables and flags of each calibration, then the calibrations and searches, a line each, what
+/// the rig did, and the error ledger.
 pub fn study(study: &Study) -> String {
     let results: Vec<String> = study.calibrations().map(summary).collect();
     let source = study.lead.spec.experiment.campaign.as_ref();
@@ -25,7 +26,10 @@ pub fn study(study: &Study) -> String {
         let _ = writeln!(text, "\nflag {}: {}", flag.kind.name(), flag.text);
     }
     text.push('\n');
-    text + &calibrations(study) + &cautions(study) + &models(study) + "\n" + &ledger(study)
+    text += &calibrations(study);
+    text += &cautions(study);
+    text += &rig_of_study(study);
+    text + &models(study) + "\n" + &ledger(study)
 }
 
 /// Returns a line for each calibration and each of its searches.
