@@ -2,8 +2,8 @@
 
 use farm_tests::assert_contains;
 use farm_tests::job::Job;
-use farm_tests::json::item_count;
-use farm_tests::programs::study;
+use farm_tests::json::{float, item_count, items, word};
+use farm_tests::programs::{coordinator, run, study};
 use serde_json::Value;
 
 /// The contract: on each line a path and the kind of its value. `*` stands for every element, `?` allows null. Nothing is missed below a
@@ -143,6 +143,50 @@ fn a_summary_of_a_fit_keeps_the_contract_and_its_point_stands_apart() {
         "{estimate}"
     );
     assert!(sd.is_number(), "{estimate}");
+}
+
+/// Returns the small job with each fitted run made again in another session, in which the wheel sinks 2 mm deeper; the noise is 0.4 mm.
+fn repeated_in_another_session() -> Job {
+    let small = Job::small();
+    let mut rows = small.runs.lines().filter(|line| !line.starts_with('#'));
+    let header = rows.next().expect("a header");
+    let sinkage = header.split(',').position(|column| column == "sinkage_m");
+    let sinkage = sinkage.expect("a column of the sinkage");
+    let twice = |line: &str| {
+        let mut fields: Vec<String> = line.split(',').map(str::to_owned).collect();
+        let measured: f64 = fields[sinkage].parse().expect("a number");
+        fields[sinkage] = (measured + 0.002).to_string();
+        match line.ends_with("fit") {
+            true => format!("{line},first day\nagain-{},second day\n", fields.join(",")),
+            false => format!("{line},first day\n"),
+        }
+    };
+    let rows: String = rows.map(twice).collect();
+    Job {
+        runs: format!("{header},session\n{rows}"),
+        ..small.clone()
+    }
+}
+
+#[test]
+fn a_summary_says_what_repeats_tell_about_sessions() {
+    let job = repeated_in_another_session();
+    let summary = summary(&job);
+    assert_eq!(complaints(&summary), Vec::<String>::new());
+    // The wheel load is the nominal one, which repeats exactly.
+    let quantities: Vec<&str> = items(&summary["rig"])
+        .map(|found| word(&found["quantity"]))
+        .collect();
+    assert_eq!(quantities, ["drawbar_pull", "torque", "sinkage"]);
+    let sinkage = &summary["rig"][2];
+    assert!(float(&sinkage["probability"]) > 0.99, "{sinkage}");
+    let [first, second] = [0, 1].map(|k| float(&sinkage["offsets"][k]["mean"]));
+    assert!((second - first - 0.002).abs() < 0.0005, "{sinkage}");
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = job.write(folder.path()).display().to_string();
+    let checked = run(coordinator(["check", &path])).success();
+    assert_contains!(checked, "what the rig did");
+    assert_contains!(checked, "w, sinkage mm");
 }
 
 #[test]

@@ -13,8 +13,9 @@ pub fn levels_of(values: &[f64]) -> Vec<usize> {
     levels(values, |below, above| above - below > gap)
 }
 
-/// Returns the level of each load, ascending from 0: a gap of more than 15 % of the load above it begins another level. Loads that scatter
-/// about one nominal value are one level however many they are, so the level of a load does not depend on its error.
+/// Returns the level of each load, ascending from 0: a gap of more than 15 % of the load above it begins another level.
+///
+/// Loads that scatter about one nominal value are one level however many they are, so the level of a load does not depend on its error.
 pub fn load_levels_of(loads_n: &[f64]) -> Vec<usize> {
     levels(loads_n, |below, above| above - below > SAME_LOAD * above)
 }

@@ -22,8 +22,9 @@ pub(super) struct ComparedRuns<'a> {
 }
 
 impl<'a> ComparedRuns<'a> {
-    /// Returns the fitted runs by wheel, or together if wheels share ids and the quantity is the wheel load: one sensor measures the load
-    /// of every wheel, but each wheel sinks in its own way. Wheels with one id are left out.
+    /// Returns the fitted runs by wheel, or together if wheels share ids and the quantity is the wheel load. Wheels with one id are left out.
+    ///
+    /// One sensor measures the load of every wheel, but each wheel sinks in its own way.
     pub(super) fn parts(
         experiment: &'a Experiment,
         fit_runs: &[usize],

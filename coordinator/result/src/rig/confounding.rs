@@ -4,7 +4,6 @@ use inference::diagnostics::NoGroupOffsets;
 use job::{levels_of, load_levels_of};
 use shared::experiment::{RigColumn, TestRun};
 
-use super::RepeatedQuantity;
 use super::compared_runs::ComparedRuns;
 use crate::words::number::list;
 
@@ -20,13 +19,12 @@ const SETTINGS: [Setting; 5] = [
     ("pass", |run| f64::from(run.pass), levels_of),
 ];
 
-/// Returns the consequence of a reason, and what to repeat.
+/// Returns the consequence of a reason, and what to repeat; `None` if repeats are equal, as nominal loads are: nothing is measured.
 pub(super) fn sentence(
     compared: &ComparedRuns<'_>,
-    quantity: RepeatedQuantity,
     column: RigColumn,
     reason: NoGroupOffsets,
-) -> String {
+) -> Option<String> {
     let RigWords {
         one,
         with_article,
@@ -37,7 +35,7 @@ pub(super) fn sentence(
         Some(wheel) => format!("wheel {wheel}"),
         None => "the wheels".to_owned(),
     };
-    match reason {
+    Some(match reason {
         NoGroupOffsets::GroupsFollowConditions => {
             let settings = list(&followed(compared));
             let (shared, effect) = match settings.is_empty() {
@@ -61,11 +59,8 @@ pub(super) fn sentence(
         NoGroupOffsets::NoRepeatWithinGroup => format!(
             "the repeats of {wheel} do not tell an offset of {with_article} from the scatter of a run; repeat conditions {preposition} the same {one}"
         ),
-        NoGroupOffsets::EqualRepeats => format!(
-            "repeats of {wheel} have the same {}: their scatter is unknown",
-            quantity.words()
-        ),
-    }
+        NoGroupOffsets::EqualRepeats => return None,
+    })
 }
 
 /// The words for the ids of a column.

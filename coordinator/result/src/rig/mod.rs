@@ -62,8 +62,10 @@ pub struct RepeatOffset {
     pub runs: usize,
 }
 
-/// Returns what the fitted runs tell about offsets; `None` if no run states a session, a taring or an operator. A column whose ids
-/// group the runs as those of an earlier column do is left out, and so is a wheel with one id.
+/// Returns what the fitted runs tell about offsets; `None` if no run states a session, a taring or an operator.
+///
+/// A column whose ids group the runs as those of an earlier column do is left out, and so are a wheel with one id and a quantity whose
+/// repeats are equal, as nominal loads are.
 pub fn repeat_offsets(experiment: &Experiment, fit_runs: &[usize]) -> Option<Vec<RepeatOffsets>> {
     let states = |column: &RigColumn| fit_runs.iter().any(|&i| column.id(&experiment.runs[i]).is_some());
     let stated: Vec<RigColumn> = RigColumn::ALL.into_iter().filter(states).collect();
@@ -74,7 +76,7 @@ pub fn repeat_offsets(experiment: &Experiment, fit_runs: &[usize]) -> Option<Vec
     for column in stated {
         for quantity in RepeatedQuantity::ALL {
             let parts = ComparedRuns::parts(experiment, fit_runs, quantity, column);
-            found.extend(parts.iter().map(|part| part.offsets(quantity, column)));
+            found.extend(parts.iter().filter_map(|part| part.offsets(quantity, column)));
         }
     }
     // The wheels first, so that a reader finds one wheel's quantities together.
@@ -83,10 +85,14 @@ pub fn repeat_offsets(experiment: &Experiment, fit_runs: &[usize]) -> Option<Vec
 }
 
 impl ComparedRuns<'_> {
-    fn offsets(&self, quantity: RepeatedQuantity, column: RigColumn) -> RepeatOffsets {
+    fn offsets(&self, quantity: RepeatedQuantity, column: RigColumn) -> Option<RepeatOffsets> {
         let found = group_offsets(&self.values, &self.conditions, &self.groups);
         let estimate = |value: fn(&GroupOffsets) -> f64| found.as_ref().ok().map(value);
-        RepeatOffsets {
+        let confounded = match found {
+            Err(reason) => Some(sentence(self, column, reason)?),
+            Ok(_) => None,
+        };
+        Some(RepeatOffsets {
             wheel: self.wheel.map(str::to_owned),
             quantity,
             unit: quantity.unit().to_owned(),
@@ -100,8 +106,8 @@ impl ComparedRuns<'_> {
             offsets: found
                 .as_ref()
                 .map_or_else(|_| Vec::new(), |found| self.by_id(&found.offsets)),
-            confounded: found.err().map(|reason| sentence(self, quantity, column, reason)),
-        }
+            confounded,
+        })
     }
 
     fn by_id(&self, offsets: &[Option<GroupOffset>]) -> Vec<RepeatOffset> {
