@@ -3,13 +3,14 @@
 //! # Layout
 //! - `question`: [`Question`], and [`Unanswered`], the questions that a user must answer before anything is calibrated.
 //! - `unusual`: numbers outside the usual range of their quantity. `comparison`: values that do not fit other values. `sign`: channels
-//!   with the opposite sign. `effects`: effects that change the model at their neutral values.
+//!   with the opposite sign. `effects`: effects that change the model at their neutral values. `like_runs`: runs that can be compared.
 //!
 //! [`shared::limit`] states the usual ranges, and the physical limits beyond which a value is refused. A user answers a question by
 //! correcting the value, or by listing the question's name under `accept` in the job.
 
 mod comparison;
 mod effects;
+mod like_runs;
 pub(crate) mod question;
 mod sign;
 mod unusual;

@@ -8,6 +8,7 @@ use shared::channel::Channel;
 use shared::experiment::{Experiment, TestRun};
 use shared::limit::number;
 
+use super::like_runs::differ_in_slip;
 use super::question::{Question, sign_name};
 
 /// Minimum number of runs, and of pairs of runs, that determine a sign.
@@ -24,8 +25,6 @@ const APART: f64 = 0.05;
 const ROLLING_DEG: f64 = 45.0;
 /// Slip angle above which the soil certainly resists sideways motion `[deg]`.
 const SIDEWAYS_DEG: f64 = 5.0;
-/// Relative difference of wheel loads that are alike.
-const LIKE_LOADS: f64 = 0.15;
 
 /// Returns the questions about the signs of all channels.
 ///
@@ -73,7 +72,7 @@ fn known_where(channel: Channel) -> String {
 }
 
 /// Returns the sign of a channel in a run: 1 or -1; `None` if both are possible.
-fn sign(run: &TestRun, channel: Channel) -> Option<f64> {
+pub(super) fn expected_sign(run: &TestRun, channel: Channel) -> Option<f64> {
     let rolls = run.slip_angle_deg.abs() <= ROLLING_DEG;
     let (is_known, quantity) = match channel {
         Channel::DrawbarPull => (rolls && run.slip.abs() >= PULLING, run.slip),
@@ -88,7 +87,7 @@ fn sign(run: &TestRun, channel: Channel) -> Option<f64> {
 fn opposite(experiment: &Experiment, channel: Channel) -> Option<String> {
     let judged = experiment.runs.iter().filter_map(|run| {
         let value = run.measured[channel.index()]?;
-        Some((run, value, value * sign(run, channel)?))
+        Some((run, value, value * expected_sign(run, channel)?))
     });
     let judged: Vec<(&TestRun, f64, f64)> = judged.collect();
     let is_right = |(_, _, signed): &(&TestRun, f64, f64)| *signed > 0.0;
@@ -132,7 +131,7 @@ fn falling_pull(experiment: &Experiment) -> Option<String> {
     let fall = |[low, high]: [&(&TestRun, f64); 2]| low.1 - high.1;
     for low in &rising {
         for high in rising.iter().filter(|high| high.0.slip - low.0.slip > APART) {
-            if !are_alike(low.0, high.0) {
+            if !differ_in_slip(low.0, high.0) {
                 continue;
             }
             if high.1 >= low.1 {
@@ -154,19 +153,6 @@ fn falling_pull(experiment: &Experiment) -> Option<String> {
         number(high.1),
         number(high.0.slip),
     ))
-}
-
-/// Returns whether two runs differ only in slip and in the speed that sets it.
-fn are_alike(a: &TestRun, b: &TestRun) -> bool {
-    let [less, more] = [
-        a.wheel_load_n.min(b.wheel_load_n),
-        a.wheel_load_n.max(b.wheel_load_n),
-    ];
-    a.wheel == b.wheel
-        && a.soil == b.soil
-        && a.pass == b.pass
-        && (a.slip_angle_deg - b.slip_angle_deg).abs() <= 0.5
-        && more - less <= LIKE_LOADS * more
 }
 
 #[cfg(test)]
