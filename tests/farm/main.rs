@@ -23,6 +23,7 @@ mod leases;
 mod likelihood;
 mod mesh;
 mod metamodel;
+mod mistaken_tables;
 mod mistakes;
 mod models;
 mod not_tried;

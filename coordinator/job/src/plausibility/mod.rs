@@ -3,16 +3,26 @@
 //! # Layout
 //! - `question`: [`Question`], and [`Unanswered`], the questions that a user must answer before anything is calibrated.
 //! - `unusual`: numbers outside the usual range of their quantity. `comparison`: values that do not fit other values. `sign`: channels
-//!   with the opposite sign. `effects`: effects that change the model at their neutral values. `like_runs`: runs that can be compared.
+//!   with the opposite sign. `effects`: effects that change the model at their neutral values.
+//! - `table`: mistakes of a whole table, which a search would explain by physics: `swapped` columns, `exchanged` wheels, `radius` for
+//!   diameter, `offset` of a channel. `moment_balance`, `contradiction`: the evidence that needs no model of the soil. `like_runs`: runs
+//!   that can be compared.
 //!
 //! [`shared::limit`] states the usual ranges, and the physical limits beyond which a value is refused. A user answers a question by
 //! correcting the value, or by listing the question's name under `accept` in the job.
 
 mod comparison;
+mod contradiction;
 mod effects;
+mod exchanged;
 mod like_runs;
+mod moment_balance;
+mod offset;
 pub(crate) mod question;
+mod radius;
 mod sign;
+mod swapped;
+mod table;
 mod unusual;
 
 pub use question::{Question, Unanswered};
@@ -27,6 +37,7 @@ pub fn questions(spec: &Spec) -> Vec<Question> {
     let mut questions = unusual::questions(spec);
     questions.extend(comparison::questions(spec));
     questions.extend(sign::questions(&spec.experiment));
+    questions.extend(table::questions(&spec.experiment, &questions));
     questions.extend(effects::questions(spec));
     questions.sort_by(|a, b| a.name.cmp(&b.name));
     questions

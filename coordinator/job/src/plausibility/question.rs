@@ -14,6 +14,25 @@ pub(super) const NEUTRAL: &str = "neutral";
 /// The question of slip angles.
 pub(super) const SLIP_ANGLE: &str = "slip_angle_deg";
 
+/// The question of columns that seem swapped.
+pub(super) const SWAPPED_COLUMNS: &str = "swapped_columns";
+/// The question of wheels that seem exchanged.
+pub(super) const EXCHANGED_WHEELS: &str = "exchanged_wheels";
+/// The question of a radius that seems a diameter.
+pub(super) const RADIUS_OR_DIAMETER: &str = "radius_or_diameter";
+/// The question of the zero of pull or torque.
+pub(super) const FORCE_ZERO: &str = "force_zero";
+/// The question of the zero of the sinkage.
+pub(super) const SINKAGE_ZERO: &str = "sinkage_zero";
+/// The questions about a whole table.
+const TABLE_QUESTIONS: [&str; 5] = [
+    SWAPPED_COLUMNS,
+    EXCHANGED_WHEELS,
+    RADIUS_OR_DIAMETER,
+    FORCE_ZERO,
+    SINKAGE_ZERO,
+];
+
 /// Returns the name of the question about the sign of a channel.
 pub(super) fn sign_name(channel: Channel) -> String {
     format!("{}_sign", channel.name())
@@ -43,6 +62,7 @@ impl Question {
             .chain(measured)
             .chain(Channel::ALL.map(sign_name))
             .chain([DATA_FEW, NEUTRAL, SLIP_ANGLE].map(str::to_owned))
+            .chain(TABLE_QUESTIONS.map(str::to_owned))
             .collect()
     }
 
