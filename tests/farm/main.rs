@@ -21,6 +21,7 @@ mod import;
 mod laws;
 mod leases;
 mod likelihood;
+mod limit;
 mod mesh;
 mod metamodel;
 mod mistaken_tables;

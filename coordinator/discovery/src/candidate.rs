@@ -19,6 +19,9 @@ pub struct Candidate {
     /// Name of the family. Its candidates are laws of one quantity under different conditions, and may explain together what none
     /// explains alone.
     pub family: Option<String>,
+    /// Name of the candidate whose parameter has a limit here that its prior does not reach. Both change one parameter of the model, so
+    /// they belong to one class.
+    pub limit_of: Option<String>,
     /// Whether the low-fidelity model has this candidate.
     pub has_low_fidelity: bool,
 }
@@ -34,6 +37,7 @@ impl Candidate {
             neutral: 0.0,
             excludes: Vec::new(),
             family: None,
+            limit_of: None,
             has_low_fidelity: false,
         }
     }
@@ -47,6 +51,13 @@ impl Candidate {
     /// Returns whether both candidates may stand in one combination.
     pub(crate) fn combines_with(&self, candidate: &Self) -> bool {
         !self.excludes.contains(&candidate.name) && !candidate.excludes.contains(&self.name)
+    }
+
+    /// Returns whether both candidates change the same parameter of the model.
+    #[must_use]
+    pub fn is_same_parameter(&self, candidate: &Self) -> bool {
+        let is_limit = |limit: &Self, of: &Self| limit.limit_of.as_ref() == Some(&of.name);
+        self.name == candidate.name || is_limit(self, candidate) || is_limit(candidate, self)
     }
 
     /// Checks the strengths and the neutral value.

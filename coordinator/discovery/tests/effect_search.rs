@@ -164,6 +164,27 @@ fn a_switch_has_the_evidence_of_its_model() {
 }
 
 #[test]
+fn a_limit_is_in_the_class_of_its_parameter() {
+    let limit = Candidate {
+        parameters: Vec::new(),
+        strengths: Vec::new(),
+        limit_of: Some("square".to_owned()),
+        ..effect("limit", normal(1.0))
+    };
+    let values = measured(&[(0, 0.7), (6, 1.0)]);
+    let candidates = [
+        effect("skewed square", normal(2.0)),
+        effect("square", normal(2.0)),
+        limit,
+    ];
+    // The limit changes the predictions as the skewed square does.
+    let ranking = search(&values, &candidates, &[6, 3, 6], false);
+    let class = |k: usize| ranking.effect(Some(k)).unwrap().class;
+    assert_eq!(class(2), class(1));
+    assert_ne!(class(2), class(0));
+}
+
+#[test]
 fn importance_sampling_agrees_with_the_closed_form_where_two_effects_are_close() {
     let values = measured(&[(0, 0.7), (2, 0.8), (6, 0.8)]);
     let candidates = [

@@ -125,6 +125,7 @@ impl Job {
                 self.table.remove(key);
             }
         }
+        self.release(switch.key);
         self.table.insert(switch.key.to_owned(), switch.value.into());
     }
 

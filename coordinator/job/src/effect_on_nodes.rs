@@ -93,7 +93,7 @@ mod tests {
         let janosi = EffectOnNodes::find("janosi_hanamoto_node").unwrap();
         assert_eq!(janosi.effect.name, "janosi_hanamoto");
         assert_eq!(janosi.name(), "janosi_hanamoto_node");
-        assert_eq!(janosi.setting.value, "node");
+        assert_eq!(janosi.setting.line(), "displacement = \"node\"");
         for other in [
             "slip_sinkage_node",
             "janosi_hanamoto",

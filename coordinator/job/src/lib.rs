@@ -38,7 +38,7 @@ pub use data::shared_error::SharedError;
 pub use effect_on_nodes::EffectOnNodes;
 pub use facts::{effect_name, foreign_effects, is_earlier_search, model_kind};
 pub use job::{Job, JobModels};
-pub use model_switch::{MODEL_SWITCHES, ModelSwitch};
+pub use model_switch::{MODEL_SWITCHES, ModelSwitch, SettingValue};
 pub use named_files::{NamedFile, NamedFiles};
 pub use plain_parameter::{PLAIN_PARAMETERS, PlainParameter};
 pub use plausibility::{Question, Unanswered, check_accepted, questions};

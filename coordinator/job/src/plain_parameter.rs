@@ -6,7 +6,6 @@ use std::sync::LazyLock;
 use shared::parameters::model_parameters;
 use statistics::Marginal;
 
-use crate::model_switch::MODEL_SWITCHES;
 use crate::spec::Spec;
 use crate::table::prior_entry::marginal;
 
@@ -84,6 +83,11 @@ impl PlainParameter {
         PLAIN_PARAMETERS.iter().find(|plain| plain.name == name)
     }
 
+    /// Returns the name of the candidate that gives it another value: its own, or that of the effect in its place.
+    pub fn candidate(&self) -> &'static str {
+        self.covered_by.unwrap_or(self.name)
+    }
+
     /// Returns the prior as a value of TOML, and as a density.
     pub fn prior(&self) -> Option<&'static (toml::Value, Marginal)> {
         PRIORS.get(self.name)
@@ -112,21 +116,6 @@ impl PlainParameter {
         let (_, density) = self.prior()?;
         let (lower, upper) = density.support();
         (lower..=upper).contains(&value).then(|| (value, density.clone()))
-    }
-}
-
-impl Spec {
-    /// Returns the names of the plain parameters that are free, and of the settings of the model that a search may change.
-    pub fn freed(&self) -> Vec<String> {
-        let free = |plain: &&PlainParameter| self.parameters.iter().any(|p| p.name == plain.name);
-        let freed = PLAIN_PARAMETERS.iter().filter(free).map(|plain| plain.name);
-        // Default settings are left out; the kind is stated.
-        let turned = MODEL_SWITCHES.iter();
-        let turned = turned.filter(|switch| switch.is_on(self) && !switch.is_usual());
-        freed
-            .chain(turned.map(|switch| switch.name))
-            .map(str::to_owned)
-            .collect()
     }
 }
 

@@ -505,11 +505,11 @@ mod tests {
             let switches = candidates.filter(|c| c.parameters.is_empty());
             switches.map(|c| c.name).collect()
         };
-        assert!(switches(job.toml.clone()).is_empty());
+        assert_eq!(switches(job.toml.clone()), ["shear_velocity_zero"]);
         let asked = job
             .toml
             .replace("[discovery]\n", "[discovery]\nother_kind = true\n");
-        assert_eq!(switches(asked.clone()), ["kind_scm"]);
+        assert_eq!(switches(asked.clone()), ["shear_velocity_zero", "kind_scm"]);
         // A free parameter that the other kind does not have leaves no job of that kind, which is said.
         let bound = asked.replace("quasi_static", "scm").replace(
             "[priors]\n",
@@ -526,13 +526,51 @@ mod tests {
             .unwrap();
         assert!(other.why.contains("flow_fraction"), "{other:?}");
         let spatial = job.toml.replace("quasi_static", "scm");
-        assert_eq!(switches(spatial.clone()), ["pressure_direction_vertical"]);
+        let of_scm = ["pressure_direction_vertical", "shear_velocity_zero"];
+        assert_eq!(switches(spatial.clone()), of_scm);
         // Without a shear displacement it makes no difference where it is kept.
         let mobilised = spatial.replacen("[model]\n", "[model]\neffects = [\"janosi_hanamoto\"]\n", 1);
         assert_eq!(
             switches(mobilised),
-            ["pressure_direction_vertical", "displacement_node"]
+            ["pressure_direction_vertical", "displacement_node", of_scm[1]]
         );
+    }
+
+    #[test]
+    fn a_velocity_held_above_its_limit_may_be_at_the_limit() {
+        let (job, files, _) = read("examples/hidden-effect");
+        let held = "shear_velocity_m_s = 0.001 ";
+        let is_candidate = |new: &str| -> bool {
+            let toml = job.toml.replacen(held, new, 1);
+            let models = SearchModels::new(&FileSet { toml, ..job.clone() }, &files, 1).unwrap();
+            let mut library = models.task().library.into_iter();
+            library.any(|candidate| candidate.name == "shear_velocity_zero")
+        };
+        assert!(job.toml.contains(held));
+        // The default of the model is held as well.
+        assert!(is_candidate(held) && is_candidate(""));
+        assert!(!is_candidate("shear_velocity_m_s = 0.0 "));
+        // Without a reference velocity no factor of it can be inferred.
+        assert!(!is_candidate(
+            "shear_velocity_m_s = 0.001\neffects = [\"shear_velocity_scale\"] "
+        ));
+        let toml = job.toml.replacen(held, "", 1);
+        let prior = "[priors]\nshear_velocity_m_s = { lognormal = [0.001, 2.0] }\n";
+        let free = FileSet {
+            toml: toml.replacen("[priors]\n", prior, 1),
+            ..job.clone()
+        };
+        let models = SearchModels::new(&free, &files, 1).unwrap();
+        let mut library = models.task().library.into_iter();
+        assert!(library.all(|candidate| candidate.name != "shear_velocity_zero"));
+        let zero = extended(JOB, &job, &[&Extension::Effect("shear_velocity_zero".into())]).unwrap();
+        assert!(
+            zero.toml.contains("\nshear_velocity_m_s = 0.0\n"),
+            "{}",
+            zero.toml
+        );
+        let freed = spec_of(&zero, &files).unwrap().freed();
+        assert_eq!(freed, ["shear_velocity_zero", "kind_quasi_static"]);
     }
 
     #[test]

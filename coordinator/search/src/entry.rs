@@ -83,23 +83,19 @@ impl CandidateEntry {
         })
     }
 
-    /// Makes the candidate that turns a setting of the model; `None` if the job has this setting already, and for the other kind
-    /// of model unless the job requests it.
+    /// Makes the candidate that turns a setting of the model; `None` if the setting is no candidate for the job.
     ///
     /// # Errors
     /// [`NotTried`] if the model with the setting is not valid or has other parameters.
     pub(super) fn switch(switch: &ModelSwitch, base: &Spec, job: &Job) -> Result<Option<Self>, NotTried> {
-        if switch.is_on(base) || (switch.is_kind() && !base.discovery.other_kind) {
+        if !switch.is_candidate(base) {
             return Ok(None);
         }
         let name = switch.name.to_owned();
         let not_tried = |why: String| NotTried {
             name: name.clone(),
             why,
-            needs: format!(
-                "a job that is valid with {} = \"{}\" as well",
-                switch.key, switch.value
-            ),
+            needs: format!("a job that is valid with {} as well", switch.line()),
         };
         let extension = Extension::Effect(name.clone());
         let with = with_extensions(job, &[&extension], &NamedFiles::default());
@@ -112,7 +108,10 @@ impl CandidateEntry {
         }
         Ok(Some(Self {
             // The low-fidelity model has no switch: the corrections of the base do not hold for another setting or kind of model.
-            candidate: Candidate::new(&name, Vec::new(), Vec::new()),
+            candidate: Candidate {
+                limit_of: switch.limit_of().map(str::to_owned),
+                ..Candidate::new(&name, Vec::new(), Vec::new())
+            },
             names: Vec::new(),
             units: Vec::new(),
             not_tried: None,

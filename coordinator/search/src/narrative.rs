@@ -214,9 +214,7 @@ fn verdict(
             let effect = candidate_of(&name).map(|(effect, _)| effect);
             let claim = match (PlainParameter::find(&name), ModelSwitch::find(&name)) {
                 (Some(plain), _) => format!("{name} is missing: {}", plain.summary),
-                (None, Some(switch)) => {
-                    format!("{} = \"{}\" fits: {}", switch.key, switch.value, switch.summary)
-                }
+                (None, Some(switch)) => format!("{} fits: {}", switch.line(), switch.summary),
                 (None, None) => {
                     let summary = effect.map_or("", |effect| effect.summary.as_str());
                     let place =
@@ -229,8 +227,9 @@ fn verdict(
                 }
             };
             format!(
-                "{claim} ({}, {:.1} nats over {kind}{})",
+                "{claim} ({}{}, {:.1} nats over {kind}{})",
                 probability(judged.map_or(0.0, |e| e.probability)),
+                same_parameter(models, k, effects),
                 judged.map_or(0.0, |e| e.log_bayes_factor),
                 beside(&conclusion.sets, k, |k| models.name(k)),
             )
@@ -296,6 +295,25 @@ fn weighed(effect: &JudgedEffect) -> String {
         p if p < 0.001 => format!("{name} (< 0.001)"),
         p => format!("{name} ({p:.2})"),
     }
+}
+
+/// Names the candidate that gives the same parameter another value, if it is probable: `; shear_velocity_scale (0.10) changes the
+/// same parameter`.
+fn same_parameter(models: &SearchModels, named: usize, effects: &[JudgedEffect]) -> String {
+    let Some(named) = models.entry(named).map(|entry| &entry.candidate) else {
+        return String::new();
+    };
+    let is_same = |e: &&JudgedEffect| {
+        let entry = models.library.iter().find(|entry| entry.candidate.name == e.name);
+        e.name != named.name && entry.is_some_and(|entry| entry.candidate.is_same_parameter(named))
+    };
+    let same = effects
+        .iter()
+        .filter(|e| e.probability > MIN_LISTED)
+        .find(is_same);
+    same.map_or(String::new(), |e| {
+        format!("; {} changes the same parameter", weighed(e))
+    })
 }
 
 /// Names the other effects of the most probable set with an effect.

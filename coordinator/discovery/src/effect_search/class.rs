@@ -17,25 +17,32 @@ pub(crate) fn log_bayes_factor_deficit(nats: f64) -> f64 {
 ///
 /// # Arguments
 /// - `products`: inner products of the projected changes, `[n_candidates, n_candidates]`.
+/// - `limit_of`: for each limit, the candidate whose parameter has it. A limit belongs to the class of that candidate, whatever the
+///   angle between them is.
 ///
 /// # Returns
 /// The class of each candidate, from 0. A change of length zero is a class of its own.
-pub(super) fn classes(products: &DMatrix<f64>) -> Vec<usize> {
+pub(super) fn classes(products: &DMatrix<f64>, limit_of: &[Option<usize>]) -> Vec<usize> {
     let count = products.nrows();
     let alike = |i: usize, j: usize| {
         let lengths = products[(i, i)].max(0.0) * products[(j, j)].max(0.0);
         products[(i, j)].abs() > ALIKE * lengths.sqrt()
     };
     let mut members: Vec<Vec<usize>> = Vec::new();
-    let mut class = Vec::with_capacity(count);
-    for i in 0..count {
+    let mut class = vec![0; count];
+    for i in (0..count).filter(|i| limit_of[*i].is_none()) {
         let joined = members
             .iter()
             .position(|class| class.iter().all(|&j| alike(i, j)));
-        class.push(joined.unwrap_or(members.len()));
+        class[i] = joined.unwrap_or(members.len());
         match joined {
             Some(k) => members[k].push(i),
             None => members.push(vec![i]),
+        }
+    }
+    for (i, of) in limit_of.iter().enumerate() {
+        if let Some(of) = of {
+            class[i] = class[*of];
         }
     }
     class
@@ -50,11 +57,19 @@ mod tests {
         // Angles 0, 8 and 16 degrees: neighbours are alike, the ends are not; opposite signs are alike.
         let angles = [0.0_f64, 8.0, 16.0, 180.0].map(f64::to_radians);
         let products = DMatrix::from_fn(4, 4, |i, j| libm::cos(angles[i] - angles[j]) * 9.0);
-        assert_eq!(classes(&products), [0, 0, 1, 0]);
+        assert_eq!(classes(&products, &[None; 4]), [0, 0, 1, 0]);
     }
 
     #[test]
     fn what_changes_nothing_is_a_class_of_its_own() {
-        assert_eq!(classes(&DMatrix::zeros(2, 2)), [0, 1]);
+        assert_eq!(classes(&DMatrix::zeros(2, 2), &[None; 2]), [0, 1]);
+    }
+
+    #[test]
+    fn a_limit_is_in_the_class_of_its_parameter_and_admits_nobody() {
+        // The limit points as the first does, and belongs to the last.
+        let angles = [0.0_f64, 0.0, 90.0].map(f64::to_radians);
+        let products = DMatrix::from_fn(3, 3, |i, j| libm::cos(angles[i] - angles[j]));
+        assert_eq!(classes(&products, &[None, Some(2), None]), [0, 1, 1]);
     }
 }

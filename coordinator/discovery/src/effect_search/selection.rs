@@ -277,9 +277,15 @@ impl EffectSearch {
             .unzip();
         let products = Projection::new(&self.base.as_ref()?.fit, &self.likelihood)?.products(&changes);
         let lengths = (0..indices.len()).map(|i| products[(i, i)].max(0.0).sqrt());
+        let limit_of = |k: &usize| {
+            let of = self.candidates[*k].limit_of?;
+            indices.iter().position(|index| *index == of)
+        };
+        let limits: Vec<Option<usize>> = indices.iter().map(limit_of).collect();
+        let classes = classes(&products, &limits);
         Some(Projected {
             lengths: indices.iter().copied().zip(lengths).collect(),
-            classes: indices.iter().copied().zip(classes(&products)).collect(),
+            classes: indices.iter().copied().zip(classes).collect(),
         })
     }
 

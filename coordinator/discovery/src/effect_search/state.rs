@@ -47,6 +47,8 @@ pub struct EffectSearch {
 pub(super) struct CandidateState {
     /// The coordinates of the base with this candidate added.
     pub(super) frame: NormalFrame,
+    /// The candidate whose parameter has its limit here.
+    pub(super) limit_of: Option<usize>,
     /// The result of the screen, on the model if that was evaluated.
     pub(super) screened: Option<Screened>,
     /// The result of the low-fidelity screen.
@@ -122,8 +124,10 @@ impl EffectSearch {
         candidates: &[Candidate],
         seed: u64,
     ) -> Self {
+        let place = |name: &String| candidates.iter().position(|other| other.name == *name);
         let candidates = candidates.iter().map(|candidate| CandidateState {
             frame: base_frame.with(candidate),
+            limit_of: candidate.limit_of.as_ref().and_then(place),
             screened: None,
             low_fidelity: None,
             is_screened_on_model: false,

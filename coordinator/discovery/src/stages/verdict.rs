@@ -80,11 +80,19 @@ impl SearchVerdict {
         let best = effects
             .iter()
             .reduce(|a, b| if b.probability > a.probability { b } else { a });
+        let candidates = &hypotheses.candidates;
+        // A parameter and its limit are one claim, which the more probable of them states.
+        let claim_probability = |k: usize| -> f64 {
+            let is_same = |other: usize| candidates[other].is_same_parameter(&candidates[k]);
+            let same = effects.iter().filter(|e| e.candidate.is_some_and(is_same));
+            same.map(|e| e.probability).sum()
+        };
+        let is_probable = |candidate: Option<usize>| candidate.is_none_or(|k| claim_probability(k) > NAMED);
         match best {
             // Evidence and prediction contradict each other.
             Some(best) if best.candidate.is_some_and(|k| weighing.is_disputed(k)) => open,
             // If "nothing is missing" is the most probable explanation, no effect is claimed.
-            Some(best) if best.probability > NAMED || best.candidate.is_none() => match best.candidate {
+            Some(best) if is_probable(best.candidate) => match best.candidate {
                 // The law and the sets that it leads are none of these explanations.
                 None if weighing.law_probability() > best.probability => open,
                 None => nothing,

@@ -13,7 +13,7 @@ use toml_edit::{Array, DocumentMut, Item, Table, TableLike, value};
 
 use crate::addition::{Addition, ModelChange, keys_of_kinds};
 use crate::facts::effect_name;
-use crate::model_switch::ModelSwitch;
+use crate::model_switch::{ModelSwitch, SettingValue};
 use crate::service_effect::ServiceEffect;
 use crate::table::algorithm_settings::{AlgorithmName, AlgorithmSettings};
 use crate::table::model_entry::is_shared_by;
@@ -346,13 +346,18 @@ impl<'n> JobText<'n> {
 
     /// Gives a setting of the model another value.
     fn turn(&mut self, switch: &ModelSwitch) -> Result<(), FileError> {
+        self.release(switch.key);
         let model = self.model()?;
         if switch.is_kind() {
             for key in keys_of_kinds() {
                 model.remove(key);
             }
         }
-        model.insert(switch.key, value(switch.value));
+        let setting = match switch.value {
+            SettingValue::Word(word) => value(word),
+            SettingValue::Limit(number) => value(number),
+        };
+        model.insert(switch.key, setting);
         Ok(())
     }
 

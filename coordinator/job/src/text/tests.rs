@@ -429,6 +429,7 @@ fn a_change_of_the_value_is_that_of_the_text() {
         "[priors]\nn = 1.1\ncohesion_pa = { half_normal = 3.0 }\n",
         "[priors]\nn = 1.1\n[priors.kappa]\nuniform = [0.0, 1.0]\n[priors.log10_p_ref]\nuniform = [4.0, 5.0]\n",
         "[priors]\nkappa.uniform = [0.0, 1.0]\nn = 1.1\n",
+        "[priors]\nn = 1.1\nshear_velocity_m_s = 0.002\n",
         "[priors]\nzz = 1.0\nn = { uniform = [0.9, 1.2] }\n\"hard_pan.x\" = 0.5\nhard_pan.y = 0.5\n",
     ] {
         let job = alone(&format!("{model}{priors}"));
@@ -439,6 +440,7 @@ fn a_change_of_the_value_is_that_of_the_text() {
             vec![free("bearing_credit"), turn("displacement_node")],
             vec![turn("kind_quasi_static")],
             vec![turn("pressure_direction_vertical"), free("flow_fraction")],
+            vec![turn("shear_velocity_zero")],
         ] {
             let addition = Addition {
                 changes,
