@@ -38,6 +38,7 @@ mod page_data;
 mod point_fit;
 mod posterior_prior;
 mod reference;
+mod replacement;
 mod rig;
 mod scale;
 mod search;

@@ -38,6 +38,7 @@ pub use stages::conclusion::{Conclusion, OutsideLaw, PosteriorModel};
 pub use stages::next_run::InformativeRun;
 pub use stages::prior_sensitivity::AlternativePrior;
 pub use stages::query::{QueriedModel, Query};
+pub use stages::replacement::Replacement;
 pub use stages::shared_errors::{GroupError, JudgedError, SharedErrorSource, SuspectedError, SuspectedShift};
 pub use stages::verdict::{NAMED, SearchVerdict};
 pub use stages::weighing::WeighedSet;

@@ -51,6 +51,8 @@ pub struct LawCandidate {
 pub struct Reduction {
     /// The parameters of the model that remain, by index.
     pub parameters: Vec<usize>,
+    /// The effects of the library that the model may have in the place of this one.
+    pub substitutes: Vec<usize>,
 }
 
 /// Runs that could be made next.

@@ -6,6 +6,7 @@ mod effect_search;
 mod exchange;
 mod inferred_noise;
 mod pairs;
+mod replacement;
 mod rough_model;
 mod search;
 mod setup;

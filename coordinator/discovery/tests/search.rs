@@ -15,13 +15,13 @@ const SD: f64 = 0.1;
 /// Eight levels of x, each with three values of w.
 const LEVELS: usize = 8;
 const OF_LEVEL: usize = 3;
-const DATA: usize = LEVELS * OF_LEVEL;
+pub(crate) const DATA: usize = LEVELS * OF_LEVEL;
 
-fn x(i: usize) -> f64 {
+pub(crate) fn x(i: usize) -> f64 {
     (i / OF_LEVEL) as f64 / (LEVELS - 1) as f64 * 2.0 - 1.0
 }
 
-fn w(i: usize) -> f64 {
+pub(crate) fn w(i: usize) -> f64 {
     (i % OF_LEVEL) as f64 - 1.0
 }
 
@@ -34,7 +34,7 @@ pub(crate) const SQUARE: usize = 0;
 const CUBE: usize = 1;
 pub(crate) const WIDTH: usize = 2;
 pub(crate) const CONSTANT: usize = 3;
-const LIBRARY: usize = 4;
+pub(crate) const LIBRARY: usize = 4;
 /// Laws outside it: a curve over x with a step, a curve over w with a line.
 const OVER_X: usize = LIBRARY;
 const STEP: usize = LIBRARY + 1;
@@ -71,7 +71,7 @@ fn hat(k: usize, x: f64) -> f64 {
 }
 
 /// The change that a candidate makes at x and w.
-fn added(k: usize, parameters: &[f64], x: f64, w: f64) -> f64 {
+pub(crate) fn added(k: usize, parameters: &[f64], x: f64, w: f64) -> f64 {
     match k {
         SQUARE => parameters[0] * x * x,
         CUBE => parameters[0] * x * x * x,
@@ -110,7 +110,7 @@ pub(crate) fn answer(query: &Query) -> Vec<f64> {
     let (effects, theta) = match &query.model {
         QueriedModel::With(effects) => (effects.clone(), query.theta.clone()),
         // The base's last parameter is a cube of its own in one test.
-        QueriedModel::Without(_) => (Vec::new(), query.theta.clone()),
+        QueriedModel::Without(..) => (Vec::new(), query.theta.clone()),
     };
     if query.is_proposed {
         return PROPOSED
@@ -453,12 +453,13 @@ fn an_effect_of_the_model_without_evidence_is_redundant() {
         task.laws.clear();
         task.reductions = vec![Reduction {
             parameters: vec![0, 1],
+            substitutes: Vec::new(),
         }];
         let conclusion = search(task, false, |query| {
             let value = |i: usize| {
                 let t = &query.theta;
                 let effect = match &query.model {
-                    QueriedModel::Without(_) => 0.0,
+                    QueriedModel::Without(..) => 0.0,
                     QueriedModel::With(effects) => {
                         let shifted: Vec<usize> = effects.iter().map(|k| k + 1).collect();
                         let extra = shifted.first().map_or(0.0, |&k| added(k, &t[3..], x(i), w(i)));

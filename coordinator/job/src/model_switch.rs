@@ -43,8 +43,9 @@ const SHEAR_VELOCITY: &str = "shear_velocity_m_s";
 
 /// The settings that a search may change.
 ///
-/// Only the reference velocity has a limit here: the effect `shear_velocity_scale` multiplies it by a positive factor. The priors of all
-/// other [plain parameters](crate::PLAIN_PARAMETERS) include the values at which their part of the model ends.
+/// Only the reference velocity has a limit here: the effect `shear_velocity_scale` multiplies it by a positive factor. The priors of the
+/// other [plain parameters](crate::PLAIN_PARAMETERS) include the ends of their ranges, and an infinite elastic stiffness is no value of the
+/// model.
 pub const MODEL_SWITCHES: [ModelSwitch; 7] = [
     ModelSwitch {
         name: "pressure_direction_vertical",

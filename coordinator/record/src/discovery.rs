@@ -51,6 +51,9 @@ pub struct Discovery {
     pub extension: Option<Extension>,
     /// Effects of the model that no longer improve its evidence.
     pub drop: Vec<String>,
+    /// Leading effects in the place of effects of the model, by falling probability. Absent from records of earlier versions.
+    #[serde(default)]
+    pub replacements: Vec<JudgedReplacement>,
     /// Every explanation by falling probability, with `none` and, if it was searched, `not_in_library`.
     pub effects: Vec<JudgedEffect>,
     /// Every model that was compared, by falling probability; an effect's probability is the sum over the sets that it leads.
@@ -104,6 +107,21 @@ pub struct Discovery {
     pub evaluations_to_name: u64,
     /// Number of all evaluations.
     pub evaluations: u64,
+}
+
+/// An effect in the place of an effect of the searched model.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct JudgedReplacement {
+    /// Name of the effect.
+    pub effect: String,
+    /// Name of the effect of the model that is left out.
+    pub in_place_of: String,
+    /// Log evidence over that of the searched model.
+    pub log_bayes_factor: f64,
+    /// Probability among the replacements and all sets.
+    pub probability: f64,
+    /// Whether the verdict names the effect in this place.
+    pub is_named: bool,
 }
 
 /// A parameter that contradicts its prior.
@@ -370,6 +388,11 @@ pub struct CurveDatum {
 }
 
 impl Discovery {
+    /// Returns the replacement that the verdict names.
+    pub fn named_replacement(&self) -> Option<&JudgedReplacement> {
+        self.replacements.iter().find(|replacement| replacement.is_named)
+    }
+
     /// Removes the parts that only pictures use.
     #[must_use]
     pub fn without_curves(self) -> Self {

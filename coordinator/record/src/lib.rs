@@ -23,8 +23,9 @@ mod verification;
 pub use calibration::{CalibrationRow, ExperimentRow, SealKey};
 pub use discovery::{
     ChiSquare, CurveDatum, Discovery, EffectCurves, Extension, ImplausibleParameter, JudgedEffect,
-    JudgedRigError, JudgedSet, NEXT_RUNS, NONE, NOT_IN_LIBRARY, NextRun, NotTried, Outside, RemainingMisfit,
-    RigOffset, RunInformation, Verdict, addition_name, effect_of, parts_of, parts_of_effect,
+    JudgedReplacement, JudgedRigError, JudgedSet, NEXT_RUNS, NONE, NOT_IN_LIBRARY, NextRun, NotTried,
+    Outside, RemainingMisfit, RigOffset, RunInformation, Verdict, addition_name, effect_of, parts_of,
+    parts_of_effect,
 };
 pub use estimate::EstimateRow;
 pub use evaluation_key::{EvaluationKey, HOLDOUT_RUNS_FROM, LIKELIEST, PREDICTIONS_FROM};

@@ -3,12 +3,13 @@
 use std::collections::BTreeMap;
 
 use discovery::{
-    Conclusion, EvidenceMethod, FitChiSquare, NAMED, OutsideLaw, RankedEffect, SearchVerdict, WeighedSet,
+    Conclusion, EvidenceMethod, FitChiSquare, NAMED, OutsideLaw, RankedEffect, Replacement, SearchVerdict,
+    WeighedSet,
 };
 use job::PlainParameter;
 use record::{
-    ChiSquare, Discovery, Extension, ImplausibleParameter, JudgedEffect, JudgedSet, NONE, NOT_IN_LIBRARY,
-    NextRun, Outside, RunInformation, Verdict,
+    ChiSquare, Discovery, Extension, ImplausibleParameter, JudgedEffect, JudgedReplacement, JudgedSet, NONE,
+    NOT_IN_LIBRARY, NextRun, Outside, RunInformation, Verdict,
 };
 use shared::channel::Channel;
 
@@ -98,8 +99,9 @@ pub(super) fn discovery_record(models: &SearchModels, conclusion: &Conclusion) -
         drop: conclusion
             .redundant()
             .filter(|_| conclusion.implausible.is_none())
-            .map(|k| models.reductions[k].0.clone())
+            .map(|k| models.reductions[k].effect.clone())
             .collect(),
+        replacements: replacements(models, conclusion),
         other_tests: bench_measurement::deciding(&open, verdict),
         effects,
         sets: sets(models, conclusion),
@@ -121,6 +123,18 @@ pub(super) fn discovery_record(models: &SearchModels, conclusion: &Conclusion) -
         evaluations_to_name: conclusion.ranking.evaluations.to_name() as u64,
         evaluations: conclusion.evaluations as u64,
     }
+}
+
+/// Lists the effects in the place of effects of the base.
+fn replacements(models: &SearchModels, conclusion: &Conclusion) -> Vec<JudgedReplacement> {
+    let judged = |replacement: &Replacement| JudgedReplacement {
+        effect: models.name(replacement.candidate),
+        in_place_of: models.reductions[replacement.reduction].effect.clone(),
+        log_bayes_factor: replacement.log_bayes_factor,
+        probability: replacement.probability,
+        is_named: replacement.is_claimed,
+    };
+    conclusion.replacements.iter().map(judged).collect()
 }
 
 /// Names the inferred noise sds that do not support a claim.

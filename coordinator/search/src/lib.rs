@@ -4,7 +4,7 @@
 //! - [`candidate`]: candidate effects as additions to a job, and those of the library. `law`: laws outside the library as effect
 //!   files.
 //! - [`untried`]: effects that need a property which the experiment does not state.
-//! - `models`: the models of a search, made when they are queried. `entry`: their candidates. `family`: candidates that are tried
+//! - `models`: the models of a search, made when they are queried. `entry`: their candidates. `reduced_model`: the base without one of its effects. `family`: candidates that are tried
 //!   together. `design`: levels of the design, and runs that the rig could make.
 //! - `search`: a search in progress, as leases take it.
 //! - `discovery_record`: its result as it is stored. `curves`: the predictions of its explanations. `narrative`: its verdict in one
@@ -23,6 +23,7 @@ mod fixture;
 mod law;
 mod models;
 mod narrative;
+mod reduced_model;
 mod remaining_misfit;
 mod rig_errors;
 mod search;

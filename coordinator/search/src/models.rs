@@ -4,8 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use discovery::{
-    LawCandidate, ProposedRuns, QueriedModel, Query, Reduction, SearchSettings, SearchTask, Smoothness,
-    Starts,
+    LawCandidate, ProposedRuns, QueriedModel, Query, SearchSettings, SearchTask, Smoothness, Starts,
 };
 use formula::catalogue::{catalogue, find};
 use formula::slip::variables;
@@ -26,6 +25,7 @@ use super::entry::{CandidateEntry, LawEntry};
 use super::family::set_families;
 use super::law::dependence::{Dependence, dependences};
 use super::law::file::LawFiles;
+use super::reduced_model::ReducedModel;
 use super::rig_errors::suspects;
 use super::untried::{UntriedEffect, untried};
 use job::{
@@ -70,8 +70,8 @@ pub struct SearchModels {
     pub(super) laws: Vec<LawEntry>,
     /// The files of the laws, each read once.
     law_files: NamedFiles,
-    /// The base's own effects, each with the names of the parameters that remain without it.
-    pub(super) reductions: Vec<(String, Vec<String>)>,
+    /// The base without each of its effects.
+    pub(super) reductions: Vec<ReducedModel>,
     /// Proposed runs.
     pub(super) design: Vec<RunCondition>,
     /// The measured channels with their noise sds.
@@ -114,7 +114,7 @@ impl SearchModels {
         Ok(Self {
             design: design::proposed(&base),
             channels: design::channels(&base, &prior_means),
-            reductions: reductions(&job, &base),
+            reductions: ReducedModel::all_of(&job, &base, &library),
             job,
             assumed,
             library,
@@ -138,10 +138,6 @@ impl SearchModels {
     /// Returns the task of the search.
     pub fn task(&self) -> SearchTask {
         let base = &self.base;
-        let place = |name: &String| base.parameters.iter().position(|p| p.name == *name);
-        let reduction = |(_, names): &(String, Vec<String>)| Reduction {
-            parameters: names.iter().filter_map(place).collect(),
-        };
         let law = |law: &LawEntry| LawCandidate {
             curve: law.curve.candidate.clone(),
             forms: law.forms.iter().map(|(_, form)| form.candidate.clone()).collect(),
@@ -152,7 +148,11 @@ impl SearchModels {
             likelihood: base.likelihood.clone(),
             library: self.library.iter().map(|entry| entry.candidate.clone()).collect(),
             laws: self.laws.iter().map(law).collect(),
-            reductions: self.reductions.iter().map(reduction).collect(),
+            reductions: self
+                .reductions
+                .iter()
+                .map(|reduced| reduced.reduction(base))
+                .collect(),
             levels: design::levels(base),
             conditions: design::conditions(base),
             proposed: ProposedRuns {
@@ -260,39 +260,29 @@ impl SearchModels {
     }
 
     fn of_fitted_runs(&self, model: &QueriedModel) -> Result<ModelVariant, FileError> {
-        let (job, experiment) = match model {
-            QueriedModel::With(effects) => {
-                let entries: Vec<&CandidateEntry> = effects.iter().filter_map(|&k| self.entry(k)).collect();
-                let extensions: Vec<&Extension> = entries.iter().map(|e| &e.effect.extension).collect();
-                let is_assumed = entries.iter().any(|e| e.not_tried.is_some());
-                let experiment = match is_assumed {
-                    true => &self.assumed,
-                    false => &self.base.experiment,
-                };
-                (
-                    with_extensions(&self.job, &extensions, &self.law_files)?,
-                    experiment,
-                )
-            }
-            QueriedModel::Without(k) => {
-                let effect = std::slice::from_ref(&self.reductions[*k].0);
-                (self.job.without(JOB, effect)?, &self.base.experiment)
-            }
+        let effects = effects_of(model);
+        let entries: Vec<&CandidateEntry> = effects.iter().filter_map(|&k| self.entry(k)).collect();
+        let extensions: Vec<&Extension> = entries.iter().map(|e| &e.effect.extension).collect();
+        let is_assumed = entries.iter().any(|e| e.not_tried.is_some());
+        let experiment = match is_assumed {
+            true => &self.assumed,
+            false => &self.base.experiment,
         };
-        Ok(spec(&job, experiment)?.fit_variant)
+        let job = match model {
+            QueriedModel::With(_) => with_extensions(&self.job, &extensions, &self.law_files),
+            QueriedModel::Without(k, _) => self.reductions[*k].with(&extensions, &self.law_files),
+        };
+        Ok(spec(&job?, experiment)?.fit_variant)
     }
 
     /// Returns the parameters of a query in the order of its variant.
     pub fn model_theta(&self, query: &Query, variant: &ModelVariant) -> Vec<f64> {
-        let names: Vec<&str> = match &query.model {
-            QueriedModel::With(effects) => {
-                let base = self.base.parameters.iter().map(|p| p.name.as_str());
-                let entries = effects.iter().filter_map(|&k| self.entry(k));
-                base.chain(entries.flat_map(|entry| entry.names.iter().map(String::as_str)))
-                    .collect()
-            }
-            QueriedModel::Without(k) => self.reductions[*k].1.iter().map(String::as_str).collect(),
+        let mut names: Vec<&str> = match &query.model {
+            QueriedModel::With(_) => self.base.parameters.iter().map(|p| p.name.as_str()).collect(),
+            QueriedModel::Without(k, _) => self.reductions[*k].names().collect(),
         };
+        let entries = effects_of(&query.model).iter().filter_map(|&k| self.entry(k));
+        names.extend(entries.flat_map(|entry| entry.names.iter().map(String::as_str)));
         let value = |name: &String| {
             let place = names.iter().position(|candidate| candidate == name);
             place.map_or(f64::NAN, |i| query.theta[i])
@@ -387,19 +377,6 @@ fn laws(job: &Job, base: &Spec) -> Result<Vec<LawEntry>, FileError> {
     Ok(laws)
 }
 
-/// Lists the base's effects without which the job is valid, each with the names of the parameters that remain.
-fn reductions(job: &Job, base: &Spec) -> Vec<(String, Vec<String>)> {
-    let mut reductions = Vec::new();
-    for effect in &base.fit_variant.effects {
-        let without = job.without(JOB, std::slice::from_ref(&effect.name));
-        if let Ok(without) = without.and_then(|job| spec(&job, &base.experiment)) {
-            let names = without.parameters.into_iter().map(|p| p.name).collect();
-            reductions.push((effect.name.clone(), names));
-        }
-    }
-    reductions
-}
-
 /// Excludes combinations of an effect whose shear displacement is kept on the nodes with other effects of the displacement, which
 /// it would move to the nodes, too.
 fn exclude_on_nodes(entries: &mut [CandidateEntry]) {
@@ -470,16 +447,20 @@ fn out_of_reach(model: &ExternalModel) -> impl Iterator<Item = NotTried> {
     catalogue().iter().filter_map(record)
 }
 
+/// Returns the candidates that a model has.
+fn effects_of(model: &QueriedModel) -> &[usize] {
+    match model {
+        QueriedModel::With(effects) | QueriedModel::Without(_, effects) => effects,
+    }
+}
+
 /// Returns the model with its effects in the order of the candidates.
 fn sorted(model: &QueriedModel) -> QueriedModel {
-    match model {
-        QueriedModel::With(effects) => {
-            let mut effects = effects.clone();
-            effects.sort_unstable();
-            QueriedModel::With(effects)
-        }
-        without @ QueriedModel::Without(_) => without.clone(),
+    let mut sorted = model.clone();
+    match &mut sorted {
+        QueriedModel::With(effects) | QueriedModel::Without(_, effects) => effects.sort_unstable(),
     }
+    sorted
 }
 
 #[cfg(test)]

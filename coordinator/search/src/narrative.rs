@@ -1,6 +1,6 @@
 //! The narrative of a search: its verdict in one sentence for a test engineer.
 
-use discovery::{Conclusion, DETECTED, NAMED, SearchVerdict, WeighedSet};
+use discovery::{Conclusion, DETECTED, NAMED, Replacement, SearchVerdict, WeighedSet};
 use formula::Hook;
 use job::{EffectOnNodes, ModelSwitch, PlainParameter};
 use record::{JudgedEffect, JudgedRigError, NONE, NOT_IN_LIBRARY, Outside};
@@ -26,13 +26,16 @@ pub(super) fn sentence(
     effects: &[JudgedEffect],
     outside: Option<&Outside>,
 ) -> String {
-    let mut text = if let Some(reason) = implausible(models, conclusion) {
+    let mut text = if let Some(claim) = claimed_replacement(models, conclusion) {
+        claim
+    } else if let Some(reason) = implausible(models, conclusion) {
         format!("something is missing or the prior is wrong: {reason}")
     } else if let Some(reason) = unsupported_noise(models, conclusion) {
         format!("nothing is named: {reason}; {}", credible_set(effects))
     } else {
         verdict(models, conclusion, effects, outside)
     };
+    text += &better_replacement(models, conclusion);
     let is_claim = conclusion.verdict.is_claim();
     if let (true, Some(false), Some(chi)) = (is_claim, conclusion.complete, conclusion.chi_square_best) {
         let explained = conclusion.explained.map_or(String::new(), |share| {
@@ -82,6 +85,44 @@ fn rig(models: &SearchModels, conclusion: &Conclusion) -> String {
         "; runs share errors of the rig, which count as noise: {}",
         acting.join("; ")
     )
+}
+
+/// Writes the claim that an effect belongs in the place of one of the model: `elastic_rebound is missing in the place of bin_slope`.
+fn claimed_replacement(models: &SearchModels, conclusion: &Conclusion) -> Option<String> {
+    let replacement = conclusion.claimed_replacement()?;
+    let name = models.name(replacement.candidate);
+    Some(format!(
+        "{name} is missing in the place of {}: {} ({}, {:.1} nats over {})",
+        models.reductions[replacement.reduction].effect,
+        summary(&name),
+        probability(replacement.probability),
+        replacement.log_bayes_factor,
+        models.base.model_words(),
+    ))
+}
+
+/// Names the best replacement that improves the model, is not claimed, and is not far less probable than one more effect is.
+fn better_replacement(models: &SearchModels, conclusion: &Conclusion) -> String {
+    let best = conclusion.replacements.first();
+    let is_better = |best: &&Replacement| {
+        !best.is_claimed && best.log_bayes_factor > DETECTED && best.probability > MIN_LISTED
+    };
+    best.filter(is_better).map_or(String::new(), |best| {
+        format!(
+            "; {} in the place of {} would be {:.1} nats better than the model as it is",
+            models.name(best.candidate),
+            models.reductions[best.reduction].effect,
+            best.log_bayes_factor
+        )
+    })
+}
+
+/// Returns the sentence that states the assumption of a candidate; empty for a law outside the catalogue.
+fn summary(name: &str) -> &'static str {
+    let plain = PlainParameter::find(name).map(|plain| plain.summary);
+    let switch = || ModelSwitch::find(name).map(|switch| switch.summary);
+    let effect = || candidate_of(name).map(|(effect, _)| effect.summary.as_str());
+    plain.or_else(switch).or_else(effect).unwrap_or_default()
 }
 
 /// Names the parameter that contradicts its prior in the best explanation, with advice.
@@ -211,12 +252,11 @@ fn verdict(
                     untried.needs
                 );
             }
-            let effect = candidate_of(&name).map(|(effect, _)| effect);
             let claim = match (PlainParameter::find(&name), ModelSwitch::find(&name)) {
-                (Some(plain), _) => format!("{name} is missing: {}", plain.summary),
+                (Some(_), _) => format!("{name} is missing: {}", summary(&name)),
                 (None, Some(switch)) => format!("{} fits: {}", switch.line(), switch.summary),
                 (None, None) => {
-                    let summary = effect.map_or("", |effect| effect.summary.as_str());
+                    let summary = summary(&name);
                     let place =
                         EffectOnNodes::find(&name).map_or("", |_| ", counted where the soil is sheared");
                     let dimension = judged.and_then(|judged| dimension(models, &name, judged));

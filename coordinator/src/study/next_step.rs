@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use shared::api::CalibrationState;
 
 use job::{Apply, DiscoverySettings};
-use record::{CalibrationRow, Discovery, Extension, parts_of};
+use record::{CalibrationRow, Change, Discovery, Extension, parts_of};
 
 use super::lineage::Lineage;
 
@@ -40,7 +40,8 @@ pub fn most_probable(log_evidences: impl Iterator<Item = Option<f64>>) -> Option
 ///
 /// A failed or cancelled member ends it. With `ask` the last calibration of the ledger is searched, and the user decides. With `auto` it is
 /// extended by the effect that its search names, up to the allowed number of effects beyond those of the first member; an effect that was
-/// dropped is neither added nor dropped again. If the job compares several models, the study continues with the model of largest evidence.
+/// dropped is neither added nor dropped again. Where a search names an effect in the place of one that the study added, that one is dropped
+/// and the other is then added, without a search between them. If the job compares several models, the study continues with the model of largest evidence.
 pub fn next_step(
     settings: DiscoverySettings,
     rows: &[CalibrationRow],
@@ -61,29 +62,52 @@ pub fn next_step(
         .chain(later)
         .rfind(|row| findings.ledger.contains(&row.id))?;
     let Some(search) = lineage.search_of(last.id) else {
-        return Some(StudyStep::Search(last.id));
+        let replacing = replacing(lineage, findings, last).filter(|_| settings.apply == Apply::Auto);
+        return Some(match replacing {
+            Some(extension) => StudyStep::Extend(last.id, extension),
+            None => StudyStep::Search(last.id),
+        });
     };
     if settings.apply == Apply::Ask {
         return None;
     }
     let record = findings.searches.get(&search.id)?;
+    // Effects of the submitted job are the user's choice.
+    let can_go = |effect: &&String| lineage.has_added(last.id, effect) && !lineage.has_dropped(effect);
     if let Some(extension) = &record.extension {
         let parts = parts_of(extension);
         let is_dropped = parts.iter().any(|part| lineage.has_dropped(part));
         let is_there = parts.iter().all(|part| lineage.has_added(last.id, part));
+        let replaced = record.named_replacement().map(|named| &named.in_place_of);
+        if let Some(effect) = replaced.filter(can_go).filter(|_| !is_dropped && !is_there) {
+            return Some(StudyStep::Drop(last.id, vec![effect.clone()]));
+        }
         if lineage.additions(last.id).len() < settings.max_effects && !is_dropped && !is_there {
             return Some(StudyStep::Extend(last.id, extension.clone()));
         }
     }
-    // Effects of the submitted job are the user's choice.
-    let can_go = |effect: &&String| lineage.has_added(last.id, effect) && !lineage.has_dropped(effect);
     let drop: Vec<String> = record.drop.iter().filter(can_go).cloned().collect();
     (!drop.is_empty()).then_some(StudyStep::Drop(last.id, drop))
 }
 
+/// Returns the effect that a search named in the place of one that this calibration was made without.
+fn replacing(lineage: Lineage, findings: &StudyFindings, last: &CalibrationRow) -> Option<Extension> {
+    let Some(Change::Drop(dropped)) = &last.membership.change else {
+        return None;
+    };
+    let search = lineage.search_of(last.membership.parent?)?;
+    let record = findings.searches.get(&search.id)?;
+    let replaced = &record.named_replacement()?.in_place_of;
+    let extension = record.extension.clone().filter(|_| dropped.contains(replaced))?;
+    let is_tried = lineage
+        .existing(last.id, &Change::Add(extension.clone()))
+        .is_some();
+    (!is_tried).then_some(extension)
+}
+
 #[cfg(test)]
 mod tests {
-    use record::{Change, Membership, Role, effect_of};
+    use record::{JudgedReplacement, Membership, Role, effect_of};
 
     use super::*;
 
@@ -247,6 +271,35 @@ mod tests {
             None,
             "and is not dropped twice"
         );
+    }
+
+    #[test]
+    fn an_effect_takes_the_place_of_one_that_the_study_added() {
+        let in_place_of = |effect: &str| Discovery {
+            replacements: vec![JudgedReplacement {
+                effect: "b".into(),
+                in_place_of: effect.into(),
+                log_bayes_factor: 9.0,
+                probability: 0.99,
+                is_named: true,
+            }],
+            ..names(Some("b"), &["a"])
+        };
+        let mut rows = vec![base(1), search(2, 1), added(3, 1, "a"), search(4, 3)];
+        let mut records = vec![(2, names(Some("a"), &[])), (4, in_place_of("a"))];
+        let drop = Some(StudyStep::Drop(3, vec!["a".into()]));
+        assert_eq!(step(Apply::Auto, &rows, &records), drop);
+        assert_eq!(step(Apply::Ask, &rows, &records), None);
+        let of_job = [records[0].clone(), (4, in_place_of("of_the_job"))];
+        assert_eq!(step(Apply::Auto, &rows, &of_job), extend(3, "b"));
+        rows.push(dropped(5, 3, "a"));
+        assert_eq!(step(Apply::Auto, &rows, &records), extend(5, "b"));
+        assert_eq!(step(Apply::Ask, &rows, &records), Some(StudyStep::Search(5)));
+        rows.push(added(6, 5, "b"));
+        assert_eq!(step(Apply::Auto, &rows, &records), Some(StudyStep::Search(6)));
+        rows.push(search(7, 6));
+        records.push((7, names(Some("a"), &[])));
+        assert_eq!(step(Apply::Auto, &rows, &records), None, "it was replaced");
     }
 
     #[test]

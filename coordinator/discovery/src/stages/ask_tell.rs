@@ -170,6 +170,7 @@ impl DiscoverySearch {
             Stage::LawBesideEffects(effects, validation) => {
                 state.after_law_beside_effects(effects, validation)
             }
+            Stage::Replacements(branches) => state.after_replacements(branches),
             Stage::Predictions(sets, validation) => state.after_predictions(sets, validation),
             Stage::NextRuns(runs) => state.done(runs.best()),
             Stage::Done(_) | Stage::Failed(_) => return,

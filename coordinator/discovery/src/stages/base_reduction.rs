@@ -33,21 +33,20 @@ impl SearchState {
                 ..self.task.settings.clone()
             };
             let search = EffectSearch::new(&prior, self.task.likelihood.clone(), &[], &settings).ok()?;
-            Some(SearchBranch::without(k, search))
+            Some(SearchBranch::without(k, Vec::new(), search))
         });
         Stage::BaseReduction(branches.collect())
     }
 
-    /// Keeps the gain of each effect of the base, and begins the families.
+    /// Keeps the fits without each effect of the base, and begins the families.
     pub(super) fn after_base_reduction(&mut self, branches: &[SearchBranch]) -> Stage {
-        let base = self.hypotheses.base_evidence();
-        let mut gains = vec![None; self.task.reductions.len()];
+        let mut reduced = vec![None; self.task.reductions.len()];
         for branch in branches {
-            if let (Some(k), Some(fitted)) = (branch.reduction, branch.search.base_fit()) {
-                gains[k] = Some(base - fitted.log_evidence);
+            if let Some(k) = branch.reduction {
+                reduced[k] = branch.search.base_fit().cloned();
             }
         }
-        self.hypotheses.gains = gains;
+        self.hypotheses.reduced = reduced;
         self.families()
     }
 }

@@ -34,11 +34,11 @@ impl SearchBranch {
         Self { choice, ..self }
     }
 
-    /// Returns the fit of the base without one of its effects.
-    pub(super) fn without(reduction: usize, search: EffectSearch) -> Self {
+    /// Returns the fit of the base without one of its effects, and with others.
+    pub(super) fn without(reduction: usize, effects: Vec<usize>, search: EffectSearch) -> Self {
         Self {
             reduction: Some(reduction),
-            ..Self::new(Vec::new(), Vec::new(), search)
+            ..Self::new(effects, Vec::new(), search)
         }
     }
 
@@ -51,9 +51,10 @@ impl SearchBranch {
             let mut effects = self.effects.clone();
             effects.extend(request.candidate.map(|k| self.candidates[k]));
             Query {
-                model: self
-                    .reduction
-                    .map_or(QueriedModel::With(effects), QueriedModel::Without),
+                model: match self.reduction {
+                    None => QueriedModel::With(effects),
+                    Some(reduction) => QueriedModel::Without(reduction, effects),
+                },
                 is_proposed: false,
                 is_low_fidelity: request.is_low_fidelity,
                 theta: request.theta,

@@ -9,6 +9,7 @@ use crate::stages::claimable_law::ClaimableLaw;
 use crate::stages::next_run::{InformativeRun, RunChoice};
 use crate::stages::noise_support::unsupported_noise;
 use crate::stages::prior_sensitivity::{AlternativePrior, alternative_priors};
+use crate::stages::replacement::{self, Replacement};
 use crate::stages::shared_errors::{JudgedError, judged_errors};
 use crate::stages::state::SearchState;
 use crate::stages::verdict::SearchVerdict;
@@ -109,6 +110,8 @@ pub struct Conclusion {
     pub outside: Option<OutsideLaw>,
     /// The effects of the best combination.
     pub combination: Vec<usize>,
+    /// Leading candidates in the place of effects of the base, by falling probability. One that is claimed is the verdict.
+    pub replacements: Vec<Replacement>,
     /// Log Bayes factor of the base over each of its reductions; `None` where the reduction cannot be fitted.
     pub gains: Vec<Option<f64>>,
     /// Goodness of fit of the base.
@@ -133,6 +136,7 @@ pub struct Conclusion {
 }
 
 /// The reasons for which a claim is withheld.
+#[derive(Default)]
 struct Objections {
     implausible: Option<(usize, f64)>,
     unsupported_noise: Vec<usize>,
@@ -208,12 +212,18 @@ impl Conclusion {
             .as_ref()
             .map(|law| &law.fit)
             .or(detected.map(|best| &best.fit));
-        let objections = Objections::new(task, base, explanation, supported);
+        let replacements = replacement::weighed(task, hypotheses, &weighing);
+        let claimed = replacements.iter().find(|replacement| replacement.is_claimed);
+        // What speaks against the best set does not speak against the replacement that is more probable.
+        let objections = match claimed {
+            Some(_) => Objections::default(),
+            None => Objections::new(task, base, explanation, supported),
+        };
         let is_withheld = objections.any();
-        let verdict = if is_withheld && supported.is_claim() {
-            SearchVerdict::Undecided
-        } else {
-            supported
+        let verdict = match claimed {
+            Some(replacement) => SearchVerdict::Named(replacement.candidate),
+            None if is_withheld && supported.is_claim() => SearchVerdict::Undecided,
+            None => supported,
         };
         let remainder = Remainder::new(task, base, explanation.or(base));
         let combination = detected.map_or(Vec::new(), |best| best.effects.clone());
@@ -245,7 +255,8 @@ impl Conclusion {
                 .filter(|_| verdict == SearchVerdict::NotInLibrary)
                 .map(OutsideLaw::new),
             combination,
-            gains: hypotheses.gains.clone(),
+            replacements,
+            gains: hypotheses.gains(),
             chi_square: base.and_then(chi_square),
             chi_square_best: law
                 .as_ref()
@@ -278,6 +289,13 @@ impl Conclusion {
         self.alternative_priors
             .iter()
             .filter_map(|prior| prior.not_in_library)
+    }
+
+    /// Returns the replacement that is claimed.
+    pub fn claimed_replacement(&self) -> Option<&Replacement> {
+        self.replacements
+            .iter()
+            .find(|replacement| replacement.is_claimed)
     }
 
     /// The reductions that cost no detectable evidence: their effects may be dropped.

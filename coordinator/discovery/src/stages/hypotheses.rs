@@ -26,9 +26,10 @@ pub(super) struct Hypotheses {
     pub(super) family_sets: BTreeSet<CandidateSet>,
     /// The sets that were fitted after an exchange of one effect.
     pub(super) exchanged: BTreeSet<CandidateSet>,
-    /// Log Bayes factor of the base over itself without each effect that may be dropped; `None` where the reduction cannot be
-    /// fitted.
-    pub(super) gains: Vec<Option<f64>>,
+    /// The base without each effect that may be dropped; `None` where the reduction cannot be fitted.
+    pub(super) reduced: Vec<Option<FittedModel>>,
+    /// The base with a leading candidate in the place of one of its effects.
+    pub(super) replacements: Vec<FittedReplacement>,
     /// Laws outside the library beyond the base; `None`: not searched.
     pub(super) laws: Option<LawScan>,
     /// Laws outside the library beyond sets of effects, in the order in which they were scanned.
@@ -66,6 +67,17 @@ impl EffectCombination {
     pub(super) fn fitted_log_bayes_factor(&self) -> f64 {
         self.log_bayes_factor + self.choice
     }
+}
+
+/// The fit of the base with a candidate in the place of one of its effects.
+#[derive(Debug, Clone)]
+pub(super) struct FittedReplacement {
+    /// Index of the reduction that is without the effect.
+    pub(super) reduction: usize,
+    pub(super) candidate: usize,
+    /// Log evidence over that of the base.
+    pub(super) log_bayes_factor: f64,
+    pub(super) fit: LaplaceFit,
 }
 
 /// The cross-validation of a law that acts together with effects.
@@ -130,7 +142,8 @@ impl Hypotheses {
             combinations: Vec::new(),
             family_sets: BTreeSet::new(),
             exchanged: BTreeSet::new(),
-            gains: Vec::new(),
+            reduced: Vec::new(),
+            replacements: Vec::new(),
             laws: None,
             further_laws: Vec::new(),
             unscanned: None,
@@ -146,6 +159,15 @@ impl Hypotheses {
     /// Returns the log evidence of the base; 0 before it is fitted.
     pub(super) fn base_evidence(&self) -> f64 {
         self.base.as_ref().map_or(0.0, |base| base.log_evidence)
+    }
+
+    /// Returns the log Bayes factor of the base over itself without each effect that may be dropped; `None` where the reduction cannot be
+    /// fitted.
+    pub(super) fn gains(&self) -> Vec<Option<f64>> {
+        let base = self.base_evidence();
+        let reduced = self.reduced.iter();
+        let gain = |reduced: &FittedModel| base - reduced.log_evidence;
+        reduced.map(|reduced| reduced.as_ref().map(gain)).collect()
     }
 
     /// Adds a combination, unless the same set has more evidence already.

@@ -86,7 +86,7 @@ impl SearchState {
     /// Cross-validates the best set that has a law against the library's best.
     fn law_validation(&mut self) -> Stage {
         let (Some(best), Some(base)) = (self.best_with_law(), self.hypotheses.base_fit()) else {
-            return self.predictions();
+            return self.replacements();
         };
         let base: ComparedModel = (Vec::new(), 0, base);
         let library = self.hypotheses.best_of_library(self.task.library.len());
@@ -107,6 +107,6 @@ impl SearchState {
                 left_out: [law - base, law - library],
             });
         }
-        self.predictions()
+        self.replacements()
     }
 }

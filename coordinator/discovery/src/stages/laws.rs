@@ -134,7 +134,7 @@ impl SearchState {
     pub(super) fn after_forms(&mut self, branch: &SearchBranch) -> Stage {
         let task = &self.task;
         let Some(scan) = self.hypotheses.current_scan() else {
-            return self.predictions();
+            return self.replacements();
         };
         let ranked = branch.ranked();
         for law in &mut scan.laws {
@@ -191,7 +191,7 @@ impl SearchState {
             _ => None,
         });
         let Some(scan) = self.hypotheses.current_scan() else {
-            return self.predictions();
+            return self.replacements();
         };
         // A law that replaces the library's best must not predict worse.
         let passes =

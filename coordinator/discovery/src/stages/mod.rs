@@ -14,10 +14,11 @@
 //! | 9 | curves and forms of laws outside the library, if misfit remains | `laws` |
 //! | 10 | cross-validation of the best laws by levels of the design that were left out | `laws`, `cross_validation` |
 //! | 11 | laws beyond the leading effects, effects beyond the best laws, and the cross-validation of the best such set | `laws`, `law_beside_effects` |
+//! | 12 | replacements: the base with a leading effect in the place of one of its effects | `replacement_fits` |
 //! | 12 | predictions of left-out levels by the leading sets | `last_stages`, `cross_validation` |
 //! | 13 | next runs: the runs that discriminate best between the explanations | `last_stages`, `next_run`, `run_information` |
 //! | 13 | errors that runs share, beside the best explanation | `shared_errors` |
-//! | 13 | probabilities, verdict and conclusion | `weighing`, `prior_sensitivity`, `noise_support`, `claimable_law`, `verdict`, `conclusion` |
+//! | 13 | probabilities, verdict and conclusion | `weighing`, `replacement`, `prior_sensitivity`, `noise_support`, `claimable_law`, `verdict`, `conclusion` |
 //!
 //! # Layout
 //! - `ask_tell`: how a discovery is asked and told. `query`: a request to the model.
@@ -42,6 +43,8 @@ pub(crate) mod next_run;
 mod noise_support;
 pub(crate) mod prior_sensitivity;
 pub(crate) mod query;
+pub(crate) mod replacement;
+mod replacement_fits;
 mod run_information;
 pub(crate) mod shared_errors;
 mod stage;

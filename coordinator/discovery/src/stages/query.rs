@@ -5,8 +5,8 @@
 pub enum QueriedModel {
     /// The base with these candidates, whose parameters follow the base's in this order.
     With(Vec<usize>),
-    /// The base without one of its effects, a reduction.
-    Without(usize),
+    /// The base without one of its effects, a reduction, and with these candidates, whose parameters follow those that remain.
+    Without(usize, Vec<usize>),
 }
 
 /// A parameter vector to evaluate.

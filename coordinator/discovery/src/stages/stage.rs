@@ -28,6 +28,8 @@ pub(super) enum Stage {
     LawElimination(Vec<SearchBranch>),
     /// Holds the effects and the law.
     LawBesideEffects(Vec<usize>, CrossValidation),
+    /// The base with a leading effect in the place of one of its effects.
+    Replacements(Vec<SearchBranch>),
     /// Holds the effects of the leading sets.
     Predictions(Vec<Vec<usize>>, CrossValidation),
     NextRuns(RunSelection),
@@ -55,7 +57,8 @@ impl Stage {
             | Self::BackwardElimination(branches)
             | Self::Exchanges(_, branches)
             | Self::EffectsBesideLaw(_, branches)
-            | Self::LawElimination(branches) => Work::Branches(branches),
+            | Self::LawElimination(branches)
+            | Self::Replacements(branches) => Work::Branches(branches),
             Self::CrossValidation(_, validation)
             | Self::LawBesideEffects(_, validation)
             | Self::Predictions(_, validation) => Work::Validation(validation),

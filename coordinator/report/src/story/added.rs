@@ -24,6 +24,8 @@ pub struct AddedEffect {
     pub rivals: Vec<Alternative>,
     /// The run that best distinguishes it from its rivals; null without rivals, or if the search found no run.
     pub deciding_run: Option<NextRun>,
+    /// The effect of the searched model in whose place the search named it; null if it was named beside the model's effects.
+    pub in_place_of: Option<String>,
     /// Holdout error before and after, in the noise standard deviations of the study; null without a holdout measurement, or if the study
     /// has no model that differs in this effect only.
     pub held_out_noise_sds: Option<[f64; 2]>,
@@ -38,6 +40,9 @@ impl AddedEffect {
             (Some(probability), false) => format!("{name} ({}) is added", p(probability)),
             (None, _) => format!("{name} was added by hand"),
         };
+        if let Some(replaced) = &self.in_place_of {
+            text += &format!(" in the place of {replaced}");
+        }
         if let Some([before, after]) = self.held_out_noise_sds {
             text += &format!(
                 ": held-out error from {} to {} times the noise",
@@ -81,7 +86,7 @@ pub(crate) fn added(study: &Study, calibration: &FinishedCalibration) -> Vec<Add
         let Some(before) = calibrations.find(|c| c.row.id == round.calibration) else {
             continue;
         };
-        let is_ancestor = study.parts(before).iter().all(|part| has.contains(part));
+        let is_ancestor = kept(study, round, before).iter().all(|part| has.contains(part));
         while let Some(judged) = judged(&round.record, &left).filter(|_| is_ancestor) {
             let effect_parts = parts(&judged.name);
             left.retain(|part| !effect_parts.contains(part));
@@ -98,6 +103,7 @@ pub(crate) fn added(study: &Study, calibration: &FinishedCalibration) -> Vec<Add
             searched: None,
             rivals: Vec::new(),
             deciding_run: None,
+            in_place_of: None,
         };
         (position(&order, &effect_parts), effect)
     });
@@ -117,7 +123,9 @@ fn judged(record: &Discovery, left: &[String]) -> Option<Alternative> {
         let name = addition_name(extension);
         let of_search = record.effects.iter().find(|e| e.name == name);
         let outside = || record.effects.iter().find(|e| e.name == NOT_IN_LIBRARY);
-        let probability = of_search.or_else(outside).map_or(0.0, |e| e.probability);
+        let replacement = record.named_replacement().map(|named| named.probability);
+        let of_model = of_search.or_else(outside).map(|e| e.probability);
+        let probability = replacement.or(of_model).unwrap_or(0.0);
         // The name of an effect on one wheel includes the wheel. The name of a law outside the library is in its file.
         let name = if of_search.is_some() {
             name
@@ -156,8 +164,11 @@ fn of_search(
         .map(Alternative::from)
         .filter(is_rival)
         .collect();
-    let extended = [study.parts(before), effect_parts].concat();
+    let extended = [kept(study, round, before), effect_parts].concat();
+    let replacement = round.record.named_replacement();
+    let replacement = replacement.filter(|named| named.effect == judged.name);
     AddedEffect {
+        in_place_of: replacement.map(|named| named.in_place_of.clone()),
         name: judged.name.clone(),
         probability: Some(judged.probability),
         searched: Some(round.calibration),
@@ -170,6 +181,13 @@ fn of_search(
         rivals,
         held_out_noise_sds: errors(study, before, &extended),
     }
+}
+
+/// Lists the parts of a searched model without the effect that the search replaces.
+fn kept(study: &Study, round: &DiscoveryRound, searched: &FinishedCalibration) -> Vec<String> {
+    let replaced = round.record.named_replacement().map(|named| &named.in_place_of);
+    let parts = study.parts(searched).into_iter();
+    parts.filter(|part| Some(part) != replaced).collect()
 }
 
 /// Returns the holdout errors without and with the given parts of a model; `None` if the study has no model without them.

@@ -63,6 +63,16 @@ pub fn text(record: &Discovery, calibration: i64, place: &str, folder: &Path) ->
     if let Some((name, _)) = effect_file(record) {
         let _ = writeln!(text, "its effect file: {}", folder.join(name).display());
     }
+    for replacement in &record.replacements {
+        let _ = writeln!(
+            text,
+            "{} in the place of {}: ln BF {:.2}, probability {:.3}",
+            replacement.effect,
+            replacement.in_place_of,
+            replacement.log_bayes_factor,
+            replacement.probability
+        );
+    }
     for (words, effects) in [
         ("no longer improves the evidence", &record.drop),
         ("not detectable at the usual strength", &record.cannot_exclude),
