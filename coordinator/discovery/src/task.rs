@@ -2,6 +2,7 @@
 
 use crate::candidate::Candidate;
 use crate::laplace::coordinate::NormalFrame;
+use crate::laplace::fit::LaplaceFit;
 use crate::settings::SearchSettings;
 use crate::stages::shared_errors::SuspectedError;
 use statistics::likelihood::Likelihood;
@@ -85,6 +86,18 @@ impl SearchTask {
             .iter()
             .flat_map(|law| std::iter::once(&law.curve).chain(&law.forms));
         self.library.iter().chain(outside).cloned().collect()
+    }
+
+    /// Returns the strength of a library effect of a fit that contradicts its prior, and its coordinate. The prior of a law is no
+    /// knowledge about it.
+    ///
+    /// # Arguments
+    /// - `members`: the candidates of the fit, in its order.
+    pub(crate) fn implausible_strength(&self, fit: &LaplaceFit, members: &[usize]) -> Option<(usize, f64)> {
+        let candidates = self.candidates();
+        let single = members.iter().filter(|k| candidates[**k].strengths.len() == 1);
+        let counts: Vec<bool> = single.map(|k| !self.is_law(*k)).collect();
+        fit.frame.implausible_strength(&fit.point.position, &counts)
     }
 
     /// Returns the coordinates of the base.

@@ -256,10 +256,14 @@ impl NormalFrame {
             .max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))
     }
 
-    /// The strength of an added effect that lies farthest out in its prior, and its coordinate. `None` if none is more than 5
+    /// Returns the strength of an added effect that lies farthest out in its prior, and its coordinate. `None` if none is more than 5
     /// standard deviations out; a declared bound is no contradiction.
-    pub(crate) fn implausible_strength(&self, position: &[f64]) -> Option<(usize, f64)> {
-        let strengths = self.widened.iter().map(|&k| (k, position[k]));
+    ///
+    /// # Arguments
+    /// - `counts`: whether each added candidate with a single strength counts, in their order.
+    pub(crate) fn implausible_strength(&self, position: &[f64], counts: &[bool]) -> Option<(usize, f64)> {
+        let strengths = self.widened.iter().zip(counts).filter(|(_, counts)| **counts);
+        let strengths = strengths.map(|(&k, _)| (k, position[k]));
         let far = strengths.filter(|(k, t)| t.abs() > MAX_STRENGTH && !self.coordinates[*k].ends_at(*t));
         far.max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))
     }

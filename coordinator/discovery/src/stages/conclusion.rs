@@ -147,23 +147,23 @@ impl Objections {
     /// consequence.
     ///
     /// # Arguments
-    /// - `explanation`: the fit of the law or combination that may be claimed.
+    /// - `explanation`: the fit of the law or combination that may be claimed, with its members.
     fn new(
         task: &SearchTask,
         base: Option<&LaplaceFit>,
-        explanation: Option<&LaplaceFit>,
+        explanation: Option<(&LaplaceFit, &[usize])>,
         supported: SearchVerdict,
     ) -> Self {
         let explanation = explanation.filter(|_| supported != SearchVerdict::NothingDetectable);
         let names_effect = supported != SearchVerdict::NotInLibrary;
         Self {
-            implausible: explanation.and_then(|fit| {
+            implausible: explanation.and_then(|(fit, members)| {
                 let position = &fit.point.position;
-                let strength = || fit.frame.implausible_strength(position).filter(|_| names_effect);
+                let strength = || task.implausible_strength(fit, members).filter(|_| names_effect);
                 fit.frame.implausible(position).or_else(strength)
             }),
             unsupported_noise: match (base, explanation) {
-                (Some(base), Some(best)) => unsupported_noise(task, base, best),
+                (Some(base), Some((best, _))) => unsupported_noise(task, base, best),
                 _ => Vec::new(),
             },
         }
@@ -212,12 +212,19 @@ impl Conclusion {
             .as_ref()
             .map(|law| &law.fit)
             .or(detected.map(|best| &best.fit));
+        let combination = detected.map_or(Vec::new(), |best| best.effects.clone());
+        let effects = law
+            .as_ref()
+            .map_or_else(|| combination.clone(), |law| law.effects.clone());
         let replacements = replacement::weighed(task, hypotheses, &weighing);
         let claimed = replacements.iter().find(|replacement| replacement.is_claimed);
         // What speaks against the best set does not speak against the replacement that is more probable.
         let objections = match claimed {
             Some(_) => Objections::default(),
-            None => Objections::new(task, base, explanation, supported),
+            None => {
+                let explanation = explanation.map(|fit| (fit, effects.as_slice()));
+                Objections::new(task, base, explanation, supported)
+            }
         };
         let is_withheld = objections.any();
         let verdict = match claimed {
@@ -226,10 +233,6 @@ impl Conclusion {
             None => supported,
         };
         let remainder = Remainder::new(task, base, explanation.or(base));
-        let combination = detected.map_or(Vec::new(), |best| best.effects.clone());
-        let effects = law
-            .as_ref()
-            .map_or_else(|| combination.clone(), |law| law.effects.clone());
         let chi_square = |fit: &LaplaceFit| FitChiSquare::of_fit(fit, likelihood);
         Self {
             verdict,

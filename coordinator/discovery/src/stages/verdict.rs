@@ -66,12 +66,14 @@ impl SearchVerdict {
         {
             return nothing;
         }
+        // With a discrepancy the model is expected to contradict the noise.
+        let is_contradicted = is_incomplete && !task.likelihood.has_discrepancy();
         // The law of the best set may be what acts, and the effects make up for its form.
         let may_be_named = |is_named: &dyn Fn(usize) -> bool| {
-            weighing.stands_beside_law(is_named) && !(is_incomplete && weighing.best_with_law().is_some())
+            weighing.stands_beside_law(is_named) && !(is_contradicted && weighing.best_with_law().is_some())
         };
         // A law that does not lead is claimed only if nothing contradicts the set in which it stands.
-        let is_law = law.is_some() && !is_incomplete && weighing.law_probability() > NAMED;
+        let is_law = law.is_some() && !is_contradicted && weighing.law_probability() > NAMED;
         let open = if is_law {
             Self::NotInLibrary
         } else {
