@@ -1,8 +1,30 @@
 //! Laws outside the catalogue in a study that continues its search.
 
 use farm_tests::job::Job;
-use farm_tests::json::word;
+use farm_tests::json::{float, items, word};
 use farm_tests::programs::study;
+
+/// Checks that the forms of a law are ranked, the claimed one first, and that their probabilities are a distribution.
+fn check_forms(outside: &serde_json::Value) {
+    let forms: Vec<&serde_json::Value> = items(&outside["forms"]).collect();
+    assert!(forms.len() > 3, "{outside}");
+    assert_eq!(forms[0]["form"], outside["form"]);
+    assert_eq!(forms[0]["log_bayes_factor"], outside["log_bayes_factor"]);
+    assert_eq!(forms[0]["class"], 1);
+    let factors: Vec<f64> = forms
+        .iter()
+        .map(|form| float(&form["log_bayes_factor"]))
+        .collect();
+    assert!(
+        factors[1..].windows(2).all(|pair| pair[0] >= pair[1]),
+        "{factors:?}"
+    );
+    let sum: f64 = forms.iter().map(|form| float(&form["probability"])).sum();
+    assert!((sum - 1.0).abs() < 1e-9, "{sum}");
+    for form in forms {
+        assert!(word(&form["formula"]).starts_with("tau"), "{form}");
+    }
+}
 
 #[test]
 fn a_model_with_a_law_is_searched_again_to_a_verdict() {
@@ -14,12 +36,13 @@ fn a_model_with_a_law_is_searched_again_to_a_verdict() {
     assert_eq!(summary["status"], "finished");
     let rounds = summary["discovery"]["rounds"].as_array().expect("searches");
     assert_eq!(rounds[0]["verdict"], "not_in_library");
-    let law = "scan_shear_v_t";
+    check_forms(&rounds[0]["outside"]);
     assert_eq!(rounds[0]["given"], serde_json::json!([]));
-    assert_eq!(rounds[1]["given"], serde_json::json!([law]));
+    let given: Vec<&str> = items(&rounds[1]["given"]).map(word).collect();
+    assert!(given.len() == 1 && given[0].contains("shear_v_t"), "{given:?}");
     // An effect that the study has is not found a second time.
     for round in &rounds[1..] {
         let found = word(&round["extension"]["file"]["name"]);
-        assert_ne!(found, "shear_v_t.toml");
+        assert_ne!(found, format!("{}.toml", given[0]));
     }
 }

@@ -35,6 +35,7 @@ pub use probability::DETECTED;
 pub use settings::{SearchSettings, Smoothness, Starts};
 pub use stages::ask_tell::DiscoverySearch;
 pub use stages::conclusion::{Conclusion, OutsideLaw, PosteriorModel};
+pub use stages::law_forms::WeighedForm;
 pub use stages::next_run::InformativeRun;
 pub use stages::prior_sensitivity::AlternativePrior;
 pub use stages::query::{QueriedModel, Query};

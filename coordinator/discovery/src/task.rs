@@ -19,6 +19,8 @@ pub struct SearchTask {
     pub library: Vec<Candidate>,
     /// Laws outside the library.
     pub laws: Vec<LawCandidate>,
+    /// Indices of the model's parameters that are strengths of effects which it has.
+    pub strengths: Vec<usize>,
     /// The model without one of its effects, for each effect that may be dropped.
     pub reductions: Vec<Reduction>,
     /// The data of each level of the design, left out together in the cross-validation.

@@ -74,6 +74,7 @@ fn found_in(library: Vec<Candidate>, wave: f64, sd: f64, has_discrepancy: bool) 
         likelihood,
         library,
         laws: Vec::new(),
+        strengths: Vec::new(),
         reductions: Vec::new(),
         levels: Vec::new(),
         conditions: Vec::new(),

@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 
 use crate::setup::{conclude, data, effect, marginal, noise, normal};
 use discovery::{
-    Candidate, Conclusion, DETECTED, EvidenceMethod, LawCandidate, ProposedRuns, QueriedModel, Query,
-    Reduction, SearchSettings, SearchTask, SearchVerdict,
+    Candidate, Conclusion, DETECTED, EvidenceMethod, LawCandidate, OutsideLaw, ProposedRuns, QueriedModel,
+    Query, Reduction, SearchSettings, SearchTask, SearchVerdict,
 };
 use statistics::rng::Stream;
 use statistics::{Datum, Distribution, ErrorSd, Likelihood, Prior};
@@ -133,6 +133,7 @@ pub(crate) fn task(values: &[f64]) -> SearchTask {
         likelihood: Likelihood::new(data(values, SD)).unwrap(),
         library: library(),
         laws: laws(),
+        strengths: Vec::new(),
         reductions: Vec::new(),
         levels: (0..LEVELS)
             .map(|level| (level * OF_LEVEL..(level + 1) * OF_LEVEL).collect())
@@ -159,6 +160,22 @@ fn find(truth: impl Fn(f64, f64) -> f64) -> Conclusion {
     search(task(&measured(truth)), false, answer)
 }
 
+/// Checks that the forms of a claimed law are these, in this order, and that their probabilities are a distribution.
+#[track_caller]
+fn ranked(law: &OutsideLaw, candidates: &[usize]) {
+    let forms: Vec<usize> = law.forms.iter().map(|form| form.candidate).collect();
+    assert_eq!((forms.as_slice(), forms[0]), (candidates, law.candidate));
+    assert!(
+        (law.forms[0].log_bayes_factor - law.log_bayes_factor).abs() < 1e-9,
+        "{law:?}"
+    );
+    let mut others = law.forms[1..].windows(2);
+    assert!(others.all(|pair| pair[0].log_bayes_factor >= pair[1].log_bayes_factor));
+    let sum: f64 = law.forms.iter().map(|form| form.probability).sum();
+    assert!((sum - 1.0).abs() < 1e-9, "{sum}");
+    assert_eq!(law.forms[0].class, 1);
+}
+
 #[test]
 fn a_law_and_an_effect_that_act_together_are_fitted_together() {
     let line_over_w = OVER_W + 1;
@@ -170,7 +187,13 @@ fn a_law_and_an_effect_that_act_together_are_fitted_together() {
     assert_eq!(conclusion.verdict, SearchVerdict::NotInLibrary);
     let law = conclusion.outside.unwrap();
     assert_eq!(law.candidate, line_over_w);
-    assert!((law.parameters[0] - 0.8).abs() < 0.1, "{:?}", law.parameters);
+    // The curve was fitted beside the effect, too.
+    ranked(&law, &[line_over_w, OVER_W]);
+    assert!(
+        (law.forms[0].parameters[0] - 0.8).abs() < 0.1,
+        "{:?}",
+        law.forms[0].parameters
+    );
     assert!(
         law.left_out_nats.iter().all(|nats| *nats > DETECTED),
         "{:?}",
@@ -282,7 +305,14 @@ fn a_step_outside_the_library_is_found_with_its_form() {
     assert_eq!(conclusion.verdict, SearchVerdict::NotInLibrary);
     let law = conclusion.outside.unwrap();
     assert_eq!((law.law, law.candidate), (0, STEP));
-    assert!((law.parameters[0] - 0.9).abs() < 0.15, "{:?}", law.parameters);
+    ranked(&law, &[STEP, OVER_X]);
+    // A piecewise linear curve is no step.
+    assert_eq!(law.forms[1].class, 2);
+    assert!(
+        (law.forms[0].parameters[0] - 0.9).abs() < 0.15,
+        "{:?}",
+        law.forms[0].parameters
+    );
     assert!(
         law.left_out_nats.iter().all(|nats| *nats > 0.0),
         "{:?}",
@@ -325,6 +355,43 @@ fn an_effect_is_not_named_where_its_strength_is_far_out_in_its_prior() {
     let (place, sds) = withheld.implausible.unwrap();
     assert_eq!((withheld.verdict, place), (SearchVerdict::Undecided, 2));
     assert!((5.0..7.0).contains(&sds), "{sds}");
+}
+
+#[test]
+fn a_second_effect_of_the_class_of_one_that_the_model_has_is_more_of_it() {
+    let values = measured(|x, _| 0.3 + 0.45 * x);
+    let conclude = |strengths: Vec<usize>| {
+        let mut task = task(&values);
+        // The slope is an effect whose prior holds it back; the candidate adds to it.
+        task.prior = Prior::new(vec![
+            normal(1.0),
+            marginal(Distribution::Normal { mean: 0.0, sd: 0.1 }),
+        ]);
+        task.strengths = strengths;
+        task.laws = Vec::new();
+        task.library = vec![effect("slope again", normal(1.0))];
+        search(task, false, |query| {
+            let QueriedModel::With(effects) = &query.model else {
+                panic!("{query:?}");
+            };
+            let slope = query.theta[1] + effects.first().map_or(0.0, |_| query.theta[2]);
+            let at = |x: f64| query.theta[0] + slope * x;
+            if query.is_proposed {
+                PROPOSED.iter().map(|x| at(*x)).collect()
+            } else {
+                (0..DATA).map(|i| at(x(i))).collect()
+            }
+        })
+    };
+    let unrelated = conclude(Vec::new());
+    assert_eq!(
+        (unrelated.verdict, unrelated.held_back),
+        (SearchVerdict::Named(0), None)
+    );
+    let same = conclude(vec![1]);
+    assert_eq!((same.verdict, same.agreed), (SearchVerdict::Undecided, None));
+    let (strength, sds) = same.held_back.unwrap();
+    assert!(strength == 1 && (3.5..4.5).contains(&sds), "{strength} {sds}");
 }
 
 #[test]

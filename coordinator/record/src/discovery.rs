@@ -129,7 +129,8 @@ pub struct JudgedReplacement {
 pub struct ImplausibleParameter {
     /// Name of the parameter.
     pub name: String,
-    /// Normal score of its value in its prior, beyond 6.5 in size, or 5 of a strength; with a joint prior, given the parameters before it.
+    /// Normal score of its value in its prior, beyond 6.5 in size, or 5 of a strength, or 2 of a strength of the searched model of which the
+    /// leading explanation would be more; with a joint prior, given the parameters before it.
     pub prior_sds: f64,
 }
 
@@ -335,6 +336,47 @@ pub struct Outside {
     pub curve: Vec<[f64; 2]>,
     /// Log predictive density of left-out levels over that of the searched model, and over that of the best of the library \[nats\].
     pub left_out_nats: [f64; 2],
+    /// The curve and every form of the law that was fitted: the claimed one, then the others by falling log Bayes factor. Empty in
+    /// records of earlier versions.
+    #[serde(default)]
+    pub forms: Vec<FittedForm>,
+}
+
+/// A form of a law outside the library, with its fitted values.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct FittedForm {
+    /// The form: `step`, `power`, ..., or `spline`.
+    pub form: String,
+    /// The quantity with the law, as a formula of effect files.
+    pub formula: String,
+    /// Log evidence over that of the searched model, on the scale of the law's \[nats\].
+    pub log_bayes_factor: f64,
+    /// Probability among the forms of this law, each of which has the same prior.
+    pub probability: f64,
+    /// Number of the class, from 1, in which these data cannot distinguish forms.
+    pub class: u32,
+}
+
+impl Outside {
+    /// Minimum difference of log Bayes factors by which the data prefer a form \[nats\].
+    const PREFERRED: f64 = 3.0;
+    /// Maximum number of forms that are named as alike.
+    const MAX_ALIKE: usize = 3;
+
+    /// Returns the leading forms if others fit as well as the best: `saturation (93.1), log (92.8) and power (91.0)`. `None` if one is
+    /// preferred.
+    #[must_use]
+    pub fn forms_alike(&self) -> Option<String> {
+        let best = self.forms.iter().map(|form| form.log_bayes_factor);
+        let best = best.fold(f64::NEG_INFINITY, f64::max);
+        let leading = self.forms.iter().take(Self::MAX_ALIKE);
+        let alike = leading.filter(|form| best - form.log_bayes_factor <= Self::PREFERRED);
+        let alike: Vec<String> = alike
+            .map(|form| format!("{} ({:.1})", form.form.replace('_', " "), form.log_bayes_factor))
+            .collect();
+        let (last, others) = alike.split_last()?;
+        (!others.is_empty()).then(|| format!("{} and {last}", others.join(", ")))
+    }
 }
 
 /// A proposed test run.

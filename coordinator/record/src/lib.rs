@@ -22,10 +22,10 @@ mod verification;
 
 pub use calibration::{CalibrationRow, ExperimentRow, SealKey};
 pub use discovery::{
-    ChiSquare, CurveDatum, Discovery, EffectCurves, Extension, ImplausibleParameter, JudgedEffect,
-    JudgedReplacement, JudgedRigError, JudgedSet, NEXT_RUNS, NONE, NOT_IN_LIBRARY, NextRun, NotTried,
-    Outside, RemainingMisfit, RigOffset, RunInformation, Verdict, addition_name, effect_of, parts_of,
-    parts_of_effect,
+    ChiSquare, CurveDatum, Discovery, EffectCurves, Extension, FittedForm, ImplausibleParameter,
+    JudgedEffect, JudgedReplacement, JudgedRigError, JudgedSet, NEXT_RUNS, NONE, NOT_IN_LIBRARY, NextRun,
+    NotTried, Outside, RemainingMisfit, RigOffset, RunInformation, Verdict, addition_name, effect_of,
+    parts_of, parts_of_effect,
 };
 pub use estimate::EstimateRow;
 pub use evaluation_key::{EvaluationKey, HOLDOUT_RUNS_FROM, LIKELIEST, PREDICTIONS_FROM};

@@ -7,8 +7,8 @@ use inference::evolution::{EvolutionSettings, GaSettings};
 use inference::point_estimate::{Generation, StopReason};
 use job::{AlgorithmSettings, Spec};
 use record::{
-    CalibrationRow, Discovery, EstimateRow, Extension, JudgedEffect, Membership, NONE, Outside, Prediction,
-    PriorDraw, RejectionReason, Repeats, Role, StageRow, Verdict, Verified,
+    CalibrationRow, Discovery, EstimateRow, Extension, FittedForm, JudgedEffect, Membership, NONE, Outside,
+    Prediction, PriorDraw, RejectionReason, Repeats, Role, StageRow, Verdict, Verified,
 };
 use shared::api::CalibrationState;
 use shared::experiment::Campaign;
@@ -249,6 +249,13 @@ pub fn grown() -> Study {
     (extension.row.id, extension.experiment) = (3, "<script>sand+slip_sinkage".into());
     let mut record =
         serde_json::from_str::<record::Discovery>(include_str!("../../record/discovery.json")).unwrap();
+    let form = |form: &str, formula: &str, log_bayes_factor: f64, probability: f64, class: u32| FittedForm {
+        form: form.into(),
+        formula: formula.into(),
+        log_bayes_factor,
+        probability,
+        class,
+    };
     record.outside = Some(Outside {
         acts_on: "shear".into(),
         depends_on: "slip".into(),
@@ -257,6 +264,10 @@ pub fn grown() -> Study {
         effect_file: "name = \"<script>\"\n".into(),
         curve: vec![[0.0, 1.0], [0.3, 1.0], [0.31, 1.2], [0.6, 1.2]],
         left_out_nats: [8.0, 3.0],
+        forms: vec![
+            form("step", "if(slip > 0.3, 1.2 * tau, tau)", 12.0, 0.711, 1),
+            form("linear", "tau * (1 + 0.4 * slip)", 11.1, 0.289, 1),
+        ],
     });
     let member = |id: i64, kind: Role, searches: Option<i64>| StudyMember {
         id,

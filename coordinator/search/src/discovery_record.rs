@@ -4,21 +4,22 @@ use std::collections::BTreeMap;
 
 use discovery::{
     Conclusion, EvidenceMethod, FitChiSquare, NAMED, OutsideLaw, RankedEffect, Replacement, SearchVerdict,
-    WeighedSet,
+    WeighedForm, WeighedSet,
 };
 use job::PlainParameter;
 use record::{
-    ChiSquare, Discovery, Extension, ImplausibleParameter, JudgedEffect, JudgedReplacement, JudgedSet, NONE,
-    NOT_IN_LIBRARY, NextRun, Outside, RunInformation, Verdict,
+    ChiSquare, Discovery, Extension, FittedForm, ImplausibleParameter, JudgedEffect, JudgedReplacement,
+    JudgedSet, NONE, NOT_IN_LIBRARY, NextRun, Outside, RunInformation, Verdict,
 };
 use shared::channel::Channel;
 
 use super::bench_measurement;
 use super::candidate::{CandidateEffect, candidate_of};
 use super::curves::curves;
-use super::entry::CandidateEntry;
+use super::entry::{CandidateEntry, LawEntry};
 use super::law::curve;
 use super::law::file::free_name;
+use super::law::formula::formula;
 use super::models::SearchModels;
 use super::narrative::{parameter_name, sentence};
 use super::remaining_misfit::remaining_misfit;
@@ -89,10 +90,13 @@ pub(super) fn discovery_record(models: &SearchModels, conclusion: &Conclusion) -
         given: given.map(|effect| effect.name.clone()).collect(),
         verdict,
         text: sentence(models, conclusion, &effects, outside.as_ref()),
-        implausible: conclusion.implausible.and_then(|(k, prior_sds)| {
-            let name = parameter_name(models, conclusion, k)?;
-            Some(ImplausibleParameter { name, prior_sds })
-        }),
+        implausible: conclusion
+            .implausible
+            .or(conclusion.held_back)
+            .and_then(|(k, prior_sds)| {
+                let name = parameter_name(models, conclusion, k)?;
+                Some(ImplausibleParameter { name, prior_sds })
+            }),
         unsupported_noise: unsupported_noise(models, conclusion),
         extension,
         // Evidences are unreliable where a prior is contradicted.
@@ -270,25 +274,44 @@ fn strength_prior(candidate: &CandidateEffect, models: &SearchModels) -> Option<
     Some(format!("{name} = {prior}"))
 }
 
+/// Returns a form of a law with its formula.
+fn fitted_form(models: &SearchModels, law: &LawEntry, form: &WeighedForm) -> Option<FittedForm> {
+    let entry = models.entry(form.candidate)?;
+    let Extension::File { text, .. } = &entry.effect.extension else {
+        return None;
+    };
+    let hook = law.dependence.acts_on.hook();
+    Some(FittedForm {
+        form: law.form_name(entry).to_owned(),
+        formula: formula(text, hook, &parameters(entry, &form.parameters))?,
+        log_bayes_factor: form.log_bayes_factor,
+        probability: form.probability,
+        class: form.class as u32,
+    })
+}
+
 /// Returns the law with its curve, and its file as an extension.
 fn outside(models: &SearchModels, outside: &OutsideLaw) -> Option<(Outside, Extension)> {
     let law = models.laws.get(outside.law)?;
     let entry = models.entry(outside.candidate)?;
-    let mut forms = law.forms.iter();
-    let form = forms.find(|(_, form)| form.effect.name == entry.effect.name);
     let Extension::File { text, .. } = &entry.effect.extension else {
         return None;
     };
-    let best = parameters(entry, &outside.parameters);
+    let best = parameters(entry, &outside.forms.first()?.parameters);
     let effect_file = curve::with_values(text, &best);
     let record = Outside {
         acts_on: law.dependence.acts_on.name().to_owned(),
         depends_on: law.dependence.depends_on.name().to_owned(),
-        form: form.map_or("spline", |(form, _)| form.name()).to_owned(),
+        form: law.form_name(entry).to_owned(),
         log_bayes_factor: outside.log_bayes_factor,
         curve: curve::curve(text, &best, &law.dependence).unwrap_or_default(),
         effect_file: effect_file.clone(),
         left_out_nats: outside.left_out_nats,
+        forms: outside
+            .forms
+            .iter()
+            .filter_map(|form| fitted_form(models, law, form))
+            .collect(),
     };
     let extension = Extension::File {
         name: free_name(&entry.effect.name, &models.job.files),

@@ -39,6 +39,13 @@ impl LawEntry {
     pub(super) fn entries(&self) -> impl Iterator<Item = &CandidateEntry> {
         std::iter::once(&self.curve).chain(self.forms.iter().map(|(_, entry)| entry))
     }
+
+    /// Returns the name of the form that one of its candidates is; that of the curve is `spline`.
+    pub(super) fn form_name(&self, entry: &CandidateEntry) -> &'static str {
+        let mut forms = self.forms.iter();
+        let form = forms.find(|(_, form)| form.effect.name == entry.effect.name);
+        form.map_or("spline", |(form, _)| form.name())
+    }
 }
 
 impl CandidateEntry {

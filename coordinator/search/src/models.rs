@@ -29,7 +29,8 @@ use super::reduced_model::ReducedModel;
 use super::rig_errors::suspects;
 use super::untried::{UntriedEffect, untried};
 use job::{
-    EffectOnNodes, Job, MODEL_SWITCHES, NamedFile, NamedFiles, PLAIN_PARAMETERS, Spec, free_parameters,
+    EffectOnNodes, Job, MODEL_SWITCHES, NamedFile, NamedFiles, PLAIN_PARAMETERS, PlainParameter, Spec,
+    free_parameters,
 };
 use record::{Extension, NotTried};
 
@@ -148,6 +149,7 @@ impl SearchModels {
             likelihood: base.likelihood.clone(),
             library: self.library.iter().map(|entry| entry.candidate.clone()).collect(),
             laws: self.laws.iter().map(law).collect(),
+            strengths: self.strengths(),
             reductions: self
                 .reductions
                 .iter()
@@ -177,6 +179,31 @@ impl SearchModels {
                 has_low_fidelity: base.model.kind == ModelKind::Scm && base.fit_variant.coarse().is_ok(),
             },
         }
+    }
+
+    /// Returns the places of the base's parameters that are strengths of its effects, or parameters of the model that a search may free.
+    fn strengths(&self) -> Vec<usize> {
+        let effects = &self.base.fit_variant.effects;
+        let is_strength = |name: &str| {
+            let Some((effect, parameter)) = name.split_once('.') else {
+                return PlainParameter::find(name).is_some();
+            };
+            let mut texts = effects.iter().filter(|e| e.name == effect);
+            let effect = texts.find_map(|e| Effect::read(&e.text).ok());
+            // On one wheel of several, the name of the wheel follows.
+            let parameter = parameter.split('.').next().unwrap_or_default();
+            let is_neutral = |e: Effect| {
+                e.parameters
+                    .iter()
+                    .any(|p| p.name == parameter && p.neutral.is_some())
+            };
+            effect.is_some_and(is_neutral)
+        };
+        let parameters = self.base.parameters.iter().enumerate();
+        parameters
+            .filter(|(_, p)| is_strength(&p.name))
+            .map(|(k, _)| k)
+            .collect()
     }
 
     /// Returns the candidate of an index: the library, then the curve and the forms of each law.

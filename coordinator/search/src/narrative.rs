@@ -30,6 +30,8 @@ pub(super) fn sentence(
         claim
     } else if let Some(reason) = implausible(models, conclusion) {
         format!("something is missing or the prior is wrong: {reason}")
+    } else if let Some(reason) = held_back(models, conclusion, effects) {
+        reason
     } else if let Some(reason) = unsupported_noise(models, conclusion) {
         format!("nothing is named: {reason}; {}", credible_set(effects))
     } else {
@@ -143,6 +145,18 @@ fn implausible(models: &SearchModels, conclusion: &Conclusion) -> Option<String>
         "the effect is not named: something else may act that it imitates; if you expect such a strength, state a wider prior under [discovery.priors]"
     };
     Some(text)
+}
+
+/// Names the strength in the model of which the leading effect would be more, with advice.
+fn held_back(models: &SearchModels, conclusion: &Conclusion, effects: &[JudgedEffect]) -> Option<String> {
+    let (k, sds) = conclusion.held_back?;
+    let parameter = parameter_name(models, conclusion, k)?;
+    let effect = parameter.split('.').next()?;
+    Some(format!(
+        "what is left looks like more of {effect}; its strength is held back by its prior ({:.1} sds out); widen that prior and search again; {}",
+        sds.abs(),
+        credible_set(effects)
+    ))
 }
 
 /// Returns what an error of a wheel's dimension comes to: `: it may be 131 mm, not 125 mm; measure it`. `None` for other effects, and
@@ -288,12 +302,15 @@ fn verdict(
             )
         }
         (SearchVerdict::NotInLibrary, Some(law)) => format!(
-            "not in the library: the missing law acts on {} and depends on {}, in the form of a {} ({:.1} nats over {kind}; left-out levels are predicted better by {:.1} nats)",
+            "not in the library: the missing law acts on {} and depends on {}, in the form of {} {} ({:.1} nats over {kind}; left-out levels are predicted better by {:.1} nats){}",
             law.acts_on.replace('_', " "),
             law.depends_on.replace('_', " "),
-            law.form,
+            if law.form.starts_with('i') { "an" } else { "a" },
+            law.form.replace('_', " "),
             law.log_bayes_factor,
-            law.left_out_nats[0]
+            law.left_out_nats[0],
+            law.forms_alike()
+                .map_or(String::new(), |alike| format!("; the forms {alike} fit alike"))
         ),
         _ => match conclusion.chi_square_best {
             Some(chi) if chi.is_wrong() => format!(

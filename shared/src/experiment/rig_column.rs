@@ -1,7 +1,5 @@
 //! The columns of `runs.csv` that name the state of the rig which runs share.
 
-use super::TestRun;
-
 /// A column of ids: runs with one id were made in one state of the rig.
 #[derive(
     Debug,
@@ -33,14 +31,5 @@ impl RigColumn {
     /// Returns the name of the column.
     pub fn name(self) -> &'static str {
         self.into()
-    }
-
-    /// Returns the id that a run states.
-    pub fn id(self, run: &TestRun) -> Option<&str> {
-        match self {
-            RigColumn::Session => run.session.as_deref(),
-            RigColumn::Zero => run.zero.as_deref(),
-            RigColumn::Operator => run.operator.as_deref(),
-        }
     }
 }

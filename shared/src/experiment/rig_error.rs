@@ -88,7 +88,11 @@ impl RigError {
 
     /// Reads an sd; it is inferred if the experiment states none, and without the column it has no effect.
     pub(super) fn read(self, raw: Option<RawSharedSd>) -> Result<ScatterSd, ValueError> {
-        let (key, unit) = (self.key(), self.unit());
+        let key = self.key();
+        let unit = match self.unit() {
+            "1" => String::new(),
+            unit => format!(" {unit}"),
+        };
         match raw {
             None => Ok(ScatterSd::Unknown),
             Some(RawSharedSd::Word(word)) if word == "unknown" => Ok(ScatterSd::Unknown),
@@ -97,8 +101,7 @@ impl RigError {
             ))),
             Some(RawSharedSd::Number(sd)) if sd.is_finite() && sd >= 0.0 => Ok(ScatterSd::Known(sd)),
             Some(RawSharedSd::Number(sd)) => Err(ValueError::Rule(format!(
-                "{key} {sd}{} must be finite and >= 0",
-                crate::parameters::behind(unit)
+                "{key} {sd}{unit} must be finite and >= 0"
             ))),
         }
     }

@@ -50,6 +50,17 @@ pub struct TestRun {
     pub usage: RunUse,
 }
 
+impl RigColumn {
+    /// Returns the id that a run states.
+    pub fn id(self, run: &TestRun) -> Option<&str> {
+        match self {
+            RigColumn::Session => run.session.as_deref(),
+            RigColumn::Zero => run.zero.as_deref(),
+            RigColumn::Operator => run.operator.as_deref(),
+        }
+    }
+}
+
 /// The use of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize, strum::IntoStaticStr)]
 #[serde(rename_all = "snake_case")]

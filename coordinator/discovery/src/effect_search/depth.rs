@@ -28,7 +28,10 @@ pub(crate) struct ScreenDepth {
     /// Steps of a single strength, in standard deviations of its prior, the longest first. An effect that acts like a square root
     /// near zero shows its size at short steps only.
     pub(crate) strengths: &'static [f64],
+    /// Coordinates of the shapes; several shapes have the same coordinate, unless `second_shapes` has others.
     pub(crate) shapes: &'static [f64],
+    /// Coordinates of the second of two shapes, each combined with each of the first. Empty: the second has that of the first.
+    pub(crate) second_shapes: &'static [f64],
 }
 
 /// The first fits of candidates.
@@ -121,6 +124,7 @@ pub(crate) const FULL: Depth = Depth {
     screen: ScreenDepth {
         strengths: &[1.0, 0.3, 0.1],
         shapes: &[0.0, -1.0, 1.0],
+        second_shapes: &[],
     },
     extension: ExtensionDepth {
         max_count: usize::MAX,
@@ -200,6 +204,7 @@ pub(crate) const GLANCE: Depth = Depth {
     screen: ScreenDepth {
         strengths: &[1.0, 0.3],
         shapes: &[0.0],
+        second_shapes: &[],
     },
     extension: ExtensionDepth {
         max_count: 6,
@@ -224,14 +229,15 @@ pub(crate) const ALL_CURVES: Depth = Depth {
     ..QUICK
 };
 
-/// Simple forms, with thresholds at about every tenth of their priors.
+/// Simple forms, with thresholds and centres at about every tenth of their priors, and three widths at each centre.
 pub(crate) const FORMS: Depth = Depth {
     screen: ScreenDepth {
         shapes: &[0.0, -0.25, 0.25, -0.55, 0.55, -0.85, 0.85, -1.3, 1.3],
+        second_shapes: &[0.0, -1.0, 1.0],
         ..FULL.screen
     },
     extension: ExtensionDepth {
-        max_count: 12,
+        max_count: 16,
         plan: &[
             FitStep::Trials(6),
             FitStep::Release,

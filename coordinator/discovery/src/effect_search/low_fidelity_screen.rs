@@ -91,14 +91,15 @@ impl EffectSearch {
         all().filter(is_worth).collect()
     }
 
-    /// Returns the coordinate of the shapes that fits best on the low-fidelity model; `None` if it was not evaluated, has no
-    /// shape, or the model refused that shape.
-    pub(super) fn best_shape(&self, candidate: usize) -> Option<f64> {
+    /// Returns the coordinates of the shapes that fit best on the low-fidelity model; `None` if it was not evaluated, has no
+    /// shape, or the model refused these shapes.
+    pub(super) fn best_shape(&self, candidate: usize) -> Option<Vec<f64>> {
         let state = &self.candidates[candidate];
         let position = &state.low_fidelity.as_ref()?.point.position;
         let added = self.base_frame.dimension()..position.len();
-        let mut shapes = added.filter(|k| !state.frame.is_strength(*k));
-        shapes.next().map(|k| position[k])
+        let shapes = added.filter(|k| !state.frame.is_strength(*k));
+        let shapes: Vec<f64> = shapes.map(|k| position[k]).collect();
+        (!shapes.is_empty()).then_some(shapes)
     }
 
     /// Returns whether a candidate's screen on the low-fidelity model must be repeated on the model.

@@ -2,6 +2,7 @@
 
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
+use crate::effect_search::class::classes;
 use crate::laplace::fit::LaplaceFit;
 use statistics::likelihood::{Likelihood, Whitening};
 
@@ -32,6 +33,30 @@ impl Exchange {
         position[strength.0] = strength.1 + self.step;
         position
     }
+}
+
+/// Returns whether two coordinates of a fit change the predictions alike, after projection out of the changes that its other coordinates
+/// absorb: whether they are of one class.
+pub(crate) fn are_alike(fit: &LaplaceFit, likelihood: &Likelihood, coordinates: [usize; 2]) -> bool {
+    let Ok(whitening) = likelihood.whitening(&fit.point.values, &fit.theta()) else {
+        return false;
+    };
+    let others = (0..fit.columns.len()).filter(|k| !coordinates.contains(k));
+    let columns = others.map(|k| whitening.apply(&fit.columns[k])).collect();
+    let hessian = fit.quadratic(likelihood).hessian;
+    let hessian = hessian
+        .remove_rows_at(&coordinates)
+        .remove_columns_at(&coordinates);
+    let Some(cholesky) = Cholesky::new(hessian) else {
+        return false;
+    };
+    let projection = Projection {
+        whitening,
+        columns,
+        cholesky,
+    };
+    let changes = coordinates.map(|k| fit.columns[k].clone());
+    classes(&projection.products(&changes), &[None, None]) == [0, 0]
 }
 
 impl Projection {

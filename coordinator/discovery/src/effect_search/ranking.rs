@@ -126,6 +126,13 @@ impl EffectRanking {
         members.map(|e| e.probability).sum()
     }
 
+    /// Returns the most probable candidate of a class.
+    pub(crate) fn leader_of(&self, class: usize) -> Option<usize> {
+        let members = self.effects.iter().filter(|e| e.class == class);
+        let leader = members.max_by(|a, b| a.probability.total_cmp(&b.probability))?;
+        leader.candidate
+    }
+
     /// Returns the result for a candidate.
     #[must_use]
     pub fn effect(&self, candidate: Option<usize>) -> Option<&RankedEffect> {

@@ -15,12 +15,12 @@ pub(super) const STEPS: [f64; 4] = [1.0, 0.3, 0.1, 0.03];
 /// each of several strengths; or, for a switch, the base's fit.
 ///
 /// # Arguments
-/// - `shape`: the best coordinate of the shapes, if it is known; no other is evaluated then.
+/// - `shape`: the best coordinates of the shapes, if they are known; no others are evaluated then.
 pub(super) fn positions(
     frame: &NormalFrame,
     base: &[f64],
     depth: &ScreenDepth,
-    shape: Option<f64>,
+    shape: Option<Vec<f64>>,
     step_index: usize,
 ) -> Vec<Vec<f64>> {
     if frame.is_switch() {
@@ -41,26 +41,41 @@ pub(super) fn positions(
         };
         return frame.strengths.iter().map(along).collect();
     };
-    let shapes = match &shape {
-        Some(best) => std::slice::from_ref(best),
-        None if frame.dimension() > base.len() + 1 => depth.shapes,
-        None => &depth.shapes[..1],
+    let shapes = match shape {
+        Some(best) => vec![best],
+        None => depth.of_shapes(frame.dimension() - base.len() - 1),
     };
-    let at = |shape: f64, strength: f64| {
-        let mut position = base.to_vec();
-        position.resize(frame.dimension(), shape);
-        position[k] = neutral + strength;
+    let at = |shape: &[f64], strength: f64| {
+        let mut position = [base, shape].concat();
+        position.insert(k, neutral + strength);
         position
     };
     let last = STEPS.len() - 1;
     match step_index {
         0 => {
-            let strengths = depth.strengths.iter().map(|&strength| at(shapes[0], strength));
-            let shapes = shapes[1..].iter().map(|&shape| at(shape, depth.strengths[0]));
+            let strengths = depth.strengths.iter().map(|&strength| at(&shapes[0], strength));
+            let shapes = shapes[1..].iter().map(|shape| at(shape, depth.strengths[0]));
             strengths.chain(shapes).collect()
         }
-        index if index == last => vec![at(shapes[0], STEPS[last])],
+        index if index == last => vec![at(&shapes[0], STEPS[last])],
         _ => Vec::new(),
+    }
+}
+
+impl ScreenDepth {
+    /// Returns the coordinates of a candidate's shapes, the usual ones first.
+    ///
+    /// # Arguments
+    /// - `count`: number of the shapes.
+    fn of_shapes(&self, count: usize) -> Vec<Vec<f64>> {
+        let shapes = self.shapes.iter();
+        match count {
+            0 => vec![Vec::new()],
+            2 if !self.second_shapes.is_empty() => shapes
+                .flat_map(|first| self.second_shapes.iter().map(|second| vec![*first, *second]))
+                .collect(),
+            _ => shapes.map(|shape| vec![*shape; count]).collect(),
+        }
     }
 }
 

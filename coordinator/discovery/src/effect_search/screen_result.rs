@@ -93,7 +93,7 @@ fn screen_one_strength(
         .reduce(|a, b| if b.step > a.step { b } else { a })?;
     let mut columns = vec![vec![0.0; best.point.values.len()]; frame.dimension()];
     for &shape in &shapes {
-        if let Some(column) = shape_column(shape, best, usual, &nodes) {
+        if let Some(column) = shape_column(shape, &shapes, best, usual, &nodes) {
             columns[shape] = column;
         }
     }
@@ -168,14 +168,23 @@ fn mean_over_shapes(nodes: &[Node], shapes: &[usize]) -> f64 {
     log_sum_exp(by_shape.iter().copied()) - libm::log(by_shape.len() as f64)
 }
 
-/// Returns the derivative along a shape at the best node, from the nearest other shape at the usual strength; `None` without one.
-fn shape_column(shape: usize, best: &Node, usual: &Node, nodes: &[Node]) -> Option<Vec<f64>> {
+/// Returns the derivative along a shape at the best node, from the nearest other shape at the usual strength; `None` without one. A node
+/// that differs in this shape alone comes before all others.
+fn shape_column(
+    shape: usize,
+    shapes: &[usize],
+    best: &Node,
+    usual: &Node,
+    nodes: &[Node],
+) -> Option<Vec<f64>> {
     let t = |node: &Node| node.point.position[shape];
     let distance = |node: &Node| (t(node) - t(usual)).abs();
+    let rest: Vec<usize> = shapes.iter().copied().filter(|k| *k != shape).collect();
+    let rank = |node: &Node| (!has_shape_of(node, usual, &rest), distance(node));
     let nearest = nodes
         .iter()
         .filter(|node| distance(node) > 0.0 && node.step.to_bits() == usual.step.to_bits())
-        .reduce(|a, b| if distance(b) < distance(a) { b } else { a })?;
+        .reduce(|a, b| if rank(b) < rank(a) { b } else { a })?;
     let share = best.step / usual.step / (t(nearest) - t(usual));
     let pairs = nearest.point.values.iter().zip(&usual.point.values);
     Some(pairs.map(|(x, m)| (x - m) * share).collect())

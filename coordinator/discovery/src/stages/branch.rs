@@ -1,7 +1,10 @@
 //! A branch of a stage: a search for one effect, or a fit, with its candidates named by their indices in the task.
 
+use std::ops::Range;
+
 use crate::effect_search::ranking::RankedEffect;
 use crate::effect_search::state::EffectSearch;
+use crate::laplace::fit::LaplaceFit;
 use crate::stages::query::{QueriedModel, Query};
 
 /// A search for one more effect beyond a combination, a fit of a combination, or a fit of the base without one of its effects.
@@ -69,6 +72,12 @@ impl SearchBranch {
             let result = self.search.tell(index, values.as_deref());
             debug_assert!(result.is_ok(), "{result:?}");
         }
+    }
+
+    /// Returns the range of a candidate's parameters among those of its fit, whose first are those of the model of this branch.
+    pub(super) fn added_parameters(&self, fit: &LaplaceFit) -> Range<usize> {
+        let base = self.search.base_fit();
+        base.map_or(0, |base| base.fit.frame.dimension())..fit.frame.dimension()
     }
 
     /// Returns the candidates by falling Bayes factor, each with its index in the task.

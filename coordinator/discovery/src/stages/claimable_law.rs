@@ -3,7 +3,8 @@
 use crate::chi_square::FitChiSquare;
 use crate::laplace::fit::LaplaceFit;
 use crate::probability::DETECTED;
-use crate::stages::hypotheses::Hypotheses;
+use crate::stages::hypotheses::{EffectCombination, Hypotheses, candidate_set};
+use crate::stages::law_forms::FittedForm;
 use crate::task::SearchTask;
 
 /// A law outside the library explains the misfit if it leaves at most this share of the library's chi-square excess.
@@ -21,8 +22,8 @@ pub(super) struct ClaimableLaw {
     /// Log evidence over that of the base.
     pub(super) log_bayes_factor: f64,
     pub(super) fit: LaplaceFit,
-    /// The most probable parameters of the law.
-    pub(super) parameters: Vec<f64>,
+    /// Every fitted form of the law: the claimed one, then the others by falling Bayes factor.
+    pub(super) forms: Vec<FittedForm>,
     /// Log predictive density of left-out levels over that of the base, and over that of the library's best.
     pub(super) left_out: [f64; 2],
 }
@@ -58,7 +59,7 @@ impl ClaimableLaw {
             effects: vec![law.candidate],
             log_bayes_factor: law.log_bayes_factor,
             fit: law.fit.clone(),
-            parameters: law.fit.theta()[task.prior.dimension()..].to_vec(),
+            forms: claimed_first(law.candidate, law.forms.clone()),
             left_out: law.left_out.unwrap_or([0.0; 2]),
         })
     }
@@ -76,15 +77,52 @@ impl ClaimableLaw {
         let parameters = |k: &usize| hypotheses.candidates[*k].parameters.len();
         let before: usize = effects[..place].iter().map(parameters).sum();
         let first = task.prior.dimension() + before;
-        let theta = set.fit.theta();
+        let claimed = FittedForm::new(
+            candidate,
+            set.log_bayes_factor,
+            &set.fit,
+            first..first + parameters(&candidate),
+        );
         Some(Self {
             law,
             candidate,
             effects: effects.to_vec(),
             log_bayes_factor: set.log_bayes_factor,
             fit: set.fit.clone(),
-            parameters: theta[first..first + parameters(&candidate)].to_vec(),
+            forms: forms_beside(hypotheses, set, law, claimed),
             left_out: validated.left_out,
         })
     }
+}
+
+/// Moves the claimed form, which the curve may exceed by a little, to the first place.
+fn claimed_first(candidate: usize, mut forms: Vec<FittedForm>) -> Vec<FittedForm> {
+    // The sort is stable.
+    forms.sort_by_key(|form| form.candidate != candidate);
+    forms
+}
+
+/// Returns the forms of the law of a set as they were fitted beyond its effects: the one of the set first, the others with log Bayes
+/// factors on the scale of the set's.
+fn forms_beside(
+    hypotheses: &Hypotheses,
+    set: &EffectCombination,
+    law: usize,
+    claimed: FittedForm,
+) -> Vec<FittedForm> {
+    let mut effects = candidate_set(&set.effects);
+    effects.remove(&claimed.candidate);
+    let mut forms = vec![claimed];
+    if let Some((scan, scanned)) = hypotheses.law_beyond(&effects, law)
+        && let Some(beyond) = hypotheses.combination(&scan.beyond)
+    {
+        let by = beyond.log_bayes_factor - set.choice;
+        let others = scanned
+            .forms
+            .iter()
+            .filter(|form| form.candidate != forms[0].candidate);
+        let others: Vec<FittedForm> = others.map(|form| form.over(by)).collect();
+        forms.extend(others);
+    }
+    forms
 }

@@ -6,6 +6,9 @@ use crate::laplace::draws::draws;
 use crate::laplace::fit::LaplaceFit;
 use crate::probability::DETECTED;
 use crate::stages::claimable_law::ClaimableLaw;
+use crate::stages::held_back::held_back;
+use crate::stages::hypotheses::Hypotheses;
+use crate::stages::law_forms::{self, WeighedForm};
 use crate::stages::next_run::{InformativeRun, RunChoice};
 use crate::stages::noise_support::unsupported_noise;
 use crate::stages::prior_sensitivity::{AlternativePrior, alternative_priors};
@@ -15,6 +18,7 @@ use crate::stages::state::SearchState;
 use crate::stages::verdict::SearchVerdict;
 use crate::stages::weighing::{WeighedSet, Weighing};
 use crate::task::SearchTask;
+use statistics::likelihood::Likelihood;
 
 /// Number of posterior draws of a model, and the numbers of their random streams, which follow those of the open explanations.
 const DRAWS: usize = 33;
@@ -53,19 +57,19 @@ pub struct OutsideLaw {
     pub candidate: usize,
     /// Log evidence over that of the base.
     pub log_bayes_factor: f64,
-    /// The most probable parameters of the law.
-    pub parameters: Vec<f64>,
+    /// The curve and every fitted form of the law: the claimed one, then the others by falling Bayes factor.
+    pub forms: Vec<WeighedForm>,
     /// Log predictive density of left-out levels over that of the base, and over that of the library's best.
     pub left_out_nats: [f64; 2],
 }
 
 impl OutsideLaw {
-    fn new(law: &ClaimableLaw) -> Self {
+    fn new(law: &ClaimableLaw, likelihood: &Likelihood, misfit: f64) -> Self {
         Self {
             law: law.law,
             candidate: law.candidate,
             log_bayes_factor: law.log_bayes_factor,
-            parameters: law.parameters.clone(),
+            forms: law_forms::weighed(&law.forms, &law.fit, likelihood, misfit),
             left_out_nats: law.left_out,
         }
     }
@@ -80,6 +84,9 @@ pub struct Conclusion {
     /// 5 sds out in its prior. Evidences then measure how each explanation relieves a prior, so no effect is claimed. `None` if there is
     /// none.
     pub implausible: Option<(usize, f64)>,
+    /// Index and normal score of a strength in the base that is held back by its prior, where the leading effect changes the data alike:
+    /// it would be more of the same, so it is not claimed. `None` if there is none.
+    pub held_back: Option<(usize, f64)>,
     /// Indices of the inferred noise sds that are too uncertain for a claim; nothing is claimed then. Empty if nothing was
     /// detected.
     pub unsupported_noise: Vec<usize>,
@@ -139,6 +146,7 @@ pub struct Conclusion {
 #[derive(Default)]
 struct Objections {
     implausible: Option<(usize, f64)>,
+    held_back: Option<(usize, f64)>,
     unsupported_noise: Vec<usize>,
 }
 
@@ -150,10 +158,20 @@ impl Objections {
     /// - `explanation`: the fit of the law or combination that may be claimed, with its members.
     fn new(
         task: &SearchTask,
-        base: Option<&LaplaceFit>,
+        hypotheses: &Hypotheses,
+        weighing: &Weighing,
         explanation: Option<(&LaplaceFit, &[usize])>,
         supported: SearchVerdict,
     ) -> Self {
+        let base = hypotheses.base_fit();
+        // The effect that may be named or added.
+        let leading = match supported {
+            SearchVerdict::Named(k) => Some(k),
+            SearchVerdict::Class(class) => weighing.ranking.leader_of(class),
+            SearchVerdict::Undecided => weighing.agreed(),
+            SearchVerdict::NothingDetectable | SearchVerdict::NotInLibrary => None,
+        };
+        let leading = leading.and_then(|k| Some(&hypotheses.single(k)?.fit));
         let explanation = explanation.filter(|_| supported != SearchVerdict::NothingDetectable);
         let names_effect = supported != SearchVerdict::NotInLibrary;
         Self {
@@ -162,6 +180,9 @@ impl Objections {
                 let strength = || task.implausible_strength(fit, members).filter(|_| names_effect);
                 fit.frame.implausible(position).or_else(strength)
             }),
+            held_back: base
+                .zip(leading)
+                .and_then(|(base, with)| held_back(task, base, with)),
             unsupported_noise: match (base, explanation) {
                 (Some(base), Some((best, _))) => unsupported_noise(task, base, best),
                 _ => Vec::new(),
@@ -170,7 +191,7 @@ impl Objections {
     }
 
     fn any(&self) -> bool {
-        self.implausible.is_some() || !self.unsupported_noise.is_empty()
+        self.implausible.is_some() || self.held_back.is_some() || !self.unsupported_noise.is_empty()
     }
 }
 
@@ -223,7 +244,7 @@ impl Conclusion {
             Some(_) => Objections::default(),
             None => {
                 let explanation = explanation.map(|fit| (fit, effects.as_slice()));
-                Objections::new(task, base, explanation, supported)
+                Objections::new(task, hypotheses, &weighing, explanation, supported)
             }
         };
         let is_withheld = objections.any();
@@ -237,6 +258,7 @@ impl Conclusion {
         Self {
             verdict,
             implausible: objections.implausible,
+            held_back: objections.held_back,
             unsupported_noise: objections.unsupported_noise,
             remaining: remainder.residuals,
             complete: remainder.complete,
@@ -256,7 +278,7 @@ impl Conclusion {
             outside: law
                 .as_ref()
                 .filter(|_| verdict == SearchVerdict::NotInLibrary)
-                .map(OutsideLaw::new),
+                .map(|law| OutsideLaw::new(law, likelihood, weighing.misfit)),
             combination,
             replacements,
             gains: hypotheses.gains(),

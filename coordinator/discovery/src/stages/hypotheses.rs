@@ -8,6 +8,7 @@ use crate::effect_search::ranking::EffectRanking;
 use crate::laplace::evidence::log_sum_exp;
 use crate::laplace::fit::{FittedModel, LaplaceFit};
 use crate::probability::DETECTED;
+use crate::stages::law_forms::FittedForm;
 use statistics::likelihood::Likelihood;
 
 /// Cost of each effect after the first \[nats\]: a bound of the gain by selection from the library.
@@ -110,6 +111,8 @@ pub(super) struct FittedLaw {
     /// Log Bayes factor of the mean evidence of curve and forms.
     pub(super) mean_log_bayes_factor: f64,
     pub(super) fit: LaplaceFit,
+    /// The curve and every form that was fitted, by falling Bayes factor.
+    pub(super) forms: Vec<FittedForm>,
     /// Log predictive density of the left-out data over that of the base, and over that of the library's best combination.
     pub(super) left_out: Option<[f64; 2]>,
 }
@@ -231,11 +234,29 @@ impl Hypotheses {
         self.combinations.iter().find(|c| c.effects == effects)
     }
 
+    /// Returns the combination of these effects in any order.
+    pub(super) fn of_set(&self, effects: &CandidateSet) -> Option<&EffectCombination> {
+        let mut combinations = self.combinations.iter();
+        combinations.find(|c| candidate_set(&c.effects) == *effects)
+    }
+
     /// Returns the log Bayes factor of these effects, if they were fitted together.
     pub(super) fn log_bayes_factor_of(&self, effects: &CandidateSet) -> Option<f64> {
-        let mut combinations = self.combinations.iter();
-        let combination = combinations.find(|c| candidate_set(&c.effects) == *effects)?;
-        Some(combination.log_bayes_factor)
+        Some(self.of_set(effects)?.log_bayes_factor)
+    }
+
+    /// Returns a law as it was scanned beyond these effects, if its forms were fitted there.
+    ///
+    /// # Arguments
+    /// - `law`: index of the law in the task.
+    pub(super) fn law_beyond(&self, effects: &CandidateSet, law: usize) -> Option<(&LawScan, &FittedLaw)> {
+        let mut scans = self.further_laws.iter().rev();
+        scans.find_map(|scan| {
+            let is_beyond = candidate_set(&scan.beyond) == *effects;
+            let has_forms = |found: &&FittedLaw| found.law == law && found.forms.len() > 1;
+            let found = scan.laws.iter().filter(|_| is_beyond).find(has_forms)?;
+            Some((scan, found))
+        })
     }
 
     /// Returns the scan for laws that is in progress, or the last one.

@@ -2,12 +2,12 @@
 //! cross-validation of the best set that has both.
 
 use crate::chi_square::{FURTHER_EFFECT, FitChiSquare};
-use crate::effect_search::depth::QUICK;
+use crate::effect_search::depth::{FORMS, QUICK};
 use crate::probability::DETECTED;
 use crate::settings::Smoothness;
 use crate::stages::branch::SearchBranch;
 use crate::stages::cross_validation::{ComparedModel, CrossValidation};
-use crate::stages::hypotheses::{EffectCombination, LawBesideEffects};
+use crate::stages::hypotheses::{EffectCombination, LawBesideEffects, candidate_set};
 use crate::stages::laws::LAWS;
 use crate::stages::stage::Stage;
 use crate::stages::state::SearchState;
@@ -74,12 +74,42 @@ impl SearchState {
     fn law_elimination(&mut self) -> Stage {
         match self.best_with_law() {
             Some(best) if best.effects.len() > 2 => Stage::LawElimination(self.without_each(best)),
-            _ => self.law_validation(),
+            _ => self.law_forms(),
         }
     }
 
     pub(super) fn after_law_elimination(&mut self, branches: &[SearchBranch]) -> Stage {
         self.add_fitted(branches);
+        self.law_forms()
+    }
+
+    /// Fits curve and forms of the law of the best set that has one beyond the effects of that set, unless a scan has: beside other
+    /// effects another form may be the best.
+    fn law_forms(&mut self) -> Stage {
+        let unfitted = self.best_with_law().and_then(|best| {
+            let place = best.effects.iter().position(|k| self.task.is_law(*k))?;
+            let law = self.task.law_of(best.effects[place])?;
+            let mut effects = candidate_set(&best.effects);
+            effects.remove(&best.effects[place]);
+            let is_fitted = self.hypotheses.law_beyond(&effects, law).is_some();
+            let beyond = self.hypotheses.of_set(&effects).filter(|_| !is_fitted)?;
+            let mut candidates = vec![self.task.curve(law)];
+            candidates.extend(self.task.forms(law));
+            Some((law, self.branch(beyond.effects.clone(), candidates, &FORMS)?))
+        });
+        match unfitted {
+            Some((law, branch)) => Stage::LawForms(law, branch),
+            None => self.law_validation(),
+        }
+    }
+
+    pub(super) fn after_law_forms(&mut self, law: usize, branch: &SearchBranch) -> Stage {
+        let mut scan = self.scan_of(branch);
+        for found in &mut scan.laws {
+            found.describe(self.task.forms(law), branch);
+        }
+        self.hypotheses.further_laws.push(scan);
+        self.add_scanned();
         self.law_validation()
     }
 

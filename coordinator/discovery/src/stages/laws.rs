@@ -1,6 +1,8 @@
 //! Steps 9 to 11, laws outside the library: curves, then simple forms, then the cross-validation of the best, first beyond the base
 //! and then beyond the best combination if that leaves misfit.
 
+use std::ops::Range;
+
 use crate::chi_square::{FURTHER_EFFECT, FitChiSquare, OUTSIDE_LAW};
 use crate::effect_search::depth::{ALL_CURVES, CURVES, FORMS};
 use crate::laplace::evidence::log_sum_exp;
@@ -9,6 +11,7 @@ use crate::probability::DETECTED;
 use crate::stages::branch::SearchBranch;
 use crate::stages::cross_validation::{ComparedModel, CrossValidation};
 use crate::stages::hypotheses::{EffectCombination, FittedLaw, LawScan};
+use crate::stages::law_forms::FittedForm;
 use crate::stages::stage::Stage;
 use crate::stages::state::SearchState;
 
@@ -101,21 +104,7 @@ impl SearchState {
 
     /// Keeps the curves, and fits the simple forms of the best.
     pub(super) fn after_curves(&mut self, branch: &SearchBranch) -> Stage {
-        let laws = branch.ranked().into_iter().filter_map(|(candidate, ranked)| {
-            Some(FittedLaw {
-                law: self.task.law_of(candidate)?,
-                candidate,
-                log_bayes_factor: ranked.log_bayes_factor,
-                mean_log_bayes_factor: ranked.log_bayes_factor,
-                fit: branch.search.fit_of(ranked.candidate?)?.clone(),
-                left_out: None,
-            })
-        });
-        let scan = LawScan {
-            beyond: branch.effects.clone(),
-            laws: laws.collect(),
-            confirmed: None,
-        };
+        let scan = self.scan_of(branch);
         let best = scan.laws.iter().take(LAWS);
         let forms = best.flat_map(|law| self.task.forms(law.law)).collect();
         let forms = self.branch(scan.beyond.clone(), forms, &FORMS);
@@ -130,29 +119,42 @@ impl SearchState {
         }
     }
 
+    /// Returns the laws whose curves a branch has fitted.
+    pub(super) fn scan_of(&self, branch: &SearchBranch) -> LawScan {
+        let laws = branch.ranked().into_iter().filter_map(|(candidate, ranked)| {
+            let law = self.task.law_of(candidate)?;
+            let fit = branch.search.fit_of(ranked.candidate?)?;
+            let factor = ranked.log_bayes_factor;
+            (candidate == self.task.curve(law)).then(|| FittedLaw {
+                law,
+                candidate,
+                log_bayes_factor: factor,
+                mean_log_bayes_factor: factor,
+                fit: fit.clone(),
+                forms: vec![FittedForm::new(
+                    candidate,
+                    factor,
+                    fit,
+                    branch.added_parameters(fit),
+                )],
+                left_out: None,
+            })
+        });
+        LawScan {
+            beyond: branch.effects.clone(),
+            laws: laws.collect(),
+            confirmed: None,
+        }
+    }
+
     /// Describes each law by its best form or its curve, and begins the cross-validation.
     pub(super) fn after_forms(&mut self, branch: &SearchBranch) -> Stage {
         let task = &self.task;
         let Some(scan) = self.hypotheses.current_scan() else {
             return self.replacements();
         };
-        let ranked = branch.ranked();
         for law in &mut scan.laws {
-            let indices = task.forms(law.law);
-            let forms: Vec<_> = ranked.iter().filter(|(k, _)| indices.contains(k)).collect();
-            let factors = forms.iter().map(|(_, form)| form.log_bayes_factor);
-            let all = factors.chain([law.log_bayes_factor]);
-            let count = 1.0 + indices.len() as f64;
-            law.mean_log_bayes_factor = log_sum_exp(all) - libm::log(count);
-            let best = forms.first().and_then(|(k, form)| {
-                let fit = branch.search.fit_of(form.candidate?)?;
-                Some((*k, form.log_bayes_factor, fit))
-            });
-            if let Some((candidate, factor, fit)) = best
-                && factor > law.log_bayes_factor - CURVE_BEATS_FORM
-            {
-                (law.candidate, law.log_bayes_factor, law.fit) = (candidate, factor, fit.clone());
-            }
+            law.describe(task.forms(law.law), branch);
         }
         let handicap = |law: &FittedLaw| f64::from(u8::from(task.laws[law.law].is_description)) * DETECTED;
         let score = |law: &FittedLaw| law.log_bayes_factor - handicap(law);
@@ -206,8 +208,14 @@ impl SearchState {
         self.after_scan()
     }
 
-    /// Ends a scan. Laws that gain a detectable amount beyond a set join it.
+    /// Ends a scan.
     fn after_scan(&mut self) -> Stage {
+        self.add_scanned();
+        self.further_curves()
+    }
+
+    /// Lets the laws that gain a detectable amount beyond the set that was scanned last join it.
+    pub(super) fn add_scanned(&mut self) {
         if let Some(scan) = self.hypotheses.further_laws.last() {
             let scanned = self.hypotheses.combination(&scan.beyond);
             let possible = self.task.laws.len();
@@ -231,6 +239,34 @@ impl SearchState {
             let sets: Vec<EffectCombination> = laws.filter_map(with).collect();
             sets.into_iter().for_each(|set| self.hypotheses.add(set));
         }
-        self.further_curves()
+    }
+}
+
+impl FittedLaw {
+    /// Keeps the forms that a branch has fitted, and describes the law by the best of them or by its curve.
+    ///
+    /// # Arguments
+    /// - `indices`: of the law's forms among the candidates.
+    pub(super) fn describe(&mut self, indices: Range<usize>, branch: &SearchBranch) {
+        let forms = branch.ranked().into_iter();
+        let forms: Vec<_> = forms.filter(|(k, _)| indices.contains(k)).collect();
+        let factors = forms.iter().map(|(_, form)| form.log_bayes_factor);
+        let all = factors.chain([self.log_bayes_factor]);
+        self.mean_log_bayes_factor = log_sum_exp(all) - libm::log(1.0 + indices.len() as f64);
+        let fitted = forms.iter().filter_map(|(k, form)| {
+            let fit = branch.search.fit_of(form.candidate?)?;
+            Some((*k, form.log_bayes_factor, fit))
+        });
+        let fitted: Vec<_> = fitted.collect();
+        self.forms.extend(fitted.iter().map(|(candidate, factor, fit)| {
+            FittedForm::new(*candidate, *factor, fit, branch.added_parameters(fit))
+        }));
+        self.forms
+            .sort_by(|a, b| b.log_bayes_factor.total_cmp(&a.log_bayes_factor));
+        if let Some((candidate, factor, fit)) = fitted.first()
+            && *factor > self.log_bayes_factor - CURVE_BEATS_FORM
+        {
+            (self.candidate, self.log_bayes_factor, self.fit) = (*candidate, *factor, (*fit).clone());
+        }
     }
 }

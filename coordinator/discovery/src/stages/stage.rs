@@ -26,6 +26,8 @@ pub(super) enum Stage {
     EffectsBesideLaw(usize, Vec<SearchBranch>),
     /// The best set that has a law, without each of its effects.
     LawElimination(Vec<SearchBranch>),
+    /// The forms of the law of the best set that has one, beyond its effects; holds the index of the law.
+    LawForms(usize, SearchBranch),
     /// Holds the effects and the law.
     LawBesideEffects(Vec<usize>, CrossValidation),
     /// The base with a leading effect in the place of one of its effects.
@@ -48,9 +50,10 @@ enum Work<'a> {
 impl Stage {
     fn work(&mut self) -> Work<'_> {
         match self {
-            Self::SingleEffects(branch) | Self::Curves(branch) | Self::Forms(branch) => {
-                Work::Branches(std::slice::from_mut(branch))
-            }
+            Self::SingleEffects(branch)
+            | Self::Curves(branch)
+            | Self::Forms(branch)
+            | Self::LawForms(_, branch) => Work::Branches(std::slice::from_mut(branch)),
             Self::BaseReduction(branches)
             | Self::Families(branches)
             | Self::BeamSearch(_, branches)

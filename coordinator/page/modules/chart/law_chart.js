@@ -1,7 +1,7 @@
-// A law outside the library: its curve and its formula.
+// A law outside the library: its curve, its effect file, and the forms that were fitted.
 
 import { html } from "../html.js";
-import { words } from "../words/quantity.js";
+import { minus, probability, words } from "../words/quantity.js";
 import { Figure, fileName } from "./figure.js";
 import { Plot, STYLE } from "./library.js";
 
@@ -26,5 +26,22 @@ export function LawChart({ law, name, add }) {
         rows=${() => law.curve.map((/** @type {[number, number]} */ [x, y]) => ({ [law.depends_on]: x, [isFactor ? "factor" : "addition"]: y }))} />
       <div><pre tabindex="0" aria-label="effect file">${law.effect_file}</pre>
         ${add && html`<button class="main" type="button" onClick=${add}>Add this law</button>`}</div>
-    </div>`;
+    </div>
+    <${Forms} forms=${law.forms ?? []} />`;
+}
+
+/** The fitted forms of a law; a record of an earlier version has none. */
+function Forms(/** @type {{ forms: any[] }} */ { forms }) {
+  if (forms.length < 2) return null;
+  return html`
+    <h3>Forms of this law</h3>
+    <div class="scroll" tabindex="0" role="region" aria-label="Forms of this law">
+      <table>
+        <thead><tr><th scope="col">form</th><th scope="col" class="number">nats</th><th scope="col" class="number">probability</th><th scope="col" class="number">class</th><th scope="col">formula</th></tr></thead>
+        <tbody>${forms.map((form) => html`
+          <tr key=${form.form}><th scope="row">${form.form.replaceAll("_", " ")}</th><td class="number">${minus(form.log_bayes_factor.toFixed(1))}</td>
+            <td class="number">${probability(form.probability)}</td><td class="number">${form.class}</td><td><code>${form.formula}</code></td></tr>`)}</tbody>
+      </table>
+    </div>
+    <p class="note">These data cannot tell forms of one class apart. Probabilities are among the forms, each of which has the same prior.</p>`;
 }

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::path::Path;
 
-use record::{ChiSquare, Discovery, JudgedEffect, JudgedSet};
+use record::{ChiSquare, Discovery, FittedForm, JudgedEffect, JudgedSet};
 
 use super::column::{cell, width};
 use super::table::Table;
@@ -13,6 +13,8 @@ use result::words::probability::p_words;
 
 /// Maximum number of explanations that are shown.
 const SHOWN: usize = 8;
+/// Maximum number of forms of a law that are shown.
+const FORMS: usize = 3;
 /// Maximum number of names in a list of effects.
 const LISTED: usize = 20;
 
@@ -59,6 +61,7 @@ pub fn text(record: &Discovery, calibration: i64, place: &str, folder: &Path) ->
             "outside the library: {} depends on {} ({}), ln BF {:.2}",
             outside.acts_on, outside.depends_on, outside.form, outside.log_bayes_factor
         );
+        text += &forms(&outside.forms);
     }
     if let Some((name, _)) = effect_file(record) {
         let _ = writeln!(text, "its effect file: {}", folder.join(name).display());
@@ -152,6 +155,20 @@ fn sets(record: &Discovery) -> String {
     format!("\n{}", table.text(names.iter().zip(shown())))
 }
 
+/// Tabulates the leading forms of a law, if several were fitted.
+fn forms(forms: &[FittedForm]) -> String {
+    if forms.len() < 2 {
+        return String::new();
+    }
+    Table::<&FittedForm>::new()
+        .left(15, "form of the law", |form| &form.form)
+        .right(9, "ln BF", |form| format!("{:.2}", form.log_bayes_factor))
+        .right(11, "probability", |form| format!("{:.4}", form.probability))
+        .right(6, "class", |form| form.class)
+        .apart(0, "formula", |form| &form.formula)
+        .text(forms.iter().take(FORMS))
+}
+
 /// Removes each `EFFECT.WHEEL` from a list that contains `EFFECT`.
 fn folded(names: &[String]) -> Vec<&str> {
     let is_own = |name: &&String| match name.split_once('.') {
@@ -173,7 +190,7 @@ fn chi_square(chi2: ChiSquare) -> String {
 
 #[cfg(test)]
 mod tests {
-    use record::Extension;
+    use record::{Extension, Outside};
 
     use super::*;
 
@@ -195,6 +212,44 @@ mod tests {
         ] {
             assert!(text.contains(words), "{words} in\n{text}");
         }
+    }
+
+    #[test]
+    fn the_leading_forms_of_a_law_have_their_formulas() {
+        let mut record = record();
+        let form = |form: &str, log_bayes_factor: f64| FittedForm {
+            form: form.into(),
+            formula: format!("tau * {form}(j)"),
+            log_bayes_factor,
+            probability: 0.25,
+            class: 1,
+        };
+        record.outside = Some(Outside {
+            acts_on: "shear".into(),
+            depends_on: "j".into(),
+            form: "log".into(),
+            log_bayes_factor: 12.0,
+            effect_file: "name = \"shear_j_log\"\n".into(),
+            curve: Vec::new(),
+            left_out_nats: [8.0, 3.0],
+            forms: vec![
+                form("log", 12.0),
+                form("decay", 11.0),
+                form("spline", 8.5),
+                form("step", 2.0),
+            ],
+        });
+        let text = text(&record, 1, "--out o", Path::new("o"));
+        assert!(
+            text.contains("decay               11.00      0.2500      1  tau * decay(j)\n"),
+            "{text}"
+        );
+        assert!(
+            text.contains("tau * spline(j)") && !text.contains("tau * step(j)"),
+            "{text}"
+        );
+        let alike = record.outside.as_ref().and_then(Outside::forms_alike);
+        assert_eq!(alike.as_deref(), Some("log (12.0) and decay (11.0)"));
     }
 
     #[test]

@@ -36,7 +36,8 @@ impl LawFiles {
             let name = effect_name(text);
             effects.iter().all(|effect| Some(&effect.name) != name.as_ref())
         };
-        let forms = LawForm::ALL.iter().map(|form| (*form, form.effect(dependence)));
+        let forms = LawForm::ALL.into_iter().filter(|form| form.suits(dependence));
+        let forms = forms.map(|form| (form, form.effect(dependence)));
         let forms = forms.filter(|(_, law)| is_new(law));
         Some(LawFiles {
             curve: beside(dependence.curve(), files),
@@ -112,7 +113,7 @@ mod tests {
     fn a_law_that_a_job_has_is_not_offered_again() {
         let (job, experiment, _) = read("tests/data/shear-mobilisation");
         let (curve, forms) = addable(&job, &experiment).unwrap();
-        assert_eq!((curve.as_str(), forms.len()), ("scan_shear_v_n.toml", 7));
+        assert_eq!((curve.as_str(), forms.len()), ("scan_shear_v_n.toml", 9));
         let form = law(&job, &experiment, Some(LawForm::Power));
         let with_form = extended("job.toml", &job, &[&form]).unwrap();
         let (curve, others) = addable(&with_form, &experiment).unwrap();

@@ -24,15 +24,25 @@ pub(crate) enum LawForm {
     Decay,
     /// Times (1 + m/scale)^(−a); plus a / (1 + m/scale).
     InversePower,
+    /// Times 1 + a (m / its maximum)^b. A channel has the power in its place.
+    Growth,
+    /// Times 1 + a m / (m + scale); plus a m / (m + scale).
+    Hyperbola,
+    /// Times 1 + a e^(−((x − centre)/width)²/2); plus a e^(−((x − centre)/width)²/2). A variable with a logarithmic range has none.
+    Bump,
 }
 
-/// The shape parameter of a form.
+/// A shape parameter of a form.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum FormShape {
-    None,
-    /// The exponent of a channel's power.
+    /// The exponent of a growth, and of a channel's power.
     Exponent,
     Scale,
     Threshold,
+    /// The place of a bump.
+    Centre,
+    /// The standard width of a bump.
+    Width,
 }
 
 /// Least factor on a stress, which keeps its sign beyond the fitted range.
@@ -43,10 +53,12 @@ const MIN_SCALE: f64 = 0.05;
 const MIN_DEPTH: f64 = 1.0 / 30.0;
 /// Below this share of the variable's maximum a power is constant, where the range begins at 0 `[1]`.
 const MIN_BASE: f64 = 0.01;
+/// Range of the width of a bump, as a share of the range of the variable `[1]`.
+const BUMP_WIDTH: [f64; 2] = [0.05, 0.7];
 
 impl LawForm {
     /// Every form.
-    pub(crate) const ALL: [LawForm; 7] = [
+    pub(crate) const ALL: [LawForm; 10] = [
         LawForm::Power,
         LawForm::Saturation,
         LawForm::Linear,
@@ -54,7 +66,19 @@ impl LawForm {
         LawForm::Log,
         LawForm::Decay,
         LawForm::InversePower,
+        LawForm::Growth,
+        LawForm::Hyperbola,
+        LawForm::Bump,
     ];
+
+    /// Returns whether a dependence may have the form.
+    pub(crate) fn suits(self, dependence: &Dependence) -> bool {
+        match self {
+            LawForm::Growth => dependence.addition_sd.is_none(),
+            LawForm::Bump => !dependence.range.is_logarithmic,
+            _ => true,
+        }
+    }
 
     /// Returns the name in results.
     pub(crate) fn name(self) -> &'static str {
@@ -66,12 +90,15 @@ impl LawForm {
             LawForm::Log => "log",
             LawForm::Decay => "decay",
             LawForm::InversePower => "inverse_power",
+            LawForm::Growth => "growth",
+            LawForm::Hyperbola => "hyperbola",
+            LawForm::Bump => "bump",
         }
     }
 
     /// Returns the effect file of this form of a dependence.
     ///
-    /// It has one strength, neutral at 0, and at most one shape parameter, with a prior over the range of the variable. Checked by
+    /// It has one strength, neutral at 0, and at most two shape parameters, with priors over the range of the variable. Checked by
     /// `tests::forms_are_what_their_names_say`.
     pub(crate) fn effect(self, dependence: &Dependence) -> CandidateEffect {
         let name = format!("{}_{}", dependence.name(), self.name());
@@ -95,7 +122,8 @@ impl LawForm {
             dependence.acts_on.name(),
             dependence.unit(),
         );
-        if let Some((parameter, unit, prior)) = self.shape_parameter(dependence) {
+        for shape in self.shapes(dependence) {
+            let (parameter, unit, prior) = shape.parameter(dependence);
             // Writing to a text cannot fail.
             let _ = write!(
                 text,
@@ -121,6 +149,9 @@ impl LawForm {
             LawForm::Log => format!("{quantity} changes with the logarithm of the {variable}"),
             LawForm::Decay => format!("{quantity} differs at a small {variable}"),
             LawForm::InversePower => format!("{quantity} changes with an inverse power of the {variable}"),
+            LawForm::Growth => format!("{quantity} changes from 0 of the {variable} on by a power"),
+            LawForm::Hyperbola => format!("{quantity} changes with the {variable} and saturates slowly"),
+            LawForm::Bump => format!("{quantity} differs about one {variable}"),
         }
     }
 
@@ -140,7 +171,7 @@ impl LawForm {
             magnitude(dependence),
             greatest(dependence),
         );
-        let (least, scale) = (MIN_FACTOR, scale_name(dependence));
+        let (least, scale) = (MIN_FACTOR, FormShape::Scale.name(dependence));
         match self {
             LawForm::Power => format!(
                 "(max({m}, {:?}) / {:?})^{strength}",
@@ -149,22 +180,33 @@ impl LawForm {
             ),
             LawForm::Saturation => format!("(1 + {strength} * (1 - exp(-{m} / {scale})))"),
             LawForm::Linear => format!("max(1 + {strength} * {x} / {greatest:?}, {least:?})"),
-            LawForm::Step => format!("if({x} > {}, 1 + {strength}, 1)", threshold_name(dependence)),
+            LawForm::Step => format!(
+                "if({x} > {}, 1 + {strength}, 1)",
+                FormShape::Threshold.name(dependence)
+            ),
             LawForm::Log => format!("max(1 + {strength} * log(1 + {m} / {scale}), {least:?})"),
             LawForm::Decay => format!("(1 - {strength} * exp(-{m} / {scale}))"),
             LawForm::InversePower => format!("(1 + {m} / {scale})^(-{strength})"),
+            LawForm::Growth => {
+                format!("max(1 + {strength} * ({m} / {greatest:?})^exponent, {least:?})")
+            }
+            LawForm::Hyperbola => format!("(1 + {strength} * {m} / ({m} + {scale}))"),
+            LawForm::Bump => format!("(1 + {strength} * {})", bump(dependence)),
         }
     }
 
-    /// Returns the prior of the strength of a factor, bounded where the factor would change its sign within the range.
+    /// Returns the prior of the strength of a factor, bounded where the factor would change its sign within the range. The other bound
+    /// lies beyond all that a search reaches.
     fn factor_prior(self) -> &'static str {
         match self {
             LawForm::Power => "{ normal = [0.0, 0.3] }",
             LawForm::InversePower => "{ normal = [0.0, 0.5] }",
-            LawForm::Saturation | LawForm::Linear => "{ normal = [0.0, 0.5], bounds = [-0.95, 3.0] }",
-            LawForm::Step => "{ normal = [0.0, 0.4], bounds = [-0.9, 2.0] }",
-            LawForm::Log => "{ normal = [0.0, 0.3], bounds = [-0.9, 3.0] }",
-            LawForm::Decay => "{ normal = [0.0, 0.5], bounds = [-3.0, 0.95] }",
+            LawForm::Saturation | LawForm::Linear | LawForm::Growth | LawForm::Hyperbola | LawForm::Bump => {
+                "{ normal = [0.0, 0.7], bounds = [-0.95, 100.0] }"
+            }
+            LawForm::Step => "{ normal = [0.0, 0.4], bounds = [-0.9, 100.0] }",
+            LawForm::Log => "{ normal = [0.0, 0.3], bounds = [-0.9, 100.0] }",
+            LawForm::Decay => "{ normal = [0.0, 0.7], bounds = [-100.0, 0.95] }",
         }
     }
 
@@ -175,58 +217,92 @@ impl LawForm {
             magnitude(dependence),
             greatest(dependence),
         );
-        let scale = scale_name(dependence);
+        let scale = FormShape::Scale.name(dependence);
         match self {
-            LawForm::Power => format!("(max({m}, {:?}) / {greatest:?})^exponent", min_base(dependence)),
+            LawForm::Power | LawForm::Growth => {
+                format!("(max({m}, {:?}) / {greatest:?})^exponent", min_base(dependence))
+            }
             LawForm::Saturation => format!("(1 - exp(-{m} / {scale}))"),
             LawForm::Linear => format!("{x} / {greatest:?}"),
-            LawForm::Step => format!("if({x} > {}, 1, 0)", threshold_name(dependence)),
+            LawForm::Step => format!("if({x} > {}, 1, 0)", FormShape::Threshold.name(dependence)),
             LawForm::Log => format!("log(1 + {m} / {scale})"),
             LawForm::Decay => format!("exp(-{m} / {scale})"),
             LawForm::InversePower => format!("(1 + {m} / {scale})^(-1)"),
+            LawForm::Hyperbola => format!("{m} / ({m} + {scale})"),
+            LawForm::Bump => bump(dependence),
         }
     }
 
-    fn shape(self, dependence: &Dependence) -> FormShape {
+    /// Returns the shape parameters.
+    fn shapes(self, dependence: &Dependence) -> &'static [FormShape] {
         match self {
-            LawForm::Linear => FormShape::None,
-            LawForm::Power if dependence.addition_sd.is_none() => FormShape::None,
-            LawForm::Power => FormShape::Exponent,
-            LawForm::Step => FormShape::Threshold,
-            LawForm::Saturation | LawForm::Log | LawForm::Decay | LawForm::InversePower => FormShape::Scale,
+            LawForm::Linear => &[],
+            LawForm::Power if dependence.addition_sd.is_none() => &[],
+            LawForm::Power | LawForm::Growth => &[FormShape::Exponent],
+            LawForm::Step => &[FormShape::Threshold],
+            LawForm::Saturation
+            | LawForm::Log
+            | LawForm::Decay
+            | LawForm::InversePower
+            | LawForm::Hyperbola => &[FormShape::Scale],
+            LawForm::Bump => &[FormShape::Centre, FormShape::Width],
         }
+    }
+}
+
+impl FormShape {
+    /// Returns the name of the parameter.
+    fn name(self, dependence: &Dependence) -> String {
+        let name = match self {
+            FormShape::Exponent => return "exponent".into(),
+            FormShape::Scale => "scale",
+            FormShape::Threshold => "threshold",
+            FormShape::Centre => "centre",
+            FormShape::Width => "bump_width",
+        };
+        format!("{name}{}", suffix(dependence.variable().unit_name()))
     }
 
-    /// Returns the name, unit and prior of the shape parameter.
-    fn shape_parameter(self, dependence: &Dependence) -> Option<(String, &'static str, String)> {
+    /// Returns the name, unit and prior of the parameter.
+    fn parameter(self, dependence: &Dependence) -> (String, &'static str, String) {
         let unit = dependence.variable().unit_name();
-        let highest = greatest(dependence);
-        let from = |lowest: f64| -> String {
-            let spans = dependence.range.is_logarithmic || dependence.depends_on == DependsOn::Z;
-            let kind = if spans { "loguniform" } else { "uniform" };
-            format!("{{ {kind} = [{lowest:?}, {highest:?}] }}")
+        let (range, greatest) = (dependence.range, greatest(dependence));
+        let from_least = || {
+            let (lowest, kind) = match (range.is_logarithmic, dependence.depends_on) {
+                (true, _) => (range.lowest, "loguniform"),
+                (false, DependsOn::Z) => (rounded(MIN_DEPTH * greatest, 4), "loguniform"),
+                (false, _) => (rounded(MIN_SCALE * greatest, 4), "uniform"),
+            };
+            format!("{{ {kind} = [{lowest:?}, {greatest:?}] }}")
         };
-        let least = match (dependence.range.is_logarithmic, dependence.depends_on) {
-            (true, _) => dependence.range.lowest,
-            (false, DependsOn::Z) => rounded(MIN_DEPTH * highest, 4),
-            (false, _) => rounded(MIN_SCALE * highest, 4),
-        };
-        match self.shape(dependence) {
-            FormShape::None => None,
-            FormShape::Exponent => Some(("exponent".into(), "1", "{ uniform = [0.2, 3.0] }".into())),
-            FormShape::Scale => Some((scale_name(dependence), unit, from(least))),
-            FormShape::Threshold => {
-                let prior = match dependence.depends_on {
-                    DependsOn::Slip | DependsOn::Position | DependsOn::WheelLoad | DependsOn::Sinkage => {
-                        let (lowest, highest) = (dependence.range.lowest, dependence.range.highest);
-                        format!("{{ uniform = [{lowest:?}, {highest:?}] }}")
-                    }
-                    _ => from(least),
-                };
-                Some((threshold_name(dependence), unit, prior))
+        let over_range = || format!("{{ uniform = [{:?}, {:?}] }}", range.lowest, range.highest);
+        let (unit, prior) = match self {
+            FormShape::Exponent => ("1", "{ uniform = [0.2, 3.0] }".into()),
+            FormShape::Scale => (unit, from_least()),
+            FormShape::Threshold => match dependence.depends_on {
+                DependsOn::Slip | DependsOn::Position | DependsOn::WheelLoad | DependsOn::Sinkage => {
+                    (unit, over_range())
+                }
+                _ => (unit, from_least()),
+            },
+            FormShape::Centre => (unit, over_range()),
+            FormShape::Width => {
+                let [narrowest, widest] =
+                    BUMP_WIDTH.map(|share| rounded(share * (range.highest - range.lowest), 4));
+                (unit, format!("{{ loguniform = [{narrowest:?}, {widest:?}] }}"))
             }
-        }
+        };
+        (self.name(dependence), unit, prior)
     }
+}
+
+/// Returns the formula of a bump of height 1.
+fn bump(dependence: &Dependence) -> String {
+    let [centre, width] = [FormShape::Centre, FormShape::Width].map(|shape| shape.name(dependence));
+    format!(
+        "exp(-0.5 * (({} - {centre}) / {width})^2)",
+        dependence.depends_on.name()
+    )
 }
 
 /// Returns the formula of the magnitude: that of a negative slip counts, that of a negative sinkage is 0.
@@ -258,14 +334,6 @@ fn min_base(dependence: &Dependence) -> f64 {
         true => dependence.range.lowest,
         false => rounded(MIN_BASE * greatest(dependence), 4),
     }
-}
-
-fn scale_name(dependence: &Dependence) -> String {
-    format!("scale{}", suffix(dependence.variable().unit_name()))
-}
-
-fn threshold_name(dependence: &Dependence) -> String {
-    format!("threshold{}", suffix(dependence.variable().unit_name()))
 }
 
 /// Returns the suffix of a name for its unit: `_m_s`.
@@ -309,7 +377,7 @@ mod tests {
         for folder in ["tests/data/shear-mobilisation", "examples/cmu-sand"] {
             let (job, files, experiment) = read(folder);
             for dependence in dependences(&experiment) {
-                for form in LawForm::ALL {
+                for form in LawForm::ALL.into_iter().filter(|form| form.suits(&dependence)) {
                     let candidate = form.effect(&dependence);
                     assert_eq!(candidate.name, format!("{}_{}", dependence.name(), form.name()));
                     let (_, effect) = text(&candidate);
@@ -327,19 +395,33 @@ mod tests {
                         1.0
                     };
                     let x0 = 0.5 * dependence.range.highest;
-                    let off = shown(form, &dependence, &[0.0, x0]);
+                    let off = shown(form, &dependence, &[0.0, x0, x0]);
                     assert!(
                         off.iter().all(|[_, y]| (y - neutral).abs() < 1e-12),
                         "{}",
                         candidate.name
                     );
-                    let on = shown(form, &dependence, &[0.3, x0]);
+                    let on = shown(form, &dependence, &[0.3, x0, x0]);
                     assert!(
                         on.iter().any(|[_, y]| (y - neutral).abs() > 1e-3),
                         "{}",
                         candidate.name
                     );
-                    assert!(dependence.addition_sd.is_some() || on.iter().all(|[_, y]| *y > 0.0));
+                    // A factor is positive at the bound of its prior, and at a strength that no prior excludes.
+                    let is_positive = |strength: f64| {
+                        let curve = shown(form, &dependence, &[strength, x0, x0]);
+                        curve.iter().all(|[_, y]| *y > 0.0)
+                    };
+                    let strongest = match form {
+                        LawForm::Decay => [-5.0, 0.95],
+                        LawForm::Step | LawForm::Log => [-0.9, 5.0],
+                        _ => [-0.95, 5.0],
+                    };
+                    assert!(
+                        dependence.addition_sd.is_some() || strongest.into_iter().all(is_positive),
+                        "{}",
+                        candidate.name
+                    );
                 }
             }
         }
@@ -348,7 +430,7 @@ mod tests {
     #[test]
     fn forms_are_what_their_names_say() {
         let depth = dependence("tests/data/shear-mobilisation", "pressure_z");
-        let (a, x0, most) = (0.4, 0.004, depth.range.highest);
+        let (a, x0, width, most) = (0.4, 0.004, 0.0015, depth.range.highest);
         let factor = |form: LawForm, z: f64| match form {
             LawForm::Power => libm::pow(z.max(0.01 * most) / (0.5 * most), a),
             LawForm::Saturation => 1.0 + a * (1.0 - libm::exp(-z / x0)),
@@ -357,13 +439,29 @@ mod tests {
             LawForm::Log => 1.0 + a * libm::log(1.0 + z / x0),
             LawForm::Decay => 1.0 - a * libm::exp(-z / x0),
             LawForm::InversePower => libm::pow(1.0 + z / x0, -a),
+            LawForm::Growth => 1.0 + a * libm::pow(z / most, x0),
+            LawForm::Hyperbola => 1.0 + a * z / (z + x0),
+            LawForm::Bump => 1.0 + a * libm::exp(-0.5 * libm::pow((z - x0) / width, 2.0)),
         };
         for form in LawForm::ALL {
-            for [z, y] in shown(form, &depth, &[a, x0]) {
+            for [z, y] in shown(form, &depth, &[a, x0, width]) {
                 // Files round numbers to four digits.
                 assert!((y - factor(form, z)).abs() < 1e-3, "{form:?} at {z}: {y}");
             }
         }
+    }
+
+    #[test]
+    fn only_a_variable_with_a_linear_range_has_a_bump_and_only_a_stress_a_growth() {
+        let suits =
+            |name: &str, form: LawForm| form.suits(&dependence("tests/data/shear-mobilisation", name));
+        for name in ["shear_z", "shear_slip", "torque_slip", "sinkage_sinkage"] {
+            assert!(suits(name, LawForm::Bump), "{name}");
+        }
+        for name in ["shear_v_t", "pressure_j", "torque_sled_speed"] {
+            assert!(!suits(name, LawForm::Bump), "{name}");
+        }
+        assert!(suits("shear_v_t", LawForm::Growth) && !suits("torque_slip", LawForm::Growth));
     }
 
     #[test]
