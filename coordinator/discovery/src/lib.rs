@@ -13,7 +13,7 @@
 //! one sign, half-normal; the truncation is integrated exactly.
 //!
 //! # Layout
-//! - `candidate`, `task`, `settings`: the model, its data, the candidates, and how they are searched.
+//! - `candidate`, `suspected_error`, `task`, `settings`: the model, its data, the candidates, and how they are searched.
 //! - `effect_search`: the search for one effect. `stages`: the whole discovery.
 //! - `laplace`: the fit of a model and its evidence. `chi_square`: goodness of fit. `probability`: posterior probabilities.
 
@@ -24,6 +24,7 @@ mod laplace;
 mod probability;
 mod settings;
 mod stages;
+mod suspected_error;
 mod task;
 
 pub use candidate::{Candidate, CandidateError};
@@ -40,7 +41,8 @@ pub use stages::next_run::InformativeRun;
 pub use stages::prior_sensitivity::AlternativePrior;
 pub use stages::query::{QueriedModel, Query};
 pub use stages::replacement::Replacement;
-pub use stages::shared_errors::{GroupError, JudgedError, SharedErrorSource, SuspectedError, SuspectedShift};
+pub use stages::shared_errors::{GroupError, JudgedError, SharedErrorSource};
 pub use stages::verdict::{NAMED, SearchVerdict};
 pub use stages::weighing::WeighedSet;
+pub use suspected_error::{SuspectedError, SuspectedShift};
 pub use task::{LawCandidate, ProposedRuns, Reduction, SearchTask};

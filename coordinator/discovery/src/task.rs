@@ -4,7 +4,7 @@ use crate::candidate::Candidate;
 use crate::laplace::coordinate::NormalFrame;
 use crate::laplace::fit::LaplaceFit;
 use crate::settings::SearchSettings;
-use crate::stages::shared_errors::SuspectedError;
+use crate::suspected_error::SuspectedError;
 use statistics::likelihood::Likelihood;
 use statistics::prior::Prior;
 

@@ -8,6 +8,7 @@ use crate::laplace::conditional::LinearisedModel;
 use crate::laplace::evidence::log_sum_exp;
 use crate::laplace::fit::LaplaceFit;
 use crate::laplace::point::FitPoint;
+use crate::suspected_error::{SuspectedError, SuspectedShift};
 use crate::task::SearchTask;
 use statistics::likelihood::{CommonError, CommonErrorSize, ErrorSd, Likelihood, Sensitive};
 use statistics::prior::{Distribution, Marginal};
@@ -18,26 +19,6 @@ const SCORES: [f64; 14] = [
 ];
 /// Index of the derivative by a factor on a datum. The job numbers those of the soil, 0 and 1.
 const BY_FACTOR: usize = 2;
-
-/// An error that runs may share, which is not part of the likelihood.
-#[derive(Debug, Clone, PartialEq)]
-pub struct SuspectedError {
-    /// The data of each group that shares an error, ascending.
-    pub groups: Vec<Vec<usize>>,
-    /// What the error does to its data.
-    pub shift: SuspectedShift,
-    /// Scale of the half-normal prior of its sd: relative, or in the unit of the data.
-    pub prior_scale: f64,
-}
-
-/// What a suspected error does to its data.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum SuspectedShift {
-    /// It shifts them by an offset.
-    Offset,
-    /// It multiplies them.
-    Factor,
-}
 
 /// An error that runs share.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
