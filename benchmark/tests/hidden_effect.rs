@@ -6,11 +6,16 @@ use benchmark::hidden_effect::reference;
 use benchmark::hidden_effect::rig::untryable::{self, Answer};
 use benchmark::hidden_effect::rig::{self, Flaw};
 use benchmark::hidden_effect::study::case::SyntheticCase;
+use benchmark::hidden_effect::study::draw::{
+    NAMED, draw, draw_beyond_library, draw_combination, draw_misstated, draw_named,
+};
+use benchmark::hidden_effect::study::geometry::Misstatement;
 use benchmark::hidden_effect::study::kind::HiddenKind;
+use benchmark::hidden_effect::study::laws::HiddenLaw;
 use benchmark::hidden_effect::study::noise_free::MIN_SEPARATION;
 use benchmark::hidden_effect::study::score::TrialScore;
 use benchmark::hidden_effect::study::tally::Tally;
-use benchmark::hidden_effect::study::trial::{draw, draw_named, search};
+use benchmark::hidden_effect::study::trial::search;
 use benchmark::parallel::each;
 
 const SEED: u64 = 1;
@@ -27,6 +32,12 @@ const OUTSIDE: [u64; 3] = [2, 5, 10];
 /// The numbers of a reference velocity with slip-softened pressure, and of a peak of the pressure with friction of the rim.
 const TWO: [u64; 2] = [3, 15];
 
+/// Laws, each with an effect beside it.
+const OUTLIB: [&[&str]; 2] = [&["shaken_bed", "elastic_rebound"], &["slip_wave", "sled_tare"]];
+const TRIPLE: [&[&str]; 1] = [&["sled_tare", "stick_slip", "slip_sinkage"]];
+const SPARSE: [&[&str]; 2] = [&["peak_pressure_angle"], &["slip_sinkage"]];
+const HEAVY: [&[&str]; 2] = [&["sled_tare"], &["stretched_mobilisation"]];
+
 fn scores(kind: HiddenKind, numbers: &[u64]) -> Vec<TrialScore> {
     let one = |place: u64| {
         let number = numbers[place as usize];
@@ -38,6 +49,22 @@ fn scores(kind: HiddenKind, numbers: &[u64]) -> Vec<TrialScore> {
 
 fn drawn(effect: &str) -> SyntheticCase {
     draw_named(effect, SEED).expect("the model takes a draw")
+}
+
+/// Searches experiments in which these effects and laws act together.
+fn combined(kind: HiddenKind, hidden: &[&[&str]]) -> Vec<TrialScore> {
+    let one = |place: u64| {
+        search(
+            kind,
+            &draw_combination(kind, hidden[place as usize], SEED)?,
+            place,
+        )
+    };
+    each(hidden.len() as u64, one).expect("every experiment is searched")
+}
+
+fn wrong_claims(scores: &[TrialScore]) -> usize {
+    count(scores, |f| f.is_claimed && !f.claim_is_right)
 }
 
 fn count(scores: &[TrialScore], holds: impl Fn(&TrialScore) -> bool) -> usize {
@@ -100,6 +127,53 @@ fn of_two_effects_both_are_named() {
     let shown = Tally(&scores).to_string();
     assert!(count(&scores, |f| f.is_exact) >= 1, "{shown}");
     assert_eq!(count(&scores, |f| f.is_outside()), 0, "{shown}");
+}
+
+#[test]
+fn of_three_effects_the_first_name_is_one() {
+    let scores = combined(HiddenKind::Triple, &TRIPLE);
+    let shown = Tally(&scores).to_string();
+    assert_eq!(count(&scores, |f| f.claim_is_right), 1, "{shown}");
+}
+
+#[test]
+fn beside_a_law_no_effect_is_named_that_is_not_hidden() {
+    let scores = combined(HiddenKind::Outlib, &OUTLIB);
+    let shown = Tally(&scores).to_string();
+    let is_wrong = |f: &TrialScore| f.is_claimed && !f.is_outside() && !f.claim_is_right;
+    assert_eq!(count(&scores, is_wrong), 0, "{shown}");
+    assert!(count(&scores, |f| f.claim_is_right) >= 1, "{shown}");
+}
+
+#[test]
+fn of_a_law_of_two_variables_the_quantity_is_found() {
+    let law = HiddenLaw::find("loaded_chain").expect("it is a law of the benchmark");
+    let case = draw_beyond_library(law, SEED, NAMED).expect("the model takes a draw");
+    let score = search(HiddenKind::Twovar, &case, 0).expect("it is searched");
+    assert!(score.is_outside() && score.quantity, "{score}");
+}
+
+#[test]
+fn a_wrong_dimension_is_taken_for_no_other_effect() {
+    let one = |place: u64| {
+        let case = draw_misstated(Misstatement::ALL[place as usize], SEED, NAMED + place)?;
+        search(HiddenKind::Geometry, &case, place)
+    };
+    let scores = each(Misstatement::ALL.len() as u64, one).expect("every experiment is searched");
+    let shown = Tally(&scores).to_string();
+    assert_eq!(wrong_claims(&scores), 0, "{shown}");
+    // A wrong radius of the wheel is the only one of these that the data determine well.
+    let radius = |f: &TrialScore| f.hidden == "wheel_radius_error" && f.claim_is_right;
+    assert_eq!(count(&scores, radius), 2, "{shown}");
+}
+
+#[test]
+fn of_eight_runs_and_of_noise_with_heavy_tails_nothing_wrong_is_claimed() {
+    let sparse = combined(HiddenKind::Sparse, &SPARSE);
+    let scores = [sparse, combined(HiddenKind::Heavy, &HEAVY)].concat();
+    let shown = Tally(&scores).to_string();
+    assert_eq!(wrong_claims(&scores), 0, "{shown}");
+    assert!(count(&scores, |f| f.claim_is_right) >= 3, "{shown}");
 }
 
 #[test]

@@ -5,11 +5,11 @@ use shared::file::FileSet;
 use statistics::rng::Stream;
 
 use super::study::case::SyntheticCase;
+use super::study::draw::{draw, draw_named};
 use super::study::kind::HiddenKind;
 use super::study::posterior::sample;
 use super::study::rate::Rate;
 use super::study::record::{is_right, leader, record, word};
-use super::study::trial::{draw, draw_named};
 use crate::error::StudyError;
 use crate::parallel::each;
 

@@ -6,9 +6,9 @@ use record::Extension;
 
 use crate::error::StudyError;
 use crate::hidden_effect::study::design::Plan;
+use crate::hidden_effect::study::draw::{draw_detectable, draw_from};
 use crate::hidden_effect::study::rate::Rate;
 use crate::hidden_effect::study::record::{is_right, record, word};
-use crate::hidden_effect::study::trial::{draw_detectable, draw_from};
 use crate::parallel::threads;
 use crate::process::cpu_s;
 

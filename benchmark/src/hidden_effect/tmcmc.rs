@@ -8,11 +8,11 @@ use shared::outcome::Outcome;
 
 use crate::error::StudyError;
 use crate::hidden_effect::study::case::{SyntheticCase, spec};
+use crate::hidden_effect::study::draw::draw;
 use crate::hidden_effect::study::kind::HiddenKind;
 use crate::hidden_effect::study::local_search::LocalSearch;
 use crate::hidden_effect::study::posterior::{PosteriorSample, sample};
 use crate::hidden_effect::study::rate::{mean, median};
-use crate::hidden_effect::study::trial::draw;
 use crate::parallel::each;
 
 /// With fewer particles or moves, evidences differ between seeds by more than between search and sampler.

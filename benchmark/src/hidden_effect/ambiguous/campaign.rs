@@ -9,10 +9,10 @@ use statistics::rng::Stream;
 use crate::error::StudyError;
 use crate::hidden_effect::study::case::{SyntheticCase, run as run_truth};
 use crate::hidden_effect::study::design::{Plan, PlannedRun};
+use crate::hidden_effect::study::draw::draw_detectable;
 use crate::hidden_effect::study::local_search::LocalSearch;
 use crate::hidden_effect::study::noise::add_noise;
 use crate::hidden_effect::study::record::word;
-use crate::hidden_effect::study::trial::draw_detectable;
 
 /// The number of the first truth, which no other kind uses.
 const FIRST: u64 = 1_000_000;

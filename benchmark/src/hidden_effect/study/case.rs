@@ -10,8 +10,9 @@ use shared::model::ModelVariant;
 use shared::outcome::{Observables, Outcome};
 use statistics::rng::Stream;
 
-use super::design::{CHANNELS, Plan, PlannedRun, experiment};
-use super::noise::{RunValues, add_noise, noise_sds};
+use super::design::{CHANNELS, Plan, PlannedRun, experiment, experiment_stating};
+use super::geometry::WheelSize;
+use super::noise::{RunValues, add_heavy_noise, add_noise, noise_sds};
 use crate::error::StudyError;
 
 /// The first random stream of this study, which no sampler and no search uses.
@@ -29,6 +30,8 @@ pub struct SyntheticCase {
     pub hidden: Vec<String>,
     pub truth_job: FileSet,
     pub theta: Vec<f64>,
+    /// The size of the wide wheel that the experiment states.
+    pub stated: WheelSize,
     pub rows: Vec<PlannedRun>,
     pub noise_free: Vec<RunValues>,
     pub measured: Vec<RunValues>,
@@ -110,12 +113,20 @@ impl SyntheticCase {
                 measured,
                 truth_job,
                 theta,
+                stated: WheelSize::TRUE,
                 rows,
                 noise_free,
                 sds,
             });
         }
         Err(format!("the model rejected {MAX_REJECTED} draws of the prior in a row").into())
+    }
+
+    /// Measures the same truth again, with noise of the same sds that has heavy tails.
+    pub fn measured_with_heavy_noise(mut self, mut noise: Stream) -> Self {
+        self.measured.clone_from(&self.noise_free);
+        add_heavy_noise(&mut self.measured, self.sds, &mut noise);
+        self
     }
 
     /// Returns the files of a campaign on the same soil without the hidden effects; `None` if the model rejects it.
@@ -143,11 +154,11 @@ impl SyntheticCase {
 
     /// Returns the files of the measured experiment.
     pub fn experiment(&self) -> FileSet {
-        experiment(&self.rows, &self.measured, self.sds)
+        experiment_stating(self.stated, &self.rows, &self.measured, self.sds)
     }
 
     /// Returns the files of the experiment without noise.
     pub fn noise_free(&self) -> FileSet {
-        experiment(&self.rows, &self.noise_free, self.sds)
+        experiment_stating(self.stated, &self.rows, &self.noise_free, self.sds)
     }
 }

@@ -2,6 +2,8 @@
 
 use shared::file::FileSet;
 
+use super::geometry::WheelSize;
+
 /// Measured channels: drawbar pull, torque, sinkage.
 pub const CHANNELS: usize = 3;
 /// The priors of the quasi-static model, from which truths are drawn.
@@ -22,6 +24,10 @@ pub enum Plan {
     Passes,
     /// As `Full`, with a smaller wheel in every second run.
     Wheels,
+    /// As `Full`, with the radius of the wheel fixed at the stated one.
+    Fixed,
+    /// Eight runs: four slips and two loads, with the speed of the rim alternating between two.
+    Sparse,
     /// Six slips at one load and one speed, which leave many effects ambiguous.
     Narrow,
     /// Four slips, two loads, two speeds of a wheel that rolls in three dimensions on a coarse grid.
@@ -60,9 +66,10 @@ impl Plan {
     /// The fitted runs, and then the held-out runs, which lie between them and slightly beyond.
     pub fn rows(self) -> Vec<PlannedRun> {
         let [slips, loads, rims]: [&[f64]; 3] = match self {
-            Plan::Full | Plan::Passes | Plan::Wheels => {
+            Plan::Full | Plan::Passes | Plan::Wheels | Plan::Fixed => {
                 [&[0.05, 0.1, 0.2, 0.3, 0.45, 0.6], &[60.0, 120.0], &[0.01, 0.05]]
             }
+            Plan::Sparse => [&[0.05, 0.2, 0.4, 0.6], &[60.0, 120.0], &[0.01, 0.05]],
             Plan::Narrow => [&[0.05, 0.1, 0.2, 0.3, 0.45, 0.6], &[90.0], &[0.03]],
             Plan::Rolling => [&[0.05, 0.1, 0.2, 0.3, 0.4, 0.5], &[60.0, 120.0], &[0.01, 0.05]],
             Plan::Spatial => [&[0.05, 0.15, 0.3, 0.5], &[60.0, 120.0], &[0.01, 0.05]],
@@ -82,6 +89,9 @@ impl Plan {
             for (j, &wheel_load_n) in loads.iter().enumerate() {
                 for (k, &rim) in rims.iter().enumerate() {
                     let is_second = (i + j + k) % 2 == 1;
+                    if is_second && self == Plan::Sparse && !is_holdout {
+                        continue;
+                    }
                     rows.push(PlannedRun {
                         wheel: if is_second && self == Plan::Wheels {
                             "small"
@@ -118,6 +128,7 @@ impl Plan {
             Plan::Wheels => {
                 "\"wheel_radius_m.wide\" = { uniform = [0.125, 0.155] }\n\"wheel_radius_m.small\" = { uniform = [0.075, 0.09] }\n"
             }
+            Plan::Fixed => "",
             _ => "wheel_radius_m = { uniform = [0.125, 0.155] }\n",
         };
         FileSet {
@@ -129,13 +140,27 @@ impl Plan {
 
 /// Returns the files of an experiment with its measured values and the noise's standard deviations.
 pub fn experiment(rows: &[PlannedRun], values: &[[f64; CHANNELS]], sds: [f64; CHANNELS]) -> FileSet {
+    experiment_stating(WheelSize::TRUE, rows, values, sds)
+}
+
+/// Returns the files of an experiment that states these dimensions of its wide wheel.
+pub fn experiment_stating(
+    wide: WheelSize,
+    rows: &[PlannedRun],
+    values: &[[f64; CHANNELS]],
+    sds: [f64; CHANNELS],
+) -> FileSet {
     let wheel = |name: &str, radius: f64, width: f64| {
         format!(
             "[wheel.{name}]\nradius_m = {radius}\nwidth_m = {width}\ngrouser_count = 12\ngrouser_height_m = 0.009\ngrouser_thickness_m = 0.002\n"
         )
     };
     let mut toml = "runs = \"runs.csv\"\n".to_owned();
-    toml += &wheel("wide", 0.125, 0.112);
+    toml += &wheel("wide", wide.radius_m, wide.width_m);
+    // Without the key, the radius of the rig is that of the wheel.
+    if wide != WheelSize::TRUE {
+        toml += &format!("rig_radius_m = {}\n", wide.rig_radius_m);
+    }
     if rows.iter().any(|row| row.wheel == "small") {
         toml += &wheel("small", 0.075, 0.06);
     }

@@ -7,19 +7,35 @@ pub enum HiddenKind {
     None,
     Outside,
     Two,
-    Three,
+    Triple,
     /// One effect of the three-dimensional model, which must be detectable because an evaluation is expensive.
     Spatial,
+    /// A law outside the library beside an effect.
+    Outlib,
+    /// A law outside the library that depends on two variables.
+    Twovar,
+    /// A dimension of the wheel or of the rig that is stated wrongly.
+    Geometry,
+    /// One effect in eight runs.
+    Sparse,
+    /// One effect, with noise that has heavy tails.
+    Heavy,
 }
 
 impl HiddenKind {
-    pub const ALL: [HiddenKind; 6] = [
+    /// All kinds in the order of the variants, which determines the numbers of their truths.
+    pub const ALL: [HiddenKind; 11] = [
         HiddenKind::One,
         HiddenKind::None,
         HiddenKind::Outside,
         HiddenKind::Two,
-        HiddenKind::Three,
+        HiddenKind::Triple,
         HiddenKind::Spatial,
+        HiddenKind::Outlib,
+        HiddenKind::Twovar,
+        HiddenKind::Geometry,
+        HiddenKind::Sparse,
+        HiddenKind::Heavy,
     ];
 
     pub fn name(self) -> &'static str {
@@ -28,8 +44,13 @@ impl HiddenKind {
             HiddenKind::None => "none",
             HiddenKind::Outside => "outside",
             HiddenKind::Two => "two",
-            HiddenKind::Three => "three",
+            HiddenKind::Triple => "triple",
             HiddenKind::Spatial => "scm",
+            HiddenKind::Outlib => "outlib",
+            HiddenKind::Twovar => "twovar",
+            HiddenKind::Geometry => "geometry",
+            HiddenKind::Sparse => "sparse",
+            HiddenKind::Heavy => "heavy",
         }
     }
 }

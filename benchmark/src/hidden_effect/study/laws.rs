@@ -3,18 +3,19 @@
 use record::Extension;
 
 /// A hidden law.
+#[derive(Debug)]
 pub struct HiddenLaw {
     pub name: &'static str,
-    /// The quantity and the variable of the law.
-    pub dependence: &'static str,
+    /// The quantity of the law with each variable on which it depends.
+    pub dependences: &'static [&'static str],
     text: &'static str,
 }
 
 macro_rules! law {
-    ($name:literal, $dependence:literal) => {
+    ($name:literal, $($dependence:literal),+) => {
         HiddenLaw {
             name: $name,
-            dependence: $dependence,
+            dependences: &[$($dependence),+],
             text: include_str!(concat!("../laws/", $name, ".toml")),
         }
     };
@@ -38,7 +39,31 @@ pub const LAWS: [HiddenLaw; 14] = [
     law!("sunk_drag", "drawbar_pull_sinkage"),
 ];
 
+/// Products of a factor of one variable and a factor of another.
+pub const LAWS_OF_TWO_VARIABLES: [HiddenLaw; 6] = [
+    law!("churned_depth", "shear_z", "shear_v_t"),
+    law!("sheared_load", "pressure_j", "pressure_wheel_load"),
+    law!("pumped_depth", "pressure_z", "pressure_v_n"),
+    law!("front_slip", "shear_position", "shear_slip"),
+    law!("ploughed_load", "drawbar_pull_slip", "drawbar_pull_wheel_load"),
+    law!("loaded_chain", "torque_slip", "torque_wheel_load"),
+];
+
 impl HiddenLaw {
+    /// Returns the law of a name.
+    pub fn find(name: &str) -> Option<&'static Self> {
+        let mut all = LAWS.iter().chain(&LAWS_OF_TWO_VARIABLES);
+        all.find(|law| law.name == name)
+    }
+
+    /// Returns whether a dependence that a search found has the quantity of the law.
+    pub fn has_quantity(&self, found: &str) -> bool {
+        let quantity = |dependence: &str| dependence.split('_').next().unwrap_or_default().to_owned();
+        self.dependences
+            .iter()
+            .any(|stated| quantity(stated) == quantity(found))
+    }
+
     /// Returns the name of the law with its addition to a job.
     pub fn hidden(&self) -> (String, Extension) {
         let extension = Extension::File {

@@ -36,9 +36,9 @@ pub fn line(
     });
     let theta: Vec<String> = case.theta.iter().map(|x| format!("{x:.3e}")).collect();
     format!(
-        "{} {number} {} [{}] separation {:.1} over base {:.1} | {:?}{} | {}{truth} | set {}{outside} | outside P {:.3} | chi2 p {:.1e}, best {:.1e} | held out {} | evaluations {} {} {}, {:.1} s",
+        "{} {number} {} [{}] separation {:.1} over base {:.1} | {:?}{} | {}{truth} | set {}{outside} | outside P {:.3} | chi2 p {:.1e}, best {:.1e} | held out {} | evaluations {} {} {}, {:.1} s | {} | leads {} P {:.4} {}",
         score.kind.name(),
-        case.hidden.join("+"),
+        score.hidden,
         theta.join(" "),
         score.separation,
         score.over_base,
@@ -53,6 +53,14 @@ pub fn line(
         score.to_name,
         score.to_confirm,
         score.evaluations,
-        score.seconds
+        score.seconds,
+        score
+            .truth_nats
+            .map_or("truth not compared".to_owned(), |nats| format!(
+                "truth {nats:.1} nats"
+            )),
+        score.leading.text,
+        score.leading.probability,
+        if score.leading.is_right { "right" } else { "wrong" }
     )
 }

@@ -43,6 +43,53 @@ impl Rate {
             ((middle + half) / whole).min(1.0),
         ]
     }
+
+    /// The exact 90 % interval of a binomial probability; from 0 to 1 without a case.
+    ///
+    /// # Source
+    /// Clopper & Pearson 1934, "The use of confidence or fiducial limits illustrated in the case of the binomial", Biometrika 26.
+    pub fn exact_interval(self) -> [f64; 2] {
+        // Returns the probability at which as many successes or more have this tail, which grows with the probability.
+        let solve = |count: usize, tail: f64| {
+            let (mut low, mut high) = (0.0, 1.0);
+            for _ in 0..60 {
+                let middle = f64::midpoint(low, high);
+                if upper_tail(count, self.total, middle) < tail {
+                    low = middle;
+                } else {
+                    high = middle;
+                }
+            }
+            high
+        };
+        let low = if self.count == 0 {
+            0.0
+        } else {
+            solve(self.count, 0.05)
+        };
+        let high = if self.count == self.total {
+            1.0
+        } else {
+            solve(self.count + 1, 0.95)
+        };
+        [low, high]
+    }
+}
+
+/// Returns ln n!.
+fn log_factorial(n: usize) -> f64 {
+    libm::lgamma(n as f64 + 1.0)
+}
+
+/// Returns the probability of at least `count` successes in `total` trials.
+fn upper_tail(count: usize, total: usize, probability: f64) -> f64 {
+    let (log_p, log_q) = (probability.ln(), (1.0 - probability).ln());
+    let term = |k: usize| {
+        let ways = log_factorial(total) - log_factorial(k) - log_factorial(total - k);
+        let failures = total - k;
+        (ways + k as f64 * log_p + failures as f64 * log_q).exp()
+    };
+    (count..=total).map(term).sum()
 }
 
 impl fmt::Display for Rate {

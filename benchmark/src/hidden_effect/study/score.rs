@@ -4,10 +4,11 @@ use std::fmt;
 
 use discovery::{Conclusion, SearchTask, SearchVerdict};
 
-use super::case::SyntheticCase;
 use super::held_out::HeldOut;
 use super::kind::HiddenKind;
 use super::noise_free::MIN_SEPARATION;
+use super::statement::{Comparison, Statement};
+use super::truth::Truth;
 
 /// The class of an explanation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -21,6 +22,8 @@ enum TrialClass {
 #[derive(Debug, Clone)]
 pub struct TrialScore {
     pub kind: HiddenKind,
+    /// The names of what is hidden.
+    pub hidden: String,
     /// Nats by which the best rival outside the class of the truth falls short for noise-free data. It is infinite for several effects,
     /// each of which is drawn to be detectable.
     pub separation: f64,
@@ -29,18 +32,24 @@ pub struct TrialScore {
     /// Whether an effect, a class or a law is claimed.
     pub is_claimed: bool,
     pub verdict: SearchVerdict,
-    /// Whether the most probable class is that of the truth.
+    /// The most probable explanation, and what the verdict claims.
+    pub leading: Statement,
+    pub claim: Option<Statement>,
+    /// Nats by which the evidence of the truth exceeds that of the most probable set; `None` if the search did not compare the truth.
+    pub truth_nats: Option<f64>,
+    /// Whether the most probable class is one of the truth.
     pub is_right: bool,
-    /// Whether one of the two most probable classes is that of the truth.
+    /// Whether one of the two most probable classes is one of the truth.
     pub is_in_two: bool,
     /// Whether the truth is alone in its class.
     pub is_alone: bool,
     /// Whether the truth is the most probable effect.
     pub is_named: bool,
+    /// Whether a class of the truth is claimed, or a law as it is hidden.
     pub claim_is_right: bool,
     /// Probability of the most probable class.
     pub stated: f64,
-    /// Whether the 95 % set contains the class of the truth.
+    /// Whether the 95 % set contains a class of the truth.
     pub is_covered: bool,
     /// The number of classes in the 95 % set.
     pub set_size: usize,
@@ -64,6 +73,8 @@ pub struct TrialScore {
 
 /// The facts of a trial besides its conclusion.
 pub struct TrialFacts {
+    /// The names of what is hidden.
+    pub hidden: String,
     pub separation: f64,
     pub over_base: f64,
     pub held_out: HeldOut,
@@ -103,27 +114,25 @@ fn is_same(conclusion: &Conclusion, a: &[Option<usize>], b: &[Option<usize>]) ->
 
 impl TrialScore {
     /// Scores a conclusion against the truth.
-    ///
-    /// # Arguments
-    /// - `law`: quantity and variable of a hidden law.
     pub fn new(
         kind: HiddenKind,
-        case: &SyntheticCase,
+        truth: &Truth,
         task: &SearchTask,
         conclusion: &Conclusion,
-        law: Option<&str>,
         facts: TrialFacts,
     ) -> Self {
-        let place = |name: &String| task.library.iter().position(|c| c.name == *name);
-        let hidden: Vec<Option<usize>> = case.hidden.iter().map(place).collect();
-        let truth = match (kind, hidden.as_slice()) {
-            (HiddenKind::Outside, _) => Some(TrialClass::Outside),
-            (_, []) => Some(TrialClass::Library(0)),
-            (_, [Some(k)]) => class_of(conclusion, Some(*k)),
-            _ => None,
+        let comparison = Comparison {
+            truth,
+            task,
+            conclusion,
+            over_base: facts.over_base,
         };
+        let hidden: Vec<Option<usize>> = truth.effects.iter().map(|k| Some(*k)).collect();
+        let mut classes: Vec<TrialClass> = hidden.iter().filter_map(|k| class_of(conclusion, *k)).collect();
+        classes.extend(truth.law.map(|_| TrialClass::Outside));
+        classes.extend(truth.is_nothing().then_some(TrialClass::Library(0)));
         let ranked = by_class(conclusion);
-        let is_truth = |class: TrialClass| Some(class) == truth;
+        let is_truth = |class: TrialClass| classes.contains(&class);
         let (best, stated) = ranked[0];
         let mut cumulative = 0.0;
         let credible = ranked.iter().take_while(|(_, p)| {
@@ -143,25 +152,29 @@ impl TrialScore {
         };
         let found = conclusion.outside.as_ref();
         let found = found.map(|o| task.laws[o.law].curve.name.as_str());
-        let quantity = |law: &str| law.split('_').next().unwrap_or_default().to_owned();
         let combination: Vec<_> = conclusion.combination.iter().map(|k| Some(*k)).collect();
         Self {
             kind,
+            hidden: facts.hidden,
             separation: facts.separation,
             over_base: facts.over_base,
             is_claimed: claimed.is_some(),
             verdict: conclusion.verdict,
+            leading: comparison.leading(),
+            claim: comparison.claim(),
+            truth_nats: comparison.truth_nats(),
             is_right: is_truth(best),
             is_in_two: ranked.iter().take(2).any(|(class, _)| is_truth(*class)),
             is_alone: all.filter(|j| is_truth(TrialClass::Library(j.class))).count() == 1,
             is_named: first.is_some_and(|j| hidden == [j.candidate]),
-            claim_is_right: claimed.is_some() && claimed == truth,
+            claim_is_right: claimed.is_some_and(is_truth)
+                && found.is_none_or(|found| truth.accepts_law(found)),
             stated,
             is_covered: credible.iter().any(|class| is_truth(*class)),
             set_size: credible.len(),
-            quantity: found.zip(law).is_some_and(|(a, b)| quantity(a) == quantity(b)),
-            dependence: found.is_some() && found == law,
-            is_exact: is_same(conclusion, &hidden, &combination),
+            quantity: found.is_some_and(|found| truth.has_quantity(found)),
+            dependence: found.is_some_and(|found| truth.has_dependence(found)),
+            is_exact: truth.law.is_none() && is_same(conclusion, &hidden, &combination),
             held_out: facts.held_out,
             candidates: task.library.len(),
             to_name: conclusion.ranking.evaluations.to_name(),
@@ -182,9 +195,15 @@ impl TrialScore {
     pub fn is_good(&self) -> bool {
         match self.kind {
             HiddenKind::None => !self.is_claimed,
-            HiddenKind::Two | HiddenKind::Three => self.is_exact,
+            HiddenKind::Two | HiddenKind::Triple => self.is_exact,
             HiddenKind::Outside => self.dependence || self.separation < MIN_SEPARATION,
-            HiddenKind::One | HiddenKind::Spatial => self.is_right || self.separation < MIN_SEPARATION,
+            HiddenKind::Twovar => self.quantity || self.separation < MIN_SEPARATION,
+            HiddenKind::Outlib => self.is_right && (!self.is_claimed || self.claim_is_right),
+            HiddenKind::One
+            | HiddenKind::Spatial
+            | HiddenKind::Geometry
+            | HiddenKind::Sparse
+            | HiddenKind::Heavy => self.is_right || self.separation < MIN_SEPARATION,
         }
     }
 }

@@ -64,7 +64,7 @@ impl Tally<'_> {
 
     /// Returns every target to which these trials contribute.
     pub fn targets(&self) -> Vec<Target> {
-        let all = [self.one(), self.several(), self.laws(), self.any()];
+        let all = [self.one(), self.several(), self.laws(), self.mixed(), self.any()];
         all.into_iter().flatten().flatten().collect()
     }
 
@@ -100,12 +100,12 @@ impl Tally<'_> {
     }
 
     fn several(&self) -> Vec<Option<Target>> {
-        let (two, three) = (self.kind(HiddenKind::Two), self.kind(HiddenKind::Three));
-        let several = [two.as_slice(), &three].concat();
+        let (two, triple) = (self.kind(HiddenKind::Two), self.kind(HiddenKind::Triple));
+        let several = [two.as_slice(), &triple].concat();
         let ratios = errors(&several);
         vec![
             share("two effects exact", &two, |x| x.is_exact, [0.80, 0.94]),
-            share("three effects exact", &three, |x| x.is_exact, [0.50, 0.70]),
+            share("three effects exact", &triple, |x| x.is_exact, [0.50, 0.70]),
             share(
                 "several: false \"not in the library\"",
                 &several,
@@ -130,6 +130,25 @@ impl Tally<'_> {
             ),
             share("  and variable", &claimed, |x| x.dependence, [0.85, 0.95]),
             Target::ratio("  held-out error after over before", &ratios, [0.35, 0.20]),
+        ]
+    }
+
+    /// The kinds in which a claim may be wrong because more or less is hidden than one effect or one law.
+    fn mixed(&self) -> Vec<Option<Target>> {
+        let claimed = |kind| self.matching(&[kind], |x| x.is_claimed);
+        let right = |what, kind| share(what, &claimed(kind), |x| x.claim_is_right, [0.95, 0.99]);
+        vec![
+            right("a law and an effect: right when claimed", HiddenKind::Outlib),
+            right("law of two variables: right when claimed", HiddenKind::Twovar),
+            share(
+                "  and the law claimed",
+                &self.kind(HiddenKind::Twovar),
+                |x| x.quantity,
+                [0.50, 0.80],
+            ),
+            right("wrong geometry: right when claimed", HiddenKind::Geometry),
+            right("eight runs: right when claimed", HiddenKind::Sparse),
+            right("heavy tails: right when claimed", HiddenKind::Heavy),
         ]
     }
 
