@@ -8,7 +8,9 @@
 //! - `geometry`: no effect, but the experiment states the radius of the wheel or of the rig with an error of 5 %, or the width with one of
 //!   10 %. A wrong radius of the wheel is fixed in the job, which otherwise infers it.
 //! - `sparse`: one effect in 8 runs. `heavy`: one effect, with noise that has the density of Student's t with three degrees of freedom.
-//! - `calibration`: COUNT experiments of all kinds but `scm`, a third of which have a law outside the library, and how often statements
+//! - `session`: four sessions, each with an offset of one channel or of the soil's stiffness, and the column `session`. Every second
+//!   experiment has an effect, which is worth 10 nats.
+//! - `calibration`: COUNT experiments of all kinds but `scm` and `session`, a third of which have a law outside the library, and how often statements
 //!   are right, by their probability (below).
 //! - `one+none`, or another list: COUNT of each. `all`: COUNT of each of these kinds.
 //! - `scm`: one effect of the three-dimensional model on a coarse grid.

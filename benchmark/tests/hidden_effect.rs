@@ -7,13 +7,14 @@ use benchmark::hidden_effect::rig::untryable::{self, Answer};
 use benchmark::hidden_effect::rig::{self, Flaw};
 use benchmark::hidden_effect::study::case::SyntheticCase;
 use benchmark::hidden_effect::study::draw::{
-    NAMED, draw, draw_beyond_library, draw_combination, draw_misstated, draw_named,
+    NAMED, draw, draw_beyond_library, draw_combination, draw_in_sessions, draw_misstated, draw_named,
 };
 use benchmark::hidden_effect::study::geometry::Misstatement;
 use benchmark::hidden_effect::study::kind::HiddenKind;
 use benchmark::hidden_effect::study::laws::HiddenLaw;
 use benchmark::hidden_effect::study::noise_free::MIN_SEPARATION;
 use benchmark::hidden_effect::study::score::TrialScore;
+use benchmark::hidden_effect::study::session::SessionError;
 use benchmark::hidden_effect::study::tally::Tally;
 use benchmark::hidden_effect::study::trial::search;
 use benchmark::parallel::each;
@@ -174,6 +175,27 @@ fn of_eight_runs_and_of_noise_with_heavy_tails_nothing_wrong_is_claimed() {
     let shown = Tally(&scores).to_string();
     assert_eq!(wrong_claims(&scores), 0, "{shown}");
     assert!(count(&scores, |f| f.claim_is_right) >= 3, "{shown}");
+}
+
+#[test]
+fn an_error_of_the_sessions_is_taken_for_no_effect() {
+    let hidden = [
+        (SessionError::Offset(0), None),
+        (SessionError::Stiffness, None),
+        (SessionError::Offset(0), Some("slip_sinkage")),
+    ];
+    let one = |place: u64| {
+        let (error, effect) = hidden[place as usize];
+        search(
+            HiddenKind::Session,
+            &draw_in_sessions(error, effect, SEED)?,
+            place,
+        )
+    };
+    let scores = each(hidden.len() as u64, one).expect("every experiment is searched");
+    let shown = Tally(&scores).to_string();
+    assert_eq!(wrong_claims(&scores), 0, "{shown}");
+    assert_eq!(count(&scores, |f| f.claim_is_right), 1, "{shown}");
 }
 
 #[test]

@@ -15,6 +15,7 @@ use super::kind::HiddenKind;
 use super::laws::{HiddenLaw, LAWS, LAWS_OF_TWO_VARIABLES};
 use super::local_search::LocalSearch;
 use super::noise_free::{MIN_SEPARATION, NoiseFree, shortfall};
+use super::session::SessionError;
 use crate::error::StudyError;
 
 /// The random stream of combinations of effects.
@@ -65,6 +66,14 @@ pub fn draw(kind: HiddenKind, seed: u64, number: u64) -> Result<SyntheticCase, S
             let case = draw_detectable(Plan::Full, 1, seed, truth_number)?;
             Ok(case.measured_with_heavy_noise(Stream::new(seed, HEAVY_NOISE, truth_number, 0)))
         }
+        HiddenKind::Session => {
+            let case = match number % 2 {
+                0 => draw(Plan::Full, &[])?,
+                _ => draw_detectable(Plan::Full, 1, seed, truth_number)?,
+            };
+            let errors = SessionError::ALL;
+            errors[number as usize / 2 % errors.len()].applied(case, seed, truth_number)
+        }
     }
 }
 
@@ -98,6 +107,19 @@ pub fn draw_combination(kind: HiddenKind, names: &[&str], seed: u64) -> Result<S
         HiddenKind::Heavy => case.measured_with_heavy_noise(Stream::new(seed, HEAVY_NOISE, NAMED, 0)),
         _ => case,
     })
+}
+
+/// Draws an experiment in sessions, with one effect of the catalogue by its name or without one.
+pub fn draw_in_sessions(
+    error: SessionError,
+    effect: Option<&str>,
+    seed: u64,
+) -> Result<SyntheticCase, StudyError> {
+    let case = match effect {
+        None => SyntheticCase::draw(Plan::Full, &[], seed, NAMED, 0)?,
+        Some(effect) => draw_combination(HiddenKind::Session, &[effect], seed)?,
+    };
+    error.applied(case, seed, NAMED)
 }
 
 /// Draws an experiment without a missing effect that states a dimension wrongly.

@@ -20,11 +20,13 @@ pub enum HiddenKind {
     Sparse,
     /// One effect, with noise that has heavy tails.
     Heavy,
+    /// Sessions with an offset of a channel or of the stiffness. In every second experiment there is no effect, in the others one.
+    Session,
 }
 
 impl HiddenKind {
     /// All kinds in the order of the variants, which determines the numbers of their truths.
-    pub const ALL: [HiddenKind; 11] = [
+    pub const ALL: [HiddenKind; 12] = [
         HiddenKind::One,
         HiddenKind::None,
         HiddenKind::Outside,
@@ -36,6 +38,7 @@ impl HiddenKind {
         HiddenKind::Geometry,
         HiddenKind::Sparse,
         HiddenKind::Heavy,
+        HiddenKind::Session,
     ];
 
     pub fn name(self) -> &'static str {
@@ -51,6 +54,7 @@ impl HiddenKind {
             HiddenKind::Geometry => "geometry",
             HiddenKind::Sparse => "sparse",
             HiddenKind::Heavy => "heavy",
+            HiddenKind::Session => "session",
         }
     }
 }

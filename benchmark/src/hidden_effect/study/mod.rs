@@ -3,7 +3,7 @@
 //! # Layout
 //! - `kind`: the kinds of hidden effects; `laws`: laws outside the library. `draw`: truths of each kind. `trial`: one experiment, searched.
 //! - `design`: the runs of the rig and their files; `geometry`: dimensions of the wheel, and wrong ones. `noise`: noise of measurements.
-//!   `case`: a truth and its measurements.
+//!   `case`: a truth and its measurements; `session`: the same in sessions of the rig.
 //! - `local_search`: the search on one thread; `record`: the record that a study would store of it. `noise_free`: how well noise-free data
 //!   determine the truth. `held_out`: prediction of unseen runs. `posterior`: draws of a calibration.
 //! - `truth`: what is hidden; `statement`: what a search states about it. `score`: the score of a trial; `line`: the trial in one line. `rate`: shares with their uncertainty.
@@ -24,6 +24,7 @@ pub mod posterior;
 pub mod rate;
 pub mod record;
 pub mod score;
+pub mod session;
 pub mod statement;
 pub mod tally;
 pub mod target;

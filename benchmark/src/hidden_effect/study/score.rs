@@ -199,6 +199,7 @@ impl TrialScore {
             HiddenKind::Outside => self.dependence || self.separation < MIN_SEPARATION,
             HiddenKind::Twovar => self.quantity || self.separation < MIN_SEPARATION,
             HiddenKind::Outlib => self.is_right && (!self.is_claimed || self.claim_is_right),
+            HiddenKind::Session => !self.is_claimed || self.claim_is_right,
             HiddenKind::One
             | HiddenKind::Spatial
             | HiddenKind::Geometry

@@ -149,6 +149,7 @@ impl Tally<'_> {
             right("wrong geometry: right when claimed", HiddenKind::Geometry),
             right("eight runs: right when claimed", HiddenKind::Sparse),
             right("heavy tails: right when claimed", HiddenKind::Heavy),
+            right("sessions: right when claimed", HiddenKind::Session),
         ]
     }
 

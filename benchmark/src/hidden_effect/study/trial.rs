@@ -28,7 +28,9 @@ pub fn search(kind: HiddenKind, case: &SyntheticCase, number: u64) -> Result<Tri
     let seconds = begin.elapsed().as_secs_f64();
     let task = local.models.task();
     let truth = Truth::new(&case.hidden, &task)?;
-    let (separation, over_base) = match truth.single() {
+    // The likelihood of sessions has inferred sds, for which noise-free data have no highest likelihood.
+    let single = truth.single().filter(|_| kind != HiddenKind::Session);
+    let (separation, over_base) = match single {
         Some(effect) => {
             let noise_free = NoiseFree::new(case, &mut local)?;
             (noise_free.separation(effect), noise_free.over_base())
