@@ -234,7 +234,7 @@ mod tests {
         assert_eq!(raised(&plus(10.0, 0.003)), none);
         // A wheel under one load may sink deep, and one that is never braked may always pull.
         let one_load = |rows: Vec<[f64; 4]>| -> Vec<[f64; 4]> {
-            rows.into_iter().filter(|[_, load, ..]| *load == 60.0).collect()
+            rows.into_iter().filter(|[_, load, ..]| *load < 61.0).collect()
         };
         assert_eq!(raised(&one_load(plus(0.0, 0.02))), none);
         assert_eq!(raised(&plus(25.0, 0.0)[6..]), none);
