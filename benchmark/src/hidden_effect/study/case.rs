@@ -11,8 +11,8 @@ use shared::outcome::{Observables, Outcome};
 use statistics::rng::Stream;
 
 use super::design::{CHANNELS, Plan, PlannedRun, experiment, experiment_stating};
-use super::geometry::WheelSize;
 use super::noise::{RunValues, add_heavy_noise, add_noise, noise_sds};
+use super::wheel_size::WheelSize;
 use crate::error::StudyError;
 
 /// The first random stream of this study, which no sampler and no search uses.

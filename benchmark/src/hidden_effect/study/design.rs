@@ -2,7 +2,7 @@
 
 use shared::file::FileSet;
 
-use super::geometry::WheelSize;
+use super::wheel_size::WheelSize;
 
 /// Measured channels: drawbar pull, torque, sinkage.
 pub const CHANNELS: usize = 3;

@@ -2,7 +2,7 @@
 //!
 //! # Layout
 //! - `kind`: the kinds of hidden effects; `laws`: laws outside the library. `draw`: truths of each kind. `trial`: one experiment, searched.
-//! - `design`: the runs of the rig and their files; `geometry`: dimensions of the wheel, and wrong ones. `noise`: noise of measurements.
+//! - `design`: the runs of the rig and their files; `wheel_size`: dimensions of the wheel; `geometry`: wrong statements of them. `noise`: noise of measurements.
 //!   `case`: a truth and its measurements; `session`: the same in sessions of the rig.
 //! - `local_search`: the search on one thread; `record`: the record that a study would store of it. `noise_free`: how well noise-free data
 //!   determine the truth. `held_out`: prediction of unseen runs. `posterior`: draws of a calibration.
@@ -30,3 +30,4 @@ pub mod tally;
 pub mod target;
 pub mod trial;
 pub mod truth;
+pub mod wheel_size;
