@@ -94,11 +94,16 @@ impl SearchTask {
     /// knowledge about it.
     ///
     /// # Arguments
-    /// - `members`: the candidates of the fit, in its order.
-    pub(crate) fn implausible_strength(&self, fit: &LaplaceFit, members: &[usize]) -> Option<(usize, f64)> {
+    /// - `members`: the candidates of the fit, in its order. `is_claimed`: whether the strength of a candidate counts.
+    pub(crate) fn implausible_strength(
+        &self,
+        fit: &LaplaceFit,
+        members: &[usize],
+        is_claimed: impl Fn(usize) -> bool,
+    ) -> Option<(usize, f64)> {
         let candidates = self.candidates();
         let single = members.iter().filter(|k| candidates[**k].strengths.len() == 1);
-        let counts: Vec<bool> = single.map(|k| !self.is_law(*k)).collect();
+        let counts: Vec<bool> = single.map(|k| !self.is_law(*k) && is_claimed(*k)).collect();
         fit.frame.implausible_strength(&fit.point.position, &counts)
     }
 

@@ -239,7 +239,7 @@ pub struct JudgedRigError {
 /// The error that a group of runs shares.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct RigOffset {
-    /// Id of the session, taring, operator or preparation; the name of the run where it states none. For wear the session from which the
+    /// Id of the session, taring or operator; the name of the run where it states none. For wear the session from which the
     /// change counts.
     pub id: String,
     /// Posterior mean.

@@ -44,7 +44,8 @@ fn fitted(spec: &Spec) -> impl Iterator<Item = &TestRun> {
     spec.fit_runs.iter().map(|&run| &spec.experiment.runs[run])
 }
 
-/// Returns the drift of a channel from session to session; `None` without the order of three sessions.
+/// Returns the drift of a channel from session to session; `None` without the order of three sessions that measure it. Runs without a
+/// session do not count.
 fn wear(spec: &Spec, channel: Channel) -> Option<NamedSuspect> {
     let offset = RigError {
         column: RigColumn::Session,
@@ -52,8 +53,11 @@ fn wear(spec: &Spec, channel: Channel) -> Option<NamedSuspect> {
     };
     // The place of each session in time: the mean place of its runs.
     let mut places: BTreeMap<&str, (f64, f64)> = BTreeMap::new();
-    for run in fitted(spec) {
-        let (sum, count) = places.entry(run.session.as_deref()?).or_default();
+    for run in fitted(spec).filter(|run| run.measured[channel.index()].is_some()) {
+        let Some(session) = run.session.as_deref() else {
+            continue;
+        };
+        let (sum, count) = places.entry(session).or_default();
         *sum += f64::from(run.order?);
         *count += 1.0;
     }
@@ -132,7 +136,7 @@ pub(super) fn rig_errors(spec: &Spec, judged: &[JudgedError]) -> Vec<JudgedRigEr
                 let ids = groups.map(|group| id(spec, shared, group.data.first().copied()));
                 let name = spec.parameters.get(k)?.name.as_str();
                 let name = name.strip_prefix(NOISE_PREFIX).unwrap_or(name);
-                let unit = shared.rig.map_or("1", RigError::unit);
+                let unit = shared.rig?.unit();
                 (name.to_owned(), unit, ids.collect())
             }
         };
@@ -155,15 +159,12 @@ pub(super) fn rig_errors(spec: &Spec, judged: &[JudgedError]) -> Vec<JudgedRigEr
     errors
 }
 
-/// Returns the id that the runs of a group share: that of the column or the preparation, or the name of a run without one.
+/// Returns the id that the runs of a group share, or the name of a run without one.
 fn id(spec: &Spec, shared: &SharedError, datum: Option<usize>) -> String {
     let Some(datum) = datum.and_then(|place| spec.likelihood.data().get(place)) else {
         return String::new();
     };
     let run = &spec.experiment.runs[spec.fit_runs[datum.run]];
-    let stated = match shared.rig {
-        Some(error) => error.column.id(run),
-        None => run.prepared.as_deref(),
-    };
+    let stated = shared.rig.and_then(|error| error.column.id(run));
     stated.unwrap_or(&run.name).to_owned()
 }

@@ -133,6 +133,12 @@ impl EffectRanking {
         leader.candidate
     }
 
+    /// Returns whether a candidate belongs to a class.
+    pub(crate) fn is_in_class(&self, candidate: usize, class: usize) -> bool {
+        self.effect(Some(candidate))
+            .is_some_and(|effect| effect.class == class)
+    }
+
     /// Returns the result for a candidate.
     #[must_use]
     pub fn effect(&self, candidate: Option<usize>) -> Option<&RankedEffect> {

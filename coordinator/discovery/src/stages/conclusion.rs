@@ -172,12 +172,21 @@ impl Objections {
             SearchVerdict::NothingDetectable | SearchVerdict::NotInLibrary => None,
         };
         let leading = leading.and_then(|k| Some(&hypotheses.single(k)?.fit));
+        // A name is withheld for the strength of what it names; other members only accompany it.
+        let is_claimed = |member: usize| match supported {
+            SearchVerdict::Named(k) => member == k,
+            SearchVerdict::Class(class) => weighing.ranking.is_in_class(member, class),
+            _ => true,
+        };
         let explanation = explanation.filter(|_| supported != SearchVerdict::NothingDetectable);
         let names_effect = supported != SearchVerdict::NotInLibrary;
         Self {
             implausible: explanation.and_then(|(fit, members)| {
                 let position = &fit.point.position;
-                let strength = || task.implausible_strength(fit, members).filter(|_| names_effect);
+                let strength = || {
+                    task.implausible_strength(fit, members, is_claimed)
+                        .filter(|_| names_effect)
+                };
                 fit.frame.implausible(position).or_else(strength)
             }),
             held_back: base

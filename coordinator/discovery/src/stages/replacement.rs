@@ -63,7 +63,9 @@ fn is_sound(
     let fit = &replacement.fit;
     let position = &fit.point.position;
     let is_plausible = fit.frame.implausible(position).is_none()
-        && task.implausible_strength(fit, &[replacement.candidate]).is_none();
+        && task
+            .implausible_strength(fit, &[replacement.candidate], |_| true)
+            .is_none();
     let base = hypotheses.base_fit();
     let is_supported = base.is_some_and(|base| unsupported_noise(task, base, fit).is_empty());
     is_plausible && is_supported && !weighing.is_disputed(replacement.candidate)

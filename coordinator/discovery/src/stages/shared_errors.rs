@@ -177,8 +177,14 @@ impl<'a> SharedErrorQuestion<'a> {
         let mut weighed = Vec::new();
         for t in SCORES {
             let sd = self.prior.from_normal_score(t);
-            let (mode, evidence) = self.at(sd, start)?;
-            start = mode.position;
+            // An sd that the data exclude has no evidence.
+            let evidence = match self.at(sd, start.clone()) {
+                Some((mode, evidence)) => {
+                    start = mode.position;
+                    evidence
+                }
+                None => f64::NEG_INFINITY,
+            };
             weighed.push((sd, evidence - without - 0.5 * t * t));
         }
         let prior = log_sum_exp(SCORES.into_iter().map(|t| -0.5 * t * t));
