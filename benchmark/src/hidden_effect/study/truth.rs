@@ -1,11 +1,11 @@
-//! What is hidden in an experiment, as the explanations of a search.
+//! The hidden truth of an experiment, by the candidates of its search.
 
 use discovery::SearchTask;
 
 use super::laws::HiddenLaw;
 use crate::error::StudyError;
 
-/// What is hidden: effects of the library, a law outside it, or both.
+/// The hidden truth of an experiment: effects of the library, a law outside it, or both.
 #[derive(Debug, Clone)]
 pub struct Truth {
     /// The effects, by their indices in the library.

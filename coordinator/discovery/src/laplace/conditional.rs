@@ -62,25 +62,30 @@ impl LinearisedModel<'_> {
         Some(log_volume(&self.quadratic(mode))? - mode.value)
     }
 
-    /// Returns mean and sd, at a mode, of a factor on a direction that errors may shift the data along; its prior is standard normal.
+    /// Returns mean and sd, at a mode, of a factor on each direction along which errors may shift the data; its prior is standard normal.
+    /// `None` where the Hessian is not positive definite.
     ///
     /// # Equation
     /// With `S` the covariance of the data, v the direction among its errors, r the residuals, J the derivatives by the parameters and
     /// H the Hessian: mean `v' S^-1 r`, variance `1 - v' S^-1 v + v' S^-1 J H^-1 J' S^-1 v`.
-    pub(crate) fn factor(&self, mode: &FitPoint, direction: &[f64]) -> Option<[f64; 2]> {
+    pub(crate) fn factors(
+        &self,
+        mode: &FitPoint,
+        directions: impl Iterator<Item = Vec<f64>>,
+    ) -> Option<Vec<[f64; 2]>> {
         let theta = self.fit.frame.theta(&mode.position);
         let whitening = self.likelihood.whitening(&mode.values, &theta).ok()?;
-        let along = whitening.apply(direction);
-        let columns = self.fit.columns.iter().map(|column| whitening.apply(column));
-        let shared: Vec<f64> = columns
-            .map(|column| whitening.curvature(&along, &column))
-            .collect();
-        let shared = DVector::from_vec(shared);
-        let by_parameters = Cholesky::new(self.quadratic(mode).hessian)?
-            .solve(&shared)
-            .dot(&shared);
-        let variance = 1.0 - whitening.curvature(&along, &along) + by_parameters;
-        Some([whitening.slope(&along), variance.max(0.0).sqrt()])
+        let columns: Vec<Vec<f64>> = self.fit.columns.iter().map(|c| whitening.apply(c)).collect();
+        let cholesky = Cholesky::new(self.quadratic(mode).hessian)?;
+        let factor = |direction: Vec<f64>| {
+            let along = whitening.apply(&direction);
+            let shared = columns.iter().map(|column| whitening.curvature(&along, column));
+            let shared = DVector::from_vec(shared.collect());
+            let by_parameters = cholesky.solve(&shared).dot(&shared);
+            let variance = 1.0 - whitening.curvature(&along, &along) + by_parameters;
+            [whitening.slope(&along), variance.max(0.0).sqrt()]
+        };
+        Some(directions.map(factor).collect())
     }
 
     fn point(&self, position: Vec<f64>) -> Option<FitPoint> {

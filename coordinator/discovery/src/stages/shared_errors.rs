@@ -207,16 +207,16 @@ impl<'a> SharedErrorQuestion<'a> {
         let likelihood = self.likelihood(sd)?;
         let model = self.model(&likelihood);
         let mode = model.mode(self.fit.point.position.clone())?;
-        let group = |error: &CommonError| {
-            let direction = direction(&likelihood, error, sd, &mode.values);
-            let [mean, spread] = model.factor(&mode, &direction)?;
-            Some(GroupError {
-                data: error.data.clone(),
-                mean: sd * mean,
-                sd: sd * spread,
-            })
+        let directions = self
+            .errors(&likelihood)
+            .map(|error| direction(&likelihood, error, sd, &mode.values));
+        let factors = model.factors(&mode, directions)?;
+        let group = |(error, [mean, spread]): (&CommonError, [f64; 2])| GroupError {
+            data: error.data.clone(),
+            mean: sd * mean,
+            sd: sd * spread,
         };
-        self.errors(&likelihood).map(group).collect()
+        Some(self.errors(&likelihood).zip(factors).map(group).collect())
     }
 }
 
