@@ -2,7 +2,7 @@
 
 use crate::laplace::fit::LaplaceFit;
 use inference::diagnostics::chi_square_tail;
-use statistics::likelihood::{CommonErrorSize, ErrorLaw, ErrorSd, Likelihood};
+use statistics::likelihood::{CommonError, ErrorLaw, ErrorSd, Likelihood};
 
 /// p-value below which a fit contradicts the data.
 const WRONG: f64 = 0.001;
@@ -25,13 +25,12 @@ pub struct FitChiSquare {
 impl FitChiSquare {
     /// Computes the chi-square of a fit; `None` with inferred noise, heavy tails or a model discrepancy.
     pub(crate) fn of_fit(fit: &LaplaceFit, likelihood: &Likelihood) -> Option<Self> {
-        let unknown = |sd: ErrorSd| matches!(sd, ErrorSd::Inferred { .. });
+        let is_inferred = |sd: ErrorSd| sd.parameter().is_some();
+        // The size of a discrepancy is unknown, so it has no sd.
+        let is_unknown = |error: &CommonError| error.size.sd().is_none_or(is_inferred);
         let is_known = likelihood.law() == ErrorLaw::Gaussian
-            && !likelihood.data().iter().any(|d| unknown(d.sd))
-            && !likelihood.common().iter().any(|error| match error.size {
-                CommonErrorSize::Shift(sd) | CommonErrorSize::Sensitivity { sd, .. } => unknown(sd),
-                CommonErrorSize::Discrepancy { .. } => true,
-            });
+            && !likelihood.data().iter().any(|datum| is_inferred(datum.sd))
+            && !likelihood.common().iter().any(is_unknown);
         if !is_known {
             return None;
         }

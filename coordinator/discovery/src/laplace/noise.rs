@@ -4,25 +4,21 @@ use nalgebra::DMatrix;
 
 use crate::laplace::coordinate::NormalFrame;
 use crate::laplace::point::FitPoint;
-use statistics::likelihood::{CommonErrorSize, ErrorSd, Likelihood};
+use statistics::likelihood::{ErrorSd, Likelihood};
 
 /// Half width of the central differences; the density is smooth and accurate to rounding.
 const DIFFERENCE: f64 = 1e-3;
 
 /// Lists the coordinates that are sds: those of noise with the number of data that share them, those of common errors without.
 pub(crate) fn coordinates(likelihood: &Likelihood) -> Vec<(usize, Option<usize>)> {
-    let inferred = |sd: ErrorSd| match sd {
-        ErrorSd::Inferred { parameter } => Some(parameter),
-        ErrorSd::Known(_) => None,
-    };
-    let mut parameters: Vec<usize> = likelihood.data().iter().filter_map(|d| inferred(d.sd)).collect();
+    let data = likelihood.data().iter();
+    let mut parameters: Vec<usize> = data.filter_map(|datum| datum.sd.parameter()).collect();
     parameters.sort_unstable();
     let groups = parameters.chunk_by(|a, b| a == b);
     let mut coordinates: Vec<(usize, Option<usize>)> =
         groups.map(|group| (group[0], Some(group.len()))).collect();
     for error in likelihood.common() {
-        if let CommonErrorSize::Shift(sd) | CommonErrorSize::Sensitivity { sd, .. } = error.size
-            && let Some(parameter) = inferred(sd)
+        if let Some(parameter) = error.size.sd().and_then(ErrorSd::parameter)
             && !coordinates.iter().any(|(sd, _)| *sd == parameter)
         {
             coordinates.push((parameter, None));

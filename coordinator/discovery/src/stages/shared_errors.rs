@@ -82,14 +82,7 @@ pub(super) fn judged_errors(task: &SearchTask, fit: &LaplaceFit) -> Vec<JudgedEr
 
 /// Returns the parameter that is the sd of a common error.
 fn inferred_sd(error: &CommonError) -> Option<usize> {
-    match error.size {
-        CommonErrorSize::Shift(ErrorSd::Inferred { parameter })
-        | CommonErrorSize::Sensitivity {
-            sd: ErrorSd::Inferred { parameter },
-            ..
-        } => Some(parameter),
-        _ => None,
-    }
+    error.size.sd()?.parameter()
 }
 
 impl<'a> SharedErrorQuestion<'a> {
@@ -120,7 +113,7 @@ impl<'a> SharedErrorQuestion<'a> {
         match self.source {
             SharedErrorSource::Parameter(k) => {
                 for error in common.iter_mut().filter(|error| inferred_sd(error) == Some(k)) {
-                    error.size = with_sd(error.size, sd);
+                    error.size = error.size.with_sd(sd);
                 }
             }
             SharedErrorSource::Suspected(k) => {
@@ -217,14 +210,6 @@ impl<'a> SharedErrorQuestion<'a> {
             sd: sd * spread,
         };
         Some(self.errors(&likelihood).zip(factors).map(group).collect())
-    }
-}
-
-fn with_sd(size: CommonErrorSize, sd: ErrorSd) -> CommonErrorSize {
-    match size {
-        CommonErrorSize::Sensitivity { derivative, .. } => CommonErrorSize::Sensitivity { sd, derivative },
-        CommonErrorSize::Shift(_) => CommonErrorSize::Shift(sd),
-        discrepancy @ CommonErrorSize::Discrepancy { .. } => discrepancy,
     }
 }
 

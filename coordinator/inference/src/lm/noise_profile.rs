@@ -1,7 +1,7 @@
 //! The most probable sds of noise and of common errors at given predicted values.
 
 use super::noise::{InferredNoise, Profiled};
-use statistics::likelihood::{CommonErrorSize, ErrorSd, Likelihood};
+use statistics::likelihood::{ErrorSd, Likelihood};
 use statistics::prior::{LN_SQRT_TAU, Prior};
 
 /// Normal scores between which an sd without a closed form is searched.
@@ -83,17 +83,11 @@ impl NoiseProfile {
 
 /// Returns every inferred sd, of noise and of common errors, by ascending parameter.
 fn inferred_sds(likelihood: &Likelihood) -> Vec<usize> {
-    let common_sds = likelihood.common().iter().filter_map(|error| match error.size {
-        CommonErrorSize::Shift(sd) | CommonErrorSize::Sensitivity { sd, .. } => Some(sd),
-        CommonErrorSize::Discrepancy { .. } => None,
-    });
+    let common_sds = likelihood.common().iter().filter_map(|error| error.size.sd());
     let data_sds = likelihood.data().iter().map(|datum| datum.sd);
     let mut parameters: Vec<usize> = data_sds
         .chain(common_sds)
-        .filter_map(|sd| match sd {
-            ErrorSd::Inferred { parameter } => Some(parameter),
-            ErrorSd::Known(_) => None,
-        })
+        .filter_map(ErrorSd::parameter)
         .collect();
     parameters.sort_unstable();
     parameters.dedup();

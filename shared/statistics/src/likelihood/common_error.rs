@@ -36,6 +36,27 @@ pub enum CommonErrorSize {
     },
 }
 
+impl CommonErrorSize {
+    /// Returns the standard deviation; `None` for a discrepancy, whose size follows from the noise.
+    #[must_use]
+    pub fn sd(self) -> Option<ErrorSd> {
+        match self {
+            Self::Shift(sd) | Self::Sensitivity { sd, .. } => Some(sd),
+            Self::Discrepancy { .. } => None,
+        }
+    }
+
+    /// Returns the same error with another standard deviation; a discrepancy is unchanged, as it has none.
+    #[must_use]
+    pub fn with_sd(self, sd: ErrorSd) -> Self {
+        match self {
+            Self::Shift(_) => Self::Shift(sd),
+            Self::Sensitivity { derivative, .. } => Self::Sensitivity { sd, derivative },
+            Self::Discrepancy { .. } => self,
+        }
+    }
+}
+
 /// A derivative of the prediction of a datum, among the predicted values.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Sensitive {
@@ -202,11 +223,7 @@ pub(super) fn check(count: usize, groups: usize, common: &[CommonError]) -> Resu
         {
             return Err(LikelihoodError::Group { group, groups });
         }
-        if let CommonErrorSize::Shift(ErrorSd::Known(value))
-        | CommonErrorSize::Sensitivity {
-            sd: ErrorSd::Known(value),
-            ..
-        } = error.size
+        if let Some(ErrorSd::Known(value)) = error.size.sd()
             && !(value.is_finite() && value >= 0.0)
         {
             return Err(LikelihoodError::Setting {

@@ -110,6 +110,15 @@ pub enum LikelihoodError {
 }
 
 impl ErrorSd {
+    /// Returns the index in theta of an inferred sd; `None` for a known one.
+    #[must_use]
+    pub fn parameter(self) -> Option<usize> {
+        match self {
+            ErrorSd::Known(_) => None,
+            ErrorSd::Inferred { parameter } => Some(parameter),
+        }
+    }
+
     /// Returns the value, known or in theta.
     pub(super) fn value(self, theta: &[f64]) -> Result<f64, LikelihoodError> {
         match self {

@@ -143,13 +143,13 @@ impl Likelihood {
     /// Returns whether some inferred sd has no closed form: it belongs to correlated or heavy-tailed data, or to a common error.
     #[must_use]
     pub fn entangles_unknown_sds(&self) -> bool {
-        let inferred = |sd: ErrorSd| matches!(sd, ErrorSd::Inferred { .. });
-        let heavy = self.law != ErrorLaw::Gaussian && self.data.iter().any(|d| inferred(d.sd));
+        let is_inferred = |sd: ErrorSd| sd.parameter().is_some();
+        let heavy = self.law != ErrorLaw::Gaussian && self.data.iter().any(|d| is_inferred(d.sd));
         let tied = self.blocks.iter().flat_map(|block| &block.data);
-        let common = self.common.iter().any(|error| match error.size {
-            CommonErrorSize::Shift(sd) | CommonErrorSize::Sensitivity { sd, .. } => inferred(sd),
-            CommonErrorSize::Discrepancy { .. } => false,
-        });
-        heavy || common || tied.into_iter().any(|&i| inferred(self.data[i].sd))
+        let common = self
+            .common
+            .iter()
+            .any(|error| error.size.sd().is_some_and(is_inferred));
+        heavy || common || tied.into_iter().any(|&i| is_inferred(self.data[i].sd))
     }
 }
