@@ -52,7 +52,8 @@ pub struct LawCandidate {
 /// The model without one of its effects.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Reduction {
-    /// The parameters of the model that remain, by index.
+    /// The parameters of the model that remain, by index, ascending. Every inferred sd of the likelihood must be among them; without one,
+    /// the reduction is not fitted.
     pub parameters: Vec<usize>,
     /// The effects of the library that the model may have in the place of this one.
     pub substitutes: Vec<usize>,
@@ -105,6 +106,11 @@ impl SearchTask {
         let single = members.iter().filter(|k| candidates[**k].strengths.len() == 1);
         let counts: Vec<bool> = single.map(|k| !self.is_law(*k) && is_claimed(*k)).collect();
         fit.frame.implausible_strength(&fit.point.position, &counts)
+    }
+
+    /// Returns the likelihood of a reduction; `None` if the reduction lacks the parameter of an inferred sd.
+    pub(crate) fn reduced_likelihood(&self, reduction: &Reduction) -> Option<Likelihood> {
+        self.likelihood.with_parameters(&reduction.parameters).ok()
     }
 
     /// Returns the coordinates of the base.

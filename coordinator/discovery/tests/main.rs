@@ -5,6 +5,7 @@
 mod effect_search;
 mod exchange;
 mod inferred_noise;
+mod inferred_sd_reduction;
 mod pairs;
 mod replacement;
 mod rough_model;

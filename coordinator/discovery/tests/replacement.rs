@@ -1,6 +1,6 @@
 //! Replacements of an effect that the base has by a better one, on linear models.
 
-use discovery::{Conclusion, QueriedModel, Query, Reduction, SearchVerdict};
+use discovery::{Conclusion, QueriedModel, Query, Reduction, SearchTask, SearchVerdict};
 use statistics::Prior;
 
 use crate::search::{DATA, LIBRARY, SQUARE, added, measured, task, w, x};
@@ -11,7 +11,7 @@ fn wrong(x: f64, w: f64) -> f64 {
     x * x + 0.4 * w * w
 }
 
-fn answer(query: &Query) -> Vec<f64> {
+pub(crate) fn answer(query: &Query) -> Vec<f64> {
     let (effects, base) = match &query.model {
         QueriedModel::With(effects) => (effects, 3),
         QueriedModel::Without(_, effects) => (effects, 2),
@@ -29,8 +29,8 @@ fn answer(query: &Query) -> Vec<f64> {
     }
 }
 
-/// Searches beyond a base that has the wrong effect.
-fn find(truth: impl Fn(f64, f64) -> f64, substitutes: Vec<usize>) -> Conclusion {
+/// Returns the search beyond a base that has the wrong effect.
+pub(crate) fn wrong_base(truth: impl Fn(f64, f64) -> f64, substitutes: Vec<usize>) -> SearchTask {
     let mut task = task(&measured(truth));
     task.prior = Prior::new(vec![normal(1.0); 3]);
     task.laws.clear();
@@ -38,7 +38,12 @@ fn find(truth: impl Fn(f64, f64) -> f64, substitutes: Vec<usize>) -> Conclusion 
         parameters: vec![0, 1],
         substitutes,
     }];
-    conclude(task, false, |query| Some(answer(query)))
+    task
+}
+
+/// Searches beyond a base that has the wrong effect.
+fn find(truth: impl Fn(f64, f64) -> f64, substitutes: Vec<usize>) -> Conclusion {
+    conclude(wrong_base(truth, substitutes), false, |query| Some(answer(query)))
 }
 
 #[test]

@@ -13,7 +13,7 @@ const SESSIONS: usize = 4;
 const SCALE: f64 = 0.3;
 
 /// Returns the data of each session: those of its number modulo their count, so that each has all levels.
-fn sessions(count: usize) -> Vec<Vec<usize>> {
+pub(crate) fn sessions(count: usize) -> Vec<Vec<usize>> {
     let of_session = |session: usize| (0..count).filter(|i| i % SESSIONS == session).collect();
     (0..SESSIONS).map(of_session).collect()
 }

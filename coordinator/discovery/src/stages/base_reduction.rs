@@ -32,7 +32,8 @@ impl SearchState {
                 starts: Starts::Draws(vec![kept.map(|&i| theta[i]).collect()]),
                 ..self.task.settings.clone()
             };
-            let search = EffectSearch::new(&prior, self.task.likelihood.clone(), &[], &settings).ok()?;
+            let likelihood = self.task.reduced_likelihood(reduction)?;
+            let search = EffectSearch::new(&prior, likelihood, &[], &settings).ok()?;
             Some(SearchBranch::without(k, Vec::new(), search))
         });
         Stage::BaseReduction(branches.collect())

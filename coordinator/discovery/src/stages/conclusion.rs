@@ -13,6 +13,7 @@ use crate::stages::next_run::{InformativeRun, RunChoice};
 use crate::stages::noise_support::unsupported_noise;
 use crate::stages::prior_sensitivity::{AlternativePrior, alternative_priors};
 use crate::stages::replacement::{self, Replacement};
+use crate::stages::scored_fit::ScoredFit;
 use crate::stages::shared_errors::{JudgedError, judged_errors};
 use crate::stages::state::SearchState;
 use crate::stages::verdict::SearchVerdict;
@@ -193,7 +194,10 @@ impl Objections {
                 .zip(leading)
                 .and_then(|(base, with)| held_back(task, base, with)),
             unsupported_noise: match (base, explanation) {
-                (Some(base), Some((best, _))) => unsupported_noise(task, base, best),
+                (Some(base), Some((best, _))) => {
+                    let [base, best] = [base, best].map(|fit| ScoredFit::new(task, fit));
+                    unsupported_noise(&task.conditions, base, best)
+                }
                 _ => Vec::new(),
             },
         }

@@ -9,6 +9,7 @@ use crate::laplace::evidence::log_sum_exp;
 use crate::laplace::fit::{FittedModel, LaplaceFit};
 use crate::probability::DETECTED;
 use crate::stages::law_forms::FittedForm;
+use crate::stages::scored_fit::ScoredFit;
 use statistics::likelihood::Likelihood;
 
 /// Cost of each effect after the first \[nats\]: a bound of the gain by selection from the library.
@@ -79,6 +80,17 @@ pub(super) struct FittedReplacement {
     /// Log evidence over that of the base.
     pub(super) log_bayes_factor: f64,
     pub(super) fit: LaplaceFit,
+    /// The likelihood of the reduction.
+    pub(super) likelihood: Likelihood,
+}
+
+impl FittedReplacement {
+    pub(super) fn scored(&self) -> ScoredFit<'_> {
+        ScoredFit {
+            fit: &self.fit,
+            likelihood: &self.likelihood,
+        }
+    }
 }
 
 /// The cross-validation of a law that acts together with effects.

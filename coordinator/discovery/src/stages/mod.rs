@@ -24,6 +24,7 @@
 //! - `ask_tell`: how a discovery is asked and told. `query`: a request to the model.
 //! - `stage`: the stage that a discovery is in. `branch`: a search for one effect, or a fit, that is part of a stage.
 //! - `state`: the task and the results so far. `hypotheses`: the fitted combinations and laws among them.
+//! - `scored_fit`: a fit with the likelihood that scores it.
 
 pub(crate) mod ask_tell;
 mod backward_elimination;
@@ -48,6 +49,7 @@ pub(crate) mod query;
 pub(crate) mod replacement;
 mod replacement_fits;
 mod run_information;
+mod scored_fit;
 pub(crate) mod shared_errors;
 mod stage;
 mod state;

@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 use crate::laplace::fit::LaplaceFit;
 use crate::laplace::noise;
 use crate::probability::DETECTED;
-use crate::task::SearchTask;
+use crate::stages::scored_fit::ScoredFit;
 use statistics::likelihood::{ErrorSd, Likelihood};
 
 /// Relative uncertainty up to which an inferred sd supports a claim. Log Bayes factors scale with its inverse square: of 10 nats, 4
@@ -26,16 +26,19 @@ const MIN_REPEATS: usize = 3;
 /// `inferred_noise::an_effect_is_named_on_inferred_noise_only_with_data_or_repeats_enough`.
 ///
 /// # Arguments
-/// - `base`, `best`: the fits of the base and of the explanation that would be claimed.
-pub(super) fn unsupported_noise(task: &SearchTask, base: &LaplaceFit, best: &LaplaceFit) -> Vec<usize> {
-    let likelihood = &task.likelihood;
-    let fitted = fitted_parameters(best, likelihood);
+/// - `conditions`: the data of each condition. `base`, `best`: the fits of the base and of the explanation that would be claimed.
+///
+/// # Returns
+/// Indices among the parameters of `best`.
+pub(super) fn unsupported_noise(conditions: &[Vec<usize>], base: ScoredFit, best: ScoredFit) -> Vec<usize> {
+    let likelihood = best.likelihood;
+    let fitted = fitted_parameters(best.fit, likelihood);
     let unsupported: Vec<usize> = data_of_sds(likelihood)
         .into_iter()
-        .filter(|(_, data)| !is_supported(data, likelihood.data().len(), fitted, &task.conditions))
+        .filter(|(_, data)| !is_supported(data, likelihood.data().len(), fitted, conditions))
         .map(|(parameter, _)| parameter)
         .collect();
-    let gain = gain_without(&unsupported, likelihood, base, best);
+    let gain = gain_without(&unsupported, base, best);
     if gain > DETECTED { Vec::new() } else { unsupported }
 }
 
@@ -43,7 +46,7 @@ pub(super) fn unsupported_noise(task: &SearchTask, base: &LaplaceFit, best: &Lap
 fn data_of_sds(likelihood: &Likelihood) -> BTreeMap<usize, Vec<usize>> {
     let mut data: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
     for (place, datum) in likelihood.data().iter().enumerate() {
-        if let ErrorSd::Inferred { parameter } = datum.sd {
+        if let Some(parameter) = datum.sd.parameter() {
             data.entry(parameter).or_default().push(place);
         }
     }
@@ -80,11 +83,12 @@ fn is_supported(data: &[usize], count: usize, fitted: f64, conditions: &[Vec<usi
 }
 
 /// Returns the explanation's gain in log-likelihood on the data of other noise sds than these; 0 without such data.
-fn gain_without(sds: &[usize], likelihood: &Likelihood, base: &LaplaceFit, best: &LaplaceFit) -> f64 {
-    let is_of = |sd: ErrorSd| matches!(sd, ErrorSd::Inferred { parameter } if sds.contains(&parameter));
-    let data = likelihood.data().iter().enumerate();
-    let kept: Vec<usize> = data.filter(|(_, d)| !is_of(d.sd)).map(|(i, _)| i).collect();
-    let scored = |fit: &LaplaceFit| {
+fn gain_without(sds: &[usize], base: ScoredFit, best: ScoredFit) -> f64 {
+    let is_unsupported = |sd: ErrorSd| sd.parameter().is_some_and(|parameter| sds.contains(&parameter));
+    let data = best.likelihood.data().iter().enumerate();
+    let kept = data.filter(|(_, datum)| !is_unsupported(datum.sd));
+    let kept: Vec<usize> = kept.map(|(i, _)| i).collect();
+    let scored = |ScoredFit { fit, likelihood }: ScoredFit| {
         let (part, places) = likelihood.subset(&kept).ok()?;
         let values: Vec<f64> = places.iter().map(|&i| fit.point.values[i]).collect();
         Some(part.log_likelihood(&values, &fit.theta()).ok()?.value())

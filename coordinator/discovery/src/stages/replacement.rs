@@ -4,6 +4,7 @@ use crate::laplace::evidence::log_sum_exp;
 use crate::probability::{DETECTED, PRIOR_OF_NONE};
 use crate::stages::hypotheses::{FittedReplacement, Hypotheses};
 use crate::stages::noise_support::unsupported_noise;
+use crate::stages::scored_fit::ScoredFit;
 use crate::stages::verdict::NAMED;
 use crate::stages::weighing::Weighing;
 use crate::task::SearchTask;
@@ -66,7 +67,9 @@ fn is_sound(
         && task
             .implausible_strength(fit, &[replacement.candidate], |_| true)
             .is_none();
-    let base = hypotheses.base_fit();
-    let is_supported = base.is_some_and(|base| unsupported_noise(task, base, fit).is_empty());
+    let is_supported = hypotheses.base_fit().is_some_and(|base| {
+        let base = ScoredFit::new(task, base);
+        unsupported_noise(&task.conditions, base, replacement.scored()).is_empty()
+    });
     is_plausible && is_supported && !weighing.is_disputed(replacement.candidate)
 }

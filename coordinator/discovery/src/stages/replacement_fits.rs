@@ -37,9 +37,9 @@ impl SearchState {
     /// Keeps the replacements, and begins the predictions.
     pub(super) fn after_replacements(&mut self, branches: &[SearchBranch]) -> Stage {
         let base = self.hypotheses.base_evidence();
-        let likelihood = &self.task.likelihood;
         let fitted = branches.iter().filter_map(|branch| {
             let fitted = branch.search.base_fit()?;
+            let likelihood = &branch.search.likelihood;
             // The effect that is replaced has its stated prior alone, so the candidate gains nothing by a wider one.
             let stated = fitted.fit.stated_gain(likelihood)?.min(0.0);
             Some(FittedReplacement {
@@ -47,6 +47,7 @@ impl SearchState {
                 candidate: *branch.effects.first()?,
                 log_bayes_factor: fitted.log_evidence + stated - base,
                 fit: fitted.fit.clone(),
+                likelihood: likelihood.clone(),
             })
         });
         self.hypotheses.replacements = fitted.collect();
@@ -80,17 +81,14 @@ impl SearchState {
         let base = self.task.prior.dimension();
         let frame = reduced.fit.frame.with(&self.hypotheses.candidates[candidate]);
         let theta = single.theta();
-        let kept = self.task.reductions[k].parameters.iter().copied();
+        let reduction = &self.task.reductions[k];
+        let kept = reduction.parameters.iter().copied();
         let kept: Vec<f64> = kept.chain(base..theta.len()).map(|i| theta[i]).collect();
         let strengths = &single.point.position[base..];
         let at_reduction = [&reduced.fit.point.position, strengths].concat();
         let starts = vec![frame.position(&kept), at_reduction];
-        let search = EffectSearch::refit(
-            frame,
-            starts,
-            self.task.likelihood.clone(),
-            self.task.settings.seed,
-        );
+        let likelihood = self.task.reduced_likelihood(reduction)?;
+        let search = EffectSearch::refit(frame, starts, likelihood, self.task.settings.seed);
         Some(SearchBranch::without(k, vec![candidate], search))
     }
 }

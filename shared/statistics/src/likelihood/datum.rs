@@ -60,6 +60,12 @@ pub enum LikelihoodError {
         /// The length of theta.
         dimension: usize,
     },
+    /// A model without the parameter of an inferred sd was requested.
+    #[error("parameter {parameter} is the sd of an error and cannot be left out")]
+    DroppedSd {
+        /// Index of the parameter in theta.
+        parameter: usize,
+    },
     /// A predicted value is NaN or infinite.
     #[error("prediction {value} of run {run}, channel {channel} is not finite")]
     Prediction {

@@ -8,7 +8,7 @@
 //! - `common_error`: common errors, and the blocks that they create. `spread`: the covariance of a block.
 //! - `error_model`: data, law and common errors together. `density`: their log-density.
 //! - `factor`: the factor of a block's covariance; `low_rank_factor`: that of a large block; `common_shift`: a block that needs none. `subset`: the
-//!   likelihood of selected data.
+//!   likelihood of selected data. `kept_parameters`: that of a model with some of the parameters.
 //! - `numerical_noise`: the likelihood of a model whose predictions scatter.
 //! - `whitening`: residuals and derivatives transformed to independence, for least squares.
 
@@ -18,6 +18,7 @@ mod datum;
 mod density;
 mod error_model;
 mod factor;
+mod kept_parameters;
 mod law;
 mod low_rank_factor;
 mod numerical_noise;
