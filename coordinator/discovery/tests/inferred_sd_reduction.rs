@@ -1,7 +1,7 @@
 //! The base without one of its effects, where the sds of the noise and of an error that sessions share are inferred. The sds follow the
 //! strength of the effect among the parameters, so each moves forward by one where the effect is left out.
 
-use discovery::{Conclusion, QueriedModel, Reduction, SearchTask, SearchVerdict};
+use discovery::{Conclusion, QueriedModel, Reduction, SearchTask, SearchVerdict, SharedErrorSource};
 use statistics::{CommonError, CommonErrorSize, Datum, ErrorLaw, ErrorSd, Likelihood, Prior};
 
 use super::replacement::{answer, wrong_base};
@@ -77,6 +77,15 @@ fn a_better_effect_takes_the_place_of_one_that_was_added_wrongly() {
     let claimed = claimed.unwrap_or_else(|| panic!("{:?}", conclusion.replacements));
     assert_eq!((claimed.reduction, claimed.candidate), (0, SQUARE));
     assert_eq!(conclusion.verdict, SearchVerdict::Named(SQUARE));
+    // The error is judged beside the replacement, and named by its parameter in the base.
+    let [session] = &conclusion.shared_errors[..] else {
+        panic!("{:?}", conclusion.shared_errors);
+    };
+    assert_eq!(session.source, SharedErrorSource::Parameter(SESSION));
+    assert!(session.probability > 0.99, "{session:?}");
+    for (group, offset) in session.groups.iter().zip(OFFSETS) {
+        assert!((group.mean - offset).abs() < 3.0 * group.sd, "{group:?} {offset}");
+    }
 }
 
 #[test]

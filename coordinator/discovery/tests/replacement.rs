@@ -54,6 +54,16 @@ fn a_better_effect_takes_the_place_of_one_that_was_added_wrongly() {
     let claimed = claimed.unwrap_or_else(|| panic!("{:?}", conclusion.replacements));
     assert_eq!((claimed.reduction, claimed.candidate), (0, SQUARE));
     assert_eq!(conclusion.verdict, SearchVerdict::Named(SQUARE));
+    // The stated chi-square is that of the replacement, which has as many parameters as the base.
+    let (base, best) = (
+        conclusion.chi_square.unwrap(),
+        conclusion.chi_square_best.unwrap(),
+    );
+    assert!(best.value < base.value && conclusion.complete == Some(true));
+    assert!(
+        (best.degrees_of_freedom - base.degrees_of_freedom).abs() < 0.1,
+        "{best:?} {base:?}"
+    );
     assert!(
         claimed.log_bayes_factor > 10.0 && claimed.probability > 0.9,
         "{claimed:?}"

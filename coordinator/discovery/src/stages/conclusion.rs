@@ -7,7 +7,7 @@ use crate::laplace::fit::LaplaceFit;
 use crate::probability::DETECTED;
 use crate::stages::claimable_law::ClaimableLaw;
 use crate::stages::held_back::held_back;
-use crate::stages::hypotheses::Hypotheses;
+use crate::stages::hypotheses::{FittedReplacement, Hypotheses};
 use crate::stages::law_forms::{self, WeighedForm};
 use crate::stages::next_run::{InformativeRun, RunChoice};
 use crate::stages::noise_support::unsupported_noise;
@@ -77,6 +77,9 @@ impl OutsideLaw {
 }
 
 /// The result of a search.
+///
+/// `complete`, `explained`, `remaining`, `chi_square_best` and `shared_errors` describe the best explanation: the replacement if one is
+/// claimed, otherwise the law, the best combination, or the base if nothing was detected.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Conclusion {
     /// The verdict that the data support.
@@ -208,7 +211,7 @@ impl Objections {
     }
 }
 
-/// The misfit that the best explanation leaves, measured by the declared noise.
+/// The misfit that an explanation leaves, measured by the declared noise.
 struct Remainder {
     complete: Option<bool>,
     explained: Option<f64>,
@@ -216,8 +219,8 @@ struct Remainder {
 }
 
 impl Remainder {
-    fn new(task: &SearchTask, base: Option<&LaplaceFit>, best: Option<&LaplaceFit>) -> Self {
-        let chi_square = |fit: &LaplaceFit| FitChiSquare::of_declared_noise(fit, &task.likelihood);
+    fn new(base: Option<ScoredFit>, best: Option<ScoredFit>) -> Self {
+        let chi_square = |model: ScoredFit| FitChiSquare::of_declared_noise(model.fit, model.likelihood);
         let (before, after) = (base.and_then(chi_square), best.and_then(chi_square));
         let excess = before.map(|chi| chi.excess()).filter(|excess| *excess > 0.0);
         let left = after.map(|chi| chi.excess().max(0.0));
@@ -227,9 +230,28 @@ impl Remainder {
             explained: excess
                 .zip(left)
                 .map(|(excess, left)| (1.0 - left / excess).max(0.0)),
-            residuals: incomplete.map_or(Vec::new(), |fit| residuals(fit, &task.likelihood)),
+            residuals: incomplete.map_or(Vec::new(), |model| residuals(model.fit, model.likelihood)),
         }
     }
+}
+
+/// Returns the errors that runs share, judged beside the best explanation; an inferred sd is numbered as the parameters of the base.
+///
+/// # Arguments
+/// - `best`: the best explanation. `claimed`: the replacement, if it is that.
+fn shared_errors(
+    task: &SearchTask,
+    best: Option<ScoredFit>,
+    claimed: Option<&FittedReplacement>,
+) -> Vec<JudgedError> {
+    let mut errors = best.map_or(Vec::new(), |model| judged_errors(&task.suspected_errors, model));
+    if let Some(claimed) = claimed {
+        let kept = &task.reductions[claimed.reduction].parameters;
+        for error in &mut errors {
+            error.source = error.source.in_base(kept);
+        }
+    }
+    errors
 }
 
 impl Conclusion {
@@ -252,6 +274,8 @@ impl Conclusion {
             .map_or_else(|| combination.clone(), |law| law.effects.clone());
         let replacements = replacement::weighed(task, hypotheses, &weighing);
         let claimed = replacements.iter().find(|replacement| replacement.is_claimed);
+        let claimed =
+            claimed.and_then(|claimed| hypotheses.replacement(claimed.reduction, claimed.candidate));
         // What speaks against the best set does not speak against the replacement that is more probable.
         let objections = match claimed {
             Some(_) => Objections::default(),
@@ -266,8 +290,11 @@ impl Conclusion {
             None if is_withheld && supported.is_claim() => SearchVerdict::Undecided,
             None => supported,
         };
-        let remainder = Remainder::new(task, base, explanation.or(base));
-        let chi_square = |fit: &LaplaceFit| FitChiSquare::of_fit(fit, likelihood);
+        let scored = |fit| ScoredFit::new(task, fit);
+        let replacement = claimed.map(FittedReplacement::scored);
+        let best = replacement.or(explanation.or(base).map(scored));
+        let remainder = Remainder::new(base.map(scored), best);
+        let chi_square = |model: ScoredFit| FitChiSquare::of_fit(model.fit, model.likelihood);
         Self {
             verdict,
             implausible: objections.implausible,
@@ -295,17 +322,13 @@ impl Conclusion {
             combination,
             replacements,
             gains: hypotheses.gains(),
-            chi_square: base.and_then(chi_square),
-            chi_square_best: law
-                .as_ref()
-                .map_or_else(|| hypotheses.chi_square(likelihood), |law| chi_square(&law.fit)),
+            chi_square: base.map(scored).and_then(chi_square),
+            chi_square_best: best.and_then(chi_square),
             base: PosteriorModel::new(task, Vec::new(), base, BASE_STREAM),
             best: PosteriorModel::new(task, effects, explanation.or(base), BEST_STREAM),
             next_runs: choice.runs,
             information: choice.alone,
-            shared_errors: explanation
-                .or(base)
-                .map_or(Vec::new(), |fit| judged_errors(task, fit)),
+            shared_errors: shared_errors(task, best, claimed),
             numerical_noise_sds: state.numerical_noise_sds.clone(),
             evaluations: state.evaluations,
         }

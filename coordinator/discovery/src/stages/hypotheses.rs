@@ -200,6 +200,12 @@ impl Hypotheses {
             .sort_by(|a, b| b.log_bayes_factor.total_cmp(&a.log_bayes_factor));
     }
 
+    /// Returns the fit of a candidate in the place of the effect that a reduction is without.
+    pub(super) fn replacement(&self, reduction: usize, candidate: usize) -> Option<&FittedReplacement> {
+        let mut replacements = self.replacements.iter();
+        replacements.find(|fitted| fitted.reduction == reduction && fitted.candidate == candidate)
+    }
+
     /// Returns the best combination, after the cost of each effect after the first.
     pub(super) fn best(&self) -> Option<&EffectCombination> {
         self.best_of(|_| true)

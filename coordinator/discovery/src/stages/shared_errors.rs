@@ -6,10 +6,9 @@
 
 use crate::laplace::conditional::LinearisedModel;
 use crate::laplace::evidence::log_sum_exp;
-use crate::laplace::fit::LaplaceFit;
 use crate::laplace::point::FitPoint;
+use crate::stages::scored_fit::ScoredFit;
 use crate::suspected_error::{SuspectedError, SuspectedShift};
-use crate::task::SearchTask;
 use statistics::likelihood::{CommonError, CommonErrorSize, ErrorSd, Likelihood, Sensitive};
 use statistics::prior::{Distribution, Marginal};
 
@@ -27,6 +26,19 @@ pub enum SharedErrorSource {
     Parameter(usize),
     /// The error of this index among [`SearchTask::suspected_errors`].
     Suspected(usize),
+}
+
+impl SharedErrorSource {
+    /// Returns the source in the numbering of the base.
+    ///
+    /// # Arguments
+    /// - `kept`: the parameters of the base that the model of this source keeps.
+    pub(super) fn in_base(self, kept: &[usize]) -> Self {
+        match self {
+            Self::Parameter(k) => Self::Parameter(kept[k]),
+            Self::Suspected(_) => self,
+        }
+    }
 }
 
 /// What the data say of an error that runs share.
@@ -57,8 +69,8 @@ pub struct GroupError {
 
 /// The question whether one error acts, about one fit.
 struct SharedErrorQuestion<'a> {
-    task: &'a SearchTask,
-    fit: &'a LaplaceFit,
+    suspects: &'a [SuspectedError],
+    model: ScoredFit<'a>,
     source: SharedErrorSource,
     /// Prior of the sd.
     prior: Marginal,
@@ -66,17 +78,21 @@ struct SharedErrorQuestion<'a> {
     further_values: Vec<f64>,
 }
 
-/// Judges every inferred and suspected error beside the best explanation. Checked by
+/// Judges every inferred and suspected error beside an explanation. Checked by
 /// `shared_errors::an_offset_of_sessions_is_found_and_where_none_acts_none_is`.
-pub(super) fn judged_errors(task: &SearchTask, fit: &LaplaceFit) -> Vec<JudgedError> {
-    let mut parameters: Vec<usize> = task.likelihood.common().iter().filter_map(inferred_sd).collect();
+///
+/// # Returns
+/// The errors; an inferred sd is numbered as the parameters of the explanation.
+pub(super) fn judged_errors(suspects: &[SuspectedError], explanation: ScoredFit) -> Vec<JudgedError> {
+    let common = explanation.likelihood.common().iter();
+    let mut parameters: Vec<usize> = common.filter_map(inferred_sd).collect();
     parameters.sort_unstable();
     parameters.dedup();
     let parameters = parameters.into_iter().map(SharedErrorSource::Parameter);
-    let suspected = (0..task.suspected_errors.len()).map(SharedErrorSource::Suspected);
+    let suspected = (0..suspects.len()).map(SharedErrorSource::Suspected);
     let sources = parameters.chain(suspected);
     sources
-        .filter_map(|source| SharedErrorQuestion::new(task, fit, source)?.judged())
+        .filter_map(|source| SharedErrorQuestion::new(suspects, explanation, source)?.judged())
         .collect()
 }
 
@@ -86,19 +102,20 @@ fn inferred_sd(error: &CommonError) -> Option<usize> {
 }
 
 impl<'a> SharedErrorQuestion<'a> {
-    fn new(task: &'a SearchTask, fit: &'a LaplaceFit, source: SharedErrorSource) -> Option<Self> {
+    fn new(suspects: &'a [SuspectedError], model: ScoredFit<'a>, source: SharedErrorSource) -> Option<Self> {
+        let fit = model.fit;
         let (prior, further_values) = match source {
-            SharedErrorSource::Parameter(k) => (task.prior.marginals().get(k)?.clone(), Vec::new()),
+            SharedErrorSource::Parameter(k) => (fit.frame.coordinates.get(k)?.marginal.clone(), Vec::new()),
             SharedErrorSource::Suspected(k) => {
-                let error = task.suspected_errors.get(k)?;
+                let error = suspects.get(k)?;
                 let scale = error.prior_scale;
                 let prior = Marginal::new(Distribution::HalfNormal { scale }, None).ok()?;
                 (prior, factor_derivatives(error, &fit.point.values))
             }
         };
         Some(Self {
-            task,
-            fit,
+            suspects,
+            model,
             source,
             prior,
             further_values,
@@ -107,7 +124,7 @@ impl<'a> SharedErrorQuestion<'a> {
 
     /// Returns the likelihood with a given sd of the error.
     fn likelihood(&self, sd: f64) -> Option<Likelihood> {
-        let whole = &self.task.likelihood;
+        let whole = self.model.likelihood;
         let sd = ErrorSd::Known(sd);
         let mut common = whole.common().to_vec();
         match self.source {
@@ -117,7 +134,7 @@ impl<'a> SharedErrorQuestion<'a> {
                 }
             }
             SharedErrorSource::Suspected(k) => {
-                let suspected = &self.task.suspected_errors[k];
+                let suspected = &self.suspects[k];
                 let size = match suspected.shift {
                     SuspectedShift::Offset => CommonErrorSize::Shift(sd),
                     SuspectedShift::Factor => CommonErrorSize::Sensitivity {
@@ -135,7 +152,7 @@ impl<'a> SharedErrorQuestion<'a> {
 
     /// Returns the errors in question among those of a likelihood.
     fn errors<'b>(&self, likelihood: &'b Likelihood) -> impl Iterator<Item = &'b CommonError> {
-        let whole = self.task.likelihood.common();
+        let whole = self.model.likelihood.common();
         let source = self.source;
         let errors = likelihood.common().iter().enumerate();
         errors.filter_map(move |(place, error)| {
@@ -150,22 +167,22 @@ impl<'a> SharedErrorQuestion<'a> {
     /// Returns the mode and its log evidence for an sd.
     fn at(&self, sd: f64, start: Vec<f64>) -> Option<(FitPoint, f64)> {
         let likelihood = self.likelihood(sd)?;
-        let model = self.model(&likelihood);
+        let model = self.linearised(&likelihood);
         let mode = model.mode(start)?;
         let evidence = model.log_evidence(&mode)?;
         Some((mode, evidence))
     }
 
-    fn model<'b>(&'b self, likelihood: &'b Likelihood) -> LinearisedModel<'b> {
+    fn linearised<'b>(&'b self, likelihood: &'b Likelihood) -> LinearisedModel<'b> {
         LinearisedModel {
-            fit: self.fit,
+            fit: self.model.fit,
             likelihood,
             further_values: &self.further_values,
         }
     }
 
     fn judged(&self) -> Option<JudgedError> {
-        let (absent, without) = self.at(0.0, self.fit.point.position.clone())?;
+        let (absent, without) = self.at(0.0, self.model.fit.point.position.clone())?;
         let mut start = absent.position;
         let mut weighed = Vec::new();
         for t in SCORES {
@@ -198,8 +215,8 @@ impl<'a> SharedErrorQuestion<'a> {
     /// Returns the error of each group for an sd.
     fn groups(&self, sd: f64) -> Option<Vec<GroupError>> {
         let likelihood = self.likelihood(sd)?;
-        let model = self.model(&likelihood);
-        let mode = model.mode(self.fit.point.position.clone())?;
+        let model = self.linearised(&likelihood);
+        let mode = model.mode(self.model.fit.point.position.clone())?;
         let directions = self
             .errors(&likelihood)
             .map(|error| direction(&likelihood, error, sd, &mode.values));
