@@ -34,6 +34,7 @@ pub use data::bevameter_readings::{BevameterReadings, PLATE, RING, Reading};
 pub use data::confounded_order::{ConfoundedOrder, SetCondition, confounded_orders};
 pub use data::level::{levels_of, load_levels_of};
 pub use data::noise::{conditions, repeat_scatter, repeats, repeats_but_for_load};
+pub use data::rig_groups::repeats_earlier_column;
 pub use data::shared_error::SharedError;
 pub use effect_on_nodes::EffectOnNodes;
 pub use facts::{effect_name, foreign_effects, is_earlier_search, model_kind};

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use job::{load_levels_of, repeats_but_for_load};
+use job::{load_levels_of, repeats_but_for_load, repeats_earlier_column};
 use shared::experiment::{Experiment, RigColumn, TestRun};
 
 use super::RepeatedQuantity;
@@ -77,19 +77,6 @@ impl<'a> ComparedRuns<'a> {
             ids,
         }
     }
-}
-
-/// Returns whether an earlier column groups the runs in the same way.
-fn repeats_earlier_column(runs: &[&TestRun], column: RigColumn) -> bool {
-    let grouping = |column: RigColumn| {
-        let ids: Vec<Option<&str>> = runs.iter().map(|run| column.id(run)).collect();
-        numbered(&ids, |a, b| a == b).0
-    };
-    let is_stated = |column: &RigColumn| runs.iter().all(|run| column.id(run).is_some());
-    let mut earlier = RigColumn::ALL
-        .into_iter()
-        .take_while(|earlier| *earlier != column);
-    earlier.any(|earlier| is_stated(&earlier) && grouping(earlier) == grouping(column))
 }
 
 /// Returns for each item the number of the first distinct item that it is the same as, and the distinct items.
