@@ -86,10 +86,10 @@ pub(super) fn discovery_record(models: &SearchModels, conclusion: &Conclusion) -
         })
     });
     let given = models.base.fit_variant.effects.iter();
-    Discovery {
+    let mut record = Discovery {
         given: given.map(|effect| effect.name.clone()).collect(),
         verdict,
-        text: sentence(models, conclusion, &effects, outside.as_ref()),
+        text: String::new(),
         implausible: conclusion
             .implausible
             .or(conclusion.held_back)
@@ -126,7 +126,9 @@ pub(super) fn discovery_record(models: &SearchModels, conclusion: &Conclusion) -
         chi2_best: chi_square(conclusion.chi_square_best, models),
         evaluations_to_name: conclusion.ranking.evaluations.to_name() as u64,
         evaluations: conclusion.evaluations as u64,
-    }
+    };
+    record.text = sentence(models, conclusion, &record);
+    record
 }
 
 /// Lists the effects in the place of effects of the base.

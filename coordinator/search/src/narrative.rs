@@ -3,14 +3,12 @@
 use discovery::{Conclusion, DETECTED, NAMED, Replacement, SearchVerdict, WeighedSet};
 use formula::Hook;
 use job::{EffectOnNodes, ModelSwitch, PlainParameter};
-use record::{JudgedEffect, JudgedRigError, NONE, NOT_IN_LIBRARY, Outside};
+use record::{Discovery, JudgedEffect, JudgedRigError, NONE, NOT_IN_LIBRARY, Outside};
 use shared::parameters::WHEEL_RADIUS;
 use statistics::ErrorSd;
 
 use super::candidate::candidate_of;
 use super::models::SearchModels;
-use super::remaining_misfit::remaining_misfit;
-use super::rig_errors::rig_errors;
 
 /// Members of a class with less probability are not listed.
 const MIN_LISTED: f64 = 0.005;
@@ -20,12 +18,11 @@ const MIN_MENTIONED: f64 = 0.05;
 const NAMES: usize = 6;
 
 /// Writes the verdict, and what remains unexplained, as a sentence.
-pub(super) fn sentence(
-    models: &SearchModels,
-    conclusion: &Conclusion,
-    effects: &[JudgedEffect],
-    outside: Option<&Outside>,
-) -> String {
+///
+/// # Arguments
+/// - `record`: of the conclusion, complete but for this sentence.
+pub(super) fn sentence(models: &SearchModels, conclusion: &Conclusion, record: &Discovery) -> String {
+    let effects = record.effects.as_slice();
     let mut text = if let Some(claim) = claimed_replacement(models, conclusion) {
         claim
     } else if let Some(reason) = implausible(models, conclusion) {
@@ -35,7 +32,7 @@ pub(super) fn sentence(
     } else if let Some(reason) = unsupported_noise(models, conclusion) {
         format!("nothing is named: {reason}; {}", credible_set(effects))
     } else {
-        verdict(models, conclusion, effects, outside)
+        verdict(models, conclusion, effects, record.outside.as_ref())
     };
     text += &better_replacement(models, conclusion);
     let is_claim = conclusion.verdict.is_claim();
@@ -58,11 +55,10 @@ pub(super) fn sentence(
     if effects.iter().any(is_fragile) {
         text += "; under other priors (strengths half or twice as wide, nothing missing with 0.2 or 0.8) its probability falls below 0.9";
     }
-    let remaining = remaining_misfit(models, &conclusion.remaining);
-    if let Some(worst) = remaining.first() {
+    if let Some(worst) = record.remaining.first() {
         text += &format!("; what remains is largest in {}", worst.words());
     }
-    text += &rig(models, conclusion);
+    text += &rig(&record.rig);
     if let Some(k) = conclusion.agreed {
         text += &format!(
             "; the most probable set also predicts left-out levels best, and {} is its leading effect",
@@ -73,8 +69,7 @@ pub(super) fn sentence(
 }
 
 /// Names the errors of the rig that act.
-fn rig(models: &SearchModels, conclusion: &Conclusion) -> String {
-    let errors = rig_errors(&models.base, &conclusion.shared_errors);
+fn rig(errors: &[JudgedRigError]) -> String {
     let acting: Vec<String> = errors
         .iter()
         .filter(|error| error.probability > NAMED)
