@@ -19,6 +19,8 @@ pub struct Candidate {
     /// Name of the family. Its candidates are laws of one quantity under different conditions, and may explain together what none
     /// explains alone.
     pub family: Option<String>,
+    /// Names of the quantities that it changes. An effect and a law of one quantity may be factors of one law of two variables.
+    pub quantities: Vec<String>,
     /// Name of the candidate whose parameter has a limit here that its prior does not reach. Both change one parameter of the model, so
     /// they belong to one class.
     pub limit_of: Option<String>,
@@ -27,7 +29,7 @@ pub struct Candidate {
 }
 
 impl Candidate {
-    /// Makes a candidate that is absent where its strengths are 0, combines with every other one and belongs to no family.
+    /// Makes a candidate that is absent where its strengths are 0, combines with every other one, belongs to no family and states no quantity.
     #[must_use]
     pub fn new(name: impl Into<String>, parameters: Vec<Marginal>, strengths: Vec<usize>) -> Self {
         Self {
@@ -37,6 +39,7 @@ impl Candidate {
             neutral: 0.0,
             excludes: Vec::new(),
             family: None,
+            quantities: Vec::new(),
             limit_of: None,
             has_low_fidelity: false,
         }
@@ -51,6 +54,13 @@ impl Candidate {
     /// Returns whether both candidates may stand in one combination.
     pub(crate) fn combines_with(&self, candidate: &Self) -> bool {
         !self.excludes.contains(&candidate.name) && !candidate.excludes.contains(&self.name)
+    }
+
+    /// Returns whether both candidates change one quantity.
+    pub(crate) fn shares_quantity(&self, candidate: &Self) -> bool {
+        self.quantities
+            .iter()
+            .any(|name| candidate.quantities.contains(name))
     }
 
     /// Returns whether both candidates change the same parameter of the model.

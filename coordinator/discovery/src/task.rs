@@ -3,6 +3,7 @@
 use crate::candidate::Candidate;
 use crate::laplace::coordinate::NormalFrame;
 use crate::laplace::fit::LaplaceFit;
+use crate::probability::DETECTED;
 use crate::settings::SearchSettings;
 use crate::suspected_error::SuspectedError;
 use statistics::likelihood::Likelihood;
@@ -44,8 +45,8 @@ pub struct LawCandidate {
     pub curve: Candidate,
     /// The dependence in simple forms.
     pub forms: Vec<Candidate>,
-    /// Whether the law changes a measured channel instead of a stress. Such a law describes the data, and yields to one that
-    /// explains them.
+    /// Whether the law changes a measured channel instead of a stress. Such a law describes what a change of the physics may explain:
+    /// it has lower prior odds, and is claimed only if every explanation without such a law falls short by far.
     pub is_description: bool,
 }
 
@@ -129,6 +130,28 @@ impl SearchTask {
     pub(crate) fn forms(&self, law: usize) -> std::ops::Range<usize> {
         let first = self.curve(law) + 1;
         first..first + self.laws[law].forms.len()
+    }
+
+    /// Returns the log prior odds of a law that changes a stress over this law \[nats\].
+    pub(crate) fn handicap(&self, law: usize) -> f64 {
+        if self.laws[law].is_description {
+            DETECTED
+        } else {
+            0.0
+        }
+    }
+
+    /// Returns whether no member of a set is a law that changes a measured channel.
+    pub(crate) fn is_physical(&self, members: &[usize]) -> bool {
+        let mut laws = members.iter().filter_map(|k| self.law_of(*k));
+        laws.all(|law| !self.laws[law].is_description)
+    }
+
+    /// Returns whether a set has a law and an effect that change one quantity: they may be factors of one law of two variables.
+    pub(crate) fn may_be_one_law(&self, members: &[usize]) -> bool {
+        let of_library = || members.iter().filter(|k| !self.is_law(**k));
+        let mut laws = members.iter().filter_map(|k| self.law_of(*k));
+        laws.any(|law| of_library().any(|k| self.library[*k].shares_quantity(&self.laws[law].curve)))
     }
 
     /// Returns whether a candidate is a law outside the library.

@@ -2,6 +2,7 @@
 
 #![expect(clippy::unwrap_used, reason = "helpers of tests may panic as tests do")]
 
+mod description;
 mod effect_search;
 mod exchange;
 mod inferred_noise;

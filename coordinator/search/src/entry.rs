@@ -1,7 +1,7 @@
 //! The entries of a search: each candidate of the discovery with its addition to the job.
 
 use discovery::Candidate;
-use formula::Effect;
+use formula::{Effect, Hook};
 use job::{EffectOnNodes, FreeParameter, Job, ModelSwitch, NamedFiles, PlainParameter, Spec};
 use record::{Extension, NotTried};
 
@@ -149,6 +149,7 @@ impl CandidateEntry {
         Some(Self {
             candidate: Candidate {
                 neutral,
+                quantities: effect.hooks().map(quantity).collect(),
                 has_low_fidelity: ModelKind::QuasiStatic.has_form(effect)
                     && EffectOnNodes::find(&candidate.name).is_none(),
                 ..Candidate::new(
@@ -162,5 +163,28 @@ impl CandidateEntry {
             not_tried: None,
             effect: candidate,
         })
+    }
+}
+
+/// Returns the quantity that a formula changes. The sinkage exponent shapes the pressure, and the strength limits the shear stress.
+fn quantity(hook: Hook) -> String {
+    let changed = match hook {
+        Hook::SinkageExponent => Hook::Pressure,
+        Hook::ShearLimit => Hook::Shear,
+        hook => hook,
+    };
+    changed.name().to_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use formula::catalogue::find;
+
+    #[test]
+    fn an_effect_changes_the_quantity_that_its_formula_shapes() {
+        let quantities = |name: &str| -> Vec<String> { find(name).unwrap().hooks().map(quantity).collect() };
+        assert_eq!(quantities("friction_rate_weakening"), ["shear"]);
+        assert_eq!(quantities("slip_sinkage"), ["pressure"]);
     }
 }

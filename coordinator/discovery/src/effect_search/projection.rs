@@ -38,22 +38,8 @@ impl Exchange {
 /// Returns whether two coordinates of a fit change the predictions alike, after projection out of the changes that its other coordinates
 /// absorb: whether they are of one class.
 pub(crate) fn are_alike(fit: &LaplaceFit, likelihood: &Likelihood, coordinates: [usize; 2]) -> bool {
-    let Ok(whitening) = likelihood.whitening(&fit.point.values, &fit.theta()) else {
+    let Some(projection) = Projection::without(fit, likelihood, &coordinates) else {
         return false;
-    };
-    let others = (0..fit.columns.len()).filter(|k| !coordinates.contains(k));
-    let columns = others.map(|k| whitening.apply(&fit.columns[k])).collect();
-    let hessian = fit.quadratic(likelihood).hessian;
-    let hessian = hessian
-        .remove_rows_at(&coordinates)
-        .remove_columns_at(&coordinates);
-    let Some(cholesky) = Cholesky::new(hessian) else {
-        return false;
-    };
-    let projection = Projection {
-        whitening,
-        columns,
-        cholesky,
     };
     let changes = coordinates.map(|k| fit.columns[k].clone());
     classes(&projection.products(&changes), &[None, None]) == [0, 0]
@@ -72,6 +58,34 @@ impl Projection {
             cholesky: Cholesky::new(base.quadratic(likelihood).hessian)?,
             whitening,
         })
+    }
+
+    /// Prepares the projection out of what the coordinates of a fit absorb without some of them; `None` where the data cannot be whitened
+    /// at the fit.
+    ///
+    /// # Arguments
+    /// - `left_out`: indices of these coordinates, which rise.
+    pub(crate) fn without(fit: &LaplaceFit, likelihood: &Likelihood, left_out: &[usize]) -> Option<Self> {
+        let whitening = likelihood.whitening(&fit.point.values, &fit.theta()).ok()?;
+        let kept = (0..fit.columns.len()).filter(|k| !left_out.contains(k));
+        let hessian = fit.quadratic(likelihood).hessian;
+        let hessian = hessian.remove_rows_at(left_out).remove_columns_at(left_out);
+        Some(Self {
+            columns: kept.map(|k| whitening.apply(&fit.columns[k])).collect(),
+            cholesky: Cholesky::new(hessian)?,
+            whitening,
+        })
+    }
+
+    /// Returns the squared cosine of the angle between two changes after projection; 0 if one of them is absorbed.
+    pub(crate) fn alignment(&self, changes: &[Vec<f64>; 2]) -> f64 {
+        let products = self.products(changes);
+        let lengths = products[(0, 0)] * products[(1, 1)];
+        if lengths > 0.0 {
+            products[(0, 1)] * products[(0, 1)] / lengths
+        } else {
+            0.0
+        }
     }
 
     /// Returns whitened inner products of a change with the base's columns.

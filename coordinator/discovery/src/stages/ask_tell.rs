@@ -167,6 +167,7 @@ impl DiscoverySearch {
             Stage::CrossValidation(rank, validation) => state.after_cross_validation(*rank, validation),
             Stage::EffectsBesideLaw(size, branches) => state.after_effects_beside_law(*size, branches),
             Stage::LawElimination(branches) => state.after_law_elimination(branches),
+            Stage::LawSubstitutes(branches) => state.after_law_substitutes(branches),
             Stage::LawForms(law, branch) => state.after_law_forms(*law, branch),
             Stage::LawBesideEffects(effects, validation) => {
                 state.after_law_beside_effects(effects, validation)

@@ -3,12 +3,15 @@
 use crate::chi_square::FitChiSquare;
 use crate::laplace::fit::LaplaceFit;
 use crate::probability::DETECTED;
-use crate::stages::hypotheses::{EffectCombination, Hypotheses, candidate_set};
+use crate::stages::hypotheses::{EffectCombination, FittedLaw, Hypotheses, candidate_set};
 use crate::stages::law_forms::FittedForm;
 use crate::task::SearchTask;
 
 /// A law outside the library explains the misfit if it leaves at most this share of the library's chi-square excess.
 const MAX_LEFT: f64 = 0.25;
+
+/// A law of a measured channel is claimed only if the best explanation without such a law falls short by more \[nats\].
+const BEYOND_PHYSICS: f64 = 10.0;
 
 /// A law that predicts left-out levels well enough to be claimed.
 #[derive(Debug, Clone)]
@@ -30,7 +33,7 @@ pub(super) struct ClaimableLaw {
 
 impl ClaimableLaw {
     /// The law of the most probable set if it has one beside effects, otherwise the law alone; `None` if it does not predict left-out
-    /// levels, or leaves much of the misfit.
+    /// levels, leaves much of the misfit, or describes what a change of the physics may explain.
     ///
     /// # Arguments
     /// - `best`: the effects of the most probable set, if a law is among them.
@@ -41,7 +44,38 @@ impl ClaimableLaw {
             let is_same = |k: &usize| task.law_of(*k) == Some(law.law);
             best.is_none_or(|effects| effects.iter().any(is_same))
         };
-        beside.or_else(|| Self::alone(task, hypotheses).filter(is_in_best))
+        let law = beside.or_else(|| Self::alone(task, hypotheses).filter(is_in_best));
+        law.filter(|law| law.is_beyond_physics(task, hypotheses))
+    }
+
+    /// Returns whether the law changes a stress, or no explanation comes near it that changes the physics alone: effects, a law of a
+    /// stress, or both. The best fit of such an explanation may lie a little above the one that was found.
+    fn is_beyond_physics(&self, task: &SearchTask, hypotheses: &Hypotheses) -> bool {
+        if task.is_physical(&self.effects) {
+            return true;
+        }
+        let possible = task.laws.len();
+        let laws = || hypotheses.laws.iter().flat_map(|scan| &scan.laws);
+        let score_alone = |law: &FittedLaw| law.log_bayes_factor - law.choice(possible);
+        let alone = laws()
+            .find(|law| self.effects == [law.candidate])
+            .map(score_alone);
+        let beside = hypotheses
+            .combination(&self.effects)
+            .map(EffectCombination::score);
+        let Some(score) = beside.or(alone) else {
+            return false;
+        };
+        let sets = hypotheses.combinations.iter();
+        let sets = sets
+            .filter(|set| task.is_physical(&set.effects))
+            .map(EffectCombination::score);
+        let of_stress = laws()
+            .filter(|law| task.is_physical(&[law.candidate]))
+            .map(score_alone);
+        let misfit = hypotheses.misfit(&task.likelihood);
+        sets.chain(of_stress)
+            .all(|rival| (score - rival) / misfit > BEYOND_PHYSICS)
     }
 
     fn alone(task: &SearchTask, hypotheses: &Hypotheses) -> Option<Self> {

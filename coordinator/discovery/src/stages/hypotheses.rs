@@ -65,6 +65,11 @@ pub(super) struct EffectCombination {
 }
 
 impl EffectCombination {
+    /// Log evidence over that of the base, less the cost of each effect after the first.
+    pub(super) fn score(&self) -> f64 {
+        self.log_bayes_factor - COST_OF_CHOICE * (self.effects.len() as f64 - 1.0)
+    }
+
     /// Log evidence over that of the base, of this law in this form.
     pub(super) fn fitted_log_bayes_factor(&self) -> f64 {
         self.log_bayes_factor + self.choice
@@ -122,6 +127,8 @@ pub(super) struct FittedLaw {
     pub(super) log_bayes_factor: f64,
     /// Log Bayes factor of the mean evidence of curve and forms.
     pub(super) mean_log_bayes_factor: f64,
+    /// Log prior odds of a law that changes a stress over this one: [`DETECTED`] for a law that changes a channel \[nats\].
+    pub(super) handicap: f64,
     pub(super) fit: LaplaceFit,
     /// The curve and every form that was fitted, by falling Bayes factor.
     pub(super) forms: Vec<FittedForm>,
@@ -130,20 +137,23 @@ pub(super) struct FittedLaw {
 }
 
 impl FittedLaw {
-    /// Cost of the choice of this law among all laws and of its form \[nats\].
+    /// Cost of the choice of this law among all laws and of its form, with the handicap \[nats\].
     ///
     /// # Arguments
     /// - `possible`: number of all laws.
     pub(super) fn choice(&self, possible: usize) -> f64 {
-        self.log_bayes_factor - self.mean_log_bayes_factor + libm::log(possible.max(1) as f64)
+        self.log_bayes_factor - self.mean_log_bayes_factor + libm::log(possible.max(1) as f64) + self.handicap
     }
 }
 
 impl LawScan {
     /// Returns the log Bayes factor of a law outside the library over the model that was scanned: the mean over all possible
-    /// laws, where one that could not be fitted counts as without evidence.
+    /// laws, each less its handicap, where one that could not be fitted counts as without evidence.
     pub(super) fn log_bayes_factor(&self, possible: usize) -> f64 {
-        let means = self.laws.iter().map(|law| law.mean_log_bayes_factor);
+        let means = self
+            .laws
+            .iter()
+            .map(|law| law.mean_log_bayes_factor - law.handicap);
         log_sum_exp(means) - libm::log(possible.max(1) as f64)
     }
 }
@@ -229,12 +239,10 @@ impl Hypotheses {
         &self,
         is_eligible: impl Fn(&EffectCombination) -> bool,
     ) -> Option<&EffectCombination> {
-        let score =
-            |c: &EffectCombination| c.log_bayes_factor - COST_OF_CHOICE * (c.effects.len() as f64 - 1.0);
         self.combinations
             .iter()
             .filter(|combination| is_eligible(combination))
-            .reduce(|best, c| if score(c) > score(best) { c } else { best })
+            .reduce(|best, c| if c.score() > best.score() { c } else { best })
     }
 
     /// Returns the best combination, if it is a detection.

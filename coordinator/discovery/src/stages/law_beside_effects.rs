@@ -99,7 +99,7 @@ impl SearchState {
         });
         match unfitted {
             Some((law, branch)) => Stage::LawForms(law, branch),
-            None => self.law_validation(),
+            None => self.law_substitutes(),
         }
     }
 
@@ -110,11 +110,11 @@ impl SearchState {
         }
         self.hypotheses.further_laws.push(scan);
         self.add_scanned();
-        self.law_validation()
+        self.law_substitutes()
     }
 
     /// Cross-validates the best set that has a law against the library's best.
-    fn law_validation(&mut self) -> Stage {
+    pub(super) fn law_validation(&mut self) -> Stage {
         let (Some(best), Some(base)) = (self.best_with_law(), self.hypotheses.base_fit()) else {
             return self.replacements();
         };

@@ -130,6 +130,7 @@ impl SearchState {
                 candidate,
                 log_bayes_factor: factor,
                 mean_log_bayes_factor: factor,
+                handicap: self.task.handicap(law),
                 fit: fit.clone(),
                 forms: vec![FittedForm::new(
                     candidate,
@@ -156,8 +157,7 @@ impl SearchState {
         for law in &mut scan.laws {
             law.describe(task.forms(law.law), branch);
         }
-        let handicap = |law: &FittedLaw| f64::from(u8::from(task.laws[law.law].is_description)) * DETECTED;
-        let score = |law: &FittedLaw| law.log_bayes_factor - handicap(law);
+        let score = |law: &FittedLaw| law.log_bayes_factor - law.handicap;
         scan.laws.sort_by(|a, b| score(b).total_cmp(&score(a)));
         if scan.beyond.is_empty() {
             self.cross_validation(0)

@@ -13,12 +13,12 @@
 //! | 8 | exchanges: with numerical noise, each effect is replaced by a member of its class | `exchanges` |
 //! | 9 | curves and forms of laws outside the library, if misfit remains | `laws` |
 //! | 10 | cross-validation of the best laws by levels of the design that were left out | `laws`, `cross_validation` |
-//! | 11 | laws beyond the leading effects, effects beyond the best laws, the forms of the law of the best such set, and its cross-validation | `laws`, `law_beside_effects` |
+//! | 11 | laws beyond the leading effects, effects beyond the best laws, the forms of the law of the best such set, effects in the place of that law, and its cross-validation | `laws`, `law_beside_effects`, `law_substitutes` |
 //! | 12 | replacements: the base with a leading effect in the place of one of its effects | `replacement_fits` |
 //! | 12 | predictions of left-out levels by the leading sets | `last_stages`, `cross_validation` |
 //! | 13 | next runs: the runs that discriminate best between the explanations | `last_stages`, `next_run`, `run_information` |
 //! | 13 | errors that runs share, beside the best explanation | `shared_errors` |
-//! | 13 | probabilities, verdict and conclusion | `weighing`, `replacement`, `prior_sensitivity`, `noise_support`, `held_back`, `claimable_law`, `law_forms`, `verdict`, `conclusion` |
+//! | 13 | probabilities, verdict and conclusion | `weighing`, `replacement`, `prior_sensitivity`, `noise_support`, `held_back`, `claimable_law`, `law_rivals`, `law_forms`, `verdict`, `conclusion` |
 //!
 //! # Layout
 //! - `ask_tell`: how a discovery is asked and told. `query`: a request to the model.
@@ -41,7 +41,10 @@ mod hypotheses;
 mod last_stages;
 mod law_beside_effects;
 pub(crate) mod law_forms;
+mod law_rivals;
+mod law_substitutes;
 mod laws;
+
 pub(crate) mod next_run;
 mod noise_support;
 pub(crate) mod prior_sensitivity;

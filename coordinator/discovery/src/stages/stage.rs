@@ -28,6 +28,8 @@ pub(super) enum Stage {
     LawElimination(Vec<SearchBranch>),
     /// The forms of the law of the best set that has one, beyond its effects; holds the index of the law.
     LawForms(usize, SearchBranch),
+    /// The best set that has a law, with an effect in the place of the law.
+    LawSubstitutes(Vec<SearchBranch>),
     /// Holds the effects and the law.
     LawBesideEffects(Vec<usize>, CrossValidation),
     /// The base with a leading effect in the place of one of its effects.
@@ -61,6 +63,7 @@ impl Stage {
             | Self::Exchanges(_, branches)
             | Self::EffectsBesideLaw(_, branches)
             | Self::LawElimination(branches)
+            | Self::LawSubstitutes(branches)
             | Self::Replacements(branches) => Work::Branches(branches),
             Self::CrossValidation(_, validation)
             | Self::LawBesideEffects(_, validation)

@@ -3,6 +3,7 @@
 use crate::probability::DETECTED;
 use crate::stages::claimable_law::ClaimableLaw;
 use crate::stages::hypotheses::Hypotheses;
+use crate::stages::law_rivals::rival_probability;
 use crate::stages::weighing::Weighing;
 use crate::task::SearchTask;
 
@@ -48,6 +49,7 @@ impl SearchVerdict {
         let library = library.map_or(0.0, |best| best.log_bayes_factor);
         let is_detected = |log_bayes_factor: f64| log_bayes_factor / weighing.misfit > DETECTED;
         let law = law.filter(|law| is_detected(law.log_bayes_factor - library.max(0.0)));
+        let law = law.filter(|law| rival_probability(task, hypotheses, weighing, law.law) < 1.0 - NAMED);
         let of_law = weighing
             .not_in_library
             .map_or(0.0, |(_, probability)| probability);

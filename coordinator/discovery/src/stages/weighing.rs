@@ -1,6 +1,6 @@
 //! The probabilities of all hypotheses, from which predictions, next runs and verdict follow (steps 12 and 13).
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use crate::effect_search::ranking::{EffectRanking, EvidenceMethod};
 use crate::laplace::evidence::log_sum_exp;
@@ -44,6 +44,8 @@ pub(super) struct Weighing {
     /// Chi-square of the best explanation over its degrees of freedom; 1 where it fits.
     pub(super) misfit: f64,
     inclusion: Inclusion,
+    /// The sets whose law and effect may be one law of two variables.
+    one_law: BTreeSet<Vec<usize>>,
     /// Number of the library's effects, which come first among the candidates.
     library: usize,
 }
@@ -103,12 +105,18 @@ struct Leadership<'a> {
     library: usize,
     /// Log Bayes factor of a law alone; `None`: not searched.
     law: Option<f64>,
+    /// The sets whose law and effect may be one law of two variables.
+    one_law: &'a BTreeSet<Vec<usize>>,
 }
 
 impl Leadership<'_> {
     /// The member of a set with the highest inclusion weight; among equals, the one with the highest Bayes factor alone. `None`
-    /// without one. An effect that all good sets have is thus not named after a rival that some have.
+    /// without one. An effect that all good sets have is thus not named after a rival that some have. A law with an effect of the same
+    /// quantity may be one law of two variables, so the set counts for the law.
     fn leader(&self, effects: &[usize]) -> Option<Leader> {
+        if self.law.is_some() && self.one_law.contains(effects) {
+            return Some(Leader::Law);
+        }
         let member = |k: &usize| -> Option<(Leader, f64)> {
             if *k < self.library {
                 let factor = self.ranking.effect(Some(*k))?.log_bayes_factor;
@@ -258,11 +266,14 @@ impl Weighing {
         let law = hypotheses.laws.as_ref();
         let law = law.map(|scan| scan.log_bayes_factor(task.laws.len()));
         let inclusion = inclusion(hypotheses, library, law, cost, misfit);
+        let sets = hypotheses.combinations.iter().map(|set| &set.effects);
+        let one_law = sets.filter(|set| task.may_be_one_law(set)).cloned().collect();
         let leadership = Leadership {
             ranking: &ranking,
             inclusion: &inclusion,
             library,
             law,
+            one_law: &one_law,
         };
         let led = LedCombinations::new(hypotheses, &leadership, cost);
         let outside = law.map(|log_bayes_factor| OutsideEvidence {
@@ -288,6 +299,7 @@ impl Weighing {
             sets,
             misfit,
             inclusion,
+            one_law,
             library,
         }
     }
@@ -342,6 +354,7 @@ impl Weighing {
             inclusion: &self.inclusion,
             library: self.library,
             law: self.not_in_library.map(|(factor, _)| factor),
+            one_law: &self.one_law,
         }
     }
 
@@ -492,6 +505,7 @@ mod tests {
             inclusion: &inclusion,
             library: 8,
             law: Some(10.0),
+            one_law: &BTreeSet::from([vec![1, 10]]),
         };
         let leader = |effects: &[usize]| leadership.leader(effects);
         let effect = |k: usize| Some(Leader::Effect(k));
@@ -503,6 +517,8 @@ mod tests {
         // The law has the weight of the first, and more evidence alone.
         assert_eq!(leader(&[1, 9]), Some(Leader::Law));
         assert_eq!(leader(&[2, 9]), Some(Leader::Law));
+        // An effect that leads its set otherwise yields to a law of the same quantity.
+        assert_eq!(leader(&[1, 10]), Some(Leader::Law));
     }
 
     #[test]
