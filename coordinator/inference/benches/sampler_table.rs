@@ -7,13 +7,16 @@
 //! Below it, unless one problem was asked for: what it costs to find the most probable parameters (`fits`).
 //!
 //! `cargo bench -p inference --bench sampler_table [-- SEEDS [LABEL [PROBLEM]]]` with the start of a row's label, or `-- fits
-//! [SEEDS]`
+//! [SEEDS]`, or `-- emulated [SEEDS]` for the sampler that emulates outputs (`emulated`).
 
 #![expect(clippy::unwrap_used, reason = "helpers of tests may panic as tests do")]
 
+#[path = "../tests/output_problems.rs"]
+mod output_problems;
 #[path = "../tests/problems.rs"]
 mod problems;
 
+mod emulated;
 mod fits;
 
 use inference::{Algorithm, StageMethod, TmcmcSettings};
@@ -108,6 +111,10 @@ fn main() {
     if arguments.first().is_some_and(|word| word == "fits") {
         let seeds = arguments.get(1).and_then(|text| text.parse().ok());
         return fits::print(seeds.unwrap_or(10));
+    }
+    if arguments.first().is_some_and(|word| word == "emulated") {
+        let seeds = arguments.get(1).and_then(|text| text.parse().ok());
+        return emulated::print(seeds.unwrap_or(20));
     }
     let number = |index: usize| arguments.get(index).and_then(|text| text.parse::<usize>().ok());
     let seeds = number(0).unwrap_or(20) as u64;

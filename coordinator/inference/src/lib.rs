@@ -44,20 +44,24 @@
 //! - [`point_estimate`]: the axes and the result of every point estimate.
 //! - [`lm`]: the Levenberg-Marquardt fit. [`evolution`]: the genetic algorithm and CMA-ES.
 //! - [`gaussian_process`]: interpolation of measurements, without a model. [`discrepancy`]: the misfit of a model between them.
+//! - [`emulated`]: the sampler of expensive models. [`numerical_noise`]: the scatter of a rough model.
 //! - [`diagnostics`]: summaries and tests of draws and residuals.
 
 pub mod diagnostics;
 pub mod discrepancy;
+pub mod emulated;
 pub mod evolution;
 pub mod gaussian_process;
 pub mod lm;
 mod mixture;
+pub mod numerical_noise;
 mod phase;
 pub mod point_estimate;
 mod round;
 mod tell;
 pub mod tmcmc;
 
+pub use emulated::{EmulatedSampler, EmulatorRecord, EmulatorRound, FinalWeights};
 pub use phase::EvaluationCount;
 pub use round::{Proposal, ProposalRound};
 pub use tell::{InferenceFailure, TellError, TellProgress};

@@ -1,7 +1,6 @@
 //! Phase 1, the base: the model without a candidate is fitted from starts that fill its prior, and its numerical noise is measured.
 
 use crate::effect_search::depth::BASE_PLAN;
-use crate::effect_search::numerical_noise;
 use crate::effect_search::state::{EffectSearch, FitPhase, Phase};
 use crate::laplace::batch::{FitBatch, PositionRequest};
 use crate::laplace::coordinate::NormalFrame;
@@ -9,6 +8,7 @@ use crate::laplace::fit::{FitStep, FittedModel, LaplaceFit};
 use crate::laplace::point::FitPoint;
 use crate::settings::Smoothness;
 use inference::InferenceFailure;
+use inference::numerical_noise;
 use statistics::likelihood::Likelihood;
 
 /// Number of starts, the most probable, at which fits begin.

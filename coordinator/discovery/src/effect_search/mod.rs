@@ -34,7 +34,6 @@ mod confirmation;
 pub(crate) mod depth;
 mod extension;
 mod low_fidelity_screen;
-mod numerical_noise;
 pub(crate) mod projection;
 pub(crate) mod ranking;
 mod refinement;

@@ -29,7 +29,7 @@
 //! Soc. B 84:114, doi:10.1111/rssb.12475.
 
 mod draw_sequence;
-mod draws;
+pub(crate) mod draws;
 mod equilibrium;
 mod evaluation;
 mod evidence;
@@ -40,7 +40,7 @@ mod scale;
 mod settings;
 mod stage;
 mod stage_sequence;
-mod transition;
+pub(crate) mod transition;
 
 pub use evaluation::EvaluationResult;
 pub use particle::Particle;

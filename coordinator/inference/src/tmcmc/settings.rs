@@ -33,6 +33,9 @@ pub enum StageMethod {
     Draws,
     /// Metropolis-Hastings moves of the resampled particles.
     Moves,
+    /// Draws on an emulator of the model's outputs, corrected by evaluations: [`EmulatedSampler`](crate::EmulatedSampler). A
+    /// [`Sampler`](crate::Sampler), which knows log-likelihoods alone, draws from the model instead.
+    Emulated,
 }
 
 /// Settings of a sampler.
@@ -52,6 +55,8 @@ pub struct TmcmcSettings {
     pub seed: u64,
     /// Coefficient of variation of the incremental weights by which moves choose the next exponent.
     pub target_cov: f64,
+    /// Number of evaluations of a round that refines an emulator ([`StageMethod::Emulated`] only).
+    pub batch: usize,
     /// Number of moves by the metamodel between two evaluations; 0: no metamodel ([`Algorithm::Tmcmc`] only).
     pub metamodel_moves: usize,
 }
@@ -67,6 +72,7 @@ impl Default for TmcmcSettings {
             moves: [10, 60],
             seed: 1,
             target_cov: 1.0,
+            batch: 12,
             metamodel_moves: 0,
         }
     }
@@ -135,6 +141,12 @@ pub enum TmcmcSettingsError {
         /// The moves of the metamodel as given.
         value: usize,
     },
+    /// A round of evaluations has none, or too many.
+    #[error("batch {value} is not 1 to {}", TmcmcSettings::MAX_BATCH)]
+    Batch {
+        /// The batch as given.
+        value: usize,
+    },
     /// The target coefficient of variation is not a finite number above 0.
     #[error("target_cov {value} is not a finite number above 0")]
     TargetCov {
@@ -146,12 +158,20 @@ pub enum TmcmcSettingsError {
 impl TmcmcSettings {
     /// Largest number of components of a mixture: a fit takes time in proportion.
     pub const MAX_COMPONENTS: usize = 256;
+    /// Largest number of evaluations of a round that refines an emulator.
+    pub const MAX_BATCH: usize = 10_000;
     /// Largest number of moves in a stage.
     pub const MAX_MOVES: usize = 10_000;
 
+    /// Returns whether the stages are drawn on an emulator.
+    #[must_use]
+    pub fn is_emulated(&self) -> bool {
+        self.stages == StageMethod::Emulated
+    }
+
     /// Returns whether stages of a problem of `dimension` parameters are drawn: small populations move from the start.
     pub(crate) fn draws(&self, dimension: usize) -> bool {
-        self.stages == StageMethod::Draws
+        self.stages != StageMethod::Moves
             && self.algorithm == Algorithm::Tmcmc
             && self.particles >= DRAWN_PARTICLES * (dimension + 1)
     }
@@ -189,6 +209,8 @@ impl TmcmcSettings {
             Err(TmcmcSettingsError::Components {
                 value: self.components,
             })
+        } else if self.batch == 0 || self.batch > Self::MAX_BATCH {
+            Err(TmcmcSettingsError::Batch { value: self.batch })
         } else if self.metamodel_moves > 0 && self.algorithm != Algorithm::Tmcmc {
             Err(TmcmcSettingsError::NoMetamodel {
                 value: self.metamodel_moves,

@@ -21,7 +21,9 @@ mod sample;
 mod schedule;
 mod stage;
 
-pub(super) use frame::Fit;
-pub(super) use sample::{ImportanceWeights, WeightedSample};
+pub(crate) use frame::Fit;
+pub(crate) use proposal::{DrawKey, DrawProposal};
+pub(super) use sample::ImportanceWeights;
+pub(crate) use sample::WeightedSample;
 pub(super) use schedule::next_exponent;
 pub(super) use stage::{Anchor, DrawStage, DrawStart, Forecast, Standing};

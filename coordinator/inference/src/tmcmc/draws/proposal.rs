@@ -130,6 +130,11 @@ impl DrawProposal {
         largest + libm::log(sum)
     }
 
+    /// Returns ln (density / prior density) at sampling coordinates inside the support.
+    pub(crate) fn log_density_ratio(&self, prior: &Prior, coordinates: &[f64]) -> f64 {
+        self.log_relative_density(prior, coordinates, &mut Vec::new()) - self.log_inside
+    }
+
     /// Returns the next draws inside the support.
     pub(crate) fn draws(&mut self, count: usize, prior: &Prior) -> Vec<Draw> {
         let mut draws = Vec::with_capacity(count);

@@ -11,5 +11,5 @@ mod schedule;
 mod weights;
 
 pub(super) use next_stage::{Passage, Transition, tooth};
-pub(super) use resample::systematic;
+pub(crate) use resample::systematic;
 pub(super) use weights::Weights;

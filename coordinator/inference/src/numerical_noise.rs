@@ -5,9 +5,10 @@
 
 use statistics::likelihood::{ErrorSd, Likelihood};
 
-/// Number of positions on the line, and the distance of neighbours along every coordinate, in standard deviations of the prior.
-const POINTS: usize = 9;
-pub(super) const SPACING: f64 = 0.1;
+/// Number of positions on a line.
+pub const POINTS: usize = 9;
+/// Distance of neighbours on a line along every coordinate, in standard deviations of the prior.
+pub const SPACING: f64 = 0.1;
 /// If the model rejects too many positions, a quarter of the last distance is tried, down to this one.
 const MIN_SPACING: f64 = 0.005;
 const SHORTER: f64 = 0.25;
@@ -18,20 +19,20 @@ const SUM_OF_SQUARES: f64 = 70.0;
 const NEGLIGIBLE: f64 = 0.1;
 
 /// Returns the distances of neighbours to be tried, in standard deviations of the prior.
-pub(super) fn spacings() -> impl Iterator<Item = f64> {
+pub fn spacings() -> impl Iterator<Item = f64> {
     let shorter = |spacing: &f64| Some(SHORTER * spacing).filter(|s| *s > MIN_SPACING);
     std::iter::successors(Some(SPACING), shorter)
 }
 
 /// Returns the positions to evaluate: evenly on a line through the fit, which moves all parameters at once.
-pub(super) fn positions(fit: &[f64], spacing: f64) -> Vec<Vec<f64>> {
+pub fn positions(fit: &[f64], spacing: f64) -> Vec<Vec<f64>> {
     let offset = |i: usize| spacing * (i as f64 - (POINTS / 2) as f64);
     let moved = |i| fit.iter().map(|t| t + offset(i)).collect();
     (0..POINTS).map(moved).collect()
 }
 
 /// Returns whether enough neighbouring positions were accepted for a difference.
-pub(super) fn are_enough(answers: &[Option<Vec<f64>>]) -> bool {
+pub fn are_enough(answers: &[Option<Vec<f64>>]) -> bool {
     let mut windows = answers.windows(FOURTH_DIFFERENCE.len());
     windows.any(|window| window.iter().all(Option::is_some))
 }
@@ -67,7 +68,7 @@ fn scatter(likelihood: &Likelihood, answers: &[Option<Vec<f64>>]) -> Option<Vec<
 
 /// Returns the [`scatter`] that counts as noise; 0 for a channel whose noise is inferred, because that includes the scatter.
 /// `None` if all are negligible beside the declared noise.
-pub(super) fn sds(likelihood: &Likelihood, answers: &[Option<Vec<f64>>]) -> Option<Vec<f64>> {
+pub fn sds(likelihood: &Likelihood, answers: &[Option<Vec<f64>>]) -> Option<Vec<f64>> {
     let data = likelihood.data();
     let is_declared = |channel: usize| {
         let mut data = data.iter().filter(|datum| datum.channel == channel);
@@ -89,7 +90,7 @@ pub(super) fn sds(likelihood: &Likelihood, answers: &[Option<Vec<f64>>]) -> Opti
 ///
 /// # Arguments
 /// - `theta`: the parameters of the fit.
-pub(super) fn is_negligible(likelihood: &Likelihood, answers: &[Option<Vec<f64>>], theta: &[f64]) -> bool {
+pub fn is_negligible(likelihood: &Likelihood, answers: &[Option<Vec<f64>>], theta: &[f64]) -> bool {
     let Some(scatter) = scatter(likelihood, answers).filter(|_| are_enough(answers)) else {
         return false;
     };

@@ -1,0 +1,100 @@
+//! The tempered posterior that an emulator predicts.
+
+use statistics::likelihood::{ErrorSd, Likelihood};
+use statistics::log_likelihood::LogLikelihood;
+use statistics::prior::Prior;
+
+use super::emulator::Emulator;
+use crate::tmcmc::Particle;
+
+/// Sd of the tempered log-likelihood, in nats, above which the emulator is not trusted.
+const TRUSTED_SD: f64 = 3.0;
+
+/// Sds by which an optimistic log-likelihood exceeds the emulated one.
+const OPTIMISM: f64 = 2.0;
+
+/// The emulated likelihood of a parameter vector.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct EmulatedScore {
+    /// ln p(data | theta) of the predicted outputs.
+    pub(crate) log_likelihood: f64,
+    /// Its sd, from the sd of the predicted outputs.
+    pub(crate) sd: f64,
+    /// ln of the probability that the model accepts theta.
+    pub(crate) log_acceptance: f64,
+}
+
+impl EmulatedScore {
+    /// Returns ln of the tempered likelihood, lowered where the emulator is not trusted: far from the training points its
+    /// predictions may be of any size.
+    pub(crate) fn value(&self, exponent: f64) -> f64 {
+        let excess = self.excess(exponent);
+        exponent * self.log_likelihood + self.log_acceptance - 0.5 * excess * excess
+    }
+
+    /// Returns the largest tempered log-likelihood that would be no surprise.
+    pub(crate) fn optimistic(&self, exponent: f64) -> f64 {
+        exponent * (self.log_likelihood + OPTIMISM * self.sd) + self.log_acceptance
+    }
+
+    /// Returns whether the emulator is trusted at an exponent.
+    pub(crate) fn is_trusted(&self, exponent: f64) -> bool {
+        self.excess(exponent) <= 0.0
+    }
+
+    fn excess(&self, exponent: f64) -> f64 {
+        (exponent * self.sd - TRUSTED_SD).max(0.0)
+    }
+}
+
+/// The emulated posterior of a prior and a likelihood.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct EmulatedTarget<'a> {
+    pub(crate) prior: &'a Prior,
+    pub(crate) likelihood: &'a Likelihood,
+    pub(crate) emulator: &'a Emulator,
+}
+
+impl EmulatedTarget<'_> {
+    /// Returns the emulated likelihood.
+    ///
+    /// With r the residuals and s the sd of a predicted output, both in error sds, and m outputs, the sum of squares has an error of
+    /// about `2 s |r| + m s^2`.
+    pub(crate) fn score(&self, theta: &[f64]) -> EmulatedScore {
+        let predicted = self.emulator.predict(self.prior, theta);
+        let outputs = &predicted.outputs;
+        let squares = self.likelihood.data().iter().zip(outputs).map(|(datum, y)| {
+            let residual = (datum.value - y) / error_sd(datum.sd, theta);
+            residual * residual
+        });
+        let (length, count) = (squares.sum::<f64>().sqrt(), outputs.len() as f64);
+        let scored = self.likelihood.log_likelihood(outputs, theta);
+        EmulatedScore {
+            log_likelihood: scored.map_or(f64::NEG_INFINITY, LogLikelihood::value),
+            sd: predicted.sd * (length + 0.5 * predicted.sd * count),
+            log_acceptance: libm::log(predicted.acceptance),
+        }
+    }
+
+    /// Returns the particle of an emulated likelihood.
+    pub(crate) fn particle(&self, theta: &[f64], score: &EmulatedScore) -> Particle {
+        Particle {
+            theta: theta.to_vec(),
+            log_likelihood: log_likelihood(score.log_likelihood),
+            log_prior: self.prior.log_density(theta),
+        }
+    }
+}
+
+/// Returns the sd of an error, known or in theta.
+pub(crate) fn error_sd(sd: ErrorSd, theta: &[f64]) -> f64 {
+    match sd {
+        ErrorSd::Known(sd) => sd,
+        ErrorSd::Inferred { parameter } => theta[parameter],
+    }
+}
+
+/// Makes a log-likelihood; what is no number is impossible.
+pub(crate) fn log_likelihood(value: f64) -> LogLikelihood {
+    LogLikelihood::new(value).unwrap_or(LogLikelihood::Impossible)
+}
