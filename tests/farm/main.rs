@@ -11,6 +11,7 @@ mod conformance;
 mod diagnostics;
 mod discovery;
 mod effects;
+mod emulated;
 mod end_to_end;
 mod example_figures;
 mod first_run;

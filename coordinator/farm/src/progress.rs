@@ -2,6 +2,7 @@
 
 use std::collections::VecDeque;
 
+use inference::StageProgress;
 use shared::api::{CalibrationStatus, Position, Progress};
 
 use crate::calibration::{Calibration, CalibrationEngine};
@@ -96,15 +97,8 @@ pub(super) fn status(
 
 fn position(engine: &CalibrationEngine) -> Position {
     match engine {
-        CalibrationEngine::Sampler(sampler) => {
-            let now = sampler.progress();
-            Position::Sampler {
-                stage: now.stage as u32,
-                tempering_exponent: now.tempering_exponent,
-                step: now.step as u32,
-                acceptance: now.acceptance,
-            }
-        }
+        CalibrationEngine::Sampler(sampler) => sampler_position(sampler.progress()),
+        CalibrationEngine::Emulated(sampler) => sampler_position(sampler.progress()),
         CalibrationEngine::Fit(fit) => Position::Fit {
             steps: fit.steps() as u32,
         },
@@ -114,6 +108,15 @@ fn position(engine: &CalibrationEngine) -> Position {
         CalibrationEngine::Discovery(search) => Position::Search {
             rounds: search.round() as u32,
         },
+    }
+}
+
+fn sampler_position(now: StageProgress) -> Position {
+    Position::Sampler {
+        stage: now.stage as u32,
+        tempering_exponent: now.tempering_exponent,
+        step: now.step as u32,
+        acceptance: now.acceptance,
     }
 }
 

@@ -41,6 +41,8 @@ pub struct Job {
     pub posterior: Option<PosteriorPrior>,
     /// The algorithm with its settings.
     pub algorithm: AlgorithmSettings,
+    /// Whether the kind of the model decides how a stage gets its particles.
+    stages_follow_kind: bool,
     /// The fits and searches that stand beside the sample in its study.
     pub point_estimates: Vec<AlgorithmSettings>,
     /// Values of parameters by independent tests, by name. The figures alone show them.
@@ -160,18 +162,24 @@ impl Job {
         if models > 1 {
             check_comparison(&sampler, posterior.is_some()).map_err(&fail)?;
         }
+        let kinds = std::iter::once(&first)
+            .chain(&others)
+            .map(|entry| entry.settings.kind);
+        let batch = sampler.check_batch(kinds);
+        batch.map_err(|e| fail(format!("[sampler] {e}")))?;
         let also_named = others.iter().flat_map(|other| &other.settings.effect_files);
         let first = Job {
             experiment: raw.experiment,
             accepted: raw.accept,
+            stages_follow_kind: sampler.follows_kind,
+            algorithm: sampler.algorithm_for(first.settings.kind),
             model: first.settings,
             table: first.table,
             models,
             line: first.line,
             priors: first.priors,
             posterior,
-            algorithm: sampler.algorithm,
-            point_estimates: sampler.point_estimates,
+            point_estimates: sampler.point_estimates.clone(),
             reference: raw.figures.reference,
             likelihood,
             discovery,
@@ -180,6 +188,7 @@ impl Job {
             also_named: also_named.cloned().collect(),
         };
         let other = |entry: ModelEntry| Job {
+            algorithm: sampler.algorithm_for(entry.settings.kind),
             model: entry.settings,
             table: entry.table,
             line: entry.line,
@@ -210,6 +219,9 @@ impl Job {
     pub(crate) fn read_model(&mut self) -> Result<(), String> {
         let model = ModelSettings::from_table(&self.table);
         self.model = model.map_err(|e| format!("[model] {e}"))?;
+        if self.stages_follow_kind {
+            self.algorithm = self.algorithm.with_stages_for(self.model.kind);
+        }
         Ok(())
     }
 

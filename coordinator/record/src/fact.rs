@@ -1,5 +1,6 @@
 //! Facts that the store receives, in order of occurrence.
 
+use inference::EmulatorRecord;
 use inference::point_estimate::ModeEstimate;
 use inference::{PosteriorSample, StageRecord};
 use shared::api::CalibrationState;
@@ -45,6 +46,8 @@ pub enum Fact {
         calibration: i64,
         /// Evidence and counts; the draws are the last stage's population.
         posterior: Box<PosteriorSample>,
+        /// What the sampler found about its emulator; `None` for a sampler without one.
+        emulator: Option<Box<EmulatorRecord>>,
     },
     /// The fit ended.
     Estimate {

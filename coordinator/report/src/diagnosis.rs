@@ -4,6 +4,7 @@ use crate::flag::calibration::flags;
 use crate::flag::cause;
 use result::diagnostics::calibration::Diagnostics;
 use result::diagnostics::channels::{self, ChiSquareTest};
+use result::diagnostics::emulator::{self, EmulatorDiagnostics};
 use result::diagnostics::{directions, parameters, posterior_draws, rejections, residuals, sampler, trends};
 use result::finished_calibration::FinishedCalibration;
 use result::table::comparison::Comparison;
@@ -21,9 +22,12 @@ pub fn diagnostics(calibration: &FinishedCalibration, comparison: &Comparison) -
     let rejections = rejections::rejections(calibration);
     let channels = channels::channels(calibration, comparison, &posterior, &residuals);
     let chi_square = channels::chi_square(calibration, &posterior, |_| true);
-    let findings = channels
+    let emulator = emulator::emulator(calibration);
+    let silences = channels.iter().filter_map(|channel| channel.silence.clone());
+    let findings = emulator
         .iter()
-        .filter_map(|channel| channel.silence.clone())
+        .flat_map(EmulatorDiagnostics::words)
+        .chain(silences)
         .chain(chi_square.as_ref().map(ChiSquareTest::words))
         .chain(cause::shared_causes(&trends))
         .chain(directions::worst_known(calibration, &directions))
@@ -31,6 +35,7 @@ pub fn diagnostics(calibration: &FinishedCalibration, comparison: &Comparison) -
         .collect();
     let mut diagnostics = Diagnostics {
         sampler: sampler::sampler(calibration),
+        emulator,
         channels,
         chi_square,
         residuals,

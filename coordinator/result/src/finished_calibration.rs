@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::OnceLock;
 
-use inference::Particle;
+use inference::{EmulatorRecord, Particle};
 use job::Spec;
 use record::{
     CalibrationRow, Dispute, EstimateRow, Prediction, PriorDraw, Repeats, StageRow, Subchains, Verified,
@@ -74,6 +74,8 @@ pub struct FinishedCalibration {
     pub experiment: String,
     /// Result of the algorithm.
     pub outcome: Outcome,
+    /// What the sampler found about its emulator; `None` without one.
+    pub emulator: Option<EmulatorRecord>,
     /// Predictions of the fitted measurements at the draw with the highest likelihood.
     pub likeliest_values: Option<Vec<f64>>,
     /// The final draws, simulated on every run. The first is the most probable particle; for a fit it is the only one.

@@ -464,6 +464,7 @@ pub fn of_files(job: FileSet, files: &FileSet) -> FinishedCalibration {
             prior_draws,
             subchains: None,
         }),
+        emulator: None,
         likeliest_values: Some(likeliest_values),
         predictions,
         simulated_histories: None,

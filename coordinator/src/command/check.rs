@@ -131,7 +131,8 @@ impl Pilot {
     /// or a search has run as a whole.
     fn expected(&self, algorithm: AlgorithmSettings) -> f64 {
         match (algorithm, self.algorithm) {
-            (AlgorithmSettings::Sample(whole), AlgorithmSettings::Sample(small)) => {
+            // The evaluations on an emulator do not depend on the number of particles.
+            (AlgorithmSettings::Sample(whole), AlgorithmSettings::Sample(small)) if !whole.is_emulated() => {
                 self.evaluations as f64 * whole.particles as f64 / small.particles as f64
             }
             (whole, _) if !self.complete => whole
@@ -145,6 +146,9 @@ impl Pilot {
     fn words(&self) -> String {
         let evaluations = self.evaluations;
         let ran = match self.algorithm {
+            AlgorithmSettings::Sample(s) if s.is_emulated() => {
+                format!("\nThe sampler itself took {evaluations} evaluations.\n")
+            }
             AlgorithmSettings::Sample(s) => {
                 format!(
                     "\nA pilot of {} particles took {evaluations} evaluations.\n",
@@ -206,6 +210,7 @@ fn pilot(mut spec: Spec, models: &LocalModels) -> anyhow::Result<Pilot> {
         rejected_share: calibration.cost.rejected as f64 / evaluations as f64,
         exponent: match calibration.engine() {
             CalibrationEngine::Sampler(sampler) => sampler.progress().tempering_exponent,
+            CalibrationEngine::Emulated(sampler) => sampler.progress().tempering_exponent,
             CalibrationEngine::Fit(_) | CalibrationEngine::Evolution(_) | CalibrationEngine::Discovery(_) => {
                 1.0
             }

@@ -84,6 +84,7 @@ async fn finished_with(
     Ok(FinishedCalibration {
         spec,
         outcome,
+        emulator: reader.emulator(row.id).await?,
         experiment: row.name.clone(),
         likeliest_values,
         predictions: reader.predictions(row.id).await?,

@@ -53,19 +53,28 @@ pub(super) async fn write(
         Fact::Posterior {
             calibration,
             posterior,
-        } => query(
-            "UPDATE calibrations SET log_evidence = ?, log_evidence_se = ?, equilibrated = ?,
+            emulator,
+        } => {
+            if let Some(record) = emulator {
+                let row = vec![calibration.into(), json(&*record).into()];
+                insert("emulators", &["calibration", "record"], vec![row], &ITS_OWN)
+                    .execute(&mut *connection)
+                    .await?;
+            }
+            query(
+                "UPDATE calibrations SET log_evidence = ?, log_evidence_se = ?, equilibrated = ?,
              evaluations = ?, rejected = ? WHERE id = ?",
-        )
-        .bind(posterior.log_evidence)
-        .bind(posterior.log_evidence_se)
-        .bind(posterior.equilibrated)
-        .bind(posterior.evaluations as i64)
-        .bind(posterior.rejected as i64)
-        .bind(calibration)
-        .execute(connection)
-        .await
-        .map(drop),
+            )
+            .bind(posterior.log_evidence)
+            .bind(posterior.log_evidence_se)
+            .bind(posterior.equilibrated)
+            .bind(posterior.evaluations as i64)
+            .bind(posterior.rejected as i64)
+            .bind(calibration)
+            .execute(connection)
+            .await
+            .map(drop)
+        }
         Fact::Estimate {
             calibration,
             estimate,

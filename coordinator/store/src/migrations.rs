@@ -39,6 +39,7 @@ const FILES: &[(i64, &str, &str)] = &[
     file!(19, "repeats", "0019_repeats.sql"),
     file!(20, "members", "0020_members.sql"),
     file!(21, "observables", "0021_observables.sql"),
+    file!(22, "emulators", "0022_emulators.sql"),
 ];
 
 /// The files of `migrations/postgres/`. A server starts with the tables of version 19; later migrations have a file in each folder.
@@ -46,6 +47,7 @@ const SERVER_FILES: &[(i64, &str, &str)] = &[
     file!(19, "store", "postgres/0019_store.sql"),
     file!(20, "members", "postgres/0020_members.sql"),
     file!(21, "observables", "postgres/0021_observables.sql"),
+    file!(22, "emulators", "postgres/0022_emulators.sql"),
 ];
 
 /// The version of the tables that this program writes.

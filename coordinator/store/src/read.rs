@@ -2,8 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use inference::Particle;
 use inference::point_estimate::{Generation, StopReason};
+use inference::{EmulatorRecord, Particle};
 use shared::api::CalibrationState;
 use shared::file::FileSet;
 use shared::outcome::Observables;
@@ -319,6 +319,22 @@ impl Reader {
             })
         })
         .transpose()
+    }
+
+    /// Reads what a sampler found about its emulator. A store of before migration 22 has none.
+    pub async fn emulator(&self, calibration: i64) -> Result<Option<EmulatorRecord>, StoreError> {
+        if !self.has_table("emulators").await? {
+            return Ok(None);
+        }
+        let record: Option<String> = query_scalar("SELECT record FROM emulators WHERE calibration = ?")
+            .bind(calibration)
+            .fetch_optional(&self.pool)
+            .await?;
+        let read = |json: String| {
+            serde_json::from_str(&json)
+                .map_err(|e| StoreError::Corrupt(format!("record of emulator {calibration}: {e}")))
+        };
+        record.map(read).transpose()
     }
 
     /// Reads the result of a search for a missing effect.

@@ -14,10 +14,11 @@ const LARGE: [(&str, &str); 2] = [
 /// The number of rows of the large tables that one commit deletes. Results of workers wait no longer than for one such commit.
 const PART: u64 = 1000;
 /// Tables that have few rows for a calibration.
-const SMALL: [&str; 7] = [
+const SMALL: [&str; 8] = [
     "stages",
     "estimates",
     "discoveries",
+    "emulators",
     "faults",
     "disputes",
     "rewinds",

@@ -108,7 +108,7 @@ pub(super) async fn rewind(
     .execute(&mut *connection)
     .await?;
     // The replay writes those rows again that still hold.
-    for table in ["stages", "samples", "estimates", "discoveries"] {
+    for table in ["stages", "samples", "estimates", "discoveries", "emulators"] {
         let sql = format!("DELETE FROM {table} WHERE calibration = ?");
         query(sqlx::AssertSqlSafe(sql))
             .bind(calibration)

@@ -230,6 +230,7 @@ impl Calibration {
                     Fact::Posterior {
                         calibration,
                         posterior,
+                        emulator: self.engine.emulator().cloned().map(Box::new),
                     },
                 )
             }

@@ -3,7 +3,10 @@
 use inference::evolution::Evolution;
 use inference::lm::LmFit;
 use inference::point_estimate::ModeEstimate;
-use inference::{EvaluationResult, PosteriorSample, Proposal, Sampler, StageRecord, TellError, TellProgress};
+use inference::{
+    EmulatedSampler, EmulatorRecord, EvaluationResult, PosteriorSample, Proposal, Sampler, StageRecord,
+    TellError, TellProgress,
+};
 use statistics::{LogLikelihood, Metamodel, ModelPair, NotANumber};
 
 use job::{AlgorithmSettings, AlgorithmSettingsError, Spec};
@@ -15,6 +18,8 @@ use search::{DiscoveryError, RunningDiscovery, SearchModels};
 pub enum CalibrationEngine {
     /// Samples the posterior; it is told log-likelihoods.
     Sampler(Box<Sampler>),
+    /// Samples the posterior on an emulator of the model's outputs; it is told these.
+    Emulated(Box<EmulatedSampler>),
     /// Fits the most probable parameters by steps, from predicted values.
     Fit(Box<LmFit>),
     /// Finds the most probable parameters by generations; it is told log-likelihoods.
@@ -96,6 +101,12 @@ impl CalibrationEngine {
     pub(super) fn new(spec: &Spec, models: Option<SearchModels>) -> Result<Self, BeginError> {
         let (prior, likelihood) = (spec.prior(), &spec.likelihood);
         Ok(match spec.algorithm {
+            AlgorithmSettings::Sample(settings) if settings.is_emulated() => {
+                let parameters = spec.fit_variant.parameters.len();
+                let sampler = EmulatedSampler::new(prior, likelihood.clone(), settings, parameters);
+                let sampler = sampler.map_err(AlgorithmSettingsError::from)?;
+                CalibrationEngine::Emulated(Box::new(sampler))
+            }
             AlgorithmSettings::Sample(settings) => {
                 let sampler = Sampler::with_metamodel(prior, settings, likelihood.clone());
                 let sampler = sampler.map_err(AlgorithmSettingsError::from)?;
@@ -119,6 +130,7 @@ impl CalibrationEngine {
     pub(super) fn round(&self) -> u64 {
         match self {
             CalibrationEngine::Sampler(sampler) => sampler.round().number(),
+            CalibrationEngine::Emulated(sampler) => sampler.round().number(),
             CalibrationEngine::Fit(fit) => fit.round().number(),
             CalibrationEngine::Evolution(evolution) => evolution.round().number(),
             CalibrationEngine::Discovery(discovery) => discovery.round(),
@@ -129,6 +141,7 @@ impl CalibrationEngine {
     pub(super) fn pending(&self) -> &[Proposal] {
         match self {
             CalibrationEngine::Sampler(sampler) => sampler.round().pending(),
+            CalibrationEngine::Emulated(sampler) => sampler.round().pending(),
             CalibrationEngine::Fit(fit) => fit.round().pending(),
             CalibrationEngine::Evolution(evolution) => evolution.round().pending(),
             CalibrationEngine::Discovery(discovery) => discovery.pending(),
@@ -139,6 +152,7 @@ impl CalibrationEngine {
     pub(super) fn tell(&mut self, particle: usize, row: &EvaluationRow) -> Result<TellProgress, EngineError> {
         Ok(match self {
             CalibrationEngine::Sampler(sampler) => sampler.tell(particle, sampled(row)?)?,
+            CalibrationEngine::Emulated(sampler) => sampler.tell(particle, row.kept.fitted())?,
             CalibrationEngine::Fit(fit) => fit.tell(particle, row.kept.fitted())?,
             CalibrationEngine::Evolution(evolution) => evolution.tell(particle, log_likelihood(row)?)?,
             CalibrationEngine::Discovery(discovery) => discovery.tell(particle, row.kept.fitted())?,
@@ -149,9 +163,21 @@ impl CalibrationEngine {
     pub(super) fn discovery(&self) -> Option<&RunningDiscovery> {
         match self {
             CalibrationEngine::Discovery(discovery) => Some(discovery),
-            CalibrationEngine::Sampler(_) | CalibrationEngine::Fit(_) | CalibrationEngine::Evolution(_) => {
-                None
-            }
+            CalibrationEngine::Sampler(_)
+            | CalibrationEngine::Emulated(_)
+            | CalibrationEngine::Fit(_)
+            | CalibrationEngine::Evolution(_) => None,
+        }
+    }
+
+    /// Returns what an emulated sampler found about its emulator.
+    pub(super) fn emulator(&self) -> Option<&EmulatorRecord> {
+        match self {
+            CalibrationEngine::Emulated(sampler) => Some(sampler.record()),
+            CalibrationEngine::Sampler(_)
+            | CalibrationEngine::Fit(_)
+            | CalibrationEngine::Evolution(_)
+            | CalibrationEngine::Discovery(_) => None,
         }
     }
 
@@ -159,9 +185,10 @@ impl CalibrationEngine {
     pub(super) fn metamodel(&self) -> Option<&Metamodel> {
         match self {
             CalibrationEngine::Sampler(sampler) => sampler.metamodel(),
-            CalibrationEngine::Fit(_) | CalibrationEngine::Evolution(_) | CalibrationEngine::Discovery(_) => {
-                None
-            }
+            CalibrationEngine::Emulated(_)
+            | CalibrationEngine::Fit(_)
+            | CalibrationEngine::Evolution(_)
+            | CalibrationEngine::Discovery(_) => None,
         }
     }
 
@@ -169,6 +196,7 @@ impl CalibrationEngine {
     pub fn stages(&self) -> &[StageRecord] {
         match self {
             CalibrationEngine::Sampler(sampler) => sampler.stages(),
+            CalibrationEngine::Emulated(sampler) => sampler.stages(),
             CalibrationEngine::Fit(_) | CalibrationEngine::Evolution(_) | CalibrationEngine::Discovery(_) => {
                 &[]
             }
@@ -179,6 +207,7 @@ impl CalibrationEngine {
     pub fn finding(&self) -> Option<CalibrationResult<'_>> {
         match self {
             CalibrationEngine::Sampler(sampler) => sampler.posterior().map(CalibrationResult::Posterior),
+            CalibrationEngine::Emulated(sampler) => sampler.posterior().map(CalibrationResult::Posterior),
             CalibrationEngine::Fit(fit) => fit.estimate().map(CalibrationResult::Estimate),
             CalibrationEngine::Evolution(evolution) => evolution.estimate().map(CalibrationResult::Estimate),
             CalibrationEngine::Discovery(discovery) => {

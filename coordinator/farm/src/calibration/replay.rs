@@ -324,6 +324,34 @@ mod tests {
     }
 
     #[test]
+    fn an_emulated_sampler_is_told_again_from_what_is_stored_and_ends_with_the_same_posterior() {
+        let emulated = || fresh_fit("stages = \"emulated\"\nparticles = 20\nbatch = 6\n");
+        let results = |facts: &[Fact]| -> Vec<String> {
+            let result = |f: &Fact| match f {
+                Fact::Posterior {
+                    posterior, emulator, ..
+                } => Some(format!("{posterior:?} {emulator:?}")),
+                _ => None,
+            };
+            facts.iter().filter_map(result).collect()
+        };
+        let first = work(&mut emulated(), usize::MAX, false);
+        let whole = sorted(&first);
+        assert_eq!(results(&first).len(), 1);
+        let sampled = whole.iter().filter(|r| r.evaluation < PREDICTIONS_FROM).count();
+        for cut in [1, 13, 17, sampled / 2, sampled - 1, sampled, whole.len() - 1] {
+            let begun = work(&mut emulated(), cut, true);
+            let mut again = emulated();
+            let lost = again.replay(stored(&begun)).unwrap();
+            let rest = work(&mut again, usize::MAX, false);
+            let all: Vec<Fact> = begun.iter().chain(&rest).cloned().collect();
+            assert_eq!(sorted(&all), whole, "cut after {cut}");
+            let restarted: Vec<String> = [lost, rest].iter().flat_map(|f| results(f)).collect();
+            assert_eq!(restarted, results(&first), "cut after {cut}");
+        }
+    }
+
+    #[test]
     fn a_fit_or_search_is_told_again_from_what_is_stored_and_ends_with_the_same_estimate() {
         let estimates = |facts: &[Fact]| -> Vec<String> {
             let estimate = |f: &Fact| match f {

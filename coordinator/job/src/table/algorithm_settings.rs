@@ -2,7 +2,8 @@
 
 use inference::evolution::{CmaEsSettings, EvolutionSettings, EvolutionSettingsError};
 use inference::lm::{LmSettings, LmSettingsError};
-use inference::{Algorithm, TmcmcSettings, TmcmcSettingsError};
+use inference::{Algorithm, StageMethod, TmcmcSettings, TmcmcSettingsError};
+use shared::model::ModelKind;
 use strum::{EnumString, IntoStaticStr};
 
 /// The algorithm that finds the parameters, with its settings.
@@ -23,6 +24,8 @@ pub enum AlgorithmSettings {
 
 /// Largest number of evaluations in a round of a search for a missing effect.
 const DISCOVERY_WIDTH: usize = 100_000;
+/// Bound on the evaluations in the first design of an emulator, of up to 160 parameters, and on its final draws.
+const EMULATED_WIDTH: usize = 1000;
 
 /// Settings that the prior's number of parameters does not allow.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
@@ -106,6 +109,10 @@ impl AlgorithmSettings {
     pub fn words(&self) -> String {
         let name = self.name();
         match self {
+            AlgorithmSettings::Sample(settings) if self.is_emulated() => format!(
+                "{name} on an emulator of the model, in rounds of {} evaluations",
+                settings.batch
+            ),
             AlgorithmSettings::Sample(settings) => format!("{name} with {} particles", settings.particles),
             AlgorithmSettings::Evolve(EvolutionSettings::Ga(settings)) => format!(
                 "{name} with at most {} generations of {}",
@@ -137,13 +144,36 @@ impl AlgorithmSettings {
         }
     }
 
-    /// Returns whether the engine receives predicted values in addition to log-likelihoods: fits, searches and metamodels do.
+    /// Returns the settings with the default stages for a kind of model: an expensive model is sampled on an emulator.
+    pub(crate) fn with_stages_for(self, kind: ModelKind) -> Self {
+        let stages = match kind {
+            ModelKind::Scm | ModelKind::Rft | ModelKind::Command | ModelKind::Umbridge => {
+                StageMethod::Emulated
+            }
+            ModelKind::QuasiStatic | ModelKind::WongReece => StageMethod::Draws,
+        };
+        match self {
+            AlgorithmSettings::Sample(settings) => {
+                AlgorithmSettings::Sample(TmcmcSettings { stages, ..settings })
+            }
+            other => other,
+        }
+    }
+
+    /// Returns whether the posterior is sampled on an emulator of the model.
+    pub fn is_emulated(&self) -> bool {
+        matches!(self, AlgorithmSettings::Sample(settings)
+            if settings.stages == StageMethod::Emulated && settings.algorithm == Algorithm::Tmcmc)
+    }
+
+    /// Returns whether the engine receives predicted values in addition to log-likelihoods: fits, searches, emulators and
+    /// metamodels do.
     pub fn is_told_values(&self) -> bool {
         let told = matches!(
             self,
             AlgorithmSettings::Fit(_) | AlgorithmSettings::Discover { .. }
         );
-        told || self.has_metamodel()
+        told || self.is_emulated() || self.has_metamodel()
     }
 
     /// Returns whether a metamodel takes moves between evaluations.
@@ -185,6 +215,9 @@ impl AlgorithmSettings {
     /// Returns the largest number of proposals in a round, which spaces the numbers of evaluations.
     pub fn width(&self) -> usize {
         match self {
+            AlgorithmSettings::Sample(settings) if self.is_emulated() => {
+                settings.particles.max(settings.batch).max(EMULATED_WIDTH)
+            }
             AlgorithmSettings::Sample(settings) => settings.particles,
             AlgorithmSettings::Fit(settings) => settings.max_evaluations,
             AlgorithmSettings::Evolve(EvolutionSettings::Ga(settings)) => settings.population,

@@ -11,6 +11,7 @@ use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use shared::file::{FileError, TomlFile, unknown_word};
 use shared::keys::keys_of;
+use shared::model::ModelKind;
 use toml::de::DeValue;
 
 use super::algorithm_settings::{AlgorithmName, AlgorithmSettings};
@@ -53,6 +54,7 @@ struct PointEstimates(Vec<String>);
 enum Stages {
     Draws,
     Moves,
+    Emulated,
 }
 
 /// Draws of the posterior and the evidence.
@@ -62,8 +64,11 @@ struct Tmcmc {
     /// Size of the population, and draws of a stage; at least 2 d + 2 for d parameters.
     #[schemars(range(max = MAX_PARTICLES))]
     particles: usize,
-    /// How a stage gets its particles: independent draws from a mixture, or Metropolis moves; with a metamodel, moves.
+    /// How a stage gets its particles: draws on an emulator of the model, independent draws from a mixture, or Metropolis moves.
     stages: Option<Stages>,
+    /// Evaluations that a round of an emulator asks for at once.
+    #[schemars(range(min = 1, max = TmcmcSettings::MAX_BATCH))]
+    batch: Option<usize>,
     /// Largest number of components of the mixture that draws come from.
     #[schemars(range(min = 1, max = TmcmcSettings::MAX_COMPONENTS))]
     components: Option<usize>,
@@ -83,6 +88,7 @@ impl Default for Tmcmc {
         Tmcmc {
             particles: usual.particles,
             stages: None,
+            batch: None,
             components: None,
             moves: None,
             metamodel_moves: usual.metamodel_moves,
@@ -237,6 +243,16 @@ trait Keys: DeserializeOwned + JsonSchema + Default {
     fn point_estimates(&self) -> &[String] {
         &[]
     }
+
+    /// Returns whether the kind of the model decides how a stage gets its particles.
+    fn follows_kind(&self) -> bool {
+        false
+    }
+
+    /// Returns the number of evaluations in a round of an emulator, if the job states it.
+    fn batch(&self) -> Option<usize> {
+        None
+    }
 }
 
 impl Keys for Tmcmc {
@@ -248,12 +264,17 @@ impl Keys for Tmcmc {
         let stages = match self.stages {
             Some(Stages::Draws) => StageMethod::Draws,
             Some(Stages::Moves) => StageMethod::Moves,
+            Some(Stages::Emulated) => StageMethod::Emulated,
             None if has_metamodel => StageMethod::Moves,
             None => usual.stages,
         };
         if let (StageMethod::Moves, Some(components)) = (stages, self.components) {
             let rule = "belongs to stages = \"draws\"";
             return Err(TableError::value("components", components, rule));
+        }
+        if let (StageMethod::Emulated, true) = (stages, has_metamodel) {
+            let rule = "belongs to stages = \"moves\": an emulator needs no moves of a metamodel";
+            return Err(TableError::value("metamodel_moves", self.metamodel_moves, rule));
         }
         let moves = if has_metamodel {
             METAMODEL_STEPS
@@ -267,6 +288,7 @@ impl Keys for Tmcmc {
             components: self.components.unwrap_or(usual.components),
             moves: self.moves.unwrap_or(moves),
             metamodel_moves: self.metamodel_moves,
+            batch: self.batch.unwrap_or(usual.batch),
             seed: self.seed.0,
             ..usual
         }))
@@ -274,6 +296,15 @@ impl Keys for Tmcmc {
 
     fn point_estimates(&self) -> &[String] {
         &self.point_estimates.0
+    }
+
+    fn follows_kind(&self) -> bool {
+        let is_default = self.stages.is_none() && self.moves.is_none() && self.components.is_none();
+        is_default && self.metamodel_moves == 0
+    }
+
+    fn batch(&self) -> Option<usize> {
+        self.batch
     }
 }
 
@@ -384,6 +415,10 @@ impl StatedAlgorithm {
 #[derive(Debug)]
 pub(crate) struct SamplerTable {
     pub(crate) algorithm: AlgorithmSettings,
+    /// Whether the kind of the model decides how a stage gets its particles, because no key is stated that says it.
+    pub(crate) follows_kind: bool,
+    /// The number of evaluations in a round of an emulator, if the job states it.
+    batch: Option<usize>,
     /// The fits and searches beside the sample.
     pub(crate) point_estimates: Vec<AlgorithmSettings>,
 }
@@ -435,6 +470,7 @@ impl SamplerTable {
 
     fn new(keys: impl Keys) -> Result<SamplerTable, TableError> {
         let names = keys.point_estimates().to_vec();
+        let (follows_kind, batch) = (keys.follows_kind(), keys.batch());
         let algorithm = keys.settings()?;
         let seed = Seed(algorithm.seed());
         let mut point_estimates: Vec<AlgorithmSettings> = Vec::new();
@@ -447,8 +483,35 @@ impl SamplerTable {
         }
         Ok(SamplerTable {
             algorithm,
+            follows_kind,
+            batch,
             point_estimates,
         })
+    }
+
+    /// Returns the algorithm for a kind of model.
+    pub(crate) fn algorithm_for(&self, kind: ModelKind) -> AlgorithmSettings {
+        match self.follows_kind {
+            true => self.algorithm.with_stages_for(kind),
+            false => self.algorithm,
+        }
+    }
+
+    /// Refuses a stated batch if no model is sampled by an emulator.
+    ///
+    /// # Errors
+    /// [`TableError`] with the batch and the stages that it belongs to.
+    pub(crate) fn check_batch(&self, kinds: impl IntoIterator<Item = ModelKind>) -> Result<(), TableError> {
+        let is_used = kinds
+            .into_iter()
+            .any(|kind| self.algorithm_for(kind).is_emulated());
+        match self.batch {
+            Some(batch) if !is_used => {
+                let rule = "belongs to stages = \"emulated\", which this job does not use";
+                Err(TableError::value("batch", batch, rule))
+            }
+            _ => Ok(()),
+        }
     }
 }
 

@@ -97,7 +97,7 @@ fn data(calibration: &FinishedCalibration) -> String {
 fn algorithm(calibration: &FinishedCalibration) -> String {
     let spec = &calibration.spec;
     let settings = match spec.algorithm {
-        AlgorithmSettings::Sample(s) if s.algorithm == inference::Algorithm::Tmcmc => {
+        AlgorithmSettings::Sample(s) if s.algorithm == inference::Algorithm::Tmcmc && !s.is_emulated() => {
             format!(", {} to {} moves per stage", s.moves[0], s.moves[1])
         }
         AlgorithmSettings::Fit(s) => format!(

@@ -8,6 +8,7 @@ use shared::channel::Channel;
 use shared::experiment::RunUse;
 
 use result::coverage_summary::CoverageSummary;
+use result::diagnostics::emulator::{emulator, numerical_noise};
 use result::error_summary::{BaselineSummary, CorrectedSummary, ErrorSummary};
 use result::finished_calibration::FinishedCalibration;
 use result::parameter_summary::ParameterSummary;
@@ -47,6 +48,12 @@ pub struct CalibrationSummary {
     pub wall_s: f64,
     /// Counts of a metamodel; null without one.
     pub metamodel: Option<MetamodelSummary>,
+    /// The emulator that the sampler drew on; null without one.
+    #[serde(default)]
+    pub emulator: Option<EmulatorSummary>,
+    /// Scatter of the model that counts as noise, by channel, in the unit of the channel; empty for a smooth model.
+    #[serde(default)]
+    pub numerical_noise: BTreeMap<String, f64>,
     /// Stages of the sampler; empty for a fit.
     pub stages: Vec<StageSummary>,
     /// Parameters by name.
@@ -61,6 +68,34 @@ pub struct CalibrationSummary {
     pub noise_sd: BTreeMap<String, f64>,
     /// Share of measurements inside their 90 % interval.
     pub coverage90: CoverageSummary,
+}
+
+/// The emulator of a sampler.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
+pub struct EmulatorSummary {
+    /// Number of batches that refined or confirmed the emulator.
+    pub rounds: usize,
+    /// Number of evaluations of the model, final draws and rejected ones included.
+    pub evaluations: u64,
+    /// Root mean square error of the outputs at the last batch, in error standard deviations.
+    pub error_sigma: Option<f64>,
+    /// Effective share of the final draws; null if the emulator was given up.
+    pub effective_share: Option<f64>,
+    /// Whether the emulator was given up, so that the model itself was sampled.
+    pub fell_back: bool,
+}
+
+impl EmulatorSummary {
+    fn new(calibration: &FinishedCalibration) -> Option<Self> {
+        let diagnostics = emulator(calibration)?;
+        Some(EmulatorSummary {
+            rounds: diagnostics.rounds.len(),
+            evaluations: calibration.row.evaluations.unwrap_or_default(),
+            error_sigma: diagnostics.error_sigma(),
+            effective_share: diagnostics.effective_share(),
+            fell_back: diagnostics.fell_back,
+        })
+    }
 }
 
 /// Counts of a metamodel.
@@ -136,6 +171,12 @@ pub fn calibration_summary(calibration: &FinishedCalibration) -> Option<Calibrat
             subchains: s.subchains,
             moved: s.moved,
         }),
+        emulator: EmulatorSummary::new(calibration),
+        numerical_noise: calibration
+            .emulator
+            .as_ref()
+            .map(numerical_noise)
+            .unwrap_or_default(),
         stages: calibration
             .stages()
             .iter()

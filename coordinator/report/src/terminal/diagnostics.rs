@@ -9,6 +9,7 @@ use super::table::Table;
 use result::diagnostics::calibration::Diagnostics;
 use result::diagnostics::channels::{ChannelDiagnostics, CoverageCount};
 use result::diagnostics::directions::{DirectionDiagnostics, WORST_KNOWN};
+use result::diagnostics::emulator::{EmulatorDiagnostics, EmulatorRoundRow};
 use result::diagnostics::parameters::ParameterDiagnostics;
 use result::diagnostics::rejections::RejectionDiagnostics;
 use result::diagnostics::residuals::{ResidualDiagnostics, largest};
@@ -22,6 +23,7 @@ use result::words::probability::probability;
 pub fn diagnostics(diagnostics: &Diagnostics) -> String {
     let mut parts = Vec::new();
     parts.extend(diagnostics.sampler.as_ref().map(sampler));
+    parts.extend(diagnostics.emulator.as_ref().map(emulator));
     parts.push(channels(&diagnostics.channels));
     if !diagnostics.residuals.is_empty() {
         parts.push(residuals(&diagnostics.residuals));
@@ -86,6 +88,40 @@ fn sampler(sampler: &SamplerDiagnostics) -> String {
             }
         });
     text + &table.text(&sampler.stages)
+}
+
+fn emulator(emulator: &EmulatorDiagnostics) -> String {
+    let nats = |value: Option<f64>| cell(value, |value| format!("{value:.3}"));
+    let mut table = Table::<&EmulatorRoundRow>::new()
+        .right(10, "exponent", |r| format!("{:.3e}", r.tempering_exponent))
+        .right(11, "evaluations", |r| r.evaluations)
+        .right(8, "rejected", |r| r.rejected)
+        .right(10, "mean error", move |r| nats(r.mean_error))
+        .right(8, "error sd", move |r| nats(r.error_sd));
+    let first = emulator.rounds.first();
+    for channel in first
+        .into_iter()
+        .flat_map(|round| round.channel_errors.keys().cloned())
+    {
+        let name = channel.clone();
+        table = table.right(name.len().max(8), &name, move |r| {
+            cell(r.channel_errors.get(&channel).copied(), |e| format!("{e:.3}"))
+        });
+    }
+    let table = table
+        .right(8, "training", |r| r.training_points)
+        .remark(|r| if r.agreed { "" } else { "  refined" });
+    let weights = match (emulator.effective_draws, emulator.max_share) {
+        (Some(ess), Some(share)) => format!(
+            "{} weigh as {ess:.0}; the heaviest has {:.1} % of the weight\n",
+            number::count(emulator.final_draws, "final draw"),
+            100.0 * share
+        ),
+        _ => "the emulator was given up, and the model itself was sampled\n".to_owned(),
+    };
+    "emulator: error of the tempered log-likelihood in nats, errors of the outputs in error sds\n".to_owned()
+        + &table.text(&emulator.rounds)
+        + &weights
 }
 
 fn channels(channels: &[ChannelDiagnostics]) -> String {

@@ -2,6 +2,7 @@
 
 use super::channels::{ChannelDiagnostics, ChiSquareTest};
 use super::directions::DirectionDiagnostics;
+use super::emulator::EmulatorDiagnostics;
 use super::parameters::{ParameterDiagnostics, PriorConflict};
 use super::rejections::RejectionDiagnostics;
 use super::residuals::ResidualDiagnostics;
@@ -16,6 +17,9 @@ use crate::flag::Flag;
 pub struct Diagnostics {
     /// The sampler; null for a fit.
     pub sampler: Option<SamplerDiagnostics>,
+    /// The emulator that the sampler drew on; null without one.
+    #[serde(default)]
+    pub emulator: Option<EmulatorDiagnostics>,
     /// Information and misfit of each channel, in the same order as in all tables.
     pub channels: Vec<ChannelDiagnostics>,
     /// The misfit of all fitted data together; null if all noise is inferred.

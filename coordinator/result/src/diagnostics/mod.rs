@@ -3,6 +3,7 @@
 //! # Layout
 //! - `calibration`: all diagnostics of a calibration, as one value.
 //! - `sampler`: stages, equilibrium, effective sample size.
+//! - `emulator`: errors of an emulator, weights of its final draws.
 //! - `channels`: information of each channel, its misfit, coverage of its intervals.
 //! - `residuals`: fitted measurements minus predictions. `trends`: tests whether residuals follow a condition of the runs.
 //! - `parameters`: contraction, bounds, conflict with the prior. `directions`: combinations of parameters.
@@ -17,6 +18,7 @@ pub mod calibration;
 pub mod channels;
 pub mod data_channel;
 pub mod directions;
+pub mod emulator;
 pub mod parameters;
 pub mod rejections;
 pub mod residuals;
@@ -27,6 +29,7 @@ pub mod verification;
 pub use calibration::Diagnostics;
 pub use channels::{ChannelDiagnostics, ChiSquareTest, CoverageCount};
 pub use directions::{DirectionDiagnostics, Loading};
+pub use emulator::{EmulatorDiagnostics, EmulatorRoundRow};
 pub use parameters::{ParameterDiagnostics, PriorConflict};
 pub use rejections::{BinnedParameter, PriorBin, PriorRegion, RegionSide, RejectionDiagnostics};
 pub use residuals::ResidualDiagnostics;
