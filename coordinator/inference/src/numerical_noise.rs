@@ -66,7 +66,7 @@ fn scatter(likelihood: &Likelihood, answers: &[Option<Vec<f64>>]) -> Option<Vec<
     Some(squares.into_iter().map(sd).collect())
 }
 
-/// Returns the [`scatter`] that counts as noise; 0 for a channel whose noise is inferred, because that includes the scatter.
+/// Returns the scatter of each channel that counts as noise; 0 for a channel whose noise is inferred, because that includes the scatter.
 /// `None` if all are negligible beside the declared noise.
 pub fn sds(likelihood: &Likelihood, answers: &[Option<Vec<f64>>]) -> Option<Vec<f64>> {
     let data = likelihood.data();

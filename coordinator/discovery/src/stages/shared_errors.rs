@@ -24,7 +24,7 @@ const BY_FACTOR: usize = 2;
 pub enum SharedErrorSource {
     /// The error whose sd is this parameter of the base.
     Parameter(usize),
-    /// The error of this index among [`SearchTask::suspected_errors`].
+    /// The error of this index among [`SearchTask::suspected_errors`](crate::task::SearchTask::suspected_errors).
     Suspected(usize),
 }
 
