@@ -20,16 +20,7 @@ impl EmulatedSampler {
             ..self.settings
         };
         match Sampler::new(self.prior.clone(), settings) {
-            Ok(sampler) => {
-                let thetas = sampler
-                    .round()
-                    .pending()
-                    .iter()
-                    .map(|p| p.theta.clone())
-                    .collect();
-                self.phase = RunPhase::Waiting(EmulatedRound::Fallback(Box::new(sampler)));
-                self.ask(thetas);
-            }
+            Ok(sampler) => self.ask_fallback(Box::new(sampler)),
             // The settings were checked when this sampler was made.
             Err(_) => self.phase = RunPhase::Failed(InferenceFailure::AllImpossible { draws: 0 }),
         }
@@ -48,22 +39,22 @@ impl EmulatedSampler {
             let _ = sampler.tell(particle, value);
         }
         self.stages = sampler.stages().to_vec();
-        self.phase = if let Some(failure) = sampler.failure() {
-            RunPhase::Failed(failure)
+        if let Some(failure) = sampler.failure() {
+            self.phase = RunPhase::Failed(failure);
         } else if let Some(posterior) = sampler.posterior() {
             let mut posterior = posterior.clone();
             posterior.evaluations = self.count.evaluations as u64;
             posterior.rejected = self.count.rejected as u64;
-            RunPhase::Done(Box::new(posterior))
+            self.phase = RunPhase::Done(Box::new(posterior));
         } else {
-            let thetas = sampler
-                .round()
-                .pending()
-                .iter()
-                .map(|p| p.theta.clone())
-                .collect();
-            self.ask(thetas);
-            RunPhase::Waiting(EmulatedRound::Fallback(sampler))
-        };
+            self.ask_fallback(sampler);
+        }
+    }
+
+    /// Asks for the pending evaluations of the sampler of the model itself.
+    fn ask_fallback(&mut self, sampler: Box<Sampler>) {
+        let pending = sampler.round().pending().iter();
+        self.ask(pending.map(|proposal| proposal.theta.clone()).collect());
+        self.phase = RunPhase::Waiting(EmulatedRound::Fallback(sampler));
     }
 }

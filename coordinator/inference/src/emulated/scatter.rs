@@ -46,18 +46,13 @@ impl EmulatedSampler {
     /// Adds the smallest scatter on any line to every known error sd, and repeats the stage.
     pub(super) fn after_scatter(&mut self, lines: &ScatterLines, outputs: &[Outputs]) -> Next {
         self.has_measured_scatter = true;
-        let count = self.likelihood.data().len();
-        let values: Vec<Outputs> = outputs
-            .iter()
-            .map(|y| Some(y.as_ref()?[..count].to_vec()))
-            .collect();
         let theta = lines.sample.thetas()[0];
         let is_rough = |line: &[Outputs]| {
             numerical_noise::are_enough(line) && !numerical_noise::is_negligible(&self.stated, line, theta)
         };
-        if values.chunks(POINTS).all(is_rough) {
+        if outputs.chunks(POINTS).all(is_rough) {
             self.is_rough = true;
-            self.add_scatter(&values);
+            self.add_scatter(outputs);
         }
         match self.emulator(&lines.sample.thetas()) {
             Some(emulator) => self.repeat_stage(lines.position, &emulator, &lines.sample),
@@ -65,8 +60,8 @@ impl EmulatedSampler {
         }
     }
 
-    fn add_scatter(&mut self, values: &[Outputs]) {
-        let lines = values
+    fn add_scatter(&mut self, outputs: &[Outputs]) {
+        let lines = outputs
             .chunks(POINTS)
             .map(|line| numerical_noise::sds(&self.stated, line));
         let Some(lines) = lines.collect::<Option<Vec<Vec<f64>>>>() else {

@@ -5,7 +5,8 @@ use statistics::prior::Prior;
 /// The coordinates of the model's parameters.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum EmulatorCoordinates {
-    /// Those of the sampler: ln x for log-uniform and lognormal parameters, else x. Outputs at an end of a prior are smooth here.
+    /// The coordinates of the sampler are ln x for log-uniform and lognormal parameters, else x. Outputs at an end of a prior are
+    /// smooth in them.
     Sampling,
     /// Independent normal scores. Outputs that change fast near an end of a prior, as at the border of what a model accepts, are
     /// smoother here.
