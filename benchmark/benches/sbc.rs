@@ -1,6 +1,6 @@
 //! Simulation-based calibration of the whole chain: priors, likelihood, sampler and the quasi-static model.
 //!
-//! `cargo bench -p benchmark --bench sbc [-- SETS [PARTICLES [SEED]]]`. The default of 1000 data sets and 500 particles takes about four
+//! `cargo bench -p benchmark --bench sbc [-- [emulated] [SETS [PARTICLES [SEED]]]]` calibrates by drawn or by emulated stages. The default of 1000 data sets and 500 particles takes about four
 //! minutes of CPU time. Exits with 1 if ranks are not uniform, or if 90 % intervals contain the truth too often or too rarely.
 
 use std::process::ExitCode;
@@ -16,11 +16,15 @@ const MIN_P: f64 = 1e-3;
 const MIN_P_TOGETHER: f64 = 1e-2;
 
 fn main() -> ExitCode {
-    let numbers: Result<Vec<u64>, _> = std::env::args()
+    let mut arguments: Vec<String> = std::env::args()
         .skip(1)
         .filter(|a| !a.starts_with("--"))
-        .map(|a| a.parse())
         .collect();
+    let is_emulated = arguments.first().is_some_and(|first| first == "emulated");
+    if is_emulated {
+        arguments.remove(0);
+    }
+    let numbers: Result<Vec<u64>, _> = arguments.iter().map(|argument| argument.parse()).collect();
     let Ok(numbers) = numbers else {
         eprintln!("error: SETS, PARTICLES and SEED are whole numbers");
         return ExitCode::FAILURE;
@@ -31,6 +35,7 @@ fn main() -> ExitCode {
         particles: number(1, 500) as usize,
         seed: number(2, 1),
         noise_factor: 1.0,
+        is_emulated,
     };
     match report(&study) {
         Ok(true) => ExitCode::SUCCESS,

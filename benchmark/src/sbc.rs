@@ -47,6 +47,8 @@ pub struct Study {
     pub seed: u64,
     /// Factor of the added noise, which the calibration takes as 1: another value is a mistake that the study should find.
     pub noise_factor: f64,
+    /// Whether the stages are emulated.
+    pub is_emulated: bool,
 }
 
 /// The rank of one truth in the posterior of its data.
@@ -74,8 +76,13 @@ struct Case {
 impl Study {
     fn job(&self, seed: u64) -> String {
         let particles = self.particles;
+        let stages = if self.is_emulated {
+            "stages = \"emulated\"\n"
+        } else {
+            ""
+        };
         format!(
-            "[model]\nkind = \"quasi_static\"\n[priors]\nlog10_p_ref = {{ uniform = [4.0, 5.6] }}\nkappa = 0.0\nn = {{ normal = [1.1, 0.2], bounds = [0.8, 2.0] }}\nfriction_angle_deg = {{ normal = [30.0, 5.7], bounds = [11.5, 45.0] }}\nwheel_radius_m = {{ uniform = [0.125, 0.155] }}\n\"noise.drawbar_pull_n\" = {{ lognormal = [2.0, 1.5] }}\n[sampler]\nparticles = {particles}\nseed = {seed}\n"
+            "[model]\nkind = \"quasi_static\"\n[priors]\nlog10_p_ref = {{ uniform = [4.0, 5.6] }}\nkappa = 0.0\nn = {{ normal = [1.1, 0.2], bounds = [0.8, 2.0] }}\nfriction_angle_deg = {{ normal = [30.0, 5.7], bounds = [11.5, 45.0] }}\nwheel_radius_m = {{ uniform = [0.125, 0.155] }}\n\"noise.drawbar_pull_n\" = {{ lognormal = [2.0, 1.5] }}\n[sampler]\nparticles = {particles}\nseed = {seed}\n{stages}"
         )
     }
 

@@ -12,6 +12,7 @@ fn verdicts(noise_factor: f64) -> Vec<Verdict> {
         particles: 100,
         seed: 7,
         noise_factor,
+        is_emulated: false,
     };
     let rankings = study.run().expect("every data set is calibrated");
     assert_eq!(rankings.len(), study.sets);

@@ -72,7 +72,7 @@ impl EmulatedSampler {
         let seed = round_seed(self.settings.seed, number);
         let target = self.target(emulator);
         let sample = target.sample(1.0, from, seed).ok()?;
-        let drawn = target.posterior_draws(&sample, seed)?;
+        let drawn = target.posterior_draws(&sample, &self.wide, seed)?;
         let mut wide = self.wide.proposal(&self.prior, DrawKey::new(seed, 0, 2))?;
         let density = FinalDensity {
             target,

@@ -70,11 +70,16 @@ impl EmulatedSample {
 
     /// Fits a mixture to the draws, and cuts it at the support. `None` if no mixture fits.
     pub(crate) fn proposal(&self, prior: &Prior, key: DrawKey) -> Option<DrawProposal> {
+        cut((self.fit(prior, key)?, None), prior, key)
+    }
+
+    /// Fits a mixture to the draws.
+    fn fit(&self, prior: &Prior, key: DrawKey) -> Option<Fit> {
         let mut sample = WeightedSample::default();
         for particle in &self.particles {
             sample.push(state(prior, &particle.theta, 0.0), 0.0);
         }
-        proposal(&sample, 0.0, prior, key)
+        fit(&sample, 0.0, prior, key)
     }
 }
 
@@ -130,7 +135,8 @@ impl EmulatedTarget<'_> {
         if old.sample.weights(1.0)?.share() < MIN_SHARE {
             return None;
         }
-        let mut proposal = proposal(&old.sample, 1.0, self.prior, DrawKey::new(seed, 0, 0))?;
+        let key = DrawKey::new(seed, 0, 0);
+        let mut proposal = cut((fit(&old.sample, 1.0, self.prior, key)?, None), self.prior, key)?;
         let new = self.drawn(&mut proposal, REDRAWN, exponent);
         let weights = new.sample.weights(1.0)?;
         if weights.share() < MIN_SHARE {
@@ -181,10 +187,21 @@ impl EmulatedTarget<'_> {
     }
 
     /// Draws from a mixture fitted to a sample of the emulated posterior, and weighs the draws. `None` if no mixture fits.
-    pub(crate) fn posterior_draws(&self, sample: &EmulatedSample, seed: u64) -> Option<PosteriorDraws> {
+    ///
+    /// # Arguments
+    /// - `wide`: a sample of the stage before. A share of the draws comes from a mixture fitted to it, which bounds the weights in the
+    ///   tails of the emulated posterior.
+    pub(crate) fn posterior_draws(
+        &self,
+        sample: &EmulatedSample,
+        wide: &EmulatedSample,
+        seed: u64,
+    ) -> Option<PosteriorDraws> {
         let mut first = sample.proposal(self.prior, DrawKey::new(seed, 0, 1))?;
         let pilot = self.drawn(&mut first, PILOT_DRAWS, 1.0);
-        let mut proposal = proposal(&pilot.sample, 1.0, self.prior, DrawKey::new(seed, 0, 3))?;
+        let key = DrawKey::new(seed, 0, 3);
+        let fits = (fit(&pilot.sample, 1.0, self.prior, key)?, wide.fit(self.prior, key));
+        let mut proposal = cut(fits, self.prior, key)?;
         let ScoredDraws {
             sample,
             thetas,
@@ -230,11 +247,15 @@ impl EmulatedTarget<'_> {
     }
 }
 
-/// Returns a mixture fitted to a weighted sample at an exponent, cut at the support.
-fn proposal(sample: &WeightedSample, exponent: f64, prior: &Prior, key: DrawKey) -> Option<DrawProposal> {
+/// Returns a mixture fitted to a weighted sample at an exponent.
+fn fit(sample: &WeightedSample, exponent: f64, prior: &Prior, key: DrawKey) -> Option<Fit> {
     let weights = sample.weights(exponent)?;
-    let fit = Fit::new(sample, &weights, prior, COMPONENTS, &mut key.fit())?;
-    DrawProposal::new((fit, None), prior, key, PARTICLES, true)
+    Fit::new(sample, &weights, prior, COMPONENTS, &mut key.fit())
+}
+
+/// Returns the proposal of a mixture, with a share of a wider one, cut at the support.
+fn cut(fits: (Fit, Option<Fit>), prior: &Prior, key: DrawKey) -> Option<DrawProposal> {
+    DrawProposal::new(fits, prior, key, PARTICLES, true)
 }
 
 fn state(prior: &Prior, theta: &[f64], value: f64) -> ChainState {
