@@ -26,7 +26,7 @@ pub fn calibrate(spec: Spec) -> Result<Calibration, StudyError> {
             let Some(question) = calibration.question(evaluation) else {
                 break;
             };
-            let computed = SimulationResult::new(Some(model.evaluate(question.theta)), None)?;
+            let computed = SimulationResult::new(model.evaluate(question.theta))?;
             calibration.complete(evaluation, computed, "benchmark")?;
         }
     }

@@ -51,8 +51,7 @@ pub fn results(leases: Vec<Lease>, outcome: &Outcome) -> Vec<WorkResult> {
         calibration: lease.calibration,
         evaluation: lease.evaluation,
         seal: lease.seal,
-        end: None,
-        outcome: Some(outcome.clone()),
+        outcome: outcome.clone(),
         repeated: None,
     };
     leases.into_iter().map(result).collect()

@@ -6,7 +6,6 @@ use std::sync::Arc;
 use shared::exchange::{ExchangeRequest, ExchangeResponse, WorkResult};
 use shared::model::{ExternalModel, ModelVariant};
 use shared::outcome::Outcome;
-use statistics::{Subchain, SubchainEnd};
 use tokio::sync::watch;
 use worker::evaluator::SimulationClock;
 use worker::external::allowed::AllowedModels;
@@ -195,15 +194,6 @@ impl Evaluate {
     /// Simulates every condition at one parameter vector.
     pub fn evaluate(&self, theta: &[f64]) -> Outcome {
         self.0.evaluate(theta)
-    }
-
-    /// Evaluates the question of a lease.
-    pub fn serve(
-        &self,
-        theta: &[f64],
-        subchain: Option<&Subchain>,
-    ) -> (Option<Outcome>, Option<SubchainEnd>) {
-        self.0.serve(theta, subchain)
     }
 
     /// Evaluates every condition alone, so that a rejection leaves the others. Returns drawbar pull `[N]`, torque \[N m\] and sinkage

@@ -3,14 +3,13 @@
 use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
-use statistics::{Subchain, SubchainEnd};
 use utoipa::ToSchema;
 
 use crate::channel::Channel;
 use crate::outcome::{Observables, Outcome};
 
 /// Version of these messages; a coordinator answers any other version with 426.
-pub const PROTOCOL_VERSION: u32 = 12;
+pub const PROTOCOL_VERSION: u32 = 13;
 
 /// `POST /v1/work/exchange`: the results of finished leases, and the number of leases wanted.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
@@ -63,14 +62,8 @@ pub struct WorkResult {
     pub evaluation: u64,
     /// The seal of the lease, as the worker received it.
     pub seal: String,
-    /// The end of the subchain, if the lease asked for one.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(value_type = Option<Object>)]
-    pub end: Option<SubchainEnd>,
-    /// The outcome; for a subchain, at its end. Absent if none of its moves was accepted, because then there was nothing to
-    /// evaluate.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub outcome: Option<Outcome>,
+    /// The outcome.
+    pub outcome: Outcome,
     /// Difference between the outcome and a second answer of the same worker, if an external model was asked twice.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub repeated: Option<RepeatedAnswer>,
@@ -174,13 +167,9 @@ pub struct Lease {
     pub seal: String,
     /// Hash of the variant to evaluate; `GET /v1/work/variants/HASH`.
     pub variant: String,
-    /// Parameter vector in the variant's order; for a subchain, the sampler's whole vector with the noise parameters.
+    /// Parameter vector in the variant's order.
     pub theta: Vec<f64>,
     /// True if the worker must report the lease as started and wait for the answer before it evaluates, because the
     /// evaluation was lost before.
     pub announce: bool,
-    /// The moves of the variant's metamodel to take from `theta` before the model is evaluated at their end.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(value_type = Option<Object>)]
-    pub subchain: Option<Subchain>,
 }

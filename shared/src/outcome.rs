@@ -79,9 +79,6 @@ pub struct Observables {
     /// Shear stress under each ring of the variant `[Pa]`.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub shear_stress_pa: Vec<f64>,
-    /// The predicted values of the low-fidelity quasi-static model; `None` if there is none, or it rejects the parameters.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub coarse: Option<Vec<f64>>,
     /// Time histories of the runs; empty unless the variant requests them.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub histories: Vec<SimulatedHistory>,
@@ -189,17 +186,15 @@ impl Observables {
     pub fn fingerprint(&self) -> u64 {
         let bits = self.numbers().map(f64::to_bits);
         let counts = self.nodes_in_contact.iter().map(|&n| u64::from(n));
-        let coarse = self.coarse.iter().flatten().map(|v| v.to_bits());
-        fnv(bits.chain(counts).chain(coarse))
+        fnv(bits.chain(counts))
     }
 
     /// Returns whether every number is finite.
     pub fn is_finite(&self) -> bool {
-        let mut numbers = self.numbers().chain(self.coarse.iter().flatten().copied());
-        numbers.all(f64::is_finite)
+        self.numbers().all(f64::is_finite)
     }
 
-    /// Returns every number except the counts and the low-fidelity values.
+    /// Returns every number except the counts.
     fn numbers(&self) -> impl Iterator<Item = f64> {
         let vectors = [
             &self.drawbar_pull_n,

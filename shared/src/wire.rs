@@ -119,8 +119,8 @@ impl ExchangeRequest {
         let request: Self = form.read(bytes)?;
         for result in &request.results {
             let outcome = match &result.outcome {
-                Some(Outcome::Evaluated(observables)) => observables.is_finite(),
-                Some(Outcome::Rejected(_) | Outcome::Fault(_)) | None => true,
+                Outcome::Evaluated(observables) => observables.is_finite(),
+                Outcome::Rejected(_) | Outcome::Fault(_) => true,
             };
             if !outcome || result.repeated.is_some_and(|repeated| !repeated.is_valid()) {
                 return Err(WireError::NotFinite { lease: result.lease });
@@ -179,8 +179,7 @@ mod tests {
                 calibration: -1,
                 evaluation: 7,
                 seal: "0a".into(),
-                end: None,
-                outcome: Some(Outcome::Evaluated(observables)),
+                outcome: Outcome::Evaluated(observables),
                 repeated: None,
             }],
             holding: vec![9],
@@ -202,7 +201,6 @@ mod tests {
                 variant: "00ff".into(),
                 theta: AWKWARD.to_vec(),
                 announce: false,
-                subchain: None,
             }],
             lease_ms: 15_000,
             remaining: 5,
@@ -223,7 +221,7 @@ mod tests {
             let sent = request(&AWKWARD);
             let read = ExchangeRequest::from_bytes(&sent.to_bytes(form).unwrap(), form).unwrap();
             assert_eq!(read, sent);
-            let Some(Outcome::Evaluated(observables)) = &read.results[0].outcome else {
+            let Outcome::Evaluated(observables) = &read.results[0].outcome else {
                 panic!("{read:?}")
             };
             assert_eq!(bits(&observables.sinkage_m), bits(&AWKWARD), "{form}");
@@ -257,7 +255,7 @@ mod tests {
                 changed[place] = byte;
                 let read = ExchangeRequest::from_bytes(&changed, WireForm::MessagePack);
                 for result in read.into_iter().flat_map(|read| read.results) {
-                    if let Some(Outcome::Evaluated(observables)) = &result.outcome {
+                    if let Outcome::Evaluated(observables) = &result.outcome {
                         assert!(observables.is_finite());
                     }
                 }

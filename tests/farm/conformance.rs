@@ -48,7 +48,6 @@ fn an_exchange_request_has_one_form() {
         "b_eff_m": [0.03], "contact_length_m": [0.05], "residual_load_n": [1e-9], "nodes_in_contact": [16],
         "simulated_travel_m": [0.0], "settled_to": [0.004], "d_drawbar_pull_n": [-3.5], "d_torque_n_m": [-0.5],
         "d_sinkage_m": [-0.004], "d_lateral_force_n": [0.0], "plate_pressure_pa": [9000.5], "shear_stress_pa": [5000.5],
-        "coarse": [11.5],
         "histories": [{"drawbar_pull_n": [12.0, 13.0], "torque_n_m": [2.0, 2.5], "sinkage_m": [0.005, 0.007],
                        "lateral_force_n": [0.0, 0.0]}],
     });
@@ -60,23 +59,18 @@ fn an_exchange_request_has_one_form() {
             {"lease": 2, "calibration": 1, "evaluation": 7, "seal": "0a1b",
              "outcome": {"rejected": {"kind": "no_support", "condition": 3, "message": "sinkage 0.2 m"}}},
             {"lease": 3, "calibration": 1, "evaluation": 7, "seal": "0a1b", "outcome": {"fault": {"message": "disk full"}}},
-            {"lease": 4, "calibration": 1, "evaluation": 8, "seal": "2c3d", "end": {"theta": [1.5], "log_gain": 0.25, "moves": 20,
-             "accepted": 0, "scaled": 17, "scaled_accepted": 0},
+            {"lease": 4, "calibration": 1, "evaluation": 8, "seal": "2c3d", "outcome": {"fault": {"message": "no memory"}},
              "repeated": {"drawbar_pull_n": 0.0, "torque_n_m": 0.25, "sinkage_m": 0.0, "lateral_force_n": 0.0,
                           "is_refused": false}},
         ],
         "holding": [9], "returned": [10, 11], "started": [9], "received": 11, "want": 16, "wait_ms": 20_000,
     }));
-    let outcomes: Vec<_> = request
-        .results
-        .iter()
-        .map(|result| result.outcome.as_ref())
-        .collect();
+    let outcomes: Vec<_> = request.results.iter().map(|result| &result.outcome).collect();
     let [
-        Some(Outcome::Evaluated(seen)),
-        Some(Outcome::Rejected(rejection)),
-        Some(Outcome::Fault(fault)),
-        None,
+        Outcome::Evaluated(seen),
+        Outcome::Rejected(rejection),
+        Outcome::Fault(fault),
+        Outcome::Fault(_),
     ] = outcomes[..]
     else {
         panic!("{outcomes:?}");
@@ -85,15 +79,17 @@ fn an_exchange_request_has_one_form() {
         [Channel::DrawbarPull, Channel::Torque, Channel::Sinkage].map(|c| seen.channel(c)[0]);
     assert_eq!((pull, torque, sinkage), (12.5, 2.25, 0.006));
     assert_eq!((rejection.condition, fault.message.as_str()), (3, "disk full"));
-    assert_eq!(request.results[3].end.as_ref().map(|end| end.scaled), Some(17));
+    assert_eq!(
+        request.results[3].repeated.map(|repeated| repeated.torque_n_m),
+        Some(0.25)
+    );
 }
 
 #[test]
 fn an_exchange_response_has_one_form() {
     let response: ExchangeResponse = golden(&json!({
         "leases": [{"lease": 5, "calibration": 1, "evaluation": 7, "seal": "0a1b", "variant": "00ff", "theta": [4.5, 0.30000000000000004],
-                    "announce": true,
-                    "subchain": {"chain": 3, "step": 2, "scale": 0.75}}],
+                    "announce": true}],
         "lease_ms": 15_000, "remaining": 40, "in_hand": 2, "workers": 3, "duplicates": 1, "refused": "another version",
     }));
     assert_eq!(response.leases[0].theta, [4.5, 0.1 + 0.2]);

@@ -24,7 +24,6 @@ mod leases;
 mod likelihood;
 mod limit;
 mod mesh;
-mod metamodel;
 mod mistaken_tables;
 mod mistakes;
 mod models;

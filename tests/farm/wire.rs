@@ -38,8 +38,7 @@ fn result(lease: &Lease, observables: Observables) -> WorkResult {
         calibration: lease.calibration,
         evaluation: lease.evaluation,
         seal: lease.seal.clone(),
-        end: None,
-        outcome: Some(Outcome::Evaluated(observables)),
+        outcome: Outcome::Evaluated(observables),
         repeated: None,
     }
 }

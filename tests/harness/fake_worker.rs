@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 use crate::http::{Client, Response};
 
 /// Version of the protocol of exchanges.
-pub const PROTOCOL: u32 = 12;
+pub const PROTOCOL: u32 = 13;
 
 /// A named worker that sends only the messages of a test.
 #[derive(Debug)]

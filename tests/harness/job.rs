@@ -65,10 +65,9 @@ impl Job {
         )
     }
 
-    /// [`Job::rolling`] with moves of a metamodel.
-    pub fn metamodel() -> Job {
-        let rolling = Job::rolling().sampler(40, [2, 4], 5);
-        rolling.in_job("moves = [2, 4]", "moves = [2, 4]\nmetamodel_moves = 8")
+    /// Returns [`Job::rolling`] on an emulator of the model.
+    pub fn emulated() -> Job {
+        Job::rolling().in_job("moves = [2, 4]", "stages = \"emulated\"")
     }
 
     /// Runs on soil that yields only after some shear displacement, with a narrow prior of the friction angle.

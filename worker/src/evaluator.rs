@@ -132,16 +132,15 @@ fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
 
 fn evaluate(lease: Lease, variant: &CompiledVariant, clock: &SimulationClock) -> WorkResult {
     let began = Instant::now();
-    let served = AssertUnwindSafe(|| variant.serve(&lease.theta, lease.subchain.as_ref()));
-    let (outcome, end) = std::panic::catch_unwind(served).unwrap_or_else(|_| {
-        let fault = Fault {
+    let evaluated = AssertUnwindSafe(|| variant.evaluate(&lease.theta));
+    let outcome = std::panic::catch_unwind(evaluated).unwrap_or_else(|_| {
+        Outcome::Fault(Fault {
             message: "the model panicked".into(),
-        };
-        (Some(Outcome::Fault(fault)), None)
+        })
     });
     // The number decides, so that the choice does not depend on the worker.
-    let is_repeated = lease.subchain.is_none() && lease.evaluation.is_multiple_of(REPEATED);
-    let repeat = AssertUnwindSafe(|| variant.repeat(&lease.theta, outcome.as_ref()?));
+    let is_repeated = lease.evaluation.is_multiple_of(REPEATED);
+    let repeat = AssertUnwindSafe(|| variant.repeat(&lease.theta, &outcome));
     let repeated = match is_repeated {
         true => std::panic::catch_unwind(repeat).unwrap_or_default(),
         false => None,
@@ -161,7 +160,6 @@ fn evaluate(lease: Lease, variant: &CompiledVariant, clock: &SimulationClock) ->
         calibration,
         evaluation,
         seal,
-        end,
         outcome,
         repeated,
     }

@@ -107,7 +107,6 @@ fn messages() -> Vec<ExchangeRequest> {
         calibration: 1,
         evaluation: 7,
         seal: "0123456789abcdef0123456789abcdef".into(),
-        end: None,
         outcome,
         repeated: None,
     };
@@ -121,9 +120,8 @@ fn messages() -> Vec<ExchangeRequest> {
         threads: 8,
         evaluation_s: Some(0.25),
         results: vec![
-            result(Some(Outcome::Evaluated(observables))),
-            result(Some(Outcome::Fault(Fault { message }))),
-            result(None),
+            result(Outcome::Evaluated(observables)),
+            result(Outcome::Fault(Fault { message })),
         ],
         holding: vec![1, 2, 3],
         returned: vec![4],

@@ -189,6 +189,5 @@ fn sealed(entry: &Entry, turn: Turn, worker: &str, version: &str, claim: NewClai
         variant: question.variant.to_owned(),
         theta: question.theta.to_vec(),
         announce: claim.suspect,
-        subchain: question.subchain,
     }
 }

@@ -1,6 +1,6 @@
 //! The seal of a lease. It proves that a result answers the question that this calibration asked this worker.
 //!
-//! A seal has two halves of 64 bits, in hexadecimal digits. The first is a digest of the question: variant, parameter vector, subchain. The
+//! A seal has two halves of 64 bits, in hexadecimal digits. The first is a digest of the question: variant and parameter vector. The
 //! second is a digest of the calibration's key, the terms of the lease and the first half. Only the coordinator knows the key, so no other
 //! program can make a seal, and a seal can be checked after a restart, when the lease is forgotten. The digest is SHA-256, cut to 64 bits.
 
@@ -40,11 +40,6 @@ fn question_digest(question: Question) -> String {
     text(&mut hash, question.variant);
     for value in question.theta {
         hash.update(value.to_bits().to_le_bytes());
-    }
-    if let Some(subchain) = question.subchain {
-        hash.update(subchain.chain.to_le_bytes());
-        hash.update(subchain.step.to_le_bytes());
-        hash.update(subchain.scale.to_bits().to_le_bytes());
     }
     half(hash)
 }
@@ -89,7 +84,6 @@ mod tests {
     const QUESTION: Question = Question {
         variant: "00ff",
         theta: &[0.0, 1.5],
-        subchain: None,
     };
 
     #[test]

@@ -145,7 +145,7 @@ impl Farm {
         if let Some(age_ms) = calibration.queue.age_ms(result.lease, worker, now_ms) {
             entry.pace.count_lease(age_ms);
         }
-        let computed = SimulationResult::new(result.outcome, result.end)?;
+        let computed = SimulationResult::new(result.outcome)?;
         let record = self.workers.get(worker);
         let is_new = record.is_none_or(|record| record.completed < NEW_WORKER_RESULTS);
         let completed = match is_new {
@@ -248,7 +248,7 @@ impl Farm {
             return Taken::Refused;
         }
         // After a rewind, the number may stand for another question.
-        let computed = SimulationResult::new(result.outcome, result.end);
+        let computed = SimulationResult::new(result.outcome);
         if let Some(computed) = computed.ok().filter(|_| !closed.is_rewound) {
             self.facts.push(Fact::Duplicate {
                 calibration,

@@ -36,21 +36,20 @@ fn counts(response: &ExchangeResponse) -> [usize; 2] {
     [1, 2].map(|id| response.leases.iter().filter(|l| l.calibration == id).count())
 }
 
-fn answer(lease: &Lease, outcome: Option<Outcome>) -> WorkResult {
+fn answer(lease: &Lease, outcome: Outcome) -> WorkResult {
     WorkResult {
         lease: lease.lease,
         calibration: lease.calibration,
         evaluation: lease.evaluation,
         seal: lease.seal.clone(),
-        end: None,
         outcome,
         repeated: None,
     }
 }
 
-fn fault() -> Option<Outcome> {
+fn fault() -> Outcome {
     let message = "out of memory".into();
-    Some(Outcome::Fault(Fault { message }))
+    Outcome::Fault(Fault { message })
 }
 
 /// Indices of kinds in [`Case::all`]: fifty particles, five particles.
@@ -176,7 +175,7 @@ fn late_results_of_a_calibration_that_ends_in_its_replay_are_compared() {
     while !calibration.state.is_final() {
         for evaluation in calibration.queue.asked() {
             let outcome = case.answers[&evaluation].outcome.clone();
-            let computed = SimulationResult::new(outcome, None).expect("no faults");
+            let computed = SimulationResult::new(outcome).expect("no faults");
             calibration.complete(evaluation, computed, "a").expect("it fits");
         }
     }
@@ -239,7 +238,7 @@ fn nothing_counts_behind_the_result_that_convicts_its_worker() {
 
 #[test]
 fn an_answer_of_wrong_shape_beside_a_slow_lease_costs_an_attempt_like_a_fault() {
-    for outcome in [fault(), Some(Outcome::Evaluated(Observables::default()))] {
+    for outcome in [fault(), Outcome::Evaluated(Observables::default())] {
         let (mut farm, cases) = farm(&[SMALL]);
         let mut leases = farm.exchange(request("slow", 9), 0).leases;
         let slow = leases.pop().expect("five evaluations wait");

@@ -66,6 +66,6 @@ pub use phase::EvaluationCount;
 pub use round::{Proposal, ProposalRound};
 pub use tell::{InferenceFailure, TellError, TellProgress};
 pub use tmcmc::{
-    Algorithm, EvaluationResult, MAX_PARTICLES, Particle, PosteriorSample, Sampler, StageMethod,
-    StageProgress, StageRecord, TmcmcSettings, TmcmcSettingsError,
+    Algorithm, MAX_PARTICLES, Particle, PosteriorSample, Sampler, StageMethod, StageProgress, StageRecord,
+    TmcmcSettings, TmcmcSettingsError,
 };

@@ -1,7 +1,6 @@
 //! A round: proposals that can be evaluated at the same time, and their results in any order.
 
 use crate::tell::TellError;
-use statistics::Subchain;
 
 /// A parameter vector to be evaluated.
 #[derive(Debug, Clone, PartialEq)]
@@ -10,19 +9,13 @@ pub struct Proposal {
     pub particle: usize,
     /// The parameters, in the order of the prior.
     pub theta: Vec<f64>,
-    /// The subchain that starts at `theta` and whose end is evaluated; `None`: `theta` is evaluated.
-    pub subchain: Option<Subchain>,
 }
 
 impl Proposal {
-    /// Makes a proposal without a subchain.
+    /// Makes a proposal.
     #[must_use]
-    pub fn plain(particle: usize, theta: Vec<f64>) -> Self {
-        Self {
-            particle,
-            theta,
-            subchain: None,
-        }
+    pub fn new(particle: usize, theta: Vec<f64>) -> Self {
+        Self { particle, theta }
     }
 }
 

@@ -36,9 +36,6 @@ pub enum InferenceFailure {
         /// Number of draws needed.
         needed: usize,
     },
-    /// The metamodel's predictions cannot be scored.
-    #[error("the metamodel: {0}")]
-    Metamodel(LikelihoodError),
     /// The next exponent equals the last in floating point.
     #[error("tempering exponent {exponent} cannot grow by {step}: the log-likelihoods differ too much")]
     ExponentStuck {
@@ -75,16 +72,6 @@ pub enum TellError {
         expected: usize,
         /// Number of values that were told.
         given: usize,
-    },
-    /// The end of a subchain was told for a proposal without one, or the other way round.
-    #[error(
-        "particle {particle} of round {round}: a subchain was told where none was asked for, or none where one was"
-    )]
-    NotAsked {
-        /// Number of the round.
-        round: u64,
-        /// Index of the particle.
-        particle: usize,
     },
     /// The predicted values cannot be scored.
     #[error(transparent)]

@@ -10,7 +10,6 @@ mod emulated;
 mod evolution;
 mod flags;
 mod lm;
-mod metamodel;
 mod normal_approximation;
 mod output_problems;
 mod problems;

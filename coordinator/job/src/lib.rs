@@ -54,5 +54,6 @@ pub use table::prior_entry::{FreeParameter, PriorEntry, check_effect, free_param
 pub use table::prior_entry_error::PriorEntryError;
 pub use text::{
     accepting_job, continued_job, earlier_search, extended_job, model_job, point_job, searched_job,
-    searched_model, validation_job, with_service_effects, without_effects, without_service_effects,
+    searched_model, validation_job, with_service_effects, without_effects, without_metamodel,
+    without_service_effects,
 };

@@ -6,7 +6,6 @@ use inference::{PosteriorSample, StageRecord};
 use shared::api::CalibrationState;
 use shared::exchange::RepeatedAnswer;
 use shared::outcome::Observables;
-use statistics::SubchainEnd;
 
 use crate::discovery::Discovery;
 
@@ -152,10 +151,6 @@ pub struct EvaluationRow {
     pub log_likelihood: Option<f64>,
     /// The kept part of the result.
     pub kept: Kept,
-    /// The quasi-static model's values of the fitted measurements, where it was evaluated.
-    pub coarse: Option<Vec<f64>>,
-    /// End of the requested subchain; `theta` is that end.
-    pub end: Option<SubchainEnd>,
     /// Fingerprint that a second computation must reproduce.
     pub fingerprint: Fingerprint,
     /// Name of the worker that computed the evaluation.
@@ -165,7 +160,7 @@ pub struct EvaluationRow {
 /// The kept part of a result.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Kept {
-    /// Nothing beside the log-likelihood, while sampling, and where a subchain stayed in place.
+    /// Nothing beside the log-likelihood, while sampling.
     Scored,
     /// The predicted values that the likelihood takes, for draws from the prior and for evaluations that are told to an engine again.
     Fitted(Vec<f64>),

@@ -32,6 +32,6 @@ pub use evaluation_key::{EvaluationKey, HOLDOUT_RUNS_FROM, LIKELIEST, PREDICTION
 pub use fact::{Dispute, EvaluationRow, Fact, Fingerprint, Kept};
 pub use membership::{Change, Membership, Role};
 pub use replay::Stored;
-pub use sample::{Prediction, PriorDraw, RejectionReason, StageRow, Subchains};
+pub use sample::{Prediction, PriorDraw, RejectionReason, StageRow};
 pub use token::{Token, TokenHash, TokenRole};
 pub use verification::{Quarantine, Repeats, Verified};

@@ -101,14 +101,3 @@ impl From<Result<Observables, RejectionReason>> for HoldoutPrediction {
         }
     }
 }
-
-/// Counts of a metamodel.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Subchains {
-    /// Number of requested subchains.
-    pub subchains: u64,
-    /// Number of moves that they proposed.
-    pub moves: u64,
-    /// Number of subchains that moved, so that the model was evaluated at their end.
-    pub moved: u64,
-}

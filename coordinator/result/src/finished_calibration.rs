@@ -5,9 +5,7 @@ use std::sync::OnceLock;
 
 use inference::{EmulatorRecord, Particle};
 use job::Spec;
-use record::{
-    CalibrationRow, Dispute, EstimateRow, Prediction, PriorDraw, Repeats, StageRow, Subchains, Verified,
-};
+use record::{CalibrationRow, Dispute, EstimateRow, Prediction, PriorDraw, Repeats, StageRow, Verified};
 use shared::outcome::SimulatedHistory;
 use statistics::{LogLikelihood, Marginal};
 
@@ -41,8 +39,6 @@ pub struct SampledPosterior {
     pub prior_draws: Vec<PriorDraw>,
     /// Stages of the sampler.
     pub stages: Vec<StageRow>,
-    /// Counts of a metamodel; `None` without one.
-    pub subchains: Option<Subchains>,
 }
 
 impl Outcome {
@@ -157,11 +153,6 @@ impl FinishedCalibration {
     /// Returns the draws from the prior that the sampler began with; empty for a fit.
     pub fn prior_draws(&self) -> &[PriorDraw] {
         self.sampled().map_or(&[], |sampled| &sampled.prior_draws)
-    }
-
-    /// Counts of a sampler's metamodel.
-    pub fn subchains(&self) -> Option<Subchains> {
-        self.sampled()?.subchains
     }
 
     /// Returns the draw with the highest likelihood; of equal draws, the first.

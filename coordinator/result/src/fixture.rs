@@ -462,7 +462,6 @@ pub fn of_files(job: FileSet, files: &FileSet) -> FinishedCalibration {
             populations: vec![posterior.clone(); 3],
             draws: posterior,
             prior_draws,
-            subchains: None,
         }),
         emulator: None,
         likeliest_values: Some(likeliest_values),

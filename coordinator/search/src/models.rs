@@ -176,7 +176,8 @@ impl SearchModels {
                     ModelKind::Command | ModelKind::Umbridge => Smoothness::Unknown,
                 },
                 has_numerical_noise: base.model.kind != ModelKind::QuasiStatic,
-                has_low_fidelity: base.model.kind == ModelKind::Scm && base.fit_variant.coarse().is_ok(),
+                has_low_fidelity: base.model.kind == ModelKind::Scm
+                    && base.fit_variant.low_fidelity().is_ok(),
             },
         }
     }
@@ -232,8 +233,8 @@ impl SearchModels {
                 variant = self.of_proposed_runs(variant);
             }
             if key.is_low_fidelity {
-                let coarse = variant.coarse();
-                variant = coarse.map_err(|e| FileError::whole(JOB, e.to_string()))?;
+                let low_fidelity = variant.low_fidelity();
+                variant = low_fidelity.map_err(|e| FileError::whole(JOB, e.to_string()))?;
             }
             Ok((variant.hash(), variant))
         };

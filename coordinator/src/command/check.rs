@@ -243,9 +243,9 @@ fn simulate(calibration: &mut Calibration, models: &LocalModels) -> anyhow::Resu
                 break;
             };
             let start = Instant::now();
-            let (outcome, end) = model.serve(question.theta, question.subchain.as_ref());
+            let outcome = model.evaluate(question.theta);
             simulated_s += start.elapsed().as_secs_f64();
-            calibration.complete(evaluation, SimulationResult::new(outcome, end)?, "pilot")?;
+            calibration.complete(evaluation, SimulationResult::new(outcome)?, "pilot")?;
         }
     }
     Ok(simulated_s)

@@ -109,12 +109,12 @@ fn check_texts(request: &ExchangeRequest) -> Result<(), HttpError> {
     }
     for result in &request.results {
         match &result.outcome {
-            Some(Outcome::Rejected(rejection)) => {
+            Outcome::Rejected(rejection) => {
                 check("kind", &rejection.kind, LONGEST_NAME)?;
                 check("message", &rejection.message, LONGEST_MESSAGE)?;
             }
-            Some(Outcome::Fault(fault)) => check("message", &fault.message, LONGEST_MESSAGE)?,
-            Some(Outcome::Evaluated(_)) | None => {}
+            Outcome::Fault(fault) => check("message", &fault.message, LONGEST_MESSAGE)?,
+            Outcome::Evaluated(_) => {}
         }
     }
     Ok(())

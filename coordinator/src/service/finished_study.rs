@@ -69,16 +69,11 @@ async fn finished_with(
     let at_likeliest = reader.likeliest(row.id).await?;
     let likeliest_values = likeliest_values(reader, row, &spec, &posterior, at_likeliest.as_ref()).await?;
     let histories = at_likeliest.map(|observables| observables.histories);
-    let subchains = match spec.algorithm.has_metamodel() {
-        true => reader.subchains(row.id).await?,
-        false => None,
-    };
     let sampled = SampledPosterior {
         draws: posterior,
         populations,
         prior_draws,
         stages: reader.stages(row.id).await?,
-        subchains,
     };
     let outcome = Outcome::new(estimate, sampled);
     Ok(FinishedCalibration {

@@ -102,7 +102,6 @@ fn observables(vectors: [Vec<f64>; VECTORS]) -> Observables {
         plate_pressure_pa: next(),
         shear_stress_pa: next(),
         // These values have a column of their own, and only fitted runs have them.
-        coarse: None,
         histories: Vec::new(),
     }
 }

@@ -40,8 +40,6 @@ pub(super) fn row(evaluation: u64, worker: &str, fingerprint: i64) -> Evaluation
         theta: vec![1.0],
         log_likelihood: None,
         kept: Kept::Scored,
-        coarse: None,
-        end: None,
         fingerprint: Fingerprint(fingerprint),
         worker: worker.into(),
     }

@@ -11,7 +11,7 @@ use record::fact::{EvaluationRow, Kept};
 
 /// The largest number of rows in one statement; SQLite takes 32,766 parameters, PostgreSQL 65,535.
 const ROWS: usize = 1000;
-const EVALUATION: [&str; 11] = [
+const EVALUATION: [&str; 9] = [
     "calibration",
     "evaluation",
     "theta",
@@ -21,8 +21,6 @@ const EVALUATION: [&str; 11] = [
     "observables",
     "fingerprint",
     "worker",
-    "subchain",
-    "coarse",
 ];
 
 /// A study to store, with its first calibrations. Either all of them are stored or none.
@@ -155,8 +153,6 @@ pub(super) async fn insert_evaluations(
                 observables.into(),
                 row.fingerprint.0.into(),
                 row.worker.into(),
-                row.end.as_ref().map(json).into(),
-                row.coarse.as_deref().map(blob::encode).into(),
             ]
         });
         insert("evaluations", &EVALUATION, rows.collect(), &Conflict::Keep)

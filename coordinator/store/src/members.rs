@@ -12,11 +12,12 @@ use super::json::{file_map, json};
 use super::sql::{Connection, On, Row, query, query_scalar};
 use job::{
     AlgorithmSettings, Job, continued_job, earlier_search, effect_name, is_earlier_search, searched_model,
+    without_metamodel,
 };
 use record::{Change, Extension, Membership, Role};
 
 /// The name of a job in messages.
-const JOB: &str = "job.toml";
+pub(super) const JOB: &str = "job.toml";
 
 /// The row of a calibration as an earlier version stored it.
 #[derive(Debug, Clone)]
@@ -111,9 +112,7 @@ fn filled_study(rows: &[EarlierRow]) -> Vec<(i64, Filled)> {
         rows.iter().partition(|row| is_earlier_search(&row.job.toml));
     // A job that this version does not understand compares no models.
     let lead = calibrations.first();
-    let models = lead
-        .and_then(|lead| Job::parse(JOB, &lead.job.toml).ok())
-        .map_or(1, |job| job.models);
+    let models = lead.and_then(|lead| parsed(lead)).map_or(1, |job| job.models);
     let mut filled: Vec<(i64, Filled)> = Vec::new();
     for (number, row) in calibrations.iter().enumerate() {
         let membership = match calibrations[..number].first() {
@@ -139,10 +138,16 @@ fn filled_study(rows: &[EarlierRow]) -> Vec<(i64, Filled)> {
 
 /// Returns the role of a calibration from its job. A job that this version does not understand counts as a sample.
 fn role(row: &EarlierRow) -> Role {
-    match Job::parse(JOB, &row.job.toml).map(|job| job.algorithm) {
-        Ok(AlgorithmSettings::Fit(_) | AlgorithmSettings::Evolve(_)) => Role::Fit,
-        Ok(AlgorithmSettings::Sample(_) | AlgorithmSettings::Discover { .. }) | Err(_) => Role::Sample,
+    match parsed(row).map(|job| job.algorithm) {
+        Some(AlgorithmSettings::Fit(_) | AlgorithmSettings::Evolve(_)) => Role::Fit,
+        Some(AlgorithmSettings::Sample(_) | AlgorithmSettings::Discover { .. }) | None => Role::Sample,
     }
+}
+
+/// Parses a job of an earlier version; `None` if this version does not understand it.
+fn parsed(row: &EarlierRow) -> Option<Job> {
+    let toml = without_metamodel(JOB, &row.job.toml).ok()?;
+    Job::parse(JOB, &toml).ok()
 }
 
 /// Finds the calibration that a search belongs to: the first one with the same model; if none has the same text, the one that the search is
@@ -206,7 +211,7 @@ fn change(row: &EarlierRow, parent: &EarlierRow, rest: &str) -> Option<Change> {
     if let Some(runs) = word.strip_suffix(" runs") {
         return runs.parse().ok().map(Change::Runs);
     }
-    let job = Job::parse(JOB, &row.job.toml).ok()?;
+    let job = parsed(row)?;
     (job.algorithm.name() == word).then(|| Change::Algorithm(word.to_owned()))
 }
 

@@ -40,6 +40,7 @@ const FILES: &[(i64, &str, &str)] = &[
     file!(20, "members", "0020_members.sql"),
     file!(21, "observables", "0021_observables.sql"),
     file!(22, "emulators", "0022_emulators.sql"),
+    file!(23, "no metamodel", "0023_no_metamodel.sql"),
 ];
 
 /// The files of `migrations/postgres/`. A server starts with the tables of version 19; later migrations have a file in each folder.
@@ -48,6 +49,7 @@ const SERVER_FILES: &[(i64, &str, &str)] = &[
     file!(20, "members", "postgres/0020_members.sql"),
     file!(21, "observables", "postgres/0021_observables.sql"),
     file!(22, "emulators", "postgres/0022_emulators.sql"),
+    file!(23, "no metamodel", "postgres/0023_no_metamodel.sql"),
 ];
 
 /// The version of the tables that this program writes.

@@ -12,14 +12,15 @@ use statistics::LogLikelihood;
 use super::blob;
 use super::error::StoreError;
 use super::json::{file_map, json, numbers};
-use super::members::Filled;
+use super::members::{Filled, JOB};
 use super::observables;
 use super::reader::Reader;
 use super::sql::{Pool, Row, query, query_as, query_scalar};
 use super::theta::theta;
+use job::without_metamodel;
 use record::{
     CalibrationRow, Discovery, EstimateRow, EvaluationKey, ExperimentRow, LIKELIEST, Membership,
-    PREDICTIONS_FROM, Prediction, RejectionReason, Role, StageRow, Subchains,
+    PREDICTIONS_FROM, Prediction, RejectionReason, Role, StageRow,
 };
 
 const CALIBRATION: &str = "SELECT c.*, coalesce(c.experiment, s.experiment) AS on_experiment
@@ -394,25 +395,6 @@ impl Reader {
         Ok(predictions)
     }
 
-    /// Reads the statistics of the subchains that a metamodel ran between evaluations; `None` if there was none.
-    pub async fn subchains(&self, calibration: i64) -> Result<Option<Subchains>, StoreError> {
-        let row = query(
-            "SELECT count(*) AS subchains, CAST(coalesce(sum(json_extract(subchain, '$.moves')), 0) AS BIGINT) AS moves,
-             count(CASE WHEN json_extract(subchain, '$.accepted') > 0 THEN 1 END) AS moved FROM evaluations
-             WHERE calibration = ? AND subchain IS NOT NULL",
-        )
-        .bind(calibration)
-        .fetch_one(&self.pool)
-        .await?;
-        let count = |column: &str| row.get::<i64>(column).unsigned_abs();
-        let subchains = Subchains {
-            subchains: count("subchains"),
-            moves: count("moves"),
-            moved: count("moved"),
-        };
-        Ok((subchains.subchains > 0).then_some(subchains))
-    }
-
     /// Reads the fitted runs at the likeliest parameters, with their histories where the model has a time axis; `None` where they were not
     /// simulated once more, or were rejected.
     pub async fn likeliest(&self, calibration: i64) -> Result<Option<Observables>, StoreError> {
@@ -519,8 +501,19 @@ fn membership(row: &Row) -> Result<Option<Membership>, StoreError> {
     }))
 }
 
+/// Returns the text of a stored job. Results of a metamodel are read as those of moves; a job that would go on with one is left as it
+/// is, so that its reader refuses it.
+fn job_text(toml: String, state: CalibrationState) -> String {
+    match state.is_final() {
+        true => without_metamodel(JOB, &toml).unwrap_or(toml),
+        false => toml,
+    }
+}
+
 fn columns(id: i64, row: &Row, filled: Filled) -> Result<CalibrationRow, StoreError> {
     let state: &str = row.try_get("state")?;
+    let state =
+        CalibrationState::from_name(state).ok_or_else(|| StoreError::Corrupt(format!("state {state}")))?;
     let unsigned = |column| Ok::<_, StoreError>(row.try_get::<Option<i64>>(column)?.map(i64::unsigned_abs));
     Ok(CalibrationRow {
         id,
@@ -529,11 +522,10 @@ fn columns(id: i64, row: &Row, filled: Filled) -> Result<CalibrationRow, StoreEr
         name: row.try_get("name")?,
         membership: filled.membership,
         job: FileSet {
-            toml: filled.toml.map_or_else(|| row.try_get("toml"), Ok)?,
+            toml: job_text(filled.toml.map_or_else(|| row.try_get("toml"), Ok)?, state),
             files: file_map(row.try_get("files")?)?,
         },
-        state: CalibrationState::from_name(state)
-            .ok_or_else(|| StoreError::Corrupt(format!("state {state}")))?,
+        state,
         message: row.try_get("message")?,
         model_version: row.try_get("model_version")?,
         busy_ms: unsigned("busy_ms")?.unwrap_or_default(),

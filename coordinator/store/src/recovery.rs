@@ -3,7 +3,6 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use shared::api::CalibrationState;
-use statistics::SubchainEnd;
 
 use super::blob;
 use super::error::StoreError;
@@ -44,8 +43,7 @@ impl Reader {
         bytes.map(SealKey).ok_or_else(corrupt)
     }
 
-    /// Reads everything that a replay needs. With `fitted`, this includes predicted values, which a fit is told and a metamodel is trained
-    /// on.
+    /// Reads everything that a replay needs. With `fitted`, this includes the predicted values that an engine is told.
     pub async fn stored(&self, calibration: i64, fitted: bool) -> Result<Stored, StoreError> {
         // All statements see one state of the store, because results may be dropped meanwhile.
         let mut view = self.pool.view().await?;
@@ -65,7 +63,7 @@ impl Reader {
             let rows = query(
                 "SELECT evaluation, theta, log_likelihood, rejection, worker, fingerprint,
                  confirmed_by IS NOT NULL AS is_confirmed,
-                 CASE WHEN ?2 THEN fitted END AS fitted, CASE WHEN ?2 THEN coarse END AS coarse, subchain
+                 CASE WHEN ?2 THEN fitted END AS fitted
                  FROM evaluations WHERE calibration = ?1 AND evaluation > ?3 ORDER BY evaluation LIMIT ?4",
             )
             .bind(calibration)
@@ -120,31 +118,21 @@ impl Reader {
 }
 
 fn evaluation_row(evaluation: u64, row: &Row) -> Result<EvaluationRow, StoreError> {
-    let values = |column: &str| {
-        let bytes: Option<&[u8]> = row.try_get(column)?;
-        bytes.map(blob::decode_values).transpose()
-    };
-    let end: Option<&str> = row.try_get("subchain")?;
+    let fitted: Option<&[u8]> = row.try_get("fitted")?;
+    let fitted = fitted.map(blob::decode_values).transpose()?;
     let rejection: Option<String> = row.try_get("rejection")?;
-    let fitted = values("fitted")?.filter(|values| !values.is_empty());
     Ok(EvaluationRow {
         evaluation,
         theta: theta(row)?,
         log_likelihood: row.try_get("log_likelihood")?,
-        kept: match (rejection, fitted) {
+        kept: match (rejection, fitted.filter(|values| !values.is_empty())) {
             (Some(reason), _) => Kept::Rejected(reason),
             (None, Some(values)) => Kept::Fitted(values),
             (None, None) => Kept::Scored,
         },
         worker: row.try_get("worker")?,
         fingerprint: Fingerprint(row.try_get("fingerprint")?),
-        coarse: values("coarse")?,
-        end: end.map(subchain_end).transpose()?,
     })
-}
-
-fn subchain_end(json: &str) -> Result<SubchainEnd, StoreError> {
-    serde_json::from_str(json).map_err(|e| StoreError::Corrupt(format!("subchain {json}: {e}")))
 }
 
 #[cfg(test)]
@@ -160,8 +148,6 @@ mod tests {
             theta,
             log_likelihood: (!matches!(kept, Kept::Rejected(_))).then_some(-0.1 * evaluation as f64),
             kept,
-            coarse: None,
-            end: None,
             fingerprint: Fingerprint(-1),
             worker: "worker".into(),
         }

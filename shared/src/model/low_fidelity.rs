@@ -1,20 +1,29 @@
-//! The quasi-static model as the low-fidelity model of a metamodel for the three-dimensional one.
+//! The quasi-static variant of a three-dimensional one: its low-fidelity model.
 
-use serde::{Deserialize, Serialize};
-use statistics::Metamodel;
-use utoipa::ToSchema;
+use super::effects::EffectSet;
+use super::error::ModelError;
+use super::kind::ModelKind;
+use super::variant::ModelVariant;
+use crate::parameters;
 
-use crate::predicted::PredictedValue;
-
-/// The low-fidelity (quasi-static) model of a variant, whose high-fidelity model is the three-dimensional one.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
-#[serde(deny_unknown_fields)]
-pub struct LowFidelityModel {
-    /// The predicted values in which the two models are compared, in the order of the likelihood.
-    pub values: Vec<PredictedValue>,
-    /// The metamodel of a stage. It is absent before the first stage; the worker then evaluates both models and proposes no
-    /// moves.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(value_type = Option<Object>)]
-    pub metamodel: Option<Box<Metamodel>>,
+impl ModelVariant {
+    /// Returns the variant of the quasi-static model with the same conditions and parameters, by which a search screens its
+    /// candidates; [`ModelError`] names what that model cannot express.
+    pub fn low_fidelity(&self) -> Result<ModelVariant, ModelError> {
+        let low_fidelity = ModelVariant {
+            kind: ModelKind::QuasiStatic,
+            spatial: None,
+            histories: false,
+            fixed: self
+                .fixed
+                .iter()
+                .filter(|(name, _)| parameters::SPATIAL.iter().all(|p| p.name != name.as_str()))
+                .map(|(name, &value)| (name.clone(), value))
+                .collect(),
+            ..self.clone()
+        };
+        let effects = EffectSet::read(&low_fidelity.effects)?;
+        low_fidelity.check_expressible(&effects)?;
+        Ok(low_fidelity)
+    }
 }

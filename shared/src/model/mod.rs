@@ -10,7 +10,7 @@
 //! - `names`: the meaning of parameter names, and the check that a set of them is complete.
 //! - `variant`: [`ModelVariant`], with the runs and readings (`condition`) to simulate; `capability`: the check that its
 //!   model can express it.
-//! - `low_fidelity`, `metamodel`: the quasi-static, low-fidelity model for the three-dimensional one.
+//! - `low_fidelity`: the quasi-static variant of a three-dimensional one.
 
 mod capability;
 mod condition;
@@ -22,7 +22,6 @@ mod external_table;
 pub mod grouser_key;
 mod kind;
 mod low_fidelity;
-mod metamodel;
 mod names;
 mod rolled_grousers;
 pub mod settings;
@@ -34,7 +33,6 @@ pub use effects::{EffectSet, EffectText};
 pub use error::ModelError;
 pub use external::{ExternalModel, ExternalParameter, ExternalSource, RunInput};
 pub use kind::ModelKind;
-pub use low_fidelity::LowFidelityModel;
 pub use names::{ParameterScope, check_complete, lookup};
 pub use settings::ModelSettings;
 pub use spatial::SpatialSettings;

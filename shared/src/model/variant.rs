@@ -12,7 +12,6 @@ use super::effects::{EffectSet, EffectText};
 use super::error::ModelError;
 use super::external::ExternalModel;
 use super::kind::ModelKind;
-use super::low_fidelity::LowFidelityModel;
 use super::names::{ParameterScope, check_complete, lookup};
 use super::settings::ModelSettings;
 use super::spatial::SpatialSettings;
@@ -74,9 +73,6 @@ pub struct ModelVariant {
     /// Parameters at which an external model must answer: if it fails there, the machine is at fault.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub probe: Vec<f64>,
-    /// The low-fidelity quasi-static model for a metamodel, if there is one.
-    #[serde(default, rename = "companion", skip_serializing_if = "Option::is_none")]
-    pub low_fidelity: Option<LowFidelityModel>,
 }
 
 impl ModelVariant {
@@ -181,7 +177,6 @@ impl ModelVariant {
             plates: Vec::new(),
             rings: Vec::new(),
             probe: Vec::new(),
-            low_fidelity: None,
         };
         variant.check_expressible(effects)?;
         Ok(variant)
@@ -192,7 +187,6 @@ impl ModelVariant {
         let rolls = self.kind == ModelKind::Scm && !self.conditions.is_empty();
         rolls.then(|| ModelVariant {
             histories: true,
-            low_fidelity: None,
             ..self.clone()
         })
     }

@@ -1,4 +1,4 @@
-//! The statistics that coordinator and workers share: priors, likelihood, random streams, metamodel.
+//! Priors, likelihood and random streams.
 //!
 //! ```
 //! use statistics::rng::Stream;
@@ -24,11 +24,9 @@
 //! - [`likelihood`]: the density of the measurements, given predictions.
 //! - [`prior`]: truncated distributions, and the coordinates in which a sampler moves.
 //! - [`rng`]: one random stream per (seed, stage, particle, step).
-//! - [`metamodel`]: the proposals of a sampler, and delayed acceptance by a cheap model.
 
 pub mod likelihood;
 pub mod log_likelihood;
-pub mod metamodel;
 pub mod prior;
 pub mod rng;
 
@@ -37,5 +35,4 @@ pub use likelihood::{
     Sensitive,
 };
 pub use log_likelihood::{LogLikelihood, NotANumber};
-pub use metamodel::{Metamodel, ModelPair, Subchain, SubchainEnd};
 pub use prior::{Distribution, Marginal, Prior, PriorError};

@@ -40,14 +40,14 @@ const DIRECTION: [(&str, &str); 19] = [
     ("shared/formula", ""),
     ("shared/signal", ""),
     ("shared/statistics", ""),
-    ("shared", "formula signal statistics"),
+    ("shared", "formula signal"),
     ("worker/scm", "formula signal"),
     ("coordinator/inference", "statistics"),
     ("coordinator/discovery", "inference statistics"),
     ("coordinator/import", "formula shared"),
     ("coordinator/job", "formula inference shared statistics"),
     ("coordinator/page", ""),
-    ("coordinator/record", "inference job shared statistics"),
+    ("coordinator/record", "inference job shared"),
     (
         "coordinator/report",
         "formula inference job page record result shared statistics",
@@ -69,10 +69,10 @@ const DIRECTION: [(&str, &str); 19] = [
         "inference job record search shared statistics",
     ),
     ("coordinator/store", "inference job record shared statistics"),
-    ("worker", "formula scm shared signal statistics"),
+    ("worker", "formula scm shared signal"),
     (
         "coordinator",
-        "discovery export farm formula import inference job page record report result search shared signal statistics store worker",
+        "discovery export farm formula import inference job page record report result search shared signal store worker",
     ),
 ];
 
@@ -209,21 +209,8 @@ fn the_coordinator_knows_no_physics_and_the_worker_in_one_file() {
         &["coordinator/src/embedded.rs"],
     );
     nowhere(&["worker/src"], &["coordinator::"], &[]);
-    // A worker takes the moves of a metamodel, and needs nothing else of the statistics.
-    nowhere(
-        &["worker/src"],
-        &["statistics::"],
-        &["worker/src/model/low_fidelity.rs", "worker/src/model/variant.rs"],
-    );
-    nowhere(
-        &["shared/src"],
-        &["statistics::"],
-        &[
-            "shared/src/model/low_fidelity.rs",
-            "shared/src/model/metamodel.rs",
-            "shared/src/exchange.rs",
-        ],
-    );
+    // Workers know neither priors nor likelihoods.
+    nowhere(&["worker/src", "shared/src"], &["statistics::"], &[]);
 }
 
 #[test]

@@ -15,13 +15,6 @@ fn job() -> Job {
     Job::small().sampler(300, [4, 8], 5)
 }
 
-fn metamodel_job() -> Job {
-    let moves = "moves = [2, 4]\nmetamodel_moves = 8";
-    Job::rolling()
-        .sampler(40, [2, 4], 5)
-        .in_job("moves = [2, 4]", moves)
-}
-
 /// Returns the results of honest workers.
 fn honest(job: &Job) -> String {
     let service = Service::start(&["--local-workers", "2"]);
@@ -75,11 +68,6 @@ fn survives_a_liar(job: &Job, honest_results: usize, verify_percent: &str) {
 #[test]
 fn a_worker_that_begins_to_lie_is_found_and_changes_no_byte() {
     survives_a_liar(&job(), 700, "20");
-}
-
-#[test]
-fn so_is_one_whose_subchains_of_a_metamodel_end_elsewhere() {
-    survives_a_liar(&metamodel_job(), 60, "50");
 }
 
 #[test]

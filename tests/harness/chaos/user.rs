@@ -54,7 +54,7 @@ impl Reference {
 #[derive(Debug)]
 pub(super) struct User {
     client: Client,
-    /// A sampler on a fast model, a sampler with a metamodel on a slow model, and a study that extends its model automatically.
+    /// A sampler on a fast model, a sampler with an emulator of a slow model, and a study that extends its model automatically.
     references: [Reference; 3],
     /// The numbers of the studies that must exist, with the names of their jobs.
     submitted: BTreeMap<i64, String>,
@@ -71,7 +71,7 @@ impl User {
             client,
             references: [
                 Reference::new("tmcmc", Job::small().sampler(1000, [4, 10], 3)),
-                Reference::new("metamodel", Job::metamodel()),
+                Reference::new("emulated", Job::emulated()),
                 Reference::new("auto", Job::hidden_shear().sampler(50, [1, 2], 1)),
             ],
             submitted: BTreeMap::new(),

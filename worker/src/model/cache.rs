@@ -22,7 +22,7 @@ pub struct VariantCache {
 #[derive(Debug)]
 struct CachedVariant {
     compiled: Arc<CompiledVariant>,
-    /// Length of the variant's text, which for a metamodel grows with the particles, as does its compiled size.
+    /// Length of the variant's text, with which its compiled size grows.
     bytes: usize,
 }
 

@@ -1,11 +1,10 @@
 //! A model variant, compiled for evaluation.
 //!
 //! # Layout
-//! - `variant`: [`CompiledVariant`], a forward model with its low-fidelity model; `cache`: the compiled variants in memory.
+//! - `variant`: [`CompiledVariant`], a built-in or external model; `cache`: the compiled variants in memory.
 //! - `forward`: the forward model; `physics`: its equations; `spatial`: the settings of the three-dimensional one;
 //!   `bevameter`: plates and rings.
 //! - `external`: an external model, with the effects around it.
-//! - `low_fidelity`: the quasi-static model as low-fidelity model of the three-dimensional one, for a metamodel.
 //! - `error`: errors of compiling a variant.
 //! - `effects`: the effects, compiled, with the sources of their parameters.
 //! - `parameters`: the source of each physical quantity.
@@ -17,7 +16,6 @@ mod effects;
 mod error;
 mod external;
 mod forward;
-mod low_fidelity;
 mod parameters;
 mod physics;
 mod recording;

@@ -73,7 +73,6 @@ fn lease(number: u64, variant: &str) -> Lease {
         variant: variant.into(),
         theta: Vec::new(),
         announce: false,
-        subchain: None,
     }
 }
 
@@ -139,7 +138,7 @@ async fn a_batch_of_more_variants_than_the_cache_holds_is_evaluated() {
     assert_eq!(ended, Ok(Ok(Ended::Asked)));
     assert!(dealing.returned.lock().unwrap().is_empty());
     let results = dealing.results.lock().unwrap();
-    let is_evaluated = |result: &WorkResult| matches!(result.outcome, Some(Outcome::Evaluated(_)));
+    let is_evaluated = |result: &WorkResult| matches!(result.outcome, Outcome::Evaluated(_));
     assert_eq!(
         results.iter().filter(|result| is_evaluated(result)).count(),
         variants

@@ -458,8 +458,7 @@ impl<C: Coordinator> Worker<C> {
             calibration,
             evaluation,
             seal,
-            end: None,
-            outcome: Some(outcome),
+            outcome,
             repeated: None,
         });
     }

@@ -189,7 +189,7 @@ impl EffectSearch {
             self.candidates[candidate].evaluations += 1;
         }
         let proposals = requests.iter().enumerate().map(|(index, request)| {
-            Proposal::plain(index, self.frame(request.candidate).theta(&request.position))
+            Proposal::new(index, self.frame(request.candidate).theta(&request.position))
         });
         let proposals = proposals.collect();
         self.round.ask(proposals);

@@ -142,7 +142,7 @@ impl DiscoverySearch {
             let queries = self.stage.queries();
             if !queries.is_empty() {
                 let proposals = queries.iter().enumerate();
-                let proposals = proposals.map(|(i, query)| Proposal::plain(i, query.theta.clone()));
+                let proposals = proposals.map(|(i, query)| Proposal::new(i, query.theta.clone()));
                 let proposals = proposals.collect();
                 self.round.ask(proposals);
                 self.queries = queries;

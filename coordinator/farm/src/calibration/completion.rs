@@ -79,23 +79,16 @@ impl Calibration {
         (facts, true)
     }
 
-    /// Checks that a result answers the question of its evaluation. A question of an earlier round is no longer known, so its result
+    /// Checks that a result has the shape that its variant demands. A question of an earlier round is no longer known, so its result
     /// passes.
     fn check(&self, evaluation: u64, computed: &SimulationResult) -> Result<(), ResultError> {
         let Some(question) = self.question(evaluation) else {
             return Ok(());
         };
-        let moves = self.spec.algorithm.metamodel_moves();
-        if !computed.answers(question.subchain.is_some(), moves, || self.spec.prior()) {
-            return Err(ResultError::OtherQuestion { evaluation });
-        }
-        let (Some(Ok(observables)), Some(variant)) = (&computed.outcome, self.variant(question.variant))
-        else {
+        let (Ok(observables), Some(variant)) = (&computed.0, self.variant(question.variant)) else {
             return Ok(());
         };
-        let values = self.spec.likelihood.values();
-        let is_coarse_short = observables.coarse.as_ref().is_some_and(|c| c.len() != values);
-        if !observables.covers(variant) || is_coarse_short {
+        if !observables.covers(variant) {
             let runs = variant.conditions.len();
             return Err(ResultError::WrongShape { evaluation, runs });
         }
@@ -109,26 +102,21 @@ impl Calibration {
         computed: SimulationResult,
         answer: &Answer,
     ) -> Result<EvaluationRow, LikelihoodError> {
-        let SimulationResult { end, mut outcome } = computed;
-        let proposed = self
+        let SimulationResult(outcome) = computed;
+        let theta = self
             .theta(evaluation)
-            .expect("the queue holds only evaluations asked for");
-        let theta = end.as_ref().map_or(proposed, |end| &end.theta).to_vec();
+            .expect("the queue holds only evaluations asked for")
+            .to_vec();
         let is_scored = self.phase.is_sampling() && self.engine.discovery().is_none();
-        let score = |outcome| self.score(outcome, &theta);
-        // Where a subchain stayed at its start, there is no outcome and no score.
-        let log_likelihood = outcome.as_ref().filter(|_| is_scored).map(score).transpose()?;
-        let coarse = match &mut outcome {
-            Some(Ok(observables)) if self.phase.is_sampling() => observables.coarse.take(),
-            _ => None,
+        let log_likelihood = match is_scored {
+            true => Some(self.score(&outcome, &theta)?),
+            false => None,
         };
         Ok(EvaluationRow {
             evaluation,
             theta,
             log_likelihood: log_likelihood.map(LogLikelihood::value).filter(|l| l.is_finite()),
             kept: self.kept(evaluation, outcome),
-            coarse,
-            end,
             fingerprint: answer.fingerprint,
             worker: answer.worker.clone(),
         })
@@ -152,19 +140,18 @@ impl Calibration {
         }
     }
 
-    fn kept(&self, evaluation: u64, outcome: Option<Result<Observables, RejectionReason>>) -> Kept {
+    fn kept(&self, evaluation: u64, outcome: Result<Observables, RejectionReason>) -> Kept {
         let searched = |observables: &Observables| {
             let particle = self.proposal(evaluation)?.particle;
             self.engine.discovery()?.values(particle, observables)
         };
         match outcome {
-            None => Kept::Scored,
-            Some(Err(reason)) => Kept::Rejected(reason.0),
-            Some(Ok(observables)) if !self.phase.is_sampling() => Kept::Whole(Box::new(observables)),
-            Some(Ok(observables)) if self.keeps_values() => Kept::Fitted(
+            Err(reason) => Kept::Rejected(reason.0),
+            Ok(observables) if !self.phase.is_sampling() => Kept::Whole(Box::new(observables)),
+            Ok(observables) if self.keeps_values() => Kept::Fitted(
                 searched(&observables).unwrap_or_else(|| self.spec.predicted_values(&observables)),
             ),
-            Some(Ok(_)) => Kept::Scored,
+            Ok(_) => Kept::Scored,
         }
     }
 
@@ -209,11 +196,9 @@ impl Calibration {
     }
 
     fn count(&mut self, row: &EvaluationRow) {
-        // A subchain that stayed at its start has evaluated nothing.
-        let is_simulated = row.end.as_ref().is_none_or(|end| end.accepted > 0);
         // The held-out runs of a draw do not count as a further parameter vector.
-        let is_counted = is_simulated && !self.key(row.evaluation).is_of_holdout();
-        self.cost.simulations += u64::from(is_simulated);
+        let is_counted = !self.key(row.evaluation).is_of_holdout();
+        self.cost.simulations += 1;
         self.cost.evaluations += u64::from(is_counted);
         self.cost.rejected += u64::from(is_counted && row.kept.is_rejected());
     }

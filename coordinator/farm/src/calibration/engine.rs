@@ -4,10 +4,9 @@ use inference::evolution::Evolution;
 use inference::lm::LmFit;
 use inference::point_estimate::ModeEstimate;
 use inference::{
-    EmulatedSampler, EmulatorRecord, EvaluationResult, PosteriorSample, Proposal, Sampler, StageRecord,
-    TellError, TellProgress,
+    EmulatedSampler, EmulatorRecord, PosteriorSample, Proposal, Sampler, StageRecord, TellError, TellProgress,
 };
-use statistics::{LogLikelihood, Metamodel, ModelPair, NotANumber};
+use statistics::{LogLikelihood, NotANumber};
 
 use job::{AlgorithmSettings, AlgorithmSettingsError, Spec};
 use record::{Discovery, EvaluationRow};
@@ -56,23 +55,6 @@ pub(super) enum EngineError {
     Score(#[from] NotANumber),
 }
 
-/// Makes the result that a sampler is told.
-fn sampled(row: &EvaluationRow) -> Result<EvaluationResult, NotANumber> {
-    let log_likelihood = log_likelihood(row)?;
-    let pair = row.kept.fitted().zip(row.coarse.as_ref());
-    let pair = pair.map(|(fine, coarse)| ModelPair {
-        fine: fine.to_vec(),
-        coarse: coarse.clone(),
-    });
-    Ok(match &row.end {
-        None => EvaluationResult::AtProposal { log_likelihood, pair },
-        Some(end) => EvaluationResult::AtSubchainEnd {
-            found: (end.accepted > 0).then_some((log_likelihood, pair)),
-            end: end.clone(),
-        },
-    })
-}
-
 /// Returns ln p(data | theta) of an evaluation. Where the model rejected the parameters, the data are impossible.
 pub(super) fn log_likelihood(row: &EvaluationRow) -> Result<LogLikelihood, NotANumber> {
     row.log_likelihood
@@ -108,8 +90,7 @@ impl CalibrationEngine {
                 CalibrationEngine::Emulated(Box::new(sampler))
             }
             AlgorithmSettings::Sample(settings) => {
-                let sampler = Sampler::with_metamodel(prior, settings, likelihood.clone());
-                let sampler = sampler.map_err(AlgorithmSettingsError::from)?;
+                let sampler = Sampler::new(prior, settings).map_err(AlgorithmSettingsError::from)?;
                 CalibrationEngine::Sampler(Box::new(sampler))
             }
             AlgorithmSettings::Fit(settings) => {
@@ -151,7 +132,7 @@ impl CalibrationEngine {
     /// Tells the engine the result of a pending particle.
     pub(super) fn tell(&mut self, particle: usize, row: &EvaluationRow) -> Result<TellProgress, EngineError> {
         Ok(match self {
-            CalibrationEngine::Sampler(sampler) => sampler.tell(particle, sampled(row)?)?,
+            CalibrationEngine::Sampler(sampler) => sampler.tell(particle, log_likelihood(row)?)?,
             CalibrationEngine::Emulated(sampler) => sampler.tell(particle, row.kept.fitted())?,
             CalibrationEngine::Fit(fit) => fit.tell(particle, row.kept.fitted())?,
             CalibrationEngine::Evolution(evolution) => evolution.tell(particle, log_likelihood(row)?)?,
@@ -175,17 +156,6 @@ impl CalibrationEngine {
         match self {
             CalibrationEngine::Emulated(sampler) => Some(sampler.record()),
             CalibrationEngine::Sampler(_)
-            | CalibrationEngine::Fit(_)
-            | CalibrationEngine::Evolution(_)
-            | CalibrationEngine::Discovery(_) => None,
-        }
-    }
-
-    /// Returns the metamodel that runs the subchains of the stage in progress, if there is one.
-    pub(super) fn metamodel(&self) -> Option<&Metamodel> {
-        match self {
-            CalibrationEngine::Sampler(sampler) => sampler.metamodel(),
-            CalibrationEngine::Emulated(_)
             | CalibrationEngine::Fit(_)
             | CalibrationEngine::Evolution(_)
             | CalibrationEngine::Discovery(_) => None,

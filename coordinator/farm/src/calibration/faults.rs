@@ -5,7 +5,6 @@
 //! that a machine may be at fault, the calibration pauses.
 
 use shared::api::CalibrationState;
-use statistics::SubchainEnd;
 
 use super::Calibration;
 use super::simulation_result::SimulationResult;
@@ -103,26 +102,9 @@ impl Calibration {
         }
     }
 
-    /// Records an evaluation as rejected because of faults; a subchain stays at its start.
+    /// Records an evaluation as rejected because of faults.
     fn give_up(&mut self, evaluation: u64, message: &str, facts: &mut Vec<Fact>) {
-        let start = self.theta(evaluation).map(<[f64]>::to_vec);
-        let stayed = start
-            .filter(|_| self.subchain(evaluation).is_some())
-            .map(|theta| SubchainEnd {
-                theta,
-                log_gain: 0.0,
-                moves: 0,
-                accepted: 0,
-                scaled: 0,
-                scaled_accepted: 0,
-            });
-        let given_up = match stayed {
-            None => SimulationResult::refused(format!("fault: given up: {message}")),
-            Some(end) => SimulationResult {
-                outcome: None,
-                end: Some(end),
-            },
-        };
+        let given_up = SimulationResult::refused(format!("fault: given up: {message}"));
         match self.complete(evaluation, given_up, NOBODY) {
             Ok((more, _)) => facts.extend(more),
             Err(error) => self.change_state(CalibrationState::Paused, Some(error.to_string()), facts),

@@ -33,7 +33,6 @@ use inference::Proposal;
 use shared::api::CalibrationState;
 use shared::file::FileSet;
 use shared::model::ModelVariant;
-use statistics::Subchain;
 
 use self::phase::Phase;
 use self::variants::Variants;
@@ -192,20 +191,14 @@ impl Calibration {
     /// Returns the question of an evaluation; `None` for an evaluation that is not in the present round.
     pub fn question(&self, evaluation: u64) -> Option<Question<'_>> {
         let theta = self.theta(evaluation)?;
-        let subchain = self.subchain(evaluation);
-        let (variant, theta) = match (self.searched(evaluation), subchain) {
-            (Some(searched), _) => searched,
-            (None, Some(_)) => (self.variants.with_metamodel()?, theta),
-            (None, None) => {
+        let (variant, theta) = match self.searched(evaluation) {
+            Some(searched) => searched,
+            None => {
                 let variant = self.variants.for_key(self.key(evaluation))?;
                 (variant, self.spec.model_theta(theta))
             }
         };
-        Some(Question {
-            variant,
-            theta,
-            subchain,
-        })
+        Some(Question { variant, theta })
     }
 
     /// Returns the variant with a hash, if this calibration uses it.
@@ -228,7 +221,6 @@ impl Calibration {
         let question = Question {
             variant: &hash,
             theta: &theta,
-            subchain: question.subchain,
         };
         let variant = self.variant(&hash).cloned();
         self.witness.second.ask(evaluation, question, variant, slow);
@@ -266,7 +258,7 @@ impl Calibration {
         EvaluationKey::from_number(evaluation, self.spec.algorithm.width())
     }
 
-    /// Returns the whole parameter vector of an evaluation of the present round; for a subchain, its start.
+    /// Returns the whole parameter vector of an evaluation of the present round.
     fn theta(&self, evaluation: u64) -> Option<&[f64]> {
         match (self.key(evaluation), self.phase.draws()) {
             (
@@ -292,11 +284,6 @@ impl Calibration {
         }
     }
 
-    /// Returns the subchain of an evaluation, if it has one.
-    fn subchain(&self, evaluation: u64) -> Option<Subchain> {
-        self.proposal(evaluation).and_then(|p| p.subchain)
-    }
-
     /// Begins a round.
     fn ask(&mut self) {
         self.witness.begin_round();
@@ -307,7 +294,6 @@ impl Calibration {
     fn fill_queue(&mut self) {
         let keys: Vec<EvaluationKey> = match &self.phase {
             Phase::Sampling => {
-                self.variants.prepare_stage(self.engine.metamodel());
                 let round = self.engine.round();
                 let key = |p: &Proposal| EvaluationKey::Sampling {
                     round,

@@ -1,14 +1,10 @@
-//! The question of an evaluation: variant, parameters, subchain.
-
-use statistics::Subchain;
+//! The question of an evaluation: variant and parameters.
 
 /// The question that a lease asks.
 #[derive(Debug, Clone, Copy)]
 pub struct Question<'a> {
     /// Hash of the variant.
     pub variant: &'a str,
-    /// The parameters of the model; for a subchain, all parameters.
+    /// The parameters of the model.
     pub theta: &'a [f64],
-    /// The subchain that starts there.
-    pub subchain: Option<Subchain>,
 }

@@ -8,7 +8,6 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use record::Fingerprint;
 use shared::model::ModelVariant;
-use statistics::Subchain;
 
 use super::question::Question;
 use crate::lease::{LeaseQueue, SlowLease};
@@ -50,7 +49,6 @@ pub enum Verdict {
 struct Repeated {
     variant: String,
     theta: Vec<f64>,
-    subchain: Option<Subchain>,
     /// Whether answers are compared; otherwise the first one is enough.
     is_compared: bool,
     answers: Vec<Answer>,
@@ -105,7 +103,6 @@ impl SecondAnswers {
         let repeated = Repeated {
             variant: question.variant.to_owned(),
             theta: question.theta.to_vec(),
-            subchain: question.subchain,
             is_compared,
             answers: Vec::new(),
         };
@@ -126,7 +123,6 @@ impl SecondAnswers {
         self.repeated.get(&evaluation).map(|repeated| Question {
             variant: &repeated.variant,
             theta: &repeated.theta,
-            subchain: repeated.subchain,
         })
     }
 
@@ -251,7 +247,6 @@ mod tests {
         let question = Question {
             variant: "00ff",
             theta: &[1.5],
-            subchain: None,
         };
         let slow = SlowLease {
             lease: 7,
@@ -336,7 +331,6 @@ mod tests {
         let question = Question {
             variant: "00ff",
             theta: &[1.5],
-            subchain: None,
         };
         second.ask(3, question, None, None);
         answer(&mut second, "quick", 1);
@@ -365,7 +359,6 @@ mod tests {
             let question = Question {
                 variant: "00ff",
                 theta: &[],
-                subchain: None,
             };
             second.ask(evaluation, question, None, None);
         }

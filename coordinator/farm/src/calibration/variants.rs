@@ -5,7 +5,6 @@ use std::collections::BTreeMap;
 use job::Spec;
 use record::EvaluationKey;
 use shared::model::ModelVariant;
-use statistics::Metamodel;
 
 /// The variants of a calibration by hash, with their purposes.
 #[derive(Debug)]
@@ -21,8 +20,6 @@ pub(super) struct Variants {
     holdout: Option<String>,
     /// The hashes of the holdout runs one by one; empty until they are needed.
     holdout_runs: Vec<String>,
-    /// The present stage's number, and the hash of the sampled variant with the metamodel of the stage.
-    stage: Option<(usize, String)>,
 }
 
 impl Variants {
@@ -35,7 +32,6 @@ impl Variants {
             histories: spec.fit_variant.with_histories().map(&mut add),
             holdout: spec.holdout_variant.clone().map(&mut add),
             holdout_runs: Vec::new(),
-            stage: None,
             by_hash,
         }
     }
@@ -54,7 +50,7 @@ impl Variants {
         self.holdout_runs.len()
     }
 
-    /// Returns the hash of the variant of an evaluation without a subchain.
+    /// Returns the hash of the variant of an evaluation.
     pub(super) fn for_key(&self, key: EvaluationKey) -> Option<&str> {
         match key {
             EvaluationKey::Sampling { .. } => Some(&self.sampled),
@@ -62,26 +58,6 @@ impl Variants {
             EvaluationKey::Prediction { holdout: true, .. } => self.holdout.as_deref(),
             EvaluationKey::HoldoutRun { run, .. } => self.holdout_runs.get(run).map(String::as_str),
             EvaluationKey::Likeliest => Some(self.histories.as_ref().unwrap_or(&self.fit)),
-        }
-    }
-
-    /// Returns the hash of the variant of the present stage's subchains.
-    pub(super) fn with_metamodel(&self) -> Option<&str> {
-        self.stage.as_ref().map(|(_, hash)| hash.as_str())
-    }
-
-    /// Makes the variant of the stage in progress, whose metamodel is frozen until the next one.
-    pub(super) fn prepare_stage(&mut self, metamodel: Option<&Metamodel>) {
-        let number = metamodel.map(Metamodel::stage);
-        if self.stage.as_ref().map(|(number, _)| *number) == number {
-            return;
-        }
-        if let Some((_, hash)) = self.stage.take() {
-            self.by_hash.remove(&hash);
-        }
-        if let Some(metamodel) = metamodel {
-            let variant = self.by_hash[&self.sampled].with_metamodel(metamodel);
-            self.stage = Some((metamodel.stage(), insert(&mut self.by_hash, variant)));
         }
     }
 

@@ -1,12 +1,12 @@
 //! Samples of the emulated target: no evaluation of the model is needed.
 
-use statistics::metamodel::ChainState;
 use statistics::prior::Prior;
 use statistics::rng::Stream;
 
 use super::target::{EmulatedScore, EmulatedTarget, log_likelihood};
 use crate::tell::InferenceFailure;
 use crate::tmcmc::draws::{DrawKey, DrawProposal, Fit, WeightedSample};
+use crate::tmcmc::pool::ChainState;
 use crate::tmcmc::transition::systematic;
 use crate::tmcmc::{Particle, Sampler, StageMethod, TmcmcSettings};
 
@@ -264,7 +264,6 @@ fn state(prior: &Prior, theta: &[f64], value: f64) -> ChainState {
         log_prior: prior.log_density_of_coordinates(&coordinates),
         coordinates,
         log_likelihood: log_likelihood(value),
-        pair: None,
     }
 }
 

@@ -197,7 +197,7 @@ impl EmulatedSampler {
         let proposals = thetas.into_iter().enumerate();
         self.round.ask(
             proposals
-                .map(|(particle, theta)| Proposal::plain(particle, theta))
+                .map(|(particle, theta)| Proposal::new(particle, theta))
                 .collect(),
         );
     }

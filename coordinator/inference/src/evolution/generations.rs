@@ -147,7 +147,7 @@ impl Evolution {
                 let proposals = positions
                     .iter()
                     .enumerate()
-                    .map(|(particle, position)| Proposal::plain(particle, self.space.theta(position)));
+                    .map(|(particle, position)| Proposal::new(particle, self.space.theta(position)));
                 self.round.ask(proposals.collect());
                 self.positions = positions;
             }

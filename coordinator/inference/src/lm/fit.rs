@@ -156,7 +156,7 @@ impl LmFit {
     pub(super) fn ask(&mut self, awaited: FitRound, thetas: impl Iterator<Item = Vec<f64>>) {
         let proposals = thetas
             .enumerate()
-            .map(|(particle, theta)| Proposal::plain(particle, theta))
+            .map(|(particle, theta)| Proposal::new(particle, theta))
             .collect();
         self.round.ask(proposals);
         self.phase = RunPhase::Waiting(awaited);

@@ -5,12 +5,12 @@ use super::draws::{
 };
 use super::evidence::Evidence;
 use super::particle::Particle;
+use super::pool::Pool;
 use super::record::{PosteriorSample, StageRecord};
 use super::sampler::{Sampler, SamplerPhase, SamplerRound};
 use super::transition::tooth;
 use crate::phase::RunPhase;
 use crate::tell::InferenceFailure;
-use statistics::metamodel::Pool;
 
 /// Absolute z-score of the difference between the last stage's draws and the prediction of the stage before, at and above which the draws
 /// are not trusted. Earlier stages only lead to the last one, and raise no alarm. Weights have heavier tails than a normal variable: over

@@ -18,22 +18,24 @@
 //!
 //! # Layout
 //! - `sampler`: the rounds. `stage_sequence`: from the prior draws through the stages to the posterior sample.
-//! - `settings`, `evaluation`, `record`, `particle`: inputs and outputs.
+//! - `settings`, `record`, `particle`: inputs and outputs. `pool`: the states that a stage has visited.
 //! - `transition`: from the pool of a stage to the chains of the next.
-//! - `draws`, `draw_sequence`: stages of independent draws. `stage`, `scale`: the moves of the chains. `equilibrium`: when they
-//!   end.
+//! - `draws`, `draw_sequence`: stages of independent draws. `stage`, `scale`: the moves of the chains. `proposal_mixture`,
+//!   `covariance`: the candidates of a move. `equilibrium`: when the moves end.
 //! - `evidence`: the log-evidence and its standard error.
 //!
 //! # Source
 //! Ching & Chen 2007, J. Eng. Mech. 133:816, doi:10.1061/(ASCE)0733-9399(2007)133:7(816); Dau & Chopin 2022, J. R. Stat.
 //! Soc. B 84:114, doi:10.1111/rssb.12475.
 
+mod covariance;
 mod draw_sequence;
 pub(crate) mod draws;
 mod equilibrium;
-mod evaluation;
 mod evidence;
 mod particle;
+pub(crate) mod pool;
+mod proposal_mixture;
 mod record;
 mod sampler;
 mod scale;
@@ -42,7 +44,6 @@ mod stage;
 mod stage_sequence;
 pub(crate) mod transition;
 
-pub use evaluation::EvaluationResult;
 pub use particle::Particle;
 pub use record::{PosteriorSample, StageProgress, StageRecord};
 pub use sampler::Sampler;

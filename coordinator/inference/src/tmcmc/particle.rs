@@ -1,6 +1,6 @@
 //! A particle: a member of the population.
 
-use statistics::metamodel::ChainState;
+use super::pool::ChainState;
 use statistics::{LogLikelihood, Prior};
 
 /// A parameter vector with its log-likelihood and log-prior.

@@ -1,7 +1,6 @@
 //! The rounds of the sampler: list proposals, take their results, advance.
 
 use super::draws::DrawStage;
-use super::evaluation::EvaluationResult;
 use super::evidence::Evidence;
 use super::record::{PosteriorSample, StageProgress, StageRecord};
 use super::settings::{TmcmcSettings, TmcmcSettingsError};
@@ -10,8 +9,7 @@ use super::transition::Passage;
 use crate::phase::{EvaluationCount, RunPhase};
 use crate::round::{Proposal, ProposalRound};
 use crate::tell::{InferenceFailure, TellError, TellProgress};
-use statistics::likelihood::Likelihood;
-use statistics::metamodel::Metamodel;
+use statistics::log_likelihood::LogLikelihood;
 use statistics::prior::Prior;
 use statistics::rng::Stream;
 
@@ -23,9 +21,7 @@ use statistics::rng::Stream;
 pub struct Sampler {
     pub(super) prior: Prior,
     pub(super) settings: TmcmcSettings,
-    /// The likelihood by which a metamodel scores its predictions; `None`: there is no metamodel.
-    pub(super) likelihood: Option<Likelihood>,
-    pub(super) round: ProposalRound<EvaluationResult>,
+    pub(super) round: ProposalRound<LogLikelihood>,
     pub(super) phase: SamplerPhase,
     pub(super) evidence: Evidence,
     pub(super) passage: Passage,
@@ -57,13 +53,12 @@ impl Sampler {
         let pending: Vec<Proposal> = (0..settings.particles)
             .map(|particle| {
                 let mut stream = Stream::new(settings.seed, 0, particle as u64, 0);
-                Proposal::plain(particle, prior.sample(&mut stream))
+                Proposal::new(particle, prior.sample(&mut stream))
             })
             .collect();
         let mut sampler = Self {
             prior,
             settings,
-            likelihood: None,
             round: ProposalRound::default(),
             phase: RunPhase::Waiting(SamplerRound::Prior),
             evidence: Evidence::default(),
@@ -75,40 +70,13 @@ impl Sampler {
         Ok(sampler)
     }
 
-    /// Makes a sampler whose chains move by a metamodel between evaluations.
-    ///
-    /// # Arguments
-    /// - `settings`: settings of [`Algorithm::Tmcmc`](super::Algorithm::Tmcmc); with `metamodel_moves` = 0 there is no metamodel.
-    /// - `likelihood`: scores the metamodel's predictions; the told results must be scored by the same one.
-    ///
-    /// # Errors
-    /// [`TmcmcSettingsError`] names the setting, its value and its bound.
-    pub fn with_metamodel(
-        prior: Prior,
-        settings: TmcmcSettings,
-        likelihood: Likelihood,
-    ) -> Result<Self, TmcmcSettingsError> {
-        let mut sampler = Self::new(prior, settings)?;
-        sampler.likelihood = (settings.metamodel_moves > 0).then_some(likelihood);
-        Ok(sampler)
-    }
-
     /// Returns the round in progress.
     ///
     /// Proposals outside the prior's support are rejected at once and never listed. The list is empty only when the
     /// sampler has finished or failed.
     #[must_use]
-    pub fn round(&self) -> &ProposalRound<EvaluationResult> {
+    pub fn round(&self) -> &ProposalRound<LogLikelihood> {
         &self.round
-    }
-
-    /// Returns the metamodel of the stage in progress; `None` without one, and while the prior is drawn.
-    #[must_use]
-    pub fn metamodel(&self) -> Option<&Metamodel> {
-        match &self.phase {
-            RunPhase::Waiting(SamplerRound::Moves(stage)) => stage.metamodel.as_deref(),
-            _ => None,
-        }
     }
 
     /// Returns the finished stages.
@@ -160,23 +128,16 @@ impl Sampler {
         }
     }
 
-    /// Takes the result of a pending particle; the last one of a round advances the sampler.
+    /// Takes the log-likelihood of a pending particle; the last one of a round advances the sampler.
     ///
     /// # Errors
-    /// [`TellError::AlreadyTold`], [`TellError::NotPending`] and [`TellError::NotAsked`]; the sampler is then unchanged.
+    /// [`TellError::AlreadyTold`] and [`TellError::NotPending`]; the sampler is then unchanged.
     pub fn tell(
         &mut self,
         particle: usize,
-        result: impl Into<EvaluationResult>,
+        log_likelihood: LogLikelihood,
     ) -> Result<TellProgress, TellError> {
-        let result = result.into();
-        let moved = matches!(result, EvaluationResult::AtSubchainEnd { .. });
-        let asked = self.round.proposal(particle);
-        if asked.is_some_and(|proposal| proposal.subchain.is_some() != moved) {
-            let round = self.round.number();
-            return Err(TellError::NotAsked { round, particle });
-        }
-        Ok(if self.round.tell(particle, result)? {
+        Ok(if self.round.tell(particle, log_likelihood)? {
             self.advance()
         } else {
             TellProgress::Waiting
@@ -188,12 +149,12 @@ impl Sampler {
         let stages = self.stages.len();
         loop {
             let (proposals, results) = self.round.complete();
-            let evaluated = results.iter().filter(|result| result.is_evaluated());
-            self.count.add(evaluated.map(EvaluationResult::is_rejected));
+            self.count
+                .add(results.iter().map(|result| result.is_impossible()));
             let next = match std::mem::replace(&mut self.phase, RunPhase::Waiting(SamplerRound::Prior)) {
                 RunPhase::Waiting(SamplerRound::Prior) => self.finish_prior(&proposals, results),
                 RunPhase::Waiting(SamplerRound::Moves(mut stage)) => {
-                    stage.accept(&self.prior, results);
+                    stage.accept(results);
                     self.after_step(stage)
                 }
                 RunPhase::Waiting(SamplerRound::Draws(mut stage)) => {

@@ -57,8 +57,6 @@ pub struct TmcmcSettings {
     pub target_cov: f64,
     /// Number of evaluations of a round that refines an emulator ([`StageMethod::Emulated`] only).
     pub batch: usize,
-    /// Number of moves by the metamodel between two evaluations; 0: no metamodel ([`Algorithm::Tmcmc`] only).
-    pub metamodel_moves: usize,
 }
 
 impl Default for TmcmcSettings {
@@ -73,7 +71,6 @@ impl Default for TmcmcSettings {
             seed: 1,
             target_cov: 1.0,
             batch: 12,
-            metamodel_moves: 0,
         }
     }
 }
@@ -121,24 +118,6 @@ pub enum TmcmcSettingsError {
     #[error("components {value} is not 1 to {}", TmcmcSettings::MAX_COMPONENTS)]
     Components {
         /// The components as given.
-        value: usize,
-    },
-    /// The metamodel moves particles, but the stages draw them.
-    #[error("metamodel_moves {value} needs stages = \"moves\": independent draws take no moves")]
-    MetamodelNeedsMoves {
-        /// The moves of the metamodel as given.
-        value: usize,
-    },
-    /// The metamodel has more moves than a worker should take at a time.
-    #[error("metamodel_moves {value} is more than {}", TmcmcSettings::MAX_MOVES)]
-    MetamodelMoves {
-        /// The moves of the metamodel as given.
-        value: usize,
-    },
-    /// The algorithm does not support a metamodel.
-    #[error("metamodel_moves {value}: only tmcmc takes a metamodel")]
-    NoMetamodel {
-        /// The moves of the metamodel as given.
         value: usize,
     },
     /// A round of evaluations has none, or too many.
@@ -201,24 +180,12 @@ impl TmcmcSettings {
                 min: min_moves,
                 max: max_moves,
             })
-        } else if self.metamodel_moves > Self::MAX_MOVES {
-            Err(TmcmcSettingsError::MetamodelMoves {
-                value: self.metamodel_moves,
-            })
         } else if self.components == 0 || self.components > Self::MAX_COMPONENTS {
             Err(TmcmcSettingsError::Components {
                 value: self.components,
             })
         } else if self.batch == 0 || self.batch > Self::MAX_BATCH {
             Err(TmcmcSettingsError::Batch { value: self.batch })
-        } else if self.metamodel_moves > 0 && self.algorithm != Algorithm::Tmcmc {
-            Err(TmcmcSettingsError::NoMetamodel {
-                value: self.metamodel_moves,
-            })
-        } else if self.metamodel_moves > 0 && self.stages != StageMethod::Moves {
-            Err(TmcmcSettingsError::MetamodelNeedsMoves {
-                value: self.metamodel_moves,
-            })
         } else if !(self.target_cov.is_finite() && self.target_cov > 0.0) {
             Err(TmcmcSettingsError::TargetCov {
                 value: self.target_cov,

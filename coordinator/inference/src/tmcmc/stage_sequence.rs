@@ -1,11 +1,9 @@
 //! The sequence of stages, from the prior draws to the posterior sample.
 
-use std::sync::Arc;
-
 use super::draws::WeightedSample;
 use super::equilibrium::{Drift, is_alarming, pooled_z};
-use super::evaluation::EvaluationResult;
 use super::particle::Particle;
+use super::pool::{ChainState, Pool};
 use super::record::{PosteriorSample, StageRecord};
 use super::sampler::{Sampler, SamplerPhase, SamplerRound};
 use super::settings::Algorithm;
@@ -14,9 +12,9 @@ use super::transition::{Passage, Transition};
 use crate::phase::RunPhase;
 use crate::round::Proposal;
 use crate::tell::InferenceFailure;
-use statistics::metamodel::{ChainState, Metamodel, MetamodelStage, Pool};
+use statistics::log_likelihood::LogLikelihood;
 
-/// Number of steps between two checks of a stage's equilibrium; with a metamodel, whose steps hold many moves, it is one.
+/// Number of steps between two checks of a stage's equilibrium.
 const BLOCK: usize = 5;
 
 impl Sampler {
@@ -25,23 +23,20 @@ impl Sampler {
     pub(super) fn finish_prior(
         &mut self,
         proposals: &[Proposal],
-        results: Vec<EvaluationResult>,
+        results: Vec<LogLikelihood>,
     ) -> Result<SamplerPhase, InferenceFailure> {
         let draws = results.len();
         let (mut pool, mut sample) = (Pool::default(), WeightedSample::default());
-        for (proposal, result) in proposals.iter().zip(results) {
-            if let EvaluationResult::AtProposal { log_likelihood, pair } = result {
-                let coordinates = self.prior.coordinates(&proposal.theta);
-                let state = ChainState {
-                    log_prior: self.prior.log_density_of_coordinates(&coordinates),
-                    coordinates,
-                    log_likelihood,
-                    pair: pair.map(Arc::new),
-                };
-                sample.push(state.clone(), 0.0);
-                if !log_likelihood.is_impossible() {
-                    pool.push(pool.states.len(), state);
-                }
+        for (proposal, log_likelihood) in proposals.iter().zip(results) {
+            let coordinates = self.prior.coordinates(&proposal.theta);
+            let state = ChainState {
+                log_prior: self.prior.log_density_of_coordinates(&coordinates),
+                coordinates,
+                log_likelihood,
+            };
+            sample.push(state.clone(), 0.0);
+            if !log_likelihood.is_impossible() {
+                pool.push(pool.states.len(), state);
             }
         }
         let (possible, needed) = (pool.states.len(), self.prior.dimension() + 2);
@@ -72,12 +67,8 @@ impl Sampler {
         scale: Option<f64>,
         log_evidence: f64,
     ) -> Result<SamplerPhase, InferenceFailure> {
-        let Transition {
-            mut stage,
-            weights,
-            step,
-        } = Transition::new(pool, index, exponent, scale, &self.settings)?;
-        stage.metamodel = self.learn(&stage, pool, &weights.normalised())?;
+        let Transition { stage, weights, step } =
+            Transition::new(pool, index, exponent, scale, &self.settings)?;
         self.passage = Passage {
             step,
             weight_cov: weights.cov,
@@ -86,35 +77,13 @@ impl Sampler {
         Ok(RunPhase::Waiting(SamplerRound::Moves(Box::new(stage))))
     }
 
-    /// Returns the metamodel of a stage, from the pool that it begins with.
-    fn learn(
-        &self,
-        stage: &Stage,
-        pool: &Pool,
-        weights: &[f64],
-    ) -> Result<Option<Arc<Metamodel>>, InferenceFailure> {
-        let Some(likelihood) = &self.likelihood else {
-            return Ok(None);
-        };
-        let purpose = MetamodelStage {
-            seed: self.settings.seed,
-            stage: stage.index,
-            exponent: stage.exponent,
-            moves: self.settings.metamodel_moves,
-            prior: &self.prior,
-            likelihood,
-        };
-        let metamodel = Metamodel::learn(&purpose, pool, weights, &stage.mixture);
-        Ok(metamodel.map_err(InferenceFailure::Metamodel)?.map(Arc::new))
-    }
-
     /// Continues a stage, or ends it and starts the next or finishes.
     pub(super) fn after_step(&mut self, stage: Box<Stage>) -> Result<SamplerPhase, InferenceFailure> {
         let [min_moves, _] = self.settings.moves;
         let mut drift = None;
         if self.settings.algorithm == Algorithm::Tmcmc
             && stage.step >= min_moves
-            && (stage.step - min_moves).is_multiple_of(if stage.metamodel.is_some() { 1 } else { BLOCK })
+            && (stage.step - min_moves).is_multiple_of(BLOCK)
         {
             drift = Some(self.drift(&stage)).filter(|drift| drift.may_end());
         }

@@ -141,7 +141,7 @@ impl Spec {
         );
         let fitted = fitted.map_err(in_data)?;
         check_algorithms(&job, parameters.free.len(), fitted.predicted.len()).map_err(in_job)?;
-        let variants = Variants::new(&job, &experiment, &bevameter, &parameters, &fitted).map_err(in_job)?;
+        let variants = Variants::new(&experiment, &bevameter, &parameters, &fitted).map_err(in_job)?;
         Ok(Spec {
             experiment,
             model: parameters.model,

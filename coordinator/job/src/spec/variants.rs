@@ -1,7 +1,7 @@
 //! The model variants that workers evaluate: one for the fitted runs and readings, one for the holdout runs.
 
 use shared::experiment::Experiment;
-use shared::model::{LowFidelityModel, ModelKind, ModelVariant};
+use shared::model::ModelVariant;
 use shared::parameters::NOISE_PREFIX;
 
 use super::fitted::Fitted;
@@ -9,7 +9,6 @@ use super::parameters::Parameters;
 use crate::data::bevameter_readings::BevameterReadings;
 use crate::data::outside_model;
 use crate::data::shared_error::BY_STIFFNESS;
-use crate::job::Job;
 
 /// The variants of a calibration.
 pub(super) struct Variants {
@@ -23,7 +22,6 @@ impl Variants {
     /// # Errors
     /// A sentence: the model cannot express the experiment.
     pub(super) fn new(
-        job: &Job,
         experiment: &Experiment,
         bevameter: &BevameterReadings,
         parameters: &Parameters,
@@ -42,9 +40,6 @@ impl Variants {
             ));
         }
         bevameter.ask(&mut fit);
-        if job.algorithm.has_metamodel() {
-            fit.low_fidelity = Some(low_fidelity(&fit, fitted)?);
-        }
         let holdout = match fitted.holdout_runs.as_slice() {
             [] => None,
             runs => Some(variant_of_runs(runs, experiment, parameters, fitted)?),
@@ -72,20 +67,4 @@ fn variant_of_runs(
     let mut sensitive = fitted.likelihood.sensitive().iter();
     variant.stiffness_sensitivity = sensitive.any(|error| error.derivative == BY_STIFFNESS);
     Ok(variant)
-}
-
-/// Returns the quasi-static model from which a metamodel is made.
-fn low_fidelity(fit: &ModelVariant, fitted: &Fitted) -> Result<LowFidelityModel, String> {
-    if fit.kind != ModelKind::Scm {
-        return Err(
-            "metamodel_moves under [sampler]: the metamodel is made of quasi_static, and needs kind = \"scm\" to save runs of"
-                .into(),
-        );
-    }
-    fit.coarse()
-        .map_err(|e| format!("metamodel_moves under [sampler]: {e}"))?;
-    Ok(LowFidelityModel {
-        values: fitted.predicted.clone(),
-        metamodel: None,
-    })
 }

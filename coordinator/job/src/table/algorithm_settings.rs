@@ -166,29 +166,13 @@ impl AlgorithmSettings {
             if settings.stages == StageMethod::Emulated && settings.algorithm == Algorithm::Tmcmc)
     }
 
-    /// Returns whether the engine receives predicted values in addition to log-likelihoods: fits, searches, emulators and
-    /// metamodels do.
+    /// Returns whether the engine receives predicted values in addition to log-likelihoods: fits, searches and emulators do.
     pub fn is_told_values(&self) -> bool {
         let told = matches!(
             self,
             AlgorithmSettings::Fit(_) | AlgorithmSettings::Discover { .. }
         );
-        told || self.is_emulated() || self.has_metamodel()
-    }
-
-    /// Returns whether a metamodel takes moves between evaluations.
-    pub fn has_metamodel(&self) -> bool {
-        self.metamodel_moves() > 0
-    }
-
-    /// Returns the number of moves of a metamodel between two evaluations.
-    pub fn metamodel_moves(&self) -> usize {
-        match self {
-            AlgorithmSettings::Sample(settings) => settings.metamodel_moves,
-            AlgorithmSettings::Fit(_) | AlgorithmSettings::Evolve(_) | AlgorithmSettings::Discover { .. } => {
-                0
-            }
-        }
+        told || self.is_emulated()
     }
 
     /// Returns the key of the budget that a longer run increases.

@@ -18,9 +18,6 @@ use super::algorithm_settings::{AlgorithmName, AlgorithmSettings};
 use super::error::TableError;
 use crate::derived_schema::from_type;
 
-/// Minimum and maximum number of steps of a stage whose steps are subchains of a metamodel, which decorrelate more than one move.
-const METAMODEL_STEPS: [usize; 2] = [3, 30];
-
 /// The algorithms that a job may state, in the order in which messages name them.
 pub(crate) const ALGORITHMS: [StatedAlgorithm; 6] = [
     StatedAlgorithm::new::<Tmcmc>(),
@@ -30,6 +27,9 @@ pub(crate) const ALGORITHMS: [StatedAlgorithm; 6] = [
     StatedAlgorithm::new::<Ga>(),
     StatedAlgorithm::new::<CmaEs>(),
 ];
+
+/// A key of earlier versions.
+pub(crate) const METAMODEL_MOVES: &str = "metamodel_moves";
 
 /// The seed of all random numbers.
 #[derive(Debug, Clone, Copy, Deserialize, Serialize, JsonSchema)]
@@ -75,9 +75,6 @@ struct Tmcmc {
     /// Least and most Metropolis steps per particle in a stage of moves.
     #[schemars(inner(range(min = 1, max = TmcmcSettings::MAX_MOVES)))]
     moves: Option<[usize; 2]>,
-    /// With `kind = "scm"`: steps that a corrected `quasi_static` model takes between two evaluations of `scm`.
-    #[schemars(range(max = TmcmcSettings::MAX_MOVES))]
-    metamodel_moves: usize,
     seed: Seed,
     point_estimates: PointEstimates,
 }
@@ -91,7 +88,6 @@ impl Default for Tmcmc {
             batch: None,
             components: None,
             moves: None,
-            metamodel_moves: usual.metamodel_moves,
             seed: Seed::default(),
             point_estimates: PointEstimates::default(),
         }
@@ -260,34 +256,22 @@ impl Keys for Tmcmc {
 
     fn settings(self) -> Result<AlgorithmSettings, TableError> {
         let usual = TmcmcSettings::default();
-        let has_metamodel = self.metamodel_moves > 0;
         let stages = match self.stages {
             Some(Stages::Draws) => StageMethod::Draws,
             Some(Stages::Moves) => StageMethod::Moves,
             Some(Stages::Emulated) => StageMethod::Emulated,
-            None if has_metamodel => StageMethod::Moves,
             None => usual.stages,
         };
         if let (StageMethod::Moves, Some(components)) = (stages, self.components) {
             let rule = "belongs to stages = \"draws\"";
             return Err(TableError::value("components", components, rule));
         }
-        if let (StageMethod::Emulated, true) = (stages, has_metamodel) {
-            let rule = "belongs to stages = \"moves\": an emulator needs no moves of a metamodel";
-            return Err(TableError::value("metamodel_moves", self.metamodel_moves, rule));
-        }
-        let moves = if has_metamodel {
-            METAMODEL_STEPS
-        } else {
-            usual.moves
-        };
         Ok(AlgorithmSettings::Sample(TmcmcSettings {
             algorithm: Algorithm::Tmcmc,
             stages,
             particles: self.particles,
             components: self.components.unwrap_or(usual.components),
-            moves: self.moves.unwrap_or(moves),
-            metamodel_moves: self.metamodel_moves,
+            moves: self.moves.unwrap_or(usual.moves),
             batch: self.batch.unwrap_or(usual.batch),
             seed: self.seed.0,
             ..usual
@@ -299,8 +283,7 @@ impl Keys for Tmcmc {
     }
 
     fn follows_kind(&self) -> bool {
-        let is_default = self.stages.is_none() && self.moves.is_none() && self.components.is_none();
-        is_default && self.metamodel_moves == 0
+        self.stages.is_none() && self.moves.is_none() && self.components.is_none()
     }
 
     fn batch(&self) -> Option<usize> {
@@ -452,6 +435,12 @@ impl SamplerTable {
                 .filter(takes)
                 .map(|algorithm| algorithm.name.name())
                 .collect();
+            if key.get_ref() == METAMODEL_MOVES {
+                let message = format!(
+                    "{METAMODEL_MOVES} was removed, because stages = \"emulated\" finds the same posterior with fewer evaluations: submit the job with that in place of this line"
+                );
+                return Err(file.error_at(&key.span(), message));
+            }
             if owners.is_empty() {
                 let message = unknown_word("key", key.get_ref(), known_keys());
                 return Err(file.error_at(&key.span(), message));

@@ -17,6 +17,7 @@ use crate::model_switch::{ModelSwitch, SettingValue};
 use crate::service_effect::ServiceEffect;
 use crate::table::algorithm_settings::{AlgorithmName, AlgorithmSettings};
 use crate::table::model_entry::is_shared_by;
+use crate::table::sampler::METAMODEL_MOVES;
 
 /// Returns a job with an addition; everything else stays as it is written.
 ///
@@ -223,6 +224,23 @@ pub fn searched_model(name: &str, search: &FileSet) -> Result<FileSet, FileError
     let mut text = JobText::parse(name, &search.toml)?;
     text.remove("sampler", |key| key == "algorithm");
     Ok(text.beside(&search.files))
+}
+
+/// Returns the text of a job with `stages = "moves"` in place of `metamodel_moves`, a key of versions before migration 23.
+///
+/// A sampler with a metamodel moved its particles, so its results are read as those of moves.
+///
+/// # Errors
+/// [`FileError`] if the text is no TOML.
+pub fn without_metamodel(name: &str, toml: &str) -> Result<String, FileError> {
+    let mut text = JobText::parse(name, toml)?;
+    if let Some(sampler) = text.table("sampler") {
+        let moves = sampler.remove(METAMODEL_MOVES);
+        if moves.and_then(|moves| moves.as_integer()) > Some(0) {
+            sampler.insert("stages", value("moves"));
+        }
+    }
+    Ok(text.document.to_string())
 }
 
 /// A job's text that is being changed.

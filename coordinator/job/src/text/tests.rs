@@ -1,5 +1,7 @@
 //! What each change of a text leaves alone; and that a change of the value is the same as that of the text.
 
+use inference::StageMethod;
+
 use super::*;
 use crate::facts::{foreign_effects, is_earlier_search};
 use crate::named_files::NamedFile;
@@ -464,4 +466,29 @@ fn a_change_of_the_value_is_that_of_the_text() {
         let without = value.without("job.toml", &dropped).unwrap();
         assert_eq!(content(&text), content(&without), "{priors}");
     }
+}
+
+#[test]
+fn a_metamodel_is_refused_in_a_new_job_and_read_as_moves_in_an_old_one() {
+    let job = SAMPLED.replacen(
+        "[sampler]\n",
+        "[sampler]\nmetamodel_moves = 20 # by quasi_static\n",
+        1,
+    );
+    let line = 1 + job
+        .lines()
+        .position(|line| line.starts_with("metamodel_moves"))
+        .unwrap();
+    let error = Job::parse("job.toml", &job).unwrap_err();
+    assert_eq!(error.line, Some(line));
+    assert!(error.message.contains("stages = \"emulated\""), "{error}");
+    let old = without_metamodel("job.toml", &job).unwrap();
+    let algorithm = Job::parse("job.toml", &old).unwrap().algorithm;
+    assert!(
+        matches!(algorithm, AlgorithmSettings::Sample(settings) if settings.stages == StageMethod::Moves)
+    );
+    // A job that has none stays as it is written.
+    assert_eq!(without_metamodel("job.toml", SAMPLED).unwrap(), SAMPLED);
+    let off = job.replacen("= 20", "= 0", 1);
+    assert_eq!(without_metamodel("job.toml", &off).unwrap(), SAMPLED);
 }

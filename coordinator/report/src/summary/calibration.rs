@@ -46,8 +46,6 @@ pub struct CalibrationSummary {
     pub rejected: Option<u64>,
     /// Wall time `[s]`.
     pub wall_s: f64,
-    /// Counts of a metamodel; null without one.
-    pub metamodel: Option<MetamodelSummary>,
     /// The emulator that the sampler drew on; null without one.
     #[serde(default)]
     pub emulator: Option<EmulatorSummary>,
@@ -96,17 +94,6 @@ impl EmulatorSummary {
             fell_back: diagnostics.fell_back,
         })
     }
-}
-
-/// Counts of a metamodel.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
-pub struct MetamodelSummary {
-    /// Number of moves that the metamodel proposed; each is an evaluation of `quasi_static` in place of `scm`.
-    pub moves: u64,
-    /// Number of subchains, each of which consists of several moves of the metamodel.
-    pub subchains: u64,
-    /// Number of subchains that moved, so that `scm` was evaluated at their end.
-    pub moved: u64,
 }
 
 /// A stage of the sampler.
@@ -166,11 +153,6 @@ pub fn calibration_summary(calibration: &FinishedCalibration) -> Option<Calibrat
         evaluations: calibration.row.evaluations,
         rejected: calibration.row.rejected,
         wall_s: calibration.row.busy_ms as f64 / 1000.0,
-        metamodel: calibration.subchains().map(|s| MetamodelSummary {
-            moves: s.moves,
-            subchains: s.subchains,
-            moved: s.moved,
-        }),
         emulator: EmulatorSummary::new(calibration),
         numerical_noise: calibration
             .emulator

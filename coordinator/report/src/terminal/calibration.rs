@@ -49,15 +49,6 @@ pub(super) fn summary(calibration: &FinishedCalibration) -> String {
     let mut text = headline(calibration) + "\n";
     let row = &calibration.row;
     let fit = calibration.mode();
-    if let Some(metamodel) = calibration.subchains() {
-        let _ = writeln!(
-            text,
-            "metamodel: {} of quasi_static in {}, {} of which moved and were evaluated",
-            number::count(metamodel.moves as usize, "move"),
-            number::count(metamodel.subchains as usize, "subchain"),
-            metamodel.moved
-        );
-    }
     if calibration.approximated().is_some() {
         let _ = writeln!(
             text,

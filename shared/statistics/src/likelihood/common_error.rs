@@ -1,11 +1,9 @@
 //! Common errors of several data, and the blocks of correlated data.
 
-use serde::{Deserialize, Serialize};
-
 use super::datum::{Datum, ErrorSd, LikelihoodError};
 
 /// An error that several data share: it adds `v v'` to their covariance.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct CommonError {
     /// Indices of the data, ascending.
     pub data: Vec<usize>,
@@ -14,7 +12,7 @@ pub struct CommonError {
 }
 
 /// The effect of a common error on each of its data.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub enum CommonErrorSize {
     /// Shifts all data equally: `v_i` = this sd, in the unit of the data, >= 0.
     Shift(ErrorSd),
@@ -67,7 +65,7 @@ pub struct Sensitive {
 }
 
 /// The inadequacy of the model for a group of data, in noise sds.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum Discrepancy {
     /// The model is adequate.
     #[default]

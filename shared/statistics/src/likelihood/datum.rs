@@ -1,11 +1,9 @@
 //! One measured value and its noise, and the errors of data and predictions.
 
-use serde::{Deserialize, Serialize};
-
 use crate::log_likelihood::NotANumber;
 
 /// The standard deviation of an error.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub enum ErrorSd {
     /// A known standard deviation, in the unit of the datum.
     Known(f64),
@@ -17,7 +15,7 @@ pub enum ErrorSd {
 }
 
 /// One measured value.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Datum {
     /// Index of the test run.
     pub run: usize,

@@ -1,14 +1,11 @@
 //! Measured values and the law of their errors.
 
-use serde::{Deserialize, Serialize};
-
 use super::common_error::{self, CommonError, CommonErrorSize, Discrepancy, ErrorBlock, Sensitive};
 use super::datum::{Datum, ErrorSd, LikelihoodError};
 use super::law::ErrorLaw;
 
 /// Measured values and the law of their errors.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(try_from = "SerialisedLikelihood", into = "SerialisedLikelihood")]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Likelihood {
     pub(super) data: Vec<Datum>,
     pub(super) law: ErrorLaw,
@@ -21,34 +18,6 @@ pub struct Likelihood {
     pub(super) alone: Vec<usize>,
     pub(super) blocks: Vec<ErrorBlock>,
     pub(super) sensitive: Vec<Sensitive>,
-}
-
-/// The serialised form of a likelihood: its constructor arguments.
-#[derive(Serialize, Deserialize)]
-struct SerialisedLikelihood {
-    data: Vec<Datum>,
-    law: ErrorLaw,
-    common: Vec<CommonError>,
-    discrepancies: Vec<Discrepancy>,
-}
-
-impl From<Likelihood> for SerialisedLikelihood {
-    fn from(likelihood: Likelihood) -> Self {
-        Self {
-            data: likelihood.data,
-            law: likelihood.law,
-            common: likelihood.common,
-            discrepancies: likelihood.discrepancies,
-        }
-    }
-}
-
-impl TryFrom<SerialisedLikelihood> for Likelihood {
-    type Error = LikelihoodError;
-
-    fn try_from(written: SerialisedLikelihood) -> Result<Self, LikelihoodError> {
-        Self::with_common(written.data, written.law, written.common, written.discrepancies)
-    }
 }
 
 impl Likelihood {

@@ -1,12 +1,10 @@
 //! The law of the errors: normal, or Student's t with its heavy tails.
 
-use serde::{Deserialize, Serialize};
-
 use super::datum::LikelihoodError;
 use crate::prior::LN_SQRT_TAU;
 
 /// The distribution of the errors.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum ErrorLaw {
     /// Normal; the scale is the standard deviation.
     #[default]

@@ -1,11 +1,9 @@
 //! The distributions of priors, and the checks of their numbers.
 
-use serde::{Deserialize, Serialize};
-
 use super::error::PriorError;
 
 /// A univariate distribution before truncation.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Distribution {
     /// Constant density between two ends.
     Uniform {

@@ -1,7 +1,5 @@
 //! The prior of one parameter: a truncated distribution, and the coordinate in which the sampler moves.
 
-use serde::{Deserialize, Serialize};
-
 use super::bound::at_bound;
 use super::density::{Density, SamplingCoordinate, window};
 use super::distribution::{Distribution, ordered};
@@ -11,8 +9,7 @@ use super::normal;
 use crate::rng::Stream;
 
 /// The prior of one parameter: a distribution, truncated to its bounds and renormalised.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(try_from = "SerialisedMarginal", into = "SerialisedMarginal")]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Marginal {
     distribution: Distribution,
     /// Support of x, from `lower` to `upper`.
@@ -22,36 +19,6 @@ pub struct Marginal {
     density: Density,
     mean: f64,
     sd: f64,
-}
-
-/// The serialised form of a marginal: its constructor arguments.
-#[derive(Serialize, Deserialize)]
-struct SerialisedMarginal {
-    distribution: Distribution,
-    /// The truncating bounds; JSON has no infinite numbers.
-    lower: Option<f64>,
-    upper: Option<f64>,
-}
-
-impl From<Marginal> for SerialisedMarginal {
-    fn from(marginal: Marginal) -> Self {
-        let (lower, upper) = marginal.distribution.support();
-        Self {
-            distribution: marginal.distribution,
-            lower: (marginal.lower > lower).then_some(marginal.lower),
-            upper: (marginal.upper < upper).then_some(marginal.upper),
-        }
-    }
-}
-
-impl TryFrom<SerialisedMarginal> for Marginal {
-    type Error = PriorError;
-
-    fn try_from(written: SerialisedMarginal) -> Result<Self, PriorError> {
-        let (lower, upper) = written.distribution.support();
-        let ends = [written.lower.unwrap_or(lower), written.upper.unwrap_or(upper)];
-        Self::new(written.distribution, Some(ends))
-    }
 }
 
 impl Marginal {

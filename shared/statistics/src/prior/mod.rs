@@ -20,48 +20,14 @@ pub use error::PriorError;
 pub use marginal::Marginal;
 pub use normal::LN_SQRT_TAU;
 
-use serde::{Deserialize, Serialize};
-
 use crate::rng::Stream;
 use correlation::Correlation;
 
 /// One marginal per parameter; independent, except for parameters that are jointly normal.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(try_from = "SerialisedPrior", into = "SerialisedPrior")]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Prior {
     marginals: Vec<Marginal>,
     correlation: Option<Correlation>,
-}
-
-/// The serialised form of a prior: its constructor arguments.
-#[derive(Serialize, Deserialize)]
-struct SerialisedPrior {
-    marginals: Vec<Marginal>,
-    correlated: Vec<usize>,
-    correlations: Vec<Vec<f64>>,
-}
-
-impl From<Prior> for SerialisedPrior {
-    fn from(prior: Prior) -> Self {
-        let (correlated, correlations) = prior.correlation.map(Correlation::given).unwrap_or_default();
-        Self {
-            marginals: prior.marginals,
-            correlated,
-            correlations,
-        }
-    }
-}
-
-impl TryFrom<SerialisedPrior> for Prior {
-    type Error = PriorError;
-
-    fn try_from(written: SerialisedPrior) -> Result<Self, PriorError> {
-        let prior = Self::new(written.marginals);
-        if written.correlated.is_empty() {
-            return Ok(prior);
-        }
-        prior.correlated(written.correlated, &written.correlations)
-    }
 }
 
 impl Prior {

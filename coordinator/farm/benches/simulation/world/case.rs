@@ -3,14 +3,13 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use farm::calibration::{Calibration, CalibrationIdentity, Question, SimulationResult};
+use farm::calibration::{Calibration, CalibrationIdentity, SimulationResult};
 use inference::{Particle, PosteriorSample, StageRecord};
 use job::Spec;
 use record::{EvaluationRow, Fact};
 use shared::file::FileSet;
 use shared::model::ModelVariant;
 use shared::outcome::{Observables, Outcome, ParameterRejection, SimulatedHistory};
-use statistics::{Subchain, SubchainEnd};
 
 /// The version of the equations that calibrations are pinned to.
 pub(crate) const EQUATIONS: &str = "scm-7";
@@ -37,8 +36,6 @@ pub(crate) enum Kind {
     Poisoned,
     /// Fifty particles, so that a poisonous evaluation is given up without a pause.
     Crowded,
-    /// TMCMC with subchains of a metamodel between evaluations of the three-dimensional model.
-    Metamodel,
     /// A fit by steps, which uses predicted values.
     Fit,
 }
@@ -48,9 +45,7 @@ pub(crate) enum Kind {
 pub(crate) struct Answered {
     pub(crate) variant: String,
     pub(crate) theta: Vec<f64>,
-    pub(crate) subchain: Option<Subchain>,
-    pub(crate) outcome: Option<Outcome>,
-    pub(crate) end: Option<SubchainEnd>,
+    pub(crate) outcome: Outcome,
     /// The row that the store keeps.
     pub(crate) row: EvaluationRow,
 }
@@ -78,37 +73,23 @@ pub(crate) enum CaseResult {
 
 impl Kind {
     /// The kinds with their shares of the schedules `[%]`.
-    pub(crate) const SHARES: [(Kind, usize); 6] = [
+    pub(crate) const SHARES: [(Kind, usize); 5] = [
         (Kind::Sample, 46),
         (Kind::Refusing, 20),
         (Kind::Poisoned, 16),
         (Kind::Crowded, 2),
-        (Kind::Metamodel, 8),
-        (Kind::Fit, 8),
+        (Kind::Fit, 16),
     ];
 
     fn job(self, seed: u64) -> String {
-        let (kind, sampler) = match self {
-            Kind::Sample | Kind::Poisoned => (
-                "quasi_static",
-                "particles = 5\nstages = \"moves\"\nmoves = [1, 2]",
-            ),
-            Kind::Refusing => (
-                "quasi_static",
-                "particles = 8\nstages = \"moves\"\nmoves = [1, 2]",
-            ),
-            Kind::Crowded => (
-                "quasi_static",
-                "particles = 50\nstages = \"moves\"\nmoves = [1, 2]",
-            ),
-            Kind::Metamodel => ("scm", "particles = 6\nmoves = [1, 2]\nmetamodel_moves = 3"),
-            Kind::Fit => (
-                "quasi_static",
-                "algorithm = \"lm\"\nparticles = 0\nstarts = 2\nmax_evaluations = 30",
-            ),
+        let sampler = match self {
+            Kind::Sample | Kind::Poisoned => "particles = 5\nstages = \"moves\"\nmoves = [1, 2]",
+            Kind::Refusing => "particles = 8\nstages = \"moves\"\nmoves = [1, 2]",
+            Kind::Crowded => "particles = 50\nstages = \"moves\"\nmoves = [1, 2]",
+            Kind::Fit => "algorithm = \"lm\"\nparticles = 0\nstarts = 2\nmax_evaluations = 30",
         };
         format!(
-            "[model]\nkind = \"{kind}\"\n[priors]\nlog10_p_ref = 5.0\nkappa = 0.0\nn = {{ uniform = [0.8, 1.4] }}\nfriction_angle_deg = 30.0\n[sampler]\nseed = {seed}\n{sampler}\n"
+            "[model]\nkind = \"quasi_static\"\n[priors]\nlog10_p_ref = 5.0\nkappa = 0.0\nn = {{ uniform = [0.8, 1.4] }}\nfriction_angle_deg = 30.0\n[sampler]\nseed = {seed}\n{sampler}\n"
         )
     }
 
@@ -116,7 +97,7 @@ impl Kind {
         match self {
             Kind::Poisoned => Some(POISON[0]),
             Kind::Crowded => Some(POISON[1]),
-            Kind::Sample | Kind::Refusing | Kind::Metamodel | Kind::Fit => None,
+            Kind::Sample | Kind::Refusing | Kind::Fit => None,
         }
     }
 
@@ -149,7 +130,6 @@ impl Kind {
             residual_load_n: values.clone(),
             nodes_in_contact: vec![1; runs],
             simulated_travel_m: values.clone(),
-            coarse: variant.low_fidelity.as_ref().map(|_| coarse(theta, values.len())),
             histories: vec![history; if variant.histories { runs } else { 0 }],
             ..Observables::default()
         };
@@ -158,25 +138,6 @@ impl Kind {
         }
         Outcome::Evaluated(observables)
     }
-
-    /// Computes a worker's answer to a question.
-    fn answer(self, variant: &ModelVariant, question: Question) -> (Option<Outcome>, Option<SubchainEnd>) {
-        let metamodel = variant.low_fidelity.as_ref().and_then(|c| c.metamodel.as_ref());
-        let Some((subchain, metamodel)) = question.subchain.zip(metamodel) else {
-            return (Some(self.evaluate(variant, question.theta)), None);
-        };
-        let runs = variant.conditions.len();
-        let end = metamodel
-            .run(&subchain, question.theta, |theta| Some(coarse(theta, runs)))
-            .expect("the simulated values can be scored");
-        let outcome = (end.accepted > 0).then(|| self.evaluate(variant, &end.theta));
-        (outcome, Some(end))
-    }
-}
-
-/// Computes the quasi-static values beside the three-dimensional ones.
-fn coarse(theta: &[f64], values: usize) -> Vec<f64> {
-    vec![4.1 + 0.9 * theta[0]; values]
 }
 
 impl Case {
@@ -193,7 +154,7 @@ impl Case {
         let held_out = match kind {
             Kind::Sample => HELD_OUT.to_owned(),
             Kind::Refusing => format!("{HELD_OUT}{STEEP}"),
-            Kind::Poisoned | Kind::Crowded | Kind::Metamodel | Kind::Fit => String::new(),
+            Kind::Poisoned | Kind::Crowded | Kind::Fit => String::new(),
         };
         let files = FileSet {
             toml: EXPERIMENT.into(),
@@ -220,16 +181,12 @@ impl Case {
                 let variant = calibration
                     .variant(question.variant)
                     .ok_or("a variant is missing")?;
-                let (outcome, end) = kind.answer(variant, question);
-                let mut answered = (
-                    question.variant.to_owned(),
-                    question.theta.to_vec(),
-                    question.subchain,
-                );
+                let outcome = kind.evaluate(variant, question.theta);
+                let mut answered = (question.variant.to_owned(), question.theta.to_vec());
                 let (computed, worker) = if poison == Some(evaluation) {
                     (SimulationResult::refused("fault: given up"), "")
                 } else {
-                    let computed = SimulationResult::new(outcome.clone(), end.clone());
+                    let computed = SimulationResult::new(outcome.clone());
                     (computed.map_err(|e| e.to_string())?, "w")
                 };
                 let (facts, _) = calibration
@@ -238,13 +195,11 @@ impl Case {
                 for fact in facts {
                     match fact {
                         Fact::Evaluated { row, .. } => {
-                            let (variant, theta, subchain) = std::mem::take(&mut answered);
+                            let (variant, theta) = std::mem::take(&mut answered);
                             let answered = Answered {
                                 variant,
                                 theta,
-                                subchain,
                                 outcome: outcome.clone(),
-                                end: end.clone(),
                                 row,
                             };
                             answers.insert(evaluation, answered);
@@ -339,8 +294,6 @@ pub(crate) fn same_row(a: &EvaluationRow, b: &EvaluationRow) -> bool {
     let bits = |values: &[f64]| values.iter().map(|x| x.to_bits()).collect::<Vec<_>>();
     bits(&a.theta) == bits(&b.theta)
         && a.log_likelihood.map(f64::to_bits) == b.log_likelihood.map(f64::to_bits)
-        && a.coarse.as_deref().map(bits) == b.coarse.as_deref().map(bits)
         && a.fingerprint == b.fingerprint
         && a.kept == b.kept
-        && a.end == b.end
 }

@@ -35,7 +35,6 @@ impl Issued<'_> {
             calibration: self.lease.calibration,
             evaluation: self.lease.evaluation,
             seal: self.lease.seal.clone(),
-            end: self.answered.end.clone(),
             outcome: self.answered.outcome.clone(),
             repeated: None,
         }

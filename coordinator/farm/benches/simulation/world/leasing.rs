@@ -86,7 +86,7 @@ impl<'a> Witness<'a> {
         })?;
         let answered = table.case.answers.get(&evaluation).filter(|a| {
             let bits = |theta: &[f64]| theta.iter().map(|x| x.to_bits()).collect::<Vec<_>>();
-            a.variant == lease.variant && bits(&a.theta) == bits(&lease.theta) && a.subchain == lease.subchain
+            a.variant == lease.variant && bits(&a.theta) == bits(&lease.theta)
         });
         let Some(answered) = answered else {
             let how =

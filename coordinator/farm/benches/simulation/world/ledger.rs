@@ -190,7 +190,6 @@ impl<'a> Table<'a> {
                 Kept::Whole(_) => Kept::Scored,
                 kept => kept.clone(),
             },
-            coarse: row.coarse.clone().filter(|_| told_values),
             ..row.clone()
         };
         let evaluations = self.rows.iter();

@@ -52,8 +52,6 @@ plants! {
     ReplayForgetsPause,
     /// A replay forgets the pinned version of the equations.
     ReplayForgetsVersion,
-    /// A replay forgets the quasi-static values that a metamodel learns from.
-    ReplayForgetsCoarse,
     /// A restart repeats lease numbers.
     FenceRepeats,
     /// Leases never expire: they are renewed when their time has come.
@@ -150,7 +148,6 @@ impl Plant {
             Plant::ReplayForgetsAttempts => stored.failed.clear(),
             Plant::ReplayForgetsPause => stored.state = Some(CalibrationState::Running),
             Plant::ReplayForgetsVersion => stored.model_version = None,
-            Plant::ReplayForgetsCoarse => stored.evaluations.values_mut().for_each(|row| row.coarse = None),
             _ => {}
         }
         stored

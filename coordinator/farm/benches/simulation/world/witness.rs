@@ -294,20 +294,21 @@ impl<'a> Witness<'a> {
         demand(attempt == before + 1, Promise::Attempt, || {
             format!("attempt {attempt} at evaluation {evaluation} follows {before} failed ones")
         })?;
-        let is_its_own = match source {
-            Source::Exchange(request) => {
-                self.live.remove(&(id, evaluation, false));
-                let of_it = |r: &&WorkResult| (r.calibration, r.evaluation) == (id, evaluation);
-                request.worker == worker
-                    && request.results.iter().filter(of_it).any(|r| {
-                        matches!(r.outcome, Some(Outcome::Fault(_))) && self.lease_of(r, worker).is_some()
-                    })
-            }
-            Source::Tick => self.expired.iter().any(|(calibration, live)| {
-                *calibration == (id, evaluation, false) && live.worker == worker && live.started
-            }),
-            Source::Command | Source::Restart => false,
-        };
+        let is_its_own =
+            match source {
+                Source::Exchange(request) => {
+                    self.live.remove(&(id, evaluation, false));
+                    let of_it = |r: &&WorkResult| (r.calibration, r.evaluation) == (id, evaluation);
+                    request.worker == worker
+                        && request.results.iter().filter(of_it).any(|r| {
+                            matches!(r.outcome, Outcome::Fault(_)) && self.lease_of(r, worker).is_some()
+                        })
+                }
+                Source::Tick => self.expired.iter().any(|(calibration, live)| {
+                    *calibration == (id, evaluation, false) && live.worker == worker && live.started
+                }),
+                Source::Command | Source::Restart => false,
+            };
         demand(is_its_own, Promise::Attempt, || {
             format!(
                 "an attempt at evaluation {evaluation} is charged to {worker}, which had neither begun nor failed"
@@ -342,7 +343,7 @@ impl<'a> Witness<'a> {
             if issued.is_none_or(|issued| issued.answered.outcome == result.outcome) {
                 continue;
             }
-            let differs = SimulationResult::new(result.outcome.clone(), result.end.clone())
+            let differs = SimulationResult::new(result.outcome.clone())
                 .is_ok_and(|c| c.fingerprint() != row.fingerprint);
             demand(
                 // After a rewind, the question under a number of an earlier round is unknown.
@@ -374,7 +375,7 @@ impl<'a> Witness<'a> {
             let issued = self
                 .lease_of(result, worker)
                 .filter(|issued| issued.history == self.history);
-            let is_fault = matches!(result.outcome, Some(Outcome::Fault(_)));
+            let is_fault = matches!(result.outcome, Outcome::Fault(_));
             let counts = |table: &&Table| issued.is_some_and(|issued| issued.is_of(table)) && !is_fault;
             let Some(table) = ledger.table(id).filter(counts) else {
                 continue;

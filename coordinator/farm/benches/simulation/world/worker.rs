@@ -118,11 +118,9 @@ impl Worker {
                 Phase::Begun if issued.poison && chance(stream, 0.7) => return Act::Die,
                 Phase::Begun if issued.poison || chance(stream, weather.fault) => {
                     let message = "simulated".to_owned();
-                    let outcome = Some(Outcome::Fault(Fault { message }));
-                    let end = None;
+                    let outcome = Outcome::Fault(Fault { message });
                     ended.push(WorkResult {
                         outcome,
-                        end,
                         ..issued.answer()
                     });
                 }
@@ -218,7 +216,7 @@ impl Worker {
 /// Returns the same result with another value, if it has a value to change.
 pub(crate) fn lie(result: &WorkResult) -> Option<WorkResult> {
     let mut lie = result.clone();
-    match lie.outcome.as_mut()? {
+    match &mut lie.outcome {
         Outcome::Evaluated(observables) => observables
             .drawbar_pull_n
             .iter_mut()

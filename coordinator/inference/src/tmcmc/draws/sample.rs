@@ -1,7 +1,6 @@
 //! Draws of one proposal, with their importance weights at any tempering exponent.
 
-use statistics::metamodel::{ChainState, Pool};
-
+use crate::tmcmc::pool::{ChainState, Pool};
 use crate::tmcmc::transition::systematic;
 
 /// Draws of one proposal. A draw that the model rejected has no weight at any exponent.
@@ -60,7 +59,6 @@ impl WeightedSample {
             log_prior: 0.0,
             log_likelihood: statistics::LogLikelihood::new(log_likelihood)
                 .unwrap_or(statistics::LogLikelihood::Impossible),
-            pair: None,
         };
         self.push(state, 0.0);
     }

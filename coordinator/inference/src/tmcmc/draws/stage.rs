@@ -1,14 +1,13 @@
 //! A stage of independent draws in progress.
 
 use statistics::log_likelihood::LogLikelihood;
-use statistics::metamodel::{ChainState, Pool};
 use statistics::prior::Prior;
 
 use super::frame::Fit;
 use super::proposal::{Draw, DrawKey, DrawProposal};
 use super::sample::{Expectation, ImportanceWeights, WeightedSample};
 use crate::round::Proposal;
-use crate::tmcmc::evaluation::EvaluationResult;
+use crate::tmcmc::pool::{ChainState, Pool};
 use crate::tmcmc::settings::TmcmcSettings;
 
 /// ESS/N of a proposal's draws below which the proposal has missed its target.
@@ -152,25 +151,19 @@ impl DrawStage {
         self.pending = self.proposal.draws(self.count, prior);
         let draws = self.pending.iter().enumerate();
         draws
-            .map(|(index, draw)| Proposal::plain(index, prior.theta(&draw.coordinates)))
+            .map(|(index, draw)| Proposal::new(index, prior.theta(&draw.coordinates)))
             .collect()
     }
 
     /// Takes the results of the round, in the order of its draws.
-    pub(crate) fn accept(&mut self, results: Vec<EvaluationResult>) {
+    pub(crate) fn accept(&mut self, results: Vec<LogLikelihood>) {
         self.rounds += 1;
-        for (draw, result) in self.pending.drain(..).zip(results) {
+        for (draw, log_likelihood) in self.pending.drain(..).zip(results) {
             self.evaluations += 1;
-            let log_likelihood = match result {
-                EvaluationResult::AtProposal { log_likelihood, .. } => log_likelihood,
-                // `Sampler::tell` refuses a subchain that is not pending.
-                EvaluationResult::AtSubchainEnd { .. } => LogLikelihood::Impossible,
-            };
             let state = ChainState {
                 coordinates: draw.coordinates,
                 log_prior: draw.log_prior,
                 log_likelihood,
-                pair: None,
             };
             self.sample.push(state, draw.log_ratio);
         }

@@ -1,7 +1,7 @@
 //! The log-evidence and its standard error.
 
 use super::bridge::Bridge;
-use statistics::metamodel::Pool;
+use crate::tmcmc::pool::Pool;
 
 /// The log-evidence so far.
 ///
@@ -111,8 +111,8 @@ impl Evidence {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::tmcmc::pool::ChainState;
     use statistics::log_likelihood::LogLikelihood;
-    use statistics::metamodel::ChainState;
     use statistics::rng::Stream;
 
     fn pool(log_likelihoods: &[f64]) -> Pool {
@@ -125,7 +125,6 @@ mod tests {
                     coordinates: Vec::new(),
                     log_prior: 0.0,
                     log_likelihood,
-                    pair: None,
                 },
             );
         }

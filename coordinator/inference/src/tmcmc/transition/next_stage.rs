@@ -5,10 +5,12 @@ use super::resample::systematic;
 use super::schedule::exponent_step;
 use super::weights::Weights;
 use crate::tell::InferenceFailure;
+use crate::tmcmc::covariance::CovarianceFactor;
+use crate::tmcmc::pool::Pool;
+use crate::tmcmc::proposal_mixture::ProposalMixture;
 use crate::tmcmc::scale::initial_scale;
 use crate::tmcmc::settings::{Algorithm, TmcmcSettings};
 use crate::tmcmc::stage::{Chain, Stage};
-use statistics::metamodel::{CovarianceFactor, Pool, ProposalMixture};
 use statistics::rng::Stream;
 
 /// Stream of a stage's resampling; particles never reach this number.

@@ -1,13 +1,11 @@
 //! The factor of the weighted covariance of a pool, also of a degenerate one.
 
 use nalgebra::{Cholesky, DMatrix, SymmetricEigen};
-use serde::{Deserialize, Serialize};
 
 /// The weighted mean and a matrix A with A A' = the weighted covariance.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct CovarianceFactor {
+#[derive(Debug, Clone)]
+pub(crate) struct CovarianceFactor {
     mean: Vec<f64>,
-    #[serde(with = "square")]
     root: DMatrix<f64>,
     /// True if the root is lower triangular with a positive diagonal, so that it can be inverted.
     regular: bool,
@@ -19,7 +17,7 @@ impl CovarianceFactor {
     /// The *correlation* matrix is factored and scaled back by the standard deviations, so a ridge with an aspect of 1e-6
     /// keeps its shape; nothing is added to the diagonal. A correlation that is singular to rounding is factored through its
     /// eigenvectors: the factor then spans exactly the space of the states.
-    pub fn new(states: &[&[f64]], weights: &[f64]) -> Self {
+    pub(crate) fn new(states: &[&[f64]], weights: &[f64]) -> Self {
         let dimension = states.first().map_or(0, |state| state.len());
         let mut mean = vec![0.0; dimension];
         for (state, weight) in states.iter().zip(weights) {
@@ -60,12 +58,12 @@ impl CovarianceFactor {
     }
 
     /// Returns the number of coordinates.
-    pub fn dimension(&self) -> usize {
+    pub(crate) fn dimension(&self) -> usize {
         self.root.nrows()
     }
 
     /// Computes A times `normals`.
-    pub fn spread(&self, normals: &[f64]) -> Vec<f64> {
+    pub(crate) fn spread(&self, normals: &[f64]) -> Vec<f64> {
         (0..self.root.nrows())
             .map(|row| {
                 normals
@@ -78,7 +76,7 @@ impl CovarianceFactor {
     }
 
     /// Returns mean + A z.
-    pub fn colour(&self, whitened: &[f64]) -> Vec<f64> {
+    pub(crate) fn colour(&self, whitened: &[f64]) -> Vec<f64> {
         self.spread(whitened)
             .iter()
             .zip(&self.mean)
@@ -87,7 +85,7 @@ impl CovarianceFactor {
     }
 
     /// Returns A^-1 (x - mean), the inverse of [`CovarianceFactor::colour`]; `None` if A is singular.
-    pub fn whiten(&self, x: &[f64]) -> Option<Vec<f64>> {
+    pub(crate) fn whiten(&self, x: &[f64]) -> Option<Vec<f64>> {
         if !self.regular {
             return None;
         }
@@ -99,26 +97,6 @@ impl CovarianceFactor {
             whitened[row] = (x[row] - self.mean[row] - explained) / self.root[(row, row)];
         }
         Some(whitened)
-    }
-}
-
-/// A square matrix, serialised by columns.
-mod square {
-    use nalgebra::DMatrix;
-    use serde::{Deserialize, Deserializer, Serialize, Serializer, de::Error};
-
-    pub(super) fn serialize<S: Serializer>(matrix: &DMatrix<f64>, to: S) -> Result<S::Ok, S::Error> {
-        matrix.as_slice().serialize(to)
-    }
-
-    pub(super) fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<DMatrix<f64>, D::Error> {
-        let entries = Vec::<f64>::deserialize(from)?;
-        let size = entries.len().isqrt();
-        if size * size != entries.len() {
-            let count = entries.len();
-            return Err(D::Error::custom(format!("{count} entries make no square matrix")));
-        }
-        Ok(DMatrix::from_vec(size, size, entries))
     }
 }
 

@@ -1,9 +1,7 @@
 //! The mixture of proposals of a stage: random walk, differential evolution, autoregressive jumps.
 
-use serde::{Deserialize, Serialize};
-
 use super::covariance::CovarianceFactor;
-use crate::rng::Stream;
+use statistics::rng::Stream;
 
 /// Number of attempts to draw two different members of the frozen population before a random-walk step is taken instead.
 const PAIR_TRIES: usize = 8;
@@ -22,23 +20,23 @@ const JUMPS: f64 = 0.1;
 const JUMP_NOVELTY: f64 = 0.9;
 
 /// A mixture of proposals, fixed for a stage.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct ProposalMixture {
+#[derive(Debug, Clone)]
+pub(crate) struct ProposalMixture {
     /// Mean and covariance of the pool that the stage began with.
-    pub factor: CovarianceFactor,
+    pub(crate) factor: CovarianceFactor,
     /// Members for differential evolution; empty for a pure random walk.
-    pub frozen: Vec<Vec<f64>>,
+    pub(crate) frozen: Vec<Vec<f64>>,
 }
 
 /// A proposed state.
-#[derive(Debug, Clone, PartialEq)]
-pub struct ProposedMove {
+#[derive(Debug, Clone)]
+pub(crate) struct ProposedMove {
     /// The proposed coordinates.
-    pub coordinates: Vec<f64>,
+    pub(crate) coordinates: Vec<f64>,
     /// True if its length is proportional to the scale.
-    pub scaled: bool,
+    pub(crate) scaled: bool,
     /// ln q(from | candidate) - ln q(candidate | from).
-    pub log_correction: f64,
+    pub(crate) log_correction: f64,
 }
 
 impl ProposalMixture {
@@ -54,7 +52,7 @@ impl ProposalMixture {
     ///
     /// # Source
     /// ter Braak 2006, Stat. Comput. 16:239, doi:10.1007/s11222-006-8769-1.
-    pub fn candidate(&self, from: &[f64], scale: f64, stream: &mut Stream) -> ProposedMove {
+    pub(crate) fn candidate(&self, from: &[f64], scale: f64, stream: &mut Stream) -> ProposedMove {
         if self.frozen.is_empty() {
             return self.walk(from, scale, stream);
         }
