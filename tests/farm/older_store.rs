@@ -1,8 +1,11 @@
-//! Stores that the versions before migrations 9 and 20 wrote: they are read, go on, and give what those versions gave.
+//! Stores that the versions before migrations 9, 20 and 23 wrote: they are read, go on where they can, and give what those versions gave.
 
 use std::path::PathBuf;
 
+use farm_tests::assert_contains;
+use farm_tests::job::Job;
 use farm_tests::programs::{coordinator, run};
+use farm_tests::service::Service;
 use farm_tests::text::same;
 use farm_tests::workspace::{data, text};
 use serde_json::Value;
@@ -29,21 +32,28 @@ fn command(words: &[&str], out: &std::path::Path) -> String {
     run(coordinator(words.iter().copied().chain(["--out", out.as_str()]))).success()
 }
 
-/// The numbers are those that the older version stated of posterior, evidence and point estimate.
+/// Numbers of a posterior and its evidence in a summary.
+const POSTERIOR: [&str; 6] = [
+    "/calibrations/0/log_evidence",
+    "/calibrations/0/parameters",
+    "/calibrations/0/error/fit/all/rmse_sigma",
+    "/calibrations/0/error/fit/drawbar_pull/rmse",
+    "/calibrations/0/error/fit/sinkage/rmse",
+    "/calibrations/0/evaluations",
+];
+
+/// Numbers of a point estimate in a summary.
+const POINT_ESTIMATE: [&str; 2] = [
+    "/point_estimates/0/parameters",
+    "/point_estimates/0/log_posterior",
+];
+
+/// The numbers of a summary are those that an older version stated.
 #[track_caller]
-fn same_numbers(summary: &str) {
+fn same_numbers(version: &str, summary: &str, numbers: &[&str]) {
     let given: Value = serde_json::from_str(summary).expect("JSON");
-    let kept: Value = serde_json::from_str(&text(&data("store-8/summary.json"))).expect("JSON");
-    for number in [
-        "/calibrations/0/log_evidence",
-        "/calibrations/0/parameters",
-        "/calibrations/0/error/fit/all/rmse_sigma",
-        "/calibrations/0/error/fit/drawbar_pull/rmse",
-        "/calibrations/0/error/fit/sinkage/rmse",
-        "/calibrations/0/evaluations",
-        "/point_estimates/0/parameters",
-        "/point_estimates/0/log_posterior",
-    ] {
+    let kept: Value = serde_json::from_str(&text(&data(version).join("summary.json"))).expect("JSON");
+    for number in numbers {
         let at = |summary: &Value| summary.pointer(number).cloned();
         assert!(at(&kept).is_some(), "{number}");
         assert_eq!(at(&given), at(&kept), "{number}");
@@ -60,7 +70,9 @@ fn a_finished_one_is_shown_before_and_after_its_tables_are_brought_up_to_date() 
     // The figure has this mark only if the predictions of the likeliest draw are found among the stored evaluations.
     assert!(report.contains("maximum likelihood"));
     let rerun = command(&["run", &job.display().to_string()], &out);
-    same_numbers(&text(&out.join("summary.json")));
+    let summary = text(&out.join("summary.json"));
+    same_numbers("store-8", &summary, &POSTERIOR);
+    same_numbers("store-8", &summary, &POINT_ESTIMATE);
     same(&text(&out.join("posterior.csv")), &posterior);
     same(&text(&out.join("report.html")), &report);
     same(&command(&["report", "1"], &out), &report);
@@ -71,7 +83,9 @@ fn a_finished_one_is_shown_before_and_after_its_tables_are_brought_up_to_date() 
 fn a_stopped_one_goes_on_and_ends_with_the_same_posterior_and_fit() {
     let (_temporary, job, out) = folder("store-8", "stopped.store");
     command(&["run", &job.display().to_string()], &out);
-    same_numbers(&text(&out.join("summary.json")));
+    let summary = text(&out.join("summary.json"));
+    same_numbers("store-8", &summary, &POSTERIOR);
+    same_numbers("store-8", &summary, &POINT_ESTIMATE);
     same(
         &text(&out.join("posterior.csv")),
         &text(&data("store-8/posterior.csv")),
@@ -170,4 +184,52 @@ async fn a_store_whose_new_columns_are_still_empty_can_be_read() {
     columns.execute(&mut connection).await.expect("new columns");
     connection.close().await.expect("closed");
     assert!(command(&["report", "1"], &out).contains("janosi_hanamoto"));
+}
+
+/// The sentence about a job that states the moves of a metamodel.
+const REMOVED: &str = "job.toml line 18: metamodel_moves was removed, because stages = \"emulated\" finds the same posterior with fewer evaluations: submit the job with that in place of this line";
+
+/// Returns the URL of the store in a folder.
+fn store_in(out: &std::path::Path) -> String {
+    format!("sqlite://{}", out.join("grouser.db").display())
+}
+
+#[test]
+fn a_finished_one_with_a_metamodel_is_shown_before_and_after_its_columns_are_dropped() {
+    let (_temporary, _, out) = folder("store-22", "finished.store");
+    let posterior = text(&data("store-22/posterior.csv"));
+    same(&command(&["export", "1", "--format", "csv"], &out), &posterior);
+    let report = command(&["report", "1"], &out);
+    let service = Service::start_on(&store_in(&out), &[]);
+    same(&service.posterior_csv(1), &posterior);
+    same_numbers("store-22", &service.result(1, "summary").to_string(), &POSTERIOR);
+    assert_eq!(service.status(1)["state"], "finished");
+    assert_eq!(service.client.json("/v1/studies")[0]["id"], 1);
+    drop(service);
+    same(&command(&["report", "1"], &out), &report);
+}
+
+#[test]
+fn an_unfinished_one_with_a_metamodel_is_refused_and_others_go_on() {
+    let (_temporary, job, out) = folder("store-22", "stopped.store");
+    let mut service = Service::start_on(&store_in(&out), &["--local-workers", "1"]);
+    let other = service.submit(&Job::small());
+    for _ in 0..2 {
+        let refused = service.status(1)["message"].clone();
+        assert_contains!(refused.as_str().expect("a message"), REMOVED);
+        service.crash();
+    }
+    service.wait_for(other, "finished");
+    assert_eq!(
+        service.client.json("/v1/studies").as_array().map(Vec::len),
+        Some(2)
+    );
+    let job = job.display().to_string();
+    let again = run(coordinator([
+        "run",
+        job.as_str(),
+        "--out",
+        out.display().to_string().as_str(),
+    ]));
+    assert_contains!(again.refusal(), REMOVED);
 }
