@@ -116,7 +116,6 @@ fn the_examples_raise_no_question() {
         "paper/table1.toml",
         "paper/bevameter.toml",
         "paper/bevameter-discover.toml",
-        "paper/metamodel.toml",
         "cmu-sand/cmu-sand-scm.toml",
         "cmu-sand/plates.toml",
         "cmu-sand/job.toml",
