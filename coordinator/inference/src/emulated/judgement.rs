@@ -7,17 +7,18 @@ use super::round::{Outputs, Position};
 use super::sampler::EmulatedSampler;
 use super::target::error_sd;
 
-/// Largest sd and mean of the error of the tempered log-likelihood with which the exponent grows, in nats.
-const MAX_SD: f64 = 0.5;
-const MAX_MEAN: f64 = 0.7;
+/// Largest error of the tempered log-evidence with which the exponent grows, in nats.
+const MAX_EVIDENCE_ERROR: f64 = 0.7;
 
-/// Largest sd of that error at exponent 1.
+/// Largest sd of the error of the tempered log-likelihood with which the exponent grows, and at exponent 1, in nats: the share of effective
+/// draws must be that of a normal error with this sd.
+const MAX_SD: f64 = 1.0;
 const MAX_FINAL_SD: f64 = 0.1;
 
 /// Factor of the largest sds for each round of a stage that was repeated, down to the last: a rough model never agrees closely, and
 /// uneven weights of the final draws say so.
 const RELAXED: f64 = 1.3;
-const MAX_RELAXED: f64 = 6.0;
+const MAX_RELAXED: f64 = 8.0;
 
 /// Largest share of rejected evaluations with which the exponent grows, in the first round and in a stage that was repeated often.
 const MAX_REJECTED: f64 = 0.25;
@@ -36,22 +37,59 @@ const BELONGS: f64 = 3.0;
 
 /// The bounds of a batch with which the exponent grows.
 struct Limits {
-    sd: f64,
+    /// Smallest share of effective draws.
+    share: f64,
+    /// Largest number of explored vectors that belong to the target.
+    missed: usize,
     rejected: f64,
+    doubt: f64,
 }
 
 impl Limits {
     fn new(position: Position) -> Self {
         let factor = libm::pow(RELAXED, position.rounds as f64).min(MAX_RELAXED);
-        let (sd, largest) = if position.exponent < 1.0 {
-            (MAX_SD, 1.0)
+        let (sd, missed, doubt) = if position.exponent < 1.0 {
+            (MAX_SD, position.rounds / 2, MAX_DOUBT)
         } else {
-            (MAX_FINAL_SD, MAX_RELAXED * MAX_FINAL_SD)
+            (
+                MAX_FINAL_SD * factor,
+                0,
+                (MAX_FINAL_DOUBT * factor).min(MAX_DOUBT),
+            )
         };
         Self {
-            sd: (sd * factor).min(largest),
+            share: libm::exp(-sd * sd),
+            missed,
             rejected: (MAX_REJECTED * factor).min(MAX_REJECTED_LATER),
+            doubt,
         }
+    }
+}
+
+/// The weights of the draws of a batch: the tempered likelihoods over those that the emulator predicted.
+struct BatchWeights {
+    /// Effective share of the draws.
+    share: f64,
+    /// ln of the mean weight, the error of the tempered log-evidence.
+    log_mean: f64,
+}
+
+impl BatchWeights {
+    /// # Arguments
+    /// - `errors`: logarithms of the weights, at least one.
+    fn new(errors: &[f64]) -> Self {
+        let largest = errors.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let weights = errors.iter().map(|error| libm::exp(error - largest));
+        let (sum, squares) = weights.fold((0.0, 0.0), |(sum, squares), w| (sum + w, squares + w * w));
+        let count = errors.len() as f64;
+        Self {
+            share: sum * sum / (squares * count),
+            log_mean: largest + libm::log(sum / count),
+        }
+    }
+
+    fn are_within(&self, limits: &Limits) -> bool {
+        self.share > limits.share && self.log_mean.abs() < MAX_EVIDENCE_ERROR
     }
 }
 
@@ -80,17 +118,11 @@ impl EmulatedSampler {
         let missed = missed.count();
         let rejected = (batch.drawn - errors.len()) as f64 / batch.drawn as f64;
         let moments = crate::diagnostics::mean_and_sd(&errors);
-        let [mean, sd] = moments.map_or([f64::INFINITY; 2], |(mean, sd)| [mean, sd]);
         let channel_errors = self.channel_errors(batch, outputs);
         let limits = Limits::new(position);
-        let max_doubt = if exponent < 1.0 {
-            MAX_DOUBT
-        } else {
-            MAX_FINAL_DOUBT
-        };
-        let is_close = batch.doubt <= max_doubt
-            && sd < limits.sd
-            && mean.abs() < MAX_MEAN
+        let is_close = moments.is_some()
+            && BatchWeights::new(&errors).are_within(&limits)
+            && batch.doubt <= limits.doubt
             && rejected <= limits.rejected;
         EmulatorRound {
             tempering_exponent: exponent,
@@ -99,7 +131,7 @@ impl EmulatedSampler {
             missed,
             error: moments.map(|(mean, sd)| [mean, sd]),
             agreed: is_close
-                && missed == 0
+                && missed <= limits.missed
                 && (self.is_rough || self.explains(batch, outputs, &channel_errors)),
             channel_errors,
             training_points: batch.emulator.points,

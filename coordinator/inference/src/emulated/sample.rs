@@ -200,7 +200,10 @@ impl EmulatedTarget<'_> {
         let mut first = sample.proposal(self.prior, DrawKey::new(seed, 0, 1))?;
         let pilot = self.drawn(&mut first, PILOT_DRAWS, 1.0);
         let key = DrawKey::new(seed, 0, 3);
-        let fits = (fit(&pilot.sample, 1.0, self.prior, key)?, wide.fit(self.prior, key));
+        let fits = (
+            fit(&pilot.sample, 1.0, self.prior, key)?,
+            wide.fit(self.prior, key),
+        );
         let mut proposal = cut(fits, self.prior, key)?;
         let ScoredDraws {
             sample,
