@@ -81,7 +81,7 @@ fn a_report_carries_the_answers_of_the_service() {
     )
     .success();
     let answers = answers(&report);
-    assert_eq!(answers.len(), 1 + 2 * 6, "{:?}", answers.keys());
+    assert_eq!(answers.len(), 1 + 2 * 7, "{:?}", answers.keys());
     for (path, answer) in &answers {
         assert_eq!(&service.client.json(path), answer, "{path}");
     }

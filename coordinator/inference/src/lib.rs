@@ -45,6 +45,7 @@
 //! - [`lm`]: the Levenberg-Marquardt fit. [`evolution`]: the genetic algorithm and CMA-ES.
 //! - [`gaussian_process`]: interpolation of measurements, without a model. [`discrepancy`]: the misfit of a model between them.
 //! - [`emulated`]: the sampler of expensive models. [`numerical_noise`]: the scatter of a rough model.
+//! - [`response_surface`]: polynomials of the model's outputs over a posterior.
 //! - [`diagnostics`]: summaries and tests of draws and residuals.
 
 pub mod diagnostics;
@@ -57,6 +58,7 @@ mod mixture;
 pub mod numerical_noise;
 mod phase;
 pub mod point_estimate;
+pub mod response_surface;
 mod round;
 mod tell;
 pub mod tmcmc;

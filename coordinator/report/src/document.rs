@@ -12,6 +12,8 @@ use crate::diagnosis::diagnostics;
 use crate::overview::overview;
 use crate::provenance::provenance;
 use crate::terminal;
+use result::finished_calibration::FinishedCalibration;
+use result::response_surface::{MAX_BYTES, ResponseSurface};
 use result::study::Study;
 
 /// Returns the report, which shows the current model first.
@@ -45,6 +47,12 @@ pub fn answers(study: &Study) -> Map<String, Value> {
         add(path("provenance"), json(&provenance(calibration)));
         add(path("stages"), json(&calibration.stages()));
     }
+    for (calibration, surface) in surfaces(study) {
+        add(
+            format!("calibrations/{calibration}/response-surface"),
+            json(&surface),
+        );
+    }
     for round in &study.rounds {
         // Searches that were cancelled or failed have no record.
         let search = study
@@ -59,6 +67,24 @@ pub fn answers(study: &Study) -> Map<String, Value> {
         }
     }
     answers
+}
+
+/// Returns the response surfaces by calibration: that of the current model, then the others as far as [`MAX_BYTES`] allows.
+fn surfaces(study: &Study) -> Vec<(i64, Option<ResponseSurface>)> {
+    let current = study.current().map(|calibration| calibration.row.id);
+    let mut calibrations: Vec<&FinishedCalibration> = study.calibrations().collect();
+    calibrations.sort_by_key(|calibration| Some(calibration.row.id) != current);
+    let mut left = MAX_BYTES;
+    let mut found = Vec::new();
+    for calibration in calibrations {
+        let surface = calibration.response_surface();
+        let size = surface.as_ref().map_or(0, ResponseSurface::size_bytes);
+        if size <= left {
+            left -= size;
+            found.push((calibration.row.id, surface));
+        }
+    }
+    found
 }
 
 fn json(answer: &impl serde::Serialize) -> Value {
@@ -77,6 +103,7 @@ mod tests {
         let count = |what: &str| answers.keys().filter(|path| path.ends_with(what)).count();
         assert_eq!(count("/discovery"), study.rounds.len());
         assert_eq!(count("/comparison"), study.calibrations().count());
+        assert_eq!(count("/response-surface"), study.calibrations().count());
     }
 
     #[test]

@@ -72,6 +72,8 @@ pub enum CalibrationFile {
     Comparison,
     /// Histories; `null` for a model without time.
     Histories,
+    /// The response surface; `null` without draws that determine one.
+    ResponseSurface,
 }
 
 impl CalibrationFile {
@@ -81,6 +83,7 @@ impl CalibrationFile {
             CalibrationFile::Diagnostics => "diagnostics",
             CalibrationFile::Comparison => "comparison",
             CalibrationFile::Histories => "histories",
+            CalibrationFile::ResponseSurface => "response-surface",
         };
         format!("{kind}-{calibration}.json")
     }
@@ -91,6 +94,7 @@ impl CalibrationFile {
             CalibrationFile::Diagnostics => compact(&diagnostics(calibration, calibration.comparison())),
             CalibrationFile::Comparison => compact(&calibration.comparison()),
             CalibrationFile::Histories => compact(&calibration.histories()),
+            CalibrationFile::ResponseSurface => compact(&calibration.response_surface()),
         }
     }
 }

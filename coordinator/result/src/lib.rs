@@ -11,6 +11,7 @@
 //! - [`diagnostics`]: how far the posterior can be trusted. [`flag`]: a warning.
 //! - [`model_comparison`]: the models that a job compares, by evidence and by prediction.
 //! - [`validation`]: the levels of a factor, each predicted from the others.
+//! - [`response_surface`]: the model's outputs as polynomials of its parameters, over the posterior.
 //! - [`discovery`]: the searches for missing effects.
 //! - [`figure`]: the numbers of the source paper's figures.
 //! - [`rig`]: offsets of sessions, tarings and operators that repeats show.
@@ -30,6 +31,7 @@ pub mod flag;
 pub mod model_comparison;
 pub mod parameter_summary;
 pub mod point_estimate;
+pub mod response_surface;
 pub mod rig;
 pub mod study;
 pub mod study_failure;
@@ -46,6 +48,7 @@ pub use flag::{Flag, FlagKind};
 pub use model_comparison::{ComparedModel, LeftOutBy, ModelComparison};
 pub use parameter_summary::ParameterSummary;
 pub use point_estimate::PointEstimate;
+pub use response_surface::{ResponseSurface, RunSurface, SurfaceError, SurfaceParameter};
 pub use rig::{RepeatOffset, RepeatOffsets, RepeatedQuantity, repeat_offsets};
 pub use study::Study;
 pub use study_failure::StudyFailure;

@@ -21,6 +21,7 @@ use record::StageRow;
 use report::{CalibrationFile, Provenance, StudyFile, StudySummary};
 use result::{
     CalibrationFigures, ChannelHistory, Comparison, Diagnostics, Flag, PosteriorTable, PredictionRow,
+    ResponseSurface,
 };
 
 pub(super) fn routes() -> OpenApiRouter<Service> {
@@ -38,6 +39,7 @@ pub(super) fn routes() -> OpenApiRouter<Service> {
         .routes(routes!(predictions))
         .routes(routes!(diagnostics))
         .routes(routes!(histories))
+        .routes(routes!(response_surface))
         .routes(routes!(provenance))
         .routes(routes!(flags))
         .routes(routes!(summary))
@@ -345,6 +347,23 @@ async fn histories(State(service): State<Service>, Id(id): Id) -> Result<impl In
     Ok(json(
         service.calibration_file(id, CalibrationFile::Histories).await?,
     ))
+}
+
+/// The response surface over the posterior.
+///
+/// The model's outputs at the measured runs as polynomials of its parameters, fitted to the final draws; null if there are no draws, or
+/// too few for a surface. Its schema states how to evaluate it.
+#[utoipa::path(get, path = "/calibrations/{id}/response-surface", operation_id = "get_response_surface", tag = "results",
+    params(("id" = i64, Path)), responses(
+    (status = 200, description = "coordinates, ranges, errors and coefficients, or null", body = Option<ResponseSurface>),
+    (status = 404, body = ErrorBody),
+    (status = 409, body = ErrorBody)))]
+async fn response_surface(
+    State(service): State<Service>,
+    Id(id): Id,
+) -> Result<impl IntoResponse, HttpError> {
+    let file = CalibrationFile::ResponseSurface;
+    Ok(json(service.calibration_file(id, file).await?))
 }
 
 /// How the result came about.

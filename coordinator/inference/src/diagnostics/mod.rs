@@ -42,6 +42,7 @@ pub use predicted_draw::PredictedDraw;
 pub use quantile::{DrawSummary, quantile, summary};
 pub use region::{BINS, Region, Side, bin, concentration};
 pub use residual::{Residual, ResidualChiSquare, chi_square, residuals};
+pub(crate) use spectrum::mean_and_covariance;
 pub use spectrum::{Direction, principal_directions};
 pub use subset_shift::{SubsetShift, derivatives_from_draws, subset_shift};
 pub use tail::chi_square_tail;

@@ -52,7 +52,7 @@ pub fn principal_directions(draws: &[Vec<f64>]) -> Vec<Direction> {
 }
 
 /// Returns the mean and sample covariance of draws; `None` with fewer than two.
-pub(super) fn mean_and_covariance(draws: &[Vec<f64>]) -> Option<(Vec<f64>, DMatrix<f64>)> {
+pub(crate) fn mean_and_covariance(draws: &[Vec<f64>]) -> Option<(Vec<f64>, DMatrix<f64>)> {
     let dimension = draws.first()?.len();
     if draws.len() < 2 {
         return None;

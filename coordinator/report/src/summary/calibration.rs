@@ -7,6 +7,7 @@ use job::AlgorithmName;
 use shared::channel::Channel;
 use shared::experiment::RunUse;
 
+use super::response_surface::ResponseSurfaceSummary;
 use result::coverage_summary::CoverageSummary;
 use result::diagnostics::emulator::{emulator, numerical_noise};
 use result::error_summary::{BaselineSummary, CorrectedSummary, ErrorSummary};
@@ -52,6 +53,9 @@ pub struct CalibrationSummary {
     /// Scatter of the model that counts as noise, by channel, in the unit of the channel; empty for a smooth model.
     #[serde(default)]
     pub numerical_noise: BTreeMap<String, f64>,
+    /// The response surface of the model's outputs over the posterior; null if the draws do not determine one.
+    #[serde(default)]
+    pub response_surface: Option<ResponseSurfaceSummary>,
     /// Stages of the sampler; empty for a fit.
     pub stages: Vec<StageSummary>,
     /// Parameters by name.
@@ -159,6 +163,7 @@ pub fn calibration_summary(calibration: &FinishedCalibration) -> Option<Calibrat
             .as_ref()
             .map(numerical_noise)
             .unwrap_or_default(),
+        response_surface: calibration.response_surface().as_ref().map(Into::into),
         stages: calibration
             .stages()
             .iter()

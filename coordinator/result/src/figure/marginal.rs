@@ -4,6 +4,7 @@ use inference::diagnostics;
 use job::FreeParameter;
 
 use super::axis_parameter::AxisParameter;
+use super::log_axis::is_logarithmic;
 use super::reference;
 use super::thinned::{five_digits, thinned_draws};
 use crate::finished_calibration::FinishedCalibration;
@@ -15,8 +16,6 @@ const GRID: usize = 96;
 const REACH: f64 = 2.0;
 /// Tail probability of the prior on each side that the grid may omit.
 const TAIL: f64 = 0.01;
-/// Ratio of largest to smallest draw above which the axis is logarithmic, if the prior is defined in the logarithm.
-const WIDE: f64 = 10.0;
 
 /// Posterior and prior of a parameter.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, utoipa::ToSchema)]
@@ -75,9 +74,7 @@ fn density(
     let (lower, upper) = prior.support();
     let min = draws.iter().copied().fold(f64::INFINITY, f64::min);
     let max = draws.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    // The coordinate of a prior differs from x only if the prior is defined in ln x.
-    let in_ratios = prior.coordinate(2.0) < 1.0;
-    let logarithmic = in_ratios && min > 0.0 && max > WIDE * min;
+    let logarithmic = is_logarithmic(prior, draws);
     let forward = |x: f64| if logarithmic { libm::log(x) } else { x };
     let backward = |u: f64| if logarithmic { libm::exp(u) } else { u };
     let reach = REACH * (forward(summary.q95) - forward(summary.q05));

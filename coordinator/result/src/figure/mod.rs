@@ -9,7 +9,7 @@
 //! - `history`: measurement and model over time (Fig. 7).
 //! - `error`: prediction errors over the posterior (Fig. 8).
 //! - `mark`: labelled points. `optimum`: point estimates, and `reference`: values of independent tests, which are shown as marks.
-//! - `axis_parameter`: name and unit for an axis. `thinned`: fewer draws and digits.
+//! - `axis_parameter`: name and unit for an axis. `log_axis`: the choice of a logarithmic one. `thinned`: fewer draws and digits.
 
 mod axis_parameter;
 mod convergence;
@@ -17,6 +17,7 @@ mod error;
 mod figures;
 mod history;
 mod joint_posterior;
+mod log_axis;
 mod marginal;
 mod mark;
 mod optimum;
@@ -30,6 +31,7 @@ pub use error::ErrorDensity;
 pub use figures::CalibrationFigures;
 pub use history::{ChannelHistory, MeasuredSeries, ModelSeries};
 pub use joint_posterior::JointPosterior;
+pub use log_axis::is_logarithmic;
 pub use marginal::MarginalDensity;
 pub use mark::{Mark, MarkKind, PlanePoint};
 pub use stiffness_line::LabelledLine;

@@ -250,14 +250,14 @@ fn weighted_mean(values: &[(f64, f64)]) -> Option<f64> {
 
 /// Position of a run in the observables of a final draw.
 #[derive(Clone, Copy)]
-pub(super) enum RunPosition {
+pub(crate) enum RunPosition {
     Fit(usize),
     Holdout(usize),
 }
 
 impl RunPosition {
     /// Finds the position of a run; `None` if it is neither fitted nor held out.
-    pub(super) fn find(spec: &Spec, run: usize) -> Option<Self> {
+    pub(crate) fn find(spec: &Spec, run: usize) -> Option<Self> {
         let position = |runs: &[usize]| runs.iter().position(|&r| r == run);
         match position(&spec.fit_runs) {
             Some(position) => Some(RunPosition::Fit(position)),
@@ -267,7 +267,7 @@ impl RunPosition {
 }
 
 /// Returns the final draws that the model accepts: number, parameters, observables, position of the run in the observables.
-pub(super) fn accepted(
+pub(crate) fn accepted(
     calibration: &FinishedCalibration,
     place: RunPosition,
 ) -> impl Iterator<Item = (usize, &[f64], &Observables, usize)> {
