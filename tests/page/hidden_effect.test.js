@@ -5,6 +5,7 @@ import { after, before, test } from "node:test";
 
 import { open, shot, studyOf, view } from "./browser.js";
 import { Service, filesOf } from "./service.js";
+import { moveSliders } from "./sliders.js";
 
 const FOLDER = "examples/hidden-effect";
 const STUDY_MS = 600_000;
@@ -111,6 +112,14 @@ test("the error falls, and the models are layers", async () => {
   await page.waitForTimeout(300);
   assert.ok((await curves.count()) < both, "a layer that is switched off is still drawn");
   await shot(page, "hidden-errors");
+});
+
+test("sliders of the parameters move the curves of the model", async () => {
+  await view(page, "Compare");
+  const { parameters } = await service.get(`/v1/studies/${studyOf(page)}`).then(({ current }) => service.get(`/v1/calibrations/${current}/response-surface`));
+  assert.ok(parameters.some(({ name }) => name.startsWith("janosi_hanamoto.")), "no slider for the strength of the effect");
+  await moveSliders(page, parameters.length);
+  await shot(page, "hidden-sliders");
 });
 
 test("runs of a region can be left out, as a study of its own", async () => {

@@ -9,6 +9,7 @@ import { pathToFileURL } from "node:url";
 
 import { findings, open, shot, sideways } from "./browser.js";
 import { coordinator } from "./service.js";
+import { moveSliders } from "./sliders.js";
 
 let folder;
 
@@ -48,6 +49,17 @@ for (const [theme, width] of [["light", 1280], ["dark", 400]]) {
     }
   });
 }
+
+test("sliders of the parameters move the curves in the report, too", async () => {
+  const tab = await opened(join(folder, "out", "report.html"), { width: 1280 });
+  try {
+    await moveSliders(tab.page, 5);
+    assert.deepEqual(tab.faults, []);
+    await shot(tab.page, "report-sliders");
+  } finally {
+    await tab.close();
+  }
+});
 
 test("a model of the study has a report of its own", async () => {
   const base = join(folder, "base.html");

@@ -8,26 +8,37 @@ import { spanWords } from "./condition.js";
 import { Entry, Figure, fileName } from "./figure.js";
 import { glyph } from "./glyph.js";
 import { Plot, STYLE } from "./library.js";
+import { movingCurves } from "./moving_curves.js";
+import { LEAST_LINE, meanOf, places } from "./place.js";
 import { byRun, pointable } from "./runs.js";
 
-/** Runs at fewer places are drawn one by one. */
-const LEAST_LINE = 3;
 /** More levels are not named in the legend. */
 const MOST_NAMES = 10;
 
 /**
  * @typedef {{ name: string, colour: string | null, rows: any[], isGhost?: boolean }} Layer
  *   colour: of all its lines; null: each group of runs has its own.
- * @param {{ channel: string, wheel: string | null, measurements: any[], layers: Layer[], axis: import("./condition.js").ConditionAxis, name: string }} properties
+ * @typedef {{ rangeOf: (row: any) => number[], attach: (draw: ReturnType<typeof movingCurves>, scale: number) => () => void }} Moving
+ *   curves that something else moves. rangeOf: values that a row may reach.
+ * @param {{ channel: string, wheel: string | null, measurements: any[], layers: Layer[], axis: import("./condition.js").ConditionAxis, name: string, moving?: Moving }} properties
  *   layers: models, each with the rows of its comparison. measurements: each of them once.
  */
-export function ChannelChart({ channel, wheel, measurements, layers, axis, name }) {
+export function ChannelChart({ channel, wheel, measurements, layers, axis, name, moving }) {
   const own = (/** @type {any[]} */ rows) => rows.filter((r) => r.channel === channel && (wheel === null || r.wheel === wheel));
   const measured = own(measurements);
   const quantity = shown(measured[0].unit);
   const found = useMemo(() => groups(measured), [measurements, channel, wheel]);
   const title = `${words(channel)}${wheel === null ? "" : `, wheel ${wheel}`}, measured and computed, by ${axis.title}`;
-  const draw = (/** @type {number} */ width) => picture({ width, layers: layers.map((l) => ({ ...l, rows: own(l.rows) })), measured, found, axis, quantity, channel });
+  const draw = (/** @type {number} */ width) => picture({ width, layers: layers.map((l) => ({ ...l, rows: own(l.rows) })), measured, found, axis, quantity, channel, moving });
+  const drawn = (/** @type {any} */ plot) => {
+    const release = pointable(plot, { runsIn, words: (from, to) => spanWords(axis, from, to) });
+    const curves = found.groups.map((group) => ({ rows: group.rows, stroke: colour(group.load) }));
+    const detach = moving?.attach(movingCurves(plot, curves, (r) => r[axis.key] * axis.scale), quantity.scale);
+    return () => {
+      release();
+      detach?.();
+    };
+  };
   const runsIn = (/** @type {number} */ from, /** @type {number} */ to) =>
     measured.filter((r) => r[axis.key] * axis.scale >= from && r[axis.key] * axis.scale <= to).map((r) => r.run);
   const used = [...new Set(found.groups.map((g) => g.other))];
@@ -41,7 +52,7 @@ export function ChannelChart({ channel, wheel, measurements, layers, axis, name 
   return html`<${Figure} title=${title} name=${fileName(name, channel, wheel ?? "")}
     deps=${[layers.map((l) => `${l.name} ${l.rows.length}`).join(), layers.at(-1)?.rows, measurements, axis.key]}
     draw=${draw} rows=${() => table(layers, own)}
-    onDrawn=${(/** @type {any} */ plot) => pointable(plot, { runsIn, words: (from, to) => spanWords(axis, from, to) })}
+    onDrawn=${drawn}
     legend=${html`${loads}${others}
       ${hasHoldout && html`<${Entry} glyph=${html`<circle cx="8" cy="8" r="4" fill="none" stroke="currentColor" stroke-width="2" />`}>held out<//>`}
       ${layers.filter((l) => l.colour !== null).map((l) => html`<${Entry} glyph=${html`<path d="M0 8h16" stroke=${l.colour} stroke-width="2" stroke-dasharray=${l.isGhost ? "3 3" : ""} />`}>${l.name}<//>`)}`} />`;
@@ -55,8 +66,8 @@ function table(/** @type {Layer[]} */ layers, /** @type {(rows: any[]) => any[]}
   })));
 }
 
-/** @param {{ width: number, layers: Layer[], measured: any[], found: ReturnType<typeof groups>, axis: any, quantity: any, channel: string }} properties */
-function picture({ width, layers, measured, found, axis, quantity, channel }) {
+/** @param {{ width: number, layers: Layer[], measured: any[], found: ReturnType<typeof groups>, axis: any, quantity: any, channel: string, moving?: Moving }} properties */
+function picture({ width, layers, measured, found, axis, quantity, channel, moving }) {
   const x = (/** @type {any} */ r) => r[axis.key] * axis.scale;
   const value = (/** @type {string} */ key) => (/** @type {any} */ r) => (r[key] === null || r[key] === undefined ? NaN : r[key] * quantity.scale);
   const place = new Map(found.groups.flatMap((group) => group.rows.map((r) => [r.run, group])));
@@ -79,7 +90,7 @@ function picture({ width, layers, measured, found, axis, quantity, channel }) {
   return Plot.plot({
     width, height: Math.max(240, Math.min(360, 0.62 * width)), marginTop: 26, marginLeft: 56, marginBottom: 40, inset: 7, grid: true, style: STYLE,
     x: { label: titled(axis.title, axis.unit), labelArrow: "none", labelAnchor: "center", nice: true },
-    y: { label: titled(words(channel), quantity.unit), labelArrow: "none", nice: true },
+    y: { label: titled(words(channel), quantity.unit), labelArrow: "none", nice: true, ...(moving ? { domain: reach(layers, measured, quantity, moving) } : {}) },
     marks: [
       ...marks,
       ...dots(measured.filter((r) => r.use !== "holdout"), (/** @type {string} */ c) => ({ fill: c, stroke: "var(--paper)", strokeWidth: 0.7 })),
@@ -89,12 +100,19 @@ function picture({ width, layers, measured, found, axis, quantity, channel }) {
   });
 }
 
+/** The least and the greatest value of a picture whose curves move. */
+function reach(/** @type {Layer[]} */ layers, /** @type {any[]} */ measured, /** @type {any} */ quantity, /** @type {Moving} */ moving) {
+  const ofLayers = layers.flatMap((layer) => layer.rows.flatMap((r) => [r.predicted, r.q05, r.q95]));
+  const values = [...ofLayers, ...measured.flatMap((r) => [r.measured, ...moving.rangeOf(r)])].filter((value) => value !== null && value !== undefined);
+  return [Math.min(...values) * quantity.scale, Math.max(...values) * quantity.scale];
+}
+
 /** The lines of a model: one for each group of runs. */
 function layerMarks(/** @type {Layer} */ layer, /** @type {Map<string, any>} */ place, /** @type {any} */ x, /** @type {any} */ value) {
   const known = layer.rows.filter((r) => r.predicted !== null && r.predicted !== undefined && place.has(r.run));
   const all = [...new Set(known.map((r) => place.get(r.run)))];
   return all.flatMap((group) => {
-    const rows = known.filter((r) => place.get(r.run) === group).sort((a, b) => x(a) - x(b));
+    const rows = known.filter((r) => place.get(r.run) === group);
     const stroke = layer.colour ?? colour(group.load);
     const dash = layer.isGhost ? { strokeDasharray: "4 3", strokeWidth: 2.2 } : { strokeWidth: 1.6 };
     const band = { x, y1: value("q05"), y2: value("q95") };
@@ -114,17 +132,8 @@ function layerMarks(/** @type {Layer} */ layer, /** @type {Map<string, any>} */ 
 
 /** Rows of one place become their mean: repeats do not make a line go up and down. */
 function atEqual(/** @type {any[]} */ rows, /** @type {(r: any) => number} */ x) {
-  const span = x(rows[rows.length - 1]) - x(rows[0]);
-  /** @type {any[][]} */
-  const places = [];
-  for (const row of rows) {
-    const last = places.at(-1);
-    if (last && x(row) - x(last[0]) <= 0.012 * span) last.push(row);
-    else places.push([row]);
-  }
-  const mean = (/** @type {any[]} */ all, /** @type {(r: any) => number} */ of) => all.reduce((sum, r) => sum + of(r), 0) / all.length;
-  return places.map((all) => {
-    const of = (/** @type {string} */ key) => (all.some((r) => r[key] === null || r[key] === undefined) ? null : mean(all, (r) => r[key]));
+  return places(rows, x).map((all) => {
+    const of = (/** @type {string} */ key) => (all.some((r) => r[key] === null || r[key] === undefined) ? null : meanOf(all, (r) => r[key]));
     return { ...all[0], slip: of("slip"), wheel_load_n: of("wheel_load_n"), sled_speed_m_s: of("sled_speed_m_s"), predicted: of("predicted"), q05: of("q05"), q95: of("q95") };
   });
 }

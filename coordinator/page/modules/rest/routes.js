@@ -19,6 +19,7 @@ export const path = {
   diagnostics: (/** @type {number} */ id) => `${calibration(id)}/diagnostics`,
   figures: (/** @type {number} */ id) => `${calibration(id)}/figures`,
   provenance: (/** @type {number} */ id) => `${calibration(id)}/provenance`,
+  responseSurface: (/** @type {number} */ id) => `${calibration(id)}/response-surface`,
   histories: (/** @type {number} */ id) => `${calibration(id)}/histories`,
   discovery: (/** @type {number} */ id) => `${calibration(id)}/discovery`,
   stages: (/** @type {number} */ id) => `${calibration(id)}/stages`,

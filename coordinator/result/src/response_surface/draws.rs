@@ -73,16 +73,25 @@ fn unscaled(parameters: &[SurfaceParameter], positions: &[usize], theta: &[f64])
         .collect()
 }
 
-/// Returns the numbers of the distinct final draws at which the model accepts a run. Equal draws have equal outputs, so that a repeated
-/// draw would hide its own error when it is left out.
-pub(super) fn distinct_draws(calibration: &FinishedCalibration, run: usize) -> Vec<usize> {
+/// Returns the numbers of the distinct final draws, in ascending order. Equal draws have equal outputs, so that a repeated draw would hide
+/// its own error when it is left out.
+pub(super) fn distinct_draws(calibration: &FinishedCalibration) -> Vec<usize> {
+    let mut seen: BTreeSet<Vec<u64>> = BTreeSet::new();
+    let draws = calibration.predictive_draws().iter().enumerate();
+    draws
+        .filter(|(_, draw)| seen.insert(draw.theta.iter().map(|x| x.to_bits()).collect()))
+        .map(|(number, _)| number)
+        .collect()
+}
+
+/// Returns those of the given draws at which the model accepts a run.
+pub(super) fn accepted_draws(calibration: &FinishedCalibration, run: usize, draws: &[usize]) -> Vec<usize> {
     let Some(place) = RunPosition::find(&calibration.spec, run) else {
         return Vec::new();
     };
-    let mut seen: BTreeSet<Vec<u64>> = BTreeSet::new();
     accepted(calibration, place)
-        .filter(|(_, theta, ..)| seen.insert(theta.iter().map(|x| x.to_bits()).collect()))
         .map(|(number, ..)| number)
+        .filter(|number| draws.binary_search(number).is_ok())
         .collect()
 }
 

@@ -70,7 +70,7 @@ mod tests {
         let exact = [12.345_678_9, 0.3, -0.4, 0.000_012_3];
         assert_eq!(rounded(&exact), [12.345_68, 0.3, -0.4, 0.000_01]);
         let sinkage = [0.012_345_678_901, 0.001_234_567_89];
-        assert_eq!(rounded(&sinkage), [0.012_345_679, 0.001_234_568]);
+        assert_eq!(rounded(&sinkage), [0.012_345_7, 0.001_234_6]);
         assert_eq!(rounded(&[7.123_456, 0.0]), [7.123_456, 0.0]);
         assert_eq!(rounded(&[1e6, 3e6])[1].to_bits(), 3e6_f64.to_bits());
     }

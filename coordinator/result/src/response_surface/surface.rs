@@ -6,7 +6,7 @@ use inference::response_surface::{Degree, ResponseSurfaceError, SurfaceDesign};
 use shared::channel::Channel;
 
 use super::channel_error::SurfaceError;
-use super::draws::{PosteriorCoordinates, distinct_draws, outputs};
+use super::draws::{PosteriorCoordinates, accepted_draws, distinct_draws, outputs};
 use super::output::{OutputError, RunSurface, rounded};
 use super::parameter::SurfaceParameter;
 use crate::finished_calibration::FinishedCalibration;
@@ -48,22 +48,32 @@ impl FinishedCalibration {
     /// The surface is linear where a quadratic one would be larger than [`MAX_BYTES`].
     pub fn response_surface(&self) -> Option<ResponseSurface> {
         let coordinates = PosteriorCoordinates::new(self).ok()?;
-        let draws = distinct_draws(self, *self.spec.fit_runs.first()?).len();
+        let distinct = distinct_draws(self);
+        let draws = accepted_draws(self, *self.spec.fit_runs.first()?, &distinct).len();
         let degree = Degree::for_draws(draws, coordinates.parameters.len()).ok()?;
-        let surface = self.surface_of_degree(&coordinates, degree, draws)?;
+        let of_degree = |degree| {
+            let designs = Designs {
+                calibration: self,
+                coordinates: &coordinates,
+                degree,
+                distinct: &distinct,
+                found: BTreeMap::new(),
+            };
+            self.surface_with(designs, draws)
+        };
+        let surface = of_degree(degree)?;
         if degree == Degree::Quadratic && surface.size_bytes() > MAX_BYTES {
-            return self.surface_of_degree(&coordinates, Degree::Linear, draws);
+            return of_degree(Degree::Linear);
         }
         Some(surface)
     }
 
-    fn surface_of_degree(
-        &self,
-        coordinates: &PosteriorCoordinates,
-        degree: Degree,
-        draws: usize,
-    ) -> Option<ResponseSurface> {
-        let mut designs = Designs::new(self, coordinates, degree);
+    /// Fits the surface of every measurement.
+    ///
+    /// # Arguments
+    /// - `draws`: number of distinct draws at which the model accepts the fitted runs.
+    fn surface_with(&self, mut designs: Designs<'_>, draws: usize) -> Option<ResponseSurface> {
+        let (coordinates, degree) = (designs.coordinates, designs.degree);
         let (mut surfaces, mut errors) = (Vec::new(), Vec::new());
         for (run, channel, noise_sd) in self.measured_outputs() {
             let Some((draws, design)) = designs.of_run(run) else {
@@ -123,27 +133,16 @@ struct Designs<'a> {
     calibration: &'a FinishedCalibration,
     coordinates: &'a PosteriorCoordinates,
     degree: Degree,
+    /// The distinct draws.
+    distinct: &'a [usize],
     /// The design by the numbers of its draws.
     found: BTreeMap<Vec<usize>, Result<SurfaceDesign, ResponseSurfaceError>>,
 }
 
-impl<'a> Designs<'a> {
-    fn new(
-        calibration: &'a FinishedCalibration,
-        coordinates: &'a PosteriorCoordinates,
-        degree: Degree,
-    ) -> Self {
-        Designs {
-            calibration,
-            coordinates,
-            degree,
-            found: BTreeMap::new(),
-        }
-    }
-
+impl Designs<'_> {
     /// Returns the draws at which the model accepts a run, and their design; `None` if they do not determine a surface.
     fn of_run(&mut self, run: usize) -> Option<(Vec<usize>, &SurfaceDesign)> {
-        let draws = distinct_draws(self.calibration, run);
+        let draws = accepted_draws(self.calibration, run, self.distinct);
         let predictions = self.calibration.predictive_draws();
         let (coordinates, degree) = (self.coordinates, self.degree);
         let design = self.found.entry(draws.clone()).or_insert_with(|| {
@@ -203,6 +202,27 @@ mod tests {
         let pull = &surface.channels[0];
         assert_eq!((pull.channel, pull.unit.as_str()), (Channel::DrawbarPull, "N"));
         assert!(surface.radius > 1.5 && surface.radius < 4.0, "{}", surface.radius);
+    }
+
+    #[test]
+    fn the_surface_that_the_page_is_tested_with_is_that_of_the_fixture() {
+        let calibration = with_quadratic_outputs();
+        let surface = calibration.response_surface().unwrap();
+        let coordinates = PosteriorCoordinates::new(&calibration).unwrap();
+        let setting = |draw: usize| {
+            let theta = &calibration.predictive_draws()[draw].theta;
+            let point = coordinates.whitened(theta);
+            let outputs: Vec<f64> = (0..surface.outputs.len())
+                .map(|output| value(&surface, output, &point))
+                .collect();
+            let distance = point.iter().map(|u| u * u).sum::<f64>().sqrt();
+            serde_json::json!({"values": theta[..3], "outputs": outputs, "distance": distance})
+        };
+        let settings: Vec<serde_json::Value> = [0, 7, 12].map(setting).to_vec();
+        let computed = serde_json::json!({"surface": surface, "settings": settings});
+        let kept = include_str!("../../../page/tests/response_surface.json");
+        let kept: serde_json::Value = serde_json::from_str(kept).unwrap();
+        assert_eq!(kept, computed, "{computed}");
     }
 
     #[test]

@@ -1,0 +1,55 @@
+// Curves that move within a drawn picture: one for each group of runs, so that a slider needs no new picture.
+
+import { LEAST_LINE, meanOf, places } from "./place.js";
+
+/** Half the width of a cross [px]. */
+const CROSS = 4;
+
+/** The number of pictures so far: each has its own name of the frame that its curves are cut to. */
+let frames = 0;
+
+/**
+ * Adds the curves to a picture.
+ * @param {SVGSVGElement & { scale: (name: string) => any }} plot
+ * @param {{ rows: any[], stroke: string }[]} groups
+ * @param {(row: any) => number} x
+ * @returns {(y: (row: any) => number | undefined, isBeyond: boolean) => void} moves the curves to the value of each row, in the unit of the
+ *   axis; they are dashed if the values lie beyond the draws
+ */
+export function movingCurves(plot, groups, x) {
+  const [across, up] = ["x", "y"].map((name) => plot.scale(name));
+  const layer = cut(plot, across.range, up.range);
+  const curves = groups.map(({ rows, stroke }) => {
+    const path = element("path", { fill: "none", stroke, "stroke-width": "2.4", "stroke-linejoin": "round" });
+    layer.append(path);
+    return { path, places: places(rows, x) };
+  });
+  return (y, isBeyond) => {
+    layer.classList.toggle("beyond", isBeyond);
+    for (const curve of curves) {
+      const known = curve.places.map((rows) => rows.filter((row) => y(row) !== undefined)).filter((rows) => rows.length > 0);
+      const points = known.map((rows) => [across.apply(meanOf(rows, x)), up.apply(meanOf(rows, /** @type {(row: any) => number} */ (y)))]);
+      curve.path.setAttribute("d", points.length >= LEAST_LINE ? line(points) : points.map(cross).join(""));
+    }
+  };
+}
+
+/** A group that is cut to the frame of a picture: beyond the draws a curve may go far. */
+function cut(/** @type {SVGSVGElement} */ plot, /** @type {number[]} */ [left, right], /** @type {number[]} */ [bottom, top]) {
+  const id = `frame-${(frames += 1)}`;
+  const frame = element("clipPath", { id });
+  frame.append(element("rect", { x: String(left), y: String(top), width: String(right - left), height: String(bottom - top) }));
+  const layer = element("g", { class: "moving", "clip-path": `url(#${id})` });
+  plot.append(frame, layer);
+  return layer;
+}
+
+const line = (/** @type {number[][]} */ points) => points.map(([x, y], k) => `${k === 0 ? "M" : "L"}${x.toFixed(1)} ${y.toFixed(1)}`).join("");
+
+const cross = (/** @type {number[]} */ [x, y]) => `M${x - CROSS} ${y - CROSS}l${2 * CROSS} ${2 * CROSS}m0 ${-2 * CROSS}l${-2 * CROSS} ${2 * CROSS}`;
+
+function element(/** @type {string} */ name, /** @type {Record<string, string>} */ attributes) {
+  const made = document.createElementNS("http://www.w3.org/2000/svg", name);
+  for (const [key, value] of Object.entries(attributes)) made.setAttribute(key, value);
+  return made;
+}

@@ -1,0 +1,43 @@
+// The curves of a response surface in several pictures, which move together.
+
+import { key, meanSetting, predict, ranges } from "../response_surface.js";
+
+/** @typedef {import("../response_surface.js").ResponseSurface} ResponseSurface */
+/** @typedef {import("../response_surface.js").Prediction} Prediction */
+
+export class SurfaceCurves {
+  /** @type {Set<(prediction: Prediction) => void>} */
+  #pictures = new Set();
+
+  constructor(/** @type {ResponseSurface} */ surface) {
+    this.ranges = ranges(surface);
+    this.prediction = predict(surface, meanSetting(surface));
+  }
+
+  /** The ends between which the value of a row moves; none without a surface. */
+  rangeOf(/** @type {any} */ row) {
+    return this.ranges.get(key(row)) ?? [];
+  }
+
+  /**
+   * Adds the curves of a picture.
+   * @param {(y: (row: any) => number | undefined, isBeyond: boolean) => void} draw
+   * @param {number} scale from SI to the unit of the picture
+   * @returns {() => void} removes them
+   */
+  attach(draw, scale) {
+    const picture = (/** @type {Prediction} */ { outputs, isBeyond }) => draw((row) => {
+      const output = outputs.get(key(row));
+      return output === undefined ? undefined : output * scale;
+    }, isBeyond);
+    this.#pictures.add(picture);
+    picture(this.prediction);
+    return () => this.#pictures.delete(picture);
+  }
+
+  /** Moves the curves of all pictures. */
+  move(/** @type {Prediction} */ prediction) {
+    this.prediction = prediction;
+    for (const picture of this.#pictures) picture(prediction);
+  }
+}
