@@ -55,7 +55,7 @@ impl Degree {
         (3 * self.term_count(parameters)).div_ceil(2)
     }
 
-    /// Returns the terms at a point: 1, then the coordinates, then for a quadratic surface u_i u_j for i <= j, row by row.
+    /// Returns the terms at a point: 1, then the coordinates, then for a quadratic surface `u_i u_j` for `i <= j`, row by row.
     #[must_use]
     pub fn terms(self, point: &[f64]) -> Vec<f64> {
         let mut terms = vec![1.0];

@@ -13,9 +13,9 @@ const MIN_LEFT_OUT: f64 = 1e-9;
 /// A factorised least-squares problem.
 ///
 /// # Equation
-/// X = Q R with the terms of each point as a row of X. The coefficients of outputs y are R⁻¹ Qᵀ y, and the leverage of point i is
-/// h_i, the sum of squares of row i of Q. The error at a point that is left out of the fit is (y_i − f_i) / (1 − h_i), with the fit f
-/// to all points (Allen 1974, doi:10.1080/00401706.1974.10489157); no other fit is needed for it.
+/// X = Q R with the terms of each point as a row of X. The coefficients of outputs y are R⁻¹ Qᵀ y, and the leverage h of a point is the
+/// sum of squares of its row of Q. The error at a point that is left out of the fit is (y − f) / (1 − h), with the fit f to all points
+/// (Allen 1974, doi:10.1080/00401706.1974.10489157); no other fit is needed for it.
 #[derive(Debug, Clone)]
 pub struct SurfaceDesign {
     q: DMatrix<f64>,

@@ -15,7 +15,7 @@ pub struct RunSurface {
     #[schema(value_type = String)]
     pub channel: Channel,
     /// Coefficients of the polynomial in the unit of the channel: the constant, the slope along each whitened coordinate, then for a
-    /// quadratic surface those of the products u_i u_j with i <= j, row by row. They are rounded to a ten-thousandth of the output's
+    /// quadratic surface those of the products `u_i u_j` with `i <= j`, row by row. They are rounded to a ten-thousandth of the output's
     /// standard deviation over the draws.
     pub coefficients: Vec<f64>,
 }
