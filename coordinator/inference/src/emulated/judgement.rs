@@ -6,6 +6,7 @@ use super::record::EmulatorRound;
 use super::round::{Outputs, Position};
 use super::sampler::EmulatedSampler;
 use super::target::error_sd;
+use crate::tmcmc::draws::ImportanceWeights;
 
 /// Largest error of the tempered log-evidence with which the exponent grows, in nats.
 const MAX_EVIDENCE_ERROR: f64 = 0.7;
@@ -37,7 +38,7 @@ const BELONGS: f64 = 3.0;
 
 /// The bounds of a batch with which the exponent grows.
 struct Limits {
-    /// Smallest share of effective draws.
+    /// Smallest share of effective draws, weighted by the tempered likelihoods over those that the emulator predicted.
     share: f64,
     /// Largest number of explored vectors that belong to the target.
     missed: usize,
@@ -64,38 +65,16 @@ impl Limits {
             doubt,
         }
     }
-}
 
-/// The weights of the draws of a batch: the tempered likelihoods over those that the emulator predicted.
-struct BatchWeights {
-    /// Effective share of the draws.
-    share: f64,
-    /// ln of the mean weight, the error of the tempered log-evidence.
-    log_mean: f64,
-}
-
-impl BatchWeights {
-    /// # Arguments
-    /// - `errors`: logarithms of the weights, at least one.
-    fn new(errors: &[f64]) -> Self {
-        let largest = errors.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        let weights = errors.iter().map(|error| libm::exp(error - largest));
-        let (sum, squares) = weights.fold((0.0, 0.0), |(sum, squares), w| (sum + w, squares + w * w));
-        let count = errors.len() as f64;
-        Self {
-            share: sum * sum / (squares * count),
-            log_mean: largest + libm::log(sum / count),
-        }
-    }
-
-    fn are_within(&self, limits: &Limits) -> bool {
-        self.share > limits.share && self.log_mean.abs() < MAX_EVIDENCE_ERROR
+    /// Returns whether the draws of a batch are effective, and their mean weight agrees with the emulated evidence.
+    fn hold(&self, weights: &ImportanceWeights) -> bool {
+        weights.share() > self.share && weights.log_mean.abs() < MAX_EVIDENCE_ERROR
     }
 }
 
 impl EmulatedSampler {
-    /// Compares a batch with the emulator. The emulator agrees if the tempered log-likelihoods at the draws of the target have small
-    /// errors, and none of the explored vectors belongs to the target.
+    /// Compares a batch with the emulator. The emulator agrees if the draws of the target are effective as weighted draws of the model's,
+    /// and few of the explored vectors belong to the target, at exponent 1 none.
     ///
     /// # Arguments
     /// - `learnt`: the emulator that learnt the batch.
@@ -120,8 +99,8 @@ impl EmulatedSampler {
         let moments = crate::diagnostics::mean_and_sd(&errors);
         let channel_errors = self.channel_errors(batch, outputs);
         let limits = Limits::new(position);
-        let is_close = moments.is_some()
-            && BatchWeights::new(&errors).are_within(&limits)
+        let weights = ImportanceWeights::new(&errors);
+        let is_close = weights.is_some_and(|weights| limits.hold(&weights))
             && batch.doubt <= limits.doubt
             && rejected <= limits.rejected;
         EmulatorRound {

@@ -23,7 +23,6 @@ mod stage;
 
 pub(crate) use frame::Fit;
 pub(crate) use proposal::{DrawKey, DrawProposal};
-pub(super) use sample::ImportanceWeights;
-pub(crate) use sample::WeightedSample;
+pub(crate) use sample::{ImportanceWeights, WeightedSample};
 pub(super) use schedule::next_exponent;
 pub(super) use stage::{Anchor, DrawStage, DrawStart, Forecast, Standing};

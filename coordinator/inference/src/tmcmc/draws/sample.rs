@@ -29,6 +29,29 @@ pub(crate) struct Expectation {
 }
 
 impl ImportanceWeights {
+    /// Normalises weights; `None` without a positive one, or if a weight is no number.
+    pub(crate) fn new(log_weights: &[f64]) -> Option<Self> {
+        let largest = log_weights.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        if !largest.is_finite() {
+            return None;
+        }
+        let mut normalised: Vec<f64> = log_weights.iter().map(|w| libm::exp(w - largest)).collect();
+        let sum: f64 = normalised.iter().sum();
+        if !sum.is_finite() {
+            return None;
+        }
+        for weight in &mut normalised {
+            *weight /= sum;
+        }
+        let ess = 1.0 / normalised.iter().map(|w| w * w).sum::<f64>();
+        let log_mean = largest + libm::log(sum / normalised.len() as f64);
+        Some(Self {
+            normalised,
+            log_mean,
+            ess,
+        })
+    }
+
     /// Returns the variance of `log_mean`, the relative variance of the mean weight.
     pub(crate) fn log_mean_variance(&self) -> f64 {
         let count = self.normalised.len() as f64;
@@ -79,26 +102,7 @@ impl WeightedSample {
 
     /// Returns the weights at an exponent; `None` if every draw was rejected, or a weight is no number.
     pub(crate) fn weights(&self, exponent: f64) -> Option<ImportanceWeights> {
-        let log_weights = self.log_weights(exponent);
-        let largest = log_weights.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        if !largest.is_finite() {
-            return None;
-        }
-        let mut normalised: Vec<f64> = log_weights.iter().map(|w| libm::exp(w - largest)).collect();
-        let sum: f64 = normalised.iter().sum();
-        if !sum.is_finite() {
-            return None;
-        }
-        for weight in &mut normalised {
-            *weight /= sum;
-        }
-        let ess = 1.0 / normalised.iter().map(|w| w * w).sum::<f64>();
-        let log_mean = largest + libm::log(sum / normalised.len() as f64);
-        Some(ImportanceWeights {
-            normalised,
-            log_mean,
-            ess,
-        })
+        ImportanceWeights::new(&self.log_weights(exponent))
     }
 
     /// Returns the share of the draws that the model did not reject.
