@@ -38,7 +38,7 @@ impl PosteriorCoordinates {
         let positions: Vec<usize> = (0..spec.parameters.len())
             .filter(|&i| is_of_model(&spec.parameters[i].name))
             .collect();
-        let parameters: Vec<SurfaceParameter> = positions
+        let mut parameters: Vec<SurfaceParameter> = positions
             .iter()
             .filter_map(|&i| SurfaceParameter::new(&spec.parameters[i], &calibration.draws(i)))
             .collect();
@@ -48,6 +48,9 @@ impl PosteriorCoordinates {
             .map(|draw| unscaled(&parameters, &positions, &draw.theta))
             .collect();
         let whitening = Whitening::new(&draws)?;
+        for (parameter, centre) in parameters.iter_mut().zip(whitening.mean()) {
+            parameter.centre = *centre;
+        }
         let distance = |draw: &Vec<f64>| whitening.whitened(draw).iter().map(|u| u * u).sum::<f64>().sqrt();
         let distances: Vec<f64> = draws.iter().map(distance).collect();
         Ok(PosteriorCoordinates {

@@ -28,10 +28,10 @@ pub struct SurfaceParameter {
 }
 
 impl SurfaceParameter {
-    /// Takes the range of a parameter from its draws; `None` without draws.
+    /// Takes the range of a parameter from its draws; `None` without draws. The centre is known with the whitening of all parameters.
     pub(super) fn new(parameter: &FreeParameter, draws: &[f64]) -> Option<Self> {
         let logarithmic = is_logarithmic(&parameter.marginal, draws);
-        let mut surface = SurfaceParameter {
+        Some(SurfaceParameter {
             name: parameter.name.clone(),
             unit: parameter.unit.clone(),
             logarithmic,
@@ -39,10 +39,7 @@ impl SurfaceParameter {
             mean: diagnostics::mean(draws)?,
             lower: diagnostics::quantile(draws, TAIL)?,
             upper: diagnostics::quantile(draws, 1.0 - TAIL)?,
-        };
-        let coordinates: Vec<f64> = draws.iter().map(|x| surface.coordinate(*x)).collect();
-        surface.centre = diagnostics::mean(&coordinates)?;
-        Some(surface)
+        })
     }
 
     /// Returns the coordinate of a value.
