@@ -9,7 +9,7 @@ import { Service, filesOf } from "./service.js";
 
 const VIEWS = ["story", "live", "compare", "failures", "effects", "posterior", "errors", "trust"];
 /** What is sent for the first view. */
-const MOST_BYTES = 320_000;
+const MOST_BYTES = 300_000;
 let service;
 
 before(async () => {

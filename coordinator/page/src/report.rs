@@ -108,14 +108,19 @@ fn import_map() -> String {
     json!({ "imports": imports }).to_string()
 }
 
+/// What stands before the path of an import: of one at the start, and of one at the first use.
+const IMPORTS: [&str; 2] = [" from \"", " => import(\""];
+
 /// Replaces the relative paths of a module's imports by names.
 fn with_names(path: &str, source: &str) -> String {
     let folder = folder_of(path);
-    let line = |line: &str| match line.rsplit_once(" from \"") {
-        Some((head, relative)) if relative.starts_with('.') => {
-            format!("{head} from \"{PREFIX}{}", resolved(folder, relative))
-        }
-        _ => line.to_owned(),
+    let line = |line: &str| {
+        let mut places = IMPORTS.iter().filter_map(|before| {
+            let (head, relative) = line.rsplit_once(before)?;
+            let is_relative = relative.starts_with('.');
+            is_relative.then(|| format!("{head}{before}{PREFIX}{}", resolved(folder, relative)))
+        });
+        places.next().unwrap_or_else(|| line.to_owned())
     };
     source.split_inclusive('\n').map(line).collect()
 }
@@ -161,6 +166,9 @@ mod tests {
         let source = "import { a } from \"./b.js\";\nexport { c } from \"../rest/d.js\";\nconst e = 1;\n";
         let expected = "import { a } from \"grouser/modules/view/b.js\";\nexport { c } from \"grouser/modules/rest/d.js\";\nconst e = 1;\n";
         assert_eq!(with_names("modules/view/x.js", source), expected);
+        let later = "const f = () => import(\"./g.js\").then((g) => g.f);\n";
+        let expected = "const f = () => import(\"grouser/modules/view/g.js\").then((g) => g.f);\n";
+        assert_eq!(with_names("modules/view/x.js", later), expected);
         let expected = "import { a } from \"grouser/vendor/p.js\";";
         assert_eq!(
             with_names("modules/x.js", "import { a } from \"../vendor/p.js\";"),
@@ -174,10 +182,10 @@ mod tests {
         let carried = modules().into_iter().filter(|path| !path.starts_with(INTERFACE));
         for path in carried {
             let source = with_names(&path, &text(&path));
-            let named = source
-                .split(" from \"")
-                .skip(1)
-                .filter_map(|rest| rest.split('"').next());
+            let named = IMPORTS.iter().flat_map(|before| {
+                let rests = source.split(before).skip(1);
+                rests.filter_map(|rest| rest.split('"').next())
+            });
             for name in named.filter(|_| path.starts_with("modules/")) {
                 assert!(map["imports"][name].is_string(), "{path} imports {name}");
             }

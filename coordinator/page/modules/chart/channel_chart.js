@@ -8,7 +8,6 @@ import { spanWords } from "./condition.js";
 import { Entry, Figure, fileName } from "./figure.js";
 import { glyph } from "./glyph.js";
 import { Plot, STYLE } from "./library.js";
-import { movingCurves } from "./moving_curves.js";
 import { LEAST_LINE, meanOf, places } from "./place.js";
 import { byRun, pointable } from "./runs.js";
 
@@ -18,8 +17,7 @@ const MOST_NAMES = 10;
 /**
  * @typedef {{ name: string, colour: string | null, rows: any[], isGhost?: boolean }} Layer
  *   colour: of all its lines; null: each group of runs has its own.
- * @typedef {{ rangeOf: (row: any) => number[], attach: (draw: ReturnType<typeof movingCurves>, scale: number) => () => void }} Moving
- *   curves that something else moves. rangeOf: values that a row may reach.
+ * @typedef {import("./surface_curves.js").SurfaceCurves} Moving
  * @param {{ channel: string, wheel: string | null, measurements: any[], layers: Layer[], axis: import("./condition.js").ConditionAxis, name: string, moving?: Moving }} properties
  *   layers: models, each with the rows of its comparison. measurements: each of them once.
  */
@@ -33,7 +31,7 @@ export function ChannelChart({ channel, wheel, measurements, layers, axis, name,
   const drawn = (/** @type {any} */ plot) => {
     const release = pointable(plot, { runsIn, words: (from, to) => spanWords(axis, from, to) });
     const curves = found.groups.map((group) => ({ rows: group.rows, stroke: colour(group.load) }));
-    const detach = moving?.attach(movingCurves(plot, curves, (r) => r[axis.key] * axis.scale), quantity.scale);
+    const detach = moving?.attach(plot, curves, (r) => r[axis.key] * axis.scale, quantity.scale);
     return () => {
       release();
       detach?.();

@@ -1,5 +1,6 @@
 // The curves of a response surface in several pictures, which move together.
 
+import { movingCurves } from "./moving_curves.js";
 import { key, meanSetting, predict, ranges } from "../response_surface.js";
 
 /** @typedef {import("../response_surface.js").ResponseSurface} ResponseSurface */
@@ -20,12 +21,15 @@ export class SurfaceCurves {
   }
 
   /**
-   * Adds the curves of a picture.
-   * @param {(y: (row: any) => number | undefined, isBeyond: boolean) => void} draw
+   * Adds curves to a picture.
+   * @param {Parameters<typeof movingCurves>[0]} plot
+   * @param {Parameters<typeof movingCurves>[1]} groups
+   * @param {Parameters<typeof movingCurves>[2]} x
    * @param {number} scale from SI to the unit of the picture
    * @returns {() => void} removes them
    */
-  attach(draw, scale) {
+  attach(plot, groups, x, scale) {
+    const draw = movingCurves(plot, groups, x);
     const picture = (/** @type {Prediction} */ { outputs, isBeyond }) => draw((row) => {
       const output = outputs.get(key(row));
       return output === undefined ? undefined : output * scale;

@@ -13,24 +13,10 @@ import { Table } from "./table.js";
 /** @typedef {import("../response_surface.js").ResponseSurface} ResponseSurface */
 
 /**
- * A folded part; what it needs is asked when it is opened.
- * @param {{ model: any, line: any, rows: any[], axis: any, name: string }} properties
- *   line: of the ledger. rows: of the comparison. axis: the condition that the pictures are drawn against.
+ * @param {{ model: any, rows: any[], axis: any, name: string }} properties rows: of the comparison. axis: the condition that the pictures are
+ *   drawn against.
  */
-export function ParameterSliders({ model, line, rows, axis, name }) {
-  const [isOpen, setOpen] = useState(false);
-  if (!line) return null;
-  const what = line.response_surface === null
-    ? html`<p class="empty">The calibration has too few draws with outputs for a response surface.</p>`
-    : html`<${Loaded} key=${model.id} model=${model} rows=${rows} axis=${axis} name=${name} />`;
-  return html`
-    <details class="sliders" onToggle=${(/** @type {any} */ event) => setOpen(event.target.open)}>
-      <summary>What each parameter does</summary>
-      ${isOpen && what}
-    </details>`;
-}
-
-function Loaded(/** @type {{ model: any, rows: any[], axis: any, name: string }} */ { model, rows, axis, name }) {
+export function ParameterSliders({ model, rows, axis, name }) {
   const { answer, error } = useAnswer(path.responseSurface(model.id));
   if (!answer) return html`<${Pending} answer=${answer} error=${error} what="the response surface" />`;
   return html`<${Sliders} surface=${answer} rows=${rows} axis=${axis} name=${name} />`;

@@ -4,7 +4,7 @@ import { html, useState } from "../html.js";
 import { HistoryChart } from "../chart/history_chart.js";
 import { varying } from "../chart/condition.js";
 import { AxisPicker, ChannelCharts } from "../part/channel_charts.js";
-import { ParameterSliders } from "../part/parameter_sliders.js";
+import { ParameterFold } from "../part/parameter_fold.js";
 import { Pending } from "../part/message.js";
 import { RunTable } from "../part/run_table.js";
 import { isReport } from "../rest/answers.js";
@@ -30,7 +30,7 @@ export function Compare({ study, model, query }) {
     <p class="note">Signs are measurements (hollow: held out, never fitted), lines the mean of the posterior, bands its 90 % interval of a measurement. Point at a run, or drag over a region: it lights up in every picture.</p>
     <${AxisPicker} axes=${axes} axis=${axis} choose=${choose} />
     <${ChannelCharts} layers=${layers} axis=${axis} name=${study.name} />
-    <${ParameterSliders} model=${model} line=${study.ledger.find((/** @type {any} */ l) => l.calibration === model.id)} rows=${comparison.rows} axis=${axis} name=${study.name} />
+    <${ParameterFold} model=${model} line=${study.ledger.find((/** @type {any} */ l) => l.calibration === model.id)} rows=${comparison.rows} axis=${axis} name=${study.name} />
     ${histories?.length > 0 && html`<h2>Time histories</h2><div class="figures">${histories.map((/** @type {any} */ h) => html`<${HistoryChart} history=${h} name=${study.name} />`)}</div>`}
     <details><summary>Table of all runs</summary><${RunTable} rows=${comparison.rows} /></details>`;
 }
