@@ -1,7 +1,8 @@
 //! Simulation-based calibration of the whole chain: priors, likelihood, sampler and the quasi-static model.
 //!
-//! `cargo bench -p benchmark --bench sbc [-- [emulated] [SETS [PARTICLES [SEED]]]]` calibrates by drawn or by emulated stages. The default of 1000 data sets and 500 particles takes about four
-//! minutes of CPU time. Exits with 1 if ranks are not uniform, or if 90 % intervals contain the truth too often or too rarely.
+//! `cargo bench -p benchmark --bench sbc [-- [emulated] [SETS [PARTICLES [SEED]]]]` calibrates by drawn or by emulated stages.
+//! The default of 1000 data sets and 500 particles takes about four minutes of CPU time. Exits with 1 if ranks are not uniform, or if 90 %
+//! intervals contain the truth too often or too rarely.
 
 use std::process::ExitCode;
 

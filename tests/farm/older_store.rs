@@ -177,8 +177,9 @@ async fn a_study_of_before_its_members_were_stored_is_the_same_study() {
 #[tokio::test]
 async fn a_store_whose_new_columns_are_still_empty_can_be_read() {
     let (_temporary, _, out) = folder("store-19", "finished.store");
-    let url = format!("sqlite://{}", out.join("grouser.db").display());
-    let mut connection = sqlx::SqliteConnection::connect(&url).await.expect("a store");
+    let mut connection = sqlx::SqliteConnection::connect(&store_in(&out))
+        .await
+        .expect("a store");
     // This is the state after a kill between the creation of the columns and the computation of their values.
     let columns = sqlx::raw_sql(include_str!("../../migrations/0020_members.sql"));
     columns.execute(&mut connection).await.expect("new columns");
