@@ -7,29 +7,6 @@ pub const DETECTED: f64 = 3.0;
 /// Prior probability that nothing is missing.
 pub(crate) const PRIOR_OF_NONE: f64 = 0.5;
 const CREDIBLE: f64 = 0.95;
-/// Share of a gain of log evidence that counts in a probability.
-///
-/// The evidences are those of the models that were fitted, by approximations, with a noise that is declared. What acts may be none of
-/// these models, and then their evidences differ by more than the data can tell. Half is the share by which stated probabilities agree
-/// with the frequency of right explanations in the benchmark of 600 campaigns, a third of them with physics outside the catalogue.
-///
-/// # Source
-/// The likelihood to a power below 1 of Miller & Dunson 2019, doi:10.1080/01621459.2018.1469995. Checked by
-/// `cargo bench -p benchmark --bench hidden_effect -- calibration`.
-const COUNTED_GAIN: f64 = 0.5;
-
-/// Returns the log weight of the evidence for a model over the base: a gain counts by its share, a loss in full.
-///
-/// # Arguments
-/// - `misfit`: chi-square of the best explanation over its degrees of freedom, by which the log Bayes factor is divided.
-pub(crate) fn counted_evidence(log_bayes_factor: f64, misfit: f64) -> f64 {
-    let log_bayes_factor = log_bayes_factor / misfit;
-    if log_bayes_factor > 0.0 {
-        COUNTED_GAIN * log_bayes_factor
-    } else {
-        log_bayes_factor
-    }
-}
 
 /// The evidence for one explanation: nothing is missing, or one effect is.
 #[derive(Debug)]
@@ -109,14 +86,10 @@ impl Probabilities {
         // Log prior and log weight of the explanation alone, then of its combinations.
         let models = |prior: f64, log_bayes_factor: f64, combinations: &[(f64, f64)]| -> LogWeights {
             let log_prior = libm::log(prior);
-            let alone = (log_prior, log_prior + counted_evidence(log_bayes_factor, misfit));
+            let alone = (log_prior, log_prior + log_bayes_factor / misfit);
             let combinations = combinations.iter();
-            let combinations = combinations.map(|(factor, cost)| {
-                (
-                    log_prior - cost,
-                    log_prior + counted_evidence(*factor, misfit) - cost,
-                )
-            });
+            let combinations =
+                combinations.map(|(factor, cost)| (log_prior - cost, log_prior + factor / misfit - cost));
             std::iter::once(alone).chain(combinations).collect()
         };
         let of_explanation = |e: &Explanation| models(prior(e.class), e.log_bayes_factor, &e.combinations);
@@ -217,7 +190,7 @@ mod tests {
         let weights: Vec<f64> = all
             .iter()
             .zip(log_priors)
-            .map(|(e, p)| p + counted_evidence(e.log_bayes_factor, 1.0))
+            .map(|(e, p)| p + e.log_bayes_factor)
             .collect();
         let sum = log_sum_exp(weights.iter().copied());
         let expected: Vec<u64> = weights.iter().map(|w| libm::exp(w - sum).to_bits()).collect();
@@ -230,11 +203,11 @@ mod tests {
     fn the_credible_set_is_the_smallest_with_its_probability() {
         let all = [
             explanation(0, 0.0),
-            explanation(1, 6.0),
-            explanation(2, 4.0),
+            explanation(1, 3.0),
+            explanation(2, 2.0),
             explanation(3, -9.0),
         ];
-        let probabilities = Probabilities::new(&all, Some(&law(8.0)), PRIOR_OF_NONE, 1.0);
+        let probabilities = Probabilities::new(&all, Some(&law(4.0)), PRIOR_OF_NONE, 1.0);
         assert_eq!(probabilities.credible, [None, Some(1), Some(2)]);
         let total = probabilities.explanations.iter().sum::<f64>() + probabilities.outside.unwrap();
         assert!((total - 1.0).abs() < 1e-12);
@@ -255,8 +228,7 @@ mod tests {
             let p = Probabilities::new(&all, None, PRIOR_OF_NONE, misfit).explanations;
             libm::log(p[1] / p[2])
         };
-        let counted = |nats: f64| COUNTED_GAIN * nats;
-        assert!((odds(1.0) - counted(8.0)).abs() < 1e-9 && (odds(4.0) - counted(2.0)).abs() < 1e-9);
+        assert!((odds(1.0) - 8.0).abs() < 1e-9 && (odds(4.0) - 2.0).abs() < 1e-9);
     }
 
     #[test]
@@ -272,7 +244,7 @@ mod tests {
         // The printed priors and Bayes factors give the printed odds.
         let models = &probabilities.models;
         let odds = models[2].posterior / models[0].posterior;
-        let expected = models[2].prior / models[0].prior * libm::exp(counted_evidence(9.0, 1.0));
+        let expected = models[2].prior / models[0].prior * libm::exp(9.0);
         assert!((odds / expected - 1.0).abs() < 1e-12);
     }
 }

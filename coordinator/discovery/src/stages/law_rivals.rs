@@ -1,7 +1,6 @@
 //! The laws that contradict a law: they change another quantity, and explain the data, too.
 
 use crate::laplace::evidence::log_sum_exp;
-use crate::probability::counted_evidence;
 use crate::stages::hypotheses::Hypotheses;
 use crate::stages::weighing::Weighing;
 use crate::task::SearchTask;
@@ -20,7 +19,7 @@ pub(super) fn rival_probability(
     let curve = &task.laws[law].curve;
     let is_rival = |other: usize| other != law && !task.laws[other].curve.shares_quantity(curve);
     let laws = hypotheses.laws.iter().flat_map(|scan| &scan.laws);
-    let weight = |log_bayes_factor: f64| counted_evidence(log_bayes_factor, weighing.misfit);
+    let weight = |log_bayes_factor: f64| log_bayes_factor / weighing.misfit;
     let weights = laws.map(|found| (found.law, weight(found.mean_log_bayes_factor - found.handicap)));
     let weights: Vec<(usize, f64)> = weights.collect();
     let of_rivals = weights.iter().filter(|(other, _)| is_rival(*other));

@@ -1,7 +1,7 @@
 //! The weight of the base with a candidate in the place of one of its effects, and the replacement that is claimed (step 13).
 
 use crate::laplace::evidence::log_sum_exp;
-use crate::probability::{DETECTED, PRIOR_OF_NONE, counted_evidence};
+use crate::probability::{DETECTED, PRIOR_OF_NONE};
 use crate::stages::hypotheses::{FittedReplacement, Hypotheses};
 use crate::stages::noise_support::unsupported_noise;
 use crate::stages::scored_fit::ScoredFit;
@@ -28,9 +28,7 @@ pub struct Replacement {
 ///
 /// A replacement has the prior of the base as it is, "nothing is missing": both have as many effects.
 pub(super) fn weighed(task: &SearchTask, hypotheses: &Hypotheses, weighing: &Weighing) -> Vec<Replacement> {
-    let weight = |prior: f64, log_bayes_factor: f64| {
-        libm::log(prior) + counted_evidence(log_bayes_factor, weighing.misfit)
-    };
+    let weight = |prior: f64, log_bayes_factor: f64| libm::log(prior) + log_bayes_factor / weighing.misfit;
     let fitted = &hypotheses.replacements;
     let weights: Vec<f64> = fitted
         .iter()

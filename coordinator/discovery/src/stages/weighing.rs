@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use crate::effect_search::ranking::{EffectRanking, EvidenceMethod};
 use crate::laplace::evidence::log_sum_exp;
-use crate::probability::{DETECTED, ModelProbability, OutsideEvidence, PRIOR_OF_NONE, counted_evidence};
+use crate::probability::{DETECTED, ModelProbability, OutsideEvidence, PRIOR_OF_NONE};
 use crate::stages::hypotheses::{EffectCombination, Hypotheses};
 use crate::stages::next_run::OpenHypothesis;
 use crate::task::SearchTask;
@@ -86,15 +86,12 @@ fn inclusion(hypotheses: &Hypotheses, library: usize, law: Option<f64>, cost: f6
             } else {
                 Leader::Law
             };
-            let factor = counted_evidence(combination.log_bayes_factor, misfit) - cost;
+            let factor = combination.log_bayes_factor / misfit - cost;
             weights.entry(member).or_default().push(factor);
         }
     }
     if let Some(law) = law {
-        weights
-            .entry(Leader::Law)
-            .or_default()
-            .push(counted_evidence(law, misfit));
+        weights.entry(Leader::Law).or_default().push(law / misfit);
     }
     let sum = |(k, weights): (Leader, Vec<f64>)| (k, log_sum_exp(weights.into_iter()));
     weights.into_iter().map(sum).collect()
