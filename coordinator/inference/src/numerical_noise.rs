@@ -69,21 +69,52 @@ fn scatter(likelihood: &Likelihood, answers: &[Option<Vec<f64>>]) -> Option<Vec<
 /// Returns the scatter of each channel that counts as noise; 0 for a channel whose noise is inferred, because that includes the scatter.
 /// `None` if all are negligible beside the declared noise.
 pub fn sds(likelihood: &Likelihood, answers: &[Option<Vec<f64>>]) -> Option<Vec<f64>> {
-    let data = likelihood.data();
-    let is_declared = |channel: usize| {
-        let mut data = data.iter().filter(|datum| datum.channel == channel);
-        data.any(|datum| matches!(datum.sd, ErrorSd::Known(_)))
-    };
-    let sds: Vec<f64> = scatter(likelihood, answers)?
-        .into_iter()
-        .enumerate()
-        .map(|(channel, sd)| if is_declared(channel) { sd } else { 0.0 })
-        .collect();
-    let matters = data.iter().any(|datum| match datum.sd {
+    let sds = declared_sds(likelihood, answers)?;
+    let matters = likelihood.data().iter().any(|datum| match datum.sd {
         ErrorSd::Known(sd) => sds[datum.channel] > NEGLIGIBLE * sd,
         ErrorSd::Inferred { .. } => false,
     });
     matters.then_some(sds)
+}
+
+/// Returns the scatter of each channel, however small; 0 for a channel whose noise is inferred. `None` without data.
+pub(crate) fn declared_sds(likelihood: &Likelihood, answers: &[Option<Vec<f64>>]) -> Option<Vec<f64>> {
+    let is_declared = |channel: usize| {
+        let mut data = likelihood.data().iter().filter(|datum| datum.channel == channel);
+        data.any(|datum| matches!(datum.sd, ErrorSd::Known(_)))
+    };
+    let sds = scatter(likelihood, answers)?.into_iter().enumerate();
+    Some(
+        sds.map(|(channel, sd)| if is_declared(channel) { sd } else { 0.0 })
+            .collect(),
+    )
+}
+
+/// Returns the sd of the log-likelihood that the scatter causes, in nats: with residuals r, scatter s and error sds e,
+/// `sqrt(sum (r s / e^2)^2)`. Scatter that is small beside the noise is felt where the model misses its data by many error sds.
+/// `None` without enough accepted positions.
+///
+/// # Arguments
+/// - `theta`: parameters at which the inferred error sds are taken.
+pub(crate) fn log_likelihood_sd(
+    likelihood: &Likelihood,
+    answers: &[Option<Vec<f64>>],
+    theta: &[f64],
+) -> Option<f64> {
+    let scatter = scatter(likelihood, answers).filter(|_| are_enough(answers))?;
+    let values = answers.iter().flatten().next()?;
+    let terms = likelihood.data().iter().zip(values).map(|(datum, value)| {
+        let noise = noise_sd(datum.sd, theta);
+        (datum.value - value) / noise * (scatter[datum.channel] / noise)
+    });
+    Some(terms.map(|term| term * term).sum::<f64>().sqrt())
+}
+
+fn noise_sd(sd: ErrorSd, theta: &[f64]) -> f64 {
+    match sd {
+        ErrorSd::Known(sd) => sd,
+        ErrorSd::Inferred { parameter } => theta[parameter],
+    }
 }
 
 /// Returns whether the scatter was measured, and is negligible beside the noise of every datum, declared or inferred.
@@ -94,13 +125,8 @@ pub fn is_negligible(likelihood: &Likelihood, answers: &[Option<Vec<f64>>], thet
     let Some(scatter) = scatter(likelihood, answers).filter(|_| are_enough(answers)) else {
         return false;
     };
-    likelihood.data().iter().all(|datum| {
-        let noise = match datum.sd {
-            ErrorSd::Known(sd) => sd,
-            ErrorSd::Inferred { parameter } => theta[parameter],
-        };
-        scatter[datum.channel] <= NEGLIGIBLE * noise
-    })
+    let mut data = likelihood.data().iter();
+    data.all(|datum| scatter[datum.channel] <= NEGLIGIBLE * noise_sd(datum.sd, theta))
 }
 
 #[cfg(test)]

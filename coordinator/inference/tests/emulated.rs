@@ -127,36 +127,50 @@ fn an_eggbox_is_left_to_draws_of_the_model() {
     assert!((posterior.log_evidence - problem.log_evidence).abs() < 0.1);
 }
 
-/// A line with jumps of the size of the noise: the scatter is measured and becomes part of the error model.
-#[test]
-fn the_scatter_of_a_rough_model_is_measured() {
-    const SCATTER: f64 = 0.5;
+/// A line through 20 data of noise 1, with jumps.
+fn jumping_line(theta: &[f64], scatter: f64) -> Vec<f64> {
+    let bits = theta
+        .iter()
+        .fold(1_u64, |hash, x| hash.wrapping_mul(31).wrapping_add(x.to_bits()));
+    let jumps = Stream::new(bits, 0, 0, 0).normals(20);
+    let line = |i: usize| theta[0] + theta[1] * abscissa(i);
+    (0..20).map(|i| line(i) + scatter * jumps[i]).collect()
+}
+
+fn abscissa(i: usize) -> f64 {
+    i as f64 / 10.0 - 0.95
+}
+
+/// The problem of a line with jumps.
+///
+/// # Arguments
+/// - `miss`: the data lie above and below 1 in turn, by this \[noise sds\].
+fn jumping_problem(outputs: fn(&[f64]) -> Option<Vec<f64>>, miss: f64) -> OutputProblem {
     let uniform = Distribution::Uniform {
         lower: -5.0,
         upper: 5.0,
     };
-    let outputs = |theta: &[f64]| {
-        let bits = theta
-            .iter()
-            .fold(1_u64, |hash, x| hash.wrapping_mul(31).wrapping_add(x.to_bits()));
-        let jumps = Stream::new(bits, 0, 0, 0).normals(20);
-        let line = |i: usize| theta[0] + theta[1] * (i as f64 / 10.0 - 0.95);
-        Some((0..20).map(|i| line(i) + SCATTER * jumps[i]).collect())
-    };
-    let datum = |run| Datum {
+    let datum = |run: usize| Datum {
         run,
         channel: 0,
-        value: 1.0,
+        value: 1.0 + if run.is_multiple_of(2) { miss } else { -miss },
         sd: ErrorSd::Known(1.0),
     };
-    let problem = OutputProblem {
+    OutputProblem {
         name: "rough",
         prior: Prior::new(vec![Marginal::new(uniform, None).unwrap(); 2]),
         likelihood: Likelihood::new((0..20).map(datum).collect()).unwrap(),
         model_parameters: 2,
         outputs,
         log_evidence: 0.0,
-    };
+    }
+}
+
+/// A line with jumps of the size of the noise: the scatter is measured and becomes part of the error model.
+#[test]
+fn the_scatter_of_a_rough_model_is_measured() {
+    const SCATTER: f64 = 0.5;
+    let problem = jumping_problem(|theta| Some(jumping_line(theta, SCATTER)), 0.0);
     let sampler = run(&problem, 1, false);
     let record = sampler.record();
 
@@ -165,6 +179,35 @@ fn the_scatter_of_a_rough_model_is_measured() {
         (record.numerical_noise[0] / SCATTER - 1.0).abs() < 0.3,
         "{record:?}"
     );
+}
+
+/// A line that misses its data by 12 noise sds, with jumps of a twentieth of one: they scatter the log-likelihood by 2.7 nats. The
+/// evidence is that of the line without jumps, in closed form.
+#[test]
+fn scatter_below_the_noise_is_felt_where_the_model_misses_its_data() {
+    const SCATTER: f64 = 0.05;
+    const MISS: f64 = 12.0;
+    let problem = jumping_problem(|theta| Some(jumping_line(theta, SCATTER)), MISS);
+    let sampler = run(&problem, 1, false);
+    let record = sampler.record();
+    assert!(!record.fell_back);
+    let sd = record.numerical_noise[0];
+    assert!((sd / SCATTER - 1.0).abs() < 0.3, "{record:?}");
+
+    let variance = 1.0 + sd * sd;
+    let squares: f64 = (0..20).map(|i| abscissa(i) * abscissa(i)).sum();
+    // The alternation is orthogonal to the constant; its projection on the slope is taken out.
+    let alternation = |i: usize| if i.is_multiple_of(2) { MISS } else { -MISS };
+    let slope = (0..20).map(|i| alternation(i) * abscissa(i)).sum::<f64>() / squares;
+    let residuals = 20.0 * MISS * MISS - slope * slope * squares;
+    let two_pi = 2.0 * std::f64::consts::PI;
+    let expected = -0.5 * residuals / variance
+        - 9.0 * (two_pi * variance).ln()
+        - 0.5 * (20.0 * squares).ln()
+        - 100_f64.ln();
+    let posterior = sampler.posterior().unwrap();
+    let error = posterior.log_evidence - expected;
+    assert!(error.abs() < 0.2, "{error} ± {}", posterior.log_evidence_se);
 }
 
 /// A quarter of the prior is rejected, beside the posterior.

@@ -19,6 +19,9 @@ const SCATTER_STEP: u64 = (1 << 40) + 3;
 /// Number of lines: a kink of a smooth model may lie on one, and scatter lies on all.
 const LINES: usize = 2;
 
+/// Sd of the log-likelihood in nats below which scatter is not felt.
+const UNFELT: f64 = 0.3;
+
 impl EmulatedSampler {
     /// Asks for evaluations on lines between draws of the target.
     pub(super) fn ask_scatter(&self, position: Position, sample: EmulatedSample) -> Next {
@@ -48,7 +51,8 @@ impl EmulatedSampler {
         self.has_measured_scatter = true;
         let theta = lines.sample.thetas()[0];
         let is_rough = |line: &[Outputs]| {
-            numerical_noise::are_enough(line) && !numerical_noise::is_negligible(&self.stated, line, theta)
+            let sd = numerical_noise::log_likelihood_sd(&self.stated, line, theta);
+            sd.is_some_and(|sd| sd > UNFELT || !numerical_noise::is_negligible(&self.stated, line, theta))
         };
         if outputs.chunks(POINTS).all(is_rough) {
             self.is_rough = true;
@@ -63,7 +67,7 @@ impl EmulatedSampler {
     fn add_scatter(&mut self, outputs: &[Outputs]) {
         let lines = outputs
             .chunks(POINTS)
-            .map(|line| numerical_noise::sds(&self.stated, line));
+            .map(|line| numerical_noise::declared_sds(&self.stated, line));
         let Some(lines) = lines.collect::<Option<Vec<Vec<f64>>>>() else {
             return;
         };
