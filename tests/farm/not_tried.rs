@@ -10,7 +10,7 @@ use farm_tests::workspace::text;
 use serde_json::Value;
 
 const EXPERIMENT: &str = "runs = \"runs.csv\"\n[wheel.w]\nradius_m = 0.125\nwidth_m = 0.112\ngrouser_count = 0\n\
-    [soil.s]\n[rig]\nbin_length_m = 1.5\n[noise]\ndrawbar_pull_n = 0.6\ntorque_n_m = 0.08\nsinkage_m = 0.0002\n\
+    [soil.s]\n[rig]\nbin_length_m = 1.5\n[noise]\ndrawbar_pull_n = 0.4\ntorque_n_m = 0.05\nsinkage_m = 0.00015\n\
     lateral_force_n = 1.0\n";
 const DENSITY: &str = "[soil.s]\ndensity_kg_m3 = 1400.0\n";
 const MODEL: &str = "kind = \"quasi_static\"\neffects = [\"bulldozing\"]\n";

@@ -1,10 +1,11 @@
-//! Published rigs in the form of docs/exchange.md: each is read, cited and called digitised, and an effect that it shows is named.
+//! Published rigs in the form of docs/exchange.md: each is read, cited and called digitised, and an effect that it shows leads.
 
 use farm_tests::assert_contains;
 use farm_tests::job::Job;
 use farm_tests::json::float;
 use farm_tests::programs::{coordinator, run, study};
 use farm_tests::workspace::{root, text};
+use serde_json::Value;
 
 const JOBS: [&str; 4] = [
     "ding-2011/job.toml",
@@ -36,7 +37,7 @@ fn each_rig_passes_check_which_cites_it_and_says_that_it_is_digitised() {
 }
 
 #[test]
-fn the_digging_of_a_wheel_is_named_from_five_digitised_points() {
+fn the_digging_of_a_wheel_leads_without_a_name_on_five_digitised_points() {
     let (printed, summary) = study(&rashid());
     let campaign = &summary["campaign"];
     assert_eq!(campaign["doi"], "10.1007/s11214-025-01164-8");
@@ -48,14 +49,19 @@ fn the_digging_of_a_wheel_is_named_from_five_digitised_points() {
             .any(|line| line.starts_with("run ") && line.contains(word))
     };
     assert!(head(" digitised ") && !head(" measured "), "{printed}");
-    let ledger = summary["calibrations"].as_array().expect("a ledger");
-    let effects: Vec<_> = ledger.iter().map(|line| &line["effects"]).collect();
-    assert_eq!(
-        effects,
-        [&serde_json::json!([]), &serde_json::json!(["slip_digging"])]
+    let discovery = &summary["discovery"];
+    assert_eq!(discovery["verdict"], "undecided");
+    let effects = discovery["effects"].as_array().expect("explanations");
+    let digging = effects.iter().find(|effect| effect["name"] == "slip_digging");
+    let probability = float(&digging.expect("the digging")["probability"]);
+    assert!((0.8..0.9).contains(&probability), "{probability}");
+    let digging = rashid().in_job(
+        "kind = \"quasi_static\"",
+        "kind = \"quasi_static\"\neffects = [\"slip_digging\"]",
     );
-    let sinkage = |line: usize| float(&ledger[line]["error"]["fit"]["sinkage"]["rmse"]);
-    assert!(sinkage(0) > 0.004 && sinkage(1) < 0.001, "{ledger:?}");
+    let sinkage = |summary: &Value| float(&summary["calibrations"][0]["error"]["fit"]["sinkage"]["rmse"]);
+    let (_, with_digging) = study(&digging);
+    assert!(sinkage(&summary) > 0.004 && sinkage(&with_digging) < 0.001);
 }
 
 #[test]

@@ -7,6 +7,31 @@ pub const DETECTED: f64 = 3.0;
 /// Prior probability that nothing is missing.
 pub(crate) const PRIOR_OF_NONE: f64 = 0.5;
 const CREDIBLE: f64 = 0.95;
+/// Share of a gain of log evidence that counts in a probability.
+///
+/// The evidences are those of the models that were fitted, by approximations, with a noise that is declared. What acts may be none of
+/// these models, and then their evidences differ by more than the data can tell. With half, stated probabilities agree with the frequency
+/// of right explanations in the benchmark of 600 campaigns, a third of them with physics outside the catalogue.
+///
+/// # Source
+/// The likelihood to a power below 1 of Miller & Dunson 2019, doi:10.1080/01621459.2018.1469995. Checked by
+/// `cargo bench -p benchmark --bench hidden_effect -- calibration`.
+const COUNTED_GAIN: f64 = 0.5;
+
+/// Returns the log weight of the evidence for a model over the base: a gain counts by its share, a loss in full. Prior costs are no evidence
+/// and count in full.
+///
+/// # Arguments
+/// - `log_bayes_factor`: log evidence of the fitted model over that of the base, without prior costs.
+/// - `misfit`: chi-square of the best explanation over its degrees of freedom, by which the log Bayes factor is divided.
+pub(crate) fn counted_evidence(log_bayes_factor: f64, misfit: f64) -> f64 {
+    let log_bayes_factor = log_bayes_factor / misfit;
+    if log_bayes_factor > 0.0 {
+        COUNTED_GAIN * log_bayes_factor
+    } else {
+        log_bayes_factor
+    }
+}
 
 /// The evidence for one explanation: nothing is missing, or one effect is.
 #[derive(Debug)]
@@ -15,16 +40,18 @@ pub(crate) struct Explanation {
     pub(crate) class: usize,
     /// Log evidence over that of the base.
     pub(crate) log_bayes_factor: f64,
-    /// Log Bayes factor and log prior cost of each combination of effects that counts for this explanation.
+    /// Log Bayes factor, without prior costs, and log prior cost of each combination of effects that counts for this explanation.
     pub(crate) combinations: Vec<(f64, f64)>,
 }
 
 /// The evidence for a law outside the library.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct OutsideEvidence {
-    /// Log evidence over that of the base, the mean over all laws.
-    pub(crate) log_bayes_factor: f64,
-    /// Log Bayes factor and log prior cost of each combination that counts for the law.
+    /// Number of all laws.
+    pub(crate) laws: usize,
+    /// Log of the mean weight of all laws: of the counted evidence of each, less its costs.
+    pub(crate) log_weight: f64,
+    /// Log Bayes factor, without prior costs, and log prior cost of each combination that counts for the law.
     pub(crate) combinations: Vec<(f64, f64)>,
 }
 
@@ -48,6 +75,8 @@ pub(crate) struct Probabilities {
     /// Probability of each explanation, the sum over its models.
     pub(crate) explanations: Vec<f64>,
     pub(crate) models: Vec<ModelProbability>,
+    /// Log of the sum of all weights: priors times counted evidence.
+    pub(crate) log_total: f64,
     /// Posterior probability of a law outside the library; `None`: not searched.
     pub(crate) outside: Option<f64>,
     /// The smallest set of classes with 95 % probability, the most probable first; `None` in it is the law outside the library.
@@ -55,14 +84,16 @@ pub(crate) struct Probabilities {
 }
 
 impl Probabilities {
-    /// The prior is that of `none` for nothing missing. The rest is shared equally by the classes and the law outside the library, and within
-    /// a class by its members.
+    /// The prior is that of `none` for nothing missing. Of the rest, laws outside the library have the share of their number among all effects
+    /// and laws; the classes share the remainder equally, and the members of a class theirs.
     ///
     /// # Arguments
     /// - `outside`: evidence for a law outside the library; `None`: not searched.
     /// - `none`: prior probability that nothing is missing.
     /// - `misfit`: chi-square of the best explanation over its degrees of freedom, 1 where it fits. Log Bayes factors are divided by it,
     ///   as if the noise were larger by its root: where every explanation is wrong, differences between them mean less.
+    ///
+    /// A gain of evidence counts by a share ([`counted_evidence`]).
     ///
     /// # Source
     /// Kass & Raftery 1995, section 5.3, doi:10.1080/01621459.1995.10476572. Checked by
@@ -74,32 +105,39 @@ impl Probabilities {
         misfit: f64,
     ) -> Self {
         let classes = explanations.iter().map(|e| e.class).max().unwrap_or(0);
-        let alternatives = classes + usize::from(outside.is_some());
-        let each = (1.0 - none) / alternatives.max(1) as f64;
+        let effects = explanations.iter().filter(|e| e.class > 0).count();
+        let of_law = outside.map_or(0.0, |law| {
+            let laws = law.laws.max(1) as f64;
+            (1.0 - none) * laws / (laws + effects as f64)
+        });
         let members = |class: usize| explanations.iter().filter(|e| e.class == class).count() as f64;
         let prior = |class: usize| match class {
             // Without an alternative nothing can be missing.
-            0 if alternatives == 0 => 1.0,
+            0 if classes == 0 && outside.is_none() => 1.0,
             0 => none,
-            class => each / members(class),
+            class => (1.0 - none - of_law) / classes as f64 / members(class),
         };
         // Log prior and log weight of the explanation alone, then of its combinations.
-        let models = |prior: f64, log_bayes_factor: f64, combinations: &[(f64, f64)]| -> LogWeights {
+        let models = |prior: f64, alone: f64, combinations: &[(f64, f64)]| -> LogWeights {
             let log_prior = libm::log(prior);
-            let alone = (log_prior, log_prior + log_bayes_factor / misfit);
-            let combinations = combinations.iter();
-            let combinations =
-                combinations.map(|(factor, cost)| (log_prior - cost, log_prior + factor / misfit - cost));
+            let alone = (log_prior, log_prior + alone);
+            let combinations = combinations.iter().map(|(factor, cost)| {
+                let log_prior = log_prior - cost;
+                (log_prior, log_prior + counted_evidence(*factor, misfit))
+            });
             std::iter::once(alone).chain(combinations).collect()
         };
-        let of_explanation = |e: &Explanation| models(prior(e.class), e.log_bayes_factor, &e.combinations);
+        let of_explanation = |e: &Explanation| {
+            let alone = counted_evidence(e.log_bayes_factor, misfit);
+            models(prior(e.class), alone, &e.combinations)
+        };
         let mut weighed: Vec<(Option<usize>, LogWeights)> = explanations
             .iter()
             .enumerate()
             .map(|(k, explanation)| (Some(k), of_explanation(explanation)))
             .collect();
-        let of_law = outside.map(|law| models(each, law.log_bayes_factor, &law.combinations));
-        weighed.extend(of_law.map(|models| (None, models)));
+        let weighed_law = outside.map(|law| models(of_law, law.log_weight, &law.combinations));
+        weighed.extend(weighed_law.map(|models| (None, models)));
         let weight = |models: &[(f64, f64)]| log_sum_exp(models.iter().map(|(_, weight)| *weight));
         let weights: Vec<f64> = weighed.iter().map(|(_, models)| weight(models)).collect();
         let sum = log_sum_exp(weights.iter().copied());
@@ -127,6 +165,7 @@ impl Probabilities {
             credible: credible(by_class),
             explanations: each_probability,
             models,
+            log_total: sum,
             outside,
         }
     }
@@ -156,9 +195,10 @@ mod tests {
         }
     }
 
-    fn law(log_bayes_factor: f64) -> OutsideEvidence {
+    fn law(log_weight: f64) -> OutsideEvidence {
         OutsideEvidence {
-            log_bayes_factor,
+            laws: 1,
+            log_weight,
             combinations: Vec::new(),
         }
     }
@@ -190,7 +230,7 @@ mod tests {
         let weights: Vec<f64> = all
             .iter()
             .zip(log_priors)
-            .map(|(e, p)| p + e.log_bayes_factor)
+            .map(|(e, p)| p + counted_evidence(e.log_bayes_factor, 1.0))
             .collect();
         let sum = log_sum_exp(weights.iter().copied());
         let expected: Vec<u64> = weights.iter().map(|w| libm::exp(w - sum).to_bits()).collect();
@@ -203,8 +243,8 @@ mod tests {
     fn the_credible_set_is_the_smallest_with_its_probability() {
         let all = [
             explanation(0, 0.0),
-            explanation(1, 3.0),
-            explanation(2, 2.0),
+            explanation(1, 6.0),
+            explanation(2, 4.0),
             explanation(3, -9.0),
         ];
         let probabilities = Probabilities::new(&all, Some(&law(4.0)), PRIOR_OF_NONE, 1.0);
@@ -228,7 +268,8 @@ mod tests {
             let p = Probabilities::new(&all, None, PRIOR_OF_NONE, misfit).explanations;
             libm::log(p[1] / p[2])
         };
-        assert!((odds(1.0) - 8.0).abs() < 1e-9 && (odds(4.0) - 2.0).abs() < 1e-9);
+        let counted = |nats: f64| COUNTED_GAIN * nats;
+        assert!((odds(1.0) - counted(8.0)).abs() < 1e-9 && (odds(4.0) - counted(2.0)).abs() < 1e-9);
     }
 
     #[test]
@@ -244,7 +285,7 @@ mod tests {
         // The printed priors and Bayes factors give the printed odds.
         let models = &probabilities.models;
         let odds = models[2].posterior / models[0].posterior;
-        let expected = models[2].prior / models[0].prior * libm::exp(9.0);
+        let expected = models[2].prior / models[0].prior * libm::exp(COUNTED_GAIN * 9.0);
         assert!((odds / expected - 1.0).abs() < 1e-12);
     }
 }

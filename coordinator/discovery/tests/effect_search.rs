@@ -284,7 +284,7 @@ fn probabilities_sum_to_one_and_follow_the_prior_over_classes() {
 
 #[test]
 fn effects_that_the_data_cannot_distinguish_form_one_class_and_the_truth_is_found() {
-    let values = measured(&[(0, 0.3), (2, 2.0)]);
+    let values = measured(&[(0, 0.5), (2, 3.0)]);
     let (candidates, columns) = four();
     let ranking = search(&values, &candidates, &columns, false);
     let class = |k: usize| ranking.effect(Some(k)).unwrap().class;

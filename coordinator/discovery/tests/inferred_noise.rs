@@ -14,7 +14,7 @@ const NOISE: usize = 2;
 /// # Arguments
 /// - `is_known`: whether the sd of a datum, by its number among the twelve, is declared. `conditions`: the data of each condition.
 fn conclude(is_known: impl Fn(usize) -> bool, conditions: Vec<Vec<usize>>) -> Conclusion {
-    let values = measured(|x, _| 0.3 + 0.5 * x + 0.8 * x * x);
+    let values = measured(|x, _| 0.3 + 0.5 * x + 1.6 * x * x);
     let whole = task(&values);
     let kept = || (0..values.len()).step_by(2);
     let data = kept().enumerate().map(|(place, i)| Datum {

@@ -72,7 +72,7 @@ fn an_effect_of_the_base_without_evidence_is_redundant() {
 
 #[test]
 fn a_better_effect_takes_the_place_of_one_that_was_added_wrongly() {
-    let conclusion = find(|x, _| 0.3 + 0.5 * x + 0.9 * x * x, &KEPT);
+    let conclusion = find(|x, _| 0.3 + 0.5 * x + 1.1 * x * x, &KEPT);
     let claimed = conclusion.claimed_replacement();
     let claimed = claimed.unwrap_or_else(|| panic!("{:?}", conclusion.replacements));
     assert_eq!((claimed.reduction, claimed.candidate), (0, SQUARE));

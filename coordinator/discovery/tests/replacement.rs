@@ -74,7 +74,7 @@ fn a_better_effect_takes_the_place_of_one_that_was_added_wrongly() {
 
 #[test]
 fn an_effect_that_acts_beside_another_is_not_replaced() {
-    let truth = |x: f64, w: f64| 0.3 + 0.5 * x + 0.9 * wrong(x, w) + 0.6 * x * x;
+    let truth = |x: f64, w: f64| 0.3 + 0.5 * x + 0.9 * wrong(x, w) + 0.8 * x * x;
     let conclusion = find(truth, (0..LIBRARY).collect());
     assert_eq!(conclusion.verdict, SearchVerdict::Named(SQUARE));
     assert!(conclusion.claimed_replacement().is_none());

@@ -7,7 +7,7 @@ use crate::chi_square::FitChiSquare;
 use crate::effect_search::ranking::EffectRanking;
 use crate::laplace::evidence::log_sum_exp;
 use crate::laplace::fit::{FittedModel, LaplaceFit};
-use crate::probability::DETECTED;
+use crate::probability::{DETECTED, counted_evidence};
 use crate::stages::law_forms::FittedForm;
 use crate::stages::scored_fit::ScoredFit;
 use statistics::likelihood::Likelihood;
@@ -68,6 +68,15 @@ impl EffectCombination {
     /// Log evidence over that of the base, less the cost of each effect after the first.
     pub(super) fn score(&self) -> f64 {
         self.log_bayes_factor - COST_OF_CHOICE * (self.effects.len() as f64 - 1.0)
+    }
+
+    /// Log prior cost of its members \[nats\]: each effect of the library is one of all, and the law has its [`Self::choice`].
+    ///
+    /// # Arguments
+    /// - `library`: number of the library's effects, which come first among the candidates.
+    pub(super) fn prior_cost(&self, library: usize) -> f64 {
+        let of_library = self.effects.iter().filter(|k| **k < library).count();
+        of_library as f64 * libm::log(library.max(1) as f64) + self.choice
     }
 
     /// Log evidence over that of the base, of this law in this form.
@@ -155,6 +164,21 @@ impl LawScan {
             .iter()
             .map(|law| law.mean_log_bayes_factor - law.handicap);
         log_sum_exp(means) - libm::log(possible.max(1) as f64)
+    }
+
+    /// Returns each law with its log weight: the counted evidence of its best form, less its costs.
+    ///
+    /// # Arguments
+    /// - `possible`: number of all laws. `misfit`: chi-square of the best explanation over its degrees of freedom.
+    pub(super) fn log_weights(
+        &self,
+        possible: usize,
+        misfit: f64,
+    ) -> impl Iterator<Item = (usize, f64)> + Clone {
+        self.laws.iter().map(move |law| {
+            let evidence = counted_evidence(law.log_bayes_factor, misfit);
+            (law.law, evidence - law.choice(possible))
+        })
     }
 }
 

@@ -18,9 +18,8 @@ pub(super) fn rival_probability(
 ) -> f64 {
     let curve = &task.laws[law].curve;
     let is_rival = |other: usize| other != law && !task.laws[other].curve.shares_quantity(curve);
-    let laws = hypotheses.laws.iter().flat_map(|scan| &scan.laws);
-    let weight = |log_bayes_factor: f64| log_bayes_factor / weighing.misfit;
-    let weights = laws.map(|found| (found.law, weight(found.mean_log_bayes_factor - found.handicap)));
+    let scan = hypotheses.laws.iter();
+    let weights = scan.flat_map(|scan| scan.log_weights(task.laws.len(), weighing.misfit));
     let weights: Vec<(usize, f64)> = weights.collect();
     let of_rivals = weights.iter().filter(|(other, _)| is_rival(*other));
     let [of_rivals, of_all] = [

@@ -1,7 +1,7 @@
 //! The weight of the base with a candidate in the place of one of its effects, and the replacement that is claimed (step 13).
 
 use crate::laplace::evidence::log_sum_exp;
-use crate::probability::{DETECTED, PRIOR_OF_NONE};
+use crate::probability::{DETECTED, PRIOR_OF_NONE, counted_evidence};
 use crate::stages::hypotheses::{FittedReplacement, Hypotheses};
 use crate::stages::noise_support::unsupported_noise;
 use crate::stages::scored_fit::ScoredFit;
@@ -28,15 +28,11 @@ pub struct Replacement {
 ///
 /// A replacement has the prior of the base as it is, "nothing is missing": both have as many effects.
 pub(super) fn weighed(task: &SearchTask, hypotheses: &Hypotheses, weighing: &Weighing) -> Vec<Replacement> {
-    let weight = |prior: f64, log_bayes_factor: f64| libm::log(prior) + log_bayes_factor / weighing.misfit;
     let fitted = &hypotheses.replacements;
-    let weights: Vec<f64> = fitted
-        .iter()
-        .map(|replacement| weight(PRIOR_OF_NONE, replacement.log_bayes_factor))
-        .collect();
-    let sets = weighing.sets.iter();
-    let of_sets = sets.map(|set| weight(set.prior, set.log_bayes_factor));
-    let sum = log_sum_exp(of_sets.chain(weights.iter().copied()));
+    let evidence = fitted.iter().map(|replacement| replacement.log_bayes_factor);
+    let weights = evidence.map(|factor| libm::log(PRIOR_OF_NONE) + counted_evidence(factor, weighing.misfit));
+    let weights: Vec<f64> = weights.collect();
+    let sum = log_sum_exp(std::iter::once(weighing.log_total).chain(weights.iter().copied()));
     let weighed = fitted.iter().zip(&weights).map(|(fitted, weight)| {
         let probability = libm::exp(weight - sum);
         let is_better = fitted.log_bayes_factor / weighing.misfit > DETECTED;

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use crate::effect_search::ranking::{EffectRanking, EvidenceMethod};
 use crate::laplace::evidence::log_sum_exp;
-use crate::probability::{DETECTED, ModelProbability, OutsideEvidence, PRIOR_OF_NONE};
+use crate::probability::{DETECTED, ModelProbability, OutsideEvidence, PRIOR_OF_NONE, counted_evidence};
 use crate::stages::hypotheses::{EffectCombination, Hypotheses};
 use crate::stages::next_run::OpenHypothesis;
 use crate::task::SearchTask;
@@ -23,9 +23,9 @@ const MAX_LEADING: usize = 4;
 pub struct WeighedSet {
     /// The effects, empty if nothing is missing; `None` for a law outside the library.
     pub effects: Option<Vec<usize>>,
-    /// Log evidence over that of the base.
+    /// Log evidence over that of the base; of a law outside the library, of the mean over all laws.
     pub log_bayes_factor: f64,
-    /// Prior probability.
+    /// Prior probability, with the cost of the choice of a law among the effects.
     pub prior: f64,
     /// Posterior probability; over all sets they sum to 1.
     pub probability: f64,
@@ -43,6 +43,8 @@ pub(super) struct Weighing {
     pub(super) sets: Vec<WeighedSet>,
     /// Chi-square of the best explanation over its degrees of freedom; 1 where it fits.
     pub(super) misfit: f64,
+    /// Log of the sum of all weights: priors times counted evidence.
+    pub(super) log_total: f64,
     inclusion: Inclusion,
     /// The sets whose law and effect may be one law of two variables.
     one_law: BTreeSet<Vec<usize>>,
@@ -53,8 +55,9 @@ pub(super) struct Weighing {
 /// A combination that counts for its leading effect.
 struct LedCombination<'a> {
     effects: &'a [usize],
+    /// Log evidence over that of the base, without the costs.
     log_bayes_factor: f64,
-    /// Log prior cost of the effects after the first.
+    /// Log prior cost of the members, without that of the leading effect.
     cost: f64,
 }
 
@@ -76,22 +79,24 @@ const NEAR: f64 = 5.0;
 /// combinations were tried.
 const SAME_WEIGHT: f64 = 0.01;
 
-fn inclusion(hypotheses: &Hypotheses, library: usize, law: Option<f64>, cost: f64, misfit: f64) -> Inclusion {
+/// # Arguments
+/// - `library`: number of the library's effects. `law`: log weight of a law alone.
+fn inclusion(hypotheses: &Hypotheses, library: usize, law: Option<f64>, misfit: f64) -> Inclusion {
     let mut weights: BTreeMap<Leader, Vec<f64>> = BTreeMap::new();
     for combination in &hypotheses.combinations {
-        let cost = cost * (combination.effects.len() as f64 - 1.0);
+        let evidence = counted_evidence(combination.fitted_log_bayes_factor(), misfit);
+        let weight = evidence - combination.prior_cost(library);
         for &k in &combination.effects {
             let member = if k < library {
                 Leader::Effect(k)
             } else {
                 Leader::Law
             };
-            let factor = combination.log_bayes_factor / misfit - cost;
-            weights.entry(member).or_default().push(factor);
+            weights.entry(member).or_default().push(weight);
         }
     }
     if let Some(law) = law {
-        weights.entry(Leader::Law).or_default().push(law / misfit);
+        weights.entry(Leader::Law).or_default().push(law);
     }
     let sum = |(k, weights): (Leader, Vec<f64>)| (k, log_sum_exp(weights.into_iter()));
     weights.into_iter().map(sum).collect()
@@ -187,18 +192,20 @@ fn updated_ranking(task: &SearchTask, hypotheses: &Hypotheses) -> EffectRanking 
 struct LedCombinations<'a>(BTreeMap<Leader, Vec<LedCombination<'a>>>);
 
 impl<'a> LedCombinations<'a> {
-    /// Groups the combinations by their leading effect.
-    ///
-    /// # Arguments
-    /// - `cost`: log prior cost of each member after the first.
-    fn new(hypotheses: &'a Hypotheses, leadership: &Leadership, cost: f64) -> Self {
+    /// Groups the combinations by their leading member.
+    fn new(hypotheses: &'a Hypotheses, leadership: &Leadership) -> Self {
+        let cost_of = |leader: Leader| match leader {
+            Leader::Effect(_) => libm::log(leadership.library.max(1) as f64),
+            // The cost of the choice of a law is not part of the prior of all laws.
+            Leader::Law => 0.0,
+        };
         let mut led: BTreeMap<Leader, Vec<LedCombination>> = BTreeMap::new();
         for combination in hypotheses.combinations.iter().filter(|c| c.effects.len() > 1) {
             if let Some(leader) = leadership.leader(&combination.effects) {
                 led.entry(leader).or_default().push(LedCombination {
                     effects: &combination.effects,
-                    log_bayes_factor: combination.log_bayes_factor,
-                    cost: cost * (combination.effects.len() as f64 - 1.0),
+                    log_bayes_factor: combination.fitted_log_bayes_factor(),
+                    cost: combination.prior_cost(leadership.library) - cost_of(leader),
                 });
             }
         }
@@ -209,7 +216,7 @@ impl<'a> LedCombinations<'a> {
         self.0.get(&leader).map_or(&[], Vec::as_slice)
     }
 
-    /// Log Bayes factor and log prior cost of each combination that counts for a leader.
+    /// Log Bayes factor, without prior costs, and log prior cost of each combination that counts for a leader.
     fn weights(&self, leader: Leader) -> Vec<(f64, f64)> {
         let led = self.led_by(leader).iter();
         led.map(|c| (c.log_bayes_factor, c.cost)).collect()
@@ -250,8 +257,8 @@ impl<'a> LedCombinations<'a> {
 }
 
 impl Weighing {
-    /// Computes all probabilities. A combination counts for its leading effect; each further effect has the prior 1 / number of
-    /// candidates.
+    /// Computes all probabilities. A combination counts for its leading member; each further effect has the prior 1 / number of the
+    /// library's effects, and a law that of its choice.
     pub(super) fn new(task: &SearchTask, hypotheses: &Hypotheses) -> Self {
         let misfit = hypotheses.misfit(&task.likelihood);
         Self::with_prior(task, hypotheses, PRIOR_OF_NONE, misfit)
@@ -261,11 +268,14 @@ impl Weighing {
     /// - `none`: prior probability that nothing is missing. `misfit`: chi-square of the best explanation over its degrees of freedom.
     pub(super) fn with_prior(task: &SearchTask, hypotheses: &Hypotheses, none: f64, misfit: f64) -> Self {
         let mut ranking = updated_ranking(task, hypotheses);
-        let cost = libm::log(task.library.len().max(1) as f64);
         let library = task.library.len();
         let law = hypotheses.laws.as_ref();
         let law = law.map(|scan| scan.log_bayes_factor(task.laws.len()));
-        let inclusion = inclusion(hypotheses, library, law, cost, misfit);
+        let law_weight = hypotheses.laws.as_ref().map(|scan| {
+            let weights = scan.log_weights(task.laws.len(), misfit);
+            log_sum_exp(weights.map(|(_, weight)| weight))
+        });
+        let inclusion = inclusion(hypotheses, library, law_weight, misfit);
         let sets = hypotheses.combinations.iter().map(|set| &set.effects);
         let one_law = sets.filter(|set| task.may_be_one_law(set)).cloned().collect();
         let leadership = Leadership {
@@ -275,9 +285,10 @@ impl Weighing {
             law,
             one_law: &one_law,
         };
-        let led = LedCombinations::new(hypotheses, &leadership, cost);
-        let outside = law.map(|log_bayes_factor| OutsideEvidence {
-            log_bayes_factor,
+        let led = LedCombinations::new(hypotheses, &leadership);
+        let outside = law_weight.map(|log_weight| OutsideEvidence {
+            laws: task.laws.len(),
+            log_weight,
             combinations: led.weights(Leader::Law),
         });
         let probabilities = ranking.weigh(|k| led.weights(Leader::Effect(k)), outside.as_ref(), none, misfit);
@@ -298,6 +309,7 @@ impl Weighing {
             not_in_library: law.zip(probabilities.outside),
             sets,
             misfit,
+            log_total: probabilities.log_total,
             inclusion,
             one_law,
             library,
