@@ -14,6 +14,8 @@ use result::words::number;
 
 /// File name in the command that exports the draws.
 const POSTERIOR: &str = "posterior.csv";
+/// Maximum number of explanations that a step names; more are counted.
+const EXPLANATIONS: usize = 4;
 
 /// The next steps of a study, in order; at least one.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
@@ -169,7 +171,7 @@ fn steps(study: &Study, calibration: &FinishedCalibration, facts: Facts<'_>) -> 
     // Distinguishing an added effect from its rivals comes before all other steps.
     steps.splice(0..0, deciding);
     let tests = record.other_tests.iter();
-    steps.extend(tests.map(|test| NextStep::new(StepKind::MeasureOther, format!("measure {test}"), None)));
+    steps.extend(tests.map(|test| NextStep::new(StepKind::MeasureOther, bench_test(test), None)));
     let lacking = record.not_tried.iter().filter(|effect| effect.lacks_data());
     let needs: BTreeSet<(&str, bool)> = lacking
         .map(|effect| (effect.needs.as_str(), effect.lacks_runs()))
@@ -198,6 +200,12 @@ fn steps(study: &Study, calibration: &FinishedCalibration, facts: Facts<'_>) -> 
         ));
     }
     steps
+}
+
+/// Proposes a test without a rolling wheel: `make a tare run: …`, `measure the radius …`.
+fn bench_test(test: &str) -> String {
+    let is_quantity = test.starts_with("the ") || test.starts_with("radius");
+    format!("{} {test}", if is_quantity { "measure" } else { "make a" })
 }
 
 /// Proposes to state or measure the noise of channels whose inferred noise supports no claim; `None` if there are none.
@@ -289,10 +297,13 @@ fn runs(id: i64, runs: &[NextRun]) -> NextStep {
     separates.sort();
     separates.dedup();
     let words: Vec<String> = runs.iter().map(run_words).collect();
+    let told_apart = match separates.len() {
+        n if n > EXPLANATIONS => format!("the {n} open explanations"),
+        _ => number::list(&separates),
+    };
     let text = format!(
-        "run the wheel at {}, which tells {} apart, and add the rows",
-        words.join(", then "),
-        number::list(&separates)
+        "run the wheel at {}, which tells {told_apart} apart, and add the rows",
+        words.join(", then ")
     );
     NextStep {
         runs: runs.to_vec(),
