@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use crate::diagnosis::diagnostics;
 use crate::document::document;
 use crate::overview::{StudyOverview, overview};
+use crate::provenance::provenance;
 use crate::story::Story;
 use crate::summary::study::summary;
 use crate::terminal;
@@ -72,6 +73,8 @@ pub enum CalibrationFile {
     Comparison,
     /// Histories; `null` for a model without time.
     Histories,
+    /// How the result came about.
+    Provenance,
     /// The response surface; `null` without draws that determine one.
     ResponseSurface,
 }
@@ -83,6 +86,7 @@ impl CalibrationFile {
             CalibrationFile::Diagnostics => "diagnostics",
             CalibrationFile::Comparison => "comparison",
             CalibrationFile::Histories => "histories",
+            CalibrationFile::Provenance => "provenance",
             CalibrationFile::ResponseSurface => "response-surface",
         };
         format!("{kind}-{calibration}.json")
@@ -94,12 +98,13 @@ impl CalibrationFile {
             CalibrationFile::Diagnostics => compact(&diagnostics(calibration, calibration.comparison())),
             CalibrationFile::Comparison => compact(&calibration.comparison()),
             CalibrationFile::Histories => compact(&calibration.histories()),
+            CalibrationFile::Provenance => compact(&provenance(calibration)),
             CalibrationFile::ResponseSurface => compact(&calibration.response_surface()),
         }
     }
 }
 
-/// Returns the files that every study ends with, by name, and the diagnostics of its calibrations.
+/// Returns the files that every study ends with, by name, and diagnostics and provenance of its calibrations.
 pub fn files(study: &Study) -> BTreeMap<String, String> {
     use StudyFile::{Brief, Details, Posterior, Predictions, Report, Story, Summary};
     let mut files = overview_files(&overview(study));
@@ -109,10 +114,9 @@ pub fn files(study: &Study) -> BTreeMap<String, String> {
             .into_iter()
             .filter_map(|kind| Some((kind.name(), file(study, kind)?))),
     );
-    let diagnostics = CalibrationFile::Diagnostics;
-    files.extend(study.calibrations().map(|calibration| {
-        let name = diagnostics.name(calibration.row.id);
-        (name, diagnostics.text(calibration))
+    let of_calibrations = [CalibrationFile::Diagnostics, CalibrationFile::Provenance];
+    files.extend(study.calibrations().flat_map(|calibration| {
+        of_calibrations.map(|file| (file.name(calibration.row.id), file.text(calibration)))
     }));
     files
 }

@@ -1,5 +1,7 @@
 //! `/v1/calibrations`: jobs, where they stand, what came out.
 
+use std::collections::BTreeMap;
+
 use axum::Json;
 use axum::extract::State;
 use axum::http::{HeaderMap, HeaderValue, StatusCode, header};
@@ -41,6 +43,7 @@ pub(super) fn routes() -> OpenApiRouter<Service> {
         .routes(routes!(histories))
         .routes(routes!(response_surface))
         .routes(routes!(provenance))
+        .routes(routes!(job))
         .routes(routes!(flags))
         .routes(routes!(summary))
         .routes(routes!(figures))
@@ -374,9 +377,39 @@ async fn response_surface(
     (status = 200, description = "the provenance", body = Provenance),
     (status = 404, body = ErrorBody),
     (status = 409, body = ErrorBody)))]
-async fn provenance(State(service): State<Service>, Id(id): Id) -> Result<Json<Provenance>, HttpError> {
-    let calibration = service.finished_calibration(id).await?;
-    Ok(Json(report::provenance::provenance(&calibration)))
+async fn provenance(State(service): State<Service>, Id(id): Id) -> Result<impl IntoResponse, HttpError> {
+    Ok(json(
+        service.calibration_file(id, CalibrationFile::Provenance).await?,
+    ))
+}
+
+/// The files of a job.
+#[derive(Debug, serde::Serialize, utoipa::ToSchema)]
+struct JobFiles {
+    /// Id of the calibration.
+    id: i64,
+    /// Id of the experiment that it is about.
+    experiment: i64,
+    /// Text of the job.
+    toml: String,
+    /// Texts of the files that the job names, by name.
+    files: BTreeMap<String, String>,
+}
+
+/// The files of a job.
+///
+/// As they are stored, of every calibration, also of one that has failed.
+#[utoipa::path(get, path = "/calibrations/{id}/job", operation_id = "get_job", tag = "calibrations",
+    params(("id" = i64, Path)), responses(
+    (status = 200, description = "the files", body = JobFiles), (status = 404, body = ErrorBody)))]
+async fn job(State(service): State<Service>, Id(id): Id) -> Result<Json<JobFiles>, HttpError> {
+    let row = service.calibration_row(id).await?;
+    Ok(Json(JobFiles {
+        id,
+        experiment: row.experiment,
+        toml: row.job.toml,
+        files: row.job.files,
+    }))
 }
 
 /// What deserves attention.
