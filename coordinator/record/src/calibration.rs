@@ -37,6 +37,8 @@ pub struct CalibrationRow {
     pub membership: Membership,
     /// Name for lists.
     pub name: String,
+    /// Time of the submission, since the beginning of 1970 `[ms]`.
+    pub created_ms: i64,
     /// The job, with the effect files that it names.
     pub job: FileSet,
     /// Progress: queued, running, finished and so on.
@@ -69,6 +71,7 @@ impl CalibrationRow {
             experiment: 1,
             membership,
             name: "sand".to_owned(),
+            created_ms: 0,
             job: FileSet {
                 toml: String::new(),
                 files: Default::default(),

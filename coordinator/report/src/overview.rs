@@ -6,7 +6,7 @@ use record::Verdict;
 use shared::api::{CalibrationState, Progress};
 
 use crate::flag::study::flags_by_calibration;
-use crate::story::{AddedEffect, Story, added, rig_sentences};
+use crate::story::{AddedEffect, Story, added, rig_sentences, short_verdict};
 use crate::summary::calibration::CalibrationSummary;
 use crate::summary::study::{combined_summary, ledger_summaries, point_estimate_summaries, study_rig};
 use result::diagnostics::trends::TrendVariable;
@@ -28,6 +28,8 @@ pub struct StudyOverview {
     pub id: i64,
     /// Name of the submitted calibration.
     pub name: String,
+    /// Time of the submission, since the beginning of 1970 \[ms\].
+    pub created_ms: Option<i64>,
     /// The experiment of the submitted calibration.
     pub experiment: i64,
     /// Source of the measurements; null if the experiment does not state it, and without a finished calibration.
@@ -101,6 +103,8 @@ pub struct StudyVerdict {
     pub calibration: i64,
     /// The verdict.
     pub verdict: Verdict,
+    /// What is missing by its name, in a few words; the open questions are not among them.
+    pub short: String,
     /// The verdict and the open questions in a sentence.
     pub text: String,
     /// Alternatives to the added effects that the data do not exclude, with the run that would distinguish them; null if there are none.
@@ -114,6 +118,8 @@ pub struct StudyListItem {
     pub id: i64,
     /// Name of the submitted calibration.
     pub name: String,
+    /// Time of the submission, since the beginning of 1970 \[ms\].
+    pub created_ms: Option<i64>,
     /// The experiment of the submitted calibration.
     pub experiment: i64,
     /// `finished` if no further step follows, else the state of the first unfinished member.
@@ -132,6 +138,8 @@ pub struct StudyListItem {
     pub progress: Option<Progress>,
     /// Verdict of the search of the current model, else of the last search; null if no search is finished.
     pub verdict: Option<StudyVerdict>,
+    /// A sentence on the comparison of the job's models; null if the job has one model, and until all are finished.
+    pub models: Option<String>,
     /// Reason of the failure and advice; null if no member failed.
     pub failure: Option<StudyFailure>,
 }
@@ -143,6 +151,7 @@ impl StudyOverview {
         StudyOverview {
             id,
             name: members.first().map(|m| m.name.clone()).unwrap_or_default(),
+            created_ms: None,
             experiment,
             campaign: None,
             state: unfinished.map_or(CalibrationState::Finished, |m| m.state),
@@ -180,6 +189,7 @@ impl StudyOverview {
         StudyListItem {
             id: self.id,
             name: self.name.clone(),
+            created_ms: self.created_ms,
             experiment: self.experiment,
             state: self.state,
             archived: self.archived,
@@ -189,6 +199,7 @@ impl StudyOverview {
             error: current.map(|line| line.error.clone()),
             progress,
             verdict: self.verdict.clone(),
+            models: self.models.as_ref().map(|comparison| comparison.text.clone()),
             failure: self.failure.clone(),
         }
     }
@@ -201,6 +212,7 @@ pub fn overview(study: &Study) -> StudyOverview {
     let kind = study.lead.spec.model.kind.name().to_owned();
     let (id, experiment) = (study.lead.row.study, study.lead.row.experiment);
     StudyOverview {
+        created_ms: Some(study.lead.row.created_ms),
         campaign: study
             .lead
             .spec
@@ -240,6 +252,7 @@ fn verdict(study: &Study) -> Option<StudyVerdict> {
     Some(StudyVerdict {
         calibration: round.calibration,
         verdict: round.record.verdict,
+        short: short_verdict(&round.record, &added),
         text: [Some(&round.record.text), open.as_ref()]
             .into_iter()
             .flatten()

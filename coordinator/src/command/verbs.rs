@@ -20,7 +20,7 @@ use crate::config::{
 };
 use crate::effect::EffectCard;
 use job::{ServiceEffect, foreign_effects};
-use report::{StudyOverview, terminal};
+use report::{StudyListItem, StudyOverview, terminal};
 use result::{Comparison, Diagnostics};
 
 pub(super) async fn submit(config: &SubmitArguments) -> anyhow::Result<()> {
@@ -75,12 +75,10 @@ async fn added_effects(config: &SubmitArguments, service: &Place) -> anyhow::Res
 
 pub(super) async fn list(config: &ListArguments) -> anyhow::Result<()> {
     let place = Place::open(&config.source).await?;
-    let path = match config.archived {
-        true => "/v1/calibrations?archived=true",
-        false => "/v1/calibrations",
-    };
-    let statuses: Vec<CalibrationStatus> = place.get(path).await?;
-    Ok(say(&terminal::status_table(&statuses))?)
+    let which = if config.archived { "?archived=true" } else { "" };
+    let statuses: Vec<CalibrationStatus> = place.get(&format!("/v1/calibrations{which}")).await?;
+    let studies: Vec<StudyListItem> = place.get(&format!("/v1/studies{which}")).await?;
+    Ok(say(&terminal::list(&statuses, &studies))?)
 }
 
 pub(super) async fn status(target: &TargetArguments) -> anyhow::Result<()> {

@@ -69,7 +69,10 @@ impl Service {
         let lead = rows.first().expect("a study has a member");
         let kind = model_kind(&lead.job.toml).map(|kind| kind.name().to_owned());
         let members = study_members(&self.store().reader(), rows).await?;
-        let overview = StudyOverview::begun(id, lead.experiment, kind, members);
+        let overview = StudyOverview {
+            created_ms: Some(lead.created_ms),
+            ..StudyOverview::begun(id, lead.experiment, kind, members)
+        };
         self.keep_overview(&overview, stamp).await?;
         Ok(overview)
     }

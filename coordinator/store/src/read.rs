@@ -520,6 +520,7 @@ fn columns(id: i64, row: &Row, filled: Filled) -> Result<CalibrationRow, StoreEr
         study: row.try_get("study")?,
         experiment: row.try_get("on_experiment")?,
         name: row.try_get("name")?,
+        created_ms: row.try_get("created_at_ms")?,
         membership: filled.membership,
         job: FileSet {
             toml: job_text(filled.toml.map_or_else(|| row.try_get("toml"), Ok)?, state),

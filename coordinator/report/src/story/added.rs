@@ -1,8 +1,9 @@
 //! The effects that the study added to a model, with the verdicts of the searches and the improvement of the error.
 
+use job::FreeParameter;
 use record::{Discovery, NOT_IN_LIBRARY, NextRun, addition_name, effect_of};
 
-use super::explanation::{Alternative, open, p, parts, run_words};
+use super::explanation::{Alternative, open, p, parts, run_words, summary};
 use result::discovery::DiscoveryRound;
 use result::finished_calibration::FinishedCalibration;
 use result::study::Study;
@@ -16,6 +17,10 @@ const MAX_HELD_OUT_ERROR: f64 = 1.3;
 pub struct AddedEffect {
     /// Name of the effect, as the search calls it if one judged it.
     pub name: String,
+    /// What the effect does, in a few words; null for a law outside the catalogue.
+    pub summary: Option<String>,
+    /// Its parameters in the calibration, in the order of the job.
+    pub strengths: Vec<Strength>,
     /// Probability that a search gave it; null if no search named it or left it open.
     pub probability: Option<f64>,
     /// The calibration that was searched.
@@ -31,15 +36,23 @@ pub struct AddedEffect {
     pub held_out_noise_sds: Option<[f64; 2]>,
 }
 
+/// A parameter of an effect in a calibration.
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
+pub struct Strength {
+    /// Name of the parameter.
+    pub name: String,
+    /// SI unit of the parameter.
+    pub unit: String,
+    /// Posterior mean \[SI\].
+    pub mean: f64,
+    /// Posterior standard deviation \[SI\].
+    pub sd: f64,
+}
+
 impl AddedEffect {
     /// Describes the effect: `slip_sinkage was missing (P 0.96) and is added: held-out error from 2.1 to 0.9 times the noise`.
     pub(super) fn words(&self) -> String {
-        let name = &self.name;
-        let mut text = match (self.probability, self.rivals.is_empty()) {
-            (Some(probability), true) => format!("{name} was missing ({}) and is added", p(probability)),
-            (Some(probability), false) => format!("{name} ({}) is added", p(probability)),
-            (None, _) => format!("{name} was added by hand"),
-        };
+        let mut text = self.short();
         if let Some(replaced) = &self.in_place_of {
             text += &format!(" in the place of {replaced}");
         }
@@ -53,6 +66,16 @@ impl AddedEffect {
         match self.open_question() {
             Some(question) => format!("{text}; {question}"),
             None => text,
+        }
+    }
+
+    /// Describes the effect in a few words: `slip_sinkage was missing (P 0.96) and is added`.
+    pub(super) fn short(&self) -> String {
+        let name = &self.name;
+        match (self.probability, self.rivals.is_empty()) {
+            (Some(probability), true) => format!("{name} was missing ({}) and is added", p(probability)),
+            (Some(probability), false) => format!("{name} ({}) is added", p(probability)),
+            (None, _) => format!("{name} was added by hand"),
         }
     }
 
@@ -90,13 +113,18 @@ pub(crate) fn added(study: &Study, calibration: &FinishedCalibration) -> Vec<Add
         while let Some(judged) = judged(&round.record, &left).filter(|_| is_ancestor) {
             let effect_parts = parts(&judged.name);
             left.retain(|part| !effect_parts.contains(part));
-            let effect = of_search(study, round, before, &judged, &has);
+            let effect = AddedEffect {
+                strengths: strengths(calibration, &effect_parts),
+                ..of_search(study, round, before, &judged, &has)
+            };
             found.push((position(&order, &effect_parts), effect));
         }
     }
     let by_hand = left.into_iter().map(|name| {
         let effect_parts = [name.clone()];
         let effect = AddedEffect {
+            summary: summary(&name),
+            strengths: strengths(calibration, &effect_parts),
             held_out_noise_sds: held_out_errors(study, calibration, &effect_parts),
             name,
             probability: None,
@@ -110,6 +138,35 @@ pub(crate) fn added(study: &Study, calibration: &FinishedCalibration) -> Vec<Add
     found.extend(by_hand);
     found.sort_by_key(|(position, _)| *position);
     found.into_iter().map(|(_, effect)| effect).collect()
+}
+
+/// Lists the parameters of the given parts of a calibration's model.
+fn strengths(calibration: &FinishedCalibration, parts: &[String]) -> Vec<Strength> {
+    let summaries = calibration.parameter_summaries();
+    let is_of = |name: &str| {
+        let mut parts = parts.iter();
+        parts.any(|part| {
+            name == part
+                || name
+                    .strip_prefix(part.as_str())
+                    .is_some_and(|rest| rest.starts_with('.'))
+        })
+    };
+    let parameters = calibration
+        .spec
+        .parameters
+        .iter()
+        .filter(|parameter| is_of(&parameter.name));
+    let strength = |parameter: &FreeParameter| {
+        let (_, summary) = summaries.iter().find(|(name, _)| *name == parameter.name)?;
+        Some(Strength {
+            name: parameter.name.clone(),
+            unit: parameter.unit.clone(),
+            mean: summary.mean,
+            sd: summary.sd,
+        })
+    };
+    parameters.filter_map(strength).collect()
 }
 
 fn position(order: &[String], parts: &[String]) -> usize {
@@ -132,7 +189,11 @@ fn judged(record: &Discovery, left: &[String]) -> Option<Alternative> {
         } else {
             effect_of(extension)
         };
-        Alternative { name, probability }
+        Alternative {
+            summary: summary(&name),
+            name,
+            probability,
+        }
     });
     let is_there = |explanation: &Alternative| {
         let parts = parts(&explanation.name);
@@ -169,6 +230,8 @@ fn of_search(
     let replacement = replacement.filter(|named| named.effect == judged.name);
     AddedEffect {
         in_place_of: replacement.map(|named| named.in_place_of.clone()),
+        summary: judged.summary.clone(),
+        strengths: Vec::new(),
         name: judged.name.clone(),
         probability: Some(judged.probability),
         searched: Some(round.calibration),

@@ -1,5 +1,6 @@
 //! Explanations of a search and their probabilities in words, and the parts of a model that an explanation stands for.
 
+use job::{EffectOnNodes, ModelSwitch, PlainParameter};
 use record::{Discovery, JudgedEffect, NONE, NOT_IN_LIBRARY, NextRun, Verdict, parts_of_effect};
 
 use result::words::number;
@@ -14,15 +15,31 @@ pub struct Alternative {
     pub name: String,
     /// Posterior probability of the explanation.
     pub probability: f64,
+    /// What the effect does, in a few words; null for an explanation outside the catalogue.
+    pub summary: Option<String>,
 }
 
 impl From<&JudgedEffect> for Alternative {
     fn from(effect: &JudgedEffect) -> Self {
         Alternative {
+            summary: summary(&effect.name),
             name: effect.name.clone(),
             probability: effect.probability,
         }
     }
+}
+
+/// Returns what an effect, a freed parameter or a setting of the model does, in a few words; `None` for an explanation outside the
+/// catalogue.
+pub(super) fn summary(name: &str) -> Option<String> {
+    let plain = PlainParameter::find(name).map(|plain| plain.summary);
+    let switch = || ModelSwitch::find(name).map(|switch| switch.summary);
+    let effect = || match EffectOnNodes::find(name) {
+        Some(on_nodes) => Some(on_nodes.effect),
+        None => formula::catalogue::find(split(name).0),
+    };
+    let effect = || effect().map(|effect| effect.summary.as_str());
+    plain.or_else(switch).or_else(effect).map(str::to_owned)
 }
 
 impl Alternative {

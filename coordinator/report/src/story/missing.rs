@@ -4,13 +4,15 @@ use job::effect_name;
 use record::{Discovery, Extension, NONE, NOT_IN_LIBRARY, Verdict, effect_of};
 
 use super::added::{AddedEffect, added, unseen_runs};
-use super::explanation::{Alternative, LEAST, class, p, split};
+use super::explanation::{Alternative, LEAST, class, p, split, summary};
 use result::finished_calibration::FinishedCalibration;
 use result::study::Study;
 use result::words::number;
 
 /// Maximum number of alternatives.
 const ALTERNATIVES: usize = 3;
+/// Maximum number of leading explanations.
+const LEADING: usize = 4;
 /// Maximum number of effects that were not judged and are named.
 const NOT_JUDGED: usize = 3;
 
@@ -26,6 +28,8 @@ pub struct Missing {
     pub probability: Option<f64>,
     /// At most three other explanations: those that the verdict does not name, or for an undecided verdict those outside the 95 % set.
     pub alternatives: Vec<Alternative>,
+    /// The most probable explanations of the search, at most four, by decreasing probability; `none` is one of them.
+    pub leading: Vec<Alternative>,
     /// Effects that were not tried because the experiment lacks information, without those that the verdict or the alternatives name.
     pub not_tried: Vec<String>,
     /// Effects that the study added to the model.
@@ -35,12 +39,32 @@ pub struct Missing {
 }
 
 /// An effect that a search names.
-#[derive(Debug, Clone, PartialEq, Eq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
 pub struct NamedEffect {
     /// Name of the effect.
     pub name: String,
     /// The only wheel with the effect; null if all wheels have it.
     pub wheel: Option<String>,
+    /// Probability of this effect; null if the search did not judge it by its name.
+    pub probability: Option<f64>,
+    /// What the effect does, in a few words; null for a law outside the catalogue.
+    pub summary: Option<String>,
+}
+
+impl NamedEffect {
+    /// Names an effect as a search judged it: `EFFECT`, or `EFFECT.WHEEL` on one wheel.
+    fn judged(record: &Discovery, name: &str) -> NamedEffect {
+        let (effect, wheel) = split(name);
+        let judged = record.effects.iter().find(|e| e.name == name);
+        let of_replacement = record.named_replacement().filter(|named| named.effect == name);
+        let replacement = of_replacement.map(|named| named.probability);
+        NamedEffect {
+            name: effect.into(),
+            wheel: wheel.map(str::to_owned),
+            probability: replacement.or(judged.map(|e| e.probability)),
+            summary: summary(name),
+        }
+    }
 }
 
 /// Returns the last search of a calibration's model.
@@ -62,6 +86,7 @@ impl Missing {
                 named: Vec::new(),
                 probability: None,
                 alternatives: Vec::new(),
+                leading: Vec::new(),
                 not_tried: Vec::new(),
                 already_added,
                 text: text.join("; "),
@@ -79,6 +104,7 @@ impl Missing {
             named,
             probability,
             alternatives,
+            leading: leading(record),
             not_tried,
             already_added,
             text: text.join("; "),
@@ -118,6 +144,15 @@ fn alternatives(record: &Discovery, named: &[NamedEffect]) -> Vec<Alternative> {
         effect.probability > LEAST && effect.probability < leader && !is_open && !is_named(&effect.name)
     });
     further.take(ALTERNATIVES).map(Alternative::from).collect()
+}
+
+/// Returns the most probable explanations, by decreasing probability.
+fn leading(record: &Discovery) -> Vec<Alternative> {
+    let probable = record.effects.iter().filter(|effect| effect.probability > LEAST);
+    let mut probable: Vec<Alternative> = probable.map(Alternative::from).collect();
+    probable.sort_by(|a, b| b.probability.total_cmp(&a.probability));
+    probable.truncate(LEADING);
+    probable
 }
 
 /// Lists the alternatives; `None` if nothing is missing, when they do not matter.
@@ -168,35 +203,50 @@ fn not_judged(record: &Discovery, not_tried: &[String]) -> Vec<String> {
 
 fn named(record: &Discovery) -> Vec<NamedEffect> {
     match (record.verdict, &record.extension) {
-        (Verdict::Named, Some(Extension::OnWheel { effect, wheel })) => vec![NamedEffect {
-            name: effect.clone(),
-            wheel: Some(wheel.clone()),
-        }],
-        (Verdict::Named, Some(extension)) => vec![NamedEffect {
-            name: effect_of(extension),
-            wheel: None,
-        }],
-        (Verdict::Class, _) => {
-            let member = |name: &str| {
-                let (effect, wheel) = split(name);
-                NamedEffect {
-                    name: effect.into(),
-                    wheel: wheel.map(str::to_owned),
-                }
-            };
-            class(record).map(|e| member(&e.name)).collect()
+        (Verdict::Named, Some(Extension::OnWheel { effect, wheel })) => {
+            vec![NamedEffect::judged(record, &format!("{effect}.{wheel}"))]
         }
+        (Verdict::Named, Some(extension)) => vec![NamedEffect::judged(record, &effect_of(extension))],
+        (Verdict::Class, _) => class(record)
+            .map(|e| NamedEffect::judged(record, &e.name))
+            .collect(),
         (Verdict::NotInLibrary, _) => {
-            let file = record
-                .outside
-                .as_ref()
-                .and_then(|law| effect_name(&law.effect_file));
-            file.map(|name| NamedEffect { name, wheel: None })
-                .into_iter()
-                .collect()
+            let law = record.outside.as_ref();
+            let file = law.and_then(|law| effect_name(&law.effect_file));
+            let probability = record.effects.iter().find(|e| e.name == NOT_IN_LIBRARY);
+            let named = |name| NamedEffect {
+                name,
+                wheel: None,
+                probability: probability.map(|e| e.probability),
+                summary: None,
+            };
+            file.map(named).into_iter().collect()
         }
         _ => Vec::new(),
     }
+}
+
+/// Describes a verdict by the names of what is missing: `slip_sinkage is missing (P 0.97)`, `one of slip_sinkage (P 0.58) and
+/// slip_softened_pressure (P 0.42) is missing`.
+pub(crate) fn short_verdict(record: &Discovery, added: &[AddedEffect]) -> String {
+    let names: Vec<String> = named(record)
+        .iter()
+        .map(|effect| match effect.probability {
+            Some(probability) => format!("{} ({})", label(effect), p(probability)),
+            None => label(effect),
+        })
+        .collect();
+    let found = match record.verdict {
+        Verdict::Named => format!("{} is missing", number::list(&names)),
+        Verdict::Class => format!("one of {} is missing", number::list(&names)),
+        Verdict::NotInLibrary => "a law outside the library is missing".into(),
+        Verdict::Undecided => "undecided".into(),
+        Verdict::NothingDetectable if added.is_empty() => "nothing detectable is missing".into(),
+        Verdict::NothingDetectable => "nothing further is detectable".into(),
+    };
+    let mut clauses: Vec<String> = added.iter().map(AddedEffect::short).collect();
+    clauses.push(found);
+    clauses.join("; ")
 }
 
 fn label(effect: &NamedEffect) -> String {

@@ -17,9 +17,10 @@ use next::Facts;
 use result::finished_calibration::FinishedCalibration;
 use result::study::Study;
 
-pub use added::AddedEffect;
 pub(crate) use added::added;
+pub use added::{AddedEffect, Strength};
 pub use explanation::Alternative;
+pub(crate) use missing::short_verdict;
 pub use missing::{Missing, NamedEffect};
 pub use next::{EffectFile, Next, NextStep, StepKind};
 pub use rig::rig_sentences;

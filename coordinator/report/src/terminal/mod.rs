@@ -1,7 +1,8 @@
 //! Text for a terminal.
 //!
 //! # Layout
-//! - `specification`: a job before it runs. `campaign`: the source of its measurements. `status`: states of calibrations.
+//! - `specification`: a job before it runs. `campaign`: the source of its measurements. `status`: the state of a calibration.
+//! - `list`: all calibrations, with what their studies found.
 //! - `brief`: a study in a few lines; `story`: what is wrong, what is missing, what next; `ending`: where the files are.
 //! - `study`: the complete text of a study; `models`: its compared models; `ledger`: the errors of its calibrations.
 //! - `calibration`: one calibration; `comparison`: its rows and errors; `diagnostics`: its diagnostics.
@@ -18,6 +19,7 @@ mod diagnostics;
 pub mod discovery;
 mod ending;
 mod ledger;
+mod list;
 mod models;
 mod rig;
 mod specification;
@@ -31,6 +33,7 @@ pub use brief::brief;
 pub use comparison::{comparison, groups};
 pub use diagnostics::diagnostics;
 pub use ending::ending;
+pub use list::list;
 pub use rig::rig;
 pub use specification::specification;
 pub use status::status_table;

@@ -1,9 +1,10 @@
 //! Words: numbers, units, probabilities and citations as people read them.
 //!
 //! - `number`: formats of numbers. `probability`: formats of probabilities. `data_channel`: names and units of channels.
-//! - `campaign`: the source of measurements.
+//! - `campaign`: the source of measurements. `date`: days of the calendar.
 
 pub mod campaign;
 pub mod data_channel;
+pub mod date;
 pub mod number;
 pub mod probability;
