@@ -2,10 +2,11 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 
 import { table } from "../modules/chart/download.js";
-import { groups, levels, levelWords } from "../modules/words/group.js";
+import { groups } from "../modules/words/group.js";
+import { levels, levelWords } from "../modules/words/level.js";
 import { digits, duration, meanAndSd, numberOf, parameterName, probability, shown, size, tickWords, titled } from "../modules/words/quantity.js";
 import { meanErrorSd, residualSds } from "../modules/words/residual.js";
-import { progressWords, verdictWords } from "../modules/words/state.js";
+import { progressWords } from "../modules/words/state.js";
 
 test("a number has its significant digits, and an exponent only where it needs one", () => {
   assert.equal(digits(0.00933), "0.00933");
@@ -89,10 +90,22 @@ test("runs are grouped by the speed that the rig holds", () => {
   const run = (slip, wheel_load_n, sled_speed_m_s) => ({ run: `${slip} ${wheel_load_n}`, wheel: "w", slip, wheel_load_n, sled_speed_m_s, slip_angle_deg: 0 });
   const sled = groups([run(0, 60, 0.01), run(0.5, 60, 0.01), run(0.5, 120, 0.01)]);
   assert.deepEqual(sled.groups.map((g) => g.rows.length), [2, 1]);
-  assert.deepEqual(sled.loads, ["60 N", "120 N"]);
+  assert.deepEqual(sled.colours, ["60 N", "120 N"]);
   const rim = groups([run(0, 60, 0.02), run(0.5, 60, 0.01), run(0.75, 60, 0.005), run(0, 60, 0.08)]);
   assert.deepEqual(rim.groups.map((g) => g.rows.length), [3, 1]);
-  assert.deepEqual(rim.others, ["rim 20 mm/s", "rim 80 mm/s"]);
+  assert.deepEqual(rim.symbols, ["rim 20 mm/s", "rim 80 mm/s"]);
+});
+
+test("against the load, runs of one slip and speed are a line, and the colour tells the slip", () => {
+  const run = (/** @type {number} */ slip, /** @type {number} */ wheel_load_n, /** @type {number} */ rim) => ({
+    run: "", wheel: "w", slip, wheel_load_n, sled_speed_m_s: rim * (1 - slip), slip_angle_deg: 0 });
+  const runs = [0.1, 0.4, -0.2].flatMap((slip) => [60, 90, 120].map((load) => run(slip, load, 0.02)));
+  const byLoad = groups(runs, "wheel_load_n");
+  assert.deepEqual(byLoad.groups.map((g) => g.rows.length), [3, 3, 3]);
+  assert.deepEqual(byLoad.colours, ["slip −0.2", "slip 0.1", "slip 0.4"]);
+  const bySpeed = groups([0.01, 0.02, 0.04].map((rim) => run(0.1, 60, rim)), "sled_speed_m_s");
+  assert.deepEqual(bySpeed.groups.map((g) => g.rows.length), [3]);
+  assert.deepEqual(bySpeed.symbols, [""]);
 });
 
 test("a table as CSV quotes what needs it", () => {
@@ -127,13 +140,6 @@ test("a typed number has a point or a comma", () => {
   assert.equal(numberOf("−3.5"), -3.5);
   assert.equal(numberOf("1,234.5"), null);
   assert.equal(numberOf(""), null);
-});
-
-test("what a study has found and added is not said to be nothing", () => {
-  assert.equal(verdictWords("nothing_detectable"), "nothing detectable is missing");
-  assert.equal(verdictWords("nothing_detectable", ["slip_sinkage"]), "nothing further is detectable");
-  assert.equal(verdictWords("class", ["slip_sinkage"]), "an effect is missing: one of a class");
-  assert.equal(verdictWords(null), "no search yet");
 });
 
 test("progress says where each kind of algorithm is", () => {

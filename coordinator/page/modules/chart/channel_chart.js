@@ -11,6 +11,8 @@ import { Plot, STYLE } from "./library.js";
 import { LEAST_LINE, meanOf, places } from "./place.js";
 import { byRun, pointable } from "./runs.js";
 
+/** Between computed conditions a line bends without a kink, and without going beyond its ends. */
+const CURVE = "monotone-x";
 /** More levels are not named in the legend. */
 const MOST_NAMES = 10;
 
@@ -18,19 +20,19 @@ const MOST_NAMES = 10;
  * @typedef {{ name: string, colour: string | null, rows: any[], isGhost?: boolean }} Layer
  *   colour: of all its lines; null: each group of runs has its own.
  * @typedef {import("./surface_curves.js").SurfaceCurves} Moving
- * @param {{ channel: string, wheel: string | null, measurements: any[], layers: Layer[], axis: import("./condition.js").ConditionAxis, name: string, moving?: Moving }} properties
+ * @param {{ channel: string, wheel: string | null, measurements: any[], layers: Layer[], axis: import("./condition.js").ConditionAxis, name: string, moving?: Moving, title?: string }} properties
  *   layers: models, each with the rows of its comparison. measurements: each of them once.
  */
-export function ChannelChart({ channel, wheel, measurements, layers, axis, name, moving }) {
+export function ChannelChart({ channel, wheel, measurements, layers, axis, name, moving, title: stated }) {
   const own = (/** @type {any[]} */ rows) => rows.filter((r) => r.channel === channel && (wheel === null || r.wheel === wheel));
   const measured = own(measurements);
   const quantity = shown(measured[0].unit);
-  const found = useMemo(() => groups(measured), [measurements, channel, wheel]);
-  const title = `${words(channel)}${wheel === null ? "" : `, wheel ${wheel}`}, measured and computed, by ${axis.title}`;
+  const found = useMemo(() => groups(measured, axis.key), [measurements, channel, wheel, axis.key]);
+  const title = stated ?? `${words(channel)}${wheel === null ? "" : `, wheel ${wheel}`}, measured and computed, by ${axis.title}`;
   const draw = (/** @type {number} */ width) => picture({ width, layers: layers.map((l) => ({ ...l, rows: own(l.rows) })), measured, found, axis, quantity, channel, moving });
   const drawn = (/** @type {any} */ plot) => {
     const release = pointable(plot, { runsIn, words: (from, to) => spanWords(axis, from, to) });
-    const curves = found.groups.map((group) => ({ rows: group.rows, stroke: colour(group.load) }));
+    const curves = found.groups.map((group) => ({ rows: group.rows, stroke: colour(group.colour) }));
     const detach = moving?.attach(plot, curves, (r) => r[axis.key] * axis.scale, quantity.scale);
     return () => {
       release();
@@ -39,19 +41,19 @@ export function ChannelChart({ channel, wheel, measurements, layers, axis, name,
   };
   const runsIn = (/** @type {number} */ from, /** @type {number} */ to) =>
     measured.filter((r) => r[axis.key] * axis.scale >= from && r[axis.key] * axis.scale <= to).map((r) => r.run);
-  const used = [...new Set(found.groups.map((g) => g.other))];
-  // Where the colours are the models', the signs of the measurements tell their loads.
+  const used = [...new Set(found.groups.map((g) => g.symbol))].sort((a, b) => a - b);
+  // Where the colours are the models', the signs of the measurements tell what colours tell otherwise.
   const isLayered = layers.some((l) => l.colour !== null && !l.isGhost);
-  const loads = found.loads.slice(0, MOST_NAMES).map((load, k) => html`<${Entry} glyph=${isLayered
+  const colours = found.colours.slice(0, MOST_NAMES).map((name, k) => html`<${Entry} glyph=${isLayered
     ? html`<g fill="currentColor">${glyph(k)}</g>`
-    : html`<rect x="1" y="5" width="14" height="6" fill=${colour(k)} />`}>${load}<//>`);
-  const others = found.others.length < 2 || isLayered ? [] : used.slice(0, MOST_NAMES).map((k) => html`<${Entry} glyph=${html`<g fill="currentColor">${glyph(k)}</g>`}>${found.others[k]}<//>`);
+    : html`<rect x="1" y="5" width="14" height="6" fill=${colour(k)} />`}>${name}<//>`);
+  const symbols = found.symbols.length < 2 || isLayered ? [] : used.slice(0, MOST_NAMES).map((k) => html`<${Entry} glyph=${html`<g fill="currentColor">${glyph(k)}</g>`}>${found.symbols[k]}<//>`);
   const hasHoldout = measured.some((r) => r.use === "holdout");
   return html`<${Figure} title=${title} name=${fileName(name, channel, wheel ?? "")}
     deps=${[layers.map((l) => `${l.name} ${l.rows.length}`).join(), layers.at(-1)?.rows, measurements, axis.key]}
     draw=${draw} rows=${() => table(layers, own)}
     onDrawn=${drawn}
-    legend=${html`${loads}${others}
+    legend=${html`${colours}${symbols}
       ${hasHoldout && html`<${Entry} glyph=${html`<circle cx="8" cy="8" r="4" fill="none" stroke="currentColor" stroke-width="2" />`}>held out<//>`}
       ${layers.filter((l) => l.colour !== null).map((l) => html`<${Entry} glyph=${html`<path d="M0 8h16" stroke=${l.colour} stroke-width="2" stroke-dasharray=${l.isGhost ? "3 3" : ""} />`}>${l.name}<//>`)}`} />`;
 }
@@ -73,7 +75,7 @@ function picture({ width, layers, measured, found, axis, quantity, channel, movi
   const isLayered = layers.some((l) => l.colour !== null && !l.isGhost);
   const dots = (/** @type {any[]} */ rows, /** @type {any} */ look) => found.groups.map((group) => {
     const own = rows.filter((r) => place.get(r.run) === group);
-    const sign = isLayered ? { symbol: symbol(group.load), ...look("var(--measured)") } : { symbol: symbol(group.other), ...look(colour(group.load)) };
+    const sign = isLayered ? { symbol: symbol(group.colour), ...look("var(--measured)") } : { symbol: symbol(group.symbol), ...look(colour(group.colour)) };
     return Plot.dot(own, byRun(own, { x, y: value("measured"), r: 4.2, ...sign }));
   });
   const tip = (/** @type {any} */ r) => [
@@ -111,14 +113,14 @@ function layerMarks(/** @type {Layer} */ layer, /** @type {Map<string, any>} */ 
   const all = [...new Set(known.map((r) => place.get(r.run)))];
   return all.flatMap((group) => {
     const rows = known.filter((r) => place.get(r.run) === group);
-    const stroke = layer.colour ?? colour(group.load);
+    const stroke = layer.colour ?? colour(group.colour);
     const dash = layer.isGhost ? { strokeDasharray: "4 3", strokeWidth: 2.2 } : { strokeWidth: 1.6 };
     const band = { x, y1: value("q05"), y2: value("q95") };
     const means = atEqual(rows, x);
     if (means.length >= LEAST_LINE) {
       return [
-        ...(layer.isGhost ? [] : [Plot.areaY(means, { ...band, fill: stroke, fillOpacity: 0.16 })]),
-        Plot.lineY(means, { x, y: value("predicted"), stroke, ...dash, className: layer.isGhost ? "ghost" : "model" }),
+        ...(layer.isGhost ? [] : [Plot.areaY(means, { ...band, curve: CURVE, fill: stroke, fillOpacity: 0.16 })]),
+        Plot.lineY(means, { x, y: value("predicted"), curve: CURVE, stroke, ...dash, className: layer.isGhost ? "ghost" : "model" }),
       ];
     }
     return [

@@ -2,7 +2,8 @@
 
 import { html } from "../html.js";
 import { digits, minus } from "../words/quantity.js";
-import { levelOf, levels, levelWords, rimSpeed } from "../words/group.js";
+import { rimSpeed } from "../words/group.js";
+import { levelOf, levels, levelWords } from "../words/level.js";
 import { Figure, fileName } from "./figure.js";
 import { Plot, STYLE } from "./library.js";
 

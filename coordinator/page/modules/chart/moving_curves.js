@@ -1,5 +1,6 @@
 // Curves that move within a drawn picture: one for each group of runs, so that a slider needs no new picture.
 
+import { d3 } from "./library.js";
 import { LEAST_LINE, meanOf, places } from "./place.js";
 
 /** Half the width of a cross [px]. */
@@ -29,7 +30,7 @@ export function movingCurves(plot, groups, x) {
     for (const curve of curves) {
       const known = curve.places.map((rows) => rows.filter((row) => y(row) !== undefined)).filter((rows) => rows.length > 0);
       const points = known.map((rows) => [across.apply(meanOf(rows, x)), up.apply(meanOf(rows, /** @type {(row: any) => number} */ (y)))]);
-      curve.path.setAttribute("d", points.length >= LEAST_LINE ? line(points) : points.map(cross).join(""));
+      curve.path.setAttribute("d", points.length >= LEAST_LINE ? line(/** @type {[number, number][]} */ (points)) ?? "" : points.map(cross).join(""));
     }
   };
 }
@@ -44,7 +45,8 @@ function cut(/** @type {SVGSVGElement} */ plot, /** @type {number[]} */ [left, r
   return layer;
 }
 
-const line = (/** @type {number[][]} */ points) => points.map(([x, y], k) => `${k === 0 ? "M" : "L"}${x.toFixed(1)} ${y.toFixed(1)}`).join("");
+/** The same bends between points as the model's lines have. */
+const line = (/** @type {[number, number][]} */ points) => d3.line().curve(d3.curveMonotoneX).digits(1)(points);
 
 const cross = (/** @type {number[]} */ [x, y]) => `M${x - CROSS} ${y - CROSS}l${2 * CROSS} ${2 * CROSS}m0 ${-2 * CROSS}l${-2 * CROSS} ${2 * CROSS}`;
 

@@ -1,22 +1,11 @@
 // Runs of like conditions: what belongs on one line of a picture.
 
-/** Values closer than this share of the value are equal: rig settings that were typed or computed with rounding. */
-const EQUAL = 0.005;
-/** Levels that are not further apart than this share of the value are readings of one setting. */
-const READING = 0.02;
-/** Readings that are not further apart than this share of the value are scatter about one setting. */
-const SCATTER = 0.05;
-/** Levels of which fewer runs than this share have company are no levels, but single values, unless they lie far apart. */
-const REPEATED = 0.75;
-/** A greater ratio of neighbouring values lies far apart. */
-const FAR = 1.15;
-/** A picture has no more levels. */
-const MAX_LEVELS = 60;
+import { levelOf, levels, levelWords } from "./level.js";
+
 /** A wheel at rest has no ratio to others [m/s]. */
 const LEAST_SPEED = 1e-9;
 
 /** @typedef {{ run: string, wheel: string, slip: number, wheel_load_n: number, sled_speed_m_s: number, slip_angle_deg: number }} Condition */
-/** @typedef {{ low: number, high: number, count: number }} Level */
 
 /** The speed of the rim [m/s], from slip and sled speed. */
 export function rimSpeed(/** @type {Condition} */ { slip, sled_speed_m_s }) {
@@ -24,105 +13,65 @@ export function rimSpeed(/** @type {Condition} */ { slip, sled_speed_m_s }) {
 }
 
 /**
- * Levels of a positive quantity, ascending: groups of values that the gaps between them set apart. Settings that are repeated, such as
- * 100, 110 and 120 N, are a level each; readings that scatter about settings are a level for each setting; readings without gaps are
- * one level. Of all ways to cut at the widest gaps, the one is taken whose gaps are widest compared with the extents of the levels.
- * @param {number[]} values
- * @returns {Level[]}
- */
-export function levels(values) {
-  const ascending = [...values].sort((a, b) => a - b);
-  if (ascending.length === 0) return [];
-  const settings = cut(ascending, (low) => EQUAL * low);
-  if (isRepeated(settings) && apartness(settings) > 1) return settings;
-  const gaps = new Set(ascending.slice(1).map((value, k) => value - ascending[k]));
-  const whole = cut(ascending, () => Infinity);
-  return [...[...gaps].sort((a, b) => b - a).slice(0, MAX_LEVELS), 0].map((widest) => cut(ascending, () => widest))
-    .filter((found) => isBeyond(found, FAR) || (isBeyond(found, 1 + SCATTER) && isRepeated(found)))
-    .reduce((best, found) => (apartness(found) > Math.max(1, apartness(best)) ? found : best), whole);
-}
-
-/** Ascending values, cut where a gap is wider than what still belongs together above a value. */
-function cut(/** @type {number[]} */ ascending, /** @type {(low: number) => number} */ widest) {
-  /** @type {Level[]} */
-  const found = [];
-  for (const value of ascending) {
-    const last = found.at(-1);
-    if (last && value - last.high <= widest(last.high)) {
-      last.high = value;
-      last.count += 1;
-    } else {
-      found.push({ low: value, high: value, count: 1 });
-    }
-  }
-  return found;
-}
-
-/** Whether most runs of the levels are not alone. */
-function isRepeated(/** @type {Level[]} */ all) {
-  const count = (/** @type {Level[]} */ some) => some.reduce((sum, level) => sum + level.count, 0);
-  return count(all.filter((level) => level.count > 1)) >= REPEATED * count(all);
-}
-
-/** Neighbouring levels. */
-const neighbours = (/** @type {Level[]} */ all) => all.slice(1).map((above, k) => ({ below: all[k], above }));
-
-/** Whether every level begins beyond a multiple of the end of the level below it. */
-const isBeyond = (/** @type {Level[]} */ all, /** @type {number} */ ratio) => neighbours(all).every(({ below, above }) => above.low > ratio * below.high);
-
-/** The least gap between neighbouring levels over their extent, or over what a reading may differ; 0 of one level. */
-function apartness(/** @type {Level[]} */ all) {
-  const ratios = neighbours(all).map(({ below, above }) =>
-    (above.low - below.high) / Math.max(below.high - below.low, above.high - above.low, READING * below.high));
-  return ratios.length === 0 ? 0 : Math.min(...ratios);
-}
-
-/** The place of a value among levels. */
-export const levelOf = (/** @type {Level[]} */ all, /** @type {number} */ value) =>
-  all.findIndex(({ low, high }) => value >= low && value <= high);
-
-/** `60 N`, `21 to 27 N`: with a digit more where two do not tell the ends apart. */
-export function levelWords(/** @type {{ low: number, high: number }} */ { low, high }, /** @type {string} */ unit, scale = 1) {
-  const rounded = (/** @type {number} */ value, /** @type {number} */ count) => String(Number((value * scale).toPrecision(count)));
-  if (high - low <= EQUAL * high) return `${rounded((low + high) / 2, 3)} ${unit}`;
-  const step = 10 ** (Math.floor(Math.log10(high)) - 1);
-  return `${[low, high].map((value) => rounded(value, high - low < step ? 3 : 2)).join(" to ")} ${unit}`;
-}
-
-/**
  * @template {Condition} R
- * @typedef {{ load: number, other: number, rows: R[] }} Group
+ * @typedef {{ colour: number, symbol: number, rows: R[] }} Group
  */
 
+/** @typedef {{ names: string[], of: (row: any) => number }} Factor the levels of a condition by name, and the place of a row among them */
+
 /**
- * Groups rows by wheel load, and by speed and slip angle where these were set to several levels. A rig holds the speed of the rim or
- * that of the sled: the one with fewer levels.
+ * Groups rows whose conditions are equal but for one, against which they are drawn. The colour of a group is its wheel load, or its slip
+ * where runs are drawn against the load; its symbol tells the other conditions that were set to several levels.
  * @template {Condition} R
  * @param {R[]} rows
- * @returns {{ groups: Group<R>[], loads: string[], others: string[] }} groups by rising load, then speed, then angle, with the places of
- *   their names among the loads and the others
+ * @param {string} against key of the condition that a group goes through
+ * @returns {{ groups: Group<R>[], colours: string[], symbols: string[] }} groups in the order of their levels, with the names of these
  */
-export function groups(rows) {
-  const loads = levels(rows.map((row) => row.wheel_load_n));
-  const [ofRim, ofSled] = [rimSpeed, (/** @type {Condition} */ row) => row.sled_speed_m_s].map((of) => levels(rows.map((row) => Math.max(of(row), LEAST_SPEED))));
-  const isSled = ofSled.length < ofRim.length;
-  const [speeds, held] = isSled ? [ofSled, "sled"] : [ofRim, "rim"];
-  const speed = (/** @type {R} */ row) => Math.max(isSled ? row.sled_speed_m_s : rimSpeed(row), LEAST_SPEED);
-  const angles = [...new Set(rows.map((row) => row.slip_angle_deg))].sort((a, b) => a - b);
-  const others = speeds.flatMap((level) => angles.map((angle) => [
-    speeds.length > 1 ? `${held} ${levelWords(level, "mm/s", 1000)}` : "",
-    angles.length > 1 ? `${angle}°` : "",
-  ].filter(Boolean).join(", ")));
+export function groups(rows, against = "slip") {
+  const factors = { slip: slips(rows), wheel_load_n: loads(rows), sled_speed_m_s: speeds(rows), slip_angle_deg: angles(rows) };
+  const first = against === "wheel_load_n" ? factors.slip : factors.wheel_load_n;
+  const others = Object.entries(factors).filter(([key, factor]) => key !== against && factor !== first).map(([, factor]) => factor);
+  const symbols = others.reduce((/** @type {string[]} */ names, factor) =>
+    names.flatMap((name) => factor.names.map((level) => [name, factor.names.length > 1 ? level : ""].filter(Boolean).join(", "))), [""]);
   /** @type {Map<string, Group<R>>} */
   const found = new Map();
   for (const row of rows) {
-    const load = levelOf(loads, row.wheel_load_n);
-    const other = levelOf(speeds, speed(row)) * angles.length + angles.indexOf(row.slip_angle_deg);
-    const key = `${load} ${other}`;
-    const group = found.get(key) ?? { load, other, rows: [] };
+    const colour = first.of(row);
+    const symbol = others.reduce((place, factor) => place * factor.names.length + factor.of(row), 0);
+    const group = found.get(`${colour} ${symbol}`) ?? { colour, symbol, rows: [] };
     group.rows.push(row);
-    found.set(key, group);
+    found.set(`${colour} ${symbol}`, group);
   }
-  const ordered = [...found.values()].sort((a, b) => a.load - b.load || a.other - b.other);
-  return { groups: ordered, loads: loads.map((level) => levelWords(level, "N")), others };
+  const ordered = [...found.values()].sort((a, b) => a.colour - b.colour || a.symbol - b.symbol);
+  return { groups: ordered, colours: first.names, symbols };
+}
+
+/** @returns {Factor} */
+function loads(/** @type {Condition[]} */ rows) {
+  const found = levels(rows.map((row) => row.wheel_load_n));
+  return { names: found.map((level) => levelWords(level, "N")), of: (row) => levelOf(found, row.wheel_load_n) };
+}
+
+/** A rig holds the speed of the rim or that of the sled: the one with fewer levels. @returns {Factor} */
+function speeds(/** @type {Condition[]} */ rows) {
+  const [rim, sled] = [rimSpeed, (/** @type {Condition} */ row) => row.sled_speed_m_s].map((speed) => {
+    const own = (/** @type {Condition} */ row) => Math.max(speed(row), LEAST_SPEED);
+    return { own, found: levels(rows.map(own)) };
+  });
+  const [{ own, found }, held] = sled.found.length < rim.found.length ? [sled, "sled"] : [rim, "rim"];
+  return { names: found.map((level) => `${held} ${levelWords(level, "mm/s", 1000)}`), of: (row) => levelOf(found, own(row)) };
+}
+
+/** @returns {Factor} */
+function angles(/** @type {Condition[]} */ rows) {
+  const found = [...new Set(rows.map((row) => row.slip_angle_deg))].sort((a, b) => a - b);
+  return { names: found.map((angle) => `${angle}°`), of: (row) => found.indexOf(row.slip_angle_deg) };
+}
+
+/** A driven wheel's slips are levels; those of a wheel in skid, or near rest, are single values. @returns {Factor} */
+function slips(/** @type {Condition[]} */ rows) {
+  const driven = levels(rows.map((row) => row.slip).filter((slip) => slip > 0));
+  const rest = [...new Set(rows.map((row) => row.slip).filter((slip) => !(slip > 0)))].sort((a, b) => a - b);
+  const names = [...rest.map((slip) => `slip ${Number(slip.toPrecision(2))}`.replace("-", "−")), ...driven.map((level) => `slip ${levelWords(level, "")}`.trim())];
+  return { names, of: (row) => (row.slip > 0 ? rest.length + levelOf(driven, row.slip) : rest.indexOf(row.slip)) };
 }
