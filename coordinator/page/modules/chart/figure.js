@@ -44,10 +44,10 @@ export function Figure({ title, name, deps, draw, rows, note, legend, onDrawn })
     light(plot);
     return onDrawn?.(plot) ?? undefined;
   }, [width, ...deps]);
-  const drawn = () => /** @type {SVGSVGElement} */ (place.current?.querySelector("svg"));
+  const figure = () => /** @type {HTMLElement} */ (place.current?.closest("figure"));
   const savePng = async () => {
     try {
-      save(`${name}.png`, await png(drawn()));
+      save(`${name}.png`, await png(figure()));
     } catch (error) {
       setFailure(`this picture cannot be saved: ${/** @type {Error} */ (error).message}`);
     }
@@ -59,7 +59,7 @@ export function Figure({ title, name, deps, draw, rows, note, legend, onDrawn })
       ${failure && html`<p class="error">${failure}</p>`}
       ${legend && html`<div class="legend">${legend}</div>`}
       <div class="downloads" role="group" aria-label=${`download: ${title}`}>
-        <button type="button" onClick=${() => save(`${name}.svg`, svg(drawn()))}>SVG</button>
+        <button type="button" onClick=${() => save(`${name}.svg`, svg(figure()))}>SVG</button>
         <button type="button" onClick=${savePng}>PNG</button>
         ${rows && html`<button type="button" onClick=${() => save(`${name}.csv`, csv(rows()))}>CSV</button>`}
       </div>
@@ -74,5 +74,6 @@ export function Entry({ glyph, children }) {
   return html`<span><svg class="glyph" viewBox="0 0 16 16" aria-hidden="true">${glyph}</svg>${children}</span>`;
 }
 
-/** The name of a file. */
-export const fileName = (/** @type {unknown[]} */ ...parts) => parts.map((p) => words(String(p)).replace(/[^A-Za-z0-9.+-]+/g, "-")).join("-");
+/** The name of a file: letters of every language stay. */
+export const fileName = (/** @type {unknown[]} */ ...parts) =>
+  parts.map((p) => words(String(p)).replace(/[^\p{L}\p{N}.+-]+/gu, "-").replace(/^-+|-+$/g, "")).filter(Boolean).join("-");
