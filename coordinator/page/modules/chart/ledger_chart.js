@@ -2,7 +2,7 @@
 
 import { html } from "../html.js";
 import { changesOfRuns, dataSets, step } from "../words/ledger.js";
-import { CHANNELS, digits, shown, titled, unitOf, words } from "../words/quantity.js";
+import { CHANNELS, digits, errorWords, shown, titled, unitOf, words } from "../words/quantity.js";
 import { Entry, Figure, fileName } from "./figure.js";
 import { Plot, STYLE } from "./library.js";
 import { PADDING, tickLabels } from "./tick_labels.js";
@@ -39,7 +39,7 @@ function LedgerChart(/** @type {{ study: any, lines: LedgerLine[], channel: stri
     return rmse === undefined || rmse === null ? [] : [{ name, rmse: rmse * quantity.scale }];
   });
   const draw = (/** @type {number} */ width) => picture({ width, lines, points, floor, baseline, title: titled(`error of ${words(channel)}`, quantity.unit) });
-  const reached = [...new Set(baseline.map(({ rmse }) => digits(rmse)))];
+  const reached = [...new Set(baseline.map(({ rmse }) => errorWords(rmse)))];
   return html`<${Figure} title=${`Error of ${words(channel)}`} name=${fileName(study.name, "error", channel)} deps=${[lines.length, points.map((p) => p.rmse).join()]} draw=${draw}
     rows=${() => points.map((p) => ({ model: p.name, runs: p.look.words, [`rmse [${quantity.unit}]`]: p.rmse, number: p.runs }))}
     legend=${html`
@@ -56,7 +56,7 @@ function picture({ width, lines, points, floor, baseline, title }) {
   // The greater error of a model has its value above, the lesser below.
   const isUpper = (/** @type {any} */ p) => points.every((other) => other.name !== p.name || other === p || other.rmse < p.rmse || (other.rmse === p.rmse && other.look.use === "fit"));
   const value = (/** @type {any[]} */ some, /** @type {number} */ dy) => Plot.text(some, {
-    x: "name", y: "rmse", dy, text: (/** @type {any} */ p) => digits(p.rmse, labels.step < 1.5 * LEAST_STEP ? 2 : 3), fill: "currentColor", stroke: "var(--paper)", strokeWidth: 5 });
+    x: "name", y: "rmse", dy, text: (/** @type {any} */ p) => (labels.step < 1.5 * LEAST_STEP ? digits(p.rmse, 2) : errorWords(p.rmse)), fill: "currentColor", stroke: "var(--paper)", strokeWidth: 5 });
   const values = labels.step < LEAST_STEP ? [] : [value(points.filter(isUpper), -14), value(points.filter((p) => !isUpper(p)), 15)];
   return Plot.plot({
     width, height: 190 + labels.bottom, marginLeft: labels.left, marginBottom: labels.bottom, marginRight: RIGHT, marginTop: 28, insetTop: 18, insetBottom: 20, style: STYLE,

@@ -2,7 +2,7 @@
 
 import { html } from "../html.js";
 import { dataSets, runWords } from "../words/ledger.js";
-import { CHANNELS, digits, minus, short, shown, unitOf } from "../words/quantity.js";
+import { CHANNELS, errorWords, minus, short, shown, unitOf } from "../words/quantity.js";
 import { Table } from "./table.js";
 
 const USES = { fit: "fitted", holdout: "held out" };
@@ -23,8 +23,8 @@ function SetLedger(/** @type {{ study: any, lines: import("../words/ledger.js").
   const head = ["model", "runs", ...channels.map((c) => `${short(c)} ${shown(unitOf(c)).unit}`), "noise sds", "in 90 % interval", "ln evidence"];
   const row = (/** @type {string} */ name, /** @type {"fit" | "holdout"} */ use, /** @type {any} */ error, /** @type {number | null | undefined} */ inside, evidence = "") => [
     name, USES[use],
-    ...channels.map((c) => (error[c] ? digits(error[c].rmse * shown(unitOf(c)).scale) : "–")),
-    digits(error.all.rmse_fixed_sigma ?? error.all.rmse_sigma),
+    ...channels.map((c) => (error[c] ? errorWords(error[c].rmse * shown(unitOf(c)).scale) : "–")),
+    errorWords(error.all.rmse_fixed_sigma ?? error.all.rmse_sigma),
     inside === null || inside === undefined ? "–" : `${Math.round(100 * inside)} %`,
     evidence,
   ];

@@ -1,6 +1,6 @@
 // The models that a job compares, as the words of a table.
 
-import { CHANNELS, digits, minus, probability, short, shown, unitOf } from "./quantity.js";
+import { CHANNELS, digits, errorWords, minus, probability, short, shown, unitOf } from "./quantity.js";
 
 /** Names in the order of falling evidence; a model without evidence comes last. */
 const byEvidence = (/** @type {any} */ a, /** @type {any} */ b) => (b.log_evidence ?? -Infinity) - (a.log_evidence ?? -Infinity);
@@ -15,8 +15,8 @@ export function comparedModels(comparison) {
   const head = ["model", "ln evidence", "probability", "p of chi-square", ...channels.map((c) => `${short(c)} ${shown(unitOf(c)).unit}`), "noise sds", "answer"];
   const rows = [...comparison.models].sort(byEvidence).map((model) => [
     model.name, evidence(model), probability(model.probability), model.chi_square_p === null ? "–" : probability(model.chi_square_p),
-    ...channels.map((c) => (model.left_out?.[c] ? digits(model.left_out[c].rmse * shown(unitOf(c)).scale) : "–")),
-    digits(model.left_out?.all.rmse_fixed_sigma),
+    ...channels.map((c) => (model.left_out?.[c] ? errorWords(model.left_out[c].rmse * shown(unitOf(c)).scale) : "–")),
+    errorWords(model.left_out?.all.rmse_fixed_sigma),
     answer(comparison, model),
   ]);
   return { head, rows };

@@ -59,6 +59,9 @@ export function digits(/** @type {number | null | undefined} */ value, count = 3
   return minus(value.toFixed(Math.max(0, count - 1 - size)));
 }
 
+/** An error in the unit that is shown, as the sentences of the story write it. */
+export const errorWords = (/** @type {number | null | undefined} */ value) => digits(value, (value ?? 0) < 1 ? 2 : 3);
+
 /** A number at a tick of an axis, with an exponent where it is large or small. */
 export function tickWords(/** @type {number} */ value) {
   const size = Math.abs(value);
