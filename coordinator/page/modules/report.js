@@ -5,9 +5,11 @@ import { ChosenRuns } from "./part/chosen_runs.js";
 import { Guarded } from "./part/guarded.js";
 import { Pending } from "./part/message.js";
 import { Source } from "./part/source.js";
+import { recorded } from "./rest/answers.js";
 import { path } from "./rest/routes.js";
 import { useAnswer } from "./rest/use_answer.js";
-import { VIEWS } from "./view/study.js";
+import { ShownView, VIEWS } from "./view/views.js";
+import { runWords } from "./words/ledger.js";
 import { modelName, modelOf, models } from "./words/model.js";
 
 /** Which study, and which of its calibrations, the file is about. */
@@ -17,19 +19,36 @@ function Report() {
   const { answer: study, error } = useAnswer(path.study(shown.study));
   if (!study) return html`<${Pending} answer=${study} error=${error} what="the report" />`;
   const model = modelOf(study, shown.calibration);
+  const provenance = model && recorded(path.provenance(model.id));
   return html`
     <header class="heading">
       <h1>${study.name}</h1>
       <p class="note">${[...new Set([study.model_kind, model ? modelName(study, model) : "no model"])].join(", ")}${lineage(study)}</p>
+      <p class="note">${facts(study, model, provenance)}</p>
       <${Source} campaign=${study.campaign} />
+      <p class="print-brief"><button type="button" onClick=${printBrief}>Print a summary of two pages</button></p>
       <nav class="views" aria-label="Sections">${VIEWS.map((v) => html`<a href=${`#${v.name}`}>${v.title}</a>`)}</nav>
     </header>
     ${VIEWS.map((v) => html`
       <section id=${v.name} class=${`view ${v.name}`}>
         ${v.name !== "story" && html`<h1 class="section">${v.title}</h1>`}
-        <${Guarded} title=${v.title}><${v.view} study=${study} model=${model} query=${{}} /><//>
+        <${Guarded} title=${v.title}><${ShownView} view=${v} study=${study} model=${model} query=${{}} /><//>
       </section>`)}
     <${ChosenRuns} study=${study} model=${model} />`;
+}
+
+/** When it was submitted, with how many runs, and by which program: `2026-11-27; 24 fitted runs, 16 held out; Grouser 0.2.0`. */
+function facts(/** @type {any} */ study, /** @type {any} */ model, /** @type {any} */ provenance) {
+  const day = study.created_ms ? new Date(study.created_ms).toISOString().slice(0, 10) : null;
+  const line = study.ledger.find((/** @type {any} */ l) => l.calibration === model?.id);
+  return [day, line && runWords(line), provenance?.program].filter(Boolean).join("; ");
+}
+
+/** Prints the story and the pictures of model and measurement, without the other sections. */
+function printBrief() {
+  document.body.classList.add("brief");
+  addEventListener("afterprint", () => document.body.classList.remove("brief"), { once: true });
+  print();
 }
 
 /** The models that were compared, and those that one of them grew into. */

@@ -2,7 +2,7 @@
 
 import { html } from "../html.js";
 import { modelName } from "../words/model.js";
-import { words } from "../words/quantity.js";
+import { capital, words } from "../words/quantity.js";
 
 /** @param {{ study: any }} properties */
 export function Flags({ study }) {
@@ -14,12 +14,19 @@ export function Flags({ study }) {
     return member ? modelName(study, member) : `calibration ${id}`;
   };
   return html`
-    <h2>What deserves attention</h2>
+    <h2 class="attention">What deserves attention</h2>
     ${now.length === 0 ? html`<p>Nothing about the current model.</p>` : html`<${List} flags=${now} />`}
     ${old.length > 0 && html`<details><summary>${old.length === 1 ? "1 flag" : `${old.length} flags`} of models that are no longer the current one</summary>
       ${[...new Set(old.map((/** @type {any} */ f) => f.calibration))].map((id) => html`<h3>${name(/** @type {number} */ (id))}</h3><${List} flags=${old.filter((/** @type {any} */ f) => f.calibration === id)} />`)}
     </details>`}`;
 }
 
+/** What each kind of flag is about. */
+const KINDS = /** @type {Record<string, string>} */ ({
+  trend: "errors follow a condition", chi2: "errors larger than assumed", outlier: "a run stands out", conflict: "data against a prior", bound: "a parameter at its bound",
+  not_equilibrated: "sampler not settled", no_information: "data tell little", rejections: "parameters refused", incomplete: "incomplete", order: "errors follow the order of the runs",
+  worker: "a worker's results differ", interpolation_beats: "interpolation predicts better", plates_conflict: "plates against wheel runs",
+});
+
 const List = (/** @type {{ flags: any[] }} */ { flags }) =>
-  html`<ul class="flags">${flags.map((f) => html`<li><b>${words(f.kind)}</b>: ${f.text}</li>`)}</ul>`;
+  html`<ul class="flags">${flags.map((f) => html`<li><b>${capital(KINDS[f.kind] ?? words(f.kind))}</b>: ${f.text}</li>`)}</ul>`;

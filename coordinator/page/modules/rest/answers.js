@@ -21,13 +21,16 @@ export class AnswerError extends Error {
 export const unreachable = () => new AnswerError(0, "unreachable", "the coordinator does not answer; the page goes on as soon as it does");
 
 /** The answers that a report carries, by path; null on the page of a service. */
-const recorded = (() => {
+const carried = (() => {
   const element = globalThis.document?.getElementById("answers");
   return element ? JSON.parse(element.textContent ?? "{}") : null;
 })();
 
 /** Whether this is a report, which can ask nobody. */
-export const isReport = recorded !== null;
+export const isReport = carried !== null;
+
+/** An answer that a report carries; null on the page of a service. */
+export const recorded = (/** @type {string} */ path) => carried?.[path] ?? null;
 
 /**
  * Asks the service, with the token of this browser.
@@ -76,8 +79,8 @@ async function body(/** @type {Response} */ response, /** @type {AbortSignal | u
  * @param {AbortSignal} [signal]
  */
 export async function get(path, signal) {
-  if (recorded) {
-    if (path in recorded) return recorded[path];
+  if (carried) {
+    if (path in carried) return carried[path];
     throw new AnswerError(404, "not_found", "this report does not carry it");
   }
   return body(await request("GET", path, { signal }), signal);
@@ -90,4 +93,9 @@ export async function get(path, signal) {
  */
 export async function post(path, question = {}) {
   return body(await request("POST", path, { body: question }));
+}
+
+/** The answer to a DELETE request. */
+export async function remove(/** @type {string} */ path) {
+  return body(await request("DELETE", path));
 }

@@ -6,16 +6,19 @@ import { varying } from "../chart/condition.js";
 import { AxisPicker, ChannelCharts } from "../part/channel_charts.js";
 import { Ledger } from "../part/ledger.js";
 import { LedgerCharts } from "../chart/ledger_chart.js";
+import { ledgerLines } from "../chart/ledger_lines.js";
 import { path } from "../rest/routes.js";
 import { useAnswers } from "../rest/use_answer.js";
-import { modelName } from "../words/model.js";
 
 /** @param {{ study: any }} properties */
 export function Errors({ study }) {
   const [hidden, setHidden] = useState(/** @type {number[]} */ ([]));
   const [key, setKey] = useState("slip");
   const lines = ledgerLines(study);
-  const shown = lines.filter((line) => !hidden.includes(line.id));
+  // Models that the job compares are layers, too; the ledger has the chosen one and what it grew into.
+  const compared = (study.models?.models ?? []).filter((/** @type {any} */ m) => !lines.some((line) => line.id === m.calibration));
+  const all = [...lines, ...compared.map((/** @type {any} */ m, /** @type {number} */ k) => ({ id: m.calibration, name: m.name, colour: colour(lines.length + k) }))];
+  const shown = all.filter((line) => !hidden.includes(line.id));
   const answers = useAnswers(shown.map((line) => path.comparison(line.id)));
   if (lines.length === 0) return html`<p class="empty">The ledger has a line for each finished calibration with a posterior; none is finished yet.</p>`;
   const flip = (/** @type {number} */ id) => setHidden(hidden.includes(id) ? hidden.filter((h) => h !== id) : [...hidden, id]);
@@ -28,19 +31,8 @@ export function Errors({ study }) {
     <${Ledger} study=${study} lines=${lines} />
     <h2>The models over the data</h2>
     <div class="actions" role="group" aria-label="Models that are shown">
-      ${lines.map((line) => html`<button type="button" aria-pressed=${!hidden.includes(line.id)} onClick=${() => flip(line.id)}>
+      ${all.map((line) => html`<button type="button" aria-pressed=${!hidden.includes(line.id)} onClick=${() => flip(line.id)}>
         <i class="swatch" style=${{ background: line.colour }}></i> ${line.name}</button>`)}
     </div>
     ${axis && html`<${AxisPicker} axes=${axes} axis=${axis} choose=${setKey} /><${ChannelCharts} layers=${layers} axis=${axis} name=${`${study.name}-layers`} />`}`;
-}
-
-/**
- * The lines of the ledger with their names and colours.
- * @returns {(import("../words/ledger.js").LedgerLine & { colour: string })[]}
- */
-export function ledgerLines(/** @type {any} */ study) {
-  return study.ledger.map((/** @type {any} */ line, /** @type {number} */ k) => {
-    const member = study.members.find((/** @type {any} */ m) => m.id === line.calibration);
-    return { id: line.calibration, name: member ? modelName(study, member) : `calibration ${line.calibration}`, effects: member?.effects ?? line.effects, colour: colour(k), line };
-  });
 }

@@ -3,14 +3,18 @@
 
 import { html, useState } from "../html.js";
 import { LedgerCharts } from "../chart/ledger_chart.js";
+import { ledgerLines } from "../chart/ledger_lines.js";
 import { Flags } from "../part/flags.js";
+import { Headline } from "../part/headline.js";
 import { Failure } from "../part/message.js";
 import { ModelTable } from "../part/model_table.js";
 import { isReport } from "../rest/answers.js";
 import { discover, extend } from "../rest/routes.js";
 import { address } from "../route.js";
 import { capital } from "../words/quantity.js";
-import { ledgerLines } from "./errors.js";
+
+/** So many steps are shown at first. */
+const FIRST_STEPS = 3;
 
 /** @param {{ study: any, model: any, reload?: () => void }} properties */
 export function Story({ study, model, reload }) {
@@ -26,6 +30,7 @@ export function Story({ study, model, reload }) {
   return html`
     <${StudyFailure} study=${study} />
     ${study.models && html`<p class=${`verdict ${study.models.none_of_these ? "doubt" : ""}`}>${sentence(signed(study.models.text))}</p>`}
+    <${Headline} study=${study} model=${model} />
     <div class="three">
       <section class="card"><h2>What the model gets wrong</h2>
         <p class=${mood(story.wrong.channels)}>${sentence(story.wrong.text)}</p>
@@ -35,7 +40,7 @@ export function Story({ study, model, reload }) {
         <p class="note"><a href=${to("effects")}>All explanations</a></p></section>
       <section class="card"><h2>What to do next</h2>
         ${isAtWork && html`<p>The program is at work on this study: <a href=${to("live")}>Live</a> shows how far it is.</p>`}
-        <ol>${(isAtWork ? [] : story.next.steps).map((/** @type {any} */ step) => html`<li><${Step} step=${step} study=${study} model=${model} reload=${reload} /></li>`)}</ol>
+        <${Steps} steps=${isAtWork ? [] : story.next.steps} study=${study} model=${model} reload=${reload} />
         ${isReport && story.next.steps.some((/** @type {any} */ step) => step.command) && html`<p class="note">Commands run in the folder of this report.</p>`}</section>
     </div>
     ${study.models && html`<${ModelTable} comparison=${study.models} />`}
@@ -54,13 +59,22 @@ function StudyFailure(/** @type {{ study: any }} */ { study }) {
   if (!study.failure) return null;
   return html`<section class="card" role="alert"><h2>${study.members.length > 1 ? `Calibration ${study.failure.calibration} failed` : "The calibration failed"}</h2>
     <p class="error">${sentence(study.failure.reason)}</p>
-    <p><b>What to do:</b> ${sentence(study.failure.advice)}</p></section>`;
+    <p><b>What to do:</b> ${sentence(study.failure.advice)}</p>
+    ${!isReport && html`<p><a class="button main" href=${address(["new"], { study: study.id })}>Edit and start again</a></p>`}</section>`;
 }
 
 const sentence = (/** @type {string} */ text) => capital(/[.!?]$/.test(text) ? text : `${text}.`);
 
 /** With the sign that people write before numbers. */
 const signed = (/** @type {string} */ text) => text.replace(/(?<=\s)-(?=\d)/g, "−");
+
+/** The first steps; the others are folded. */
+function Steps(/** @type {{ steps: any[], study: any, model: any, reload?: () => void }} */ { steps, ...given }) {
+  const list = (/** @type {any[]} */ some, start = 1) => html`<ol start=${start}>${some.map((step) => html`<li><${Step} step=${step} ...${given} /></li>`)}</ol>`;
+  const later = steps.slice(FIRST_STEPS);
+  return html`${list(steps.slice(0, FIRST_STEPS))}
+    ${later.length > 0 && html`<details><summary>${later.length === 1 ? "1 more step" : `${later.length} more steps`}</summary>${list(later, FIRST_STEPS + 1)}</details>`}`;
+}
 
 /** A step with the button that takes it; a report has the command. */
 function Step(/** @type {{ step: any, study: any, model: any, reload?: () => void }} */ { step, study, model, reload }) {
@@ -88,5 +102,7 @@ function Step(/** @type {{ step: any, study: any, model: any, reload?: () => voi
     make_runs: () => html`<a class="button" href=${address(["studies", study.id, "effects"], { model: step.calibration })}>See the runs, and add them</a>`,
   });
   const button = !isReport && model && buttons[step.kind];
-  return html`${sentence(step.text)} ${button ? html`<span class="actions">${button()}</span>` : step.command && html`<code>coordinator ${step.command}${isReport ? " --out ." : ""}</code>`}<${Failure} error=${failure} />`;
+  // Where a result goes in the job is read when it is there.
+  const [text, place] = step.text.split(/\. (?=Its result goes under )/);
+  return html`${sentence(text)} ${place && html`<details><summary>Where it goes in the job</summary><span class="note">${place}</span></details>`}${button ? html`<span class="actions">${button()}</span>` : step.command && html`<code>coordinator ${step.command}${isReport ? " --out ." : ""}</code>`}<${Failure} error=${failure} />`;
 }

@@ -1,0 +1,15 @@
+// The lines of a study's error ledger with the names and colours that pictures and tables give them.
+
+import { modelName } from "../words/model.js";
+import { colour } from "./colour.js";
+
+/**
+ * The lines of the ledger with their names and colours.
+ * @returns {(import("../words/ledger.js").LedgerLine & { colour: string })[]}
+ */
+export function ledgerLines(/** @type {any} */ study) {
+  return study.ledger.map((/** @type {any} */ line, /** @type {number} */ k) => {
+    const member = study.members.find((/** @type {any} */ m) => m.id === line.calibration);
+    return { id: line.calibration, name: member ? modelName(study, member) : `calibration ${line.calibration}`, effects: member?.effects ?? line.effects, colour: colour(k), line };
+  });
+}

@@ -1,0 +1,57 @@
+// The one picture of the first view: measurements of a channel with the model before and after what was added, at the wheel load that
+// shows the difference best.
+
+import { CONDITIONS } from "../chart/condition.js";
+import { ChannelChart } from "../chart/channel_chart.js";
+import { html } from "../html.js";
+import { path } from "../rest/routes.js";
+import { useAnswers } from "../rest/use_answer.js";
+import { groups } from "../words/group.js";
+import { lineBefore } from "../words/headline.js";
+import { modelName } from "../words/model.js";
+import { words } from "../words/quantity.js";
+
+/** Fewer slips make no curve: then all loads are drawn. */
+const LEAST_SLIPS = 3;
+
+/** @param {{ study: any, model: any, channel: string }} properties */
+export function BeforeAfter({ study, model, channel }) {
+  const before = lineBefore(study.ledger, model.id)?.calibration ?? null;
+  const ids = before === null ? [model.id] : [before, model.id];
+  const answers = useAnswers(ids.map((id) => path.comparison(id)));
+  const layers = ids.map((id, k) => ({ id, colour: ids.length === 1 ? null : `var(--series-${ids.length - 1 - k})`, rows: answers[path.comparison(id)]?.rows ?? null }));
+  if (layers.some((layer) => layer.rows === null)) return html`<p class="empty" aria-busy="true">The picture is loading.</p>`;
+  const own = layers.at(-1)?.rows.filter((/** @type {any} */ r) => r.channel === channel) ?? [];
+  if (own.length === 0) return null;
+  const { wheel, load, runs } = clearest(own, before === null ? own : layers[0].rows.filter((/** @type {any} */ r) => r.channel === channel));
+  const named = layers.map(({ id, colour, rows }) => ({
+    name: modelName(study, study.members.find((/** @type {any} */ m) => m.id === id)), colour, rows: rows.filter((/** @type {any} */ r) => runs.has(r.run)),
+  }));
+  const at = [load && `at a wheel load of ${load}`, wheel && `wheel ${wheel}`].filter(Boolean).join(", ");
+  return html`<${ChannelChart} channel=${channel} wheel=${wheel} measurements=${named.at(-1)?.rows} layers=${named} axis=${CONDITIONS[0]} name=${`${study.name}-before-after`}
+    title=${`${words(channel)}, measured and computed${at ? `, ${at}` : ""}`} />`;
+}
+
+/**
+ * The wheel and the load at which the errors of two models differ most, with their runs; without a load where too few slips were run at it.
+ * @param {any[]} now
+ * @param {any[]} before
+ */
+export function clearest(now, before) {
+  const old = new Map(before.map((row) => [row.run, row]));
+  const square = (/** @type {any} */ row) => (row?.predicted === null || row?.predicted === undefined ? 0 : (row.measured - row.predicted) ** 2);
+  const wheels = [...new Set(now.map((row) => row.wheel))];
+  const places = wheels.flatMap((wheel) => {
+    const own = now.filter((row) => row.wheel === wheel);
+    const found = groups(own);
+    return found.colours.map((load, k) => {
+      const rows = found.groups.filter((group) => group.colour === k).flatMap((group) => group.rows);
+      const gain = rows.reduce((sum, row) => sum + Math.abs(square(old.get(row.run)) - (now === before ? 0 : square(row))), 0) / rows.length;
+      return { wheel: wheels.length > 1 ? wheel : null, load: found.colours.length > 1 ? load : null, rows, gain };
+    });
+  });
+  const clear = places.filter(({ rows }) => new Set(rows.map((row) => row.slip)).size >= LEAST_SLIPS);
+  const best = clear.reduce((/** @type {typeof places[number] | null} */ most, place) => (most === null || place.gain > most.gain ? place : most), null);
+  const { wheel, load, rows } = best ?? { wheel: null, load: null, rows: now };
+  return { wheel, load, runs: new Set(rows.map((row) => row.run)) };
+}

@@ -1,0 +1,102 @@
+// The headline of a study: what was found, in one sentence with the error before and after it.
+
+import { capital, errorWords, meanAndSd, parameterName, probability, shown, unitOf, words } from "./quantity.js";
+
+/**
+ * @typedef {{ channel: string, use: "fit" | "holdout", unit: string, before: number | null, now: number, noise: number | null }} ErrorChange
+ *   Root mean square errors in the unit that is shown; before: of the submitted model on the same runs.
+ * @typedef {{ name: string, summary: string, probability: number }} Explanation
+ */
+
+/** `8.3 N on held-out runs`: where an error was taken. */
+const USES = { fit: "fitted runs", holdout: "held-out runs" };
+
+/** What an explanation says in plain words; its name where there are none. */
+const plain = (/** @type {any} */ { name, summary }) => (name === "none" ? "nothing is missing" : summary ?? (name === "not_in_library" ? "a law that is not in the library" : words(name)));
+
+/**
+ * The submitted model, where the shown one has effects that it has not and both were calibrated on the same runs.
+ * @param {any[]} ledger
+ * @param {number} id of the shown model
+ */
+export function lineBefore(ledger, id) {
+  const now = ledger.find((line) => line.calibration === id);
+  const before = now && ledger.find((line) => line.data_set === now.data_set && line !== now && line.effects.every((/** @type {string} */ e) => now.effects.includes(e)));
+  return before && before.effects.length < now.effects.length ? before : null;
+}
+
+/**
+ * The errors of the shown model, worst first: by what its effects bought where it has any, else over the noise.
+ * @param {any} study
+ * @param {any} model
+ * @returns {ErrorChange[]}
+ */
+export function errorChanges(study, model) {
+  const now = study.ledger.find((/** @type {any} */ line) => line.calibration === model.id);
+  if (!now) return [];
+  const before = lineBefore(study.ledger, model.id);
+  const changes = model.story.wrong.channels.flatMap((/** @type {any} */ { channel, use }) => {
+    const [own, old] = [now, before].map((line) => line?.error[use]?.[channel]);
+    if (!own) return [];
+    const { unit, scale } = shown(unitOf(channel));
+    const sigma = study.fixed_sigma[channel];
+    // A noise that was inferred with the misfit is no measure of it.
+    const noise = sigma && sigma.source !== "inferred" ? sigma.sd * scale : null;
+    return [{ channel, use, unit, before: old && old.runs === own.runs ? old.rmse * scale : null, now: own.rmse * scale, noise }];
+  });
+  const gain = (/** @type {ErrorChange} */ c) => (c.before === null ? 0 : Math.log(c.before / c.now));
+  return before ? changes.sort((/** @type {ErrorChange} */ a, /** @type {ErrorChange} */ b) => gain(b) - gain(a)) : changes;
+}
+
+/** `11.7 → 1.19 N`; a line does not break within it. */
+export const changeWords = (/** @type {ErrorChange} */ { before, now, unit }) => `${before === null ? "" : `${errorWords(before)} → `}${errorWords(now)} ${unit}`.replaceAll(" ", "\u00a0");
+
+/**
+ * The headline of a model.
+ * @param {any} model with its story
+ * @param {ErrorChange[]} changes
+ */
+export function headline({ story }, changes) {
+  const { missing, wrong } = story;
+  const [first] = changes;
+  const error = first && `${words(first.channel)} of ${USES[first.use]}: error ${changeWords(first)}`;
+  const added = missing.already_added;
+  const isCalm = wrong.channels.length > 0 && wrong.channels.every((/** @type {any} */ c) => c.is_within_noise);
+  if (added.length > 0 && first?.before != null) return capital(`${error} with ${added.length === 1 ? "one more effect" : `${added.length} more effects`}`);
+  const found = {
+    named: () => `something is missing: ${missing.named.map(plain).join("; ")}`,
+    class: () => `one of ${missing.named.length} effects is missing, and the data do not tell which`,
+    none: null,
+    not_in_library: () => "an effect is missing that the library does not have",
+    undecided: () => "whether something is missing is undecided",
+    nothing_detectable: () => (isCalm ? "the model explains the runs to within the noise" : "nothing is missing that these data can show"),
+  }[/** @type {"named" | "class" | "not_in_library" | "undecided" | "nothing_detectable" | "none"} */ (missing.verdict ?? "none")];
+  const verdict = found ? found() : isCalm ? "the model explains the runs to within the noise" : "the model was not searched for a missing effect";
+  return capital(error ? `${verdict} (${error})` : verdict);
+}
+
+/**
+ * The explanations to draw as bars: of an effect that was added and its rivals, else of the search; the last is all others together.
+ * @param {any} missing of a story
+ * @returns {Explanation[]}
+ */
+export function explanations({ already_added: added, leading }) {
+  const judged = added.filter((/** @type {any} */ effect) => effect.probability !== null);
+  const all = judged.length > 0 ? judged.flatMap((/** @type {any} */ effect) => [effect, ...effect.rivals]) : leading;
+  const named = all.map((/** @type {any} */ effect) => ({ name: effect.name, summary: plain(effect), probability: effect.probability }));
+  // Of several effects each has a search of its own: only one sum is one.
+  const rest = 1 - named.reduce((/** @type {number} */ sum, /** @type {Explanation} */ e) => sum + e.probability, 0);
+  return judged.length > 1 || rest < 1e-9 || named.length === 0 ? named : [...named, { name: "", summary: "all other explanations together", probability: rest }];
+}
+
+/** `shear modulus 9.4 ± 0.6 mm`: the parameters of an added effect. */
+export function strengthWords(/** @type {any} */ { strengths }) {
+  return strengths.map((/** @type {any} */ { name, unit, mean, sd }) => {
+    const { unit: word, scale } = shown(unit);
+    const value = meanAndSd(mean * scale, sd * scale);
+    return `${parameterName(name.split(".").slice(1).join(".") || name, unit)} ${value.mean} ± ${value.sd}${word === "1" ? "" : ` ${word}`}`;
+  }).join(", ");
+}
+
+/** The probability of an explanation in words. */
+export const probabilityWords = (/** @type {Explanation} */ { probability: p }) => `P ${probability(p)}`;
