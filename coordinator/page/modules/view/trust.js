@@ -5,7 +5,8 @@ import { Pending } from "../part/message.js";
 import { Table } from "../part/table.js";
 import { path } from "../rest/routes.js";
 import { useAnswer } from "../rest/use_answer.js";
-import { digits, probability, shown, words } from "../words/quantity.js";
+import { capital, digits, parameterName, probability, shown, words } from "../words/quantity.js";
+import { judgements } from "../words/trust.js";
 
 /** @param {{ study: any, model: any }} properties */
 export function Trust({ study, model }) {
@@ -13,7 +14,9 @@ export function Trust({ study, model }) {
   const { answer: diagnostics } = useAnswer(model ? path.diagnostics(model.id) : null);
   if (!model) return html`<p class="empty">No calibration of this study is finished yet.</p>`;
   if (!provenance) return html`<${Pending} answer=${provenance} error=${error} what="the account" />`;
+  const line = study.ledger.find((/** @type {any} */ l) => l.calibration === model.id) ?? null;
   return html`
+    ${diagnostics && html`<${Verdict} judgements=${judgements(line, diagnostics, model.story.wrong)} />`}
     ${provenance.sentences.map((/** @type {string} */ s) => html`<p>${s}</p>`)}
     <ul class="note">${provenance.notes.map((/** @type {string} */ n) => html`<li>${n}</li>`)}</ul>
     ${diagnostics && html`<${Data} diagnostics=${diagnostics} /><${Refused} rejections=${diagnostics.rejections} />`}
@@ -32,6 +35,14 @@ export function Trust({ study, model }) {
     ${provenance.effects.map((/** @type {any} */ e) => html`<details><summary>Effect ${e.name}</summary><pre tabindex="0">${e.text}</pre></details>`)}`;
 }
 
+const LEVELS = { good: "✓ yes", fair: "~ in part", poor: "✗ no" };
+
+/** One line for each question, before the details. */
+function Verdict(/** @type {{ judgements: import("../words/trust.js").Judgement[] }} */ { judgements: all }) {
+  return html`<ul class="judgements" aria-label="How far to trust it, in short">
+    ${all.map(({ question, level, text }) => html`<li class=${level}><b>${LEVELS[level]}</b> <span>${question} <span class="note">${capital(text)}.</span></span></li>`)}</ul>`;
+}
+
 /** What each channel tells, and what the parameters know of it. */
 function Data(/** @type {{ diagnostics: any }} */ { diagnostics }) {
   const p = (/** @type {number | null} */ value) => (value === null || value === undefined ? "–" : value < 1e-6 ? "< 10⁻⁶" : digits(value, 2));
@@ -40,7 +51,7 @@ function Data(/** @type {{ diagnostics: any }} */ { diagnostics }) {
     const value = (/** @type {number | null} */ v) => digits(v === null ? null : v * quantity.scale);
     return [`${words(c.channel)} ${quantity.unit}`, c.data, value(c.error_sd), value(c.prior_predictive_sd), digits(c.information, 2), digits(c.chi_square?.chi_square), digits(c.chi_square?.degrees_of_freedom), p(c.chi_square?.p)];
   });
-  const parameters = diagnostics.parameters.map((/** @type {any} */ q) => [q.name, digits(q.contraction, 2), p(q.conflict_p), q.at_bound ? "at its bound" : ""]);
+  const parameters = diagnostics.parameters.map((/** @type {any} */ q) => [parameterName(q.name, q.unit), digits(q.contraction, 2), p(q.conflict_p), q.at_bound ? "at its bound" : ""]);
   return html`
     <h2>What the data tell</h2>
     <${Table} label="Channels" head=${["channel", "rows", "error sd", "prior spread", "information", "chi-square", "expected", "p"]} rows=${channels} numbers=${[1, 2, 3, 4, 5, 6, 7]} />
