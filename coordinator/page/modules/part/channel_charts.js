@@ -4,11 +4,11 @@ import { html, useMemo } from "../html.js";
 import { ChannelChart } from "../chart/channel_chart.js";
 import { CHANNELS } from "../words/quantity.js";
 
-/** @param {{ layers: import("../chart/channel_chart.js").Layer[], axis: import("../chart/condition.js").ConditionAxis, name: string, moving?: import("../chart/channel_chart.js").Moving, small?: boolean }} properties */
-export function ChannelCharts({ layers, axis, name, moving, small = false }) {
+/** @param {{ layers: import("../chart/channel_chart.js").Layer[], axis: import("../chart/condition.js").ConditionAxis, name: string, moving?: import("../chart/channel_chart.js").Moving, small?: boolean, order?: readonly string[] }} properties order: of the channels */
+export function ChannelCharts({ layers, axis, name, moving, small = false, order = CHANNELS }) {
   const rows = useMemo(() => measurements(layers), [layers.map((layer) => layer.name).join(), ...ends(layers)]);
   const wheels = [...new Set(rows.map((r) => r.wheel))];
-  const pairs = CHANNELS.filter((channel) => rows.some((r) => r.channel === channel)).flatMap((channel) =>
+  const pairs = order.filter((channel) => rows.some((r) => r.channel === channel)).flatMap((channel) =>
     (wheels.length > 1 ? wheels : [null]).filter((w) => w === null || rows.some((r) => r.channel === channel && r.wheel === w)).map((wheel) => ({ channel, wheel })));
   return html`<div class=${`figures ${small ? "small" : ""}`}>
     ${pairs.map(({ channel, wheel }) => html`<${ChannelChart} key=${`${channel} ${wheel}`} channel=${channel} wheel=${wheel} measurements=${rows} layers=${layers} axis=${axis} name=${name} moving=${moving} />`)}

@@ -3,8 +3,10 @@
 import { html, useState } from "../html.js";
 import { path } from "../rest/routes.js";
 import { useAnswer } from "../rest/use_answer.js";
-import { digits, minus, parameterName, probability, shown } from "../words/quantity.js";
+import { capital, digits, minus, parameterName, probability, shown, words } from "../words/quantity.js";
 
+/** A fitted parameter below this is 0. */
+const ZERO = 1e-12;
 /** So many are shown at first. */
 const FIRST = 8;
 export const OTHERS = /** @type {Record<string, string>} */ ({ none: "nothing is missing", not_in_library: "a law that is not in the library" });
@@ -18,6 +20,9 @@ export function Explanations({ record, ghost, kept, show, keep, add, study, mode
   const [isAll, setAll] = useState(false);
   const effects = isAll ? record.effects : record.effects.slice(0, FIRST);
   const summaries = new Map((catalogue ?? []).map((/** @type {any} */ e) => [e.name, e.summary]));
+  const told = new Map(model.story.missing.leading.map((/** @type {any} */ e) => [e.name, e.summary]));
+  // A report carries the story, and no catalogue.
+  const summaryOf = (/** @type {string} */ name) => summaries.get(name.split(".")[0]) ?? told.get(name);
   const made = new Set(study.members.filter((/** @type {any} */ m) => m.kind !== "search").map((/** @type {any} */ m) => m.effects.join(" ")));
   const isMade = (/** @type {string} */ name) => made.has([...model.effects, name].join(" "));
   const untried = new Map(record.not_tried.map((/** @type {any} */ e) => [e.name, e.why]));
@@ -30,12 +35,12 @@ export function Explanations({ record, ghost, kept, show, keep, add, study, mode
           <tr key=${effect.name} class=${`${effect.name === ghost ? "shown" : ""} ${effect.in_credible_set ? "credible" : ""}`}
               onMouseEnter=${() => show(effect.name)} onMouseLeave=${() => show(null)}>
             <th scope="row">
-              <button class="plain" type="button" onFocus=${() => show(effect.name)} onBlur=${() => show(null)} onClick=${() => keep(kept === effect.name ? null : effect.name)} aria-pressed=${kept === effect.name} aria-label=${`show what ${OTHERS[effect.name] ?? effect.name} would change`}><b>${OTHERS[effect.name] ?? effect.name}</b></button>
-              <span class="note">${[untried.get(effect.name), summaries.get(effect.name.split(".")[0]), (classes.get(effect.class) ?? 0) > 1 ? `these data cannot tell it from ${same(record, effect)}` : null].filter(Boolean).join("; ")}</span>
+              <button class="plain" type="button" onFocus=${() => show(effect.name)} onBlur=${() => show(null)} onClick=${() => keep(kept === effect.name ? null : effect.name)} aria-pressed=${kept === effect.name} aria-label=${`show what ${OTHERS[effect.name] ?? effect.name} would change`}><b>${OTHERS[effect.name] ?? capital(summaryOf(effect.name) ?? words(effect.name))}</b></button>
+              <span class="note">${effect.name in OTHERS ? null : html`<code>${effect.name}</code>`} ${[untried.get(effect.name), (classes.get(effect.class) ?? 0) > 1 ? `these data cannot tell it from ${same(record, effect)}` : null].filter(Boolean).join("; ")}</span>
             </th>
             <td><span class="bar"><i style=${{ width: `${(100 * effect.probability).toFixed(1)}%` }}></i></span> <span class="number">${probability(effect.probability)}</span></td>
-            <td class="number">${minus(effect.log_bayes_factor.toFixed(1))}</td>
-            <td>${Object.entries(effect.parameters).map(([name, value]) => html`<div>${strength(name, /** @type {number} */ (value), effect.units[name])}</div>`)}
+            <td class="number">${nats(effect.log_bayes_factor)}</td>
+            <td>${isAbsent(effect) ? html`<span class="note">absent: the best fit does without it</span>` : Object.entries(effect.parameters).map(([name, value]) => html`<div>${strength(name, /** @type {number} */ (value), effect.units[name])}</div>`)}
               ${effect.prior_sds !== null && Math.abs(effect.prior_sds) > 2 ? html`<span class="note">${digits(effect.prior_sds, 2)} sds out in its prior</span>` : null}</td>
             <td>${add && !(effect.name in OTHERS) && !untried.has(effect.name) && (isMade(effect.name)
               ? html`<span class="note">added</span>`
@@ -47,6 +52,13 @@ export function Explanations({ record, ghost, kept, show, keep, add, study, mode
     ${record.effects.length > FIRST && html`<button type="button" onClick=${() => setAll(!isAll)}>${isAll ? "Show fewer" : `Show all ${record.effects.length}`}</button>`}
     <p class="note">Nats: log evidence over that of the model as it is. Bold lines are in the 95 % set of explanations. Half of the prior probability is on “nothing is missing”.</p>`;
 }
+
+/** Nats to a digit after the point, without a sign before 0. */
+const nats = (/** @type {number} */ value) => minus(value.toFixed(1)).replace(/^−(0\.0)$/, "$1");
+
+/** Whether the best fit leaves an effect out: its parameters are 0. */
+const isAbsent = (/** @type {any} */ { parameters }) =>
+  Object.keys(parameters).length > 0 && Object.values(parameters).every((value) => Math.abs(/** @type {number} */ (value)) < ZERO);
 
 /** A fitted parameter in its unit; records of earlier versions do not state it. */
 function strength(/** @type {string} */ name, /** @type {number} */ value, /** @type {string | undefined} */ stated) {

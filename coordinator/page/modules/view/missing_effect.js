@@ -13,6 +13,7 @@ import { isReport } from "../rest/answers.js";
 import { discover, extend, path } from "../rest/routes.js";
 import { useAnswer } from "../rest/use_answer.js";
 import { address } from "../route.js";
+import { byChange, withGhost } from "../words/ghost.js";
 import { capital } from "../words/quantity.js";
 
 /** @param {{ study: any, model: any, reload?: () => void }} properties */
@@ -61,7 +62,7 @@ export function MissingEffect({ study, model, reload }) {
       </div>
       <div class="ghosts">
         <p class="note" aria-live="polite">${ghost ? html`Dashed: what <b>${OTHERS[ghost] ?? ghost}</b> would predict for the fitted runs, from the search's fit. Nothing has been computed anew.` : "Point at an explanation: its predictions appear over the data before anything is computed; a click on its name keeps them."}</p>
-        ${comparison && html`<${ChannelCharts} small=${true} layers=${layers} axis=${varying(comparison.rows)[0]} name=${`${study.name}-ghost`} />`}
+        ${comparison && html`<${ChannelCharts} small=${true} order=${byChange(comparison.rows, record.curves, ghost)} layers=${layers} axis=${varying(comparison.rows)[0]} name=${`${study.name}-ghost`} />`}
       </div>
     </div>
     ${record.outside && html`<${LawChart} law=${record.outside} name=${study.name} add=${isReport ? null : () => add({ effect_file: { name: "outside.toml", text: record.outside.effect_file } })} />`}
@@ -71,19 +72,4 @@ export function MissingEffect({ study, model, reload }) {
     <${InformationMap} record=${record} name=${study.name} />
     ${record.other_tests.length > 0 && html`<h3>Tests without a rolling wheel that would tell</h3><ul>${record.other_tests.map((/** @type {string} */ t) => html`<li>${t}</li>`)}</ul>`}
     ${!isReport && comparison && html`<${NewRuns} study=${study} model=${model} record=${record} comparison=${comparison} reload=${reload} />`}`;
-}
-
-/**
- * The model, and the predictions of an explanation in its place.
- * @param {any[]} rows
- * @param {any} curves
- * @param {string | null} ghost
- */
-function withGhost(rows, curves, ghost) {
-  const layers = [{ name: "model", colour: null, rows }];
-  const values = ghost ? curves?.effects?.[ghost] : null;
-  if (!values) return layers;
-  const known = new Map(curves.data.map((/** @type {any} */ d, /** @type {number} */ k) => [`${d.run} ${d.channel}`, values[k]]));
-  const own = rows.map((r) => ({ ...r, predicted: known.get(`${r.run} ${r.channel}`) ?? null, q05: null, q95: null }));
-  return [...layers, { name: String(ghost), colour: "var(--ghost)", rows: own, isGhost: true }];
 }
