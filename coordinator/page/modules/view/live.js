@@ -35,6 +35,7 @@ export function Live({ study, model, query, reload }) {
     m.message ?? "",
   ]);
   return html`
+    ${!isReport && FINAL.includes(study.state) && html`<p class="actions"><span>Everything in this study is over.</span> <a class="button main" href=${address(["studies", study.id, "story"])}>Read the story</a></p>`}
     <${Member} key=${member.id} member=${member} reload=${reload} />
     <h2>Everything in this study</h2>
     <${Table} label="Calibrations and searches of the study" head=${["name", "what", "state", "message"]} rows=${names} />`;
@@ -59,17 +60,30 @@ function Member(/** @type {{ member: any, reload: () => void }} */ { member, rel
     });
   }, [member.id, isOver]);
   const stages = recorded.answer ?? live;
+  const isLoading = isOver && recorded.answer === null;
   const state = isOver ? member.state : status?.state ?? member.state;
   const progress = isOver ? null : status?.progress;
   return html`
     <h2>${member.name}</h2>
     <p aria-live="polite"><span class=${`state ${state}`}>${state}</span>${progress ? `: ${progressWords(progress)}` : ""}
-      ${progress && html` <span class="note">${Math.round(progress.evaluations_per_s)} evaluations/s; ${progress.step_done} of ${progress.step_size} evaluations of the present step; ${progress.rejected} rejected by the model</span>`}</p>
+      ${progress && html` <span class="note">${Math.round(progress.evaluations_per_s)} evaluations/s; ${progress.rejected} rejected by the model</span>`}</p>
+    ${progress && html`<p><label>Present step <progress max=${Math.max(1, progress.step_size)} value=${progress.step_done}></progress> ${percentage(progress.step_done, progress.step_size)}
+      <span class="note">(${progress.step_done} of ${progress.step_size} evaluations)</span></label></p>`}
     <${Failure} error=${failure} />
-    ${!isReport && !isOver && html`<${Controls} id=${member.id} state=${state} reload=${reload} />`}
+    ${!isReport && !isOver && !FINAL.includes(state) && html`<${Controls} id=${member.id} state=${state} reload=${reload} />`}
     ${member.kind === "search"
       ? html`<p class="empty">A search fits each candidate effect; its result is in the view Missing effect.</p>`
       : stages.length > 0
         ? html`<${StageCharts} stages=${stages} name=${member.name} /><${isReport ? RecordedParticles : Particles} id=${member.id} stages=${stages} />`
-        : html`<p class="empty">${isOver ? "This calibration has no stages: it is a fit, or it ended before its first stage." : "The first stage draws from the prior; pictures come with its end."}</p>`}`;
+        : html`<p class="empty" aria-busy=${isLoading}>${noStages(member, isOver, isLoading)}</p>`}`;
+}
+
+/** `45 %` of a step. */
+const percentage = (/** @type {number} */ done, /** @type {number} */ size) => `${size > 0 ? Math.round((100 * done) / size) : 0} %`;
+
+/** Why a calibration shows no stages. */
+function noStages(/** @type {any} */ member, /** @type {boolean} */ isOver, /** @type {boolean} */ isLoading) {
+  if (isLoading) return "The stages are loading.";
+  if (member.kind === "fit") return isOver ? "A fit goes from step to step and has no stages; its result is in the other views." : "A fit goes from step to step; its result comes with its end.";
+  return isOver ? "The calibration ended before its first stage." : "The first stage draws from the prior; pictures come with its end.";
 }
