@@ -8,6 +8,7 @@ import { useRoute } from "./route.js";
 import { Home } from "./view/home.js";
 import { StudyPage } from "./view/study.js";
 
+const beside = () => import("./view/beside.js").then((module) => module.Beside);
 const newCalibration = () => import("./view/new_calibration.js").then((module) => module.NewCalibration);
 
 function Page() {
@@ -15,6 +16,7 @@ function Page() {
   const [isAsked, setAsked] = useState(token.isAsked());
   useEffect(() => token.watch(() => setAsked(token.isAsked())), []);
   const [first, id, view] = route.place;
+  const isBeside = first === "beside" && route.place.slice(1, 3).every((one) => /^\d+$/.test(one)) && route.place.length === 3;
   const isStudy = first === "studies" && /^\d+$/.test(id ?? "");
   useEffect(() => {
     document.getElementById("content")?.focus({ preventScroll: true });
@@ -22,7 +24,7 @@ function Page() {
   }, [first, id, view]);
   useEffect(() => {
     // A study names itself when it is known.
-    if (!isStudy) document.title = first === "new" ? "New calibration – Grouser" : "Studies – Grouser";
+    if (!isStudy) document.title = `${first === "new" ? "New calibration" : first === "beside" ? "Two studies" : "Studies"} – Grouser`;
   }, [first, isStudy]);
   return html`
     <a class="skip" href="#content" onClick=${skip}>To the content</a>
@@ -40,7 +42,8 @@ function Page() {
       ${first === undefined && html`<${Home} />`}
       ${first === "new" && html`<${Later} title="New calibration" load=${newCalibration} query=${route.query} />`}
       ${isStudy && html`<${StudyPage} key=${id} id=${Number(id)} view=${view ?? "story"} query=${route.query} />`}
-      ${!isStudy && !["new", undefined].includes(first) && html`<h1>There is no such page</h1><p><a href="#/">To the studies</a></p>`}
+      ${isBeside && html`<${Later} key=${route.place.join("/")} title="The comparison" load=${beside} ids=${route.place.slice(1).map(Number)} />`}
+      ${!isStudy && !isBeside && !["new", undefined].includes(first) && html`<h1>There is no such page</h1><p><a href="#/">To the studies</a></p>`}
     </main>`;
 }
 

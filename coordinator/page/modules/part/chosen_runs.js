@@ -8,7 +8,7 @@ import { choose, useChosen } from "../selection.js";
 import { Failure } from "./message.js";
 
 /** @param {{ study: any, model: any }} properties */
-export function ChosenRuns({ model }) {
+export function ChosenRuns({ study, model }) {
   const chosen = useChosen();
   const [failure, setFailure] = useState(/** @type {any} */ (null));
   const [isBusy, setBusy] = useState(false);
@@ -24,7 +24,7 @@ export function ChosenRuns({ model }) {
       if (without.length === 0) throw new Error("these runs are held out already: choose runs that are fitted");
       const created = await whatIf(model.id, without);
       choose(null);
-      location.hash = address(["studies", created.study, "live"]);
+      location.hash = address(["beside", study.id, created.study]);
     } catch (error) {
       setFailure(error);
     }

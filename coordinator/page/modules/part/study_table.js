@@ -2,15 +2,15 @@
 
 import { html } from "../html.js";
 import { address } from "../route.js";
-import { capital, CHANNELS, digits, short, shown, titled, unitOf, words } from "../words/quantity.js";
-import { progressWords, verdictWords } from "../words/state.js";
+import { capital, CHANNELS, errorWords, short, shown, titled, unitOf, words } from "../words/quantity.js";
+import { progressWords } from "../words/state.js";
 import { Table } from "./table.js";
 
 /** An error on fitted rows, above that on held-out rows. */
 const pair = (/** @type {any} */ error, /** @type {(use: any) => number | null | undefined} */ of, scale = 1) =>
   error && html`${["fit", "holdout"].filter((use) => error[use]).map((use) => {
     const value = of(error[use]);
-    return html`<div>${digits(value === null || value === undefined ? null : value * scale)}</div>`;
+    return html`<div>${errorWords(value === null || value === undefined ? null : value * scale)}</div>`;
   })}`;
 
 function State(/** @type {{ study: any }} */ { study }) {
@@ -19,27 +19,31 @@ function State(/** @type {{ study: any }} */ { study }) {
     ${study.progress && html`<div class="note">${progressWords(study.progress)}</div>`}`;
 }
 
-/** What the search of the current model found, and what it leaves open. */
-function Verdict(/** @type {{ study: any }} */ { study }) {
-  if (study.state !== "finished" && !study.verdict) return "";
-  return html`${verdictWords(study.verdict?.verdict ?? null, study.effects)}${study.verdict?.open && html`<div class="note">${study.verdict.open}</div>`}`;
+/** What the study found, and what it leaves open. */
+function Found(/** @type {{ study: any }} */ { study }) {
+  const found = study.verdict?.short ?? study.models?.split(" (")[0] ?? (study.state === "finished" ? "no search yet" : "");
+  return html`${capital(found)}${study.verdict?.open && html`<div class="note">${study.verdict.open}</div>`}`;
 }
 
-/** @param {{ studies: any[] }} properties */
+/** The day of the submission, as the reader's country writes it. */
+const day = (/** @type {number | null} */ ms) => (ms === null ? "" : html`<span class="whole" title=${new Date(ms).toLocaleString()}>${new Date(ms).toISOString().slice(0, 10)}</span>`);
+
+/** @param {{ studies: any[] }} properties in the order in which they are shown */
 export function StudyTable({ studies }) {
   const channels = CHANNELS.filter((channel) => studies.some((s) => s.error?.fit?.[channel] ?? s.error?.holdout?.[channel]));
-  const rows = [...studies].sort((a, b) => b.id - a.id).map((study) => [
-    html`<a href=${address(["studies", study.id, ["finished", "failed"].includes(study.state) ? "story" : "live"])}>${study.name ?? `study ${study.id}`}</a>
+  const rows = studies.map((study) => [
+    html`<a class="study-name" href=${address(["studies", study.id, ["finished", "failed"].includes(study.state) ? "story" : "live"])}>${study.name ?? `study ${study.id}`}</a>
       <div class="note">study ${study.id}${study.archived ? ", archived" : ""}</div>`,
+    day(study.created_ms),
     html`<${State} study=${study} />`,
     html`${words(study.model_kind ?? "unknown")}${study.effects.length > 0 && html`<div class="note">with ${study.effects.map(words).join(", ")}</div>`}`,
     study.error && html`${["fit", "holdout"].filter((use) => study.error[use]).map((use) => html`<div class="whole">${use === "fit" ? "fit" : "held out"}</div>`)}`,
     ...channels.map((channel) => pair(study.error, (use) => use[channel]?.rmse, shown(unitOf(channel)).scale)),
-    pair(study.error, (use) => use.all?.rmse_fixed_sigma),
-    html`<${Verdict} study=${study} />`,
+    study.error ? pair(study.error, (use) => use.all?.rmse_fixed_sigma) : html`<span class="note">${study.state === "finished" ? "being computed" : ""}</span>`,
+    html`<${Found} study=${study} />`,
   ]);
   return html`
     <p class="note">Errors are root mean squares of prediction minus measurement of the current model; 1 × noise is as good as the measurements allow.</p>
-    <${Table} label="Studies" rows=${rows} numbers=${[...channels, "all"].map((_, k) => k + 4)}
-      head=${["study", "state", "model", "rows", ...channels.map((c) => `error of ${titled(short(c), shown(unitOf(c)).unit)}`), "error [× noise]", "missing effect"]} />`;
+    <${Table} label="Studies" rows=${rows} numbers=${[...channels, "all"].map((_, k) => k + 5)}
+      head=${["study", "begun", "state", "model", "rows", ...channels.map((c) => `error of ${titled(short(c), shown(unitOf(c)).unit)}`), "error [× noise]", "found"]} />`;
 }

@@ -3,10 +3,11 @@
 import { html } from "../html.js";
 
 /**
- * @param {{ label: string, head: unknown[], rows: unknown[][], numbers?: number[] }} properties
+ * @param {{ label: string, head: unknown[], rows: unknown[][], numbers?: number[], labels?: unknown[] }} properties
  *   numbers: the columns that are aligned at the right. The first cell of a row heads it.
+ *   labels: the words of the head, where it is none.
  */
-export function Table({ label, head, rows, numbers = [] }) {
+export function Table({ label, head, rows, numbers = [], labels = head }) {
   const kind = (/** @type {number} */ k) => (numbers.includes(k) ? "number" : "");
   return html`
     <div class="scroll stacked" tabindex="0" role="region" aria-label=${label}>
@@ -15,7 +16,7 @@ export function Table({ label, head, rows, numbers = [] }) {
         <tbody>
           ${rows.map((row) => html`<tr>${row.map((cell, k) => (k === 0
             ? html`<th scope="row" class=${kind(k)}>${cell}</th>`
-            : html`<td class=${kind(k)} data-label=${head[k]}>${cell}</td>`))}</tr>`)}
+            : html`<td class=${kind(k)} data-label=${labels[k]}>${cell}</td>`))}</tr>`)}
         </tbody>
       </table>
     </div>`;

@@ -1,6 +1,6 @@
 // Every route that the page asks, with the type of its answer.
 
-import { get, post } from "./answers.js";
+import { get, post, remove } from "./answers.js";
 
 /** @typedef {import("../../types/api").components["schemas"]} Schemas */
 
@@ -9,6 +9,7 @@ const calibration = (/** @type {number} */ id) => `/v1/calibrations/${id}`;
 
 export const path = {
   studies: "/v1/studies",
+  allStudies: "/v1/studies?archived=true",
   workers: "/v1/workers",
   examples: "/v1/examples",
   effects: "/v1/effects",
@@ -20,6 +21,7 @@ export const path = {
   figures: (/** @type {number} */ id) => `${calibration(id)}/figures`,
   provenance: (/** @type {number} */ id) => `${calibration(id)}/provenance`,
   responseSurface: (/** @type {number} */ id) => `${calibration(id)}/response-surface`,
+  job: (/** @type {number} */ id) => `${calibration(id)}/job`,
   histories: (/** @type {number} */ id) => `${calibration(id)}/histories`,
   discovery: (/** @type {number} */ id) => `${calibration(id)}/discovery`,
   stages: (/** @type {number} */ id) => `${calibration(id)}/stages`,
@@ -48,11 +50,25 @@ export const whatIf = (/** @type {number} */ id, /** @type {string[]} */ without
 /** @returns {Promise<Schemas["RunsAdded"]>} */
 export const addRuns = (/** @type {number} */ id, /** @type {string} */ runs, /** @type {number} */ calibration) => post(`${study(id)}/runs`, { runs, calibration });
 
+/** @returns {Promise<Schemas["StudyArchived"]>} */
+export const archive = (/** @type {number} */ id, /** @type {"archive" | "restore"} */ verb) => post(`${study(id)}/${verb}`);
+
+/** @returns {Promise<Schemas["StudyDeleted"]>} */
+export const deleteStudy = (/** @type {number} */ id) => remove(study(id));
+
 /** @returns {Promise<Schemas["ExperimentCreated"]>} */
 export const addExperiment = (/** @type {Schemas["NewExperiment"]} */ experiment) => post("/v1/experiments", experiment);
 
 /** @returns {Promise<Schemas["CalibrationCreated"]>} */
 export const submit = (/** @type {Schemas["NewCalibration"]} */ job) => post("/v1/calibrations", job);
+
+/** The files that a study was submitted with, as a draft. @returns {Promise<{ name: string, files: Record<string, string> }>} */
+export async function filesOfStudy(/** @type {string} */ id) {
+  const { name, calibrations } = await get(study(Number(id)));
+  const job = await get(path.job(calibrations[0]));
+  const experiment = await get(path.experiment(job.experiment));
+  return { name, files: { "job.toml": job.toml, "experiment.toml": experiment.toml, ...experiment.files, ...job.files } };
+}
 
 /** @returns {Promise<Schemas["Guess"]>} */
 export const guessImport = (/** @type {Schemas["GuessRequest"]} */ table) => post("/v1/import/guess", table);

@@ -1,16 +1,20 @@
 // The home: all studies with the error of their current models, and the workers.
 
-import { html } from "../html.js";
+import { html, useState } from "../html.js";
 import { Empty, Failure, Pending } from "../part/message.js";
-import { StudyTable } from "../part/study_table.js";
+import { StudyList } from "../part/study_list.js";
 import { WorkerTable } from "../part/worker_table.js";
 import { path } from "../rest/routes.js";
 import { useAnswer } from "../rest/use_answer.js";
 
 const LOOK_MS = 2000;
+/** The same while nothing is at work: somebody may submit a study elsewhere. */
+const REST_MS = 10000;
+const isAtWork = (/** @type {any[]} */ studies) => studies.some(({ state }) => ["queued", "running"].includes(state));
 
 export function Home() {
-  const studies = useAnswer(path.studies, { everyMs: () => LOOK_MS });
+  const [isArchive, setArchive] = useState(false);
+  const studies = useAnswer(isArchive ? path.allStudies : path.studies, { everyMs: (now) => (isAtWork(now) ? LOOK_MS : REST_MS) });
   const workers = useAnswer(path.workers, { everyMs: () => LOOK_MS });
   return html`
     <div class="actions heading">
@@ -20,6 +24,7 @@ export function Home() {
     ${studies.answer
       ? html`<${Failure} error=${studies.error} /><${Studies} studies=${studies.answer} />`
       : html`<${Pending} answer=${studies.answer} error=${studies.error} what="The list of studies" />`}
+    <p class="note"><label><input type="checkbox" checked=${isArchive} onChange=${(/** @type {any} */ e) => setArchive(e.target.checked)} /> archived studies, too</label></p>
     <h2>Workers</h2>
     ${workers.answer
       ? html`<${Workers} workers=${workers.answer} />`
@@ -27,7 +32,7 @@ export function Home() {
 }
 
 function Studies(/** @type {{ studies: any[] }} */ { studies }) {
-  if (studies.length > 0) return html`<${StudyTable} studies=${studies} />`;
+  if (studies.length > 0) return html`<${StudyList} studies=${studies} />`;
   return html`
     <div class="card">
       <h2>There is no study yet</h2>

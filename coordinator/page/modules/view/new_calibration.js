@@ -7,13 +7,14 @@ import { FileCard } from "../part/file_card.js";
 import { ImportTable } from "../part/import_table.js";
 import { Failure } from "../part/message.js";
 import { RigForm } from "../part/rig_form.js";
-import { addExperiment, get, path, submit } from "../rest/routes.js";
+import { addExperiment, filesOfStudy, get, path, submit } from "../rest/routes.js";
 import { useAnswer } from "../rest/use_answer.js";
 import { address } from "../route.js";
 
 /** @typedef {import("../draft.js").Files} Files */
 
-/** @param {{ query: Record<string, string> }} properties query.example: the example to begin with */
+/** @param {{ query: Record<string, string> }} properties query.example: the example to begin with. query.study: the
+ *   study to begin again with */
 export function NewCalibration({ query }) {
   const [files, setFiles] = useState(/** @type {Files} */ ({}));
   // The bytes of what was dropped: a table is read from these.
@@ -52,6 +53,17 @@ export function NewCalibration({ query }) {
     }
   };
   useEffect(() => void (query.example && open(query.example)), [query.example]);
+  const again = async (/** @type {string} */ study) => {
+    try {
+      const draft = await filesOfStudy(study);
+      change(draft.files);
+      setJob("job.toml");
+      setName(draft.name);
+    } catch (error) {
+      setFailure(error);
+    }
+  };
+  useEffect(() => void (query.study && again(query.study)), [query.study]);
   const start = async () => {
     setSent(true);
     setFailure(null);

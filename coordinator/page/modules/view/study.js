@@ -5,37 +5,19 @@ import { ChosenRuns } from "../part/chosen_runs.js";
 import { Guarded } from "../part/guarded.js";
 import { Pending } from "../part/message.js";
 import { Source } from "../part/source.js";
+import { StudyActions } from "../part/study_actions.js";
 import { path } from "../rest/routes.js";
 import { useAnswer } from "../rest/use_answer.js";
 import { address, replace } from "../route.js";
 import { choose, point } from "../selection.js";
 import { modelName, modelOf, models } from "../words/model.js";
-import { Compare } from "./compare.js";
-import { Errors } from "./errors.js";
-import { Failures } from "./failures.js";
-import { Live } from "./live.js";
-import { MissingEffect } from "./missing_effect.js";
-import { Posterior } from "./posterior.js";
-import { Story } from "./story.js";
-import { Trust } from "./trust.js";
+import { ShownView, VIEWS } from "./views.js";
 
 /** How often a study that works is looked at [ms]. */
 const LOOK_MS = 1000;
 /** The same of one that rests: somebody may extend it elsewhere [ms]. */
 const REST_MS = 10000;
 const FINAL = ["finished", "failed", "cancelled"];
-
-/** The views in their order: what a person reads from top to bottom in a report. */
-export const VIEWS = [
-  { name: "story", title: "Story", view: Story },
-  { name: "live", title: "Live", view: Live },
-  { name: "compare", title: "Compare", view: Compare },
-  { name: "failures", title: "Where it fails", view: Failures },
-  { name: "effects", title: "Missing effect", view: MissingEffect },
-  { name: "posterior", title: "Posterior", view: Posterior },
-  { name: "errors", title: "Error falls", view: Errors },
-  { name: "trust", title: "How far to trust it", view: Trust },
-];
 
 /** @param {{ id: number, view: string, query: Record<string, string> }} properties */
 export function StudyPage({ id, view, query }) {
@@ -64,8 +46,9 @@ export function StudyPage({ id, view, query }) {
     </nav>
     ${!["live", "errors"].includes(shown.name) && html`<${ModelPicker} study=${study} model=${model} view=${shown.name} />`}
     <section class=${`view ${shown.name}`} aria-label=${shown.title}>
-      <${Guarded} key=${`${shown.name} ${model?.id}`} title=${shown.title}><${shown.view} study=${study} model=${model} query=${query} reload=${reload} /><//>
+      <${Guarded} key=${`${shown.name} ${model?.id}`} title=${shown.title}><${ShownView} view=${shown} study=${study} model=${model} query=${query} reload=${reload} /><//>
     </section>
+    <${StudyActions} study=${study} reload=${reload} />
     <${ChosenRuns} study=${study} model=${model} />`;
 }
 

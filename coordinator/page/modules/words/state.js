@@ -1,25 +1,6 @@
-// States, progress and verdicts as people read them.
+// States and progress as people read them.
 
 import { digits, duration } from "./quantity.js";
-
-const VERDICTS = {
-  nothing_detectable: "nothing detectable is missing",
-  named: "an effect is missing, and named",
-  class: "an effect is missing: one of a class",
-  not_in_library: "an effect is missing that the library does not have",
-  undecided: "undecided",
-};
-
-/**
- * A verdict of a search; null where none has ended.
- * @param {string | null} verdict
- * @param {string[]} added what the study has added to the searched model
- */
-export function verdictWords(verdict, added = []) {
-  if (verdict === null) return "no search yet";
-  if (verdict === "nothing_detectable" && added.length > 0) return "nothing further is detectable";
-  return VERDICTS[/** @type {keyof typeof VERDICTS} */ (verdict)] ?? verdict.replaceAll("_", " ");
-}
 
 /** How far a calibration has come: `stage 5, exponent 0.012, 2300 evaluations, about 12 s to go`. */
 export function progressWords(/** @type {any} */ progress) {

@@ -1,0 +1,49 @@
+// What can be done with a study as a whole: begin again from its files, take it out of the list, delete it for good.
+
+import { html, useState } from "../html.js";
+import { archive, deleteStudy, path } from "../rest/routes.js";
+import { useAnswer } from "../rest/use_answer.js";
+import { address } from "../route.js";
+import { Failure } from "./message.js";
+
+const AT_WORK = ["queued", "running", "paused"];
+
+/** @param {{ study: any, reload: () => void }} properties */
+export function StudyActions({ study, reload }) {
+  const [isAsked, setAsked] = useState(false);
+  const [failure, setFailure] = useState(/** @type {any} */ (null));
+  const act = async (/** @type {() => Promise<any>} */ what, /** @type {() => void} */ then) => {
+    setFailure(null);
+    setAsked(false);
+    try {
+      await what();
+      then();
+    } catch (error) {
+      setFailure(error);
+    }
+  };
+  const isAtWork = AT_WORK.includes(study.state);
+  return html`
+    <div class="actions study-actions" role="group" aria-label="What to do with the study">
+      <a class="button" href=${address(["new"], { study: study.id })}>Edit and start again</a>
+      <${BesideAnother} study=${study} />
+      ${!isAtWork && html`<button type="button" onClick=${() => act(() => archive(study.id, study.archived ? "restore" : "archive"), reload)}>${study.archived ? "Take back into the list" : "Archive"}</button>`}
+      ${!isAtWork && (isAsked
+        ? html`<span>Delete ${study.name} with all its results, for good?</span>
+          <button type="button" onClick=${() => act(() => deleteStudy(study.id), () => { location.hash = "#/"; })}>Delete it</button>
+          <button type="button" onClick=${() => setAsked(false)}>Keep it</button>`
+        : html`<button type="button" onClick=${() => setAsked(true)}>Delete</button>`)}
+    </div>
+    <${Failure} error=${failure} />`;
+}
+
+/** Chooses another study to be shown beside this one; the list is asked for at the first touch. */
+function BesideAnother(/** @type {{ study: any }} */ { study }) {
+  const [isTouched, setTouched] = useState(false);
+  const { answer } = useAnswer(isTouched ? path.studies : null);
+  const others = (answer ?? []).filter((/** @type {any} */ other) => other.id !== study.id).reverse();
+  const go = (/** @type {any} */ event) => event.target.value && (location.hash = address(["beside", study.id, event.target.value]));
+  return html`<label>Beside <select onFocus=${() => setTouched(true)} onPointerDown=${() => setTouched(true)} onChange=${go}>
+    <option value="">another study</option>
+    ${others.map((/** @type {any} */ other) => html`<option value=${other.id}>${other.name} (study ${other.id})</option>`)}</select></label>`;
+}

@@ -1,0 +1,28 @@
+// The list of studies: found by words, in a chosen order, a page at a time.
+
+import { html, useState } from "../html.js";
+import { listed, ORDERS } from "../words/study_order.js";
+import { StudyTable } from "./study_table.js";
+
+/** So many are shown at first. */
+const FIRST = 50;
+/** Fewer studies need no search. */
+const LEAST = 4;
+
+/** @param {{ studies: any[] }} properties */
+export function StudyList({ studies }) {
+  const [text, setText] = useState("");
+  const [order, setOrder] = useState(Object.keys(ORDERS)[0]);
+  const [isAll, setAll] = useState(false);
+  const found = listed(studies, text, order);
+  const shown = isAll ? found : found.slice(0, FIRST);
+  return html`
+    ${studies.length >= LEAST && html`<div class="actions" role="search">
+      <label>Find <input type="search" value=${text} placeholder="name, state, effect" onInput=${(/** @type {any} */ e) => setText(e.target.value)} /></label>
+      <label>Order <select value=${order} onChange=${(/** @type {any} */ e) => setOrder(e.target.value)}>
+        ${Object.keys(ORDERS).map((name) => html`<option value=${name} selected=${name === order}>${name}</option>`)}</select></label>
+      <span class="note" role="status">${found.length === studies.length ? `${studies.length} studies` : `${found.length} of ${studies.length} studies`}</span>
+    </div>`}
+    ${found.length > 0 ? html`<${StudyTable} studies=${shown} />` : html`<p class="empty">No study has these words.</p>`}
+    ${found.length > shown.length && html`<button type="button" onClick=${() => setAll(true)}>Show all ${found.length}</button>`}`;
+}

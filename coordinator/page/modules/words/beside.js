@@ -1,0 +1,64 @@
+// Two studies beside each other: what they have in common, and what differs.
+
+import { runWords } from "./ledger.js";
+import { capital, CHANNELS, digits, errorWords, meanAndSd, minus, parameterName, shown, unitOf, words } from "./quantity.js";
+
+/** @typedef {{ study: any, line: any, diagnostics: any }} Side line: of the error ledger of its current model. diagnostics: of that model */
+
+const USES = /** @type {const} */ (["holdout", "fit"]);
+const USE_WORDS = { fit: "fitted runs", holdout: "held-out runs" };
+
+/**
+ * The rows of the table: what, of the first study, of the second, the difference.
+ * @param {Side[]} sides two of them
+ * @returns {string[][]}
+ */
+export function rowsBeside(sides) {
+  const of = (/** @type {(side: Side) => string} */ what) => sides.map(what);
+  return [
+    ["State", ...of(({ study }) => study.state), ""],
+    ["Runs", ...of(({ line }) => (line ? runWords(line) : "–")), ""],
+    ["Model", ...of(({ study, line }) => [words(study.model_kind ?? "unknown"), ...(line?.effects.length > 0 ? [`with ${line.effects.map(words).join(", ")}`] : [])].join(" ")), ""],
+    ["Found", ...of(({ study }) => capital(study.verdict?.short ?? "no search yet")), ""],
+    ...errors(sides), ...parameters(sides),
+  ];
+}
+
+/** The errors of the current models, each over its own runs. */
+function errors(/** @type {Side[]} */ sides) {
+  return USES.flatMap((use) => CHANNELS.flatMap((channel) => {
+    const { unit, scale } = shown(unitOf(channel));
+    const values = sides.map(({ line }) => line?.error[use]?.[channel]);
+    if (values.every((value) => !value)) return [];
+    const cells = values.map((value) => (value ? `${errorWords(value.rmse * scale)} ${unit}` : "–"));
+    const [a, b] = values;
+    const isSame = a && b && a.runs === b.runs;
+    return [[`Error of ${words(channel)}, ${USE_WORDS[use]}`, ...cells, isSame ? `${minus(`${b.rmse < a.rmse ? "" : "+"}${((100 * (b.rmse - a.rmse)) / a.rmse).toFixed(0)}`)} %` : "over other runs"]];
+  }));
+}
+
+/** The parameters by posterior mean and sd. */
+function parameters(/** @type {Side[]} */ sides) {
+  const units = new Map(sides.flatMap(({ diagnostics }) => (diagnostics?.parameters ?? []).map((/** @type {any} */ q) => [q.name, q.unit])));
+  const names = [...new Set(sides.flatMap(({ line }) => Object.keys(line?.parameters ?? {})))];
+  return names.map((name) => {
+    const unit = units.get(name);
+    const { unit: word, scale } = unit === undefined ? { unit: "SI", scale: 1 } : shown(unit);
+    const values = sides.map(({ line }) => line?.parameters[name]);
+    const cells = values.map((value) => {
+      if (!value) return "–";
+      const { mean, sd } = meanAndSd(value.mean * scale, value.sd * scale);
+      return `${mean} ± ${sd}${word === "1" ? "" : ` ${word}`}`;
+    });
+    const [a, b] = values;
+    const sd = a && b ? Math.max(a.sd, b.sd) : 0;
+    return [parameterName(name, unit), ...cells, sd > 0 ? `${minus(digits((b.mean - a.mean) / sd, 2))} sds` : ""];
+  });
+}
+
+/** Whether the rows of two comparisons are of one campaign: runs of one name have one measurement. */
+export function isOneCampaign(/** @type {any[]} */ a, /** @type {any[]} */ b) {
+  const measured = new Map(a.map((row) => [`${row.run} ${row.channel}`, row.measured]));
+  const shared = b.filter((row) => measured.has(`${row.run} ${row.channel}`));
+  return shared.length > 0 && shared.every((row) => measured.get(`${row.run} ${row.channel}`) === row.measured);
+}
