@@ -93,6 +93,24 @@ test("an explanation shows what it predicts before it is computed, and a click a
   assert.deepEqual(study.members.find((m) => m.id === study.current).effects, ["janosi_hanamoto"]);
 });
 
+test("the story begins with the error before and after, and the picture of both models", async () => {
+  const id = studyOf(page);
+  await page.locator(".heading .state.finished").waitFor({ timeout: STUDY_MS });
+  await view(page, "Story");
+  const found = page.getByRole("region", { name: "What was found" });
+  const { ledger } = await service.get(`/v1/studies/${id}`);
+  const [before, now] = ledger.map((line) => line.error.holdout.drawbar_pull.rmse);
+  const words = (value) => value.toPrecision(value < 1 ? 2 : 3);
+  const row = await found.locator("tr", { hasText: "Drawbar pull" }).textContent();
+  assert.ok(row.includes(`${words(before)}\u00a0→\u00a0${words(now)}\u00a0N`), row);
+  assert.match(await found.locator("h2").textContent(), / of held-out runs: error [\d.]+\u00a0→\u00a0[\d.]+\u00a0N.* with one more effect\.$/);
+  assert.match(await found.textContent(), /shear stress needs displacement along the rim to build up, shear modulus 9\.\d+ ± 0\.\d+ mm/);
+  await found.locator(".model path").first().waitFor({ state: "attached" });
+  assert.equal(await found.locator(".legend").getByText(/^(base|with janosi_hanamoto)$/).count(), 2);
+  assert.ok((await page.locator(".three > .card").last().locator("> ol > li").count()) <= 3);
+  await shot(page, "hidden-story");
+});
+
 test("the error falls, and the models are layers", async () => {
   const id = studyOf(page);
   await page.locator(".heading .state.finished").waitFor({ timeout: STUDY_MS });
@@ -137,10 +155,16 @@ test("runs of a region can be left out, as a study of its own", async () => {
   await page.mouse.up();
   await page.getByRole("complementary", { name: "Chosen runs" }).waitFor();
   await page.getByRole("button", { name: "What if these runs were left out?" }).click();
-  await page.waitForURL((url) => /live/.test(url.hash) && !url.hash.includes(`/${id}/`));
-  const study = await service.finished(studyOf(page), STUDY_MS);
+  // What changed without them stands beside what was.
+  await page.waitForURL((url) => url.hash.startsWith(`#/beside/${id}/`));
+  const study = await service.finished(Number(page.url().split("/").at(-1)), STUDY_MS);
   assert.equal(study.state, "finished");
   assert.notEqual(study.id, id);
+  const radius = page.getByRole("region", { name: "Two studies" }).locator("tr", { hasText: "wheel radius" });
+  await radius.getByText(/^−?\d.* sds$/).waitFor();
+  assert.equal((await radius.textContent()).match(/ ± .* mm/g)?.length, 1);
+  await page.locator('[data-figure*="beside"] .model path').first().waitFor({ state: "attached" });
+  await shot(page, "hidden-beside");
 });
 
 test("nothing went wrong on the way", () => assert.deepEqual(tab.faults, []));

@@ -47,7 +47,7 @@ async function go(page, hash) {
 
 for (const [theme, width] of [["light", 1280], ["dark", 1280], ["light", 400], ["dark", 400]]) {
   test(`every view is accessible and fits, ${theme}, ${width} px`, () => within({ theme, width }, async (page) => {
-    for (const hash of ["#/", "#/new", "#/new?example=hidden-effect", ...VIEWS.map((name) => `#/studies/1/${name}`)]) {
+    for (const hash of ["#/", "#/new", "#/new?example=hidden-effect", "#/beside/1/1", ...VIEWS.map((name) => `#/studies/1/${name}`)]) {
       await go(page, hash);
       assert.deepEqual(await findings(page), [], hash);
       assert.equal(await sideways(page), 0, `${hash} scrolls sideways [px]`);
@@ -111,7 +111,48 @@ test("a picture is saved as SVG, PNG and CSV", () => within({}, async (page) => 
     const content = await readFile(await download.path(), "latin1");
     assert.match(content, first);
     assert.ok(content.length > 500, `${kind} has ${content.length} bytes`);
+    // A slide has no page around the picture.
+    if (kind === "SVG") for (const words of ["drawbar pull, measured and computed, by slip", "held out", "rim 10 mm/s"]) assert.ok(content.includes(words), words);
   }
+}));
+
+test("a list of many studies is found by words, in an order", () => within({}, async (page) => {
+  await page.route("**/v1/studies", async (route) => {
+    const response = await route.fetch();
+    const [study] = await response.json();
+    const named = ["sand", "clay", "gravel", "silt"].map((name, k) => ({ ...study, id: 10 + k, name }));
+    await route.fulfill({ response, json: [study, ...named] });
+  });
+  await page.goto(service.url);
+  const names = () => page.locator("a.study-name").allTextContents();
+  await page.getByText("5 studies").waitFor();
+  assert.deepEqual(await names(), ["silt", "gravel", "clay", "sand", "hidden"]);
+  await page.getByLabel("Order").selectOption("by name");
+  await page.waitForFunction(() => document.querySelector("a.study-name")?.textContent === "clay");
+  await page.getByLabel("Find").fill("gravel finished");
+  await page.getByText("1 of 5 studies").waitFor();
+  assert.deepEqual(await names(), ["gravel"]);
+  assert.match(await page.locator("td[data-label=begun]").first().textContent(), /^20\d\d-\d\d-\d\d$/);
+  assert.match(await page.locator("td[data-label=found]").first().textContent(), /janosi_hanamoto was missing \(P > 0\.999\) and is added/);
+}));
+
+test("a table of runs is made when it is opened", () => within({}, async (page) => {
+  await go(page, "#/studies/1/compare");
+  const cells = page.getByRole("region", { name: "All runs" }).locator("td");
+  assert.equal(await cells.count(), 0);
+  await page.getByText("Table of all runs").click();
+  await cells.first().waitFor();
+}));
+
+test("against the wheel load, runs of one slip are a line", () => within({}, async (page) => {
+  await go(page, "#/studies/1/compare");
+  await page.getByRole("button", { name: "wheel load" }).click();
+  await page.locator(".legend").getByText("slip 0.2", { exact: true }).first().waitFor();
+  // Curves, where straight lines would have kinks.
+  await page.getByRole("button", { name: "slip", exact: true }).click();
+  const line = page.locator('[data-figure*="drawbar"] .model path').first();
+  await page.waitForFunction(() => /C/.test(document.querySelector('[data-figure*="drawbar"] .model path')?.getAttribute("d") ?? ""));
+  assert.match(await line.getAttribute("d"), /C/);
 }));
 
 test("a view is reached by its address", () => within({}, async (page) => {

@@ -50,6 +50,25 @@ for (const [theme, width] of [["light", 1280], ["dark", 400]]) {
   });
 }
 
+test("a summary of two pages is printed, with the story first", async () => {
+  const tab = await opened(join(folder, "out", "report.html"));
+  const { page } = tab;
+  try {
+    await page.locator("section#story figure .plot svg").first().waitFor();
+    await page.locator("section#compare figure .plot svg").first().waitFor();
+    assert.match(await page.locator("header").textContent(), /20\d\d-\d\d-\d\d; 24 fitted runs, 16 held out; Grouser \d/);
+    await page.evaluate(() => { globalThis.print = () => document.body.classList.add("asked"); });
+    await page.getByRole("button", { name: "Print a summary" }).click();
+    assert.equal(await page.locator("body.brief.asked").count(), 1);
+    const pdf = await page.pdf({ format: "A4" });
+    const pages = pdf.toString("latin1").match(/\/Type \/Page\b/g)?.length;
+    assert.equal(pages, 2);
+    assert.deepEqual(tab.faults, []);
+  } finally {
+    await tab.close();
+  }
+});
+
 test("sliders of the parameters move the curves in the report, too", async () => {
   const tab = await opened(join(folder, "out", "report.html"), { width: 1280 });
   try {

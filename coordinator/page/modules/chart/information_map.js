@@ -50,5 +50,5 @@ const isSame = (/** @type {any} */ a, /** @type {any} */ b) =>
 function ProposedRuns(/** @type {{ record: any }} */ { record }) {
   if (record.next_runs.length === 0) return null;
   return html`<ol>${record.next_runs.map((/** @type {any} */ r, /** @type {number} */ k) => html`
-    <li>slip ${minus(r.slip)}, ${digits(r.wheel_load_n)} N, ${digits(1000 * r.sled_speed_m_s, 2)} mm/s ${k === 0 ? "tells" : "adds"} ${digits(r.information_nats, 2)} nats: it separates ${r.separates.join(", ").replace("none", "nothing missing")}</li>`)}</ol>`;
+    <li>slip ${minus(r.slip)}, ${digits(r.wheel_load_n)} N, sled speed ${digits(1000 * r.sled_speed_m_s, 2)} mm/s (rim ${digits(1000 * rimSpeed(r), 2)} mm/s) ${k === 0 ? "tells" : "adds"} ${digits(r.information_nats, 2)} nats: it separates ${r.separates.join(", ").replace("none", "nothing missing")}</li>`)}</ol>`;
 }

@@ -73,6 +73,7 @@ export function PairPlot({ pairs, marginals, name, onCell }) {
       if (i === j) {
         const top = d3.max(column.posterior) ?? 1;
         const line = d3.line((/** @type {any} */ _, k) => x(column.grid[k]), (/** @type {any} */ v) => side - (0.92 * side * v) / Number(top));
+        inside.append("path").attr("d", line(column.prior)).attr("fill", "none").attr("stroke", "var(--prior)").attr("stroke-dasharray", "4 3").attr("class", "prior");
         inside.append("path").attr("d", line(column.posterior)).attr("fill", "none").attr("stroke", "var(--series-0)");
       } else {
         const pair = pairs.find((p) => [column.name, row.name].every((n) => p.parameters.some((/** @type {any} */ q) => q.name === n)));

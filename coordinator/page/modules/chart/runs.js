@@ -77,7 +77,10 @@ function drag(plot, on, runsIn, words) {
     point(null);
   };
   on("pointerdown", (event) => {
-    if (event.button === 0 && event.pointerType !== "touch") begun = { from: at(event), band: null };
+    if (event.button !== 0 || event.pointerType === "touch") return;
+    begun = { from: at(event), band: null };
+    // The tip of a picture would stay where it is when the pointer goes down beside a mark.
+    if (!runAt(event)) event.stopImmediatePropagation();
   });
   on("pointermove", (event) => {
     if (!begun) return;
@@ -88,6 +91,7 @@ function drag(plot, on, runsIn, words) {
       if (to - from < LEAST_PX) return;
       // Only now: a captured pointer clicks on no mark.
       plot.setPointerCapture(event.pointerId);
+      plot.dispatchEvent(new PointerEvent("pointerleave", { pointerType: event.pointerType }));
       begun.band = document.createElementNS("http://www.w3.org/2000/svg", "rect");
       begun.band.setAttribute("class", "region");
       begun.band.setAttribute("y", String(top));

@@ -20,7 +20,7 @@ export function BeforeAfter({ study, model, channel }) {
   const ids = before === null ? [model.id] : [before, model.id];
   const answers = useAnswers(ids.map((id) => path.comparison(id)));
   const layers = ids.map((id, k) => ({ id, colour: ids.length === 1 ? null : `var(--series-${ids.length - 1 - k})`, rows: answers[path.comparison(id)]?.rows ?? null }));
-  if (layers.some((layer) => layer.rows === null)) return html`<p class="empty" aria-busy="true">The picture is loading.</p>`;
+  if (layers.some((layer) => layer.rows === null)) return html`<p class="empty" aria-busy="true">Loading the picture …</p>`;
   const own = layers.at(-1)?.rows.filter((/** @type {any} */ r) => r.channel === channel) ?? [];
   if (own.length === 0) return null;
   const { wheel, load, runs } = clearest(own, before === null ? own : layers[0].rows.filter((/** @type {any} */ r) => r.channel === channel));

@@ -50,7 +50,7 @@ export function Explanations({ record, ghost, kept, show, keep, add, study, mode
       </table>
     </div>
     ${record.effects.length > FIRST && html`<button type="button" onClick=${() => setAll(!isAll)}>${isAll ? "Show fewer" : `Show all ${record.effects.length}`}</button>`}
-    <p class="note">Nats: log evidence over that of the model as it is. Bold lines are in the 95 % set of explanations. Half of the prior probability is on “nothing is missing”.</p>`;
+    <p class="note">Nats: log evidence over that of the model as it is. Bold lines are in the 95 % set of explanations. Half of the prior probability is on “nothing is missing”.${add && " Add calibrates a further model with the effect; this one stays as it is."}</p>`;
 }
 
 /** Nats to a digit after the point, without a sign before 0. */

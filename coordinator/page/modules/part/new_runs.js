@@ -22,7 +22,8 @@ export function NewRuns({ study, model, record, comparison, reload }) {
   const channels = CHANNELS.filter((c) => comparison.rows.some((/** @type {any} */ r) => r.channel === c));
   const rigs = rigsOf(experiment);
   const isAngled = new Set(comparison.rows.map((/** @type {any} */ r) => r.slip_angle_deg)).size > 1;
-  const blank = (/** @type {number} */ k) => ({ run: `next-${comparison.rows.length}-${k + 1}`, rig: "", slip: "", load: "", speed: "", angle: "", values: {} });
+  const count = new Set(comparison.rows.map((/** @type {any} */ r) => r.run)).size;
+  const blank = (/** @type {number} */ k) => ({ run: `next-${count + k + 1}`, rig: "", slip: "", load: "", speed: "", angle: "", values: {} });
   const proposed = record.next_runs.map((/** @type {any} */ r, /** @type {number} */ k) => (
     { ...blank(k), slip: String(r.slip), load: String(r.wheel_load_n), speed: String(Number((1000 * r.sled_speed_m_s).toPrecision(4))) }));
   const now = rows ?? (proposed.length > 0 ? proposed : [blank(0)]);

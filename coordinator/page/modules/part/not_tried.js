@@ -1,6 +1,7 @@
 // What the search cannot speak about: what the experiment does not state, what is too weak to see, what the model refuses.
 
 import { html } from "../html.js";
+import { raised } from "../words/quantity.js";
 
 /** Names without `EFFECT.WHEEL` where `EFFECT` is in the list. */
 function folded(/** @type {string[]} */ names) {
@@ -19,7 +20,7 @@ export function NotTried({ record }) {
   const lists = [["too weak to be seen with these data at its usual strength", record.cannot_exclude], ["refused by the model at every strength", record.refused], ["no longer improves the evidence", record.drop]];
   return html`
     ${untried.size > 0 && html`<h2>Cannot be judged, as the experiment is described</h2>
-      <ul>${[...untried.values()].map((same) => html`<li><b>${folded(same.names).join(", ")}</b>: ${same.why}. ${same.needs.startsWith("runs ") ? `Measure ${same.needs}.` : html`State <code>${same.needs}</code>.`}</li>`)}</ul>`}
+      <ul>${[...untried.values()].map((same) => html`<li><b>${folded(same.names).join(", ")}</b>: ${raised(same.why)}. ${same.needs.startsWith("runs ") ? `Measure ${same.needs}.` : html`State <code>${same.needs}</code>.`}</li>`)}</ul>`}
     ${lists.filter(([, names]) => names.length > 0).map(([words, names]) => html`
       <details><summary>${folded(/** @type {string[]} */ (names)).length} ${words}</summary><p>${folded(/** @type {string[]} */ (names)).join(", ")}</p></details>`)}`;
 }

@@ -10,7 +10,7 @@ import { byRun, pointable } from "../chart/runs.js";
 import { Pending } from "../part/message.js";
 import { path } from "../rest/routes.js";
 import { useAnswer } from "../rest/use_answer.js";
-import { CHANNELS, digits, minus, short } from "../words/quantity.js";
+import { capital, CHANNELS, digits, minus, raised, short } from "../words/quantity.js";
 import { residualSds } from "../words/residual.js";
 
 /** Number of sds beyond which residuals have one colour. */
@@ -34,7 +34,6 @@ export function Failures({ study, model }) {
   const axis = axes.find((a) => a.key === order) ?? MADE;
   const findings = diagnostics?.findings ?? [];
   return html`
-    ${findings.length > 0 && html`<ul>${findings.map((/** @type {string} */ f) => html`<li>${f}</li>`)}</ul>`}
     <div class="actions" role="group" aria-label="Ordered by">
       <span class="note">Ordered by</span>
       ${orders.map((o) => html`<button type="button" aria-pressed=${o.key === order} onClick=${() => setOrder(o.key)}>${o.title}</button>`)}
@@ -45,7 +44,8 @@ export function Failures({ study, model }) {
     <div class="figures">
       ${ofChannel.map(({ channel, own }) => html`
         <${ResidualChart} key=${channel} channel=${channel} rows=${own} axis=${axis} trends=${diagnostics?.trends ?? []} name=${study.name} />`)}
-    </div>`;
+    </div>
+    ${findings.length > 0 && html`<h2>What the diagnosis says</h2><ul>${findings.map((/** @type {string} */ text) => html`<li>${capital(raised(text))}</li>`)}</ul>`}`;
 }
 
 /** The order in which the runs stand in the file. */
@@ -70,7 +70,7 @@ function HeatMap(/** @type {{ rows: any[], order: string, name: string }} */ { r
   runs.sort((a, b) => values.get(a) - values.get(b) || first.get(a).place - first.get(b).place);
   const hint = (/** @type {any} */ r) => `run ${r.run}${r.use === "holdout" ? " (held out)" : ""}, ${short(r.channel)}\nslip ${digits(r.slip, 2)}, ${digits(r.wheel_load_n)} N, ${digits(1000 * r.sled_speed_m_s)} mm/s\n${minus(r.sds.toFixed(1))} sds of all errors, ${minus(r.residual_sigma.toFixed(1))} of the noise alone: measured ${r.sds > 0 ? "above" : "below"} computed`;
   const isNamed = (/** @type {number} */ width) => (width - 112) / runs.length >= LEAST_CELL;
-  const below = (/** @type {number} */ width) => (isNamed(width) ? 14 + CHARACTER * Math.max(...runs.map((run) => run.length)) : 26);
+  const below = (/** @type {number} */ width) => (isNamed(width) ? 24 + CHARACTER * Math.max(...runs.map((run) => run.length)) : 26);
   const draw = (/** @type {number} */ width) => Plot.plot({
     width, height: 30 + below(width) + 30 * new Set(judged.map((r) => r.channel)).size, marginLeft: 92, marginBottom: below(width), style: STYLE,
     x: { domain: runs, label: isNamed(width) ? null : "runs", tickRotate: -60, tickSize: 0, ...(isNamed(width) ? {} : { ticks: [] }) },

@@ -83,7 +83,7 @@ const percentage = (/** @type {number} */ done, /** @type {number} */ size) => `
 
 /** Why a calibration shows no stages. */
 function noStages(/** @type {any} */ member, /** @type {boolean} */ isOver, /** @type {boolean} */ isLoading) {
-  if (isLoading) return "The stages are loading.";
+  if (isLoading) return "Loading the stages …";
   if (member.kind === "fit") return isOver ? "A fit goes from step to step and has no stages; its result is in the other views." : "A fit goes from step to step; its result comes with its end.";
   return isOver ? "The calibration ended before its first stage." : "The first stage draws from the prior; pictures come with its end.";
 }

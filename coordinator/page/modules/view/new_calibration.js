@@ -41,6 +41,9 @@ export function NewCalibration({ query }) {
   const take = (/** @type {import("../part/drop_zone.js").Read} */ read) => {
     add(read.texts);
     setBytes({ ...bytes, ...read.bytes });
+    // A table gives the study its name, until somebody types another.
+    const own = Object.keys(read.bytes).find((file) => !/\.toml$|^runs\.csv$/i.test(file));
+    if (own && name === "") setName(own.replace(/\.[^.]*$/, ""));
   };
   const open = async (/** @type {string} */ example) => {
     try {
@@ -88,8 +91,8 @@ export function NewCalibration({ query }) {
   return html`
     <h1>New calibration</h1>
     <${DropZone} onFiles=${take} />
-    ${examples.answer?.length > 0 && html`<div class="actions"><span>Or begin with an example:</span>
-      ${examples.answer.map((/** @type {any} */ e) => html`<button type="button" onClick=${() => open(e.name)}>${e.name}</button>`)}</div>`}
+    ${examples.answer?.length > 0 && html`<p>Or begin with an example:</p><ul class="examples">
+      ${examples.answer.map((/** @type {any} */ e) => html`<li><button type="button" onClick=${() => open(e.name)}>${e.name}</button> <span><b>${e.title}</b>: <span class="note">${e.summary}</span></span></li>`)}</ul>`}
     ${table && html`<${ImportTable} key=${table} name=${table} bytes=${bytes[table] ?? new TextEncoder().encode(files[table])} onRemove=${() => remove(table)}
       onFiles=${(/** @type {Files} */ made) => { change({ ...without(files, table), ...made }); setBytes(without(bytes, table)); }} />`}
     ${isRuns && job === null && of("experiment").length === 0 && html`<${RigForm} runs=${files[runs]} onFiles=${add} />`}

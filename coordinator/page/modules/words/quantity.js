@@ -2,7 +2,7 @@
 
 /** Lengths are shown in millimetres, everything else in SI. */
 export function shown(/** @type {string} */ unit) {
-  return unit === "m" ? { unit: "mm", scale: 1000 } : { unit: unit.replace(/^deg$/, "°"), scale: 1 };
+  return unit === "m" ? { unit: "mm", scale: 1000 } : { unit: raised(unit.replace(/^deg$/, "°")), scale: 1 };
 }
 
 const SHORT = { drawbar_pull: "pull", torque: "torque", sinkage: "sinkage", lateral_force: "lateral force" };
@@ -10,6 +10,9 @@ const UNITS = { drawbar_pull: "N", torque: "N m", sinkage: "m", lateral_force: "
 
 /** The channels in their order. */
 export const CHANNELS = /** @type {const} */ (["drawbar_pull", "torque", "sinkage", "lateral_force"]);
+
+/** Units in a text as people write them: `kg/m³`. */
+export const raised = (/** @type {string} */ text) => text.replace(/\^([23])/g, (_, power) => (power === "2" ? "²" : "³"));
 
 /** `drawbar_pull` as words. */
 export const words = (/** @type {string} */ name) => name.replaceAll("_", " ");
