@@ -61,6 +61,7 @@ test("the rival of an effect that was added stays in story and list, with the ru
     await shot(page, "story-class-home");
     await page.goto(`${service.url}/#/studies/${study}/story`);
     const bars = page.getByRole("region", { name: "What was found" }).locator(".bars li");
+    await bars.first().waitFor();
     assert.deepEqual(await bars.locator(".number").allTextContents(), ["P 0.58", "P 0.42", "P < 0.001"]);
     assert.match(await bars.first().textContent(), /the sinkage exponent grows with slip slip_sinkage/);
     const missing = page.locator(".card", { hasText: "What is missing" });

@@ -25,6 +25,7 @@ export function Explanations({ record, ghost, kept, show, keep, add, study, mode
   const summaryOf = (/** @type {string} */ name) => summaries.get(name.split(".")[0]) ?? told.get(name);
   const made = new Set(study.members.filter((/** @type {any} */ m) => m.kind !== "search").map((/** @type {any} */ m) => m.effects.join(" ")));
   const isMade = (/** @type {string} */ name) => made.has([...model.effects, name].join(" "));
+  const titleOf = (/** @type {string} */ name) => OTHERS[name] ?? capital(summaryOf(name) ?? words(name));
   const untried = new Map(record.not_tried.map((/** @type {any} */ e) => [e.name, e.why]));
   const classes = record.effects.reduce((/** @type {Map<number, number>} */ all, /** @type {any} */ e) => all.set(e.class, (all.get(e.class) ?? 0) + 1), new Map());
   return html`
@@ -35,7 +36,7 @@ export function Explanations({ record, ghost, kept, show, keep, add, study, mode
           <tr key=${effect.name} class=${`${effect.name === ghost ? "shown" : ""} ${effect.in_credible_set ? "credible" : ""}`}
               onMouseEnter=${() => show(effect.name)} onMouseLeave=${() => show(null)}>
             <th scope="row">
-              <button class="plain" type="button" onFocus=${() => show(effect.name)} onBlur=${() => show(null)} onClick=${() => keep(kept === effect.name ? null : effect.name)} aria-pressed=${kept === effect.name} aria-label=${`show what ${OTHERS[effect.name] ?? effect.name} would change`}><b>${OTHERS[effect.name] ?? capital(summaryOf(effect.name) ?? words(effect.name))}</b></button>
+              <button class="plain" type="button" onFocus=${() => show(effect.name)} onBlur=${() => show(null)} onClick=${() => keep(kept === effect.name ? null : effect.name)} aria-pressed=${kept === effect.name} aria-label=${`${titleOf(effect.name)}: show what ${OTHERS[effect.name] ?? effect.name} would change`}><b>${titleOf(effect.name)}</b></button>
               <span class="note">${effect.name in OTHERS ? null : html`<code>${effect.name}</code>`} ${[untried.get(effect.name), (classes.get(effect.class) ?? 0) > 1 ? `these data cannot tell it from ${same(record, effect)}` : null].filter(Boolean).join("; ")}</span>
             </th>
             <td><span class="bar"><i style=${{ width: `${(100 * effect.probability).toFixed(1)}%` }}></i></span> <span class="number">${probability(effect.probability)}</span></td>
