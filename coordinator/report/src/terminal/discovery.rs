@@ -207,7 +207,7 @@ mod tests {
             "slip_sinkage + bulldozing        40.00    0.0030      0.0600                +28.0",
             "not detectable at the usual strength: moisture",
             "next run: slip 0.60, 80.0 N, 0.0200 m/s distinguishes slip_sinkage, bulldozing (tells 0.40 nats)",
-            "other test: a plate test at 80 N",
+            "other test: plate test at 80 N",
             "to add it: coordinator extend 7 --effect slip_sinkage --out out/sand",
         ] {
             assert!(text.contains(words), "{words} in\n{text}");

@@ -67,9 +67,9 @@ mod tests {
     #[test]
     fn a_brief_story_has_the_first_step_and_one_more_with_a_command_and_the_whole_has_all() {
         let study = searched();
-        assert!(!printed(&study).contains("measure a plate test"));
+        assert!(!printed(&study).contains("make a plate test"));
         let whole = story(&Story::current(&study), Path::new("out/sand"), false);
-        assert!(whole.contains("measure a plate test"), "{whole}");
+        assert!(whole.contains("make a plate test"), "{whole}");
     }
 
     #[test]
