@@ -1,4 +1,4 @@
-// What is done with a study as a whole: begun again from its files, archived, taken back, deleted, shown beside another.
+// The buttons for a whole study begin it again from its files, archive it, take it back, delete it, or show it beside another.
 
 import assert from "node:assert/strict";
 import { after, before, test } from "node:test";

@@ -103,7 +103,7 @@ pub struct StudyVerdict {
     pub calibration: i64,
     /// The verdict.
     pub verdict: Verdict,
-    /// What is missing by its name, in a few words; the open questions are not among them.
+    /// The verdict in a few words, with the names of what is missing and without the open questions.
     pub short: String,
     /// The verdict and the open questions in a sentence.
     pub text: String,

@@ -84,7 +84,7 @@ export function explanations({ already_added: added, leading }) {
   const judged = added.filter((/** @type {any} */ effect) => effect.probability !== null);
   const all = judged.length > 0 ? judged.flatMap((/** @type {any} */ effect) => [effect, ...effect.rivals]) : leading;
   const named = all.map((/** @type {any} */ effect) => ({ name: effect.name, summary: plain(effect), probability: effect.probability }));
-  // Of several effects each has a search of its own: only one sum is one.
+  // Each of several effects was found by a separate search, so their probabilities do not sum to one.
   const rest = 1 - named.reduce((/** @type {number} */ sum, /** @type {Explanation} */ e) => sum + e.probability, 0);
   return judged.length > 1 || rest < 1e-9 || named.length === 0 ? named : [...named, { name: "", summary: "all other explanations together", probability: rest }];
 }
