@@ -31,7 +31,7 @@ mod text;
 pub use addition::{Addition, ModelChange};
 pub use assumed_experiment::{AssumedExperiment, SiteProperty, UnstatedProperty};
 pub use data::bevameter_readings::{BevameterReadings, PLATE, RING, Reading};
-pub use data::confounded_order::{ConfoundedOrder, SetCondition, confounded_orders};
+pub use data::confounded_order::{ConfoundedOrder, SetCondition, conditions_in_row_order, confounded_orders};
 pub use data::level::{levels_of, load_levels_of};
 pub use data::noise::{conditions, repeat_scatter, repeats, repeats_but_for_load};
 pub use data::rig_groups::repeats_earlier_column;

@@ -44,6 +44,15 @@ impl SetCondition {
         }
     }
 
+    /// Returns the name of the condition as the variable of a law: `slip`, `wheel_load` or `sled_speed`.
+    pub fn name(self) -> &'static str {
+        match self {
+            SetCondition::Slip => "slip",
+            SetCondition::WheelLoad => "wheel_load",
+            SetCondition::SledSpeed => "sled_speed",
+        }
+    }
+
     fn value(self, run: &TestRun) -> f64 {
         match self {
             SetCondition::Slip => run.slip,
@@ -64,7 +73,7 @@ impl ConfoundedOrder {
     }
 }
 
-/// Returns the conditions that follow the order of the fitted runs; none if the experiment states no order.
+/// Returns the conditions that follow the stated order of the fitted runs; none if the experiment states no order.
 ///
 /// # Equation
 /// Goodman and Kruskal's gamma: the share of concordant pairs of runs minus the share of discordant pairs, among the pairs that
@@ -74,11 +83,24 @@ impl ConfoundedOrder {
 /// Goodman & Kruskal 1954, doi:10.1080/01621459.1954.10501231. Checked by
 /// `tests::runs_in_the_order_of_a_condition_are_confounded_with_it`.
 pub fn confounded_orders(experiment: &Experiment, fit_runs: &[usize]) -> Vec<ConfoundedOrder> {
-    let runs: Vec<(i32, &TestRun)> = fit_runs
-        .iter()
-        .map(|&i| &experiment.runs[i])
-        .filter_map(|run| Some((run.order?, run)))
-        .collect();
+    let runs = fit_runs.iter().map(|&i| &experiment.runs[i]);
+    let runs: Vec<(i32, &TestRun)> = runs.filter_map(|run| Some((run.order?, run))).collect();
+    confounded(&runs)
+}
+
+/// Returns the conditions that follow the rows of the fitted runs, by the measure of [`confounded_orders`]; none if a fitted run states
+/// its order. The rows may be the order in which the runs were made.
+pub fn conditions_in_row_order(experiment: &Experiment, fit_runs: &[usize]) -> Vec<ConfoundedOrder> {
+    let runs = fit_runs.iter().map(|&i| &experiment.runs[i]);
+    let runs: Vec<(i32, &TestRun)> = (1..).zip(runs).collect();
+    match runs.iter().any(|(_, run)| run.order.is_some()) {
+        true => Vec::new(),
+        false => confounded(&runs),
+    }
+}
+
+/// Returns the conditions that follow the numbers of the runs.
+fn confounded(runs: &[(i32, &TestRun)]) -> Vec<ConfoundedOrder> {
     let confounded = |condition: SetCondition| {
         let values: Vec<(i32, f64)> = runs
             .iter()

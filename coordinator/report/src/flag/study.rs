@@ -2,6 +2,7 @@
 
 use crate::diagnosis::diagnostics;
 use crate::flag::interpolation::interpolation_beats;
+use job::conditions_in_row_order;
 use result::finished_calibration::FinishedCalibration;
 use result::flag::{Flag, FlagKind};
 use result::study::Study;
@@ -41,7 +42,31 @@ pub(crate) fn flags_by_calibration(study: &Study) -> Vec<(Option<i64>, Flag)> {
     flags.extend(interpolation_beats(study).into_iter().map(|flag| (current, flag)));
     let searched = study.rounds.last().map(|round| round.calibration);
     flags.extend(incomplete(study).map(|flag| (searched, flag)));
+    flags.extend(
+        laws_or_drifts(study)
+            .into_iter()
+            .map(|(of, flag)| (Some(of), flag)),
+    );
     flags
+}
+
+/// Returns a flag for each law outside the catalogue that was found to depend on a condition which the rows of the file follow, if no
+/// run states its order: a drift over the rows would predict the same.
+fn laws_or_drifts(study: &Study) -> Vec<(i64, Flag)> {
+    let in_row_order = conditions_in_row_order(&study.lead.spec.experiment, &study.lead.spec.fit_runs);
+    let claimed = study.rounds.iter().filter_map(|round| {
+        let law = round.record.outside.as_ref()?;
+        let condition = in_row_order
+            .iter()
+            .map(|rows| rows.condition)
+            .find(|condition| condition.name() == law.depends_on)?;
+        let words = condition.words();
+        let text = format!(
+            "the rows of the runs follow their {words}, and no run states its order: if the runs were made in the order of the rows, a drift of soil or sensors explains the misfit as well as a law of the {words}; state the column order, and repeat runs of several levels late and early in the series"
+        );
+        Some((round.calibration, Flag::plain(FlagKind::Order, text)))
+    });
+    claimed.collect()
 }
 
 /// Returns a flag if the best explanation of the last search still contradicts the data.
@@ -120,6 +145,39 @@ mod tests {
                 .count()
         };
         assert_eq!((flagged(true), flagged(false)), (0, 1));
+    }
+
+    #[test]
+    fn a_law_of_a_condition_that_the_rows_follow_may_be_a_drift() {
+        let flagged = |depends_on: &str, has_order: bool| {
+            let mut study = fixture::study();
+            let spec = &mut study.lead.spec;
+            let experiment = std::sync::Arc::make_mut(&mut spec.experiment);
+            for (row, &run) in spec.fit_runs.iter().enumerate() {
+                experiment.runs[run].slip = 0.05 * (row + 1) as f64;
+                experiment.runs[run].order = has_order.then_some(row as i32 + 1);
+            }
+            let mut record: record::Discovery =
+                serde_json::from_str(include_str!("../../../record/discovery.json")).unwrap();
+            record.outside = Some(record::Outside {
+                acts_on: "pressure".into(),
+                depends_on: depends_on.into(),
+                form: "power".into(),
+                log_bayes_factor: 30.0,
+                effect_file: String::new(),
+                curve: Vec::new(),
+                left_out_nats: [0.0; 2],
+                forms: Vec::new(),
+            });
+            study.rounds = vec![result::discovery::DiscoveryRound {
+                calibration: 1,
+                record,
+            }];
+            super::laws_or_drifts(&study).len()
+        };
+        assert_eq!(flagged("slip", false), 1);
+        assert_eq!(flagged("slip", true), 0, "a stated order is flagged by itself");
+        assert_eq!(flagged("wheel_load", false), 0);
     }
 
     #[test]
