@@ -147,11 +147,17 @@ impl SearchTask {
         laws.all(|law| !self.laws[law].is_description)
     }
 
-    /// Returns whether a set has a law and an effect that change one quantity: they may be factors of one law of two variables.
-    pub(crate) fn may_be_one_law(&self, members: &[usize]) -> bool {
-        let of_library = || members.iter().filter(|k| !self.is_law(**k));
-        let mut laws = members.iter().filter_map(|k| self.law_of(*k));
-        laws.any(|law| of_library().any(|k| self.library[*k].shares_quantity(&self.laws[law].curve)))
+    /// Returns the effects of a set that change the quantity of a law of the set: law and effect may be factors of one law of two
+    /// variables.
+    pub(crate) fn factors_of_law(&self, members: &[usize]) -> Vec<usize> {
+        let laws: Vec<usize> = members.iter().filter_map(|k| self.law_of(*k)).collect();
+        let of_library = members.iter().copied().filter(|k| !self.is_law(*k));
+        of_library
+            .filter(|k| {
+                let mut laws = laws.iter();
+                laws.any(|law| self.library[*k].shares_quantity(&self.laws[*law].curve))
+            })
+            .collect()
     }
 
     /// Returns whether a candidate is a law outside the library.

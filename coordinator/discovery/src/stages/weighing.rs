@@ -1,6 +1,6 @@
 //! The probabilities of all hypotheses, from which predictions, next runs and verdict follow (steps 12 and 13).
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 use crate::effect_search::ranking::{EffectRanking, EvidenceMethod};
 use crate::laplace::evidence::log_sum_exp;
@@ -46,8 +46,7 @@ pub(super) struct Weighing {
     /// Log of the sum of all weights: priors times counted evidence.
     pub(super) log_total: f64,
     inclusion: Inclusion,
-    /// The sets whose law and effect may be one law of two variables.
-    one_law: BTreeSet<Vec<usize>>,
+    factors: FactorsOfLaw,
     /// Number of the library's effects, which come first among the candidates.
     library: usize,
 }
@@ -71,6 +70,9 @@ enum Leader {
 
 /// Log of the summed weights of the sets that include each effect of the library, or a law.
 type Inclusion = BTreeMap<Leader, f64>;
+
+/// The sets with a law, each with its effects that may be, with the law, one law of two variables; none without such an effect.
+type FactorsOfLaw = BTreeMap<Vec<usize>, Vec<usize>>;
 
 /// Sets whose log weight is lower than that of the best by more than this are no rivals of it \[nats\].
 const NEAR: f64 = 5.0;
@@ -110,18 +112,16 @@ struct Leadership<'a> {
     library: usize,
     /// Log Bayes factor of a law alone; `None`: not searched.
     law: Option<f64>,
-    /// The sets whose law and effect may be one law of two variables.
-    one_law: &'a BTreeSet<Vec<usize>>,
+    factors: &'a FactorsOfLaw,
 }
 
 impl Leadership<'_> {
     /// The member of a set with the highest inclusion weight; among equals, the one with the highest Bayes factor alone. `None`
     /// without one. An effect that all good sets have is thus not named after a rival that some have. A law with an effect of the same
-    /// quantity may be one law of two variables, so the set counts for the law.
+    /// quantity may be one law of two variables, so such an effect does not lead.
     fn leader(&self, effects: &[usize]) -> Option<Leader> {
-        if self.law.is_some() && self.one_law.contains(effects) {
-            return Some(Leader::Law);
-        }
+        let factors = self.factors.get(effects).filter(|_| self.law.is_some());
+        let may_lead = |k: &&usize| factors.is_none_or(|factors| !factors.contains(*k));
         let member = |k: &usize| -> Option<(Leader, f64)> {
             if *k < self.library {
                 let factor = self.ranking.effect(Some(*k))?.log_bayes_factor;
@@ -130,7 +130,7 @@ impl Leadership<'_> {
                 Some((Leader::Law, self.law?))
             }
         };
-        let members: Vec<(Leader, f64)> = effects.iter().filter_map(member).collect();
+        let members: Vec<(Leader, f64)> = effects.iter().filter(may_lead).filter_map(member).collect();
         let weight = |member: &Leader| self.inclusion.get(member).copied().unwrap_or(f64::NEG_INFINITY);
         let weights = members.iter().map(|(member, _)| weight(member));
         let highest = weights.fold(f64::NEG_INFINITY, f64::max);
@@ -277,13 +277,14 @@ impl Weighing {
         });
         let inclusion = inclusion(hypotheses, library, law_weight, misfit);
         let sets = hypotheses.combinations.iter().map(|set| &set.effects);
-        let one_law = sets.filter(|set| task.may_be_one_law(set)).cloned().collect();
+        let factors = sets.map(|set| (set.clone(), task.factors_of_law(set)));
+        let factors = factors.filter(|(_, factors)| !factors.is_empty()).collect();
         let leadership = Leadership {
             ranking: &ranking,
             inclusion: &inclusion,
             library,
             law,
-            one_law: &one_law,
+            factors: &factors,
         };
         let led = LedCombinations::new(hypotheses, &leadership);
         let outside = law_weight.map(|log_weight| OutsideEvidence {
@@ -311,7 +312,7 @@ impl Weighing {
             misfit,
             log_total: probabilities.log_total,
             inclusion,
-            one_law,
+            factors,
             library,
         }
     }
@@ -366,7 +367,7 @@ impl Weighing {
             inclusion: &self.inclusion,
             library: self.library,
             law: self.not_in_library.map(|(factor, _)| factor),
-            one_law: &self.one_law,
+            factors: &self.factors,
         }
     }
 
@@ -505,11 +506,11 @@ mod tests {
     #[test]
     fn what_most_combinations_include_leads_them() {
         let ranking = EffectRanking {
-            effects: vec![ranked(1, 9.0), ranked(2, 11.0), ranked(3, 4.0)],
+            effects: vec![ranked(1, 9.0), ranked(2, 11.0), ranked(3, 4.0), ranked(4, 2.0)],
             ..EffectRanking::default()
         };
         // The third has a little more weight than the first, as poor combinations add.
-        let weights = [(1, 30.0), (2, 29.9), (3, 30.0 + 1e-6)];
+        let weights = [(1, 30.0), (2, 29.9), (3, 30.0 + 1e-6), (4, 31.0)];
         let mut inclusion: Inclusion = weights.map(|(k, weight)| (Leader::Effect(k), weight)).into();
         inclusion.insert(Leader::Law, 30.0);
         let leadership = Leadership {
@@ -517,7 +518,7 @@ mod tests {
             inclusion: &inclusion,
             library: 8,
             law: Some(10.0),
-            one_law: &BTreeSet::from([vec![1, 10]]),
+            factors: &FactorsOfLaw::from([(vec![1, 10], vec![1]), (vec![1, 4, 10], vec![1])]),
         };
         let leader = |effects: &[usize]| leadership.leader(effects);
         let effect = |k: usize| Some(Leader::Effect(k));
@@ -531,6 +532,8 @@ mod tests {
         assert_eq!(leader(&[2, 9]), Some(Leader::Law));
         // An effect that leads its set otherwise yields to a law of the same quantity.
         assert_eq!(leader(&[1, 10]), Some(Leader::Law));
+        // An effect of another quantity does not.
+        assert_eq!(leader(&[1, 4, 10]), effect(4));
     }
 
     #[test]
