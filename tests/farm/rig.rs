@@ -79,7 +79,13 @@ fn a_drift_is_blamed_where_the_order_of_the_runs_is_stated() {
             .iter()
             .all(|(name, _)| !name.starts_with("drift_"))
     );
-    assert!(flags(&unstated, "order").is_empty());
+    // What is claimed then is a law of the slip, with the doubt beside it.
+    assert_eq!(unstated["discovery"]["verdict"], "not_in_library");
+    let [flag] = flags(&unstated, "order")[..] else {
+        panic!("{:?}", unstated["flags"])
+    };
+    let words = "the rows of the runs follow their slip, and no run states its order";
+    assert!(flag.starts_with(words), "{flag}");
 }
 
 #[test]

@@ -44,12 +44,13 @@ impl SetCondition {
         }
     }
 
-    /// Returns the name of the condition as the variable of a law: `slip`, `wheel_load` or `sled_speed`.
-    pub fn name(self) -> &'static str {
+    /// Returns the variables of a law that change with the condition: itself, and those that follow from it. The shear displacement
+    /// and the sliding velocity grow with the slip, depths with the load, velocities with the speed.
+    pub fn law_variables(self) -> &'static [&'static str] {
         match self {
-            SetCondition::Slip => "slip",
-            SetCondition::WheelLoad => "wheel_load",
-            SetCondition::SledSpeed => "sled_speed",
+            SetCondition::Slip => &["slip", "j", "v_t"],
+            SetCondition::WheelLoad => &["wheel_load", "z", "sinkage"],
+            SetCondition::SledSpeed => &["sled_speed", "v_t", "v_n"],
         }
     }
 

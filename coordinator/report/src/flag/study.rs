@@ -50,7 +50,7 @@ pub(crate) fn flags_by_calibration(study: &Study) -> Vec<(Option<i64>, Flag)> {
     flags
 }
 
-/// Returns a flag for each law outside the catalogue that was found to depend on a condition which the rows of the file follow, if no
+/// Returns a flag for each law outside the catalogue that was found to change with a condition which the rows of the file follow, if no
 /// run states its order: a drift over the rows would predict the same.
 fn laws_or_drifts(study: &Study) -> Vec<(i64, Flag)> {
     let in_row_order = conditions_in_row_order(&study.lead.spec.experiment, &study.lead.spec.fit_runs);
@@ -59,10 +59,11 @@ fn laws_or_drifts(study: &Study) -> Vec<(i64, Flag)> {
         let condition = in_row_order
             .iter()
             .map(|rows| rows.condition)
-            .find(|condition| condition.name() == law.depends_on)?;
+            .find(|condition| condition.law_variables().contains(&law.depends_on.as_str()))?;
         let words = condition.words();
         let text = format!(
-            "the rows of the runs follow their {words}, and no run states its order: if the runs were made in the order of the rows, a drift of soil or sensors explains the misfit as well as a law of the {words}; state the column order, and repeat runs of several levels late and early in the series"
+            "the rows of the runs follow their {words}, and no run states its order: if the runs were made in the order of the rows, a drift of soil or sensors explains the misfit as well as a law of {} does; state the column order, and repeat runs of several levels late and early in the series",
+            law.depends_on
         );
         Some((round.calibration, Flag::plain(FlagKind::Order, text)))
     });
@@ -175,7 +176,7 @@ mod tests {
             }];
             super::laws_or_drifts(&study).len()
         };
-        assert_eq!(flagged("slip", false), 1);
+        assert_eq!((flagged("slip", false), flagged("j", false)), (1, 1));
         assert_eq!(flagged("slip", true), 0, "a stated order is flagged by itself");
         assert_eq!(flagged("wheel_load", false), 0);
     }
