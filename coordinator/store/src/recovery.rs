@@ -6,10 +6,11 @@ use shared::api::CalibrationState;
 
 use super::blob;
 use super::error::StoreError;
+use super::observables;
 use super::reader::Reader;
 use super::sql::{Row, query, query_scalar};
 use super::theta::theta;
-use record::{EvaluationRow, Fingerprint, Kept, SealKey, Stored};
+use record::{EvaluationRow, Fingerprint, Kept, PREDICTIONS_FROM, SealKey, Stored};
 
 /// The number of evaluations that one statement reads. A long calibration has hundreds of thousands.
 const PAGE: usize = 2_000;
@@ -43,7 +44,8 @@ impl Reader {
         bytes.map(SealKey).ok_or_else(corrupt)
     }
 
-    /// Reads everything that a replay needs. With `fitted`, this includes the predicted values that an engine is told.
+    /// Reads everything that a replay needs. With `fitted`, this includes the predicted values that an engine is told, and the whole
+    /// results of draws that may be the posterior as they are.
     pub async fn stored(&self, calibration: i64, fitted: bool) -> Result<Stored, StoreError> {
         // All statements see one state of the store, because results may be dropped meanwhile.
         let mut view = self.pool.view().await?;
@@ -63,13 +65,15 @@ impl Reader {
             let rows = query(
                 "SELECT evaluation, theta, log_likelihood, rejection, worker, fingerprint,
                  confirmed_by IS NOT NULL AS is_confirmed,
-                 CASE WHEN ?2 THEN fitted END AS fitted
+                 CASE WHEN ?2 THEN fitted END AS fitted,
+                 CASE WHEN ?2 AND evaluation < ?5 THEN observables END AS observables
                  FROM evaluations WHERE calibration = ?1 AND evaluation > ?3 ORDER BY evaluation LIMIT ?4",
             )
             .bind(calibration)
             .bind(fitted)
             .bind(after)
             .bind(PAGE as i64)
+            .bind(PREDICTIONS_FROM as i64)
             .fetch_all(&mut view)
             .await?;
             for row in &rows {
@@ -120,15 +124,18 @@ impl Reader {
 fn evaluation_row(evaluation: u64, row: &Row) -> Result<EvaluationRow, StoreError> {
     let fitted: Option<&[u8]> = row.try_get("fitted")?;
     let fitted = fitted.map(blob::decode_values).transpose()?;
+    let whole: Option<&[u8]> = row.try_get("observables")?;
+    let whole = whole.map(observables::decode).transpose()?;
     let rejection: Option<String> = row.try_get("rejection")?;
     Ok(EvaluationRow {
         evaluation,
         theta: theta(row)?,
         log_likelihood: row.try_get("log_likelihood")?,
-        kept: match (rejection, fitted.filter(|values| !values.is_empty())) {
-            (Some(reason), _) => Kept::Rejected(reason),
-            (None, Some(values)) => Kept::Fitted(values),
-            (None, None) => Kept::Scored,
+        kept: match (rejection, whole, fitted.filter(|values| !values.is_empty())) {
+            (Some(reason), ..) => Kept::Rejected(reason),
+            (None, Some(whole), _) => Kept::Whole(Box::new(whole)),
+            (None, None, Some(values)) => Kept::Fitted(values),
+            (None, None, None) => Kept::Scored,
         },
         worker: row.try_get("worker")?,
         fingerprint: Fingerprint(row.try_get("fingerprint")?),
@@ -137,7 +144,8 @@ fn evaluation_row(evaluation: u64, row: &Row) -> Result<EvaluationRow, StoreErro
 
 #[cfg(test)]
 mod tests {
-    use record::{Fact, HOLDOUT_RUNS_FROM, PREDICTIONS_FROM};
+    use record::{Fact, HOLDOUT_RUNS_FROM};
+    use shared::outcome::Observables;
 
     use super::*;
     use crate::fixture;
@@ -157,9 +165,13 @@ mod tests {
     async fn every_evaluation_comes_back_to_the_bit_from_several_pages_and_in_both_forms_of_theta() {
         let (_folder, store, calibration) = fixture::store().await;
         let theta = |number: u64| vec![f64::from_bits(0x3fb9_9999_9999_999a + number), -0.0, 1e-300];
-        let kept = |number: u64| match number % 3 {
+        let kept = |number: u64| match number % 4 {
             0 => Kept::Scored,
             1 => Kept::Fitted(vec![number as f64, 0.1]),
+            2 => Kept::Whole(Box::new(Observables {
+                sinkage_m: vec![number as f64, 0.1],
+                ..Observables::default()
+            })),
             _ => Kept::Rejected("no_support: condition 0: toy".into()),
         };
         let last = PAGE as u64 + 7;

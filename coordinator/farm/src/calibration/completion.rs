@@ -147,7 +147,9 @@ impl Calibration {
         };
         match outcome {
             Err(reason) => Kept::Rejected(reason.0),
-            Ok(observables) if !self.phase.is_sampling() => Kept::Whole(Box::new(observables)),
+            Ok(observables) if !self.phase.is_sampling() || self.engine.asks_final_draws() => {
+                Kept::Whole(Box::new(observables))
+            }
             Ok(observables) if self.keeps_values() => Kept::Fitted(
                 searched(&observables).unwrap_or_else(|| self.spec.predicted_values(&observables)),
             ),
@@ -176,7 +178,15 @@ impl Calibration {
             return;
         };
         let stages = self.engine.stages().len();
-        let progress = self.engine.tell(particle, row);
+        let selected = match &row.kept {
+            Kept::Whole(observables) => {
+                self.drawn.insert(row.evaluation, row.clone());
+                Some(self.spec.predicted_values(observables))
+            }
+            Kept::Scored | Kept::Fitted(_) | Kept::Rejected(_) => None,
+        };
+        let values = selected.as_deref().or(row.kept.fitted());
+        let progress = self.engine.tell(particle, row, values);
         for record in &self.engine.stages()[stages..] {
             facts.push(Fact::Stage {
                 calibration: self.identity.id,
@@ -206,9 +216,11 @@ impl Calibration {
     /// Stores the result of the engine, and asks for the final draws; a search has none.
     fn end_sampling(&mut self, facts: &mut Vec<Fact>) {
         let calibration = self.identity.id;
+        let mut taken_over = Vec::new();
         let (draws, fact) = match self.engine.finding() {
             Some(CalibrationResult::Posterior(posterior)) => {
-                let draws = FinalDraws::from_posterior(posterior);
+                let mut draws = FinalDraws::from_posterior(posterior);
+                taken_over = draws.take_over(&self.drawn, self.spec.algorithm.width());
                 let posterior = Box::new(posterior.clone());
                 (
                     Some(draws),
@@ -234,6 +246,11 @@ impl Calibration {
             None => return,
         };
         facts.push(fact);
+        facts.extend(
+            taken_over
+                .into_iter()
+                .map(|row| Fact::Evaluated { calibration, row }),
+        );
         match draws {
             Some(draws) => {
                 self.phase = Phase::FinalDraws(draws);

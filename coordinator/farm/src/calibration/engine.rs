@@ -130,14 +130,33 @@ impl CalibrationEngine {
     }
 
     /// Tells the engine the result of a pending particle.
-    pub(super) fn tell(&mut self, particle: usize, row: &EvaluationRow) -> Result<TellProgress, EngineError> {
+    ///
+    /// # Arguments
+    /// - `values`: the predicted values that the row keeps; `None` where the model rejected, or nothing is kept.
+    pub(super) fn tell(
+        &mut self,
+        particle: usize,
+        row: &EvaluationRow,
+        values: Option<&[f64]>,
+    ) -> Result<TellProgress, EngineError> {
         Ok(match self {
             CalibrationEngine::Sampler(sampler) => sampler.tell(particle, log_likelihood(row)?)?,
-            CalibrationEngine::Emulated(sampler) => sampler.tell(particle, row.kept.fitted())?,
-            CalibrationEngine::Fit(fit) => fit.tell(particle, row.kept.fitted())?,
+            CalibrationEngine::Emulated(sampler) => sampler.tell(particle, values)?,
+            CalibrationEngine::Fit(fit) => fit.tell(particle, values)?,
             CalibrationEngine::Evolution(evolution) => evolution.tell(particle, log_likelihood(row)?)?,
-            CalibrationEngine::Discovery(discovery) => discovery.tell(particle, row.kept.fitted())?,
+            CalibrationEngine::Discovery(discovery) => discovery.tell(particle, values)?,
         })
+    }
+
+    /// Returns whether the round in progress asks for draws that may be the posterior as they are.
+    pub(super) fn asks_final_draws(&self) -> bool {
+        match self {
+            CalibrationEngine::Emulated(sampler) => sampler.asks_final_draws(),
+            CalibrationEngine::Sampler(_)
+            | CalibrationEngine::Fit(_)
+            | CalibrationEngine::Evolution(_)
+            | CalibrationEngine::Discovery(_) => false,
+        }
     }
 
     /// Returns the search for a missing effect, if the engine runs a search.

@@ -1,10 +1,10 @@
 //! The final draws: parameter vectors that are simulated after a sampler or a fit has ended.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use inference::point_estimate::ModeEstimate;
 use inference::{Particle, PosteriorSample};
-use record::EvaluationKey;
+use record::{EvaluationKey, EvaluationRow};
 
 /// The parameter vectors that are simulated once the posterior or the estimate is known.
 #[derive(Debug)]
@@ -13,6 +13,8 @@ pub(super) struct FinalDraws {
     pub(super) thetas: Vec<Vec<f64>>,
     /// The vector of the highest likelihood, if it is simulated once more.
     pub(super) likeliest: Option<Vec<f64>>,
+    /// The draws whose fitted runs were simulated while sampling.
+    pub(super) simulated: BTreeSet<usize>,
     /// The draws at which the model rejects one of several holdout runs.
     pub(super) refused: BTreeSet<usize>,
 }
@@ -22,6 +24,7 @@ impl FinalDraws {
         FinalDraws {
             thetas,
             likeliest,
+            simulated: BTreeSet::new(),
             refused: BTreeSet::new(),
         }
     }
@@ -45,16 +48,42 @@ impl FinalDraws {
         }
     }
 
-    /// Returns the evaluations of all draws.
+    /// Takes over the fitted runs of the draws that were simulated while sampling. Returns a row for each of them.
+    ///
+    /// # Arguments
+    /// - `drawn`: the whole results of the sampler's last round. `width`: of the sampler's rounds.
+    pub(super) fn take_over(
+        &mut self,
+        drawn: &BTreeMap<u64, EvaluationRow>,
+        width: usize,
+    ) -> Vec<EvaluationRow> {
+        let bits = |theta: &[f64]| -> Vec<u64> { theta.iter().map(|x| x.to_bits()).collect() };
+        // Of equal draws, the first row counts.
+        let rows: BTreeMap<Vec<u64>, &EvaluationRow> =
+            drawn.values().rev().map(|row| (bits(&row.theta), row)).collect();
+        let draws = self.thetas.iter().enumerate();
+        let taken: Vec<(usize, EvaluationRow)> = draws
+            .filter_map(|(draw, theta)| {
+                let evaluation = EvaluationKey::Prediction { draw, holdout: false }.number(width);
+                let row = EvaluationRow {
+                    evaluation,
+                    log_likelihood: None,
+                    ..(*rows.get(&bits(theta))?).clone()
+                };
+                Some((draw, row))
+            })
+            .collect();
+        self.simulated = taken.iter().map(|(draw, _)| *draw).collect();
+        taken.into_iter().map(|(_, row)| row).collect()
+    }
+
+    /// Returns the evaluations of all draws that remain to be simulated.
     pub(super) fn keys(&self, has_holdout: bool) -> Vec<EvaluationKey> {
-        let parts = if has_holdout {
-            [false, true].as_slice()
-        } else {
-            &[false]
-        };
         let draws = (0..self.thetas.len()).flat_map(|draw| {
-            let key = move |&holdout| EvaluationKey::Prediction { draw, holdout };
-            parts.iter().map(key)
+            let fitted = !self.simulated.contains(&draw);
+            let parts = [(false, fitted), (true, has_holdout)];
+            let asked = parts.into_iter().filter(|(_, is_asked)| *is_asked);
+            asked.map(move |(holdout, _)| EvaluationKey::Prediction { draw, holdout })
         });
         draws
             .chain(self.likeliest.iter().map(|_| EvaluationKey::Likeliest))

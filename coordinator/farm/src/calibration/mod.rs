@@ -38,7 +38,7 @@ use self::phase::Phase;
 use self::variants::Variants;
 use crate::lease::{LeaseQueue, SlowLease};
 use job::{AlgorithmSettings, Spec};
-use record::{EvaluationKey, Fact, SealKey};
+use record::{EvaluationKey, EvaluationRow, Fact, SealKey};
 use search::{DiscoveryError, SearchModels};
 
 pub use engine::{BeginError, CalibrationEngine, CalibrationResult};
@@ -101,6 +101,8 @@ pub struct Calibration {
     variants: Variants,
     /// The workers of failed leases by evaluation, kept over a restart.
     failed: BTreeMap<u64, Vec<String>>,
+    /// The whole results of the present round, if the engine asks for draws that may be the posterior as they are.
+    drawn: BTreeMap<u64, EvaluationRow>,
 }
 
 impl Calibration {
@@ -150,6 +152,7 @@ impl Calibration {
             witness: Witness::default(),
             phase: Phase::Sampling,
             failed: BTreeMap::new(),
+            drawn: BTreeMap::new(),
         };
         calibration.ask();
         Ok(calibration)
@@ -194,7 +197,11 @@ impl Calibration {
         let (variant, theta) = match self.searched(evaluation) {
             Some(searched) => searched,
             None => {
-                let variant = self.variants.for_key(self.key(evaluation))?;
+                let variant = match self.key(evaluation) {
+                    // They are kept whole, so that they are not simulated again as final draws.
+                    EvaluationKey::Sampling { .. } if self.engine.asks_final_draws() => self.variants.fit(),
+                    key => self.variants.for_key(key)?,
+                };
                 (variant, self.spec.model_theta(theta))
             }
         };
@@ -287,6 +294,7 @@ impl Calibration {
     /// Begins a round.
     fn ask(&mut self) {
         self.witness.begin_round();
+        self.drawn.clear();
         self.fill_queue();
     }
 

@@ -327,9 +327,18 @@ mod tests {
             };
             facts.iter().filter_map(result).collect()
         };
-        let first = work(&mut emulated(), usize::MAX, false);
+        let mut finished = emulated();
+        let first = work(&mut finished, usize::MAX, false);
         let whole = sorted(&first);
         assert_eq!(results(&first).len(), 1);
+        // The fitted runs of the final draws were simulated while sampling, and are no further simulations.
+        let is_fitted = |r: &&EvaluationRow| {
+            let key = EvaluationKey::from_number(r.evaluation, 1);
+            matches!(key, EvaluationKey::Prediction { holdout: false, .. })
+        };
+        let fitted: Vec<&EvaluationRow> = whole.iter().filter(is_fitted).collect();
+        assert!(fitted.len() > 20 && fitted.iter().all(|r| matches!(r.kept, Kept::Whole(_))));
+        assert_eq!(finished.cost.simulations, (whole.len() - fitted.len()) as u64);
         let sampled = whole.iter().filter(|r| r.evaluation < PREDICTIONS_FROM).count();
         for cut in [1, 13, 17, sampled / 2, sampled - 1, sampled, whole.len() - 1] {
             let begun = work(&mut emulated(), cut, true);

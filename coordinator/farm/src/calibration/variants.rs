@@ -40,6 +40,11 @@ impl Variants {
         self.by_hash.get(hash)
     }
 
+    /// Returns the hash of the fitted runs with all channels.
+    pub(super) fn fit(&self) -> &str {
+        &self.fit
+    }
+
     /// Returns whether the model has a time axis.
     pub(super) fn has_histories(&self) -> bool {
         self.histories.is_some()

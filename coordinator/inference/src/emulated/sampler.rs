@@ -88,6 +88,12 @@ impl EmulatedSampler {
         &self.round
     }
 
+    /// Returns whether the round in progress asks for final draws: if their weights are even enough, they are the posterior.
+    #[must_use]
+    pub fn asks_final_draws(&self) -> bool {
+        matches!(self.phase, RunPhase::Waiting(EmulatedRound::Final(_)))
+    }
+
     /// Returns the finished stages, all at once at the end: an emulator that is given up leaves none.
     #[must_use]
     pub fn stages(&self) -> &[StageRecord] {

@@ -5,7 +5,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use record::{EvaluationKey, EvaluationRow, Fact, Kept, Quarantine, SealKey, Stored};
+use record::{EvaluationKey, EvaluationRow, Fact, Kept, PREDICTIONS_FROM, Quarantine, SealKey, Stored};
 use shared::api::CalibrationState;
 
 use super::case::{Case, CaseResult, posterior_bits};
@@ -187,7 +187,7 @@ impl<'a> Table<'a> {
         let evaluation = |row: &EvaluationRow| EvaluationRow {
             kept: match &row.kept {
                 Kept::Fitted(_) if !told_values => Kept::Scored,
-                Kept::Whole(_) => Kept::Scored,
+                Kept::Whole(_) if !told_values || row.evaluation >= PREDICTIONS_FROM => Kept::Scored,
                 kept => kept.clone(),
             },
             ..row.clone()
