@@ -12,8 +12,12 @@ use tokio::sync::Notify;
 
 use crate::model::CompiledVariant;
 
-/// One in this many evaluations of an external model is repeated, because only a repetition shows whether the answers agree.
+/// One in this many of a calibration's first evaluations of an external model is repeated, because only a repetition shows whether the
+/// answers agree.
 const REPEATED: u64 = 20;
+/// Evaluations with this number or a higher one are not repeated: a repetition holds its round up by the time of an evaluation, which
+/// would double the time of a round in which every thread of the farm has one.
+const REPEATED_BEFORE: u64 = 1000;
 
 /// Time and number of evaluations, over all threads.
 #[derive(Debug, Default)]
@@ -139,7 +143,7 @@ fn evaluate(lease: Lease, variant: &CompiledVariant, clock: &SimulationClock) ->
         })
     });
     // The number decides, so that the choice does not depend on the worker.
-    let is_repeated = lease.evaluation.is_multiple_of(REPEATED);
+    let is_repeated = lease.evaluation < REPEATED_BEFORE && lease.evaluation.is_multiple_of(REPEATED);
     let repeat = AssertUnwindSafe(|| variant.repeat(&lease.theta, &outcome));
     let repeated = match is_repeated {
         true => std::panic::catch_unwind(repeat).unwrap_or_default(),

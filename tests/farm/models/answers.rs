@@ -134,7 +134,7 @@ fn a_model_that_answers_in_two_ways_is_said_once_with_the_size_of_it() {
 }
 
 #[test]
-fn one_in_twenty_evaluations_is_asked_for_twice_and_equal_answers_are_no_news() {
+fn one_in_twenty_of_the_first_evaluations_is_asked_for_twice_and_equal_answers_are_no_news() {
     let server = honest();
     let service = Service::start(&[]);
     let id = service.submit(&job(&server.url));
