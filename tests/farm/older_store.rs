@@ -210,6 +210,24 @@ fn a_finished_one_with_a_metamodel_is_shown_before_and_after_its_columns_are_dro
     same(&command(&["report", "1"], &out), &report);
 }
 
+/// A job that leaves the stages to the program was sampled by draws of the model when that version ran it, whatever is sampled on an
+/// emulator today.
+#[tokio::test]
+async fn a_finished_one_whose_job_would_have_an_emulator_today_has_the_prior_draws_that_it_had() {
+    let (_temporary, _, out) = folder("store-22", "finished.store");
+    let url = store_in(&out);
+    let mut connection = sqlx::SqliteConnection::connect(&url).await.expect("a store");
+    let job = "UPDATE calibrations SET toml = replace(replace(toml, 'moves = [2, 4]', ''), 'metamodel_moves = 8', '')";
+    sqlx::query(job)
+        .execute(&mut connection)
+        .await
+        .expect("another job");
+    connection.close().await.expect("closed");
+    let service = Service::start_on(&url, &[]);
+    let rejections = service.result(1, "diagnostics")["rejections"].clone();
+    assert_eq!(rejections["prior_draws"], 20, "{rejections}");
+}
+
 #[test]
 fn an_unfinished_one_with_a_metamodel_is_refused_and_others_go_on() {
     let (_temporary, job, out) = folder("store-22", "stopped.store");

@@ -47,7 +47,11 @@ async fn finished_with(
     experiments: &mut ParsedExperiments,
 ) -> Result<FinishedCalibration, ServiceError> {
     check_finished(row)?;
-    let spec = experiments.spec_of(reader, row).await?;
+    let mut spec = experiments.spec_of(reader, row).await?;
+    let emulator = reader.emulator(row.id).await?;
+    if emulator.is_none() {
+        spec.algorithm = spec.algorithm.without_emulator();
+    }
     // Parameters and texts would be shown with which the result was not computed.
     if let Some(pinned) = &row.model_version {
         spec.check_effects(pinned)?;
@@ -79,7 +83,7 @@ async fn finished_with(
     Ok(FinishedCalibration {
         spec,
         outcome,
-        emulator: reader.emulator(row.id).await?,
+        emulator,
         experiment: row.name.clone(),
         likeliest_values,
         predictions: reader.predictions(row.id).await?,

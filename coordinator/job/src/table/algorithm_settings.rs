@@ -166,6 +166,21 @@ impl AlgorithmSettings {
             if settings.stages == StageMethod::Emulated && settings.algorithm == Algorithm::Tmcmc)
     }
 
+    /// Returns the algorithm of a result for which no emulator was recorded: before store version 22, the job of such a sampler asked for
+    /// draws of the model.
+    #[must_use]
+    pub fn without_emulator(self) -> Self {
+        match self {
+            AlgorithmSettings::Sample(settings) if self.is_emulated() => {
+                AlgorithmSettings::Sample(TmcmcSettings {
+                    stages: StageMethod::Draws,
+                    ..settings
+                })
+            }
+            other => other,
+        }
+    }
+
     /// Returns whether the engine receives predicted values in addition to log-likelihoods: fits, searches and emulators do.
     pub fn is_told_values(&self) -> bool {
         let told = matches!(
