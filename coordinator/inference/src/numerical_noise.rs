@@ -104,17 +104,10 @@ pub(crate) fn log_likelihood_sd(
     let scatter = scatter(likelihood, answers).filter(|_| are_enough(answers))?;
     let values = answers.iter().flatten().next()?;
     let terms = likelihood.data().iter().zip(values).map(|(datum, value)| {
-        let noise = noise_sd(datum.sd, theta);
+        let noise = datum.sd.at(theta);
         (datum.value - value) / noise * (scatter[datum.channel] / noise)
     });
     Some(terms.map(|term| term * term).sum::<f64>().sqrt())
-}
-
-fn noise_sd(sd: ErrorSd, theta: &[f64]) -> f64 {
-    match sd {
-        ErrorSd::Known(sd) => sd,
-        ErrorSd::Inferred { parameter } => theta[parameter],
-    }
 }
 
 /// Returns whether the scatter was measured, and is negligible beside the noise of every datum, declared or inferred.
@@ -126,7 +119,7 @@ pub fn is_negligible(likelihood: &Likelihood, answers: &[Option<Vec<f64>>], thet
         return false;
     };
     let mut data = likelihood.data().iter();
-    data.all(|datum| scatter[datum.channel] <= NEGLIGIBLE * noise_sd(datum.sd, theta))
+    data.all(|datum| scatter[datum.channel] <= NEGLIGIBLE * datum.sd.at(theta))
 }
 
 #[cfg(test)]

@@ -5,7 +5,6 @@ use super::emulator::Emulator;
 use super::record::EmulatorRound;
 use super::round::{Outputs, Position};
 use super::sampler::EmulatedSampler;
-use super::target::error_sd;
 use crate::tmcmc::draws::ImportanceWeights;
 
 /// Largest error of the tempered log-evidence with which the exponent grows, in nats.
@@ -131,7 +130,7 @@ impl EmulatedSampler {
             let drawn = batch.points.iter().zip(outputs).take(batch.drawn);
             let pairs: Vec<[f64; 2]> = drawn
                 .filter_map(|(point, outputs)| {
-                    let unit = error_sd(datum.sd, &point.theta);
+                    let unit = datum.sd.at(&point.theta);
                     Some([outputs.as_ref()?[index] / unit, point.outputs[index] / unit])
                 })
                 .collect();
@@ -152,7 +151,7 @@ impl EmulatedSampler {
         for (point, outputs) in drawn {
             let values = outputs.iter().flatten().zip(&point.outputs);
             for (datum, (y, predicted)) in self.likelihood.data().iter().zip(values) {
-                let error = (y - predicted) / error_sd(datum.sd, &point.theta);
+                let error = (y - predicted) / datum.sd.at(&point.theta);
                 let (sum, count) = &mut sums[datum.channel];
                 *sum += error * error;
                 *count += 1;

@@ -3,7 +3,6 @@
 use super::emulator::{Emulator, EmulatorCoordinates, Frame, TrainingPoint};
 use super::round::Outputs;
 use super::sampler::EmulatedSampler;
-use super::target::error_sd;
 use crate::round::Proposal;
 
 impl EmulatedSampler {
@@ -50,7 +49,7 @@ impl EmulatedSampler {
     /// its spread.
     fn scales(&self, thetas: &[&[f64]]) -> Vec<f64> {
         let data = self.likelihood.data().iter().map(|datum| {
-            let logarithms = thetas.iter().map(|theta| libm::log(error_sd(datum.sd, theta)));
+            let logarithms = thetas.iter().map(|theta| libm::log(datum.sd.at(theta)));
             libm::exp(logarithms.sum::<f64>() / thetas.len() as f64)
         });
         let mut scales: Vec<f64> = data.collect();

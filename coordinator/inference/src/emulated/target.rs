@@ -1,6 +1,6 @@
 //! The tempered posterior that an emulator predicts.
 
-use statistics::likelihood::{ErrorSd, Likelihood};
+use statistics::likelihood::Likelihood;
 use statistics::log_likelihood::LogLikelihood;
 use statistics::prior::Prior;
 
@@ -64,7 +64,7 @@ impl EmulatedTarget<'_> {
         let predicted = self.emulator.predict(self.prior, theta);
         let outputs = &predicted.outputs;
         let squares = self.likelihood.data().iter().zip(outputs).map(|(datum, y)| {
-            let residual = (datum.value - y) / error_sd(datum.sd, theta);
+            let residual = (datum.value - y) / datum.sd.at(theta);
             residual * residual
         });
         let (length, count) = (squares.sum::<f64>().sqrt(), outputs.len() as f64);
@@ -83,14 +83,6 @@ impl EmulatedTarget<'_> {
             log_likelihood: log_likelihood(score.log_likelihood),
             log_prior: self.prior.log_density(theta),
         }
-    }
-}
-
-/// Returns the sd of an error, known or in theta.
-pub(crate) fn error_sd(sd: ErrorSd, theta: &[f64]) -> f64 {
-    match sd {
-        ErrorSd::Known(sd) => sd,
-        ErrorSd::Inferred { parameter } => theta[parameter],
     }
 }
 

@@ -117,10 +117,7 @@ impl SharedError {
         (channel, run): (Channel, usize),
         radius_m: f64,
     ) -> f64 {
-        let sd = match self.sd {
-            ErrorSd::Known(sd) => sd,
-            ErrorSd::Inferred { parameter } => theta[parameter],
-        };
+        let sd = self.sd.at(theta);
         let value = match (self.shifted, channel) {
             (Shifted::Offset(shifted), channel) if shifted == channel => return sd,
             (Shifted::Offset(_), _) | (Shifted::Strength, Channel::Sinkage) => return 0.0,

@@ -136,10 +136,7 @@ fn new_measurements(
     let source = noise_source(calibration, run, channel);
     let place = RunPosition::find(spec, run)?;
     let of_draw = |(draw, theta, observables, position): (usize, &[f64], &Observables, usize)| {
-        let noise_sd = source.map(|s| match s {
-            ErrorSd::Known(sd) => sd,
-            ErrorSd::Inferred { parameter } => theta[parameter],
-        });
+        let noise_sd = source.map(|source| source.at(theta));
         // An external model may not predict the channel.
         let mean = *observables.channel(channel).get(position)?;
         let soil = shared_error(calibration, run, channel, (theta, observables, position));

@@ -124,6 +124,17 @@ impl ErrorSd {
     }
 
     /// Returns the value, known or in theta.
+    ///
+    /// # Panics
+    /// If theta lacks the parameter. A vector that the likelihood has scored has all.
+    pub fn at(self, theta: &[f64]) -> f64 {
+        match self {
+            ErrorSd::Known(sd) => sd,
+            ErrorSd::Inferred { parameter } => theta[parameter],
+        }
+    }
+
+    /// Returns the value, known or in theta.
     pub(super) fn value(self, theta: &[f64]) -> Result<f64, LikelihoodError> {
         match self {
             ErrorSd::Known(sd) => Ok(sd),
