@@ -1,5 +1,6 @@
 //! A small part of each study.
 
+mod decision;
 mod fuzz;
 mod hidden_effect;
 mod sbc;

@@ -51,6 +51,20 @@ def test_tables_are_the_files_of_the_folder_to_the_bit(study: grouser.Study, fol
     assert study.summary() == json.loads((folder / "summary.json").read_text(encoding="utf-8"))
 
 
+def test_conditions_of_ones_own_are_predicted_with_their_probabilities(study: grouser.Study, tmp_path: Path) -> None:
+    plan = [{"slip": slip, "wheel_load_n": 100, "sled_speed_m_s": 0.02} for slip in (0.1, 0.4)]
+    predicted = study.predict(plan, statements=["drawbar_pull_n > 12"])
+    pull = predicted.where(quantity="drawbar_pull_n")
+    assert pull.rows == 2 and pull["mean"][0] < 12 < pull["mean"][1]
+    assert np.all(pull["measurement_q05"] < pull["parameters_q05"])
+    chance = predicted.where(quantity="drawbar_pull_n > 12")["models_mean"]
+    assert chance[0] < 0.05 and chance[1] > 0.95
+    file = tmp_path / "decision.toml"
+    options = '[[decision.options]]\nname = "climb"\ncondition = { slope_deg = 6 }\n[[decision.options]]\nname = "stay"\nloss = "900"\n'
+    file.write_text(f'[decision]\nloss = "energy_j_m"\n{options}', encoding="utf-8")
+    assert study.decide(file)["best"] == "climb"
+
+
 def test_a_population_has_the_units_that_the_service_states(study: grouser.Study) -> None:
     population = study.current.samples(1)
     assert population.units["wheel_radius_m"] == "m" and population.units["friction_angle_deg"] == "deg"

@@ -112,6 +112,33 @@ pub struct WhatIf {
     pub without: Vec<String>,
 }
 
+/// `POST /v1/calibrations/ID/predict`.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct NewPrediction {
+    /// Rows of the conditions to predict, with the columns of a plan: CSV text. Without one, a sweep starts from the medians of the fitted
+    /// runs.
+    pub plan: Option<String>,
+    /// One quantity in evenly spaced values for every row: `NAME=FROM:TO:COUNT`.
+    pub sweep: Option<String>,
+    /// Wheels that the experiment does not have: TOML text with tables `[wheel.NAME]`.
+    pub wheels: Option<String>,
+    /// Statements whose probabilities are asked for, as in `drawbar_pull_n > 12`.
+    pub statements: Vec<String>,
+    /// Number of draws of each model, at most those that predict held-out runs.
+    pub draws: Option<usize>,
+}
+
+/// `POST /v1/calibrations/ID/decide`.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct NewDecision {
+    /// Text of a TOML file with a table `[decision]`, and perhaps wheels; by default, the job of the calibration.
+    pub file: Option<String>,
+    /// Number of draws of each model, at most those that predict held-out runs.
+    pub draws: Option<usize>,
+}
+
 /// Answer to further runs.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 pub struct RunsAdded {

@@ -37,6 +37,7 @@ mod page;
 mod page_data;
 mod point_fit;
 mod posterior_prior;
+mod prediction;
 mod reference;
 mod replacement;
 mod rig;

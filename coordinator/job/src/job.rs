@@ -9,6 +9,7 @@ use serde_json::Value;
 use shared::file::{FileError, FileSet, TomlFile, unknown_word};
 use shared::model::{ModelError, ModelSettings};
 
+use crate::decision::{Decision, RawDecision};
 use crate::named_files::NamedFiles;
 use crate::plausibility::question::Question;
 use crate::table::algorithm_settings::AlgorithmSettings;
@@ -51,6 +52,8 @@ pub struct Job {
     pub likelihood: LikelihoodSettings,
     /// The search of its study for missing effects.
     pub discovery: DiscoverySettings,
+    /// The decision that the posterior is for, if the job states one.
+    pub decision: Option<Decision>,
     /// Priors of candidates of a search, by the full names of their parameters: `[discovery.priors]`.
     pub candidate_priors: BTreeMap<String, toml::Value>,
     /// The texts of the files that the job names; empty until [`Job::beside`] gives them.
@@ -98,6 +101,7 @@ pub(crate) struct RawJob {
     likelihood: RawLikelihood,
     #[serde(default)]
     figures: RawFigures,
+    decision: Option<RawDecision>,
 }
 
 /// The figures of a report.
@@ -155,6 +159,8 @@ impl Job {
         let likelihood = likelihood.map_err(|e| fail(format!("[likelihood] {e}")))?;
         let discovery = raw.discovery.settings(&sampler.algorithm);
         let discovery = discovery.map_err(|e| fail(format!("[discovery] {e}")))?;
+        let decision = raw.decision.take().map(RawDecision::decision).transpose();
+        let decision = decision.map_err(|e| fail(format!("[decision] {e}")))?;
         let posterior = PosteriorPrior::take(|key| raw.priors.remove(key).map(toml::Spanned::into_inner))
             .map_err(|e| fail(format!("[priors] {e}")))?;
         let (first, others) = model_entries(name, toml, raw.model, raw.models, raw.priors)?;
@@ -183,6 +189,7 @@ impl Job {
             reference: raw.figures.reference,
             likelihood,
             discovery,
+            decision,
             candidate_priors: candidate_priors::by_name(&raw.discovery.priors),
             files: NamedFiles::default(),
             also_named: also_named.cloned().collect(),

@@ -4,6 +4,8 @@
 //! - `job`: [`Job`], a job as users write it, as a value. `addition`: what changes it. `named_files`: the files that it names.
 //! - `table`: the tables of a job, as written and what they mean. [`schema`]: their JSON schemas; `derived_schema`: schemas of types.
 //! - `data`: the fitted measurements: noise, likelihood, predicted values; whether their order follows a condition.
+//! - `decision`: [`Decision`], options and what they would cost; conditions that were not measured, and quantities of formulas.
+//!   `decision_file`: the decision of a job, or of a file that has nothing else.
 //! - `spec`: [`Spec`], a calibration as its files determine it.
 //! - `plain_parameter`: [`PlainParameter`], what a search may free. `model_switch`: [`ModelSwitch`], what it may turn.
 //!   `effect_on_nodes`: [`EffectOnNodes`], an effect together with such a turn.
@@ -14,6 +16,8 @@
 mod addition;
 mod assumed_experiment;
 mod data;
+mod decision;
+mod decision_file;
 mod derived_schema;
 mod effect_on_nodes;
 mod facts;
@@ -36,6 +40,11 @@ pub use data::level::{levels_of, load_levels_of};
 pub use data::noise::{conditions, repeat_scatter, repeats, repeats_but_for_load};
 pub use data::rig_groups::repeats_earlier_column;
 pub use data::shared_error::SharedError;
+pub use decision::{
+    ConditionDefaults, Constraint, Decision, DecisionOption, PlannedCondition, PlannedRun, QUANTITIES,
+    Quantity, QuantityFormula, QuantityValues, Statement, position_of, predicted_quantities,
+};
+pub use decision_file::read_decision;
 pub use effect_on_nodes::EffectOnNodes;
 pub use facts::{effect_name, foreign_effects, is_earlier_search, model_kind};
 pub use job::{Job, JobModels};

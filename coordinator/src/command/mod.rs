@@ -13,6 +13,7 @@ mod import;
 mod job_on_disk;
 mod output;
 mod place;
+mod predict;
 mod progress;
 mod run;
 mod scale;
@@ -49,6 +50,8 @@ pub async fn execute(command: CoordinatorCommand) -> anyhow::Result<()> {
         CoordinatorCommand::Export(export) => export_file::export(&export).await,
         CoordinatorCommand::Diagnose(target) => verbs::diagnose(&target).await,
         CoordinatorCommand::Validate(config) => validate::validate(&config).await,
+        CoordinatorCommand::Predict(config) => predict::predict(&config).await,
+        CoordinatorCommand::Decide(config) => predict::decide(&config).await,
         CoordinatorCommand::Discover(discover) => growth::discover(&discover).await,
         CoordinatorCommand::Extend(extend) => growth::extend(&extend).await,
         CoordinatorCommand::AddRuns(runs) => growth::add_runs(&runs).await,

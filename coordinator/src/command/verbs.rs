@@ -162,7 +162,7 @@ pub(super) async fn report(config: &ReportArguments) -> anyhow::Result<()> {
 }
 
 /// Returns the calibration of the current model of a study, or the given calibration if the study has no current model.
-async fn current(place: &Place, calibration: i64) -> anyhow::Result<i64> {
+pub(super) async fn current(place: &Place, calibration: i64) -> anyhow::Result<i64> {
     let status: CalibrationStatus = place.get(&format!("/v1/calibrations/{calibration}")).await?;
     let study: StudyOverview = place.get(&format!("/v1/studies/{}", status.study)).await?;
     Ok(study.current.unwrap_or(calibration))

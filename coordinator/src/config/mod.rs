@@ -3,11 +3,13 @@
 //! # Layout
 //! - `client`: what a service asks for.
 //! - `model`: models that are not ours. `target`: which calibration, and where.
+//! - `predict`: arguments of `coordinator predict` and `coordinator decide`.
 //! - `scale`, `validate`: arguments of `coordinator scale` and `coordinator validate`.
 //! - `store`: where a store is kept, copies of it, its tokens.
 
 mod client;
 mod model;
+mod predict;
 mod scale;
 mod store;
 mod target;
@@ -23,6 +25,7 @@ use crate::schema::FileKind;
 
 pub use client::ClientArguments;
 pub use model::ModelArguments;
+pub use predict::{DecideArguments, PredictArguments, PredictionFormat};
 pub use scale::{EngineKind, ScaleArguments};
 pub use store::{BackupArguments, CopyStoreArguments, StoreArguments, TokenCommand};
 pub use target::{SourceArguments, TargetArguments};
@@ -73,6 +76,10 @@ pub enum CoordinatorCommand {
     Diagnose(TargetArguments),
     /// Leave each level of a factor out in turn, and predict it by a calibration on the rest.
     Validate(ValidateArguments),
+    /// Predict conditions of your own: channels, traction, slopes, energy, probabilities of statements.
+    Predict(PredictArguments),
+    /// Compare options by their expected losses, and say what one more run is worth.
+    Decide(DecideArguments),
     /// Search for an effect that the model of a calibration is missing.
     Discover(DiscoverArguments),
     /// Extend a study by a calibration with one additional effect.

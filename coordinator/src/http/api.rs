@@ -2,7 +2,10 @@
 
 use utoipa_axum::router::OpenApiRouter;
 
-use super::{calibrations, document, effects, events, examples, experiments, growth, import, studies, work};
+use super::{
+    calibrations, document, effects, events, examples, experiments, growth, import, predictions, studies,
+    work,
+};
 use crate::service::Service;
 
 /// Returns the routes of `/v1`.
@@ -15,6 +18,7 @@ pub(super) fn api() -> OpenApiRouter<Service> {
         .merge(calibrations::routes())
         .merge(events::routes())
         .merge(studies::routes())
+        .merge(predictions::routes())
         .merge(work::routes())
         .merge(growth::routes());
     OpenApiRouter::with_openapi(document::base()).nest("/v1", routes)

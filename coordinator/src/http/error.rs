@@ -6,6 +6,7 @@ use axum::extract::rejection::{BytesRejection, JsonRejection, PathRejection, Que
 use axum::http::{StatusCode, header};
 use axum::response::{IntoResponse, Response};
 use export::ExportError;
+use prediction::PredictionError;
 use shared::api::{ErrorBody, ErrorDetail, ErrorKind};
 use shared::sentence::one_line;
 
@@ -98,10 +99,14 @@ impl From<ServiceError> for HttpError {
             ServiceError::File(_) | ServiceError::Begin(_) | ServiceError::Webhook(_) => {
                 ErrorKind::InvalidFile
             }
+            ServiceError::Prediction(PredictionError::File(_) | PredictionError::Request(_)) => {
+                ErrorKind::InvalidFile
+            }
             ServiceError::NotFound { .. } | ServiceError::NoVersion { .. } => ErrorKind::NotFound,
             ServiceError::Control(_)
             | ServiceError::Effects(_)
             | ServiceError::OfLibrary(_)
+            | ServiceError::Prediction(PredictionError::NoDraws(_) | PredictionError::Model(_))
             | ServiceError::Search(_)
             | ServiceError::LeftAlone { .. }
             | ServiceError::InProgress { .. }

@@ -37,7 +37,7 @@ pub(super) async fn pass(
     body::check_form(&request)?;
     let path = request.uri().path();
     let caller = gate.access.caller(request.method(), path, request.headers())?;
-    if gate.is_read_only && ![Method::GET, Method::HEAD].contains(request.method()) {
+    if gate.is_read_only && !changes_nothing(request.method(), path) {
         let message = "this service only reads: it was started with --read-only";
         return Err(HttpError::new(ErrorKind::Forbidden, message));
     }
@@ -45,4 +45,9 @@ pub(super) async fn pass(
     let request = body::received(request, &gate.body_memory).await?;
     let answering = activity.answer();
     Ok(answering.through(next.run(request).await))
+}
+
+/// Returns whether a request changes nothing in the store: it reads, or it asks for a prediction or a decision.
+fn changes_nothing(method: &Method, path: &str) -> bool {
+    [Method::GET, Method::HEAD].contains(method) || path.ends_with("/predict") || path.ends_with("/decide")
 }

@@ -26,6 +26,7 @@ mod import;
 mod in_process;
 mod metrics;
 mod page;
+mod predictions;
 mod request_example;
 mod request_metrics;
 mod studies;

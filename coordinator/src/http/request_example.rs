@@ -24,6 +24,19 @@ neutral = 0.0
 prior = { normal = [0.0, 0.2] }
 ";
 
+/// A decision whether the wheel climbs a slope.
+const DECISION: &str = "[decision]
+loss = \"energy_j_m + 200 * stuck\"
+
+[[decision.options]]
+name = \"climb\"
+condition = { slope_deg = 8 }
+
+[[decision.options]]
+name = \"stay\"
+loss = \"60\"
+";
+
 /// A table with semicolons and decimal commas: slip, load and drawbar pull of one run.
 const TABLE_BASE64: &str = "c2xpcCBbJV07bG9hZCBba05dO3B1bGwgW05dCjIwOzAsMTszNSwyCg==";
 
@@ -57,6 +70,8 @@ pub(super) fn request_example(operation: &str) -> Option<Value> {
         "create_calibration" => json!({"experiment": 1, "toml": job.1, "name": name}),
         "extend_calibration" => json!({"effect": "slip_sinkage"}),
         "create_what_if" => json!({"without": ["r00", "r01"]}),
+        "predict" => json!({"sweep": "slip=0.05:0.6:12", "statements": ["drawbar_pull_n > 12"]}),
+        "decide" => json!({ "file": DECISION }),
         "add_runs" => json!({ "runs": FURTHER_RUNS }),
         "add_effect" => json!({ "text": EFFECT }),
         "import_table" => json!({"name": "sand.csv", "content_base64": TABLE_BASE64, "map": MAP}),

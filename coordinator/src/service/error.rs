@@ -9,6 +9,7 @@ use farm::calibration::BeginError;
 use farm::calibration::replay::ReplayError;
 use farm::dispatch::Stopped;
 use job::EffectsChanged;
+use prediction::PredictionError;
 use record::CalibrationRow;
 use store::StoreError;
 
@@ -50,6 +51,9 @@ pub enum ServiceError {
     /// The effects differ from those with which the calibration was computed.
     #[error(transparent)]
     Effects(#[from] EffectsChanged),
+    /// There is no prediction or decision.
+    #[error(transparent)]
+    Prediction(#[from] PredictionError),
     /// A search can be neither extended nor searched.
     #[error("calibration {0} is a search for a missing effect: name the calibration whose model it searches")]
     Search(i64),

@@ -12,6 +12,7 @@
 //! - `stored_calibration`, `study_step`, `finished_study`: values that are read from the store.
 //! - `study_members`: the members of a study.
 //! - `results`: the texts about studies and calibrations, kept in the `result_cache`. `study_overview`: studies for the page.
+//! - `predictions`: conditions of one's own and decisions; `simulation`: their simulations in this process.
 //! - `study_changes`: notifications of changes of studies.
 
 mod announcement;
@@ -22,10 +23,12 @@ mod farm_settings;
 mod finished_study;
 mod growth;
 mod handle;
+mod predictions;
 mod recovery;
 mod removal;
 mod result_cache;
 mod results;
+mod simulation;
 mod stored_calibration;
 mod study_changes;
 mod study_members;

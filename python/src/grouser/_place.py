@@ -32,6 +32,9 @@ class ServicePlace:
     def text(self, path: str, **query: Query) -> str:
         return self.client.text(path, **query)
 
+    def post(self, path: str, body: Any) -> Any:
+        return self.client.post(path, body)
+
     def extend(self, calibration: int, effect: str | EffectFile, wheel: str | None, tell: OnProgress | None) -> None:
         body: dict[str, Any] = {"effect": effect, "wheel": wheel} if wheel else {"effect": effect}
         if isinstance(effect, EffectFile):
@@ -81,6 +84,10 @@ class FolderPlace:
     def text(self, path: str, **query: Query) -> str:
         with self._lock:
             return self.client.text(path, **query)
+
+    def post(self, path: str, body: Any) -> Any:
+        with self._lock:
+            return self.client.post(path, body)
 
     def extend(self, calibration: int, effect: str | EffectFile, wheel: str | None, tell: OnProgress | None) -> None:
         if isinstance(effect, str):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +12,7 @@ from ._calibration import Calibration
 from ._client import Client
 from ._error import CalibrationStopped, GrouserError
 from ._place import FolderPlace, Place, ServicePlace
+from ._planned import Plan, request, table
 from ._progress import OnProgress, Progress, of_status, shown
 from ._story import EffectFile, MissingEffect, NextRun, Step, Story, next_run, story
 from ._table import CONDITIONS, Table
@@ -108,6 +109,56 @@ class Study:
         of a new measurement.
         """
         return Table.from_rows(self._place.get(f"calibrations/{self._lead}/predictions"), units=CONDITIONS)
+
+    def predict(
+        self,
+        plan: Plan | None = None,
+        *,
+        sweep: str | None = None,
+        wheels: str | os.PathLike[str] | None = None,
+        statements: Sequence[str] = (),
+        draws: int | None = None,
+        calibration: int | None = None,
+    ) -> Table:
+        """Conditions of one's own: a row for each run and quantity, with 90 % intervals.
+
+        ``parameters`` are those of the model, ``models`` those of all models of the study by their evidence, ``measurement`` those of
+        a new measurement by all models, ``corrected`` those of a new measurement by the model and what it misses in the fitted
+        conditions. The ``models_mean`` of a statement is the probability that a new measurement makes it true, its ``mean`` that
+        of the model's parameters alone. ``beyond`` says what lies outside the fitted range.
+
+        Args:
+            plan: a CSV file, or a row for each condition: ``[{"slip": 0.2, "wheel_load_n": 100}]``. What is left out follows from the
+                fitted runs.
+            sweep: one quantity in evenly spaced values for every row: ``"slip=0:0.8:41"``.
+            wheels: a TOML file with tables ``[wheel.NAME]`` of wheels that the experiment does not have.
+            statements: comparisons such as ``"drawbar_pull_n > 12"``.
+            draws: of each model; by default, up to 199.
+            calibration: the calibration that predicts; by default, that of the current model.
+
+        Raises:
+            GrouserError: the plan is malformed; the message is the coordinator's.
+        """
+        by = self.current.id if calibration is None else calibration
+        return table(self._place.post(f"calibrations/{by}/predict", request(plan, sweep, wheels, statements, draws)))
+
+    def decide(
+        self, file: str | os.PathLike[str], *, draws: int | None = None, calibration: int | None = None
+    ) -> dict[str, Any]:
+        """Options by their expected losses, what decides, and what one more run is worth (docs/prediction.md).
+
+        Args:
+            file: a TOML file with a table ``[decision]``, alone or in a job.
+            draws: of each model; by default, up to 199.
+            calibration: the calibration that decides; by default, that of the current model.
+
+        Raises:
+            GrouserError: the decision is malformed; the message is the coordinator's.
+        """
+        by = self.current.id if calibration is None else calibration
+        body = {"file": Path(file).read_text(encoding="utf-8"), "draws": draws}
+        answer: dict[str, Any] = self._place.post(f"calibrations/{by}/decide", body)
+        return answer
 
     def calibration(self, id: int) -> Calibration:
         """One of the calibrations.

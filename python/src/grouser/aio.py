@@ -18,12 +18,13 @@ from __future__ import annotations
 import asyncio
 import os
 import time
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Sequence
 from pathlib import Path
 from typing import Any
 
 from . import _run, _service, _study
 from ._calibration import Calibration as SyncCalibration
+from ._planned import Plan
 from ._progress import OnProgress, Progress, shown
 from ._story import MissingEffect, NextRun, Step, Story
 from ._study import LOOK_S
@@ -168,6 +169,33 @@ class Study:
     async def next_runs(self) -> list[NextRun]:
         """As :meth:`grouser.Study.next_runs`."""
         return await asyncio.to_thread(self.sync.next_runs)
+
+    async def predict(
+        self,
+        plan: Plan | None = None,
+        *,
+        sweep: str | None = None,
+        wheels: str | os.PathLike[str] | None = None,
+        statements: Sequence[str] = (),
+        draws: int | None = None,
+        calibration: int | None = None,
+    ) -> Table:
+        """As :meth:`grouser.Study.predict`."""
+        return await asyncio.to_thread(
+            self.sync.predict,
+            plan,
+            sweep=sweep,
+            wheels=wheels,
+            statements=statements,
+            draws=draws,
+            calibration=calibration,
+        )
+
+    async def decide(
+        self, file: str | os.PathLike[str], *, draws: int | None = None, calibration: int | None = None
+    ) -> dict[str, Any]:
+        """As :meth:`grouser.Study.decide`."""
+        return await asyncio.to_thread(self.sync.decide, file, draws=draws, calibration=calibration)
 
     async def predictions(self) -> Table:
         """As :meth:`grouser.Study.predictions`."""

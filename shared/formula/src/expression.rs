@@ -1,4 +1,4 @@
-//! One formula over names that its user declares, such as in the map of an import.
+//! One formula over names that its user declares, such as in the map of an import, in a loss or in a statement.
 
 use std::collections::BTreeMap;
 
@@ -33,7 +33,7 @@ impl Expression {
             variables: Variables::default(),
             parameters: names,
             definitions: &BTreeMap::new(),
-            place: "a formula of a map",
+            place: "this formula",
         };
         let mut graph = Graph::default();
         let result = parse(text, &scope, &mut graph)

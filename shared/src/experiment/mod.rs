@@ -38,7 +38,9 @@ pub use rig_column::RigColumn;
 pub use rig_error::{RigError, RigQuantity};
 pub use runs::{CONDITION_COLUMNS, RunUse, TestRun};
 pub use scatter::{Scatter, ScatterSd};
-pub use settings::{AveragingProtocol, ExperimentKeys, Noise, NoiseSd, ProtocolKind, Rig, SoilProperties};
+pub use settings::{
+    AveragingProtocol, ExperimentKeys, Noise, NoiseSd, ProtocolKind, Rig, SoilProperties, read_wheels,
+};
 pub use tread::Tread;
 pub use wheel::{WheelGeometry, rim_speed_m_s};
 

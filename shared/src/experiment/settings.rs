@@ -249,6 +249,33 @@ pub(super) fn parse(name: &str, toml: &str) -> Result<ExperimentFile, FileError>
     })
 }
 
+/// Wheels beside those of an experiment: a file with tables `[wheel.NAME]` alone.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct WheelKeys {
+    #[serde(default)]
+    wheel: BTreeMap<String, RawWheel>,
+}
+
+/// Parses and validates a file with tables `[wheel.NAME]` alone. A surface mesh is refused, because it needs a file of its own.
+///
+/// # Errors
+/// [`FileError`] names the wheel, the value, the unit and the bound.
+/// Checked by `tests::wheels_stand_in_a_file_of_their_own`.
+pub fn read_wheels(name: &str, toml: &str) -> Result<BTreeMap<String, WheelGeometry>, FileError> {
+    let raw: WheelKeys = parse_toml(name, toml)?;
+    let checked = raw.wheel.into_iter().map(|(wheel_name, raw)| {
+        let fail = |message: String| FileError::whole(name, format!("[wheel.{wheel_name}] {message}"));
+        match raw.check().map_err(|e| fail(e.to_string()))? {
+            (_, Some(mesh)) => Err(fail(format!(
+                "mesh = \"{mesh}\" has no place here: state it in the experiment"
+            ))),
+            (wheel, None) => Ok((wheel_name.clone(), wheel)),
+        }
+    });
+    checked.collect()
+}
+
 /// Rejects numbers of rig, soils and protocol that are not finite or have the wrong sign; messages name the table.
 fn check_numbers(
     file: &str,
@@ -348,4 +375,23 @@ fn noise(raw: RawNoise) -> Result<Noise, ValueError> {
         };
     }
     Ok(Noise { sd, scatter, rig })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn wheels_stand_in_a_file_of_their_own() {
+        let text = "[wheel.wide]\nradius_m = 0.1\nwidth_m = 0.2\n";
+        let wheels = read_wheels("wheels.toml", text).unwrap();
+        assert!((wheels["wide"].rig_radius_m - 0.1).abs() < 1e-15);
+        let refused = |text: &str| read_wheels("wheels.toml", text).unwrap_err().to_string();
+        assert_eq!(
+            refused(&text.replace("0.2", "-0.2")),
+            "wheels.toml: [wheel.wide] width_m -0.2 m must be > 0 m"
+        );
+        assert!(refused(&format!("{text}mesh = \"a.stl\"\n")).contains("has no place here"));
+        assert!(refused("[rig]\ngravity_m_s2 = 1.62\n").contains("rig"));
+    }
 }

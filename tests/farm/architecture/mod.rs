@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 use farm_tests::workspace::{files, root, text};
 
 /// The folder and the name of every crate of the workspace.
-const CRATES: [(&str, &str); 21] = [
+const CRATES: [(&str, &str); 22] = [
     ("shared", "shared"),
     ("shared/formula", "formula"),
     ("shared/signal", "signal"),
@@ -24,6 +24,7 @@ const CRATES: [(&str, &str); 21] = [
     ("coordinator/import", "import"),
     ("coordinator/job", "job"),
     ("coordinator/page", "page"),
+    ("coordinator/prediction", "prediction"),
     ("coordinator/record", "record"),
     ("coordinator/report", "report"),
     ("coordinator/result", "result"),
@@ -36,7 +37,7 @@ const CRATES: [(&str, &str); 21] = [
 ];
 
 /// The dependencies that each crate may have on other crates of the workspace.
-const DIRECTION: [(&str, &str); 19] = [
+const DIRECTION: [(&str, &str); 20] = [
     ("shared/formula", ""),
     ("shared/signal", ""),
     ("shared/statistics", ""),
@@ -47,10 +48,11 @@ const DIRECTION: [(&str, &str); 19] = [
     ("coordinator/import", "formula shared"),
     ("coordinator/job", "formula inference shared statistics"),
     ("coordinator/page", ""),
+    ("coordinator/prediction", "job record result shared statistics"),
     ("coordinator/record", "inference job shared"),
     (
         "coordinator/report",
-        "formula inference job page record result shared statistics",
+        "formula inference job page prediction record result shared statistics",
     ),
     (
         "coordinator/result",
@@ -72,7 +74,7 @@ const DIRECTION: [(&str, &str); 19] = [
     ("worker", "formula scm shared signal"),
     (
         "coordinator",
-        "discovery export farm formula import inference job page record report result search shared signal store worker",
+        "discovery export farm formula import inference job page prediction record report result search shared signal store worker",
     ),
 ];
 
@@ -175,7 +177,7 @@ fn manifests_keep_the_direction_of_dependencies() {
 fn pure_crates_know_no_runtime_network_database_or_chance() {
     let impure = set("tokio axum sqlx reqwest rayon tracing anyhow clap indicatif");
     let pure = "shared shared/formula shared/signal shared/statistics worker/scm coordinator/inference coordinator/discovery \
-        coordinator/export coordinator/import coordinator/job coordinator/page coordinator/record coordinator/report coordinator/result";
+        coordinator/export coordinator/import coordinator/job coordinator/page coordinator/prediction coordinator/record coordinator/report coordinator/result";
     for krate in set(pure) {
         let found = &dependencies(&krate) & &impure;
         assert!(found.is_empty(), "{krate} imports {found:?}");
@@ -272,6 +274,7 @@ fn pure_modules_read_no_clock() {
         "coordinator/farm/src/lease",
         "coordinator/import/src",
         "coordinator/job/src",
+        "coordinator/prediction/src",
         "coordinator/report/src",
         "coordinator/result/src",
         "coordinator/export/src",

@@ -6,6 +6,7 @@
 //! - `brief`: a study in a few lines; `story`: what is wrong, what is missing, what next; `ending`: where the files are.
 //! - `study`: the complete text of a study; `models`: its compared models; `ledger`: the errors of its calibrations.
 //! - `calibration`: one calibration; `comparison`: its rows and errors; `diagnostics`: its diagnostics.
+//! - `prediction`: conditions of one's own; `decision`: options by their expected losses.
 //! - `rig`: offsets of sessions, tarings and operators.
 //! - [`discovery`]: a search for a missing effect. `validation`: the levels of a factor, each left out in turn.
 //! - `table`: tables of columns; `column`: widths, cells that may be empty, sentences with a label.
@@ -15,12 +16,14 @@ mod calibration;
 mod campaign;
 mod column;
 mod comparison;
+mod decision;
 mod diagnostics;
 pub mod discovery;
 mod ending;
 mod ledger;
 mod list;
 mod models;
+mod prediction;
 mod rig;
 mod specification;
 mod status;
@@ -31,9 +34,11 @@ mod validation;
 
 pub use brief::brief;
 pub use comparison::{comparison, groups};
+pub use decision::decision;
 pub use diagnostics::diagnostics;
 pub use ending::ending;
 pub use list::list;
+pub use prediction::{prediction, prediction_csv};
 pub use rig::rig;
 pub use specification::specification;
 pub use status::status_table;

@@ -17,13 +17,15 @@ use crate::finished_calibration::FinishedCalibration;
 use crate::words::number;
 
 /// The correction of each channel of a calibration, or the reason why there is none.
-pub(crate) struct Corrections<'a> {
+#[derive(Debug)]
+pub struct Corrections<'a> {
     calibration: &'a FinishedCalibration,
     channels: BTreeMap<Channel, Result<Correction, String>>,
 }
 
 impl<'a> Corrections<'a> {
-    pub(crate) fn new(calibration: &'a FinishedCalibration) -> Self {
+    /// Infers the discrepancy of each channel from the fitted conditions.
+    pub fn new(calibration: &'a FinishedCalibration) -> Self {
         let sigmas = FixedSigmas::new(calibration);
         let correction = |channel: Channel| {
             let sigma = sigmas
@@ -45,13 +47,17 @@ impl<'a> Corrections<'a> {
     ///
     /// # Arguments
     /// - `run`: position in the experiment. `model`: what the model says of it.
-    pub(crate) fn at(&self, run: usize, channel: Channel, model: Predictive) -> Result<Corrected, String> {
+    ///
+    /// # Errors
+    /// A sentence: the channel has no discrepancy, or not at this run.
+    pub fn at(&self, run: usize, channel: Channel, model: Predictive) -> Result<Corrected, String> {
         let correction = self.channels[&channel].as_ref().map_err(Clone::clone)?;
         correction.at(self.calibration, run, model)
     }
 }
 
 /// The discrepancy of a channel over the conditions of the rig.
+#[derive(Debug)]
 struct Correction {
     channel: Channel,
     conditions: Conditions,

@@ -19,7 +19,7 @@ const MIN_SHARE: f64 = 1e-12;
 const CLOSE: f64 = 1e-13;
 
 /// Returns the quantile y of the mixture at probability p; without noise, the quantile of the means.
-pub(super) fn quantile(components: &[Component], law: ErrorLaw, p: f64) -> f64 {
+pub fn quantile(components: &[Component], law: ErrorLaw, p: f64) -> f64 {
     let total: f64 = components.iter().map(|c| c.weight).sum();
     let counted: Vec<Component> = components
         .iter()

@@ -1,0 +1,27 @@
+//! Predictions of conditions that were not measured, and decisions that rest on them: pure functions of a posterior and of simulations that
+//! the caller makes.
+//!
+//! # Layout
+//! - [`plan`]: which runs are predicted.
+//! - [`ensemble`]: the models of a study with their weights, and what each is asked. [`error`]: why there is no prediction.
+//! - [`quantity_value`]: what follows from the channels of a run. [`draw`]: values and errors at each draw.
+//! - [`spread`]: means and intervals over weighted draws. [`beyond`]: what lies outside the fitted range.
+//! - [`balance`]: the slip at which a wheel climbs a slope.
+//! - [`prediction`]: predictions of a plan. [`decision`]: expected losses of options, and what one more run is worth.
+
+pub mod balance;
+pub mod beyond;
+pub mod decision;
+pub mod draw;
+pub mod ensemble;
+pub mod error;
+pub mod plan;
+pub mod prediction;
+pub mod quantity_value;
+pub mod spread;
+
+pub use decision::DecisionAnswer;
+pub use ensemble::{Answers, Ensemble, ModelWeight, Question, RunAnswers, Simulated};
+pub use error::PredictionError;
+pub use plan::{Sweep, planned_runs};
+pub use prediction::Prediction;

@@ -1,0 +1,64 @@
+//! Settings of `coordinator predict` and `coordinator decide`.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::target::{SourceArguments, TargetArguments};
+
+/// Predict conditions of your own.
+#[derive(Debug, Args)]
+pub struct PredictArguments {
+    #[command(flatten)]
+    pub target: TargetArguments,
+    /// CSV file with a row for each condition: `run`, `wheel`, `slip`, `wheel_load_n`, `sled_speed_m_s`, `slip_angle_deg`, `pass`,
+    /// `gravity_m_s2`, `slope_deg`. What a row leaves out follows from the fitted runs.
+    #[arg(long, value_name = "FILE", required_unless_present_any = ["sweep", "at"])]
+    pub plan: Option<PathBuf>,
+    /// A value of a column of the plan, in place of a file; may be repeated.
+    #[arg(long, value_name = "NAME=VALUE", conflicts_with = "plan")]
+    pub at: Vec<String>,
+    /// Takes one quantity in evenly spaced values for every row, as in `slip=0:0.8:41`.
+    #[arg(long, value_name = "NAME=FROM:TO:COUNT")]
+    pub sweep: Option<String>,
+    /// TOML file with tables `[wheel.NAME]` of wheels that the experiment does not have.
+    #[arg(long, value_name = "FILE")]
+    pub wheels: Option<PathBuf>,
+    /// Asks for the probability of a statement, as in `drawbar_pull_n > 12`; may be repeated.
+    #[arg(long, value_name = "STATEMENT")]
+    pub probability: Vec<String>,
+    /// Number of draws of each model; by default, up to 199, and fewer for a slow model.
+    #[arg(long, value_name = "COUNT")]
+    pub draws: Option<usize>,
+    /// What is printed.
+    #[arg(long, value_enum, default_value_t = PredictionFormat::Text)]
+    pub format: PredictionFormat,
+}
+
+/// Compare options by their expected losses.
+#[derive(Debug, Args)]
+pub struct DecideArguments {
+    /// A file with a table `[decision]`, alone or in a job.
+    pub file: PathBuf,
+    /// Id of the calibration; by default, the current model of the only study.
+    pub id: Option<i64>,
+    #[command(flatten)]
+    pub source: SourceArguments,
+    /// Number of draws of each model; by default, up to 199, and fewer for a slow model.
+    #[arg(long, value_name = "COUNT")]
+    pub draws: Option<usize>,
+    /// What is printed.
+    #[arg(long, value_enum, default_value_t = PredictionFormat::Text)]
+    pub format: PredictionFormat,
+}
+
+/// Form in which predictions and decisions are printed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub enum PredictionFormat {
+    /// Tables and sentences.
+    Text,
+    /// All numbers as JSON.
+    Json,
+    /// A row for each run and quantity; of predictions alone.
+    Csv,
+}

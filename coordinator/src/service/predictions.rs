@@ -1,0 +1,100 @@
+//! Predictions of conditions of one's own, and decisions.
+
+use std::collections::BTreeMap;
+
+use shared::api::{NewDecision, NewPrediction};
+use shared::experiment::read_wheels;
+use tokio::sync::Semaphore;
+
+use super::error::ServiceError;
+use super::finished_study::{check_finished, finished_study};
+use super::handle::Service;
+use super::simulation::simulate;
+use farm::dispatch::Stopped;
+use job::{ConditionDefaults, Statement, read_decision};
+use prediction::decision::{decide, decision_runs};
+use prediction::prediction::predict;
+use prediction::{DecisionAnswer, Ensemble, Prediction, PredictionError, Sweep, planned_runs};
+use result::Study;
+
+/// One prediction is computed at a time, because it takes all cores.
+static ONE_AT_A_TIME: Semaphore = Semaphore::const_new(1);
+/// Names of files in messages.
+const WHEELS: &str = "wheels.toml";
+const DECISION: &str = "decision.toml";
+const JOB: &str = "job.toml";
+
+impl Service {
+    /// Predicts planned runs by the posterior of a calibration and of the other models of its study.
+    ///
+    /// # Errors
+    /// [`ServiceError`]: the calibration has no posterior, or the plan is malformed.
+    pub async fn predict(&self, id: i64, asked: NewPrediction) -> Result<Prediction, ServiceError> {
+        self.alone(id, move |study| predicted(study, id, &asked)).await
+    }
+
+    /// Compares the options of a decision by their expected losses.
+    ///
+    /// # Errors
+    /// [`ServiceError`]: the calibration has no posterior, or the decision is malformed.
+    pub async fn decide(&self, id: i64, asked: NewDecision) -> Result<DecisionAnswer, ServiceError> {
+        let (name, file) = match asked.file {
+            Some(file) => (DECISION, file),
+            None => (JOB, self.calibration_row(id).await?.job.toml),
+        };
+        let draws = asked.draws;
+        self.alone(id, move |study| decided(study, id, (name, &file), draws))
+            .await
+    }
+
+    /// Computes from the study of a calibration outside the threads of the runtime, one at a time.
+    async fn alone<T: Send + 'static>(
+        &self,
+        id: i64,
+        compute: impl FnOnce(Study) -> Result<T, PredictionError> + Send + 'static,
+    ) -> Result<T, ServiceError> {
+        let row = self.calibration_row(id).await?;
+        check_finished(&row)?;
+        // The semaphore is never closed. A thread that computes cannot be stopped, so it keeps the permit until it has ended.
+        let turn = ONE_AT_A_TIME.acquire().await;
+        let reader = self.store().reader();
+        let study = finished_study(&reader, &row, &reader.study(row.study).await?).await?;
+        let computed = tokio::task::spawn_blocking(move || {
+            let _turn = turn;
+            compute(study)
+        });
+        Ok(computed.await.map_err(|_| Stopped)??)
+    }
+}
+
+fn predicted(study: Study, id: i64, asked: &NewPrediction) -> Result<Prediction, PredictionError> {
+    let wheels = match &asked.wheels {
+        Some(text) => read_wheels(WHEELS, text)?,
+        None => BTreeMap::new(),
+    };
+    let statements = asked.statements.iter().map(|text| {
+        let fail = |e: String| PredictionError::Request(format!("statement \"{text}\": {e}"));
+        Statement::read(text).map_err(fail)
+    });
+    let statements: Vec<Statement> = statements.collect::<Result<_, _>>()?;
+    let sweep = asked.sweep.as_deref().map(Sweep::read).transpose()?;
+    let ensemble = Ensemble::new(study, id, wheels)?;
+    let defaults = ConditionDefaults::new(&ensemble.asked().spec.experiment, ensemble.wheels());
+    let runs = planned_runs(asked.plan.as_deref(), sweep.as_ref(), &defaults)?;
+    let simulated = ensemble.simulate(runs, asked.draws, |question| simulate(&question))?;
+    Ok(predict(&simulated, &statements))
+}
+
+fn decided(
+    study: Study,
+    id: i64,
+    (name, file): (&str, &str),
+    draws: Option<usize>,
+) -> Result<DecisionAnswer, PredictionError> {
+    let (decision, wheels) = read_decision(name, file)?;
+    let ensemble = Ensemble::new(study, id, read_wheels(name, &wheels)?)?;
+    let defaults = ConditionDefaults::new(&ensemble.asked().spec.experiment, ensemble.wheels());
+    let (runs, scenarios) = decision_runs(&decision, &defaults)?;
+    let simulated = ensemble.simulate(runs, draws, |question| simulate(&question))?;
+    decide(&simulated, &decision, &scenarios)
+}

@@ -1,0 +1,262 @@
+//! Predictions of conditions of one's own, and decisions: by the command line, by a service, and as the tutorial has them.
+
+use std::path::Path;
+
+use farm_tests::assert_contains;
+use farm_tests::job::Job;
+use farm_tests::json::{float, items, word};
+use farm_tests::programs::{Ended, coordinator, run};
+use farm_tests::service::Service;
+use farm_tests::workspace::{root, text};
+use serde_json::{Value, json};
+
+const DECISION: &str = "[decision]\nloss = \"20 * energy_j_m + 5000 * stuck\"\nrun_cost = 1\n\
+    [[decision.options]]\nname = \"climb\"\ncondition = { slope_deg = 6, wheel_load_n = 100 }\n\
+    [[decision.options]]\nname = \"cliff\"\ncondition = { slope_deg = 60, wheel_load_n = 100 }\n\
+    [[decision.options]]\nname = \"stay\"\nloss = \"3000\"\n";
+
+/// Runs the small job; its folder.
+fn calibrated(folder: &Path) -> String {
+    let job = Job::small().write(&folder.join("job")).display().to_string();
+    let out = folder.join("out").display().to_string();
+    run(coordinator(["run", &job, "--out", &out])).success();
+    out
+}
+
+fn verb(words: &[&str], out: &str) -> Ended {
+    run(coordinator([words, &["--out", out]].concat()))
+}
+
+fn json_of(words: &[&str], out: &str) -> Value {
+    let printed = verb(&[words, &["--format", "json"]].concat(), out).success();
+    serde_json::from_str(&printed).expect("JSON")
+}
+
+fn quantity<'a>(run: &'a Value, name: &str) -> &'a Value {
+    let mut quantities = items(&run["quantities"]).iter();
+    let found = quantities.find(|quantity| quantity["name"] == name);
+    found.unwrap_or_else(|| panic!("{name} in {run}"))
+}
+
+#[test]
+fn the_condition_of_a_held_out_run_is_predicted_as_that_run() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = calibrated(folder.path());
+    let table = text(&Path::new(&out).join("predictions.csv"));
+    let mut lines = table.lines();
+    let titles: Vec<&str> = lines.next().expect("titles").split(',').collect();
+    let column = |name: &str| titles.iter().position(|title| *title == name).expect("a column");
+    let held_out: Vec<Vec<&str>> = lines
+        .map(|line| line.split(',').collect::<Vec<&str>>())
+        .filter(|cells| cells[column("use")] == "holdout" && cells[column("channel")] == "drawbar_pull")
+        .collect();
+    let mut plan = "run,slip,wheel_load_n,sled_speed_m_s\n".to_owned();
+    for cells in &held_out {
+        let of = |name: &str| cells[column(name)];
+        let row = [of("run"), of("slip"), of("wheel_load_n"), of("sled_speed_m_s")];
+        plan += &(row.join(",") + "\n");
+    }
+    let file = folder.path().join("plan.csv").display().to_string();
+    std::fs::write(&file, plan).expect("the plan");
+    let predicted = json_of(&["predict", "1", "--plan", &file], &out);
+    let runs = items(&predicted["runs"]);
+    assert!(runs.len() > 10 && runs.len() == held_out.len(), "{predicted}");
+    for (run, cells) in runs.iter().zip(&held_out) {
+        let stored = |name: &str| cells[column(name)].parse::<f64>().expect("a number");
+        let pull = quantity(run, "drawbar_pull_n");
+        for (new, old) in [
+            (float(&pull["mean"]), "model"),
+            (float(&pull["measurement"][0]), "model_q05"),
+            (float(&pull["measurement"][1]), "model_q95"),
+            (float(&pull["corrected"]), "corrected"),
+            (float(&pull["corrected_measurement"][1]), "corrected_q95"),
+        ] {
+            let expected = stored(old);
+            assert!(
+                (new - expected).abs() < 1e-9 * expected.abs().max(1.0),
+                "{old} {new} {expected}"
+            );
+        }
+        // With one model, all models are the model, and an interval of the parameters lies within that of a measurement.
+        assert_eq!(pull["parameters"], pull["models"]);
+        assert!(float(&pull["measurement"][0]) < float(&pull["parameters"][0]));
+    }
+    let again = json_of(&["predict", "1", "--plan", &file], &out);
+    assert_eq!(
+        predicted, again,
+        "a prediction does not depend on the order of threads"
+    );
+}
+
+#[test]
+fn a_sweep_gives_a_curve_its_probabilities_and_the_slip_on_a_slope() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = calibrated(folder.path());
+    let sweep =
+        "predict --at wheel_load_n=100 --at sled_speed_m_s=0.02 --at slope_deg=8 --sweep slip=0.05:0.7:14";
+    let mut words: Vec<&str> = sweep.split(' ').collect();
+    words.extend(["--probability", "drawbar_pull_n > 12"]);
+    let predicted = json_of(&words, &out);
+    let runs = items(&predicted["runs"]);
+    let chance = |run: &Value| float(&run["statements"][0]["measurement"]);
+    assert!(chance(&runs[0]) < 0.05 && chance(&runs[13]) > 0.95, "{predicted}");
+    let climb = &predicted["climbs"][0];
+    assert!(float(&climb["probability"]) > 0.99, "{climb}");
+    let slip = float(&climb["slip"]);
+    // Where the wheel climbs, its balanced slope is that of the ground.
+    let slope = |run: &Value| float(&quantity(run, "balanced_slope_deg")["mean"]);
+    let after = runs
+        .iter()
+        .position(|run| float(&run["slip"]) > slip)
+        .expect("a slip beyond");
+    assert!(
+        slope(&runs[after - 1]) < 8.2 && slope(&runs[after]) > 7.8,
+        "{slip}"
+    );
+    assert_eq!(items(&runs[0]["beyond"]).len(), 0);
+    assert_contains!(
+        word(&runs[13]["beyond"][0]),
+        "slip outside the fitted 0.0500 to 0.600"
+    );
+
+    let printed = verb(&words, &out).success();
+    assert_contains!(
+        printed,
+        "pulls its weight along 8.00 deg with P > 0.999 at slip 0.",
+        "P(drawbar_pull_n > 12) in p1-1 = ",
+        "beyond:  slip outside the fitted 0.0500 to 0.600 (p1-13, p1-14)"
+    );
+    words.extend(["--format", "csv"]);
+    let table = verb(&words, &out).success();
+    let columns = table.lines().next().map(|line| line.split(',').count());
+    assert!(
+        table
+            .lines()
+            .skip(1)
+            .all(|line| line.matches(',').count() + 1 >= columns.unwrap_or(99))
+    );
+    // Fourteen runs with nine quantities, the lateral force of an unmeasured channel among them, and one statement.
+    assert!(table.lines().count() > 14 * 10, "{table}");
+}
+
+#[test]
+fn what_cannot_be_predicted_says_why() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = calibrated(folder.path());
+    let file = folder.path().join("plan.csv").display().to_string();
+    for (plan, more, reason) in [
+        (
+            "slip,load\n0.1,3\n",
+            "",
+            "plan.csv line 1: unknown column \"load\"",
+        ),
+        ("slip\n1.2\n", "", "plan.csv line 2: slip 1.2 must lie in [-1, 1)"),
+        ("slip,wheel\n0.1,v\n", "", "plan.csv line 2: unknown wheel \"v\""),
+        (
+            "slip\n0.1\n",
+            "--probability=pull>1",
+            "statement \"pull>1\": character 1: ",
+        ),
+        (
+            "slip\n0.1\n",
+            "--sweep=slop=1:2:3",
+            "the nearest known is \"slip\"",
+        ),
+    ] {
+        std::fs::write(&file, plan).expect("the plan");
+        let words = ["predict", "1", "--plan", &file, more];
+        let words: Vec<&str> = words.into_iter().filter(|word| !word.is_empty()).collect();
+        assert_contains!(verb(&words, &out).refusal(), reason);
+    }
+    std::fs::write(&file, "wheel_load_n\n60\n120\n").expect("the plan");
+    let many = ["predict", "1", "--plan", &file, "--sweep", "slip=0:0.8:6000"];
+    assert_contains!(
+        verb(&many, &out).refusal(),
+        "12000 planned runs must be at most 10000"
+    );
+}
+
+#[test]
+fn options_are_ranked_by_their_expected_losses() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = calibrated(folder.path());
+    let file = folder.path().join("decision.toml").display().to_string();
+    std::fs::write(&file, DECISION).expect("the decision");
+    let answer = json_of(&["decide", &file], &out);
+    assert_eq!(word(&answer["best"]), "climb", "{answer}");
+    let [climb, cliff, stay] = &items(&answer["options"])[..] else {
+        panic!("three options");
+    };
+    assert!(float(&climb["expected_loss"]) < 3000.0 && float(&climb["stuck"]) < 0.01);
+    assert!(float(&cliff["stuck"]) > 0.99 && float(&cliff["expected_loss"]) > 5000.0);
+    assert!((float(&stay["expected_loss"]) - 3000.0).abs() < 1e-9 && stay["slip"] == Value::Null);
+    // The best option is sure, so that no run can change it.
+    assert!(float(&answer["probability_best"]) > 0.999);
+    assert!(float(&answer["perfect_information"]).abs() < 1e-9);
+    assert_eq!(answer["runs"][0]["is_worth_its_cost"], false);
+    let by = &answer["decided_by"];
+    let shares = ["model", "parameters", "noise"].map(|key| float(&by[key]));
+    assert!((shares.iter().sum::<f64>() - 1.0).abs() < 1e-9, "{by}");
+    assert_contains!(verb(&["decide", &file], &out).success(), "best:    climb, by ");
+
+    std::fs::write(&file, DECISION.replace("energy_j_m", "energy")).expect("the decision");
+    assert_contains!(
+        verb(&["decide", &file], &out).refusal(),
+        "decision.toml: [decision] loss of option \"climb\": character 6"
+    );
+}
+
+#[test]
+fn a_service_decides_by_the_job_and_one_that_only_reads_predicts() {
+    let job = Job::small().in_job("[sampler]", &format!("{DECISION}[sampler]"));
+    let service = Service::start(&["--local-workers", "2"]);
+    let id = service.submit(&job);
+    service.wait_for(id, "finished");
+    let path = |verb: &str| format!("/v1/calibrations/{id}/{verb}");
+    let decided = service.client.post(&path("decide"), &json!({}));
+    assert_eq!(decided.status, 200, "{}", decided.body);
+    assert_contains!(decided.body, "\"best\":\"climb\"");
+    let unknown = service
+        .client
+        .post("/v1/calibrations/9/predict", &json!({"sweep": "slip=0:0.5:3"}));
+    assert_eq!(unknown.status, 404);
+    let nothing = service.client.post(&path("predict"), &json!({}));
+    assert_eq!(nothing.status, 422, "{}", nothing.body);
+}
+
+/// Copies the files of a folder of examples.
+fn copy(name: &str, to: &Path) {
+    let target = to.join("examples").join(name);
+    std::fs::create_dir_all(&target).expect("a folder");
+    for entry in std::fs::read_dir(root().join("examples").join(name)).expect("the example") {
+        let file = entry.expect("a file").path();
+        let name = file.file_name().expect("a name");
+        std::fs::copy(&file, target.join(name)).expect("a copy");
+    }
+}
+
+#[test]
+fn the_commands_of_the_tutorial_work_in_their_order() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for example in ["hidden-effect", "slope-decision"] {
+        copy(example, folder.path());
+    }
+    let program = coordinator(["--version"]).get_program().to_owned();
+    let programs = Path::new(&program)
+        .parent()
+        .expect("a folder of programs")
+        .to_owned();
+    let paths = std::env::var("PATH").unwrap_or_default();
+    let tutorial = text(&root().join("docs/prediction.md"));
+    let mut printed = Vec::new();
+    for block in tutorial.split("```sh\n").skip(1) {
+        let (commands, _) = block.split_once("```").expect("the end of a block");
+        let mut shell = std::process::Command::new("sh");
+        shell.args(["-e", "-c", commands]).current_dir(&folder);
+        shell.env("PATH", format!("{}:{paths}", programs.display()));
+        printed.push(run(shell).success());
+    }
+    assert!(printed.len() >= 5, "{} blocks of commands", printed.len());
+    let all = printed.concat();
+    assert_contains!(all, "pulls its weight along 10.0 deg", "best:    ", "worth:   ");
+}
