@@ -155,7 +155,13 @@ pub(super) async fn finished_study(
     let state = match unfinished {
         Some(row) => row.state,
         // The next step of a study is unfinished work, although it has not begun.
-        None if next_step_from(reader, rows).await?.is_some() => CalibrationState::Running,
+        // What was taken back is no step to be taken again.
+        None if next_step_from(reader, &reader.study(row.study).await?)
+            .await?
+            .is_some() =>
+        {
+            CalibrationState::Running
+        }
         None => CalibrationState::Finished,
     };
     Ok(Study {
