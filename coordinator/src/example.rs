@@ -21,7 +21,7 @@ pub struct Example {
 }
 
 /// Every example.
-pub const EXAMPLES: [Example; 3] = [
+pub const EXAMPLES: [Example; 4] = [
     Example {
         name: "hidden-effect",
         title: "A hidden effect",
@@ -57,6 +57,17 @@ pub const EXAMPLES: [Example; 3] = [
             include_str!("../../examples/cmu-sand/discover-experiment.toml"),
         ),
         files: &[("runs.csv", include_str!("../../examples/cmu-sand/runs.csv"))],
+    },
+    Example {
+        name: "which-model",
+        title: "Which of three models",
+        summary: "synthetic tests of a smooth wheel: three models are calibrated and compared by evidence and on held-out runs",
+        job: ("job.toml", include_str!("../../examples/which-model/job.toml")),
+        experiment: (
+            "experiment.toml",
+            include_str!("../../examples/which-model/experiment.toml"),
+        ),
+        files: &[("runs.csv", include_str!("../../examples/which-model/runs.csv"))],
     },
 ];
 

@@ -159,6 +159,15 @@ pub struct StudyArchived {
     pub archived: bool,
 }
 
+/// Answer to `POST /v1/calibrations/ID/withdraw`.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+pub struct Withdrawn {
+    /// Id of the study.
+    pub study: i64,
+    /// The calibrations that are no longer part of the study, oldest first.
+    pub calibrations: Vec<i64>,
+}
+
 /// Answer to `DELETE /v1/studies/ID`.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 pub struct StudyDeleted {
@@ -262,10 +271,30 @@ pub struct Progress {
     pub step_done: u64,
     /// Evaluations of the present step.
     pub step_size: u64,
+    /// What a search is doing, and its leaders; `None` of other algorithms.
+    pub search: Option<SearchProgress>,
     /// Evaluations per second, lately.
     pub evaluations_per_s: f64,
     /// Estimated remaining time `[s]`; `None` while it is not known.
     pub remaining_s: Option<f64>,
+}
+
+/// How far a search for missing effects has come.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct SearchProgress {
+    /// What it is doing, in words.
+    pub doing: String,
+    /// The most probable explanations so far, the most probable first; empty before the first effect is fitted.
+    pub leaders: Vec<SearchLeader>,
+}
+
+/// An explanation that a search has fitted.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct SearchLeader {
+    /// Names of its effects; empty: nothing is missing.
+    pub effects: Vec<String>,
+    /// Probability among all that is fitted so far. The end weighs classes and laws as well, so that it may differ.
+    pub probability: f64,
 }
 
 /// Where an algorithm is, by the kind of the algorithm.

@@ -23,7 +23,10 @@ fn an_example_is_submitted_with_its_files_as_they_come() {
     let names: Vec<&str> = items(&listed)
         .filter_map(|example| example["name"].as_str())
         .collect();
-    assert_eq!(names, ["hidden-effect", "cmu-sand", "cmu-sand-discover"]);
+    assert_eq!(
+        names,
+        ["hidden-effect", "cmu-sand", "cmu-sand-discover", "which-model"]
+    );
     for name in names {
         let example = service.client.json(&format!("/v1/examples/{name}"));
         let new = json!({"toml": example["experiment"]["text"], "files": example["files"]});

@@ -11,9 +11,9 @@ const axe = require.resolve("axe-core/axe.min.js");
 export const STEP_MS = 60_000;
 
 /** A browser with one page; `faults` collects requests to other hosts, errors on the console and of scripts. */
-export async function open({ url, width = 1280, height = 900, theme = "light" }) {
+export async function open({ url, width = 1280, height = 900, theme = "light", locale = "en-GB" }) {
   const browser = await chromium.launch({ executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium", args: ["--disable-dev-shm-usage", "--no-sandbox"] });
-  const context = await browser.newContext({ viewport: { width, height }, colorScheme: theme, acceptDownloads: true, bypassCSP: false });
+  const context = await browser.newContext({ viewport: { width, height }, colorScheme: theme, locale, acceptDownloads: true, bypassCSP: false });
   const page = await context.newPage();
   page.setDefaultTimeout(STEP_MS);
   const faults = [], requests = [];

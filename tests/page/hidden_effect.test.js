@@ -88,6 +88,9 @@ test("an explanation shows what it predicts before it is computed, and a click a
   assert.match(await page.locator(".ghosts .note").first().textContent(), /Dashed: what janosi_hanamoto would predict/);
   await shot(page, "hidden-effects");
   await page.getByRole("button", { name: "add janosi_hanamoto" }).click();
+  await page.getByRole("button", { name: "Not now" }).click();
+  await page.getByRole("button", { name: "add janosi_hanamoto" }).click();
+  await page.getByRole("button", { name: "Add it" }).click();
   await page.waitForURL(/live/);
   const study = await service.finished(studyOf(page), STUDY_MS);
   assert.deepEqual(study.members.find((m) => m.id === study.current).effects, ["janosi_hanamoto"]);

@@ -37,6 +37,7 @@ pub use settings::{SearchSettings, Smoothness, Starts};
 pub use stages::ask_tell::DiscoverySearch;
 pub use stages::conclusion::{Conclusion, OutsideLaw, PosteriorModel};
 pub use stages::law_forms::WeighedForm;
+pub use stages::leaders::Leader;
 pub use stages::next_run::InformativeRun;
 pub use stages::prior_sensitivity::AlternativePrior;
 pub use stages::query::{QueriedModel, Query};

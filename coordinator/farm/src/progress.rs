@@ -89,6 +89,10 @@ pub(super) fn status(
             rejected: calibration.cost.rejected,
             step_done: (queue.len() - queue.unleased() - queue.leased()) as u64,
             step_size: queue.len() as u64,
+            search: match calibration.engine() {
+                CalibrationEngine::Discovery(search) => Some(search.progress()),
+                _ => None,
+            },
             evaluations_per_s: per_second,
             remaining_s: remaining_s(calibration, per_second),
         }),

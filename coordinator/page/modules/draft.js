@@ -1,6 +1,7 @@
 // The files of a calibration before it is sent: what each is, which ones they name, and what is missing.
 
 import { isRuns, parse } from "./columns.js";
+import { t } from "./language/language.js";
 
 /** @typedef {{ name: string, text: string }} NamedText */
 /** @typedef {Record<string, string>} Files texts by name */
@@ -63,12 +64,12 @@ export function named(/** @type {Files} */ files, /** @type {string} */ job, /**
 
 /** What is missing before a job can start, in words. */
 export function missing(/** @type {Files} */ files, /** @type {string | null} */ job) {
-  if (job === null) return ["a job file (job.toml): it names the model, the priors and the sampler"];
+  if (job === null) return [t`a job file (job.toml): it names the model, the priors and the sampler`];
   const experiment = experimentOf(files, job);
   const list = named(files, job, experiment);
   const absent = [...list.experiment, ...list.job].filter(({ name }) => find(files, name) === null);
-  const words = absent.map(({ name, by }) => `${name}, which ${by} names`);
-  if (experiment === null) words.unshift(`${strings(files[job], "experiment")[0] ?? "experiment.toml"}, the experiment of ${job}: it describes wheel, soil and noise`);
+  const words = absent.map(({ name, by }) => t`${name}, which ${by} names`);
+  if (experiment === null) words.unshift(t`${strings(files[job], "experiment")[0] ?? "experiment.toml"}, the experiment of ${job}: it describes wheel, soil and noise`);
   return [...new Set(words)];
 }
 

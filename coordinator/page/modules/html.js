@@ -1,3 +1,8 @@
-// Elements and their state: preact with htm, as vendored.
+// Elements and their state: preact with htm, as vendored; templates are in the language of the page.
 
-export { html, render, useCallback, useEffect, useErrorBoundary, useMemo, useRef, useState } from "../vendor/preact.js";
+import { html as template } from "../vendor/preact.js";
+import { inLanguage } from "./language/language.js";
+
+export { render, useCallback, useEffect, useErrorBoundary, useMemo, useRef, useState } from "../vendor/preact.js";
+
+export const html = inLanguage(template);

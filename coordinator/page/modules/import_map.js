@@ -1,5 +1,7 @@
 // The map of an import as a person clicks it together: its text, and which field a complaint belongs to.
 
+import { t } from "./language/language.js";
+
 /**
  * @typedef {{ column: string | null, value: string, unit: string, formula: string, fillsDown: boolean, words: Record<string, string> }} Choice
  *   blank: absent. words: what the words of the column mean for the use of a run.
@@ -9,7 +11,7 @@
 
 const blank = { column: null, value: "", unit: "", formula: "", fillsDown: false, words: {} };
 /** What a word of a column can mean for a run, in the words of a map and of people. @type {[string, string][]} */
-export const MEANINGS = [["fit", "fitted"], ["holdout", "held out: never fitted"], ["skip", "no run: left out"]];
+export const MEANINGS = [["fit", t`fitted`], ["holdout", t`held out: never fitted`], ["skip", t`no run: left out`]];
 /** What is open, in a map. */
 const QUESTION = "?";
 
@@ -85,7 +87,7 @@ export function byField(complaints, names) {
 
 /** A complaint in words: its place in the file, or nothing where its field says it. */
 export function words(/** @type {any} */ complaint) {
-  const place = complaint.cell ? `cell ${complaint.cell}` : complaint.line && complaint.file !== "map.toml" ? `line ${complaint.line}` : "";
+  const place = complaint.cell ? t`cell ${complaint.cell}` : complaint.line && complaint.file !== "map.toml" ? t`line ${complaint.line}` : "";
   const message = complaint.plain ?? complaint.message.replace(`${complaint.field}: `, "");
   return place === "" ? message : `${place}: ${message}`;
 }

@@ -1,8 +1,10 @@
 // The page of a service: the home of all studies, or one study in one of its views.
 
 import { html, render, useEffect, useState } from "./html.js";
+import { t } from "./language/language.js";
 import { Later } from "./part/later.js";
 import { Login } from "./part/login.js";
+import { Settings } from "./part/settings.js";
 import { token } from "./rest/token.js";
 import { useRoute } from "./route.js";
 import { Home } from "./view/home.js";
@@ -24,7 +26,7 @@ function Page() {
   }, [first, id, view]);
   useEffect(() => {
     // A study names itself when it is known.
-    if (!isStudy) document.title = `${first === "new" ? "New calibration" : first === "beside" ? "Two studies" : "Studies"} – Grouser`;
+    if (!isStudy) document.title = `${first === "new" ? t`New calibration` : first === "beside" ? t`Two studies` : t`Studies`} – Grouser`;
   }, [first, isStudy]);
   return html`
     <a class="skip" href="#content" onClick=${skip}>To the content</a>
@@ -35,6 +37,7 @@ function Page() {
         <a href="#/new" aria-current=${first === "new" ? "page" : null}>New calibration</a>
         <a href="/docs">Interface</a>
       </nav>
+      <${Settings} />
       ${token.get() && html`<button type="button" onClick=${() => token.clear()}>Forget the token</button>`}
     </header>
     <main id="content" tabindex="-1">

@@ -1,9 +1,11 @@
 // A report: every view of a study below the other, from the answers that the file carries.
 
 import { html, render } from "./html.js";
+import { t } from "./language/language.js";
 import { ChosenRuns } from "./part/chosen_runs.js";
 import { Guarded } from "./part/guarded.js";
 import { Pending } from "./part/message.js";
+import { Settings } from "./part/settings.js";
 import { Source } from "./part/source.js";
 import { recorded } from "./rest/answers.js";
 import { path } from "./rest/routes.js";
@@ -23,10 +25,11 @@ function Report() {
   return html`
     <header class="heading">
       <h1>${study.name}</h1>
-      <p class="note">${[...new Set([study.model_kind, model ? modelName(study, model) : "no model"])].join(", ")}${lineage(study)}</p>
+      <p class="note">${[...new Set([study.model_kind, model ? modelName(study, model) : t`no model`])].join(", ")}${lineage(study)}</p>
       <p class="note">${facts(study, model, provenance)}</p>
       <${Source} campaign=${study.campaign} />
       <p class="print-brief"><button type="button" onClick=${printBrief}>Print a summary of two pages</button></p>
+      <${Settings} />
       <nav class="views" aria-label="Sections">${VIEWS.map((v) => html`<a href=${`#${v.name}`}>${v.title}</a>`)}</nav>
     </header>
     ${VIEWS.map((v) => html`
@@ -58,8 +61,8 @@ function lineage(/** @type {any} */ study) {
   const compared = models(study).filter((/** @type {any} */ m) => m.id === study.models?.best || isOther(m));
   const line = models(study).filter((/** @type {any} */ m) => !isOther(m));
   return [
-    compared.length > 1 ? `; compared: ${names(compared).join(", ")}` : "",
-    study.members.length > 1 && line.length > (compared.length > 1 ? 1 : 0) ? `; models: ${names(line).join(" → ")}` : "",
+    compared.length > 1 ? t`; compared: ${names(compared).join(", ")}` : "",
+    study.members.length > 1 && line.length > (compared.length > 1 ? 1 : 0) ? t`; models: ${names(line).join(" → ")}` : "",
   ].join("");
 }
 

@@ -1,6 +1,7 @@
 // The runs that a person means: those pointed at light up in every picture, those chosen stay so until they are let go.
 
 import { useEffect, useState } from "./html.js";
+import { t } from "./language/language.js";
 
 /** @typedef {{ runs: Set<string>, label: string }} RunSet */
 
@@ -33,7 +34,7 @@ export function choose(/** @type {Iterable<string> | null} */ runs, label = "") 
 export function toggle(/** @type {string} */ run) {
   const set = new Set(chosen?.runs);
   if (!set.delete(run)) set.add(run);
-  choose(set, set.size === 1 ? `run ${[...set][0]}` : `${set.size} runs`);
+  choose(set, set.size === 1 ? t`run ${[...set][0]}` : t`${set.size} runs`);
 }
 
 /** Marks what carries a run, below an element, as lit or not. */

@@ -41,11 +41,21 @@ test("a message finds its file", () => {
 });
 
 test("templates name what the form says", () => {
-  const wheels = [{ name: "a", radiusMm: 125, widthMm: 112 }, { name: "b c", radiusMm: 60, widthMm: 60 }];
-  const toml = template.experiment({ wheels, soil: "s", noise: { drawbar_pull_n: "1.2", sinkage_m: "unknown" } });
+  const smooth = { grousers: null, grouserHeightMm: null, grouserThicknessMm: null };
+  const wheels = [{ name: "a", radiusMm: 125, widthMm: 112, ...smooth }, { name: "b c", radiusMm: 60, widthMm: 60, ...smooth }];
+  const open = { density: null, binLength: null, slip: null, load: null, speed: null };
+  const noise = { drawbar_pull_n: "1.2", sinkage_m: "unknown" };
+  const toml = template.experiment({ wheels, soil: "s", noise, bounds: open });
+  assert.doesNotMatch(toml, /grouser|density|\[rig\]/);
+  const bounds = { density: 1600, binLength: 2.5, slip: [-0.2, 0.6], load: [40, 120], speed: [0.005, 0.02] };
+  const whole = template.experiment({ wheels: [{ ...wheels[0], grousers: 12, grouserHeightMm: 9, grouserThicknessMm: 2 }], soil: "s", noise, bounds });
+  assert.match(whole, /grouser_count = 12\ngrouser_height_m = 0\.009\ngrouser_thickness_m = 0\.002\n/);
+  assert.match(whole, /\[soil\.s\]\ndensity_kg_m3 = 1600\n/);
+  assert.match(whole, /\[rig\]\nbin_length_m = 2\.5\nslip_range = \[-0\.2, 0\.6\]\nwheel_load_range_n = \[40, 120\]\nsled_speed_range_m_s = \[0\.005, 0\.02\]\n/);
   assert.match(toml, /\[wheel\.a\]\nradius_m = 0\.125\nwidth_m = 0\.112\n/);
   assert.match(toml, /\[wheel\."b c"\]/);
   assert.match(toml, /drawbar_pull_n = 1\.2\nsinkage_m = "unknown"/);
-  assert.match(template.job({ wheels }), /"wheel_radius_m\.a" = \{ uniform = \[0\.125, 0\.155\] \}/);
+  assert.match(template.job({ wheels, search: "auto" }), /"wheel_radius_m\.a" = \{ uniform = \[0\.125, 0\.155\] \}/);
+  assert.match(template.job({ wheels, search: "auto" }), /\[discovery\]\napply = "auto"/);
   assert.equal(parse("").header.length, 0);
 });

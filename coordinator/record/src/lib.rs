@@ -7,6 +7,7 @@
 //! - `replay`: rows that a restart reads back.
 //! - `verification`: how many answers of workers are verified.
 //! - `token`: bearer tokens and their roles.
+//! - `study_details`: what people say of a study.
 //! - `discovery`: the record of a search for a missing effect.
 
 mod calibration;
@@ -17,6 +18,7 @@ pub mod fact;
 mod membership;
 mod replay;
 mod sample;
+mod study_details;
 mod token;
 mod verification;
 
@@ -33,5 +35,6 @@ pub use fact::{Dispute, EvaluationRow, Fact, Fingerprint, Kept};
 pub use membership::{Change, Membership, Role};
 pub use replay::Stored;
 pub use sample::{Prediction, PriorDraw, RejectionReason, StageRow};
+pub use study_details::StudyDetails;
 pub use token::{Token, TokenHash, TokenRole};
 pub use verification::{Quarantine, Repeats, Verified};

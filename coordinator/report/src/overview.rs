@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use record::Verdict;
+use record::{StudyDetails, Verdict};
 use shared::api::{CalibrationState, Progress};
 
 use crate::flag::study::flags_by_calibration;
@@ -26,8 +26,10 @@ use result::words::data_channel::DataChannel;
 pub struct StudyOverview {
     /// Id of the study.
     pub id: i64,
-    /// Name of the submitted calibration.
+    /// Name of the study: that of its details, else that of the submitted calibration.
     pub name: String,
+    /// What people say of the study.
+    pub details: StudyDetails,
     /// Time of the submission, since the beginning of 1970 \[ms\].
     pub created_ms: Option<i64>,
     /// The experiment of the submitted calibration.
@@ -116,8 +118,10 @@ pub struct StudyVerdict {
 pub struct StudyListItem {
     /// Id of the study.
     pub id: i64,
-    /// Name of the submitted calibration.
+    /// Name of the study: that of its details, else that of the submitted calibration.
     pub name: String,
+    /// What people say of the study.
+    pub details: StudyDetails,
     /// Time of the submission, since the beginning of 1970 \[ms\].
     pub created_ms: Option<i64>,
     /// The experiment of the submitted calibration.
@@ -151,6 +155,7 @@ impl StudyOverview {
         StudyOverview {
             id,
             name: members.first().map(|m| m.name.clone()).unwrap_or_default(),
+            details: StudyDetails::default(),
             created_ms: None,
             experiment,
             campaign: None,
@@ -175,6 +180,14 @@ impl StudyOverview {
         }
     }
 
+    /// Takes in what people say of the study, which is not stored with its results.
+    pub fn describe(&mut self, details: StudyDetails) {
+        if let Some(name) = &details.name {
+            self.name.clone_from(name);
+        }
+        self.details = details;
+    }
+
     /// Returns the line of the study in a list, with the progress of the running member.
     pub fn list_item(&self, progress: Option<Progress>) -> StudyListItem {
         let current = self
@@ -189,6 +202,7 @@ impl StudyOverview {
         StudyListItem {
             id: self.id,
             name: self.name.clone(),
+            details: self.details.clone(),
             created_ms: self.created_ms,
             experiment: self.experiment,
             state: self.state,
@@ -205,7 +219,17 @@ impl StudyOverview {
     }
 }
 
-/// Describes a study as the page shows it. The caller sets `archived`, which is not stored with the results.
+impl StudyListItem {
+    /// Takes in what people say of the study, which is not stored with its results.
+    pub fn describe(&mut self, details: StudyDetails) {
+        if let Some(name) = &details.name {
+            self.name.clone_from(name);
+        }
+        self.details = details;
+    }
+}
+
+/// Describes a study as the page shows it. The caller sets `archived` and the details, which are not stored with the results.
 pub fn overview(study: &Study) -> StudyOverview {
     let sigmas = study.fixed_sigmas();
     let current = study.current().map(|calibration| calibration.row.id);

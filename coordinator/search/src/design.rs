@@ -74,16 +74,18 @@ fn range(values: &[f64]) -> [f64; 2] {
 }
 
 /// Returns values that the rig can set, equal ratios apart. Their range follows the median, so that it does not grow when a run
-/// at its end is added to the campaign.
-fn reach(values: &[f64]) -> Vec<f64> {
+/// at its end is added to the campaign. It ends where the rig does, if that is stated.
+fn reach(values: &[f64], limits: Option<[f64; 2]>) -> Vec<f64> {
     let mut ascending = values.to_vec();
     ascending.sort_by(f64::total_cmp);
     let median = ascending[ascending.len() / 2];
     let [least, greatest] = range(values);
     let (least, greatest) = (least.min(median / REACH), greatest.max(median * REACH));
+    let within = |value: f64| limits.map_or(value, |[low, high]| value.min(high).max(low));
+    let (least, greatest) = (within(least), within(greatest));
     let share = |k: usize| k as f64 / (LEVELS - 1) as f64;
     (0..LEVELS)
-        .map(|k| two_digits(least * libm::pow(greatest / least, share(k))))
+        .map(|k| within(two_digits(least * libm::pow(greatest / least, share(k)))))
         .collect()
 }
 
@@ -105,7 +107,8 @@ pub(super) fn beyond(spec: &Spec, design: &[RunCondition]) -> Vec<f64> {
     design.iter().map(of_run).collect()
 }
 
-/// Lists the runs that the rig could make, with wheel and soil of the first fitted run: each slip at each load and rim speed.
+/// Lists the runs that the rig could make, with wheel and soil of the first fitted run: each slip at each load and rim speed, within the
+/// limits that the experiment states.
 pub(super) fn proposed(spec: &Spec) -> Vec<RunCondition> {
     let conditions = &spec.fit_variant.conditions;
     let Some(first) = conditions.first() else {
@@ -115,10 +118,15 @@ pub(super) fn proposed(spec: &Spec) -> Vec<RunCondition> {
     if rims.is_empty() {
         return Vec::new();
     }
-    let (loads, rims) = (reach(&loads), reach(&rims));
+    let rig = &spec.experiment.rig;
+    let (loads, rims) = (reach(&loads, rig.wheel_load_range_n), reach(&rims, None));
+    let is_within = |range: Option<[f64; 2]>, value: f64| {
+        range.is_none_or(|[least, greatest]| (least..=greatest).contains(&value))
+    };
     let braked = conditions.iter().any(|c| c.slip < -0.05);
     let mut proposed = Vec::new();
-    for slip in SLIPS.into_iter().chain(braked.then_some(BRAKED)) {
+    let slips = SLIPS.into_iter().chain(braked.then_some(BRAKED));
+    for slip in slips.filter(|&slip| is_within(rig.slip_range, slip)) {
         for &wheel_load_n in &loads {
             for &rim in &rims {
                 let sled_speed_m_s = two_digits(if slip < 0.0 {
@@ -126,6 +134,9 @@ pub(super) fn proposed(spec: &Spec) -> Vec<RunCondition> {
                 } else {
                     rim * (1.0 - slip)
                 });
+                if !is_within(rig.sled_speed_range_m_s, sled_speed_m_s) {
+                    continue;
+                }
                 proposed.push(RunCondition {
                     slip,
                     wheel_load_n,
@@ -168,6 +179,7 @@ mod tests {
     #[test]
     fn the_reach_does_not_grow_with_a_run_at_its_end() {
         let campaign = [90.0; 6];
+        let reach = |values: &[f64]| super::reach(values, None);
         assert_eq!(reach(&campaign), [45.0, 90.0, 180.0]);
         assert_eq!(
             reach(&[&campaign[..], &[180.0, 45.0]].concat()),
@@ -175,6 +187,23 @@ mod tests {
         );
         // What has been measured is within reach.
         assert_eq!(reach(&[10.0, 100.0, 100.0, 400.0]), [10.0, 63.0, 400.0]);
+    }
+
+    #[test]
+    fn what_is_proposed_stays_within_the_limits_that_the_rig_states() {
+        assert_eq!(reach(&[90.0; 6], Some([50.0, 120.5])), [50.0, 78.0, 120.5]);
+        let (job, mut files, _) = crate::fixture::read("examples/hidden-effect");
+        let of = |files: &shared::file::FileSet| proposed(&crate::fixture::spec_of(&job, files).unwrap());
+        let free = of(&files);
+        files.toml += "\n[rig]\nslip_range = [0.1, 0.5]\nwheel_load_range_n = [40.0, 100.0]\nsled_speed_range_m_s = [0.0, 0.02]\n";
+        let bound = of(&files);
+        let fits = |run: &RunCondition| {
+            (0.1..=0.5).contains(&run.slip)
+                && (40.0..=100.0).contains(&run.wheel_load_n)
+                && run.sled_speed_m_s <= 0.02
+        };
+        assert!(free.iter().any(|run| !fits(run)));
+        assert!(!bound.is_empty() && bound.iter().all(fits), "{bound:?}");
     }
 
     #[test]

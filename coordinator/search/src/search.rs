@@ -2,6 +2,7 @@
 
 use discovery::DiscoverySearch;
 use inference::{Proposal, TellProgress};
+use shared::api::{SearchLeader, SearchProgress};
 use shared::file::FileError;
 use shared::model::ModelVariant;
 use shared::outcome::Observables;
@@ -63,6 +64,18 @@ impl RunningDiscovery {
     /// Returns the number of completed rounds.
     pub fn round(&self) -> u64 {
         self.search.round()
+    }
+
+    /// Returns what the search is doing, and the most probable explanations so far.
+    pub fn progress(&self) -> SearchProgress {
+        let leader = |leader: discovery::Leader| SearchLeader {
+            effects: leader.effects.iter().map(|&k| self.models.name(k)).collect(),
+            probability: leader.probability,
+        };
+        SearchProgress {
+            doing: self.search.doing().to_owned(),
+            leaders: self.search.leaders().into_iter().map(leader).collect(),
+        }
     }
 
     /// Returns the queries of this round.

@@ -210,6 +210,7 @@ mod tests {
             rejected: 0,
             step_done: 0,
             step_size: 1000,
+            search: None,
             evaluations_per_s: 1.0,
             remaining_s: None,
         }

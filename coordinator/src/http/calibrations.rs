@@ -19,7 +19,7 @@ use export::InferenceData;
 use farm::Control;
 use inference::Particle;
 use page::report::showing;
-use record::StageRow;
+use record::{StageRow, StudyDetails};
 use report::{CalibrationFile, Provenance, StudyFile, StudySummary};
 use result::{
     CalibrationFigures, ChannelHistory, Comparison, Diagnostics, Flag, PosteriorTable, PredictionRow,
@@ -69,6 +69,13 @@ async fn create(
     let name = new.name.clone();
     let created = service.add_calibration(new).await?;
     tracing::info!(calibration = created.id, name, %by, "submitted");
+    if let Some(author) = by.into_name() {
+        let details = StudyDetails {
+            author: Some(author),
+            ..StudyDetails::default()
+        };
+        service.describe_study(created.study, details).await?;
+    }
     let mut headers = HeaderMap::new();
     if let Ok(location) = HeaderValue::from_str(&format!("/v1/calibrations/{}", created.id)) {
         headers.insert(header::LOCATION, location);

@@ -35,7 +35,7 @@ impl HttpError {
     }
 
     /// Makes an internal error, whose cause only the log states.
-    fn internal(cause: &dyn std::error::Error) -> Self {
+    pub(super) fn internal(cause: &dyn std::error::Error) -> Self {
         HttpError {
             kind: ErrorKind::Internal,
             message: "internal error of the coordinator; see its log".into(),
@@ -110,7 +110,9 @@ impl From<ServiceError> for HttpError {
             | ServiceError::Search(_)
             | ServiceError::LeftAlone { .. }
             | ServiceError::InProgress { .. }
-            | ServiceError::Archived(_) => ErrorKind::Conflict,
+            | ServiceError::Archived(_)
+            | ServiceError::Submitted(_) => ErrorKind::Conflict,
+            ServiceError::Details(_) => ErrorKind::InvalidBody,
             ServiceError::Busy(_) => ErrorKind::Busy,
             ServiceError::Store(_)
             | ServiceError::Replay(_)

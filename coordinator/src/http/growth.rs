@@ -3,7 +3,9 @@
 use axum::Json;
 use axum::extract::State;
 use axum::http::StatusCode;
-use shared::api::{CalibrationCreated, ErrorBody, ErrorKind, NewExtension, NewRuns, RunsAdded, WhatIf};
+use shared::api::{
+    CalibrationCreated, ErrorBody, ErrorKind, NewExtension, NewRuns, RunsAdded, WhatIf, Withdrawn,
+};
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
@@ -18,6 +20,7 @@ pub(super) fn routes() -> OpenApiRouter<Service> {
         .routes(routes!(discovery, discover))
         .routes(routes!(add_runs))
         .routes(routes!(what_if))
+        .routes(routes!(withdraw))
 }
 
 /// Calibrates with one more effect.
@@ -128,4 +131,24 @@ async fn what_if(
     let created = service.what_if(id, new.without).await?;
     tracing::info!(calibration = created.id, what_if = id, %by, "submitted");
     Ok((StatusCode::CREATED, Json(created)))
+}
+
+/// Takes back what was added to a study.
+///
+/// Takes a calibration of an added effect, law or further runs out of its study, with all that follows from it; what is not
+/// over is cancelled. Its results stay readable by its number, and the same addition takes it in again.
+#[utoipa::path(post, path = "/calibrations/{id}/withdraw", operation_id = "withdraw_calibration", tag = "studies",
+    params(("id" = i64, Path)), responses(
+    (status = 200, description = "what is no longer part of the study", body = Withdrawn),
+    (status = 404, body = ErrorBody),
+    (status = 409, body = ErrorBody, description = "the study began with the calibration"),
+))]
+async fn withdraw(
+    State(service): State<Service>,
+    by: Caller,
+    Id(id): Id,
+) -> Result<Json<Withdrawn>, HttpError> {
+    let (study, calibrations) = service.withdraw(id).await?;
+    tracing::info!(study, ?calibrations, %by, "taken back");
+    Ok(Json(Withdrawn { study, calibrations }))
 }

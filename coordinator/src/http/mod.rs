@@ -31,6 +31,7 @@ mod request_example;
 mod request_metrics;
 mod studies;
 mod tls;
+mod unchanged;
 mod work;
 
 use std::future::Future;

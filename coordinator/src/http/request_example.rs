@@ -69,6 +69,9 @@ pub(super) fn request_example(operation: &str) -> Option<Value> {
         }
         "create_calibration" => json!({"experiment": 1, "toml": job.1, "name": name}),
         "extend_calibration" => json!({"effect": "slip_sinkage"}),
+        "describe_study" => {
+            json!({"name": "Sand, wheel 3", "author": "A. Meyer", "tags": ["sand", "2026"], "note": null})
+        }
         "create_what_if" => json!({"without": ["r00", "r01"]}),
         "predict" => json!({"sweep": "slip=0.05:0.6:12", "statements": ["drawbar_pull_n > 12"]}),
         "decide" => json!({ "file": DECISION }),

@@ -2,13 +2,17 @@
 
 use axum::Json;
 use axum::extract::State;
+use axum::http::HeaderMap;
+use axum::response::Response;
 use shared::api::{ErrorBody, StudyArchived, StudyDeleted};
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
 use super::access::Caller;
-use super::error::{HttpError, Id, Query};
+use super::error::{Body, HttpError, Id, Query};
+use super::unchanged;
 use crate::service::Service;
+use record::StudyDetails;
 use report::{StudyListItem, StudyOverview};
 
 pub(super) fn routes() -> OpenApiRouter<Service> {
@@ -17,6 +21,7 @@ pub(super) fn routes() -> OpenApiRouter<Service> {
         .routes(routes!(overview, delete))
         .routes(routes!(archive))
         .routes(routes!(restore))
+        .routes(routes!(describe))
 }
 
 /// Whether archived studies are listed too.
@@ -30,15 +35,16 @@ pub(super) struct WithArchived {
 /// Lists the studies.
 ///
 /// Every study, oldest first; archived ones with `archived=true` alone. Error and verdict of a study that has just
-/// changed are null until they are computed.
+/// changed are null until they are computed. The answer has a tag, and is not sent again to who has it.
 #[utoipa::path(get, path = "/studies", operation_id = "list_studies", tag = "studies",
     params(("archived" = Option<bool>, Query, description = "whether archived studies are listed too")), responses(
     (status = 200, description = "studies with state, error and verdict", body = Vec<StudyListItem>)))]
 async fn list(
     State(service): State<Service>,
     Query(which): Query<WithArchived>,
-) -> Result<Json<Vec<StudyListItem>>, HttpError> {
-    Ok(Json(service.studies(which.archived).await?))
+    headers: HeaderMap,
+) -> Result<Response, HttpError> {
+    unchanged::answer(&headers, &service.studies(which.archived).await?)
 }
 
 /// Deletes a study for good.
@@ -90,6 +96,25 @@ async fn restore(
     service.restore_study(id).await?;
     tracing::info!(study = id, %by, "restored");
     Ok(Json(StudyArchived { id, archived: false }))
+}
+
+/// Says what people say of a study.
+///
+/// Name, author, tags and a note, all in the place of earlier ones; no result changes. A study that is submitted with a
+/// token begins with the token's name as its author.
+#[utoipa::path(post, path = "/studies/{id}/details", operation_id = "describe_study", tag = "studies",
+    params(("id" = i64, Path)), request_body = StudyDetails, responses(
+    (status = 200, description = "what is kept", body = StudyDetails), (status = 404, body = ErrorBody),
+    (status = 400, body = ErrorBody, description = "a line is blank or too long")))]
+async fn describe(
+    State(service): State<Service>,
+    by: Caller,
+    Id(id): Id,
+    Body(details): Body<StudyDetails>,
+) -> Result<Json<StudyDetails>, HttpError> {
+    service.describe_study(id, details.clone()).await?;
+    tracing::info!(study = id, %by, "described");
+    Ok(Json(details))
 }
 
 /// A study with its error ledger.

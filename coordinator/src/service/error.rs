@@ -48,6 +48,14 @@ pub enum ServiceError {
     },
     #[error("study {0} is archived: restore it first")]
     Archived(i64),
+    /// A study cannot be without what it began with.
+    #[error(
+        "calibration {0} was submitted: what was added to a study can be taken back, and a study can be archived or deleted"
+    )]
+    Submitted(i64),
+    /// What people say of a study is too long, or blank.
+    #[error("{0}")]
+    Details(String),
     /// The effects differ from those with which the calibration was computed.
     #[error(transparent)]
     Effects(#[from] EffectsChanged),

@@ -159,7 +159,12 @@ pub(super) async fn finished_study(
     let state = match unfinished {
         Some(row) => row.state,
         // The next step of a study is unfinished work, although it has not begun.
-        None if next_step_from(reader, rows).await?.is_some() => CalibrationState::Running,
+        None if next_step_from(reader, &with_withdrawn(reader, row.study, rows).await?)
+            .await?
+            .is_some() =>
+        {
+            CalibrationState::Running
+        }
         None => CalibrationState::Finished,
     };
     Ok(Study {
@@ -173,6 +178,19 @@ pub(super) async fn finished_study(
         members: study_members(reader, rows).await?,
         combined: OnceLock::new(),
     })
+}
+
+/// Returns the given members of a study together with those that were taken out of it, because what was taken back is no step to be taken
+/// again. A member that joins meanwhile is left out.
+async fn with_withdrawn(
+    reader: &Reader,
+    study: i64,
+    rows: &[CalibrationRow],
+) -> Result<Vec<CalibrationRow>, ServiceError> {
+    let withdrawn = reader.withdrawn().await?;
+    let mut all = reader.study(study).await?;
+    all.retain(|row| withdrawn.contains(&row.id) || rows.iter().any(|known| known.id == row.id));
+    Ok(all)
 }
 
 impl Service {

@@ -37,6 +37,7 @@ impl Service {
         let change = Change::Add(extension.clone());
         let rows = self.store().reader().study(row.study).await?;
         if let Some(member) = Lineage::new(&rows).existing(id, &change) {
+            self.take_in_again(&rows, member.id).await?;
             return Ok(created(member));
         }
         let job = extended(FILES[0], &row.job, &[extension])?;
@@ -57,7 +58,9 @@ impl Service {
         calibration: Option<i64>,
     ) -> Result<RunsAdded, ServiceError> {
         let _growing = self.growing.lock().await;
-        let rows = self.store().reader().study(study).await?;
+        let withdrawn = self.store().reader().withdrawn().await?;
+        let mut rows = self.store().reader().study(study).await?;
+        rows.retain(|row| !withdrawn.contains(&row.id));
         let (mut ledger, mut beside) = (None, None);
         let passed_over = passed_over(&rows);
         let is_candidate = |row: &&CalibrationRow| match calibration {

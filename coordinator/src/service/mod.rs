@@ -6,7 +6,7 @@
 //! - `recovery`: resumes calibrations at a start.
 //! - `submission`: new experiments and calibrations.
 //! - `effects`: effects that users add to the catalogue, and jobs that name them.
-//! - `removal`: archives and deletes studies.
+//! - `removal`: archives and deletes studies. `withdrawal`: takes back what was added to a study, and keeps what people say of it.
 //! - `announcement`: posts to web hooks.
 //! - `growth`: additions to an existing study. `what_if`: studies without some runs.
 //! - `stored_calibration`, `study_step`, `finished_study`: values that are read from the store.
@@ -36,6 +36,7 @@ mod study_overview;
 mod study_step;
 mod submission;
 mod what_if;
+mod withdrawal;
 
 pub use error::ServiceError;
 pub use farm_settings::{FarmSettings, LEASE_MS, VERIFIED_PERCENT};

@@ -32,6 +32,9 @@ impl Service {
             .iter()
             .find(|m| m.member.state != CalibrationState::Finished);
         overview.state = unfinished.map_or(overview.state, |member| member.member.state);
+        if let Some(details) = reader.study_details().await?.remove(&id) {
+            overview.describe(details);
+        }
         overview.archived = reader.archived().await?.iter().any(|&(study, _)| study == id);
         Ok(overview)
     }
@@ -82,9 +85,12 @@ impl Service {
     pub async fn studies(&self, with_archived: bool) -> Result<Vec<StudyListItem>, ServiceError> {
         let reader = self.store().reader();
         let archived = reader.archived().await?;
+        let withdrawn = reader.withdrawn().await?;
+        let mut details = reader.study_details().await?;
         let mut studies: BTreeMap<i64, Vec<CalibrationStatus>> = BTreeMap::new();
         // A calibration whose row cannot be read belongs to no known study.
-        for status in self.list(true).await?.into_iter().filter(|s| s.study != 0) {
+        let is_member = |s: &CalibrationStatus| s.study != 0 && !withdrawn.contains(&s.id);
+        for status in self.list(true).await?.into_iter().filter(is_member) {
             studies.entry(status.study).or_default().push(status);
         }
         let mut listed = self.results.texts(&StudyFile::ListItem.name()).await?;
@@ -105,6 +111,9 @@ impl Service {
             item.calibrations = members.iter().map(|member| member.id).collect();
             item.state = unfinished.map_or(item.state, |member| member.state);
             item.archived = archived.iter().any(|&(study, _)| study == id);
+            if let Some(details) = details.remove(&id) {
+                item.describe(details);
+            }
             Some(item)
         };
         let items = studies.into_iter().filter_map(item);

@@ -91,6 +91,12 @@ impl<'a> Lineage<'a> {
         })
     }
 
+    /// Returns a calibration and all that follow from it, oldest first.
+    pub fn from(self, id: i64) -> impl Iterator<Item = &'a CalibrationRow> {
+        let follows = move |row: &&CalibrationRow| self.ancestors(row.id).any(|ancestor| ancestor.id == id);
+        self.rows.iter().filter(follows)
+    }
+
     /// Returns a calibration and its ancestors, the nearest first.
     fn ancestors(self, id: i64) -> impl Iterator<Item = &'a CalibrationRow> {
         let find = move |id: i64| self.rows.iter().find(|row| row.id == id);
@@ -168,6 +174,15 @@ mod tests {
         assert!(Lineage::new(&rows).has_added(2, "janosi_hanamoto"));
         rows.push(changed(3, 2, Change::Drop(vec!["janosi_hanamoto".into()])));
         assert!(Lineage::new(&rows).additions(3).is_empty());
+    }
+
+    #[test]
+    fn what_follows_from_a_calibration_is_its_searches_extensions_and_further_runs() {
+        let rows = study();
+        let from = |id| Lineage::new(&rows).from(id).map(|row| row.id).collect::<Vec<_>>();
+        assert_eq!(from(4), [4, 5, 6]);
+        assert_eq!(from(1), [1, 2, 3, 4, 5, 6]);
+        assert_eq!(from(9), [0; 0]);
     }
 
     #[test]

@@ -8,6 +8,7 @@ mod blob;
 mod change;
 mod copy;
 mod damage;
+mod details;
 mod effects;
 mod error;
 mod facts;

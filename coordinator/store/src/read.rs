@@ -164,7 +164,7 @@ impl Reader {
         Ok(studies)
     }
 
-    /// Reads the study, id and state of every calibration, oldest first.
+    /// Reads the study, id and state of every calibration that is part of its study, oldest first.
     pub async fn member_states(&self) -> Result<Vec<(i64, i64, CalibrationState)>, StoreError> {
         let rows = query("SELECT study, id, state FROM calibrations ORDER BY id");
         let rows = rows.fetch_all(&self.pool).await?;
@@ -173,7 +173,9 @@ impl Reader {
             let state = CalibrationState::from_name(row.try_get("state").ok()?)?;
             Some((row.try_get("study").ok()?, row.try_get("id").ok()?, state))
         };
-        Ok(rows.iter().filter_map(readable).collect())
+        let withdrawn = self.withdrawn().await?;
+        let is_part = |(_, id, _): &(i64, i64, CalibrationState)| !withdrawn.contains(id);
+        Ok(rows.iter().filter_map(readable).filter(is_part).collect())
     }
 
     /// Reads the studies whose calibrations are all over, each with the number of its calibrations; archived studies are left out.

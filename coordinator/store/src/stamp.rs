@@ -63,7 +63,9 @@ impl Stamp {
         study: i64,
     ) -> Result<bool, sqlx::Error> {
         let doubts = doubts(&mut *connection).await?;
-        let rows = query_as("SELECT id, state FROM calibrations WHERE study = ? ORDER BY id");
+        let rows = query_as(
+            "SELECT id, state FROM calibrations WHERE study = ? AND withdrawn_at_ms IS NULL ORDER BY id",
+        );
         let rows: Vec<(i64, String)> = rows.bind(study).fetch_all(connection).await?;
         let members = rows
             .iter()
@@ -110,7 +112,8 @@ impl Reader {
         }
     }
 
-    /// Reads the calibrations of a study, oldest first, with the stamp of the results that a build of the program computes from them.
+    /// Reads the calibrations of a study, oldest first and without those that were taken out of it, with the stamp of the results that a
+    /// build of the program computes from them.
     ///
     /// Doubts are read first: one that arises while the calibrations are read makes the stamp out of date.
     pub async fn stamped_study(
@@ -119,7 +122,9 @@ impl Reader {
         build: &str,
     ) -> Result<(Stamp, Vec<CalibrationRow>), StoreError> {
         let doubts = self.doubts().await?;
-        let rows = self.study(study).await?;
+        let withdrawn = self.withdrawn().await?;
+        let mut rows = self.study(study).await?;
+        rows.retain(|row| !withdrawn.contains(&row.id));
         let stamp = Stamp::new(build, rows.iter().map(|row| (row.id, row.state)), doubts);
         Ok((stamp, rows))
     }

@@ -21,6 +21,7 @@ use super::insert::{
 use super::results::StudyResults;
 use super::server;
 use super::sql::{Connection, query};
+use record::StudyDetails;
 use record::fact::{EvaluationRow, Fact};
 
 /// The largest number of facts in one commit.
@@ -58,6 +59,16 @@ enum Write {
     },
     Archive {
         study: i64,
+        at_ms: Option<i64>,
+        reply: oneshot::Sender<()>,
+    },
+    Details {
+        study: i64,
+        details: StudyDetails,
+        reply: oneshot::Sender<()>,
+    },
+    Withdraw {
+        calibrations: Vec<i64>,
         at_ms: Option<i64>,
         reply: oneshot::Sender<()>,
     },
@@ -295,6 +306,26 @@ impl Writer {
             .await
     }
 
+    /// Keeps what people say of a study.
+    pub async fn describe_study(&self, study: i64, details: StudyDetails) -> Result<(), StoreError> {
+        let write = |reply| Write::Details {
+            study,
+            details,
+            reply,
+        };
+        self.committed(write).await
+    }
+
+    /// Takes calibrations out of their study at a time; without a time, takes them in again.
+    pub async fn withdraw(&self, calibrations: Vec<i64>, at_ms: Option<i64>) -> Result<(), StoreError> {
+        let write = |reply| Write::Withdraw {
+            calibrations,
+            at_ms,
+            reply,
+        };
+        self.committed(write).await
+    }
+
     /// Deletes a study with all rows that belong to it alone. It is deleted in parts, so that facts of other studies are stored between
     /// them.
     pub async fn delete_study(&self, study: i64, now_ms: i64) -> Result<(), StoreError> {
@@ -465,6 +496,22 @@ async fn write_group(
                 super::removal::archive(connection, study, at_ms).await?;
                 replies.done.push(reply);
             }
+            Write::Details {
+                study,
+                details,
+                reply,
+            } => {
+                super::details::write_details(connection, study, &details).await?;
+                replies.done.push(reply);
+            }
+            Write::Withdraw {
+                calibrations,
+                at_ms,
+                reply,
+            } => {
+                super::details::withdraw(connection, &calibrations, at_ms).await?;
+                replies.done.push(reply);
+            }
             Write::Delete { study, now_ms, reply } => {
                 // Facts about its calibrations that arrived before are written first, so that they are deleted too.
                 insert_evaluations(connection, &mut rows).await?;
@@ -496,9 +543,9 @@ async fn write_group(
 
 /// Returns whether a write changes which studies there are, or which members they have.
 fn changes_studies(write: &Write) -> bool {
-    use Write::{Archive, Delete, Member, Study};
+    use Write::{Archive, Delete, Member, Study, Withdraw};
     matches!(
         write,
-        Study { .. } | Member { .. } | Archive { .. } | Delete { .. }
+        Study { .. } | Member { .. } | Archive { .. } | Withdraw { .. } | Delete { .. }
     )
 }

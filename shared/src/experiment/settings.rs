@@ -35,6 +35,12 @@ pub struct Rig {
     /// Length of the soil bin along travel `[m]`.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub bin_length_m: Option<f64>,
+    /// Least and greatest slip that the rig can hold: proposed runs stay within.
+    pub slip_range: Option<[f64; 2]>,
+    /// Least and greatest wheel load that the rig can set: proposed runs stay within `[N]`.
+    pub wheel_load_range_n: Option<[f64; 2]>,
+    /// Least and greatest sled speed that the rig can set: proposed runs stay within `[m/s]`.
+    pub sled_speed_range_m_s: Option<[f64; 2]>,
 }
 
 impl Default for Rig {
@@ -42,6 +48,9 @@ impl Default for Rig {
         Rig {
             gravity_m_s2: 9.81,
             bin_length_m: None,
+            slip_range: None,
+            wheel_load_range_n: None,
+            sled_speed_range_m_s: None,
         }
     }
 }
@@ -288,6 +297,19 @@ fn check_numbers(
     positive("gravity_m_s2", rig.gravity_m_s2, "m/s^2").map_err(in_rig)?;
     if let Some(length) = rig.bin_length_m {
         positive("bin_length_m", length, "m").map_err(in_rig)?;
+    }
+    for (key, range, unit, lowest) in [
+        ("slip_range", rig.slip_range, "1", -1.0),
+        ("wheel_load_range_n", rig.wheel_load_range_n, "N", 0.0),
+        ("sled_speed_range_m_s", rig.sled_speed_range_m_s, "m/s", 0.0),
+    ] {
+        let Some([least, greatest]) = range else { continue };
+        let bound = format!("in [{lowest}, the greatest]");
+        let is_least = least.is_finite() && least >= lowest && least <= greatest;
+        require(is_least, &format!("least of {key}"), least, unit, &bound).map_err(in_rig)?;
+        let is_greatest = greatest.is_finite() && (key != "slip_range" || greatest < 1.0);
+        let bound = if key == "slip_range" { "< 1" } else { "finite" };
+        require(is_greatest, &format!("greatest of {key}"), greatest, unit, bound).map_err(in_rig)?;
     }
     for (name, soil) in soils {
         let in_soil = |e| within(&format!("soil.{name}"), e);

@@ -178,6 +178,12 @@ impl EffectSearch {
         self.candidates[candidate].estimate.as_ref()?.fit.as_ref()
     }
 
+    /// Returns the log Bayes factor of a candidate so far.
+    pub(crate) fn log_bayes_factor_of(&self, candidate: usize) -> Option<f64> {
+        let estimate = self.candidates[candidate].estimate.as_ref();
+        estimate.map(|estimate| estimate.log_bayes_factor)
+    }
+
     pub(super) fn frame(&self, candidate: Option<usize>) -> &NormalFrame {
         candidate.map_or(&self.base_frame, |k| &self.candidates[k].frame)
     }

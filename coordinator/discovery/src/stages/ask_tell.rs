@@ -16,8 +16,8 @@ use statistics::likelihood::LikelihoodError;
 /// Its state is a function of the task and the told values, whatever their order within a round.
 #[derive(Debug, Clone)]
 pub struct DiscoverySearch {
-    state: SearchState,
-    stage: Stage,
+    pub(super) state: SearchState,
+    pub(super) stage: Stage,
     round: ProposalRound<Option<Vec<f64>>>,
     queries: Vec<Query>,
 }
@@ -44,6 +44,12 @@ impl DiscoverySearch {
         };
         discovery.ask();
         Ok(discovery)
+    }
+
+    /// Returns what the search is doing, in words.
+    #[must_use]
+    pub fn doing(&self) -> &'static str {
+        self.stage.doing()
     }
 
     /// Returns the number of completed rounds.

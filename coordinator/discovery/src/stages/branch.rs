@@ -66,6 +66,14 @@ impl SearchBranch {
         queries.collect()
     }
 
+    /// Returns the candidates that have evidence so far, by their indices in the task, with their log Bayes factors.
+    pub(super) fn fitted(&self) -> Vec<(usize, f64)> {
+        let known = self.candidates.iter().enumerate();
+        known
+            .filter_map(|(k, &candidate)| Some((candidate, self.search.log_bayes_factor_of(k)?)))
+            .collect()
+    }
+
     pub(super) fn take(&mut self, answers: Vec<Option<Vec<f64>>>) {
         for (index, values) in answers.into_iter().enumerate() {
             // The values were checked when they arrived, and each index is told once.

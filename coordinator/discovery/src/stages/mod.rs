@@ -44,6 +44,7 @@ pub(crate) mod law_forms;
 mod law_rivals;
 mod law_substitutes;
 mod laws;
+pub(crate) mod leaders;
 
 pub(crate) mod next_run;
 mod noise_support;

@@ -73,6 +73,38 @@ impl Stage {
         }
     }
 
+    /// Returns what a search does in this stage.
+    pub(super) fn doing(&self) -> &'static str {
+        match self {
+            Self::SingleEffects(_) => "tries each effect alone",
+            Self::BaseReduction(_) => "tries the model without each of its effects",
+            Self::Families(_) => "tries effects that belong together",
+            Self::BeamSearch(..) => "combines effects",
+            Self::BackwardElimination(_) => "leaves out effects of the best combinations",
+            Self::Exchanges(..) => "exchanges effects that the data hardly tell apart",
+            Self::Curves(_) | Self::Forms(_) => "tries laws outside the library",
+            Self::EffectsBesideLaw(..)
+            | Self::LawElimination(_)
+            | Self::LawForms(..)
+            | Self::LawSubstitutes(_) => "tries effects beside a law outside the library",
+            Self::CrossValidation(..) | Self::LawBesideEffects(..) => {
+                "tests a law on conditions that are left out"
+            }
+            Self::Replacements(_) => "tries effects in the place of those of the model",
+            Self::Predictions(..) => "tests the leading explanations on conditions that are left out",
+            Self::NextRuns(_) => "chooses the runs that would tell",
+            Self::Done(_) | Self::Failed(_) => "is over",
+        }
+    }
+
+    /// Returns the effects that were fitted alone so far, with their log Bayes factors; none after the first stage.
+    pub(super) fn single_effects(&self) -> Vec<(usize, f64)> {
+        match self {
+            Self::SingleEffects(branch) => branch.fitted(),
+            _ => Vec::new(),
+        }
+    }
+
     /// Returns the queries of the next round; none once the stage is complete.
     pub(super) fn queries(&mut self) -> Vec<Query> {
         match self.work() {

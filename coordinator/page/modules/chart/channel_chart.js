@@ -1,8 +1,10 @@
 // A channel of one wheel against a condition: measurements at their true places, models as lines with their 90 % bands.
 
 import { html, useMemo } from "../html.js";
-import { digits, shown, titled, words } from "../words/quantity.js";
+import { t } from "../language/language.js";
+import { conditionWords, runName } from "../words/condition.js";
 import { groups } from "../words/group.js";
+import { channelName, digits, shown, titled } from "../words/quantity.js";
 import { colour, symbol } from "./colour.js";
 import { spanWords } from "./condition.js";
 import { Entry, Figure, fileName } from "./figure.js";
@@ -28,7 +30,7 @@ export function ChannelChart({ channel, wheel, measurements, layers, axis, name,
   const measured = own(measurements);
   const quantity = shown(measured[0].unit);
   const found = useMemo(() => groups(measured, axis.key), [measurements, channel, wheel, axis.key]);
-  const title = stated ?? `${words(channel)}${wheel === null ? "" : `, wheel ${wheel}`}, measured and computed, by ${axis.title}`;
+  const title = stated ?? t`${[channelName(channel), wheel === null ? "" : t`wheel ${wheel}`].filter(Boolean).join(", ")}, measured and computed, by ${axis.title}`;
   const draw = (/** @type {number} */ width) => picture({ width, layers: layers.map((l) => ({ ...l, rows: own(l.rows) })), measured, found, axis, quantity, channel, moving });
   const drawn = (/** @type {any} */ plot) => {
     const release = pointable(plot, { runsIn, words: (from, to) => spanWords(axis, from, to) });
@@ -79,9 +81,9 @@ function picture({ width, layers, measured, found, axis, quantity, channel, movi
     return Plot.dot(own, byRun(own, { x, y: value("measured"), r: 4.2, ...sign }));
   });
   const tip = (/** @type {any} */ r) => [
-    `run ${r.run}${r.use === "holdout" ? " (held out)" : ""}`,
-    `slip ${digits(r.slip, 2)}, ${digits(r.wheel_load_n, 3)} N, ${digits(1000 * r.sled_speed_m_s, 3)} mm/s`,
-    `measured ${digits(r.measured * quantity.scale)} ${quantity.unit}`,
+    runName(r),
+    conditionWords(r),
+    `${t`measured`} ${digits(r.measured * quantity.scale)} ${quantity.unit}`,
     ...layers.map((l) => {
       const own = l.rows.find((o) => o.run === r.run);
       return own?.predicted === undefined || own?.predicted === null ? "" : `${l.name} ${digits(own.predicted * quantity.scale)} ${quantity.unit}`;
@@ -90,7 +92,7 @@ function picture({ width, layers, measured, found, axis, quantity, channel, movi
   return Plot.plot({
     width, height: Math.max(240, Math.min(360, 0.62 * width)), marginTop: 26, marginLeft: 56, marginBottom: 40, inset: 7, grid: true, style: STYLE,
     x: { label: titled(axis.title, axis.unit), labelArrow: "none", labelAnchor: "center", nice: true },
-    y: { label: titled(words(channel), quantity.unit), labelArrow: "none", nice: true, ...(moving ? { domain: reach(layers, measured, quantity, moving) } : {}) },
+    y: { label: titled(channelName(channel), quantity.unit), labelArrow: "none", nice: true, ...(moving ? { domain: reach(layers, measured, quantity, moving) } : {}) },
     marks: [
       ...marks,
       ...dots(measured.filter((r) => r.use !== "holdout"), (/** @type {string} */ c) => ({ fill: c, stroke: "var(--paper)", strokeWidth: 0.7 })),

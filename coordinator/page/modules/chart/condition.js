@@ -1,13 +1,17 @@
 // The conditions that runs are drawn against.
 
+import { t } from "../language/language.js";
+import { slipUnit } from "../units.js";
+import { shown } from "../words/quantity.js";
+
 /** @typedef {{ key: string, title: string, short: string, unit: string, scale: number }} ConditionAxis */
 
 /** @type {ConditionAxis[]} */
 export const CONDITIONS = [
-  { key: "slip", title: "slip", short: "slip", unit: "1", scale: 1 },
-  { key: "wheel_load_n", title: "wheel load", short: "load", unit: "N", scale: 1 },
-  { key: "sled_speed_m_s", title: "sled speed", short: "speed", unit: "mm/s", scale: 1000 },
-  { key: "slip_angle_deg", title: "slip angle", short: "angle", unit: "°", scale: 1 },
+  { key: "slip", title: t`slip`, short: t`slip`, ...slipUnit },
+  { key: "wheel_load_n", title: t`wheel load`, short: t`load`, ...shown("N") },
+  { key: "sled_speed_m_s", title: t`sled speed`, short: t`speed`, ...shown("m/s") },
+  { key: "slip_angle_deg", title: t`slip angle`, short: t`angle`, unit: "°", scale: 1 },
 ];
 
 /** The conditions that vary among rows; slip always stands among them. */
@@ -18,5 +22,5 @@ export function varying(/** @type {any[]} */ rows) {
 /** `slip 0.05 to 0.2`. */
 export function spanWords(/** @type {ConditionAxis} */ axis, /** @type {number} */ from, /** @type {number} */ to) {
   const text = (/** @type {number} */ v) => String(Number(v.toPrecision(2))).replace("-", "−");
-  return `${axis.short} ${text(from)} to ${text(to)}${axis.unit === "1" ? "" : ` ${axis.unit}`}`;
+  return `${axis.short} ${text(from)}${t` to `}${text(to)}${axis.unit === "1" ? "" : ` ${axis.unit}`}`;
 }

@@ -1,6 +1,7 @@
 // A picture with its title, its legend and its downloads; it is drawn anew when its width or its numbers change.
 
 import { html, useEffect, useRef, useState } from "../html.js";
+import { t } from "../language/language.js";
 import { light } from "../selection.js";
 import { words } from "../words/quantity.js";
 import { csv, png, save, svg } from "./download.js";
@@ -32,7 +33,7 @@ export function Figure({ title, name, deps, draw, rows, note, legend, onDrawn })
     try {
       plot = draw(width);
     } catch (error) {
-      setFailure(`this picture cannot be drawn: ${/** @type {Error} */ (error).message}`);
+      setFailure(t`this picture cannot be drawn: ${/** @type {Error} */ (error).message}`);
       return undefined;
     }
     setFailure(null);
@@ -49,7 +50,7 @@ export function Figure({ title, name, deps, draw, rows, note, legend, onDrawn })
     try {
       save(`${name}.png`, await png(figure()));
     } catch (error) {
-      setFailure(`this picture cannot be saved: ${/** @type {Error} */ (error).message}`);
+      setFailure(t`this picture cannot be saved: ${/** @type {Error} */ (error).message}`);
     }
   };
   return html`
@@ -58,7 +59,7 @@ export function Figure({ title, name, deps, draw, rows, note, legend, onDrawn })
       <div class="plot" ref=${place}></div>
       ${failure && html`<p class="error">${failure}</p>`}
       ${legend && html`<div class="legend">${legend}</div>`}
-      <div class="downloads" role="group" aria-label=${`download: ${title}`}>
+      <div class="downloads" role="group" aria-label=${t`download: ${title}`}>
         <button type="button" onClick=${() => save(`${name}.svg`, svg(figure()))}>SVG</button>
         <button type="button" onClick=${savePng}>PNG</button>
         ${rows && html`<button type="button" onClick=${() => save(`${name}.csv`, csv(rows()))}>CSV</button>`}

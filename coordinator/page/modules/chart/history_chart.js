@@ -1,7 +1,8 @@
 // Measurement and model over time, with the window that is averaged (the source paper's Fig. 7).
 
 import { html } from "../html.js";
-import { shown, titled, words } from "../words/quantity.js";
+import { t } from "../language/language.js";
+import { channelName, shown, titled } from "../words/quantity.js";
 import { colour } from "./colour.js";
 import { Entry, Figure, fileName } from "./figure.js";
 import { Plot, STYLE } from "./library.js";
@@ -11,21 +12,21 @@ export function HistoryChart({ history, name }) {
   const quantity = shown(history.unit);
   const points = (/** @type {any} */ series) => series.t_s.map((/** @type {number} */ t, /** @type {number} */ k) => ({ t, value: series.value[k] * quantity.scale }));
   const lines = [
-    ...(history.measured ? [{ name: "measured", stroke: "var(--measured)", points: points(history.measured) }] : []),
+    ...(history.measured ? [{ name: t`measured`, stroke: "var(--measured)", points: points(history.measured) }] : []),
     ...history.model.map((/** @type {any} */ m, /** @type {number} */ k) => ({ name: m.label, stroke: colour(k), points: points(m) })),
   ];
   const windows = [history.measured, ...history.model].filter((s) => s?.window_s).map((s) => s.window_s);
   const draw = (/** @type {number} */ width) => Plot.plot({
     width, height: 240, marginLeft: 56, marginBottom: 40, grid: true, style: STYLE,
-    x: { label: "time [s]", labelArrow: "none", labelAnchor: "center" },
-    y: { label: titled(words(history.channel), quantity.unit), labelArrow: "none", nice: true },
+    x: { label: t`time [s]`, labelArrow: "none", labelAnchor: "center" },
+    y: { label: titled(channelName(history.channel), quantity.unit), labelArrow: "none", nice: true },
     marks: [
       ...windows.slice(0, 1).map(([from, to]) => Plot.rectY([0], { x1: from, x2: to, fill: "currentColor", fillOpacity: 0.06 })),
       ...lines.map((line) => Plot.lineY(line.points, { x: "t", y: "value", stroke: line.stroke, strokeWidth: 1.3 })),
     ],
   });
   const rows = () => lines.flatMap((line) => line.points.map((/** @type {any} */ p) => ({ series: line.name, t_s: p.t, [`${history.channel} [${quantity.unit}]`]: p.value })));
-  return html`<${Figure} title=${`${words(history.channel)} of run ${history.run} over time`} name=${fileName(name, "history", history.run, history.channel)}
+  return html`<${Figure} title=${t`${channelName(history.channel)} of run ${history.run} over time`} name=${fileName(name, "history", history.run, history.channel)}
     deps=${[history]} draw=${draw} rows=${rows}
     legend=${lines.map((line) => html`<${Entry} glyph=${html`<path d="M0 8h16" stroke=${line.stroke} stroke-width="2" />`}>${line.name}<//>`)} />`;
 }

@@ -1,7 +1,10 @@
 // What a further run would tell about the open explanations, over slip and load, for each speed of the rim.
 
 import { html } from "../html.js";
-import { digits, minus } from "../words/quantity.js";
+import { t } from "../language/language.js";
+import { slipUnit } from "../units.js";
+import { conditionWords, speedWords } from "../words/condition.js";
+import { digits, minus, shown, titled } from "../words/quantity.js";
 import { rimSpeed } from "../words/group.js";
 import { levelOf, levels, levelWords } from "../words/level.js";
 import { Figure, fileName } from "./figure.js";
@@ -11,7 +14,7 @@ import { Plot, STYLE } from "./library.js";
 export const shownNats = (/** @type {number} */ nats) => Math.max(0, nats);
 
 /** What is said of an estimate. */
-export const natsWords = (/** @type {number} */ nats) => (nats < 0 ? `0 nats within the error of the estimate, ${digits(nats, 2)}` : `${digits(nats, 2)} nats`);
+export const natsWords = (/** @type {number} */ nats) => (nats < 0 ? t`0 nats within the error of the estimate, ${digits(nats, 2)}` : `${digits(nats, 2)} nats`);
 
 /** @param {{ record: any, name: string }} properties */
 export function InformationMap({ record, name }) {
@@ -25,21 +28,21 @@ export function InformationMap({ record, name }) {
     const next = record.next_runs.map((/** @type {any} */ r, /** @type {number} */ n) => ({ ...r, n: n + 1 })).filter((/** @type {any} */ r) => own.some((/** @type {any} */ o) => isSame(o, r)));
     return Plot.plot({
       width, height: 210, marginTop: 26, marginLeft: 60, marginBottom: 40, style: STYLE,
-      x: { label: "slip", labelArrow: "none", labelAnchor: "center", type: "band", tickFormat: (/** @type {number} */ v) => minus(v) },
-      y: { label: "wheel load [N]", labelArrow: "none", type: "band", reverse: true },
+      x: { label: titled(t`slip`, slipUnit.unit), labelArrow: "none", labelAnchor: "center", type: "band", tickFormat: (/** @type {number} */ v) => minus(Number((v * slipUnit.scale).toPrecision(3))) },
+      y: { label: titled(t`wheel load`, shown("N").unit), tickFormat: (/** @type {number} */ v) => digits(v * shown("N").scale), labelArrow: "none", type: "band", reverse: true },
       color: { type: "linear", domain: [0, max], clamp: true, range: ["var(--panel)", "var(--accent)"], interpolate: /** @type {any} */ ((/** @type {string} */ a, /** @type {string} */ b) => (/** @type {number} */ t) => `color-mix(in srgb, ${b} ${(100 * t).toFixed(1)}%, ${a})`) },
       marks: [
-        Plot.cell(own, { x: "slip", y: "wheel_load_n", fill: (/** @type {any} */ r) => shownNats(r.nats), inset: 0.5, title: (/** @type {any} */ r) => `${natsWords(r.nats)} at slip ${minus(r.slip)}, ${r.wheel_load_n} N, ${digits(1000 * r.sled_speed_m_s, 2)} mm/s` }),
+        Plot.cell(own, { x: "slip", y: "wheel_load_n", fill: (/** @type {any} */ r) => shownNats(r.nats), inset: 0.5, title: (/** @type {any} */ r) => [natsWords(r.nats), conditionWords(r)].join("; ") }),
         Plot.dot(next, { x: "slip", y: "wheel_load_n", r: 10, fill: "var(--paper)", stroke: "currentColor" }),
         Plot.text(next, { x: "slip", y: "wheel_load_n", text: "n", fontWeight: "bold", fill: "currentColor" }),
       ],
     });
   };
   return html`
-    <p class="note">The stronger the colour of a run, the more it tells about which explanation holds (a sure answer to a yes or no is worth ${digits(Math.log(2), 2)} nats). Numbers: the runs to make, each chosen given those before it.${hasNegative ? " An estimate below 0 is 0 within its error, and is drawn as 0." : ""}</p>
+    <p class="note">The stronger the colour of a run, the more it tells about which explanation holds (a sure answer to a yes or no is worth ${digits(Math.log(2), 2)} nats). Numbers: the runs to make, each chosen given those before it.${hasNegative ? t` An estimate below 0 is 0 within its error, and is drawn as 0.` : ""}</p>
     <p class="legend"><span>0 nats <i class="ramp" role="img" aria-label="colours from no information to the most"></i> ${digits(max, 2)} nats</span></p>
     <div class="figures small">${speeds.map((speed, k) => html`
-      <${Figure} key=${k} title=${`Information of a run at a rim speed of ${levelWords(speed, "mm/s", 1000)}`} name=${fileName(name, "next-runs", k + 1)} deps=${[record]} draw=${draw(k)}
+      <${Figure} key=${k} title=${t`Information of a run at a rim speed of ${levelWords(speed, shown("m/s").unit, shown("m/s").scale)}`} name=${fileName(name, "next-runs", k + 1)} deps=${[record]} draw=${draw(k)}
         rows=${() => runs.filter((/** @type {any} */ r) => levelOf(speeds, rimSpeed(r)) === k)} />`)}</div>
     <${ProposedRuns} record=${record} />`;
 }
@@ -50,5 +53,5 @@ const isSame = (/** @type {any} */ a, /** @type {any} */ b) =>
 function ProposedRuns(/** @type {{ record: any }} */ { record }) {
   if (record.next_runs.length === 0) return null;
   return html`<ol>${record.next_runs.map((/** @type {any} */ r, /** @type {number} */ k) => html`
-    <li>slip ${minus(r.slip)}, ${digits(r.wheel_load_n)} N, sled speed ${digits(1000 * r.sled_speed_m_s, 2)} mm/s (rim ${digits(1000 * rimSpeed(r), 2)} mm/s) ${k === 0 ? "tells" : "adds"} ${digits(r.information_nats, 2)} nats: it separates ${r.separates.join(", ").replace("none", "nothing missing")}</li>`)}</ol>`;
+    <li>${conditionWords(r)} (${t`rim ${speedWords(rimSpeed(r))}`}): ${k === 0 ? t`tells ${digits(r.information_nats, 2)} nats` : t`adds ${digits(r.information_nats, 2)} nats`}; ${t`it separates ${r.separates.join(", ").replace("none", t`nothing missing`)}`}</li>`)}</ol>`;
 }

@@ -1,6 +1,7 @@
 // A law outside the library: its curve, its effect file, and the forms that were fitted.
 
 import { html } from "../html.js";
+import { t } from "../language/language.js";
 import { minus, probability, words } from "../words/quantity.js";
 import { Figure, fileName } from "./figure.js";
 import { Plot, STYLE } from "./library.js";
@@ -11,7 +12,7 @@ const UNITS = /** @type {Record<string, string>} */ ({ z: "m", v_n: "m/s", v_t: 
 export function LawChart({ law, name, add }) {
   const isFactor = ["pressure", "shear"].includes(law.acts_on);
   const unit = UNITS[law.depends_on] ?? "1";
-  const label = isFactor ? `factor on ${words(law.acts_on)}` : `addition to ${words(law.acts_on)} (SI)`;
+  const label = isFactor ? t`factor on ${words(law.acts_on)}` : t`addition to ${words(law.acts_on)} (SI)`;
   const draw = (/** @type {number} */ width) => Plot.plot({
     width, height: 260, marginTop: 26, marginLeft: 60, marginBottom: 40, inset: 6, grid: true, style: STYLE,
     x: { label: unit === "1" ? words(law.depends_on) : `${words(law.depends_on)} [${unit}]`, labelArrow: "none", labelAnchor: "center" },
@@ -22,7 +23,7 @@ export function LawChart({ law, name, add }) {
     <h2>A law that is not in the library</h2>
     <p>${words(law.acts_on)} depends on ${words(law.depends_on)} (${law.form}), ${law.log_bayes_factor.toFixed(1)} nats over the model as it is.</p>
     <div class="figures">
-      <${Figure} title=${`${words(law.acts_on)} by ${words(law.depends_on)}`} name=${fileName(name, "law")} deps=${[law]} draw=${draw}
+      <${Figure} title=${t`${words(law.acts_on)} by ${words(law.depends_on)}`} name=${fileName(name, "law")} deps=${[law]} draw=${draw}
         rows=${() => law.curve.map((/** @type {[number, number]} */ [x, y]) => ({ [law.depends_on]: x, [isFactor ? "factor" : "addition"]: y }))} />
       <div><pre tabindex="0" aria-label="effect file">${law.effect_file}</pre>
         ${add && html`<button class="main" type="button" onClick=${add}>Add this law</button>`}</div>

@@ -1,5 +1,6 @@
 // The lines of a study's error ledger with the names and colours that pictures and tables give them.
 
+import { t } from "../language/language.js";
 import { modelName } from "../words/model.js";
 import { colour } from "./colour.js";
 
@@ -10,6 +11,6 @@ import { colour } from "./colour.js";
 export function ledgerLines(/** @type {any} */ study) {
   return study.ledger.map((/** @type {any} */ line, /** @type {number} */ k) => {
     const member = study.members.find((/** @type {any} */ m) => m.id === line.calibration);
-    return { id: line.calibration, name: member ? modelName(study, member) : `calibration ${line.calibration}`, effects: member?.effects ?? line.effects, colour: colour(k), line };
+    return { id: line.calibration, name: member ? modelName(study, member) : t`calibration ${line.calibration}`, effects: member?.effects ?? line.effects, colour: colour(k), line };
   });
 }

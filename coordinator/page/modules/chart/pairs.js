@@ -1,7 +1,8 @@
 // Joint posteriors: a triangle of small contours, and one of them large with what else is known of its parameters.
 
 import { html } from "../html.js";
-import { digits, parameterName, shown, tickWords, titled } from "../words/quantity.js";
+import { t } from "../language/language.js";
+import { digits, minus, parameterName, shown, tickWords, titled } from "../words/quantity.js";
 import { symbol } from "./colour.js";
 import { Entry, Figure, fileName } from "./figure.js";
 import { glyph } from "./glyph.js";
@@ -53,6 +54,7 @@ export function ticksOf(axis, extent) {
 /** @param {{ pairs: any[], marginals: any[], name: string, onCell: (pair: any) => void }} properties */
 export function PairPlot({ pairs, marginals, name, onCell }) {
   const count = marginals.length;
+  const pairOf = (/** @type {any} */ a, /** @type {any} */ b) => pairs.find((p) => [a.name, b.name].every((n) => p.parameters.some((/** @type {any} */ q) => q.name === n)));
   const draw = (/** @type {number} */ width) => {
     const side = Math.round(Math.max(SIDES[0], Math.min(SIDES[1], (width - EDGE) / count - GAP)));
     const whole = EDGE + count * (side + GAP);
@@ -76,7 +78,7 @@ export function PairPlot({ pairs, marginals, name, onCell }) {
         inside.append("path").attr("d", line(column.prior)).attr("fill", "none").attr("stroke", "var(--prior)").attr("stroke-dasharray", "4 3").attr("class", "prior");
         inside.append("path").attr("d", line(column.posterior)).attr("fill", "none").attr("stroke", "var(--series-0)");
       } else {
-        const pair = pairs.find((p) => [column.name, row.name].every((n) => p.parameters.some((/** @type {any} */ q) => q.name === n)));
+        const pair = pairOf(column, row);
         if (!pair) return;
         const y = (/** @type {number} */ v) => up(v * shown(row.unit).scale);
         regions(pair, x, y, pair.parameters[0].name !== column.name).forEach((/** @type {string} */ d) => inside.append("path").attr("d", d).attr("fill", "var(--series-0)").attr("fill-opacity", 0.2).attr("fill-rule", "evenodd"));
@@ -92,14 +94,24 @@ export function PairPlot({ pairs, marginals, name, onCell }) {
         label(cell.append("text").attr("x", 0).attr("transform", `translate(-60,${side / 2}) rotate(-90)`), row);
       }
     }));
+    marginals.forEach((row, j) => marginals.slice(j + 1).forEach((column, further) => {
+      const pair = pairOf(column, row);
+      if (pair) correlation(svg.append("g").attr("transform", `translate(${EDGE + (j + 1 + further) * (side + GAP)},${j * (side + GAP)})`), pair, side);
+    }));
     return /** @type {any} */ (svg.node());
   };
   const open = (/** @type {any} */ event) => event.target.value !== "" && onCell(pairs[Number(event.target.value)]);
   return html`
     <p><label>Large picture of <select onChange=${open}><option value="">a pair: choose it, or click its cell</option>
-      ${pairs.map((p, k) => html`<option value=${k}>${p.parameters.map((/** @type {any} */ q) => parameterName(q.name, q.unit)).join(" and ")}, rank correlation ${digits(p.rank_correlation, 2)}</option>`)}</select></label></p>
-    <${Figure} title=${`Joint posterior of ${marginals.map((m) => parameterName(m.name, m.unit)).join(", ")}`} name=${fileName("pairs", name)} deps=${[marginals.map((m) => m.name).join()]} draw=${draw}
+      ${pairs.map((p, k) => html`<option value=${k}>${p.parameters.map((/** @type {any} */ q) => parameterName(q.name, q.unit)).join(t` and `)}, rank correlation ${digits(p.rank_correlation, 2)}</option>`)}</select></label></p>
+    <${Figure} title=${t`Joint posterior of ${marginals.map((m) => parameterName(m.name, m.unit)).join(", ")}`} name=${fileName("pairs", name)} note="above the diagonal: rank correlations" deps=${[marginals.map((m) => m.name).join()]} draw=${draw}
       rows=${() => densities(pairs.filter((p) => p.parameters.every((/** @type {any} */ q) => marginals.some((m) => m.name === q.name))))} />`;
+}
+
+/** The rank correlation of two parameters, the stronger the darker. */
+function correlation(/** @type {any} */ cell, /** @type {any} */ { rank_correlation: r }, /** @type {number} */ side) {
+  cell.append("rect").attr("width", side).attr("height", side).attr("fill", r < 0 ? "var(--below)" : "var(--above)").attr("fill-opacity", (0.55 * Math.abs(r)).toFixed(2)).attr("stroke", "var(--rule)");
+  cell.append("text").attr("x", side / 2).attr("y", side / 2 + 5).attr("text-anchor", "middle").attr("font-size", 14).attr("fill", "currentColor").text(minus(r.toFixed(2)));
 }
 
 /** A name as wide as a cell: its end tells the wheel. */
@@ -129,8 +141,8 @@ export function JointPicture({ pair }) {
     if (m.at.x === null) return Plot.ruleY([m.at.y * b.scale], { stroke });
     return Plot.dot([m], { x: () => m.at.x * a.scale, y: () => m.at.y * b.scale, symbol: /** @type {any} */ (symbol(k + 1)), stroke, fill: stroke, r: 5 });
   };
-  const title = `Joint posterior of ${a.title} and ${b.title}`;
-  return html`<${Figure} title=${title} note=${`regions of ${pair.contours.map((/** @type {any} */ c) => Math.round(100 * c.share)).join(", ")} % of the posterior; rank correlation ${digits(pair.rank_correlation, 2)}`}
+  const title = t`Joint posterior of ${a.title} and ${b.title}`;
+  return html`<${Figure} title=${title} note=${t`regions of ${pair.contours.map((/** @type {any} */ c) => Math.round(100 * c.share)).join(", ")} % of the posterior; rank correlation ${digits(pair.rank_correlation, 2)}`}
     name=${fileName("joint", a.name, b.name)} deps=${[pair]} rows=${() => densities([pair])}
     legend=${pair.marks.map((/** @type {any} */ m, /** @type {number} */ k) => html`<${Entry} glyph=${entryGlyph(m, k)}>${m.label}<//>`)}
     draw=${(/** @type {number} */ width) => Plot.plot({

@@ -1,7 +1,8 @@
 // Residuals of a channel against a condition, with the errors that are assumed and the tested trend.
 
 import { html } from "../html.js";
-import { digits, minus, shown, titled, words } from "../words/quantity.js";
+import { t } from "../language/language.js";
+import { channelName, digits, minus, shown, titled } from "../words/quantity.js";
 import { meanErrorSd } from "../words/residual.js";
 import { colour, symbol } from "./colour.js";
 import { spanWords } from "./condition.js";
@@ -28,7 +29,7 @@ export function ResidualChart({ channel, rows, axis, trends, name }) {
   const draw = (/** @type {number} */ width) => Plot.plot({
     width, height: Math.max(220, Math.min(300, 0.5 * width)), marginTop: 26, marginLeft: 56, marginBottom: 40, insetLeft: 7, insetRight: 7, grid: true, style: STYLE,
     x: { label: titled(axis.title, axis.unit), labelArrow: "none", labelAnchor: "center", nice: true },
-    y: { label: `measured − computed [${quantity.unit}]`, labelArrow: "none", nice: true },
+    y: { label: t`measured − computed [${quantity.unit}]`, labelArrow: "none", nice: true },
     marks: [
       ...(sd === null ? [] : [Plot.rectY([0], { y1: -sd, y2: sd, fill: "currentColor", fillOpacity: 0.08 })]),
       Plot.ruleY([0], { stroke: "currentColor" }),
@@ -42,9 +43,9 @@ export function ResidualChart({ channel, rows, axis, trends, name }) {
   });
   const runsIn = (/** @type {number} */ from, /** @type {number} */ to) => judged.filter((r) => x(r) >= from && x(r) <= to).map((r) => r.run);
   const note = isBeyond
-    ? `trend: ${minus(digits(trend.change * quantity.scale))} ${quantity.unit} from one end to the other, before the fit compensates`
-    : trend ? "no trend beyond chance" : "";
-  return html`<${Figure} title=${`Residuals of ${words(channel)} against ${axis.title}`} note=${note} name=${fileName(name, "residuals", channel, axis.short)}
+    ? t`trend: ${minus(digits(trend.change * quantity.scale))} ${quantity.unit} from one end to the other, before the fit compensates`
+    : trend ? t`no trend beyond chance` : "";
+  return html`<${Figure} title=${t`Residuals of ${channelName(channel)} against ${axis.title}`} note=${note} name=${fileName(name, "residuals", channel, axis.short)}
     deps=${[rows, axis.key, trend]} draw=${draw}
     rows=${() => judged.map((r) => ({ run: r.run, use: r.use, wheel: r.wheel, [axis.key]: r[axis.key], [`residual [${quantity.unit}]`]: y(r) }))}
     onDrawn=${(/** @type {any} */ plot) => pointable(plot, { runsIn, words: (from, to) => spanWords(axis, from, to) })}

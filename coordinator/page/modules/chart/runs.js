@@ -1,5 +1,6 @@
 // Marks that stand for runs: they light up together in every picture, and a region of an axis chooses the runs within.
 
+import { t } from "../language/language.js";
 import { choose, point, toggle } from "../selection.js";
 
 /** A shorter way of the pointer is a click [px]. */
@@ -41,7 +42,7 @@ export function pointable(plot, { runsIn, words } = {}) {
     plot.addEventListener(type, listener, { signal: abort.signal, capture: true });
   on("pointerover", (event) => {
     const run = runAt(event);
-    if (run && event.buttons === 0) point([run], `run ${run}`);
+    if (run && event.buttons === 0) point([run], t`run ${run}`);
   });
   on("pointerout", (event) => {
     if (runAt(event)) point(null);

@@ -3,13 +3,15 @@
 
 import { CONDITIONS } from "../chart/condition.js";
 import { ChannelChart } from "../chart/channel_chart.js";
+import { ledgerLines } from "../chart/ledger_lines.js";
 import { html } from "../html.js";
+import { t } from "../language/language.js";
 import { path } from "../rest/routes.js";
 import { useAnswers } from "../rest/use_answer.js";
 import { groups } from "../words/group.js";
 import { lineBefore } from "../words/headline.js";
 import { modelName } from "../words/model.js";
-import { words } from "../words/quantity.js";
+import { channelName } from "../words/quantity.js";
 
 /** Fewer slips make no curve: then all loads are drawn. */
 const LEAST_SLIPS = 3;
@@ -19,7 +21,8 @@ export function BeforeAfter({ study, model, channel }) {
   const before = lineBefore(study.ledger, model.id)?.calibration ?? null;
   const ids = before === null ? [model.id] : [before, model.id];
   const answers = useAnswers(ids.map((id) => path.comparison(id)));
-  const layers = ids.map((id, k) => ({ id, colour: ids.length === 1 ? null : `var(--series-${ids.length - 1 - k})`, rows: answers[path.comparison(id)]?.rows ?? null }));
+  const colours = new Map(ledgerLines(study).map((line) => [line.id, line.colour]));
+  const layers = ids.map((id) => ({ id, colour: ids.length === 1 ? null : colours.get(id) ?? "var(--series-0)", rows: answers[path.comparison(id)]?.rows ?? null }));
   if (layers.some((layer) => layer.rows === null)) return html`<p class="empty" aria-busy="true">Loading the picture …</p>`;
   const own = layers.at(-1)?.rows.filter((/** @type {any} */ r) => r.channel === channel) ?? [];
   if (own.length === 0) return null;
@@ -27,9 +30,9 @@ export function BeforeAfter({ study, model, channel }) {
   const named = layers.map(({ id, colour, rows }) => ({
     name: modelName(study, study.members.find((/** @type {any} */ m) => m.id === id)), colour, rows: rows.filter((/** @type {any} */ r) => runs.has(r.run)),
   }));
-  const at = [load && `at a wheel load of ${load}`, wheel && `wheel ${wheel}`].filter(Boolean).join(", ");
+  const at = [load && t`at a wheel load of ${load}`, wheel && t`wheel ${wheel}`].filter(Boolean).join(", ");
   return html`<${ChannelChart} channel=${channel} wheel=${wheel} measurements=${named.at(-1)?.rows} layers=${named} axis=${CONDITIONS[0]} name=${`${study.name}-before-after`}
-    title=${`${words(channel)}, measured and computed${at ? `, ${at}` : ""}`} />`;
+    title=${`${t`${channelName(channel)}, measured and computed`}${at ? `, ${at}` : ""}`} />`;
 }
 
 /**

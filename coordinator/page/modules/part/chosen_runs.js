@@ -1,6 +1,7 @@
 // The runs that are chosen, and what can be done with them: a bar at the bottom of every view.
 
 import { html, useState } from "../html.js";
+import { t } from "../language/language.js";
 import { isReport } from "../rest/answers.js";
 import { get, path, whatIf } from "../rest/routes.js";
 import { address } from "../route.js";
@@ -21,7 +22,7 @@ export function ChosenRuns({ study, model }) {
       const { rows } = await get(path.comparison(model.id));
       const fitted = new Set(rows.filter((/** @type {any} */ r) => r.use === "fit").map((/** @type {any} */ r) => r.run));
       const without = runs.filter((run) => fitted.has(run));
-      if (without.length === 0) throw new Error("these runs are held out already: choose runs that are fitted");
+      if (without.length === 0) throw new Error(t`these runs are held out already: choose runs that are fitted`);
       const created = await whatIf(model.id, without);
       choose(null);
       location.hash = address(["beside", study.id, created.study]);
@@ -32,8 +33,8 @@ export function ChosenRuns({ study, model }) {
   };
   return html`
     <aside class="chosen-runs" aria-label="Chosen runs">
-      <p><b>${chosen.label}</b>: ${runs.length === 1 ? "1 run" : `${runs.length} runs`}${" "}
-        <span class="note">${runs.length <= 8 ? runs.join(", ") : `${runs.slice(0, 8).join(", ")} and ${runs.length - 8} more`}</span></p>
+      <p><b>${chosen.label}</b>: ${runs.length === 1 ? t`1 run` : t`${runs.length} runs`}${" "}
+        <span class="note">${runs.length <= 8 ? runs.join(", ") : t`${runs.slice(0, 8).join(", ")} and ${runs.length - 8} more`}</span></p>
       ${!isReport && model && html`<button class="main" type="button" disabled=${isBusy} onClick=${ask}>What if these runs were left out?</button>`}
       <button type="button" onClick=${() => choose(null)}>Let them go</button>
       <${Failure} error=${failure} />

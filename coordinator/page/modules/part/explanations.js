@@ -1,21 +1,24 @@
 // The explanations of a misfit by falling probability; pointing at one shows what it would change, a click adds it.
 
 import { html, useState } from "../html.js";
+import { t } from "../language/language.js";
 import { path } from "../rest/routes.js";
 import { useAnswer } from "../rest/use_answer.js";
 import { capital, digits, minus, parameterName, probability, shown, words } from "../words/quantity.js";
+import { additionOf, TakeBack } from "./take_back.js";
 
 /** A fitted parameter below this is 0. */
 const ZERO = 1e-12;
 /** So many are shown at first. */
 const FIRST = 8;
-export const OTHERS = /** @type {Record<string, string>} */ ({ none: "nothing is missing", not_in_library: "a law that is not in the library" });
+export const OTHERS = /** @type {Record<string, string>} */ ({ none: t`nothing is missing`, not_in_library: t`a law that is not in the library` });
 
 /**
  * @param {{ record: any, ghost: string | null, kept: string | null, show: (name: string | null) => void, keep: (name: string | null) => void, add: ((extension: any) => void) | null,
- *   study: any, model: any, isBusy: boolean }} properties
+ *   study: any, model: any, isBusy: boolean, reload?: () => void }} properties
  */
-export function Explanations({ record, ghost, kept, show, keep, add, study, model, isBusy }) {
+export function Explanations({ record, ghost, kept, show, keep, add, study, model, isBusy, reload }) {
+  const [asked, setAsked] = useState(/** @type {string | null} */ (null));
   const { answer: catalogue } = useAnswer(path.effects);
   const [isAll, setAll] = useState(false);
   const effects = isAll ? record.effects : record.effects.slice(0, FIRST);
@@ -36,22 +39,24 @@ export function Explanations({ record, ghost, kept, show, keep, add, study, mode
           <tr key=${effect.name} class=${`${effect.name === ghost ? "shown" : ""} ${effect.in_credible_set ? "credible" : ""}`}
               onMouseEnter=${() => show(effect.name)} onMouseLeave=${() => show(null)}>
             <th scope="row">
-              <button class="plain" type="button" onFocus=${() => show(effect.name)} onBlur=${() => show(null)} onClick=${() => keep(kept === effect.name ? null : effect.name)} aria-pressed=${kept === effect.name} aria-label=${`${titleOf(effect.name)}: show what ${OTHERS[effect.name] ?? effect.name} would change`}><b>${titleOf(effect.name)}</b></button>
-              <span class="note">${effect.name in OTHERS ? null : html`<code>${effect.name}</code>`} ${[untried.get(effect.name), (classes.get(effect.class) ?? 0) > 1 ? `these data cannot tell it from ${same(record, effect)}` : null].filter(Boolean).join("; ")}</span>
+              <button class="plain" type="button" onFocus=${() => show(effect.name)} onBlur=${() => show(null)} onClick=${() => keep(kept === effect.name ? null : effect.name)} aria-pressed=${kept === effect.name} aria-label=${t`${titleOf(effect.name)}: show what ${OTHERS[effect.name] ?? effect.name} would change`}><b>${titleOf(effect.name)}</b></button>
+              <span class="note">${effect.name in OTHERS ? null : html`<code>${effect.name}</code>`} ${[untried.get(effect.name), (classes.get(effect.class) ?? 0) > 1 ? t`these data cannot tell it from ${same(record, effect)}` : null].filter(Boolean).join("; ")}</span>
             </th>
             <td><span class="bar"><i style=${{ width: `${(100 * effect.probability).toFixed(1)}%` }}></i></span> <span class="number">${probability(effect.probability)}</span></td>
             <td class="number">${nats(effect.log_bayes_factor)}</td>
             <td>${isAbsent(effect) ? html`<span class="note">absent: the best fit does without it</span>` : Object.entries(effect.parameters).map(([name, value]) => html`<div>${strength(name, /** @type {number} */ (value), effect.units[name])}</div>`)}
               ${effect.prior_sds !== null && Math.abs(effect.prior_sds) > 2 ? html`<span class="note">${digits(effect.prior_sds, 2)} sds out in its prior</span>` : null}</td>
             <td>${add && !(effect.name in OTHERS) && !untried.has(effect.name) && (isMade(effect.name)
-              ? html`<span class="note">added</span>`
-              : html`<button type="button" disabled=${isBusy} onClick=${() => add(extension(effect.name, record))} aria-label=${`add ${effect.name}`}>Add</button>`)}</td>
+              ? html`<span class="note">added</span> <${TakeBack} study=${study} id=${additionOf(study, [...model.effects, effect.name])} reload=${reload} />`
+              : asked === effect.name
+              ? html`<div>Calibrate again with it?</div><button class="main" type="button" disabled=${isBusy} onClick=${() => add(extension(effect.name, record))}>Add it</button> <button type="button" onClick=${() => setAsked(null)}>Not now</button>`
+              : html`<button type="button" disabled=${isBusy} onClick=${() => setAsked(effect.name)} aria-label=${t`add ${effect.name}`}>Add</button>`)}</td>
           </tr>`)}
         </tbody>
       </table>
     </div>
-    ${record.effects.length > FIRST && html`<button type="button" onClick=${() => setAll(!isAll)}>${isAll ? "Show fewer" : `Show all ${record.effects.length}`}</button>`}
-    <p class="note">Nats: log evidence over that of the model as it is. Bold lines are in the 95 % set of explanations. Half of the prior probability is on “nothing is missing”.${add && " Add calibrates a further model with the effect; this one stays as it is."}</p>`;
+    ${record.effects.length > FIRST && html`<button type="button" onClick=${() => setAll(!isAll)}>${isAll ? t`Show fewer` : t`Show all ${record.effects.length}`}</button>`}
+    <p class="note">Nats: log evidence over that of the model as it is. Bold lines are in the 95 % set of explanations. Half of the prior probability is on “nothing is missing”.${add && t` Add calibrates a further model with the effect; this one stays as it is, and what was added can be taken back.`}</p>`;
 }
 
 /** Nats to a digit after the point, without a sign before 0. */
@@ -72,7 +77,7 @@ function strength(/** @type {string} */ name, /** @type {number} */ value, /** @
 /** The others of a class. */
 function same(/** @type {any} */ record, /** @type {any} */ effect) {
   const others = record.effects.filter((/** @type {any} */ e) => e.class === effect.class && e.name !== effect.name).map((/** @type {any} */ e) => e.name);
-  return others.length > 3 ? `${others.slice(0, 3).join(", ")} and ${others.length - 3} more` : others.join(", ");
+  return others.length > 3 ? t`${others.slice(0, 3).join(", ")} and ${others.length - 3} more` : others.join(", ");
 }
 
 /** What is sent to add an effect; `EFFECT.WHEEL` acts on one wheel. */

@@ -1,11 +1,12 @@
 // A file of a draft: what it is, its text to be edited, and what the service says about it.
 
 import { html } from "../html.js";
+import { t } from "../language/language.js";
 import { Failure } from "./message.js";
 
 const KINDS = {
-  job: "the job", experiment: "the experiment", runs: "runs", effect: "an effect", history: "the recording of a run",
-  readings: "plate or shear readings", posterior: "a posterior as a prior", table: "a table in other columns than runs.csv has", file: "a file",
+  job: t`the job`, experiment: t`the experiment`, runs: t`runs`, effect: t`an effect`, history: t`the recording of a run`,
+  readings: t`plate or shear readings`, posterior: t`a posterior as a prior`, table: t`a table in other columns than runs.csv has`, file: t`a file`,
 };
 
 /**
@@ -18,13 +19,13 @@ export function FileCard({ name, text, kind, isUsed, error, onText, onRemove }) 
     <div class="card file" data-file=${name}>
       <div class="actions">
         <b>${name}</b>
-        <span class="note">${KINDS[/** @type {keyof typeof KINDS} */ (kind)]}, ${lines === 1 ? "1 line" : `${lines} lines`}${isUsed ? "" : "; nothing names it, so it is not sent"}</span>
-        <button type="button" onClick=${onRemove} aria-label=${`remove ${name}`}>Remove</button>
+        <span class="note">${KINDS[/** @type {keyof typeof KINDS} */ (kind)]}, ${lines === 1 ? t`1 line` : t`${lines} lines`}${isUsed ? "" : t`; nothing names it, so it is not sent`}</span>
+        <button type="button" onClick=${onRemove} aria-label=${t`remove ${name}`}>Remove</button>
       </div>
       <${Failure} error=${error} />
       <details open=${Boolean(error)}>
         <summary>Text of ${name}</summary>
-        <textarea aria-label=${`text of ${name}`} spellcheck=${false} value=${text} onInput=${(/** @type {any} */ e) => onText(e.target.value)}></textarea>
+        <textarea aria-label=${t`text of ${name}`} spellcheck=${false} value=${text} onInput=${(/** @type {any} */ e) => onText(e.target.value)}></textarea>
       </details>
     </div>`;
 }

@@ -1,6 +1,7 @@
 // Flags: those of the current model open, those of superseded models folded away.
 
 import { html } from "../html.js";
+import { t } from "../language/language.js";
 import { modelName } from "../words/model.js";
 import { capital, words } from "../words/quantity.js";
 
@@ -11,21 +12,21 @@ export function Flags({ study }) {
   const old = study.flags.filter(isOld);
   const name = (/** @type {number} */ id) => {
     const member = study.members.find((/** @type {any} */ m) => m.id === id);
-    return member ? modelName(study, member) : `calibration ${id}`;
+    return member ? modelName(study, member) : t`calibration ${id}`;
   };
   return html`
     <h2 class="attention">What deserves attention</h2>
     ${now.length === 0 ? html`<p>Nothing about the current model.</p>` : html`<${List} flags=${now} />`}
-    ${old.length > 0 && html`<details><summary>${old.length === 1 ? "1 flag" : `${old.length} flags`} of models that are no longer the current one</summary>
+    ${old.length > 0 && html`<details><summary>${old.length === 1 ? t`1 flag` : t`${old.length} flags`} of models that are no longer the current one</summary>
       ${[...new Set(old.map((/** @type {any} */ f) => f.calibration))].map((id) => html`<h3>${name(/** @type {number} */ (id))}</h3><${List} flags=${old.filter((/** @type {any} */ f) => f.calibration === id)} />`)}
     </details>`}`;
 }
 
 /** What each kind of flag is about. */
 const KINDS = /** @type {Record<string, string>} */ ({
-  trend: "errors follow a condition", chi2: "errors larger than assumed", outlier: "a run stands out", conflict: "data against a prior", bound: "a parameter at its bound",
-  not_equilibrated: "sampler not settled", no_information: "data tell little", rejections: "parameters refused", incomplete: "incomplete", order: "errors follow the order of the runs",
-  worker: "a worker's results differ", interpolation_beats: "interpolation predicts better", plates_conflict: "plates against wheel runs",
+  trend: t`errors follow a condition`, chi2: t`errors larger than assumed`, outlier: t`a run stands out`, conflict: t`data against a prior`, bound: t`a parameter at its bound`,
+  not_equilibrated: t`sampler not settled`, no_information: t`data tell little`, rejections: t`parameters refused`, incomplete: t`incomplete`, order: t`errors follow the order of the runs`,
+  worker: t`a worker's results differ`, interpolation_beats: t`interpolation predicts better`, plates_conflict: t`plates against wheel runs`,
 });
 
 const List = (/** @type {{ flags: any[] }} */ { flags }) =>

@@ -1,14 +1,17 @@
 // The first thing of a study: its headline, the errors before and after, the explanations by probability, and the picture that shows it.
 
 import { html } from "../html.js";
+import { t } from "../language/language.js";
+import { isReport } from "../rest/answers.js";
 import { changeWords, errorChanges, explanations, headline, probabilityWords, strengthWords } from "../words/headline.js";
-import { capital, digits, words } from "../words/quantity.js";
+import { capital, channelName, digits, words } from "../words/quantity.js";
 import { BeforeAfter } from "./before_after.js";
+import { isAddition, TakeBack } from "./take_back.js";
 
-const USES = { fit: "fitted runs", holdout: "held-out runs" };
+const USES = { fit: t`fitted runs`, holdout: t`held-out runs` };
 
-/** @param {{ study: any, model: any }} properties */
-export function Headline({ study, model }) {
+/** @param {{ study: any, model: any, reload?: () => void }} properties */
+export function Headline({ study, model, reload }) {
   const changes = errorChanges(study, model);
   const bars = explanations(model.story.missing);
   return html`
@@ -21,6 +24,7 @@ export function Headline({ study, model }) {
           <span class="bar"><i style=${{ width: `${(100 * bar.probability).toFixed(1)}%` }}></i></span>
           <span class="number">${probabilityWords(bar)}</span>
           <span>${bar.summary} ${bar.name && !["none", "not_in_library"].includes(bar.name) ? html`<code class="note">${bar.name}</code>` : null}</span></li>`)}</ul>`}
+        ${!isReport && isAddition(study, model) && html`<p><${TakeBack} study=${study} id=${model.id} reload=${reload} /></p>`}
       </div>
       ${changes.length > 0 && html`<div><${BeforeAfter} study=${study} model=${model} channel=${changes[0].channel} /></div>`}
     </section>`;
@@ -36,8 +40,8 @@ function Added(/** @type {{ effect: any }} */ { effect }) {
 function Errors(/** @type {{ changes: import("../words/headline.js").ErrorChange[] }} */ { changes }) {
   const uses = [...new Set(changes.map(({ use }) => USES[use]))];
   return html`<table class="errors" aria-label="Errors">
-    <thead><tr><th scope="col">error on ${uses.join(" or ")}</th><th scope="col" class="number">${changes.some((c) => c.before !== null) ? "before → now" : "now"}</th><th scope="col" class="number">noise</th></tr></thead>
-    <tbody>${changes.map((change) => html`<tr key=${change.channel}><th scope="row">${capital(words(change.channel))}${uses.length > 1 ? `, ${USES[change.use]}` : ""}</th>
-      <td class="number">${changeWords(change)}</td><td class="number">${change.noise === null ? "not known" : `${digits(change.noise, 2)} ${change.unit}`}</td></tr>`)}</tbody>
+    <thead><tr><th scope="col">error on ${uses.join(t` or `)}</th><th scope="col" class="number">${changes.some((c) => c.before !== null) ? t`before → now` : t`now`}</th><th scope="col" class="number">noise</th></tr></thead>
+    <tbody>${changes.map((change) => html`<tr key=${change.channel}><th scope="row">${capital(channelName(change.channel))}${uses.length > 1 ? `, ${USES[change.use]}` : ""}</th>
+      <td class="number">${changeWords(change)}</td><td class="number">${change.noise === null ? t`not known` : `${digits(change.noise, 2)} ${change.unit}`}</td></tr>`)}</tbody>
   </table>`;
 }

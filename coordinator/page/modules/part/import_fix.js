@@ -3,6 +3,7 @@
 
 import { html, useState } from "../html.js";
 import { MEANINGS, words as inWords } from "../import_map.js";
+import { t } from "../language/language.js";
 
 /** @typedef {import("../import_map.js").Skipped} Skipped */
 
@@ -28,7 +29,7 @@ export function SkippedRows({ skipped, onSkip, onTake }) {
   };
   return html`
     ${skipped.map((row) => html`<div class="skipped" key=${row.line}><span>Left out: line ${row.line} ${row.cells.length > 0 && html`<code class="row">${shown(row.cells)}</code>`}</span>
-      <button type="button" onClick=${() => onTake(row.line)} aria-label=${`Undo: take in line ${row.line} again`}>Undo</button></div>`)}
+      <button type="button" onClick=${() => onTake(row.line)} aria-label=${t`Undo: take in line ${row.line} again`}>Undo</button></div>`)}
     <div class="actions">
       <label>A line that is no run <input size="5" inputmode="numeric" aria-invalid=${text !== "" && !isLine} value=${text} onInput=${(/** @type {any} */ e) => setText(e.target.value)} /></label>
       <button type="button" disabled=${!isLine} onClick=${leave}>Leave it out</button>
@@ -37,14 +38,14 @@ export function SkippedRows({ skipped, onSkip, onTake }) {
 
 /** @param {{ words: string, onUndo: () => void }} properties words: of the quantity */
 export const FilledDown = ({ words, onUndo }) => html`<div class="skipped"><span class="note">Blank cells have the value above.</span>
-  <button type="button" onClick=${onUndo} aria-label=${`Undo: blank cells of ${words} stay blank`}>Undo</button></div>`;
+  <button type="button" onClick=${onUndo} aria-label=${t`Undo: blank cells of ${words} stay blank`}>Undo</button></div>`;
 
 /** What each word of a column means for its run. @param {{ words: Record<string, string>, onChange: (words: Record<string, string>) => void }} properties */
 export function Meanings({ words, onChange }) {
   const entries = Object.entries(words);
   if (entries.length === 0) return null;
   return html`<div class="meanings">${entries.map(([word, means]) => html`<label key=${word}><span>${`“${word}”`}</span>
-      <select aria-label=${`meaning of ${word}`} aria-invalid=${means === "?"} value=${means} onChange=${(/** @type {any} */ e) => onChange({ ...words, [word]: e.target.value })}>
+      <select aria-label=${t`meaning of ${word}`} aria-invalid=${means === "?"} value=${means} onChange=${(/** @type {any} */ e) => onChange({ ...words, [word]: e.target.value })}>
         ${means === "?" && html`<option value="?" selected>choose</option>`}
         ${MEANINGS.map(([value, label]) => html`<option value=${value} selected=${value === means}>${label}</option>`)}
       </select></label>`)}

@@ -3,6 +3,7 @@
 import { save } from "../chart/download.js";
 import { html, useEffect, useMemo, useState } from "../html.js";
 import { byField, mapOf, meaningsOf, proposed, withAgain, without } from "../import_map.js";
+import { t } from "../language/language.js";
 import { guessImport, importTable } from "../rest/routes.js";
 import { FilledDown, Meanings, Mistake, SkippedRows } from "./import_fix.js";
 import { Failure } from "./message.js";
@@ -13,7 +14,7 @@ import { Table } from "./table.js";
 /** Time without a further change after which a change is asked about [ms]. */
 const PAUSE_MS = 250;
 /** What the rows have where a column is absent. @type {Record<string, string>} */
-const ABSENT = { run: "(numbered)", slip_angle_deg: "(0: straight ahead)", use: "(all rows are fitted)" };
+const ABSENT = { run: t`(numbered)`, slip_angle_deg: t`(0: straight ahead)`, use: t`(all rows are fitted)` };
 /** What is shown before a person asks for all columns of runs.csv. */
 const USUAL = ["run", "wheel", "soil", "slip", "wheel_load_n", "sled_speed_m_s", "slip_angle_deg", "drawbar_pull_n", "torque_n_m", "sinkage_m", "lateral_force_n", "use"];
 
@@ -57,7 +58,7 @@ export function ImportTable({ name, bytes, onFiles, onRemove }) {
       clearTimeout(timer);
     };
   }, [map, content]);
-  const heading = html`<div class="actions"><h2>The columns of ${name}</h2><button type="button" onClick=${onRemove} aria-label=${`remove ${name}`}>Remove</button></div>`;
+  const heading = html`<div class="actions"><h2>The columns of ${name}</h2><button type="button" onClick=${onRemove} aria-label=${t`remove ${name}`}>Remove</button></div>`;
   if (!guess || !choices) return html`<div class="card mapping">${heading}<${Failure} error=${failure} />${!failure && html`<p class="empty" aria-busy="true">The table is being read.</p>`}</div>`;
   const isShown = (/** @type {any} */ field) => isAll || USUAL.includes(field.name) || choices.fields[field.name].column !== null;
   const fields = guess.fields.filter(isShown);
@@ -78,13 +79,13 @@ export function ImportTable({ name, bytes, onFiles, onRemove }) {
       <p>Choose for each quantity the column of ${name} and its unit. Blank fields stay unmeasured.</p>
       <div class="actions">
         ${guess.sheets.length > 1 && html`<label>Sheet <select value=${guess.sheet ?? ""} onChange=${(/** @type {any} */ e) => look(e.target.value)}>
-          ${guess.sheets.map((/** @type {string} */ sheet) => html`<option value=${sheet} selected=${sheet === (guess.sheet ?? "")}>${sheet || "(outside of structs)"}</option>`)}</select></label>`}
+          ${guess.sheets.map((/** @type {string} */ sheet) => html`<option value=${sheet} selected=${sheet === (guess.sheet ?? "")}>${sheet || t`(outside of structs)`}</option>`)}</select></label>`}
         ${choices.decimal !== null && html`<label>Decimal mark <select value=${choices.decimal} onChange=${(/** @type {any} */ e) => setChoices({ ...choices, decimal: e.target.value })}>
           ${choices.decimal === "?" && html`<option value="?" selected>choose: is 1,234 more than a thousand?</option>`}
-          ${[[",", "comma: 1,5"], [".", "point: 1.5"]].map(([mark, text]) => html`<option value=${mark} selected=${mark === choices.decimal}>${text}</option>`)}</select></label>`}
+          ${[[",", t`comma: 1,5`], [".", t`point: 1.5`]].map(([mark, text]) => html`<option value=${mark} selected=${mark === choices.decimal}>${text}</option>`)}</select></label>`}
       </div>
-      <${Table} label=${`First rows of ${name}`} head=${titles} rows=${samples} />
-      <${Table} label=${`Columns of ${name}`} head=${["quantity", "column", "unit", "or the same in all rows"]}
+      <${Table} label=${t`First rows of ${name}`} head=${titles} rows=${samples} />
+      <${Table} label=${t`Columns of ${name}`} head=${[t`quantity`, t`column`, t`unit`, t`or the same in all rows`]}
         rows=${[...fields.map((/** @type {any} */ field) => row(field, "fields")), ...quantities.map((/** @type {any} */ field) => row(field, "quantities"))]} />
       ${!isAll && html`<p><button type="button" onClick=${() => setAll(true)}>Show all columns of runs.csv</button></p>`}
       ${said.others.map((/** @type {any} */ complaint) => html`<${Mistake} complaint=${complaint} onSkip=${skip} />`)}
@@ -92,7 +93,7 @@ export function ImportTable({ name, bytes, onFiles, onRemove }) {
       <${Failure} error=${failure} />
       ${(answer?.remarks ?? []).map((/** @type {string} */ remark) => html`<p class="note">${remark}</p>`)}
       <div class="actions">
-        <button class="main" type="button" disabled=${!isRight} onClick=${() => onFiles({ "runs.csv": answer.runs, ...answer.histories })}>${isRight ? `Use these ${answer.run_count} runs` : answer === null ? "The table is being judged" : "Use these columns: answer what is marked"}</button>
+        <button class="main" type="button" disabled=${!isRight} onClick=${() => onFiles({ "runs.csv": answer.runs, ...answer.histories })}>${isRight ? t`Use these ${answer.run_count} runs` : answer === null ? t`The table is being judged` : t`Use these columns: answer what is marked`}</button>
         <button type="button" onClick=${() => keep("map.toml", /** @type {string} */ (map))}>Save the map</button>
         ${isRight && html`<button type="button" onClick=${() => keep("runs.csv", answer.runs)}>Save runs.csv</button>`}
         ${isRight && answer.notes && html`<button type="button" onClick=${() => keep("runs-notes.csv", answer.notes)}>Save the notes</button>`}
@@ -106,7 +107,7 @@ export function ImportTable({ name, bytes, onFiles, onRemove }) {
  */
 function cells(/** @type {any} */ field, /** @type {Choice} */ choice, /** @type {any[]} */ columns, /** @type {any[]} */ complaints,
   /** @type {(change: Partial<Choice>) => void} */ onChange, /** @type {(row: import("../import_map.js").Skipped) => void} */ onSkip) {
-  const absent = ABSENT[field.name] ?? (choice.formula !== "" ? choice.formula : field.is_needed ? "(none)" : "(not measured)");
+  const absent = ABSENT[field.name] ?? (choice.formula !== "" ? choice.formula : field.is_needed ? t`(none)` : t`(not measured)`);
   const isOpen = choice.unit === "" && (choice.column !== null || choice.value !== "");
   const fillDown = complaints.some((complaint) => complaint.fix === "fill_down") ? () => onChange({ fillsDown: true }) : null;
   const take = (/** @type {string} */ name) => {
@@ -117,17 +118,17 @@ function cells(/** @type {any} */ field, /** @type {Choice} */ choice, /** @type
   return [
     html`${field.words}${complaints.map((complaint) => html`<${Mistake} complaint=${complaint} field=${field.name} onSkip=${onSkip} />`)}
       ${fillDown && html`<button type="button" onClick=${fillDown}>Blank cells have the value above</button>`}`,
-    html`<div><select aria-label=${`column of ${field.words}`} aria-invalid=${complaints.length > 0} value=${choice.column ?? ""} onChange=${(/** @type {any} */ e) => take(e.target.value)}>
+    html`<div><select aria-label=${t`column of ${field.words}`} aria-invalid=${complaints.length > 0} value=${choice.column ?? ""} onChange=${(/** @type {any} */ e) => take(e.target.value)}>
       <option value="" selected=${choice.column === null}>${absent}</option>
       ${columns.map((column) => html`<option value=${column.name} selected=${choice.column === column.name}>${column.title}</option>`)}
     </select>
     ${choice.fillsDown && html`<${FilledDown} words=${field.words} onUndo=${() => onChange({ fillsDown: false })} />`}
     <${Meanings} words=${choice.words} onChange=${(/** @type {Record<string, string>} */ words) => onChange({ words })} /></div>`,
-    field.units.length === 0 || (choice.formula !== "" && choice.column === null) ? "" : html`<select aria-label=${`unit of ${field.words}`} aria-invalid=${isOpen} value=${choice.unit} onChange=${(/** @type {any} */ e) => onChange({ unit: e.target.value })}>
+    field.units.length === 0 || (choice.formula !== "" && choice.column === null) ? "" : html`<select aria-label=${t`unit of ${field.words}`} aria-invalid=${isOpen} value=${choice.unit} onChange=${(/** @type {any} */ e) => onChange({ unit: e.target.value })}>
       <option value="" selected=${choice.unit === ""}>choose</option>
       ${field.units.map((/** @type {string} */ unit) => html`<option value=${unit} selected=${choice.unit === unit}>${unit}</option>`)}
     </select>`,
-    choice.column !== null || field.name === "run" || choice.formula !== "" ? "" : html`<input size="10" aria-label=${`${field.words} of all rows`} value=${choice.value} onInput=${(/** @type {any} */ e) => onChange({ value: e.target.value })} />`,
+    choice.column !== null || field.name === "run" || choice.formula !== "" ? "" : html`<input size="10" aria-label=${t`${field.words} of all rows`} value=${choice.value} onInput=${(/** @type {any} */ e) => onChange({ value: e.target.value })} />`,
   ];
 }
 

@@ -1,11 +1,12 @@
 // The error ledger as a table.
 
 import { html } from "../html.js";
+import { t } from "../language/language.js";
 import { dataSets, runWords } from "../words/ledger.js";
 import { CHANNELS, errorWords, minus, short, shown, unitOf } from "../words/quantity.js";
 import { Table } from "./table.js";
 
-const USES = { fit: "fitted", holdout: "held out" };
+const USES = { fit: t`fitted`, holdout: t`held out` };
 
 /**
  * A table for each set of runs: neither errors nor evidence compare between them.
@@ -15,12 +16,12 @@ export function Ledger({ study, lines }) {
   const sets = dataSets(lines);
   return html`${sets.map((set) => html`
     ${sets.length > 1 && html`<h3>${runWords(set[0].line)}</h3>`}
-    <${SetLedger} study=${study} lines=${set} label=${sets.length > 1 ? `Error ledger, ${runWords(set[0].line)}` : "Error ledger"} />`)}`;
+    <${SetLedger} study=${study} lines=${set} label=${sets.length > 1 ? t`Error ledger, ${runWords(set[0].line)}` : t`Error ledger`} />`)}`;
 }
 
 function SetLedger(/** @type {{ study: any, lines: import("../words/ledger.js").LedgerLine[], label: string }} */ { study, lines, label }) {
   const channels = CHANNELS.filter((channel) => lines.some(({ line }) => line.error.fit[channel]));
-  const head = ["model", "runs", ...channels.map((c) => `${short(c)} ${shown(unitOf(c)).unit}`), "noise sds", "in 90 % interval", "ln evidence"];
+  const head = [t`model`, t`runs`, ...channels.map((c) => `${short(c)} ${shown(unitOf(c)).unit}`), t`noise sds`, t`in 90 % interval`, t`ln evidence`];
   const row = (/** @type {string} */ name, /** @type {"fit" | "holdout"} */ use, /** @type {any} */ error, /** @type {number | null | undefined} */ inside, evidence = "") => [
     name, USES[use],
     ...channels.map((c) => (error[c] ? errorWords(error[c].rmse * shown(unitOf(c)).scale) : "–")),
@@ -42,5 +43,5 @@ function SetLedger(/** @type {{ study: any, lines: import("../words/ledger.js").
 function beside(/** @type {any} */ study, /** @type {any[]} */ lines) {
   const current = lines.find((own) => own.id === study.current)?.line;
   const combined = current && study.combined?.models > 1 ? study.combined : null;
-  return /** @type {[string, any][]} */ ([["current, corrected", current?.corrected], ["all, combined", combined], ["interpolation", current?.baseline]]);
+  return /** @type {[string, any][]} */ ([[t`current, corrected`, current?.corrected], [t`all, combined`, combined], [t`interpolation`, current?.baseline]]);
 }

@@ -6,7 +6,7 @@ import { html } from "../html.js";
 export function Pending({ answer, error, what }) {
   if (error && error.status === 409) return html`<p class="empty">${error.message}.</p>`;
   if (error) return html`<p class="error" role="alert">${what}: ${error.message}</p>`;
-  return html`<p class="empty" aria-busy="true">Loading ${what.replace(/^The /, "the ")} …</p>`;
+  return html`<p class="empty" aria-busy="true">Loading ${what} …</p>`;
 }
 
 /** @param {{ error: any }} properties */

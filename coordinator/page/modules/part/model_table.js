@@ -1,6 +1,7 @@
 // Which model: those that the job compares, by evidence and by prediction, and what was decided.
 
 import { html } from "../html.js";
+import { t } from "../language/language.js";
 import { comparedModels, leftOutWords } from "../words/compared_model.js";
 import { Table } from "./table.js";
 

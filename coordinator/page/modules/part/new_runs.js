@@ -3,11 +3,16 @@
 import { d3 } from "../chart/library.js";
 import { table } from "../chart/download.js";
 import { html, useState } from "../html.js";
+import { t } from "../language/language.js";
 import { addRuns, path } from "../rest/routes.js";
 import { useAnswer } from "../rest/use_answer.js";
 import { address } from "../route.js";
-import { CHANNELS, numberOf, short, shown, unitOf } from "../words/quantity.js";
+import { slipUnit } from "../units.js";
+import { CHANNELS, numberOf, short, shown, titled, unitOf } from "../words/quantity.js";
 import { Failure } from "./message.js";
+
+/** A value in SI as a person would type it. */
+const typed = (/** @type {number} */ value, /** @type {{ scale: number }} */ { scale }) => String(Number((value * scale).toPrecision(4)));
 
 const COLUMNS = /** @type {Record<string, string>} */ ({ drawbar_pull: "drawbar_pull_n", torque: "torque_n_m", sinkage: "sinkage_m", lateral_force: "lateral_force_n" });
 
@@ -25,7 +30,7 @@ export function NewRuns({ study, model, record, comparison, reload }) {
   const count = new Set(comparison.rows.map((/** @type {any} */ r) => r.run)).size;
   const blank = (/** @type {number} */ k) => ({ run: `next-${count + k + 1}`, rig: "", slip: "", load: "", speed: "", angle: "", values: {} });
   const proposed = record.next_runs.map((/** @type {any} */ r, /** @type {number} */ k) => (
-    { ...blank(k), slip: String(r.slip), load: String(r.wheel_load_n), speed: String(Number((1000 * r.sled_speed_m_s).toPrecision(4))) }));
+    { ...blank(k), slip: typed(r.slip, slipUnit), load: typed(r.wheel_load_n, shown("N")), speed: typed(r.sled_speed_m_s, shown("m/s")) }));
   const now = rows ?? (proposed.length > 0 ? proposed : [blank(0)]);
   const set = (/** @type {number} */ k, /** @type {Partial<NewRun>} */ change) => setRows(now.map((/** @type {NewRun} */ row, /** @type {number} */ i) => (i === k ? { ...row, ...change } : row)));
   const isFilled = (/** @type {NewRun} */ row) => channels.some((c) => (row.values[c] ?? "") !== "");
@@ -34,14 +39,14 @@ export function NewRuns({ study, model, record, comparison, reload }) {
   const lineOf = (/** @type {NewRun} */ row) => {
     const value = (/** @type {string} */ what, /** @type {string} */ text, scale = 1) => {
       const number = numberOf(text);
-      if (number === null) throw new Error(`${what} of run ${row.run}: “${text}” is no number`);
+      if (number === null) throw new Error(t`${what} of run ${row.run}: “${text}” is no number`);
       return Number((number / scale).toPrecision(9));
     };
     const rig = rigs.length === 1 ? rigs[0] : rigs.find((r) => r.label === row.rig);
-    if (!rig) throw new Error(`run ${row.run}: choose its wheel`);
+    if (!rig) throw new Error(t`run ${row.run}: choose its wheel`);
     return {
-      run: row.run, wheel: rig.wheel, soil: rig.soil, slip: value("slip", row.slip), wheel_load_n: value("wheel load", row.load), sled_speed_m_s: value("sled speed", row.speed, 1000),
-      ...(isAngled ? { slip_angle_deg: value("slip angle", row.angle) } : {}),
+      run: row.run, wheel: rig.wheel, soil: rig.soil, slip: value(t`slip`, row.slip, slipUnit.scale), wheel_load_n: value(t`wheel load`, row.load, shown("N").scale), sled_speed_m_s: value(t`sled speed`, row.speed, shown("m/s").scale),
+      ...(isAngled ? { slip_angle_deg: value(t`slip angle`, row.angle) } : {}),
       ...Object.fromEntries(channels.map((c) => [COLUMNS[c], (row.values[c] ?? "") === "" ? "" : value(short(c), row.values[c], unit(c).scale)])), use: "fit" };
   };
   const send = async (/** @type {Event} */ event) => {
@@ -64,22 +69,22 @@ export function NewRuns({ study, model, record, comparison, reload }) {
     <h3>Add runs that you have made</h3>
     <form onSubmit=${send} class="new-runs">
       <div class="scroll" tabindex="0" role="region" aria-label="New runs"><table>
-        <thead><tr><th scope="col">run</th>${rigs.length > 1 && html`<th scope="col">wheel</th>`}<th scope="col">slip</th><th scope="col">load N</th><th scope="col">speed mm/s</th>${isAngled && html`<th scope="col">slip angle °</th>`}
+        <thead><tr><th scope="col">run</th>${rigs.length > 1 && html`<th scope="col">wheel</th>`}<th scope="col">${titled(t`slip`, slipUnit.unit)}</th><th scope="col">${titled(t`load`, shown("N").unit)}</th><th scope="col">${titled(t`speed`, shown("m/s").unit)}</th>${isAngled && html`<th scope="col">slip angle °</th>`}
           ${channels.map((c) => html`<th scope="col">${short(c)} ${unit(c).unit}</th>`)}</tr></thead>
         <tbody>${now.map((/** @type {NewRun} */ row, /** @type {number} */ k) => html`<tr key=${k}>
-          ${field(`name of run ${k + 1}`, row.run, (run) => set(k, { run }), false)}
-          ${rigs.length > 1 && html`<td><select aria-label=${`wheel of run ${k + 1}`} value=${row.rig} required=${isFilled(row)} onChange=${(/** @type {any} */ e) => set(k, { rig: e.target.value })}>
+          ${field(t`name of run ${k + 1}`, row.run, (run) => set(k, { run }), false)}
+          ${rigs.length > 1 && html`<td><select aria-label=${t`wheel of run ${k + 1}`} value=${row.rig} required=${isFilled(row)} onChange=${(/** @type {any} */ e) => set(k, { rig: e.target.value })}>
             <option value="">choose</option>${rigs.map((rig) => html`<option value=${rig.label} selected=${rig.label === row.rig}>${rig.label}</option>`)}</select></td>`}
-          ${field(`slip of run ${k + 1}`, row.slip, (slip) => set(k, { slip }))}
-          ${field(`wheel load of run ${k + 1} in N`, row.load, (load) => set(k, { load }))}
-          ${field(`sled speed of run ${k + 1} in mm/s`, row.speed, (speed) => set(k, { speed }))}
-          ${isAngled && field(`slip angle of run ${k + 1} in degrees`, row.angle, (angle) => set(k, { angle }))}
-          ${channels.map((c) => field(`${short(c)} of run ${k + 1} in ${unit(c).unit}`, row.values[c] ?? "", (text) => set(k, { values: { ...row.values, [c]: text } })))}
+          ${field(t`slip of run ${k + 1}`, row.slip, (slip) => set(k, { slip }))}
+          ${field(t`wheel load of run ${k + 1} in ${shown("N").unit}`, row.load, (load) => set(k, { load }))}
+          ${field(t`sled speed of run ${k + 1} in ${shown("m/s").unit}`, row.speed, (speed) => set(k, { speed }))}
+          ${isAngled && field(t`slip angle of run ${k + 1} in degrees`, row.angle, (angle) => set(k, { angle }))}
+          ${channels.map((c) => field(t`${short(c)} of run ${k + 1} in ${unit(c).unit}`, row.values[c] ?? "", (text) => set(k, { values: { ...row.values, [c]: text } })))}
         </tr>`)}</tbody>
       </table></div>
       <div class="actions">
         <button type="button" onClick=${() => setRows([...now, blank(now.length)])}>One more run</button>
-        <button class="main" type="submit" disabled=${filled.length === 0 || isBusy || rigs.length === 0}>${filled.length === 0 ? "Add runs: type what was measured" : `Add ${filled.length === 1 ? "1 run" : `${filled.length} runs`} and calibrate again`}</button>
+        <button class="main" type="submit" disabled=${filled.length === 0 || isBusy || rigs.length === 0}>${filled.length === 0 ? t`Add runs: type what was measured` : filled.length === 1 ? t`Add 1 run and calibrate again` : t`Add ${filled.length} runs and calibrate again`}</button>
       </div>
       <${Failure} error=${failure ?? error} />
     </form>`;
@@ -100,5 +105,5 @@ function rigsOf(/** @type {any} */ experiment) {
   const [wheel, soil] = [header.indexOf("wheel"), header.indexOf("soil")];
   const pairs = new Map(own.map((row) => [`${row[wheel]} ${row[soil] ?? ""}`, { wheel: row[wheel], soil: row[soil] ?? "" }]));
   const isOneSoil = new Set([...pairs.values()].map((pair) => pair.soil)).size === 1;
-  return [...pairs.values()].map((pair) => ({ ...pair, label: isOneSoil ? pair.wheel : `${pair.wheel} on ${pair.soil}` }));
+  return [...pairs.values()].map((pair) => ({ ...pair, label: isOneSoil ? pair.wheel : t`${pair.wheel} on ${pair.soil}` }));
 }

@@ -1,6 +1,7 @@
 // What the search cannot speak about: what the experiment does not state, what is too weak to see, what the model refuses.
 
 import { html } from "../html.js";
+import { t } from "../language/language.js";
 import { raised } from "../words/quantity.js";
 
 /** Names without `EFFECT.WHEEL` where `EFFECT` is in the list. */
@@ -17,7 +18,7 @@ export function NotTried({ record }) {
     same.names.push(name);
     untried.set(`${why} ${needs}`, same);
   }
-  const lists = [["too weak to be seen with these data at its usual strength", record.cannot_exclude], ["refused by the model at every strength", record.refused], ["no longer improves the evidence", record.drop]];
+  const lists = [[t`too weak to be seen with these data at its usual strength`, record.cannot_exclude], [t`refused by the model at every strength`, record.refused], [t`no longer improves the evidence`, record.drop]];
   return html`
     ${untried.size > 0 && html`<h2>Cannot be judged, as the experiment is described</h2>
       <ul>${[...untried.values()].map((same) => html`<li><b>${folded(same.names).join(", ")}</b>: ${raised(same.why)}. ${same.needs.startsWith("runs ") ? `Measure ${same.needs}.` : html`State <code>${same.needs}</code>.`}</li>`)}</ul>`}

@@ -2,10 +2,11 @@
 
 import { SurfaceCurves } from "../chart/surface_curves.js";
 import { html, useEffect, useMemo, useState } from "../html.js";
+import { t } from "../language/language.js";
 import { changed, coordinate, meanSetting, predict, rmse, valueAt } from "../response_surface.js";
 import { path } from "../rest/routes.js";
 import { useAnswer } from "../rest/use_answer.js";
-import { digits, parameterName, shown, size, words } from "../words/quantity.js";
+import { channelName, digits, parameterName, shown, size } from "../words/quantity.js";
 import { ChannelCharts } from "./channel_charts.js";
 import { Pending } from "./message.js";
 import { Table } from "./table.js";
@@ -26,7 +27,7 @@ function Sliders(/** @type {{ surface: ResponseSurface, rows: any[], axis: any, 
   const [setting, setSetting] = useState(meanSetting(surface));
   const [follows, setFollows] = useState(false);
   const curves = useMemo(() => new SurfaceCurves(surface), [surface]);
-  const layers = useMemo(() => [{ name: "posterior mean", colour: null, rows }], [rows]);
+  const layers = useMemo(() => [{ name: t`posterior mean`, colour: null, rows }], [rows]);
   const prediction = predict(surface, setting);
   useEffect(() => {
     const frame = requestAnimationFrame(() => curves.move(prediction));
@@ -65,8 +66,8 @@ function Slider(/** @type {{ id: string, parameter: ResponseSurface["parameters"
 
 /** Where the setting lies among the draws. */
 function reachWords(/** @type {ResponseSurface} */ surface, /** @type {import("../response_surface.js").Prediction} */ { distance, isBeyond }) {
-  const place = `Mahalanobis distance ${digits(distance, 2)} from the posterior mean; 99 % of the draws lie within ${digits(surface.radius, 2)}.`;
-  return isBeyond ? `Beyond the draws: the dashed curves extrapolate. ${place}` : `Among the draws. ${place}`;
+  const place = t`Mahalanobis distance ${digits(distance, 2)} from the posterior mean; 99 % of the draws lie within ${digits(surface.radius, 2)}.`;
+  return isBeyond ? t`Beyond the draws: the dashed curves extrapolate. ${place}` : t`Among the draws. ${place}`;
 }
 
 /** What the setting is worth against the measurements, and what the surface is worth against the model. */
@@ -81,11 +82,11 @@ function Errors(/** @type {{ surface: ResponseSurface, rows: any[], outputs: Map
       return here === null || mean === null ? "–" : html`<span><b>${digits(here * scale)}</b><br />(${digits(mean * scale)})</span>`;
     };
     const inSds = sigma === null || sigma === undefined ? "" : html`<br />${digits(sigma, 2)} noise sds`;
-    return [html`${words(channel)} <span class="whole">[${name}]</span>`, ...uses.map(difference), html`<span>${size(error, unit, 2)}${inSds}</span>`];
+    return [html`${channelName(channel)} <span class="whole">[${name}]</span>`, ...uses.map(difference), html`<span>${size(error, unit, 2)}${inSds}</span>`];
   });
-  const titles = { fit: "RMSE, fitted runs", holdout: "held-out runs" };
+  const titles = { fit: t`RMSE, fitted runs`, holdout: t`held-out runs` };
   return html`
     <${Table} label="Errors at the setting of the sliders" rows=${table} numbers=${[...uses.map((_, k) => k + 1), uses.length + 1]}
-      head=${["channel", ...uses.map((use) => titles[/** @type {"fit" | "holdout"} */ (use)]), "error of the curves"]} />
+      head=${[t`channel`, ...uses.map((use) => titles[/** @type {"fit" | "holdout"} */ (use)]), t`error of the curves`]} />
     <p class="note">In brackets: at the posterior mean. Error of the curves: from the model, at draws that are left out of the fit.</p>`;
 }

@@ -1,6 +1,7 @@
 // The parameters of a model as a table: mean and sd, 90 % interval, prior.
 
 import { html } from "../html.js";
+import { t } from "../language/language.js";
 import { digits, meanAndSd, shown, parameterName } from "../words/quantity.js";
 import { Table } from "./table.js";
 
@@ -8,7 +9,7 @@ import { Table } from "./table.js";
 export function ParameterTable({ marginals, line }) {
   if (marginals.length === 0) {
     const rows = Object.entries(line?.parameters ?? {}).map(([name, value]) => [parameterName(name, null), digits(typeof value === "number" ? value : /** @type {any} */ (value).map, 4)]);
-    return html`<${Table} label="Parameters" head=${["parameter (SI units)", "value of the fit"]} rows=${rows} numbers=${[1]} />`;
+    return html`<${Table} label="Parameters" head=${[t`parameter (SI units)`, t`value of the fit`]} rows=${rows} numbers=${[1]} />`;
   }
   const rows = marginals.map((m) => {
     const { unit, scale } = shown(m.unit);
@@ -23,5 +24,5 @@ export function ParameterTable({ marginals, line }) {
     ];
   });
   return html`<${Table} label="Parameters" numbers=${[2, 3, 4, 5, 6]} rows=${rows}
-    head=${["parameter", "unit", "mean ± sd", "90 % interval", "mode", "prior mean ± sd", "reference value", "remark"]} />`;
+    head=${[t`parameter`, t`unit`, t`mean ± sd`, t`90 % interval`, t`mode`, t`prior mean ± sd`, t`reference value`, t`remark`]} />`;
 }

@@ -3,6 +3,7 @@
 import { Figure, fileName } from "../chart/figure.js";
 import { Plot, STYLE } from "../chart/library.js";
 import { html, useEffect, useMemo, useState } from "../html.js";
+import { t } from "../language/language.js";
 import { path } from "../rest/routes.js";
 import { useAnswer } from "../rest/use_answer.js";
 import { digits, parameterName, shown, tickWords, titled } from "../words/quantity.js";
@@ -34,13 +35,13 @@ export function Particles({ id, stages }) {
   const now = useMemo(() => points(answer), [answer, ...chosen]);
   const early = useMemo(() => points(first.answer), [first.answer, ...chosen]);
   const exponent = stages[stage - 1]?.tempering_exponent;
-  const choose = (/** @type {number} */ end) => html`<label>${end === 0 ? "across" : "up"} <select value=${chosen[end]}
+  const choose = (/** @type {number} */ end) => html`<label>${end === 0 ? t`across` : t`up`} <select value=${chosen[end]}
     onChange=${(/** @type {any} */ e) => setPair(pair.map((k, i) => (i === end ? Number(e.target.value) : k)))}>
     ${parameters.map(({ name, unit }, k) => html`<option value=${k} selected=${k === chosen[end]}>${parameterName(name, unit)}</option>`)}</select></label>`;
   return html`
     <h2>Particles</h2>
     <div class="actions">${choose(0)} ${choose(1)}
-      <button type="button" onClick=${play}>${isPlaying ? "Stop" : "Play"}</button>
+      <button type="button" onClick=${play}>${isPlaying ? t`Stop` : t`Play`}</button>
       <label>stage <input type="range" min="1" max=${last} value=${stage} onInput=${(/** @type {any} */ e) => { setPlaying(false); setStage(Number(e.target.value)); }} /></label>
       <output>${stage} of ${last}: exponent ${digits(exponent, 2)}</output></div>
     ${now.length === 0 && !isPlaying && html`<${Pending} answer=${answer} error=${error} what="This population" />`}
@@ -76,7 +77,7 @@ const parametersOf = (population) => (population?.parameters ?? []).map((name, k
 function Cloud({ id, x, y, now, early }) {
   const label = (/** @type {{ name: string, unit: string }} */ p) => titled(parameterName(p.name, p.unit), shown(p.unit).unit);
   const at = { x: (/** @type {any} */ p) => p.x * shown(x.unit).scale, y: (/** @type {any} */ p) => p.y * shown(y.unit).scale };
-  return html`<${Figure} title=${`Particles in ${parameterName(x.name, x.unit)} and ${parameterName(y.name, y.unit)}`} note="grey: the first stage, close to the prior"
+  return html`<${Figure} title=${t`Particles in ${parameterName(x.name, x.unit)} and ${parameterName(y.name, y.unit)}`} note="grey: the first stage, close to the prior"
     name=${fileName("particles", id, x.name, y.name)} deps=${[now, early]} rows=${() => now}
     draw=${(/** @type {number} */ width) => Plot.plot({
       width: Math.min(width, 640), height: 380, marginLeft: 64, marginTop: 26, marginBottom: 40, grid: true, style: STYLE,

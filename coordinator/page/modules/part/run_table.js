@@ -1,7 +1,9 @@
 // The table of runs: measured, computed, interval, residual.
 
 import { html } from "../html.js";
-import { digits, minus, shown, short } from "../words/quantity.js";
+import { t } from "../language/language.js";
+import { slipWords } from "../words/condition.js";
+import { digits, minus, shown, short, titled } from "../words/quantity.js";
 import { point, toggle } from "../selection.js";
 
 /** @param {{ rows: any[] }} properties rows of a comparison */
@@ -9,7 +11,7 @@ export function RunTable({ rows }) {
   return html`
     <div class="scroll" tabindex="0" role="region" aria-label="All runs">
       <table>
-        <thead><tr>${["run", "use", "slip", "load N", "speed mm/s", "channel", "measured", "model", "90 % interval", "residual, noise sds"].map((h, k) => html`<th scope="col" class=${k > 1 && k !== 5 ? "number" : ""}>${h}</th>`)}</tr></thead>
+        <thead><tr>${[t`run`, t`use`, t`slip`, titled(t`load`, shown("N").unit), titled(t`speed`, shown("m/s").unit), t`channel`, t`measured`, t`model`, t`90 % interval`, t`residual, noise sds`].map((h, k) => html`<th scope="col" class=${k > 1 && k !== 5 ? "number" : ""}>${h}</th>`)}</tr></thead>
         <tbody>${rows.map((r) => html`<${RunRow} key=${`${r.run} ${r.channel}`} row=${r} />`)}</tbody>
       </table>
     </div>`;
@@ -26,11 +28,11 @@ function RunRow(/** @type {{ row: any }} */ { row }) {
   return html`
     <tr data-run=${row.run} onMouseEnter=${() => point([row.run])} onMouseLeave=${() => point(null)}>
       <th scope="row"><button class="plain" type="button" onClick=${() => toggle(row.run)}>${row.run}</button></th>
-      <td>${row.use === "holdout" ? "held out" : "fit"}</td>
-      <td class="number">${minus(row.slip.toFixed(2))}</td><td class="number">${digits(row.wheel_load_n)}</td><td class="number">${digits(1000 * row.sled_speed_m_s)}</td>
+      <td>${row.use === "holdout" ? t`held out` : t`fit`}</td>
+      <td class="number">${slipWords(row.slip)}</td><td class="number">${digits(row.wheel_load_n * shown("N").scale)}</td><td class="number">${digits(row.sled_speed_m_s * shown("m/s").scale)}</td>
       <td>${short(row.channel)} ${quantity.unit}</td>
       <td class="number">${value(row.measured)}</td><td class="number" title=${row.refused ? `refused at ${row.refused.draws} of ${row.refused.of} final draws: ${row.refused.reason}` : undefined}>${refusal(row)}${row.refused && row.predicted === null ? "" : value(row.predicted)}</td>
-      <td class="number">${row.q05 === null ? "–" : `${value(row.q05)} to ${value(row.q95)}`}</td>
+      <td class="number">${row.q05 === null ? "–" : t`${value(row.q05)} to ${value(row.q95)}`}</td>
       <td class="number">${row.residual_sigma === null ? "–" : minus(row.residual_sigma.toFixed(1))}</td>
     </tr>`;
 }

@@ -3,13 +3,14 @@
 import { Figure, fileName } from "../chart/figure.js";
 import { Plot, STYLE } from "../chart/library.js";
 import { html } from "../html.js";
+import { t } from "../language/language.js";
 import { digits } from "../words/quantity.js";
 
 const CURVES = [
-  { key: "tempering_exponent", title: "tempering exponent", note: "1: the whole likelihood", type: "log" },
-  { key: "ess", title: "effective samples", note: "after the weighting of a stage", type: "linear" },
-  { key: "acceptance", title: "acceptance rate", note: "", type: "linear" },
-  { key: "evidence", title: "ln evidence so far", note: "", type: "linear" },
+  { key: "tempering_exponent", title: t`tempering exponent`, note: t`1: the whole likelihood`, type: "log" },
+  { key: "ess", title: t`effective samples`, note: t`after the weighting of a stage`, type: "linear" },
+  { key: "acceptance", title: t`acceptance rate`, note: t`of the moves of a stage`, type: "linear" },
+  { key: "evidence", title: t`ln evidence so far`, note: t`summed over the stages`, type: "linear" },
 ];
 
 /** @param {{ stages: any[], name: string }} properties */
@@ -19,10 +20,10 @@ export function StageCharts({ stages, name }) {
   const step = Math.ceil(rows.length / 6);
   const ticks = rows.map((row) => row.stage).filter((stage) => stage % step === 0);
   return html`<div class="figures small">${CURVES.map(({ key, title, note, type }) => html`
-    <${Figure} key=${key} title=${`${title} by stage`} note=${note} name=${fileName(name, key)} deps=${[stages]}
+    <${Figure} key=${key} title=${t`${title} by stage`} note=${note} name=${fileName(name, key)} deps=${[stages]}
       rows=${() => rows.map((row) => ({ stage: row.stage, [key]: row[key] }))}
       draw=${(/** @type {number} */ width) => Plot.plot({
-        width, height: 190, marginLeft: 56, marginBottom: 40, style: STYLE, x: { label: "stage", labelArrow: "none", labelAnchor: "center", ticks, tickFormat: "d" }, y: { label: null, type: /** @type {any} */ (type), grid: type === "linear", ticks: 4, zero: key === "acceptance", ...(type === "log" ? { tickFormat: (/** @type {number} */ v) => digits(v, 1) } : {}) },
+        width, height: 190, marginLeft: 56, marginBottom: 40, style: STYLE, x: { label: t`stage`, labelArrow: "none", labelAnchor: "center", ticks, tickFormat: "d" }, y: { label: null, type: /** @type {any} */ (type), grid: type === "linear", ticks: 4, zero: key === "acceptance", ...(type === "log" ? { tickFormat: (/** @type {number} */ v) => digits(v, 1) } : {}) },
         marks: [Plot.line(rows, { x: "stage", y: key, stroke: "var(--series-0)" }), Plot.dot(rows, { x: "stage", y: key, r: 2.5, fill: "var(--series-0)" })],
       })} />`)}</div>`;
 }

@@ -1,16 +1,21 @@
 // What can be done with a study as a whole: begin again from its files, take it out of the list, delete it for good.
 
+import { save } from "../chart/download.js";
+import { fileName } from "../chart/figure.js";
 import { html, useState } from "../html.js";
-import { archive, deleteStudy, path } from "../rest/routes.js";
+import { t } from "../language/language.js";
+import { archive, deleteStudy, path, reportOf } from "../rest/routes.js";
 import { useAnswer } from "../rest/use_answer.js";
 import { address } from "../route.js";
 import { Failure } from "./message.js";
+import { DetailsForm } from "./study_details.js";
 
 const AT_WORK = ["queued", "running", "paused"];
 
 /** @param {{ study: any, reload: () => void }} properties */
 export function StudyActions({ study, reload }) {
   const [isAsked, setAsked] = useState(false);
+  const [isDescribed, setDescribed] = useState(false);
   const [failure, setFailure] = useState(/** @type {any} */ (null));
   const act = async (/** @type {() => Promise<any>} */ what, /** @type {() => void} */ then) => {
     setFailure(null);
@@ -24,10 +29,13 @@ export function StudyActions({ study, reload }) {
   };
   const isAtWork = AT_WORK.includes(study.state);
   return html`
+    ${isDescribed && html`<${DetailsForm} study=${study} reload=${reload} close=${() => setDescribed(false)} />`}
     <div class="actions study-actions" role="group" aria-label="What to do with the study">
+      <button type="button" aria-expanded=${isDescribed} onClick=${() => setDescribed(!isDescribed)}>Name, author, tags, note</button>
+      ${study.current !== null && html`<button type="button" onClick=${() => act(async () => save(`${fileName(study.name)}.html`, await reportOf(study.current)), () => undefined)}>Save the report</button>`}
       <a class="button" href=${address(["new"], { study: study.id })}>Edit and start again</a>
       <${BesideAnother} study=${study} />
-      ${!isAtWork && html`<button type="button" onClick=${() => act(() => archive(study.id, study.archived ? "restore" : "archive"), reload)}>${study.archived ? "Take back into the list" : "Archive"}</button>`}
+      ${!isAtWork && html`<button type="button" onClick=${() => act(() => archive(study.id, study.archived ? "restore" : "archive"), reload)}>${study.archived ? t`Take back into the list` : t`Archive`}</button>`}
       ${!isAtWork && (isAsked
         ? html`<span>Delete ${study.name} with all its results, for good?</span>
           <button type="button" onClick=${() => act(() => deleteStudy(study.id), () => { location.hash = "#/"; })}>Delete it</button>

@@ -1,6 +1,7 @@
 // The list of studies: found by words, in a chosen order, a page at a time.
 
 import { html, useState } from "../html.js";
+import { t } from "../language/language.js";
 import { listed, ORDERS } from "../words/study_order.js";
 import { StudyTable } from "./study_table.js";
 
@@ -18,11 +19,11 @@ export function StudyList({ studies }) {
   const shown = isAll ? found : found.slice(0, FIRST);
   return html`
     ${studies.length >= LEAST && html`<div class="actions" role="search">
-      <label>Find <input type="search" value=${text} placeholder="name, state, effect" onInput=${(/** @type {any} */ e) => setText(e.target.value)} /></label>
+      <label>Find <input type="search" value=${text} placeholder="name, author, tag, effect" onInput=${(/** @type {any} */ e) => setText(e.target.value)} /></label>
       <label>Order <select value=${order} onChange=${(/** @type {any} */ e) => setOrder(e.target.value)}>
         ${Object.keys(ORDERS).map((name) => html`<option value=${name} selected=${name === order}>${name}</option>`)}</select></label>
-      <span class="note" role="status">${found.length === studies.length ? `${studies.length} studies` : `${found.length} of ${studies.length} studies`}</span>
+      <span class="note" role="status">${found.length === studies.length ? t`${studies.length} studies` : t`${found.length} of ${studies.length} studies`}</span>
     </div>`}
-    ${found.length > 0 ? html`<${StudyTable} studies=${shown} />` : html`<p class="empty">No study has these words.</p>`}
+    ${found.length > 0 ? html`<${StudyTable} studies=${shown} choose=${setText} />` : html`<p class="empty">No study has these words.</p>`}
     ${found.length > shown.length && html`<button type="button" onClick=${() => setAll(true)}>Show all ${found.length}</button>`}`;
 }

@@ -1,6 +1,6 @@
 // Every route that the page asks, with the type of its answer.
 
-import { get, post, remove } from "./answers.js";
+import { get, post, remove, request } from "./answers.js";
 
 /** @typedef {import("../../types/api").components["schemas"]} Schemas */
 
@@ -39,6 +39,15 @@ export const control = (/** @type {number} */ id, /** @type {"pause" | "resume" 
 /** @returns {Promise<Schemas["CalibrationCreated"]>} */
 export const extend = (/** @type {number} */ id, /** @type {Schemas["NewExtension"]} */ extension) =>
   post(`${calibration(id)}/extend`, extension);
+
+/** @returns {Promise<Schemas["Withdrawn"]>} */
+export const withdraw = (/** @type {number} */ id) => post(`${calibration(id)}/withdraw`);
+
+/** @returns {Promise<Schemas["StudyDetails"]>} */
+export const describe = (/** @type {number} */ id, /** @type {Schemas["StudyDetails"]} */ details) => post(`${study(id)}/details`, details);
+
+/** The report of a study as a file. @returns {Promise<Blob>} */
+export const reportOf = async (/** @type {number} */ id) => (await request("GET", `${calibration(id)}/report`)).blob();
 
 /** @returns {Promise<Schemas["CalibrationCreated"]>} */
 export const discover = (/** @type {number} */ id) => post(`${calibration(id)}/discovery`);

@@ -2,6 +2,7 @@
 
 import { varying } from "../chart/condition.js";
 import { html, useState } from "../html.js";
+import { t } from "../language/language.js";
 import { AxisPicker, ChannelCharts } from "../part/channel_charts.js";
 import { Pending } from "../part/message.js";
 import { Table } from "../part/table.js";
@@ -20,11 +21,11 @@ export function Beside({ ids }) {
   const current = answers.map(({ answer }) => answer?.current ?? null);
   const files = useAnswers(current.flatMap((id) => (id === null ? [] : [path.comparison(id), path.diagnostics(id)])));
   const missing = answers.findIndex(({ answer }) => !answer);
-  if (missing >= 0) return html`<${Pending} answer=${null} error=${answers[missing].error} what=${`study ${ids[missing]}`} />`;
+  if (missing >= 0) return html`<${Pending} answer=${null} error=${answers[missing].error} what=${t`study ${ids[missing]}`} />`;
   const sides = answers.map(({ answer: study }, k) => ({
     study, line: study.ledger.find((/** @type {any} */ line) => line.calibration === current[k]) ?? null, diagnostics: files[path.diagnostics(current[k] ?? 0)] ?? null,
   }));
-  const names = sides.map(({ study }) => (sides[0].study.name === sides[1].study.name ? `${study.name} (study ${study.id})` : study.name));
+  const names = sides.map(({ study }) => (sides[0].study.name === sides[1].study.name ? t`${study.name} (study ${study.id})` : study.name));
   const comparisons = current.map((id) => (id === null ? null : files[path.comparison(id)]?.rows ?? null));
   const [a, b] = comparisons;
   // Runs of two campaigns are no points of one picture.
@@ -35,14 +36,14 @@ export function Beside({ ids }) {
   const axis = axes.find((one) => one.key === key) ?? axes[0];
   const link = (/** @type {number} */ k) => html`<a href=${address(["studies", ids[k], isOver(sides[k].study) ? "story" : "live"])}>${names[k]}</a>`;
   return html`
-    <h1>${names.join(" beside ")}</h1>
+    <h1>${names.join(t` beside `)}</h1>
     ${sides.some(({ study }) => !isOver(study)) && html`<p role="status">The program is at work on ${sides.filter(({ study }) => !isOver(study)).map(({ study }) => study.name).join(" and ")}; the numbers appear here as they come.</p>`}
-    <${Table} label="Two studies" head=${["", link(0), link(1), "difference"]} rows=${rowsBeside(sides)} labels=${["", ...names, "difference"]} />
+    <${Table} label="Two studies" head=${["", link(0), link(1), t`difference`]} rows=${rowsBeside(sides)} labels=${["", ...names, t`difference`]} />
     <p class="note">Of the current models. Errors are root mean squares. Parameters: mean ± sd of the posterior; the difference is over the larger of the two sds.</p>
     ${axis && html`<h2>The models over the data</h2>
       <${AxisPicker} axes=${axes} axis=${axis} choose=${setKey} />
       ${pictures.map((layers) => html`${layers.length === 1 && html`<h3>${layers[0].name}</h3>`}
-        <${ChannelCharts} key=${layers[0].name} small=${layers.length === 1} layers=${layers} axis=${axis} name=${layers.map((layer) => layer.name).join(" beside ")} />`)}`}`;
+        <${ChannelCharts} key=${layers[0].name} small=${layers.length === 1} layers=${layers} axis=${axis} name=${layers.map((layer) => layer.name).join(t` beside `)} />`)}`}`;
 }
 
 /** A study, looked at while it is at work. */

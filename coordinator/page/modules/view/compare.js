@@ -3,6 +3,7 @@
 import { html, useState } from "../html.js";
 import { HistoryChart } from "../chart/history_chart.js";
 import { varying } from "../chart/condition.js";
+import { t } from "../language/language.js";
 import { AxisPicker, ChannelCharts } from "../part/channel_charts.js";
 import { ParameterFold } from "../part/parameter_fold.js";
 import { Pending } from "../part/message.js";
@@ -25,7 +26,7 @@ export function Compare({ study, model, query }) {
   if (!comparison) return html`<${Pending} answer=${comparison} error=${error} what="the comparison" />`;
   const axes = varying(comparison.rows);
   const axis = axes.find((a) => a.key === key) ?? axes[0];
-  const layers = [{ name: "model", colour: null, rows: comparison.rows }];
+  const layers = [{ name: t`model`, colour: null, rows: comparison.rows }];
   return html`
     <p class="note">Signs are measurements (hollow: held out, never fitted), lines the mean of the posterior at the measured conditions, bands its 90 % interval of a measurement; between conditions they bend smoothly, without being computed. Point at a run, or drag over a region: it lights up in every picture.</p>
     <${AxisPicker} axes=${axes} axis=${axis} choose=${choose} />

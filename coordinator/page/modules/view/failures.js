@@ -7,10 +7,12 @@ import { Figure, fileName } from "../chart/figure.js";
 import { Plot, STYLE } from "../chart/library.js";
 import { ResidualChart } from "../chart/residual_chart.js";
 import { byRun, pointable } from "../chart/runs.js";
+import { t } from "../language/language.js";
 import { Pending } from "../part/message.js";
 import { path } from "../rest/routes.js";
 import { useAnswer } from "../rest/use_answer.js";
-import { capital, CHANNELS, digits, minus, raised, short } from "../words/quantity.js";
+import { conditionWords, runName } from "../words/condition.js";
+import { capital, CHANNELS, minus, raised, short } from "../words/quantity.js";
 import { residualSds } from "../words/residual.js";
 
 /** Number of sds beyond which residuals have one colour. */
@@ -30,7 +32,7 @@ export function Failures({ study, model }) {
   if (!model) return html`<p class="empty">No calibration of this study is finished yet.</p>`;
   if (!comparison) return html`<${Pending} answer=${comparison} error=${error} what="the residuals" />`;
   const axes = varying(comparison.rows);
-  const orders = [...axes.map((a) => ({ key: a.key, title: a.title })), { key: "made", title: "order of the runs" }, { key: "size", title: "size of the residual" }];
+  const orders = [...axes.map((a) => ({ key: a.key, title: a.title })), { key: "made", title: t`order of the runs` }, { key: "size", title: t`size of the residual` }];
   const axis = axes.find((a) => a.key === order) ?? MADE;
   const findings = diagnostics?.findings ?? [];
   return html`
@@ -49,7 +51,7 @@ export function Failures({ study, model }) {
 }
 
 /** The order in which the runs stand in the file. */
-const MADE = { key: "place", title: "order of the runs", short: "runs", unit: "1", scale: 1 };
+const MADE = { key: "place", title: t`order of the runs`, short: t`runs`, unit: "1", scale: 1 };
 
 /** Rows with the place of their run. */
 function withPlace(/** @type {any[]} */ rows) {
@@ -68,12 +70,12 @@ function HeatMap(/** @type {{ rows: any[], order: string, name: string }} */ { r
   const value = (/** @type {string} */ run) => (order === "size" ? -(worst.get(run) ?? 0) : order === "made" ? first.get(run).place : first.get(run)[order]);
   const values = new Map(runs.map((run) => [run, value(run)]));
   runs.sort((a, b) => values.get(a) - values.get(b) || first.get(a).place - first.get(b).place);
-  const hint = (/** @type {any} */ r) => `run ${r.run}${r.use === "holdout" ? " (held out)" : ""}, ${short(r.channel)}\nslip ${digits(r.slip, 2)}, ${digits(r.wheel_load_n)} N, ${digits(1000 * r.sled_speed_m_s)} mm/s\n${minus(r.sds.toFixed(1))} sds of all errors, ${minus(r.residual_sigma.toFixed(1))} of the noise alone: measured ${r.sds > 0 ? "above" : "below"} computed`;
+  const hint = (/** @type {any} */ r) => [runName(r), short(r.channel)].join(", ") + `\n${conditionWords(r)}\n` + (r.sds > 0 ? t`${minus(r.sds.toFixed(1))} sds of all errors, ${minus(r.residual_sigma.toFixed(1))} of the noise alone: measured above computed` : t`${minus(r.sds.toFixed(1))} sds of all errors, ${minus(r.residual_sigma.toFixed(1))} of the noise alone: measured below computed`);
   const isNamed = (/** @type {number} */ width) => (width - 112) / runs.length >= LEAST_CELL;
   const below = (/** @type {number} */ width) => (isNamed(width) ? 24 + CHARACTER * Math.max(...runs.map((run) => run.length)) : 26);
   const draw = (/** @type {number} */ width) => Plot.plot({
     width, height: 30 + below(width) + 30 * new Set(judged.map((r) => r.channel)).size, marginLeft: 92, marginBottom: below(width), style: STYLE,
-    x: { domain: runs, label: isNamed(width) ? null : "runs", tickRotate: -60, tickSize: 0, ...(isNamed(width) ? {} : { ticks: [] }) },
+    x: { domain: runs, label: isNamed(width) ? null : t`runs`, tickRotate: -60, tickSize: 0, ...(isNamed(width) ? {} : { ticks: [] }) },
     y: { domain: CHANNELS.filter((c) => judged.some((r) => r.channel === c)), label: null, tickFormat: short, tickSize: 0 },
     color: { type: "linear", domain: [-MOST_SDS, 0, MOST_SDS], range: RESIDUAL_RANGE, clamp: true, interpolate: /** @type {any} */ (mix) },
     marks: [

@@ -1,11 +1,15 @@
 // How the sampler of a study comes to its result: state, stages, particles; it goes on after a restart of the coordinator.
 
 import { html, useEffect, useState } from "../html.js";
+import { t, translated } from "../language/language.js";
 import { Controls } from "../part/controls.js";
+import { Leaders } from "../part/leaders.js";
 import { Failure } from "../part/message.js";
 import { Particles, RecordedParticles } from "../part/particles.js";
 import { StageCharts } from "../part/stage_charts.js";
 import { Table } from "../part/table.js";
+import { isAddition, TakeBack } from "../part/take_back.js";
+import { WorkerTable } from "../part/worker_table.js";
 import { isReport } from "../rest/answers.js";
 import { follow } from "../rest/events.js";
 import { path } from "../rest/routes.js";
@@ -14,8 +18,10 @@ import { address, replace } from "../route.js";
 import { words } from "../words/quantity.js";
 import { progressWords } from "../words/state.js";
 
+/** How often the workers are asked for [ms]. */
+const FARM_MS = 2000;
 const FINAL = ["finished", "failed", "cancelled"];
-const KINDS = { sample: "calibration", fit: "fit", search: "search for a missing effect" };
+const KINDS = { sample: t`calibration`, fit: t`fit`, search: t`search for a missing effect` };
 
 /** The member that is shown: the one that the address names, or the one that works, or the last calibration. */
 function memberOf(/** @type {any} */ study, /** @type {string | undefined} */ asked) {
@@ -31,14 +37,22 @@ export function Live({ study, model, query, reload }) {
   const names = study.members.map((/** @type {any} */ m) => [
     isReport ? m.name : html`<button type="button" aria-pressed=${m.id === member.id} onClick=${() => go(m.id)}>${m.name}</button>`,
     KINDS[/** @type {keyof typeof KINDS} */ (m.kind)] ?? words(m.kind),
-    html`<span class=${`state ${m.state}`}>${m.state}</span>`,
+    html`<span class=${`state ${m.state}`}>${translated(m.state)}</span>`,
     m.message ?? "",
   ]);
   return html`
     ${!isReport && FINAL.includes(study.state) && html`<p class="actions"><span>Everything in this study is over.</span> <a class="button main" href=${address(["studies", study.id, "story"])}>Read the story</a></p>`}
     <${Member} key=${member.id} member=${member} reload=${reload} />
+    ${!isReport && isAddition(study, member) && member.kind !== "search" && html`<p><${TakeBack} study=${study} id=${member.id} reload=${reload} /></p>`}
+    ${!isReport && !FINAL.includes(study.state) && html`<${Farm} />`}
     <h2>Everything in this study</h2>
-    <${Table} label="Calibrations and searches of the study" head=${["name", "what", "state", "message"]} rows=${names} />`;
+    <${Table} label="Calibrations and searches of the study" head=${[t`name`, t`what`, t`state`, t`message`]} rows=${names} />`;
+}
+
+/** The workers of the farm, while they are at work on this study. */
+function Farm() {
+  const { answer: workers } = useAnswer(path.workers, { everyMs: () => FARM_MS });
+  return workers && html`<h2>Workers</h2>${Object.keys(workers).length > 0 ? html`<${WorkerTable} workers=${workers} />` : html`<p class="empty">No worker computes for this service: start one.</p>`}`;
 }
 
 function Member(/** @type {{ member: any, reload: () => void }} */ { member, reload }) {
@@ -65,14 +79,14 @@ function Member(/** @type {{ member: any, reload: () => void }} */ { member, rel
   const progress = isOver ? null : status?.progress;
   return html`
     <h2>${member.name}</h2>
-    <p aria-live="polite"><span class=${`state ${state}`}>${state}</span>${progress ? `: ${progressWords(progress)}` : ""}
+    <p aria-live="polite"><span class=${`state ${state}`}>${translated(state)}</span>${progress ? `: ${progressWords(progress)}` : ""}
       ${progress && html` <span class="note">${Math.round(progress.evaluations_per_s)} evaluations/s; ${progress.rejected} rejected by the model</span>`}</p>
     ${progress && html`<p><label>Present step <progress max=${Math.max(1, progress.step_size)} value=${progress.step_done}></progress> ${percentage(progress.step_done, progress.step_size)}
       <span class="note">(${progress.step_done} of ${progress.step_size} evaluations)</span></label></p>`}
     <${Failure} error=${failure} />
     ${!isReport && !isOver && !FINAL.includes(state) && html`<${Controls} id=${member.id} state=${state} reload=${reload} />`}
     ${member.kind === "search"
-      ? html`<p class="empty">A search fits each candidate effect; its result is in the view Missing effect.</p>`
+      ? html`${progress?.search && html`<${Leaders} search=${progress.search} />`}<p class="note">A search fits each candidate effect; its result is in the view Missing effect.</p>`
       : stages.length > 0
         ? html`<${StageCharts} stages=${stages} name=${member.name} /><${isReport ? RecordedParticles : Particles} id=${member.id} stages=${stages} />`
         : html`<p class="empty" aria-busy=${isLoading}>${noStages(member, isOver, isLoading)}</p>`}`;
@@ -83,7 +97,7 @@ const percentage = (/** @type {number} */ done, /** @type {number} */ size) => `
 
 /** Why a calibration shows no stages. */
 function noStages(/** @type {any} */ member, /** @type {boolean} */ isOver, /** @type {boolean} */ isLoading) {
-  if (isLoading) return "Loading the stages …";
-  if (member.kind === "fit") return isOver ? "A fit goes from step to step and has no stages; its result is in the other views." : "A fit goes from step to step; its result comes with its end.";
-  return isOver ? "The calibration ended before its first stage." : "The first stage draws from the prior; pictures come with its end.";
+  if (isLoading) return t`Loading the stages …`;
+  if (member.kind === "fit") return isOver ? t`A fit goes from step to step and has no stages; its result is in the other views.` : t`A fit goes from step to step; its result comes with its end.`;
+  return isOver ? t`The calibration ended before its first stage.` : t`The first stage draws from the prior; pictures come with its end.`;
 }

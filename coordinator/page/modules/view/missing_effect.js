@@ -4,6 +4,7 @@ import { html, useState } from "../html.js";
 import { varying } from "../chart/condition.js";
 import { LawChart } from "../chart/law_chart.js";
 import { InformationMap } from "../chart/information_map.js";
+import { t, translated } from "../language/language.js";
 import { ChannelCharts } from "../part/channel_charts.js";
 import { Explanations, OTHERS } from "../part/explanations.js";
 import { Failure, Pending } from "../part/message.js";
@@ -44,12 +45,12 @@ export function MissingEffect({ study, model, reload }) {
   };
   if (!search || isLost) {
     return html`
-      <p>${isLost ? `The search is ${search.state}${search.message ? `: ${search.message}` : ""}.` : "Nobody has asked yet what this model is missing."}</p>
+      <p>${isLost ? t`The search is ${translated(search.state)}${search.message ? `: ${search.message}` : ""}.` : t`Nobody has asked yet what this model is missing.`}</p>
       ${isReport ? html`<p>Ask, in the folder of this report, with <code>coordinator discover ${model.id} --out .</code></p>`
         : html`<button class="main" type="button" disabled=${isBusy} onClick=${() => act(() => discover(model.id))}>Search for the missing effect</button>`}
       <${Failure} error=${failure} />`;
   }
-  if (!isFound) return html`<p class="empty">The search is ${search.state}${search.message ? `: ${search.message}` : ""}; <a href=${address(["studies", study.id, "live"])}>Live</a> shows how far it is.</p>`;
+  if (!isFound) return html`<p class="empty">The search is ${translated(search.state)}${search.message ? `: ${search.message}` : ""}; <a href=${address(["studies", study.id, "live"])}>Live</a> shows how far it is.</p>`;
   if (!record) return html`<${Pending} answer=${record} error=${error} what="the search" />`;
   const add = (/** @type {any} */ extension) => act(() => extend(model.id, extension));
   const layers = comparison ? withGhost(comparison.rows, record.curves, ghost) : [];
@@ -58,10 +59,10 @@ export function MissingEffect({ study, model, reload }) {
     <${Failure} error=${failure} />
     <div class="beside">
       <div>
-        <${Explanations} record=${record} ghost=${ghost} kept=${kept} show=${setPointed} keep=${setKept} add=${isReport ? null : add} study=${study} model=${model} isBusy=${isBusy} />
+        <${Explanations} record=${record} ghost=${ghost} kept=${kept} show=${setPointed} keep=${setKept} add=${isReport ? null : add} study=${study} model=${model} isBusy=${isBusy} reload=${reload} />
       </div>
       <div class="ghosts">
-        <p class="note" aria-live="polite">${ghost ? html`Dashed: what <b>${OTHERS[ghost] ?? ghost}</b> would predict for the fitted runs, from the search's fit. Nothing has been computed anew.` : "Point at an explanation: its predictions appear over the data before anything is computed; a click on its name keeps them."}</p>
+        <p class="note" aria-live="polite">${ghost ? html`Dashed: what <b>${OTHERS[ghost] ?? ghost}</b> would predict for the fitted runs, from the search's fit. Nothing has been computed anew.` : t`Point at an explanation: its predictions appear over the data before anything is computed; a click on its name keeps them.`}</p>
         ${comparison && html`<${ChannelCharts} small=${true} order=${byChange(comparison.rows, record.curves, ghost)} layers=${layers} axis=${varying(comparison.rows)[0]} name=${`${study.name}-ghost`} />`}
       </div>
     </div>

@@ -1,15 +1,19 @@
 // A new calibration: its files are dropped, chosen, taken from an example or written from a table, then sent.
 
 import { experimentOf, fileOf, find, kindOf, missing, named, requests } from "../draft.js";
+import { author } from "../author.js";
 import { html, useEffect, useState } from "../html.js";
+import { t } from "../language/language.js";
 import { DropZone } from "../part/drop_zone.js";
 import { FileCard } from "../part/file_card.js";
 import { ImportTable } from "../part/import_table.js";
 import { Failure } from "../part/message.js";
 import { RigForm } from "../part/rig_form.js";
-import { addExperiment, filesOfStudy, get, path, submit } from "../rest/routes.js";
+import { RunChoices } from "../part/run_choices.js";
+import { addExperiment, describe, filesOfStudy, get, path, submit } from "../rest/routes.js";
 import { useAnswer } from "../rest/use_answer.js";
 import { address } from "../route.js";
+import { tagsOf } from "../words/details.js";
 
 /** @typedef {import("../draft.js").Files} Files */
 
@@ -21,6 +25,8 @@ export function NewCalibration({ query }) {
   const [bytes, setBytes] = useState(/** @type {Record<string, Uint8Array>} */ ({}));
   const [asked, setJob] = useState(/** @type {string | null} */ (null));
   const [name, setName] = useState("");
+  const [person, setPerson] = useState(author.known());
+  const [tags, setTags] = useState("");
   const [failure, setFailure] = useState(/** @type {any} */ (null));
   const [isSent, setSent] = useState(false);
   const examples = useAnswer(path.examples);
@@ -67,6 +73,12 @@ export function NewCalibration({ query }) {
     }
   };
   useEffect(() => void (query.study && again(query.study)), [query.study]);
+  /** Keeps author and tags, and the author for the next study of this browser. */
+  const said = async (/** @type {number} */ study) => {
+    author.keep(person);
+    if (person.trim() === "" && tagsOf(tags).length === 0) return;
+    await describe(study, { name: null, author: person.trim() || null, tags: tagsOf(tags), note: null });
+  };
   const start = async () => {
     setSent(true);
     setFailure(null);
@@ -74,6 +86,7 @@ export function NewCalibration({ query }) {
       const { experiment: rig, job: calibration } = requests(files, /** @type {string} */ (job), /** @type {string} */ (experiment));
       const { id } = await addExperiment(rig);
       const created = await submit({ experiment: id, ...calibration, name: name.trim() || null });
+      await said(created.study);
       location.hash = address(["studies", created.study, "live"]);
     } catch (error) {
       setFailure(error);
@@ -87,6 +100,8 @@ export function NewCalibration({ query }) {
   const runs = find(files, "runs.csv");
   const isRuns = runs !== null && kinds[runs] === "runs";
   const place = failure && fileOf(failure.message, files, job, experiment);
+  // The form writes what is still needed.
+  const isAsked = isRuns && job === null && of("experiment").length === 0;
   const isEmpty = Object.keys(files).length === 0 && !table;
   return html`
     <h1>New calibration</h1>
@@ -95,15 +110,18 @@ export function NewCalibration({ query }) {
       ${examples.answer.map((/** @type {any} */ e) => html`<li><button type="button" onClick=${() => open(e.name)}>${e.name}</button> <span><b>${e.title}</b>: <span class="note">${e.summary}</span></span></li>`)}</ul>`}
     ${table && html`<${ImportTable} key=${table} name=${table} bytes=${bytes[table] ?? new TextEncoder().encode(files[table])} onRemove=${() => remove(table)}
       onFiles=${(/** @type {Files} */ made) => { change({ ...without(files, table), ...made }); setBytes(without(bytes, table)); }} />`}
-    ${isRuns && job === null && of("experiment").length === 0 && html`<${RigForm} runs=${files[runs]} onFiles=${add} />`}
+    ${isRuns && html`<${RunChoices} text=${files[runs]} onText=${(/** @type {string} */ text) => add({ [runs]: text })} />`}
+    ${isAsked && html`<${RigForm} runs=${files[runs]} onFiles=${add} />`}
     ${Object.keys(files).filter((own) => own !== table).map((own) => html`<${FileCard} key=${own} name=${own} text=${files[own]} kind=${kinds[own]} isUsed=${used === null || used.has(own)}
       error=${place === own ? failure : null} onText=${(/** @type {string} */ text) => add({ [own]: text })} onRemove=${() => remove(own)} />`)}
     ${of("job").length > 1 && html`<p><label>Job <select value=${job} onChange=${(/** @type {any} */ e) => setJob(e.target.value)}>
       ${of("job").map((own) => html`<option value=${own} selected=${own === job}>${own}</option>`)}</select></label></p>`}
-    ${!isEmpty && !table && absent.length > 0 && html`<div class="missing" role="status"><p>Still needed:</p><ul>${absent.map((what) => html`<li>${what}</li>`)}</ul></div>`}
+    ${!isEmpty && !table && !isAsked && absent.length > 0 && html`<div class="missing" role="status"><p>Still needed:</p><ul>${absent.map((what) => html`<li>${what}</li>`)}</ul></div>`}
     ${failure && place === null && html`<${Failure} error=${failure} />`}
     ${!isEmpty && html`<div class="actions">
       <label>Name <input value=${name} placeholder="as the study is listed" onInput=${(/** @type {any} */ e) => setName(e.target.value)} /></label>
-      <button class="main" type="button" disabled=${absent.length > 0 || Boolean(table) || isSent} onClick=${start}>${isSent ? "It is being sent" : "Start the calibration"}</button>
+      <label>Author <input value=${person} onInput=${(/** @type {any} */ e) => setPerson(e.target.value)} /></label>
+      <label>Tags <input value=${tags} placeholder="sand, wheel 3" onInput=${(/** @type {any} */ e) => setTags(e.target.value)} /></label>
+      <button class="main" type="button" disabled=${absent.length > 0 || Boolean(table) || isSent} onClick=${start}>${isSent ? t`It is being sent` : t`Start the calibration`}</button>
     </div>`}`;
 }

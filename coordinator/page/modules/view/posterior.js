@@ -5,6 +5,7 @@ import { Plot, STYLE } from "../chart/library.js";
 import { csv, save } from "../chart/download.js";
 import { JointPicture, PairPlot } from "../chart/pairs.js";
 import { html, useState } from "../html.js";
+import { t } from "../language/language.js";
 import { Failure, Pending } from "../part/message.js";
 import { ParameterTable } from "../part/parameter_table.js";
 import { isReport } from "../rest/answers.js";
@@ -48,7 +49,7 @@ function Pictures(/** @type {{ marginals: any[], pairs: any[], model: any }} */ 
 function Marginal(/** @type {{ marginal: any }} */ { marginal }) {
   const { unit, scale } = shown(marginal.unit);
   const rows = marginal.grid.map((/** @type {number} */ x, /** @type {number} */ k) => ({ x: x * scale, prior: marginal.prior[k], posterior: marginal.posterior[k] }));
-  return html`<${Figure} title=${`Posterior of ${parameterName(marginal.name, marginal.unit)}`} name=${fileName("posterior", marginal.name)} deps=${[marginal]} rows=${() => rows}
+  return html`<${Figure} title=${t`Posterior of ${parameterName(marginal.name, marginal.unit)}`} name=${fileName("posterior", marginal.name)} deps=${[marginal]} rows=${() => rows}
     draw=${(/** @type {number} */ width) => Plot.plot({
       width, height: 190, marginLeft: 14, marginRight: 14, marginBottom: 40, style: STYLE,
       x: { type: marginal.logarithmic ? "log" : "linear", label: titled(parameterName(marginal.name, marginal.unit), unit), labelArrow: "none", labelAnchor: "center", ticks: 5, ...(marginal.logarithmic ? {} : { tickFormat: tickWords }), grid: true }, y: { axis: null },

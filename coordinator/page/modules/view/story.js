@@ -4,6 +4,7 @@
 import { html, useState } from "../html.js";
 import { LedgerCharts } from "../chart/ledger_chart.js";
 import { ledgerLines } from "../chart/ledger_lines.js";
+import { t } from "../language/language.js";
 import { Flags } from "../part/flags.js";
 import { Headline } from "../part/headline.js";
 import { Failure } from "../part/message.js";
@@ -30,7 +31,7 @@ export function Story({ study, model, reload }) {
   return html`
     <${StudyFailure} study=${study} />
     ${study.models && html`<p class=${`verdict ${study.models.none_of_these ? "doubt" : ""}`}>${sentence(signed(study.models.text))}</p>`}
-    <${Headline} study=${study} model=${model} />
+    <${Headline} study=${study} model=${model} reload=${reload} />
     <div class="three">
       <section class="card"><h2>What the model gets wrong</h2>
         <p class=${mood(story.wrong.channels)}>${sentence(story.wrong.text)}</p>
@@ -57,7 +58,7 @@ function mood(/** @type {any[]} */ channels) {
 /** Why a study failed, and what to do. */
 function StudyFailure(/** @type {{ study: any }} */ { study }) {
   if (!study.failure) return null;
-  return html`<section class="card" role="alert"><h2>${study.members.length > 1 ? `Calibration ${study.failure.calibration} failed` : "The calibration failed"}</h2>
+  return html`<section class="card" role="alert"><h2>${study.members.length > 1 ? t`Calibration ${study.failure.calibration} failed` : t`The calibration failed`}</h2>
     <p class="error">${sentence(study.failure.reason)}</p>
     <p><b>What to do:</b> ${sentence(study.failure.advice)}</p>
     ${!isReport && html`<p><a class="button main" href=${address(["new"], { study: study.id })}>Edit and start again</a></p>`}</section>`;
@@ -73,7 +74,7 @@ function Steps(/** @type {{ steps: any[], study: any, model: any, reload?: () =>
   const list = (/** @type {any[]} */ some, start = 1) => html`<ol start=${start}>${some.map((step) => html`<li><${Step} step=${step} ...${given} /></li>`)}</ol>`;
   const later = steps.slice(FIRST_STEPS);
   return html`${list(steps.slice(0, FIRST_STEPS))}
-    ${later.length > 0 && html`<details><summary>${later.length === 1 ? "1 more step" : `${later.length} more steps`}</summary>${list(later, FIRST_STEPS + 1)}</details>`}`;
+    ${later.length > 0 && html`<details><summary>${later.length === 1 ? t`1 more step` : t`${later.length} more steps`}</summary>${list(later, FIRST_STEPS + 1)}</details>`}`;
 }
 
 /** A step with the button that takes it; a report has the command. */

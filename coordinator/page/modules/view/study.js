@@ -1,11 +1,13 @@
 // A study: its views, and the model that they show.
 
 import { html, useEffect } from "../html.js";
+import { t, translated } from "../language/language.js";
 import { ChosenRuns } from "../part/chosen_runs.js";
 import { Guarded } from "../part/guarded.js";
 import { Pending } from "../part/message.js";
 import { Source } from "../part/source.js";
 import { StudyActions } from "../part/study_actions.js";
+import { SaidOfStudy } from "../part/study_details.js";
 import { path } from "../rest/routes.js";
 import { useAnswer } from "../rest/use_answer.js";
 import { address, replace } from "../route.js";
@@ -29,15 +31,16 @@ export function StudyPage({ id, view, query }) {
   }, []);
   const shown = VIEWS.find((v) => v.name === view) ?? VIEWS[0];
   useEffect(() => {
-    document.title = [shown.title, study?.name ?? `study ${id}`, "Grouser"].join(" – ");
+    document.title = [shown.title, study?.name ?? t`study ${id}`, "Grouser"].join(" – ");
   }, [shown, study?.name]);
-  if (!study) return html`<${Pending} answer=${study} error=${error} what=${`study ${id}`} />`;
+  if (!study) return html`<${Pending} answer=${study} error=${error} what=${t`study ${id}`} />`;
   const model = modelOf(study, query.model ? Number(query.model) : null);
   const to = (/** @type {string} */ name) => address(["studies", id, name], { model: query.model });
   return html`
     <div class="heading">
       <h1>${study.name}</h1>
-      <p class="note">study ${id}, ${study.model_kind}, <span class=${`state ${study.state}`}>${study.state}</span></p>
+      <p class="note">study ${id}, ${study.model_kind}, <span class=${`state ${study.state}`}>${translated(study.state)}</span></p>
+      <${SaidOfStudy} study=${study} />
       <${Source} campaign=${study.campaign} />
       ${error && html`<p class="error" role="alert">${error.message}</p>`}
     </div>
@@ -60,7 +63,7 @@ function ModelPicker(/** @type {{ study: any, model: any, view: string }} */ { s
   return html`
     <p class="picker"><label>Model
       <select value=${model?.id} onChange=${go}>
-        ${finished.map((/** @type {any} */ m) => html`<option value=${m.id} selected=${m.id === model?.id}>${modelName(study, m)}${m.id === study.current ? " (current)" : ""}</option>`)}
+        ${finished.map((/** @type {any} */ m) => html`<option value=${m.id} selected=${m.id === model?.id}>${modelName(study, m)}${m.id === study.current ? t` (current)` : ""}</option>`)}
       </select></label></p>`;
 }
 

@@ -1,11 +1,12 @@
 // How far to trust a calibration: what it reached, what the data determine, where the model refuses, what it was computed from.
 
 import { html } from "../html.js";
+import { t } from "../language/language.js";
 import { Pending } from "../part/message.js";
 import { Table } from "../part/table.js";
 import { path } from "../rest/routes.js";
 import { useAnswer } from "../rest/use_answer.js";
-import { capital, digits, parameterName, probability, shown, words } from "../words/quantity.js";
+import { capital, channelName, digits, parameterName, probability, shown } from "../words/quantity.js";
 import { judgements } from "../words/trust.js";
 
 /** @param {{ study: any, model: any }} properties */
@@ -35,7 +36,7 @@ export function Trust({ study, model }) {
     ${provenance.effects.map((/** @type {any} */ e) => html`<details><summary>Effect ${e.name}</summary><pre tabindex="0">${e.text}</pre></details>`)}`;
 }
 
-const LEVELS = { good: "✓ yes", fair: "~ in part", poor: "✗ no" };
+const LEVELS = { good: t`✓ yes`, fair: t`~ in part`, poor: t`✗ no` };
 
 /** One line for each question, before the details. */
 function Verdict(/** @type {{ judgements: import("../words/trust.js").Judgement[] }} */ { judgements: all }) {
@@ -49,14 +50,14 @@ function Data(/** @type {{ diagnostics: any }} */ { diagnostics }) {
   const channels = diagnostics.channels.map((/** @type {any} */ c) => {
     const quantity = shown(c.unit);
     const value = (/** @type {number | null} */ v) => digits(v === null ? null : v * quantity.scale);
-    return [`${words(c.channel)} ${quantity.unit}`, c.data, value(c.error_sd), value(c.prior_predictive_sd), digits(c.information, 2), digits(c.chi_square?.chi_square), digits(c.chi_square?.degrees_of_freedom), p(c.chi_square?.p)];
+    return [`${channelName(c.channel)} ${quantity.unit}`, c.data, value(c.error_sd), value(c.prior_predictive_sd), digits(c.information, 2), digits(c.chi_square?.chi_square), digits(c.chi_square?.degrees_of_freedom), p(c.chi_square?.p)];
   });
-  const parameters = diagnostics.parameters.map((/** @type {any} */ q) => [parameterName(q.name, q.unit), digits(q.contraction, 2), p(q.conflict_p), q.at_bound ? "at its bound" : ""]);
+  const parameters = diagnostics.parameters.map((/** @type {any} */ q) => [parameterName(q.name, q.unit), digits(q.contraction, 2), p(q.conflict_p), q.at_bound ? t`at its bound` : ""]);
   return html`
     <h2>What the data tell</h2>
-    <${Table} label="Channels" head=${["channel", "rows", "error sd", "prior spread", "information", "chi-square", "expected", "p"]} rows=${channels} numbers=${[1, 2, 3, 4, 5, 6, 7]} />
+    <${Table} label="Channels" head=${[t`channel`, t`rows`, t`error sd`, t`prior spread`, t`information`, t`chi-square`, t`expected`, "p"]} rows=${channels} numbers=${[1, 2, 3, 4, 5, 6, 7]} />
     <p class="note">Error sd: noise, discrepancy and shared errors together. Information: the prior's spread of a prediction over it; below 1 a row tells less than the prior.</p>
-    <${Table} label="Parameters against their priors" head=${["parameter", "contraction", "p of prior conflict", ""]} rows=${parameters} numbers=${[1, 2]} />
+    <${Table} label="Parameters against their priors" head=${[t`parameter`, t`contraction`, t`p of prior conflict`, ""]} rows=${parameters} numbers=${[1, 2]} />
     <p class="note">Contraction: 1 less the sd after the fit over that before; 0: the data tell nothing. Prior conflict: probability of a posterior so far out if the prior is right.</p>
     ${diagnostics.verification.results > 0 && html`<p>${verified(diagnostics.verification)}</p>`}`;
 }
@@ -64,8 +65,8 @@ function Data(/** @type {{ diagnostics: any }} */ { diagnostics }) {
 /** What was computed twice. */
 function verified(/** @type {any} */ { results, confirmed, workers }) {
   return workers < 2
-    ? `One worker computed all ${results} results, so that none was compared with another's.`
-    : `${workers} workers computed ${results} results; ${confirmed} were computed twice and agreed.`;
+    ? t`One worker computed all ${results} results, so that none was compared with another's.`
+    : t`${workers} workers computed ${results} results; ${confirmed} were computed twice and agreed.`;
 }
 
 /** Where the model refuses parameters. */
@@ -79,7 +80,7 @@ function Refused(/** @type {{ rejections: any }} */ { rejections }) {
   };
   return html`
     <h2>Where the model refuses parameters</h2>
-    <p>It refused ${rejections.prior_refused} of ${rejections.prior_draws} draws from the prior${rejections.region ? `, most of them in one region (${probability(rejections.region.p)} by chance)` : ""}.</p>
-    <${Table} label="Rejections by region of the prior" head=${["parameter", "lowest fifth", "second", "middle", "fourth", "highest fifth"]}
+    <p>It refused ${rejections.prior_refused} of ${rejections.prior_draws} draws from the prior${rejections.region ? t`, most of them in one region (${probability(rejections.region.p)} by chance)` : ""}.</p>
+    <${Table} label="Rejections by region of the prior" head=${[t`parameter`, t`lowest fifth`, t`second`, t`middle`, t`fourth`, t`highest fifth`]}
       rows=${rejections.parameters.map((/** @type {any} */ q) => [`${q.name}${q.unit === "1" ? "" : ` ${q.unit}`}`, ...q.bins.map(cell)])} />`;
 }

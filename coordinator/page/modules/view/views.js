@@ -2,20 +2,21 @@
 // others.
 
 import { html } from "../html.js";
+import { t } from "../language/language.js";
 import { Later } from "../part/later.js";
 
 /** @typedef {{ name: string, title: string, load: () => Promise<any> }} View */
 
 /** @type {View[]} */
 export const VIEWS = [
-  { name: "story", title: "Story", load: () => import("./story.js").then((module) => module.Story) },
-  { name: "compare", title: "Compare", load: () => import("./compare.js").then((module) => module.Compare) },
-  { name: "failures", title: "Where it fails", load: () => import("./failures.js").then((module) => module.Failures) },
-  { name: "effects", title: "Missing effect", load: () => import("./missing_effect.js").then((module) => module.MissingEffect) },
-  { name: "posterior", title: "Posterior", load: () => import("./posterior.js").then((module) => module.Posterior) },
-  { name: "errors", title: "Error falls", load: () => import("./errors.js").then((module) => module.Errors) },
-  { name: "trust", title: "How far to trust it", load: () => import("./trust.js").then((module) => module.Trust) },
-  { name: "live", title: "Live", load: () => import("./live.js").then((module) => module.Live) },
+  { name: "story", title: t`Story`, load: () => import("./story.js").then((module) => module.Story) },
+  { name: "compare", title: t`Compare`, load: () => import("./compare.js").then((module) => module.Compare) },
+  { name: "failures", title: t`Where it fails`, load: () => import("./failures.js").then((module) => module.Failures) },
+  { name: "effects", title: t`Missing effect`, load: () => import("./missing_effect.js").then((module) => module.MissingEffect) },
+  { name: "posterior", title: t`Posterior`, load: () => import("./posterior.js").then((module) => module.Posterior) },
+  { name: "errors", title: t`Error falls`, load: () => import("./errors.js").then((module) => module.Errors) },
+  { name: "trust", title: t`How far to trust it`, load: () => import("./trust.js").then((module) => module.Trust) },
+  { name: "live", title: t`Live`, load: () => import("./live.js").then((module) => module.Live) },
 ];
 
 /** @param {{ view: View, [property: string]: any }} properties the other properties are those of the view */

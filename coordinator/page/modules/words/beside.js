@@ -1,12 +1,13 @@
 // Two studies beside each other: what they have in common, and what differs.
 
+import { t, translated } from "../language/language.js";
 import { runWords } from "./ledger.js";
-import { capital, CHANNELS, digits, errorWords, meanAndSd, minus, parameterName, shown, unitOf, words } from "./quantity.js";
+import { capital, channelName, CHANNELS, digits, errorWords, meanAndSd, minus, parameterName, shown, unitOf, words } from "./quantity.js";
 
 /** @typedef {{ study: any, line: any, diagnostics: any }} Side line: of the error ledger of its current model. diagnostics: of that model */
 
 const USES = /** @type {const} */ (["holdout", "fit"]);
-const USE_WORDS = { fit: "fitted runs", holdout: "held-out runs" };
+const USE_WORDS = { fit: t`fitted runs`, holdout: t`held-out runs` };
 
 /**
  * The rows of the table: what, of the first study, of the second, the difference.
@@ -16,10 +17,10 @@ const USE_WORDS = { fit: "fitted runs", holdout: "held-out runs" };
 export function rowsBeside(sides) {
   const of = (/** @type {(side: Side) => string} */ what) => sides.map(what);
   return [
-    ["State", ...of(({ study }) => study.state), ""],
-    ["Runs", ...of(({ line }) => (line ? runWords(line) : "–")), ""],
-    ["Model", ...of(({ study, line }) => [words(study.model_kind ?? "unknown"), ...(line?.effects.length > 0 ? [`with ${line.effects.map(words).join(", ")}`] : [])].join(" ")), ""],
-    ["Found", ...of(({ study }) => capital(study.verdict?.short ?? "no search yet")), ""],
+    [t`State`, ...of(({ study }) => translated(study.state)), ""],
+    [t`Runs`, ...of(({ line }) => (line ? runWords(line) : "–")), ""],
+    [t`Model`, ...of(({ study, line }) => [words(study.model_kind ?? t`unknown`), ...(line?.effects.length > 0 ? [t`with ${line.effects.map(words).join(", ")}`] : [])].join(" ")), ""],
+    [t`Found`, ...of(({ study }) => capital(study.verdict?.short ?? t`no search yet`)), ""],
     ...errors(sides), ...parameters(sides),
   ];
 }
@@ -33,7 +34,7 @@ function errors(/** @type {Side[]} */ sides) {
     const cells = values.map((value) => (value ? `${errorWords(value.rmse * scale)} ${unit}` : "–"));
     const [a, b] = values;
     const isSame = a && b && a.runs === b.runs;
-    return [[`Error of ${words(channel)}, ${USE_WORDS[use]}`, ...cells, isSame ? `${minus(`${b.rmse < a.rmse ? "" : "+"}${((100 * (b.rmse - a.rmse)) / a.rmse).toFixed(0)}`)} %` : "over other runs"]];
+    return [[t`Error of ${channelName(channel)}, ${USE_WORDS[use]}`, ...cells, isSame ? `${minus(`${b.rmse < a.rmse ? "" : "+"}${((100 * (b.rmse - a.rmse)) / a.rmse).toFixed(0)}`)} %` : t`over other runs`]];
   }));
 }
 

@@ -1,5 +1,6 @@
 // The models that a job compares, as the words of a table.
 
+import { t } from "../language/language.js";
 import { CHANNELS, digits, errorWords, minus, probability, short, shown, unitOf } from "./quantity.js";
 
 /** Names in the order of falling evidence; a model without evidence comes last. */
@@ -12,7 +13,7 @@ const byEvidence = (/** @type {any} */ a, /** @type {any} */ b) => (b.log_eviden
  */
 export function comparedModels(comparison) {
   const channels = CHANNELS.filter((channel) => comparison.models.some((/** @type {any} */ m) => m.left_out?.[channel]));
-  const head = ["model", "ln evidence", "probability", "p of chi-square", ...channels.map((c) => `${short(c)} ${shown(unitOf(c)).unit}`), "noise sds", "answer"];
+  const head = [t`model`, t`ln evidence`, t`probability`, t`p of chi-square`, ...channels.map((c) => `${short(c)} ${shown(unitOf(c)).unit}`), t`noise sds`, t`answer`];
   const rows = [...comparison.models].sort(byEvidence).map((model) => [
     model.name, evidence(model), probability(model.probability), model.chi_square_p === null ? "–" : probability(model.chi_square_p),
     ...channels.map((c) => (model.left_out?.[c] ? errorWords(model.left_out[c].rmse * shown(unitOf(c)).scale) : "–")),
@@ -34,19 +35,19 @@ function evidence(/** @type {any} */ { log_evidence: log, log_evidence_se: se })
 function answer(/** @type {any} */ comparison, /** @type {any} */ model) {
   const best = comparison.models.find((/** @type {any} */ m) => m.calibration === comparison.best);
   const decided = model !== best ? behind(best, model)
-    : comparison.none_of_these ? "most probable, yet none of these"
-    : comparison.none_of_these === false ? "chosen"
-    : "chosen; none of these cannot be said";
-  return model.calibration === comparison.best_predicting ? `${decided}; predicts best` : decided;
+    : comparison.none_of_these ? t`most probable, yet none of these`
+    : comparison.none_of_these === false ? t`chosen`
+    : t`chosen; none of these cannot be said`;
+  return model.calibration === comparison.best_predicting ? t`${decided}; predicts best` : decided;
 }
 
 /** How far a model stays behind the best one. */
 function behind(/** @type {any} */ best, /** @type {any} */ model) {
-  if (model.log_evidence === null || best?.log_evidence === null) return "no evidence";
-  return `${digits(best.log_evidence - model.log_evidence)} nats less`;
+  if (model.log_evidence === null || best?.log_evidence === null) return t`no evidence`;
+  return t`${digits(best.log_evidence - model.log_evidence)} nats less`;
 }
 
 /** Which data the errors are of. */
 export const leftOutWords = (/** @type {any} */ comparison) => (comparison.models.some((/** @type {any} */ m) => m.left_out_by === "holdout")
-  ? "Errors are of the held-out runs, which are never fitted"
-  : "No runs are held out: errors are of each condition, predicted from the others by weighting the draws, exact enough to rank models alone");
+  ? t`Errors are of the held-out runs, which are never fitted`
+  : t`No runs are held out: errors are of each condition, predicted from the others by weighting the draws, exact enough to rank models alone`);

@@ -1,6 +1,10 @@
 // Runs of like conditions: what belongs on one line of a picture.
 
+import { t } from "../language/language.js";
+import { slipUnit } from "../units.js";
+import { slipWords } from "./condition.js";
 import { levelOf, levels, levelWords } from "./level.js";
+import { shown } from "./quantity.js";
 
 /** A wheel at rest has no ratio to others [m/s]. */
 const LEAST_SPEED = 1e-9;
@@ -49,7 +53,7 @@ export function groups(rows, against = "slip") {
 /** @returns {Factor} */
 function loads(/** @type {Condition[]} */ rows) {
   const found = levels(rows.map((row) => row.wheel_load_n));
-  return { names: found.map((level) => levelWords(level, "N")), of: (row) => levelOf(found, row.wheel_load_n) };
+  return { names: found.map((level) => levelWords(level, shown("N").unit, shown("N").scale)), of: (row) => levelOf(found, row.wheel_load_n) };
 }
 
 /** A rig holds the speed of the rim or that of the sled: the one with fewer levels. @returns {Factor} */
@@ -58,8 +62,8 @@ function speeds(/** @type {Condition[]} */ rows) {
     const own = (/** @type {Condition} */ row) => Math.max(speed(row), LEAST_SPEED);
     return { own, found: levels(rows.map(own)) };
   });
-  const [{ own, found }, held] = sled.found.length < rim.found.length ? [sled, "sled"] : [rim, "rim"];
-  return { names: found.map((level) => `${held} ${levelWords(level, "mm/s", 1000)}`), of: (row) => levelOf(found, own(row)) };
+  const [{ own, found }, held] = sled.found.length < rim.found.length ? [sled, t`sled`] : [rim, t`rim`];
+  return { names: found.map((level) => `${held} ${levelWords(level, shown("m/s").unit, shown("m/s").scale)}`), of: (row) => levelOf(found, own(row)) };
 }
 
 /** @returns {Factor} */
@@ -72,6 +76,6 @@ function angles(/** @type {Condition[]} */ rows) {
 function slips(/** @type {Condition[]} */ rows) {
   const driven = levels(rows.map((row) => row.slip).filter((slip) => slip > 0));
   const rest = [...new Set(rows.map((row) => row.slip).filter((slip) => !(slip > 0)))].sort((a, b) => a - b);
-  const names = [...rest.map((slip) => `slip ${Number(slip.toPrecision(2))}`.replace("-", "−")), ...driven.map((level) => `slip ${levelWords(level, "")}`.trim())];
+  const names = [...rest.map((slip) => t`slip ${slipWords(Number(slip.toPrecision(2)))}`), ...driven.map((level) => t`slip ${levelWords(level, slipUnit.unit === "1" ? "" : slipUnit.unit, slipUnit.scale)}`.trim())];
   return { names, of: (row) => (row.slip > 0 ? rest.length + levelOf(driven, row.slip) : rest.indexOf(row.slip)) };
 }

@@ -1,6 +1,7 @@
 // The headline of a study: what was found, in one sentence with the error before and after it.
 
-import { capital, errorWords, meanAndSd, parameterName, probability, shown, unitOf, words } from "./quantity.js";
+import { t } from "../language/language.js";
+import { capital, channelName, errorWords, meanAndSd, parameterName, probability, shown, unitOf, words } from "./quantity.js";
 
 /**
  * @typedef {{ channel: string, use: "fit" | "holdout", unit: string, before: number | null, now: number, noise: number | null }} ErrorChange
@@ -9,10 +10,10 @@ import { capital, errorWords, meanAndSd, parameterName, probability, shown, unit
  */
 
 /** `8.3 N on held-out runs`: where an error was taken. */
-const USES = { fit: "fitted runs", holdout: "held-out runs" };
+const USES = { fit: t`fitted runs`, holdout: t`held-out runs` };
 
 /** What an explanation says in plain words; its name where there are none. */
-const plain = (/** @type {any} */ { name, summary }) => (name === "none" ? "nothing is missing" : summary ?? (name === "not_in_library" ? "a law that is not in the library" : words(name)));
+const plain = (/** @type {any} */ { name, summary }) => (name === "none" ? t`nothing is missing` : summary ?? (name === "not_in_library" ? t`a law that is not in the library` : words(name)));
 
 /**
  * The submitted model, where the shown one has effects that it has not and both were calibrated on the same runs.
@@ -59,20 +60,20 @@ export const changeWords = (/** @type {ErrorChange} */ { before, now, unit }) =>
 export function headline({ story }, changes) {
   const { missing, wrong } = story;
   const [first] = changes;
-  const error = first && `${words(first.channel)} of ${USES[first.use]}: error ${changeWords(first)}`;
+  const error = first && t`${channelName(first.channel)} of ${USES[first.use]}: error ${changeWords(first)}`;
   const added = missing.already_added;
   const isCalm = wrong.channels.length > 0 && wrong.channels.every((/** @type {any} */ c) => c.is_within_noise);
-  if (added.length > 0 && first?.before != null) return capital(`${error} with ${added.length === 1 ? "one more effect" : `${added.length} more effects`}`);
+  if (added.length > 0 && first?.before != null) return capital(added.length === 1 ? t`${error} with one more effect` : t`${error} with ${added.length} more effects`);
   const found = {
-    named: () => `something is missing: ${missing.named.map(plain).join("; ")}`,
-    class: () => `one of ${missing.named.length} effects is missing, and the data do not tell which`,
+    named: () => t`something is missing: ${missing.named.map(plain).join("; ")}`,
+    class: () => t`one of ${missing.named.length} effects is missing, and the data do not tell which`,
     none: null,
-    not_in_library: () => "an effect is missing that the library does not have",
-    undecided: () => "whether something is missing is undecided",
-    nothing_detectable: () => (isCalm ? "the model explains the runs to within the noise" : "nothing is missing that these data can show"),
+    not_in_library: () => t`an effect is missing that the library does not have`,
+    undecided: () => t`whether something is missing is undecided`,
+    nothing_detectable: () => (isCalm ? t`the model explains the runs to within the noise` : t`nothing is missing that these data can show`),
   }[/** @type {"named" | "class" | "not_in_library" | "undecided" | "nothing_detectable" | "none"} */ (missing.verdict ?? "none")];
-  const verdict = found ? found() : isCalm ? "the model explains the runs to within the noise" : "the model was not searched for a missing effect";
-  return capital(error ? `${verdict} (${error})` : verdict);
+  const verdict = found ? found() : isCalm ? t`the model explains the runs to within the noise` : t`the model was not searched for a missing effect`;
+  return capital(error ? t`${verdict} (${error})` : verdict);
 }
 
 /**
@@ -86,7 +87,7 @@ export function explanations({ already_added: added, leading }) {
   const named = all.map((/** @type {any} */ effect) => ({ name: effect.name, summary: plain(effect), probability: effect.probability }));
   // Each of several effects was found by a separate search, so their probabilities do not sum to one.
   const rest = 1 - named.reduce((/** @type {number} */ sum, /** @type {Explanation} */ e) => sum + e.probability, 0);
-  return judged.length > 1 || rest < 1e-9 || named.length === 0 ? named : [...named, { name: "", summary: "all other explanations together", probability: rest }];
+  return judged.length > 1 || rest < 1e-9 || named.length === 0 ? named : [...named, { name: "", summary: t`all other explanations together`, probability: rest }];
 }
 
 /** `shear modulus 9.4 ± 0.6 mm`: the parameters of an added effect. */

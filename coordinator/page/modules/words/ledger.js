@@ -1,5 +1,7 @@
 // The lines of the error ledger: which of them compare, and what each has beyond the one before it.
 
+import { t } from "../language/language.js";
+
 /**
  * @typedef {{ data_set: number, fitted_runs: number, held_out_runs: number }} Runs
  * @typedef {{ id: number, name: string, effects: string[], line: any & Runs }} LedgerLine
@@ -26,8 +28,8 @@ export function changesOfRuns(/** @type {LedgerLine[]} */ lines) {
 
 /** `28 fitted runs, 12 held out`. */
 export function runWords(/** @type {Runs} */ { fitted_runs, held_out_runs }) {
-  const fitted = `${fitted_runs} fitted ${fitted_runs === 1 ? "run" : "runs"}`;
-  return held_out_runs === 0 ? fitted : `${fitted}, ${held_out_runs} held out`;
+  const fitted = fitted_runs === 1 ? t`1 fitted run` : t`${fitted_runs} fitted runs`;
+  return held_out_runs === 0 ? fitted : t`${fitted}, ${held_out_runs} held out`;
 }
 
 /**
@@ -41,7 +43,7 @@ export function step(before, now) {
   if (!before) return [now.name];
   const added = now.effects.filter((effect) => !before.effects.includes(effect)).map((effect) => `+ ${effect}`);
   const isShorter = before.effects.some((effect) => !now.effects.includes(effect));
-  const whole = now.effects.length === 0 ? "base" : `with ${now.effects.join(", ")}`;
+  const whole = now.effects.length === 0 ? t`base` : t`with ${now.effects.join(", ")}`;
   const parts = [...(isShorter ? [whole] : added), ...runStep(before.line, now.line)];
   return parts.length === 0 ? [now.name] : parts;
 }
@@ -50,7 +52,7 @@ export function step(before, now) {
 function runStep(/** @type {Runs} */ before, /** @type {Runs} */ now) {
   if (before.data_set === now.data_set) return [];
   const more = now.fitted_runs + now.held_out_runs - before.fitted_runs - before.held_out_runs;
-  if (more === 0) return ["other runs"];
+  if (more === 0) return [t`other runs`];
   const count = Math.abs(more);
-  return [`${more > 0 ? "+" : "−"} ${count} ${count === 1 ? "run" : "runs"}`];
+  return [`${more > 0 ? "+" : "−"} ${count === 1 ? t`1 run` : t`${count} runs`}`];
 }

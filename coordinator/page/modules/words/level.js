@@ -1,5 +1,7 @@
 // Levels of a condition: what a rig was set to, from values that repeat, scatter or are typed with rounding.
 
+import { t } from "../language/language.js";
+
 /** Values closer than this share of the value are equal: rig settings that were typed or computed with rounding. */
 const EQUAL = 0.005;
 /** Levels that are not further apart than this share of the value are readings of one setting. */
@@ -78,5 +80,5 @@ export function levelWords(/** @type {{ low: number, high: number }} */ { low, h
   const rounded = (/** @type {number} */ value, /** @type {number} */ count) => String(Number((value * scale).toPrecision(count)));
   if (high - low <= EQUAL * high) return `${rounded((low + high) / 2, 3)} ${unit}`;
   const step = 10 ** (Math.floor(Math.log10(high)) - 1);
-  return `${[low, high].map((value) => rounded(value, high - low < step ? 3 : 2)).join(" to ")} ${unit}`;
+  return `${[low, high].map((value) => rounded(value, high - low < step ? 3 : 2)).join(t` to `)} ${unit}`;
 }

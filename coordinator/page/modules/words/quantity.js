@@ -1,11 +1,13 @@
 // Quantities as people read them: their names, units and digits.
 
-/** Lengths are shown in millimetres, everything else in SI. */
-export function shown(/** @type {string} */ unit) {
-  return unit === "m" ? { unit: "mm", scale: 1000 } : { unit: raised(unit.replace(/^deg$/, "°")), scale: 1 };
-}
+import { t } from "../language/language.js";
+import { shownUnit } from "../units.js";
 
-const SHORT = { drawbar_pull: "pull", torque: "torque", sinkage: "sinkage", lateral_force: "lateral force" };
+/** How a unit in SI is shown: in the units that a person chose. */
+export const shown = (/** @type {string} */ unit) => shownUnit(unit) ?? { unit: raised(unit.replace(/^deg$/, "°")), scale: 1 };
+
+const SHORT = { drawbar_pull: t`pull`, torque: t`torque`, sinkage: t`sinkage`, lateral_force: t`lateral force` };
+const NAMES = { ...SHORT, drawbar_pull: t`drawbar pull` };
 const UNITS = { drawbar_pull: "N", torque: "N m", sinkage: "m", lateral_force: "N" };
 
 /** The channels in their order. */
@@ -41,6 +43,9 @@ export function numberOf(/** @type {string} */ text) {
 
 /** A short name of a channel. */
 export const short = (/** @type {string} */ channel) => SHORT[/** @type {keyof typeof SHORT} */ (channel)] ?? words(channel);
+
+/** The name of a channel. */
+export const channelName = (/** @type {string} */ channel) => NAMES[/** @type {keyof typeof NAMES} */ (channel)] ?? words(channel);
 
 /** The unit of a channel in SI. */
 export const unitOf = (/** @type {string} */ channel) => UNITS[/** @type {keyof typeof UNITS} */ (channel)] ?? "1";

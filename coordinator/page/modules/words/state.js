@@ -1,11 +1,12 @@
 // States and progress as people read them.
 
+import { t } from "../language/language.js";
 import { digits, duration } from "./quantity.js";
 
 /** How far a calibration has come: `stage 5, exponent 0.012, 2300 evaluations, about 12 s to go`. */
 export function progressWords(/** @type {any} */ progress) {
-  const parts = [...positionWords(progress.position), `${progress.evaluations} evaluations`];
-  if (progress.remaining_s !== null) parts.push(`about ${duration(progress.remaining_s)} to go`);
+  const parts = [...positionWords(progress.position), t`${progress.evaluations} evaluations`];
+  if (progress.remaining_s !== null) parts.push(t`about ${duration(progress.remaining_s)} to go`);
   return parts.join(", ");
 }
 
@@ -14,18 +15,18 @@ function positionWords(/** @type {any} */ position) {
   switch (position.kind) {
     case "sampler": {
       const climbs = position.stage > 0 && position.tempering_exponent < 1;
-      return [`stage ${position.stage}`, ...(climbs ? [`exponent ${digits(position.tempering_exponent, 2)}`] : [])];
+      return [t`stage ${position.stage}`, ...(climbs ? [t`exponent ${digits(position.tempering_exponent, 2)}`] : [])];
     }
     case "fit":
-      return [`step ${position.steps}`];
+      return [t`step ${position.steps}`];
     case "evolution":
-      return [`generation ${position.generations}`];
+      return [t`generation ${position.generations}`];
     case "search":
-      return [`round ${position.rounds}`];
+      return [t`round ${position.rounds}`];
     default:
       return [];
   }
 }
 
 /** How long ago something was heard of. */
-export const ago = (/** @type {number} */ ms) => (ms < 1500 ? "now" : `${duration(ms / 1000)} ago`);
+export const ago = (/** @type {number} */ ms) => (ms < 1500 ? t`now` : t`${duration(ms / 1000)} ago`);

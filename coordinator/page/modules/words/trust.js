@@ -1,6 +1,7 @@
 // How far to trust a calibration, in one line for each question: the sampler, the data, the priors, the predictions.
 
-import { words } from "./quantity.js";
+import { t } from "../language/language.js";
+import { channelName } from "./quantity.js";
 
 /** A probability below which chance does not explain what is seen. */
 const LEVEL = 0.01;
@@ -11,8 +12,8 @@ const LITTLE = 0.1;
 
 /** `a, b and c`, of many the first. */
 function list(/** @type {string[]} */ names) {
-  if (names.length > 4) return `${names.slice(0, 3).join(", ")} and ${names.length - 3} more`;
-  return names.length < 2 ? names.join("") : `${names.slice(0, -1).join(", ")} and ${names.at(-1)}`;
+  if (names.length > 4) return t`${names.slice(0, 3).join(", ")} and ${names.length - 3} more`;
+  return names.length < 2 ? names.join("") : t`${names.slice(0, -1).join(", ")} and ${names.at(-1)}`;
 }
 
 /**
@@ -28,50 +29,50 @@ export function judgements(line, diagnostics, wrong) {
 /** @returns {Judgement | null} */
 function sampler(/** @type {any} */ line) {
   if (!line || line.equilibrated === null || line.equilibrated === undefined) return null;
-  const question = "Did the sampler arrive?";
+  const question = t`Did the sampler arrive?`;
   return line.equilibrated
-    ? { question, level: "good", text: "each stage reached equilibrium: the draws represent the posterior" }
-    : { question, level: "poor", text: "a stage did not reach equilibrium: allow more moves" };
+    ? { question, level: "good", text: t`each stage reached equilibrium: the draws represent the posterior` }
+    : { question, level: "poor", text: t`a stage did not reach equilibrium: allow more moves` };
 }
 
 /** @returns {Judgement | null} */
 function residuals(/** @type {any} */ { channels }) {
   const judged = channels.filter((/** @type {any} */ c) => c.chi_square?.p !== null && c.chi_square?.p !== undefined);
   if (judged.length === 0) return null;
-  const question = "Do the assumed errors explain the residuals?";
-  const beyond = judged.filter((/** @type {any} */ c) => c.chi_square.p < LEVEL).map((/** @type {any} */ c) => words(c.channel));
+  const question = t`Do the assumed errors explain the residuals?`;
+  const beyond = judged.filter((/** @type {any} */ c) => c.chi_square.p < LEVEL).map((/** @type {any} */ c) => channelName(c.channel));
   return beyond.length === 0
-    ? { question, level: "good", text: "in every channel (chi-square)" }
-    : { question, level: "poor", text: `not in ${list(beyond)}: something is missing, or the noise is understated` };
+    ? { question, level: "good", text: t`in every channel (chi-square)` }
+    : { question, level: "poor", text: t`not in ${list(beyond)}: something is missing, or the noise is understated` };
 }
 
 /** @returns {Judgement} */
 function priors(/** @type {any} */ { parameters }) {
-  const question = "Do the data agree with the priors?";
+  const question = t`Do the data agree with the priors?`;
   const conflict = parameters.filter((/** @type {any} */ q) => q.conflict_p !== null && q.conflict_p < LEVEL).map((/** @type {any} */ q) => q.name);
   const bound = parameters.filter((/** @type {any} */ q) => q.at_bound).map((/** @type {any} */ q) => q.name);
-  if (conflict.length > 0) return { question, level: "poor", text: `they contradict the prior of ${list(conflict)}` };
-  if (bound.length > 0) return { question, level: "fair", text: `${list(bound)} ${bound.length === 1 ? "lies" : "lie"} at a bound of the prior: look whether it is meant` };
-  return { question, level: "good", text: "no parameter is far out in its prior" };
+  if (conflict.length > 0) return { question, level: "poor", text: t`they contradict the prior of ${list(conflict)}` };
+  if (bound.length > 0) return { question, level: "fair", text: bound.length === 1 ? t`${list(bound)} lies at a bound of the prior: look whether it is meant` : t`${list(bound)} lie at a bound of the prior: look whether it is meant` };
+  return { question, level: "good", text: t`no parameter is far out in its prior` };
 }
 
 /** @returns {Judgement} */
 function informed(/** @type {any} */ { parameters }) {
-  const question = "Do the data determine the parameters?";
+  const question = t`Do the data determine the parameters?`;
   const little = parameters.filter((/** @type {any} */ q) => q.contraction !== null && q.contraction < LITTLE).map((/** @type {any} */ q) => q.name);
   return little.length === 0
-    ? { question, level: "good", text: "each is known better than before" }
-    : { question, level: "fair", text: `they tell little of ${list(little)}: its value is that of the prior` };
+    ? { question, level: "good", text: t`each is known better than before` }
+    : { question, level: "fair", text: t`they tell little of ${list(little)}: its value is that of the prior` };
 }
 
 /** @returns {Judgement | null} */
 function predictions(/** @type {any} */ { channels }) {
   if (channels.length === 0) return null;
   const isHeldOut = channels.every((/** @type {any} */ c) => c.use === "holdout");
-  const question = isHeldOut ? "Does it predict runs that it has not seen?" : "Does it predict runs that it has not seen? No run was held out.";
-  const beyond = channels.filter((/** @type {any} */ c) => c.is_judged && !c.is_within_noise).map((/** @type {any} */ c) => words(c.channel));
-  const open = channels.filter((/** @type {any} */ c) => !c.is_judged).map((/** @type {any} */ c) => words(c.channel));
-  if (beyond.length > 0) return { question, level: "poor", text: `${list(beyond)} ${beyond.length === 1 ? "is" : "are"} off by more than the noise` };
-  if (open.length > 0) return { question, level: "fair", text: `${list(open)} cannot be judged: the noise is inferred with the misfit` };
-  return { question, level: isHeldOut ? "good" : "fair", text: isHeldOut ? "to within the noise" : "the fitted runs are within the noise; hold some out to know" };
+  const question = isHeldOut ? t`Does it predict runs that it has not seen?` : t`Does it predict runs that it has not seen? No run was held out.`;
+  const beyond = channels.filter((/** @type {any} */ c) => c.is_judged && !c.is_within_noise).map((/** @type {any} */ c) => channelName(c.channel));
+  const open = channels.filter((/** @type {any} */ c) => !c.is_judged).map((/** @type {any} */ c) => channelName(c.channel));
+  if (beyond.length > 0) return { question, level: "poor", text: beyond.length === 1 ? t`${list(beyond)} is off by more than the noise` : t`${list(beyond)} are off by more than the noise` };
+  if (open.length > 0) return { question, level: "fair", text: t`${list(open)} cannot be judged: the noise is inferred with the misfit` };
+  return { question, level: isHeldOut ? "good" : "fair", text: isHeldOut ? t`to within the noise` : t`the fitted runs are within the noise; hold some out to know` };
 }

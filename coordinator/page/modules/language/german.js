@@ -1,0 +1,7 @@
+// The German catalogue.
+
+import { SENTENCES } from "./german_sentences.js";
+import { WORDS } from "./german_words.js";
+
+/** @type {Record<string, string>} texts by their English form; `{0}` stands for the first part that varies */
+export const GERMAN = { ...WORDS, ...SENTENCES };

@@ -1,0 +1,97 @@
+// The language of the page: that of the browser, or the one that a person chose. A text is known by its English form; what the catalogue of a
+// language lacks, and what the service says, stays English.
+
+import { kept } from "../kept.js";
+
+export const LANGUAGES = { en: "English", de: "Deutsch" };
+
+const chosen = kept("language", Object.keys(LANGUAGES), globalThis.navigator?.language?.slice(0, 2) ?? "en");
+
+/** The language of the page. */
+export const language = chosen.value;
+
+/** Chooses a language; the page begins anew in it. */
+export const choose = (/** @type {string} */ to) => chosen.change(to);
+
+const german = () => import("./german.js").then((module) => module.GERMAN);
+/** @type {Record<string, string> | null} texts by their English form; `{0}` stands for the first part that varies */
+const catalogue = language === "de" ? await german() : null;
+if (globalThis.document) document.documentElement.lang = language;
+
+/**
+ * A text with parts that vary: `t`3 of ${n} studies``.
+ * @param {TemplateStringsArray} texts
+ * @param {unknown[]} parts
+ * @returns {string}
+ */
+export function t(texts, ...parts) {
+  const english = texts.reduce((all, text, k) => `${all}{${k - 1}}${text}`);
+  return (catalogue?.[english] ?? english).replace(/\{(\d)\}/g, (_, k) => String(parts[Number(k)]));
+}
+
+/** A word of the service, such as a state, where the catalogue has it. */
+export const translated = (/** @type {string} */ word) => catalogue?.[word] ?? word;
+
+/** The place of a part that varies, within the text of a template. */
+const MARK = /\0(\d+)\0/g;
+/** Attributes that are read to people. */
+const READ = /( (?:aria-label|title|label|placeholder|what|note)=")([^"]+)"/g;
+/** A text between tags, with the white space around it. */
+const BETWEEN = /(^|>)(\s*)([^<>]+?)(\s*)(?=<|$)/g;
+
+/**
+ * The texts of a template that a catalogue knows, each with the numbers of its parts.
+ * @param {readonly string[]} statics
+ * @returns {string[]} with `{0}` for the first part of each
+ */
+export function textsOf(statics) {
+  /** @type {string[]} */
+  const found = [];
+  replaced(statics, (text) => {
+    found.push(text);
+    return text;
+  });
+  return found;
+}
+
+/** The text of a template with its texts replaced; texts without a letter stay. */
+function replaced(/** @type {readonly string[]} */ statics, /** @type {(text: string) => string} */ by) {
+  const whole = statics.reduce((all, text, k) => `${all}\0${k - 1}\0${text}`);
+  const one = (/** @type {string} */ text) => {
+    /** @type {string[]} */
+    const parts = [];
+    const key = text.replace(/\s+/g, " ").replace(MARK, (mark) => `{${parts.push(mark) - 1}}`);
+    return /\p{L}/u.test(key.replace(/&\w+;/g, "")) ? by(key).replace(/\{(\d+)\}/g, (_, k) => parts[Number(k)]) : text;
+  };
+  return whole.replace(BETWEEN, (_, before, space, text, after) => `${before}${space}${one(text)}${after}`)
+    .replace(READ, (_, head, text) => `${head}${one(text)}"`);
+}
+
+/**
+ * A template tag whose templates are in the language of a catalogue.
+ * @template T
+ * @param {Record<string, string>} texts
+ * @param {(statics: any, ...fields: unknown[]) => T} tag
+ * @returns {(statics: TemplateStringsArray, ...fields: unknown[]) => T}
+ */
+export function inTemplates(texts, tag) {
+  /** @type {WeakMap<readonly string[], { statics: string[], order: number[] }>} */
+  const known = new WeakMap();
+  return (statics, ...fields) => {
+    let own = known.get(statics);
+    if (!own) {
+      const pieces = replaced(statics, (text) => texts[text] ?? text).split(MARK);
+      own = { statics: pieces.filter((_, k) => k % 2 === 0), order: pieces.filter((_, k) => k % 2 === 1).map(Number) };
+      known.set(statics, own);
+    }
+    return tag(own.statics, ...own.order.map((k) => fields[k]));
+  };
+}
+
+/**
+ * A template tag whose templates are in the language of the page.
+ * @template T
+ * @param {(statics: any, ...fields: unknown[]) => T} tag
+ * @returns {(statics: TemplateStringsArray, ...fields: unknown[]) => T}
+ */
+export const inLanguage = (tag) => (catalogue === null ? tag : inTemplates(catalogue, tag));

@@ -1,0 +1,34 @@
+// The runs of a draft as a table: each is fitted, held out or excluded, with a reason.
+
+import { html, useMemo, useState } from "../html.js";
+import { t } from "../language/language.js";
+import { read, write } from "../run_choices.js";
+import { Table } from "./table.js";
+
+const USES = /** @type {[string, string][]} */ ([["fit", t`fitted`], ["holdout", t`held out: never fitted`], ["excluded", t`excluded`]]);
+/** What is shown of a run. */
+const SHOWN = ["slip", "wheel_load_n", "sled_speed_m_s", "drawbar_pull_n", "torque_n_m", "sinkage_m"];
+
+/** @param {{ text: string, onText: (text: string) => void }} properties text: of runs.csv */
+export function RunChoices({ text, onText }) {
+  const [isOpen, setOpen] = useState(false);
+  const file = useMemo(() => read(text), [text]);
+  const columns = SHOWN.filter((name) => file.header.includes(name));
+  const change = (/** @type {number} */ k, /** @type {any} */ to) => onText(write({ ...file, runs: file.runs.map((run, i) => (i === k ? { ...run, ...to } : run)) }));
+  const count = (/** @type {string} */ use) => file.runs.filter((run) => run.use === use).length;
+  const everyFourth = () => onText(write({ ...file, runs: file.runs.map((run, k) => (run.use === "excluded" ? run : { ...run, use: k % 4 === 3 ? "holdout" : "fit" })) }));
+  const rows = isOpen ? file.runs.map((run, k) => [
+    run.run,
+    html`<select aria-label=${t`use of run ${run.run}`} value=${run.use} onChange=${(/** @type {any} */ e) => change(k, { use: e.target.value })}>
+      ${USES.map(([value, name]) => html`<option value=${value} selected=${value === run.use}>${name}</option>`)}</select>`,
+    run.use === "fit" ? "" : html`<input aria-label=${t`reason of run ${run.run}`} placeholder="reason" value=${run.reason} onChange=${(/** @type {any} */ e) => change(k, { reason: e.target.value })} />`,
+    ...columns.map((name) => run.cells[file.header.indexOf(name)] ?? ""),
+  ]) : [];
+  return html`
+    <details class="card" onToggle=${(/** @type {any} */ event) => setOpen(event.target.open)}>
+      <summary>Runs: ${count("fit")} fitted, ${count("holdout")} held out, ${count("excluded")} excluded</summary>
+      <p class="note">Held-out runs are never fitted: they show how well the model predicts. An excluded run stays in the file as a comment with its reason.</p>
+      <p class="actions"><button type="button" onClick=${everyFourth}>Hold out every fourth run</button></p>
+      ${isOpen && html`<${Table} label="Runs of the draft" head=${[t`run`, t`use`, t`reason`, ...columns]} rows=${rows} numbers=${columns.map((_, k) => k + 3)} />`}
+    </details>`;
+}

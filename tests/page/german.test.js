@@ -1,0 +1,130 @@
+// A German engineer, from the spreadsheet to the summary on paper, by clicking: in German, with decimal commas, without a terminal.
+
+import assert from "node:assert/strict";
+import { readFile } from "node:fs/promises";
+import { after, before, test } from "node:test";
+import { pathToFileURL } from "node:url";
+
+import { findings, open, shot, sideways, studyOf } from "./browser.js";
+import { Service } from "./service.js";
+
+const FILE = "examples/import-german/Messung_Sand.xlsx";
+const STUDY_MS = 600_000;
+let service, tab, page;
+
+before(async () => {
+  service = await Service.start();
+  tab = await open({ url: service.url, locale: "de-DE" });
+  page = tab.page;
+});
+after(async () => {
+  await tab?.close();
+  await service?.stop();
+});
+
+const fill = (label, value) => page.getByLabel(label, { exact: true }).fill(value);
+
+test("the page speaks the language of the browser", async () => {
+  await page.goto(service.url);
+  await page.locator("h1", { hasText: "Studien" }).waitFor();
+  assert.equal(await page.locator("html").getAttribute("lang"), "de");
+  await page.getByText("Es gibt noch keine Studie").waitFor();
+  assert.deepEqual(await findings(page), []);
+  assert.equal(await sideways(page), 0);
+});
+
+test("a spreadsheet becomes runs, of which some are held out and one is excluded with its reason", async () => {
+  await page.getByRole("link", { name: "Neue Kalibrierung" }).first().click();
+  await page.locator('input[type="file"]').setInputFiles({ name: "Messung_Sand.xlsx", mimeType: "application/octet-stream", buffer: await readFile(FILE) });
+  await page.getByText("Die Spalten von Messung_Sand.xlsx").waitFor();
+  await fill("wheel aller Zeilen", "w");
+  await fill("soil aller Zeilen", "s");
+  await fill("radius with which the rig converts slip to rim speed aller Zeilen", "125");
+  await page.getByLabel("Einheit von radius with which the rig converts slip to rim speed", { exact: true }).selectOption("mm");
+  await shot(page, "german-import");
+  await page.getByRole("button", { name: "Diese 40 Fahrten verwenden" }).click();
+  await page.getByText("Fahrten: 24 angepasst, 16 zurückgehalten, 0 ausgeschlossen").click();
+  await page.getByRole("button", { name: "Jede vierte Fahrt zurückhalten" }).click();
+  await page.getByText("Fahrten: 30 angepasst, 10 zurückgehalten, 0 ausgeschlossen").waitFor();
+  const [, first] = await page.getByRole("region", { name: "Fahrten des Entwurfs" }).locator("tbody th").allTextContents();
+  await page.getByLabel(`Verwendung der Fahrt ${first}`, { exact: true }).selectOption("excluded");
+  const reason = page.getByLabel(`Grund bei Fahrt ${first}`, { exact: true });
+  await reason.fill("Kraftmessdose verrutscht");
+  await reason.press("Tab");
+  await page.getByText("Fahrten: 29 angepasst, 10 zurückgehalten, 1 ausgeschlossen").waitFor();
+  assert.deepEqual(await findings(page), []);
+  assert.equal(await sideways(page), 0);
+  await shot(page, "german-runs");
+});
+
+test("wheel, noise and limits are typed with decimal commas", async () => {
+  await fill("Radius des Rades w [mm]", "125,0");
+  await fill("Breite des Rades w [mm]", "112");
+  await fill("Rauschen von Zugkraft [N]", "-1");
+  await page.getByRole("button", { name: "experiment.toml und job.toml schreiben" }).click();
+  await page.getByText("Rauschen von Zugkraft: eine Zahl größer als 0, oder nichts").waitFor();
+  await fill("Rauschen von Zugkraft [N]", "1,2");
+  await fill("Rauschen von Drehmoment [N m]", "0,15");
+  await fill("Rauschen von Einsinkung [mm]", "0,4");
+  await fill("Radlast mindestens [N]", "40");
+  await page.getByLabel("höchstens [N]", { exact: true }).fill("150");
+  await shot(page, "german-rig");
+  await page.getByRole("button", { name: "experiment.toml und job.toml schreiben" }).click();
+  const experiment = await page.getByLabel("Text von experiment.toml").inputValue();
+  assert.match(experiment, /drawbar_pull_n = 1\.2\ntorque_n_m = 0\.15\nsinkage_m = 0\.0004/);
+  assert.match(experiment, /\[rig\]\nwheel_load_range_n = \[40, 150\]/);
+  await fill("Autor", "Zoë Meyer");
+  await fill("Schlagwörter", "Sand, Rinne 2");
+  await page.getByRole("button", { name: "Kalibrierung starten" }).click();
+  await page.waitForURL(/studies\/\d+\/live/);
+  const study = await service.finished(studyOf(page), STUDY_MS);
+  assert.equal(study.state, "finished");
+  assert.deepEqual(study.details, { name: null, author: "Zoë Meyer", tags: ["Sand", "Rinne 2"], note: null });
+  const files = await service.get(`/v1/experiments/${study.experiment}`);
+  assert.match(files.files["runs.csv"], /^# excluded: Kraftmessdose verrutscht; run: /m);
+  const loads = (await service.get(`/v1/calibrations/${study.members.find((m) => m.kind === "search").id}/discovery`)).information.map((run) => run.wheel_load_n);
+  assert.ok(loads.length > 0 && loads.every((load) => load >= 40 && load <= 150), `${loads}`);
+});
+
+test("the result is read in German, and printed on two pages", async () => {
+  await page.locator(".heading .state.finished").waitFor({ timeout: STUDY_MS });
+  assert.equal(await page.locator(".heading .state").textContent(), "fertig");
+  await page.getByRole("link", { name: "Das Ergebnis lesen" }).click();
+  await page.getByRole("region", { name: "Was gefunden wurde" }).locator(".plot svg").waitFor();
+  await page.getByText("Autor: Zoë Meyer").waitFor();
+  assert.deepEqual(await findings(page), []);
+  await shot(page, "german-story");
+  const saved = page.waitForEvent("download");
+  await page.getByRole("button", { name: "Bericht speichern" }).click();
+  const report = await open({ url: pathToFileURL("/").href, locale: "de-DE" });
+  try {
+    const path = `${await (await saved).path()}.html`;
+    await (await saved).saveAs(path);
+    await report.page.goto(pathToFileURL(path).href);
+    await report.page.locator("section#trust").waitFor();
+    await report.page.getByRole("link", { name: "Wo es versagt" }).first().waitFor();
+    await report.page.evaluate(() => document.body.classList.add("brief"));
+    const pdf = (await report.page.pdf({ format: "A4" })).toString("latin1");
+    assert.equal(pdf.match(/\/Type \/Page\b/g)?.length, 2);
+    assert.deepEqual(report.faults, []);
+  } finally {
+    await report.close();
+  }
+});
+
+test("a switch changes the language, the units and the slips, and keeps them", async () => {
+  await page.getByLabel("Sprache").selectOption("en");
+  await page.locator("h2", { hasText: "What to do next" }).waitFor();
+  await page.getByLabel("Units").selectOption("lbf, in, psi");
+  await page.getByLabel("Slip as").selectOption("30 %");
+  await page.getByRole("link", { name: "Compare", exact: true }).click();
+  await page.locator('[data-figure*="drawbar"] .plot svg').first().waitFor();
+  const words = await page.locator('[data-figure*="drawbar"]').first().textContent();
+  assert.match(words, /drawbar pull \[lbf\]/);
+  assert.match(words, /slip \[%\]/);
+  await page.reload();
+  await page.locator('[data-figure*="drawbar"] .plot svg').first().waitFor();
+  assert.equal(await page.getByLabel("Units").inputValue(), "lbf, in, psi");
+});
+
+test("nothing went wrong on the way", () => assert.deepEqual(tab.faults, []));
