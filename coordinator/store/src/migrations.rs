@@ -41,6 +41,7 @@ const FILES: &[(i64, &str, &str)] = &[
     file!(21, "observables", "0021_observables.sql"),
     file!(22, "emulators", "0022_emulators.sql"),
     file!(23, "no metamodel", "0023_no_metamodel.sql"),
+    file!(24, "checksums", "0024_checksums.sql"),
 ];
 
 /// The files of `migrations/postgres/`. A server starts with the tables of version 19; later migrations have a file in each folder.
@@ -50,6 +51,7 @@ const SERVER_FILES: &[(i64, &str, &str)] = &[
     file!(21, "observables", "postgres/0021_observables.sql"),
     file!(22, "emulators", "postgres/0022_emulators.sql"),
     file!(23, "no metamodel", "postgres/0023_no_metamodel.sql"),
+    file!(24, "checksums", "postgres/0024_checksums.sql"),
 ];
 
 /// The version of the tables that this program writes.
