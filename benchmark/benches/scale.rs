@@ -13,6 +13,7 @@ use benchmark::error::StudyError;
 use benchmark::farm_load::{EXPERIMENT, RUNS, job, quantile, request, results};
 use benchmark::process::{cpu_s, memory_kb};
 use coordinator::service::{FarmSettings, Service};
+use farm::calibration::VerificationRule;
 use shared::api::{NewCalibration, NewExperiment};
 use shared::exchange::WorkResult;
 use shared::outcome::{Observables, Outcome};
@@ -79,7 +80,7 @@ async fn farm(workers: usize, evaluation_s: f64) -> Result<(), StudyError> {
     let store = folder.path().join("scale.db");
     let settings = FarmSettings {
         lease_ms: LEASE_MS,
-        verified_share: 0.0,
+        rule: VerificationRule::default(),
     };
     let service = Service::open(&store.display().to_string(), settings).await?;
     let files = [("runs.csv".to_owned(), RUNS.to_owned())].into();

@@ -114,6 +114,12 @@ impl Service {
         self.process.take().expect("the service is running").kill();
     }
 
+    /// Sends it a signal.
+    #[track_caller]
+    pub fn signal(&self, signal: Signal) {
+        self.process().signal(signal);
+    }
+
     /// Sends SIGTERM and waits for the end; returns whether the service exited with status 0.
     pub fn terminate(&mut self) -> bool {
         self.process().signal(Signal::Terminate);

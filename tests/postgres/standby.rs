@@ -2,9 +2,11 @@
 
 use std::time::{Duration, Instant};
 
+use farm_tests::http::Client;
 use farm_tests::job::Job;
+use farm_tests::process::{Process, Signal};
 use farm_tests::programs::{call, coordinator, run};
-use farm_tests::service::Service;
+use farm_tests::service::{Service, free_address};
 use farm_tests::wait::{until, until_true};
 
 /// The longest time until a calibration goes on after the end of its coordinator.
@@ -53,6 +55,48 @@ fn a_standby_goes_on_with_the_same_bits_within_ten_seconds_of_a_kill() {
     }
     service.wait_for(id, "finished");
     assert_eq!(service.posterior_csv(id), expected);
+}
+
+#[test]
+fn a_standby_takes_over_from_a_halted_coordinator_which_ends_when_it_wakes_up() {
+    let expected = undisturbed();
+    let mut service = Service::start(&["--lease-ms", "2000"]);
+    let id = service.submit(&Job::small());
+    let worker = service.worker("worker", 1);
+    until("some evaluations", || {
+        service.evaluations(id).filter(|&done| done >= 100)
+    });
+    // The halted one keeps its address.
+    let address = free_address();
+    let words = [
+        "serve",
+        "--standby",
+        "--insecure",
+        "--listen",
+        &address,
+        "--store",
+        service.store_name(),
+    ];
+    let standby = Process::start(coordinator(words), &service.folder().join("standby.log"));
+    until_true("a coordinator that stands by", || {
+        standby.log().contains("standing by")
+    });
+    service.signal(Signal::Stop);
+    let halted = Instant::now();
+    until_true("the standby serves", || standby.log().contains("serving"));
+    assert!(halted.elapsed() < TAKE_OVER, "{:?}", halted.elapsed());
+    println!("took over {:.1} s after the halt", halted.elapsed().as_secs_f64());
+    service.signal(Signal::Continue);
+    assert!(!service.wait(), "it says that it failed");
+    drop(worker);
+    let _worker = Process::worker(&format!("http://{address}"), 1, &service.folder().join("w2.log"));
+    let there = Client(address.clone());
+    until_true("the end of the calibration", || {
+        there.json(&format!("/v1/calibrations/{id}"))["state"] == "finished"
+    });
+    let url = format!("http://{address}");
+    let posterior = call("coordinator export {} --url {}", &[&id.to_string(), &url]).success();
+    assert_eq!(posterior, expected);
 }
 
 #[test]

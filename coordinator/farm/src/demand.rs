@@ -16,7 +16,7 @@ impl Farm {
         let able = self
             .workers
             .iter()
-            .filter(|(name, _)| !self.quarantine.contains_key(*name));
+            .filter(|(name, _)| self.quarantined(name).is_none());
         let timed = able.clone().filter_map(|(_, worker)| {
             // All results have the same weight, whichever worker computed them.
             Some((worker.evaluation_s?, worker.completed.max(1) as f64))

@@ -10,8 +10,9 @@ use super::control::{Control, ControlError};
 use super::lease_numbers::LeaseNumbers;
 use super::metrics::{FarmCounters, FarmMetrics};
 use super::progress::{self, Pace};
+use super::voting::includes;
 use super::worker_record::WorkerRecord;
-use crate::calibration::Calibration;
+use crate::calibration::{Calibration, VerificationRule};
 use crate::lease::LeaseQueue;
 use record::SealKey;
 use record::fact::Fact;
@@ -34,6 +35,7 @@ pub struct Farm {
     pub(super) facts: Vec<Fact>,
     pub(super) lease_numbers: LeaseNumbers,
     pub(super) lease_ms: u64,
+    pub(super) rule: VerificationRule,
 }
 
 #[derive(Debug)]
@@ -77,7 +79,14 @@ impl Farm {
             facts: Vec::new(),
             lease_numbers: LeaseNumbers::new(epoch),
             lease_ms,
+            rule: VerificationRule::default(),
         }
+    }
+
+    /// Makes the farm compare answers by a rule, by which its calibrations are verified, too.
+    #[must_use]
+    pub fn with_rule(self, rule: VerificationRule) -> Self {
+        Farm { rule, ..self }
     }
 
     /// Adds a calibration, with facts of its replay that may have been lost. A calibration that was replayed because a worker computes
@@ -145,8 +154,12 @@ impl Farm {
     /// Returns the number of workers that are not quarantined. Every exchange calls this function, so it loops over the few quarantined
     /// workers and not over all.
     pub(super) fn able_workers(&self) -> usize {
-        let is_known = |name: &&String| self.workers.contains_key(*name);
-        self.workers.len() - self.quarantine.keys().filter(is_known).count()
+        let known = |name: &String| {
+            let from = self.workers.range(name.clone()..);
+            from.take_while(|(worker, _)| includes(name, worker)).count()
+        };
+        let quarantined: usize = self.quarantine.keys().map(known).sum();
+        self.workers.len().saturating_sub(quarantined)
     }
 
     fn remaining(&self) -> u64 {
@@ -179,7 +192,7 @@ impl Farm {
         }
         self.account(now_ms);
         // A result of this message may have caused the quarantine of the worker.
-        let (leases, refused) = match self.quarantine.get(worker) {
+        let (leases, refused) = match self.quarantined(worker) {
             Some(reason) => (Vec::new(), Some(reason.clone())),
             None => self.lease(worker, request.want as usize, now_ms),
         };
@@ -262,6 +275,7 @@ impl Farm {
             .retain(|_, w| now_ms.saturating_sub(w.last_seen_ms) < WORKER_SILENCE_MS);
         self.ask_beside_slow_workers(now_ms);
         for id in self.ids() {
+            self.settle(id, now_ms);
             self.finish_if_compared(id, now_ms);
         }
         self.account(now_ms);
@@ -365,7 +379,7 @@ impl Farm {
         for (name, record) in &mut workers {
             record.holds = self.held_by(name) as u64;
             record.silent_ms = now_ms.saturating_sub(record.last_seen_ms);
-            record.quarantined = self.quarantine.get(name).cloned();
+            record.quarantined = self.quarantined(name).cloned();
         }
         workers
     }

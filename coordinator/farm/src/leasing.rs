@@ -1,5 +1,7 @@
 //! The choice of the leases that a worker is given.
 
+use std::collections::{BTreeMap, BTreeSet};
+
 use shared::api::CalibrationState;
 use shared::exchange::Lease;
 use shared::model::equations_of;
@@ -7,9 +9,15 @@ use shared::model::equations_of;
 use super::farm::{Entry, Farm};
 use super::seal::{LeaseTerms, seal};
 use super::share::deal;
+use super::voting::token_of;
 use super::work_result::model_version;
 use crate::calibration::Calibration;
 use crate::lease::{Claimant, NewClaim};
+
+/// The largest number of leases of a worker that has answered nothing yet, unless it has more threads.
+const UNPROVEN_LEASES: usize = 64;
+/// The largest number of threads for which a worker that has answered nothing yet gets leases.
+const UNPROVEN_THREADS: usize = 1_024;
 
 /// A calibration that may lease to a worker.
 #[derive(Debug, Clone, Copy)]
@@ -71,6 +79,7 @@ impl Farm {
         let mut refused = None;
         let expires_ms = now_ms + self.lease_ms;
         let mut holds = self.held_by(worker);
+        let want = want.min(self.max_leases(worker).saturating_sub(holds));
         let holds_suspect = |e: &Entry| {
             let second = &e.calibration.witness.second.queue;
             e.calibration.queue.holds_suspect(worker) || second.holds_suspect(worker)
@@ -79,15 +88,17 @@ impl Farm {
             return (leases, refused);
         }
         for turn in self.turns(want, holds) {
-            let version = match self.version_for(worker, turn.id) {
+            let version = match self.version_for(worker, turn.id, now_ms) {
                 Ok(version) => version,
                 Err(reason) => {
                     refused = Some(reason);
                     continue;
                 }
             };
+            let voting = self.rule.voting.clone();
             let claimant = Claimant {
                 worker,
+                voter: voting.voter(worker),
                 holds,
                 now_ms,
                 expires_ms,
@@ -112,11 +123,40 @@ impl Farm {
         (leases, refused)
     }
 
+    /// Returns the largest number of leases that a worker may hold. One that has answered nothing may never answer.
+    fn max_leases(&self, worker: &str) -> usize {
+        let record = self.workers.get(worker).filter(|record| record.completed == 0);
+        let threads = record.map(|record| record.threads as usize);
+        threads.map_or(usize::MAX, |threads| {
+            threads.clamp(UNPROVEN_LEASES, UNPROVEN_THREADS)
+        })
+    }
+
+    /// Returns the version of the equations that more voters compute than the version of a worker, if there is one, among the workers
+    /// that have been heard of since a time.
+    fn outvoting(&self, version: &str, calibration: &Calibration, since_ms: u64) -> Option<String> {
+        let mut voters: BTreeMap<&str, BTreeSet<&str>> = BTreeMap::new();
+        for (name, record) in &self.workers {
+            if record.last_seen_ms >= since_ms
+                && let Some(version) = record.equations_for(calibration)
+                && self.quarantined(name).is_none()
+            {
+                let of_version = voters.entry(equations_of(version)).or_default();
+                of_version.insert(self.rule.voting.voter(name));
+            }
+        }
+        let own = voters.get(equations_of(version)).map_or(0, BTreeSet::len);
+        let others = voters.into_iter().filter(|(_, voters)| voters.len() > own);
+        others
+            .max_by_key(|(_, voters)| voters.len())
+            .map(|(version, _)| version.to_owned())
+    }
+
     /// Returns the version of the model that a worker computes a calibration with.
     ///
     /// # Errors
     /// The reason why the worker cannot compute it.
-    fn version_for(&self, worker: &str, id: i64) -> Result<String, String> {
+    fn version_for(&self, worker: &str, id: i64, now_ms: u64) -> Result<String, String> {
         let calibration = &self.calibrations[&id].calibration;
         let record = self.workers.get(worker);
         let Some(version) = record.and_then(|record| record.equations_for(calibration)) else {
@@ -128,6 +168,13 @@ impl Farm {
         };
         // The files of effects are sent with the variant, so a worker need not have them.
         let pinned = calibration.model_version.as_deref().map(equations_of);
+        if pinned.is_none()
+            && let Some(most) = self.outvoting(version, calibration, now_ms.saturating_sub(self.lease_ms))
+        {
+            return Err(format!(
+                "most workers compute calibration {id} with model version {most}, worker {worker} with {version}"
+            ));
+        }
         match pinned.filter(|pinned| *pinned != equations_of(version)) {
             None => Ok(version.to_owned()),
             Some(pinned) => Err(format!(
@@ -143,12 +190,14 @@ impl Farm {
         };
         let calibration = &mut entry.calibration;
         let external = calibration.spec.model.external.as_ref().map(|m| m.source.name());
-        let (workers, quarantine) = (&self.workers, &self.quarantine);
+        let (workers, quarantine, voting) = (&self.workers, &self.quarantine, &self.rule.voting);
         let has_other = |failed: &[String]| {
             workers.iter().any(|(name, other)| {
                 let stated = other.equations_of_model(external.as_deref());
                 let is_able = stated.map(equations_of) == Some(equations_of(version));
-                is_able && !failed.contains(name) && !quarantine.contains_key(name)
+                let has_failed = failed.iter().any(|one| one == name || one == voting.voter(name));
+                let of_token = || token_of(name).is_some_and(|token| quarantine.contains_key(token));
+                is_able && !has_failed && !quarantine.contains_key(name) && !of_token()
             })
         };
         let queue = match turn.is_second {

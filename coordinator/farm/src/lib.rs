@@ -5,6 +5,7 @@
 //! - [`lease`]: the rules of leasing. Pure.
 //! - `farm`: [`Farm`]. Pure: the time is an argument, and facts are returned as a list.
 //! - `leasing`: the leases for a worker. `work_result`: the effect of its results.
+//! - `voting`: [`Voting`], identities in comparisons of answers.
 //! - `verification`: the consequences of disagreement between workers, and second leases beside slow ones.
 //! - [`dispatch`]: the thread of the farm. `pulse`: the activity of that thread.
 //! - `control`: the commands of a user on a calibration.
@@ -29,10 +30,12 @@ mod pulse;
 mod seal;
 mod share;
 mod verification;
+mod voting;
 mod work_result;
 mod worker_record;
 
 pub use control::{Control, ControlError};
 pub use farm::Farm;
 pub use metrics::{FarmCounters, FarmMetrics};
+pub use voting::Voting;
 pub use worker_record::WorkerRecord;

@@ -32,7 +32,7 @@ impl Farm {
         for result in results {
             let lease = result.lease;
             // An earlier result of the same message may have convicted the worker.
-            if self.quarantine.contains_key(worker) {
+            if self.quarantined(worker).is_some() {
                 refused_leases.push(lease);
                 continue;
             }
@@ -48,7 +48,7 @@ impl Farm {
                 worker,
                 lease,
                 results,
-                quarantined = self.quarantine.contains_key(worker),
+                quarantined = self.quarantined(worker).is_some(),
                 "results refused: their seals do not prove that they answer leases of this worker, or it computes wrongly; the first lease is named"
             );
             self.counters.refused += results as u64;
@@ -89,11 +89,7 @@ impl Farm {
                 Taken::New
             }
         };
-        let entry = self.calibrations.get_mut(&id);
-        let convicted = entry.map(|entry| entry.calibration.witness.take_convicted());
-        for (worker, evaluation) in convicted.into_iter().flatten() {
-            self.convict(&worker, id, evaluation);
-        }
+        self.settle(id, now_ms);
         self.finish_if_compared(id, now_ms);
         taken
     }
@@ -179,7 +175,7 @@ impl Farm {
     }
 
     /// Hands the facts of a result to the store.
-    fn keep(&mut self, facts: Vec<Fact>) {
+    pub(super) fn keep(&mut self, facts: Vec<Fact>) {
         let is_confirmation = |fact: &&Fact| matches!(fact, Fact::Confirmed { .. });
         self.counters.confirmed += facts.iter().filter(is_confirmation).count() as u64;
         self.facts.extend(facts);

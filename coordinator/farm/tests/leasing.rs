@@ -1,13 +1,13 @@
 //! Tests of leasing in a farm without network and store.
 
-use farm::calibration::SimulationResult;
+use farm::calibration::{SimulationResult, VerificationRule};
 use farm::{Control, Farm};
 use record::{Fact, SealKey};
 use shared::api::CalibrationState;
 use shared::exchange::{ExchangeRequest, ExchangeResponse, Lease, WorkResult};
 use shared::outcome::{Fault, Observables, Outcome};
 
-use super::simulation::world::case::{Case, EQUATIONS};
+use super::simulation::world::case::{Case, EQUATIONS, Kind};
 use super::simulation::world::request::bare;
 
 const LEASE_MS: u64 = 1_000;
@@ -198,9 +198,10 @@ fn nothing_counts_behind_the_result_that_convicts_its_worker() {
     let cases = Case::all().expect("the jobs are valid");
     let case = &cases[SMALL][0];
     let outcome = |evaluation: u64| case.answers[&evaluation].outcome.clone();
-    let mut farm = Farm::new(1, LEASE_MS);
+    let rule = VerificationRule::with_share(1.0);
+    let mut farm = Farm::new(1, LEASE_MS).with_rule(rule.clone());
     let key = SealKey([1; 16]);
-    let calibration = case.begin(1).expect("the job is valid").verified(1.0, key);
+    let calibration = case.begin(1).expect("the job is valid").verified(&rule, key);
     farm.add(calibration, key, Vec::new(), 0);
     let mut send = |worker: &str, want: u32, results: Vec<WorkResult>| {
         let response = farm.exchange(
@@ -229,11 +230,7 @@ fn nothing_counts_behind_the_result_that_convicts_its_worker() {
     let (_, facts) = send("a", 0, vec![wrong, answer(second, outcome(second.evaluation))]);
     let counted = facts.iter().filter(|fact| matches!(fact, Fact::Evaluated { .. }));
     assert_eq!(counted.count(), 0, "{facts:?}");
-    let (leases, _) = send("b", 5, Vec::new());
-    assert!(
-        leases.iter().any(|lease| lease.evaluation == second.evaluation),
-        "{leases:?}"
-    );
+    assert_eq!(farm.take_rewinds(), [1], "it is replayed without them");
 }
 
 #[test]
@@ -306,4 +303,52 @@ fn an_evaluation_that_nobody_begins_pauses_its_calibration() {
     farm.control(1, Control::Resume { skip_faults: false }, now_ms)
         .expect("it is paused");
     assert!(!farm.exchange(request("cured", 9), now_ms).leases.is_empty());
+}
+
+#[test]
+fn a_worker_that_takes_everything_and_answers_nothing_stops_no_job() {
+    let case = Case::new(Kind::Large, 1).expect("the job is valid");
+    let mut farm = Farm::new(1, LEASE_MS);
+    let key = SealKey([1; 16]);
+    farm.add(case.begin(1).expect("the job is valid"), key, Vec::new(), 0);
+    let hoarders = ["h0", "h1", "h2", "h3"];
+    let take = |farm: &mut Farm, worker| farm.exchange(request(worker, u32::MAX), 0).leases;
+    let hoarded: Vec<Vec<Lease>> = hoarders.map(|worker| take(&mut farm, worker)).into();
+    let counts: Vec<usize> = hoarded.iter().map(Vec::len).collect();
+    assert_eq!(counts, [64, 64, 64, 8], "they have answered nothing yet");
+    assert!(farm.exchange(request("honest", 5), 0).leases.is_empty());
+    for now_ms in [400, 800, LEASE_MS] {
+        for (worker, leases) in hoarders.iter().zip(&hoarded) {
+            let holding = ExchangeRequest {
+                holding: leases.iter().map(|lease| lease.lease).collect(),
+                ..request(worker, 0)
+            };
+            farm.exchange(holding, now_ms);
+        }
+        farm.tick(now_ms);
+    }
+    assert_eq!(farm.exchange(request("honest", 200), LEASE_MS).leases.len(), 64);
+}
+
+#[test]
+fn a_version_that_few_workers_compute_pins_nothing() {
+    let (mut farm, _) = farm(&[SMALL]);
+    for worker in ["a", "b"] {
+        farm.exchange(request(worker, 0), 0);
+    }
+    let invented = ExchangeRequest {
+        want: 5,
+        ..bare("odd".into(), "no-such-version")
+    };
+    let response = farm.exchange(invented.clone(), 0);
+    assert!(response.leases.is_empty());
+    let refused = response.refused.expect("it says why");
+    assert!(
+        refused.starts_with("most workers compute calibration 1 with model version scm-7"),
+        "{refused}"
+    );
+    assert_eq!(farm.exchange(request("a", 5), 0).leases.len(), 5);
+    // Where nobody else is there, it counts.
+    let (mut farm, _) = self::farm(&[SMALL]);
+    assert_eq!(farm.exchange(invented, 0).leases.len(), 5);
 }

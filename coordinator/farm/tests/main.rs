@@ -1,4 +1,6 @@
-//! Tests of the farm without network and store: the rules of leasing, and promises under simulated faults.
+//! Tests of the farm without network and store: the rules of leasing, several workers that compute wrongly, and promises under simulated
+//! faults.
 
 mod leasing;
+mod liars;
 mod simulation;

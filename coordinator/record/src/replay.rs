@@ -1,6 +1,6 @@
 //! Stored state that a restart of an unfinished calibration needs.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 use shared::api::CalibrationState;
 
@@ -19,10 +19,12 @@ pub struct Stored {
     pub busy_ms: u64,
     /// Stored evaluations by number. Observables are not loaded; values of fitted measurements only where an engine needs them.
     pub evaluations: BTreeMap<u64, EvaluationRow>,
-    /// The evaluations whose answer another worker has reproduced.
-    pub confirmed: BTreeSet<u64>,
+    /// The evaluations whose answer another worker has reproduced, with that worker.
+    pub confirmed: BTreeMap<u64, String>,
     /// Whether some of its results were dropped.
     pub is_rewound: bool,
+    /// Whether a worker that computed or confirmed results of it, or answered it wrongly, computes wrongly.
+    pub is_doubted: bool,
     /// The workers of failed leases, by evaluation.
     pub failed: BTreeMap<u64, Vec<String>>,
 }

@@ -17,6 +17,7 @@ use crate::embedded::{LocalModels, LocalWorkers};
 use crate::http::Exposure;
 use crate::service::{FarmSettings, LEASE_MS, Service, VERIFIED_PERCENT};
 use farm::Control;
+use farm::calibration::VerificationRule;
 use job::{Apply, Spec};
 use record::CalibrationRow;
 use report::{StudyFile, terminal};
@@ -72,7 +73,7 @@ impl Folder {
         let verified_share = listener.as_ref().map_or(0.0, |_| VERIFIED_PERCENT / 100.0);
         let settings = FarmSettings {
             lease_ms: LEASE_MS,
-            verified_share,
+            rule: VerificationRule::with_share(verified_share),
         };
         let service = Service::open(&store, settings).await?;
         let server = match listener {

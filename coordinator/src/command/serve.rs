@@ -3,6 +3,7 @@
 use std::net::{IpAddr, Ipv4Addr, Ipv6Addr, SocketAddr};
 use std::ops::RangeInclusive;
 use std::pin::pin;
+use std::sync::Arc;
 use std::time::Duration;
 
 use anyhow::{Context, bail};
@@ -14,6 +15,8 @@ use super::shutdown::{Shutdown, stop_signal};
 use crate::config::ServeArguments;
 use crate::embedded::{LocalModels, LocalWorkers};
 use crate::service::{FarmSettings, Service, ServiceError};
+use farm::Voting;
+use farm::calibration::VerificationRule;
 use store::{StoreError, name_of};
 
 /// The allowed durations of a lease `[ms]`: from the delays of a network to a day.
@@ -95,9 +98,25 @@ fn farm_settings(config: &ServeArguments) -> anyhow::Result<FarmSettings> {
             config.verify_percent
         );
     }
+    if config.exposure.insecure && (config.one_vote_per_token || !config.trust.is_empty()) {
+        bail!("--one-vote-per-token and --trust need tokens: they do not go with --insecure");
+    }
+    let voting = Voting {
+        is_by_token: config.one_vote_per_token,
+        trusted: config.trust.iter().cloned().collect(),
+    };
+    if config.verify_percent >= 50.0 {
+        tracing::info!(
+            verify_percent = config.verify_percent,
+            "this share of the evaluations is computed twice, which takes as much more of the workers' time"
+        );
+    }
     Ok(FarmSettings {
         lease_ms: config.lease_ms,
-        verified_share: config.verify_percent / 100.0,
+        rule: VerificationRule {
+            share: config.verify_percent / 100.0,
+            voting: Arc::new(voting),
+        },
     })
 }
 
@@ -144,7 +163,7 @@ async fn standby(store: &str, settings: FarmSettings) -> anyhow::Result<Service>
     tracing::info!(store = name_of(store), "standing by");
     let mut has_reached_it = false;
     loop {
-        match Service::open(store, settings).await {
+        match Service::open(store, settings.clone()).await {
             Ok(service) => return Ok(service),
             Err(ServiceError::Store(StoreError::InUse(_))) => has_reached_it = true,
             // A database server may be down for a while during a restart. If it was never there, this is an error.

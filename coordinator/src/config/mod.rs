@@ -276,6 +276,12 @@ pub struct ServeArguments {
     /// answers; 0 compares nothing `[%]`.
     #[arg(long, env = "GROUSER_VERIFY_PERCENT", value_name = "PERCENT", default_value_t = crate::service::VERIFIED_PERCENT)]
     pub verify_percent: f64,
+    /// Counts all workers of a token as one in these comparisons, and quarantines them together: whoever has one token has one vote.
+    #[arg(long, env = "GROUSER_ONE_VOTE_PER_TOKEN")]
+    pub one_vote_per_token: bool,
+    /// Takes the answers of the workers of this token for right where answers differ; may be repeated, or several between commas.
+    #[arg(long, value_name = "TOKEN", env = "GROUSER_TRUST", value_delimiter = ',')]
+    pub trust: Vec<String>,
     /// Shows what the store holds and changes nothing: takes no jobs and no results, and starts no threads. Works beside a
     /// service that uses the store, and where nothing can be written.
     #[arg(long)]

@@ -74,6 +74,22 @@ impl Caller {
         }
     }
 
+    /// Returns the name by which the farm knows a worker of this sender: its own, after the token's, so that nobody acts for the worker of
+    /// another token.
+    ///
+    /// # Errors
+    /// [`ErrorKind::InvalidBody`]: without a token, a name with a slash would look like that of a token's worker.
+    pub(super) fn worker(&self, name: String) -> Result<String, HttpError> {
+        match &self.name {
+            Some(token) => Ok(format!("{token}/{name}")),
+            None if name.contains('/') => {
+                let message = format!("worker: {name:?} must have no slash");
+                Err(HttpError::new(ErrorKind::InvalidBody, message))
+            }
+            None => Ok(name),
+        }
+    }
+
     /// Returns the name of the token, where one is required.
     pub(super) fn into_name(self) -> Option<String> {
         self.name

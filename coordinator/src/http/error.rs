@@ -113,11 +113,9 @@ impl From<ServiceError> for HttpError {
             | ServiceError::Archived(_)
             | ServiceError::Submitted(_) => ErrorKind::Conflict,
             ServiceError::Details(_) => ErrorKind::InvalidBody,
-            ServiceError::Busy(_) => ErrorKind::Busy,
-            ServiceError::Store(_)
-            | ServiceError::Replay(_)
-            | ServiceError::Thread(_)
-            | ServiceError::Stopped(_) => ErrorKind::Internal,
+            // A worker sends its message again, to the next start or to a standby.
+            ServiceError::Busy(_) | ServiceError::Stopped(_) => ErrorKind::Busy,
+            ServiceError::Store(_) | ServiceError::Replay(_) | ServiceError::Thread(_) => ErrorKind::Internal,
         };
         match &error {
             // The owner of the store needs to know which row is corrupt.

@@ -64,6 +64,7 @@ impl InProcess {
 mod tests {
     use super::*;
     use crate::service::FarmSettings;
+    use farm::calibration::VerificationRule;
 
     #[tokio::test]
     async fn a_request_in_this_process_gets_the_answer_or_the_refusal_of_its_route() {
@@ -71,7 +72,7 @@ mod tests {
         let store = folder.path().join("grouser.db").display().to_string();
         let settings = FarmSettings {
             lease_ms: 1000,
-            verified_share: 0.0,
+            rule: VerificationRule::default(),
         };
         let service = Service::open(&store, settings).await.unwrap();
         let routes = InProcess::new(service.clone());

@@ -72,6 +72,7 @@ async fn exchange(
     }
     check_texts(&request)?;
     check_time(&request)?;
+    request.worker = caller.worker(request.worker)?;
     request.wait_ms = request.wait_ms.min(LONGEST_WAIT_MS);
     request.want = request.want.min(MAX_WANTED);
     let response = tokio::select! {

@@ -14,7 +14,7 @@ use super::recovery::{recover, rewind};
 use super::result_cache::ResultCache;
 use super::stored_calibration;
 use crate::webhook::WebhookHosts;
-use farm::calibration::Calibration;
+use farm::calibration::{Calibration, VerificationRule};
 use farm::dispatch::Dispatcher;
 use farm::{Control, ControlError, Farm};
 use job::Spec;
@@ -29,7 +29,7 @@ const BACKLOG: u64 = 200_000;
 pub struct Service {
     store: Store,
     dispatcher: Dispatcher,
-    verified_share: f64,
+    rule: VerificationRule,
     left_alone: Arc<BTreeMap<i64, String>>,
     pub(super) webhook_hosts: WebhookHosts,
     pub(super) results: ResultCache,
@@ -41,23 +41,18 @@ impl Service {
     /// Opens the store and resumes every calibration that is not over.
     pub async fn open(path: &str, settings: FarmSettings) -> Result<Service, ServiceError> {
         let store = Store::open(path, now_ms()).await?;
-        let farm = Farm::new(store.epoch(), settings.lease_ms);
+        let farm = Farm::new(store.epoch(), settings.lease_ms).with_rule(settings.rule.clone());
         let farm = farm.with_quarantine(store.reader().quarantine().await?);
         let (dispatcher, rewinds) =
             Dispatcher::start(farm, store.writer().sink()).map_err(ServiceError::Thread)?;
-        let left_alone = Arc::new(recover(&store, &dispatcher, settings.verified_share).await?);
-        let rewind = rewind(
-            store.clone(),
-            dispatcher.clone(),
-            rewinds,
-            settings.verified_share,
-        );
+        let left_alone = Arc::new(recover(&store, &dispatcher, &settings.rule).await?);
+        let rewind = rewind(store.clone(), dispatcher.clone(), rewinds, settings.rule.clone());
         tokio::spawn(rewind);
         let results = ResultCache::new(&store);
         Ok(Service {
             store,
             dispatcher,
-            verified_share: settings.verified_share,
+            rule: settings.rule,
             left_alone,
             webhook_hosts: WebhookHosts::default(),
             results,
@@ -83,7 +78,7 @@ impl Service {
         Ok(Service {
             store,
             dispatcher,
-            verified_share: 0.0,
+            rule: VerificationRule::default(),
             left_alone: Arc::default(),
             webhook_hosts: WebhookHosts::default(),
             results,
@@ -118,7 +113,7 @@ impl Service {
     /// Gives a stored calibration to the farm.
     pub(super) async fn take_in_hand(&self, calibration: Calibration) -> Result<(), ServiceError> {
         let key = self.store.reader().seal_key(calibration.identity.id).await?;
-        let calibration = calibration.verified(self.verified_share, key);
+        let calibration = calibration.verified(&self.rule, key);
         Ok(self.dispatcher.add(calibration, key, Vec::new()).await?)
     }
 

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::error::ServiceError;
 use super::stored_calibration::{calibration_row, experiment_files, spec_of};
-use farm::calibration::{Calibration, CalibrationIdentity};
+use farm::calibration::{Calibration, CalibrationIdentity, VerificationRule};
 use farm::dispatch::{Dispatcher, Rewinds, Stopped};
 use store::{Reader, Store};
 
@@ -14,12 +14,12 @@ use store::{Reader, Store};
 pub(super) async fn recover(
     store: &Store,
     dispatcher: &Dispatcher,
-    verified_share: f64,
+    rule: &VerificationRule,
 ) -> Result<BTreeMap<i64, String>, ServiceError> {
     let mut left_alone = BTreeMap::new();
     let reader = store.reader();
     for id in reader.unfinished().await? {
-        match take_up(&reader, dispatcher, id, verified_share).await {
+        match take_up(&reader, dispatcher, id, rule).await {
             Ok(()) => {}
             Err(ServiceError::Stopped(stopped)) => return Err(stopped.into()),
             // A calibration that cannot be resumed must not stop the others.
@@ -33,12 +33,17 @@ pub(super) async fn recover(
 }
 
 /// Replays the calibrations that are rewound, until the farm ends.
-pub(super) async fn rewind(store: Store, dispatcher: Dispatcher, mut rewinds: Rewinds, verified_share: f64) {
+pub(super) async fn rewind(
+    store: Store,
+    dispatcher: Dispatcher,
+    mut rewinds: Rewinds,
+    rule: VerificationRule,
+) {
     while let Some((id, fact)) = rewinds.recv().await {
         if store.writer().durable(fact).await.is_err() {
             return;
         }
-        let replayed = take_up(&store.reader(), &dispatcher, id, verified_share).await;
+        let replayed = take_up(&store.reader(), &dispatcher, id, &rule).await;
         if let Err(error) = replayed {
             tracing::error!(id, reason = %error, "not replayed");
             // The farm may have ended.
@@ -52,7 +57,7 @@ async fn take_up(
     reader: &Reader,
     dispatcher: &Dispatcher,
     id: i64,
-    verified_share: f64,
+    rule: &VerificationRule,
 ) -> Result<(), ServiceError> {
     let row = calibration_row(reader, id).await?;
     let spec = Arc::new(spec_of(reader, &row).await?);
@@ -66,10 +71,11 @@ async fn take_up(
         experiment: row.experiment,
     };
     let experiment = experiment_files(reader, row.experiment).await?;
+    let rule = rule.clone();
     // The replay of a long calibration takes seconds of CPU time, so it does not run on the async runtime.
     let replayed = tokio::task::spawn_blocking(move || {
         let calibration = Calibration::from_files(identity, spec, &row.job, &experiment)?;
-        let mut calibration = calibration.verified(verified_share, key);
+        let mut calibration = calibration.verified(&rule, key);
         let facts = calibration.replay(stored)?;
         Ok::<_, ServiceError>((calibration, facts))
     });

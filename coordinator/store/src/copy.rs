@@ -7,7 +7,7 @@ use super::blob;
 use super::error::StoreError;
 use super::place::{is_server, name_of};
 use super::reader::Reader;
-use super::sql::{Conflict, Connection, Row, Value, insert, query, query_as, query_scalar};
+use super::sql::{Conflict, Connection, Kind, Row, Value, insert, query, query_as, query_scalar};
 use super::theta::theta;
 use super::{migrations, opening};
 
@@ -17,18 +17,9 @@ const ROWS: usize = 1_000;
 /// The tables that other tables refer to, in an order in which they can be filled.
 const FIRST: [&str; 3] = ["experiments", "studies", "calibrations"];
 
-/// The kind of value that a column holds. SQLite has no Boolean type, so the kinds are read from the server's tables.
-#[derive(Debug, Clone, Copy)]
-enum Kind {
-    Integer,
-    Real,
-    Truth,
-    Text,
-    Bytes,
-}
-
 struct Table {
     name: String,
+    /// Columns with their kinds. SQLite has no Boolean type, so the kinds are read from the server's tables.
     columns: Vec<(String, Kind)>,
 }
 
@@ -185,11 +176,8 @@ async fn copy_rows(
 fn values(row: &Row, columns: &[(String, Kind)]) -> Result<Vec<Value>, StoreError> {
     let value = |(column, kind): &(String, Kind)| {
         Ok(match kind {
-            Kind::Integer => Value::Integer(row.try_get(column)?),
-            Kind::Real => Value::Real(row.try_get(column)?),
-            Kind::Truth => Value::Truth(row.try_get(column)?),
-            Kind::Text => Value::Text(row.try_get(column)?),
             Kind::Bytes => Value::Bytes(bytes(row, column)?),
+            kind => row.value(column, *kind)?,
         })
     };
     columns.iter().map(value).collect()

@@ -6,6 +6,8 @@ use sqlx::{AssertSqlSafe, SqliteConnection};
 
 use super::error::{StoreError, primary_code};
 use super::file::file_of;
+use super::reader::Reader;
+use super::sql::Pool;
 
 /// The longest time that the check may take. Tables that it has not reached by then stay unchecked.
 const BUDGET: Duration = Duration::from_secs(3);
@@ -20,12 +22,7 @@ const INTERRUPTED: u32 = 9;
 /// [`StoreError::Damaged`] with the first damaged table.
 pub(super) async fn check(connection: &mut SqliteConnection, path: &str) -> Result<(), StoreError> {
     let wrap = |source| StoreError::new(path, source);
-    let tables = "SELECT name FROM sqlite_schema WHERE type = 'table' AND name NOT LIKE 'sqlite%'
-                  ORDER BY name = 'evaluations', name = 'samples', name";
-    let tables: Vec<String> = sqlx::query_scalar(tables)
-        .fetch_all(&mut *connection)
-        .await
-        .map_err(wrap)?;
+    let tables = tables(connection).await.map_err(wrap)?;
     let until = Instant::now() + BUDGET;
     let mut handle = connection.lock_handle().await.map_err(wrap)?;
     handle.set_progress_handler(STEPS, move || Instant::now() < until);
@@ -43,6 +40,30 @@ pub(super) async fn check(connection: &mut SqliteConnection, path: &str) -> Resu
         .map_err(wrap)?
         .remove_progress_handler();
     checked
+}
+
+/// Returns the names of all tables, the large ones last.
+async fn tables(connection: &mut SqliteConnection) -> Result<Vec<String>, sqlx::Error> {
+    let tables = "SELECT name FROM sqlite_schema WHERE type = 'table' AND name NOT LIKE 'sqlite%'
+                  ORDER BY name = 'evaluations', name = 'samples', name";
+    sqlx::query_scalar(tables).fetch_all(connection).await
+}
+
+impl Reader {
+    /// Checks the pages and rows of every table of a file to the end. A server checks its pages itself.
+    ///
+    /// # Errors
+    /// [`StoreError::Damaged`] with the first damaged table.
+    pub async fn check_pages(&self, path: &str) -> Result<(), StoreError> {
+        let Pool::Sqlite(pool) = &self.pool else {
+            return Ok(());
+        };
+        let mut connection = pool.acquire().await?;
+        for table in tables(&mut connection).await? {
+            check_table(&mut connection, path, table).await?;
+        }
+        Ok(())
+    }
 }
 
 async fn check_table(connection: &mut SqliteConnection, path: &str, table: String) -> Result<(), StoreError> {

@@ -6,6 +6,7 @@ use inference::point_estimate::ModeEstimate;
 use inference::{Particle, StageRecord};
 
 use super::blob;
+use super::checksum::{SAMPLES, STAGES};
 use super::health::StoreHealth;
 use super::json::json;
 use super::repeats;
@@ -15,14 +16,6 @@ use record::fact::{Fact, Fingerprint};
 
 /// The largest number of samples in one statement.
 const ROWS: usize = 4000;
-const SAMPLE: [&str; 6] = [
-    "calibration",
-    "stage",
-    "particle",
-    "theta",
-    "log_likelihood",
-    "log_prior",
-];
 /// The conflict rule of tables that have one row for each calibration: a new row replaces the old one.
 const ITS_OWN: Conflict<'static> = Conflict::Replace(&["calibration"]);
 
@@ -161,25 +154,24 @@ async fn busy(connection: &mut Connection, calibration: i64, busy_ms: u64) -> Re
 }
 
 async fn stage(connection: &mut Connection, calibration: i64, s: &StageRecord) -> Result<(), sqlx::Error> {
-    let columns = [
-        ("calibration", calibration.into()),
-        ("stage", (s.stage as i64).into()),
-        ("tempering_exponent", s.tempering_exponent.into()),
-        ("acceptance", s.acceptance.into()),
-        ("drift_z", s.drift_z.into()),
-        ("correlation", s.correlation.into()),
-        ("steps", (s.steps as i64).into()),
-        ("log_evidence_increment", s.log_evidence_increment.into()),
-        ("weight_cov", s.weight_cov.into()),
-        ("ess", s.ess.into()),
-        ("scale", s.scale.into()),
-        ("evaluations", (s.evaluations as i64).into()),
-        ("equilibrated", s.equilibrated.into()),
-    ];
-    let (names, row): (Vec<&str>, Vec<Value>) = columns.into_iter().unzip();
+    let row = STAGES.sealed(vec![
+        calibration.into(),
+        (s.stage as i64).into(),
+        s.tempering_exponent.into(),
+        s.acceptance.into(),
+        s.drift_z.into(),
+        s.correlation.into(),
+        (s.steps as i64).into(),
+        s.log_evidence_increment.into(),
+        s.weight_cov.into(),
+        s.ess.into(),
+        s.scale.into(),
+        (s.evaluations as i64).into(),
+        s.equilibrated.into(),
+    ]);
     insert(
         "stages",
-        &names,
+        &STAGES.names(),
         vec![row],
         &Conflict::Replace(&["calibration", "stage"]),
     )
@@ -196,17 +188,17 @@ async fn samples(
     for (part, particles) in population.chunks(ROWS).enumerate() {
         let rows = particles.iter().enumerate().map(|(k, particle)| {
             let log_likelihood = Some(particle.log_likelihood.value()).filter(|l| l.is_finite());
-            vec![
+            SAMPLES.sealed(vec![
                 calibration.into(),
                 (stage as i64).into(),
                 ((part * ROWS + k) as i64).into(),
                 blob::encode(&particle.theta).into(),
                 log_likelihood.into(),
                 particle.log_prior.into(),
-            ]
+            ])
         });
         let key = Conflict::Replace(&["calibration", "stage", "particle"]);
-        insert("samples", &SAMPLE, rows.collect(), &key)
+        insert("samples", &SAMPLES.names(), rows.collect(), &key)
             .execute(&mut *connection)
             .await?;
     }

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use inference::StageRecord;
 use record::{EvaluationRow, Fact, Fingerprint, Kept, Membership, Role};
 use shared::file::FileSet;
 use tempfile::TempDir;
@@ -58,4 +59,24 @@ pub(super) fn dispute(calibration: i64, first: &str, second: &str) -> Vec<Fact> 
         worker: second.into(),
     };
     vec![evaluated, duplicate]
+}
+
+/// Makes the first stage of a sampler, without particles.
+pub(super) fn stage() -> StageRecord {
+    StageRecord {
+        stage: 1,
+        tempering_exponent: 1.0,
+        acceptance: 0.5,
+        drift_z: -0.0,
+        weight_drift_z: 0.0,
+        correlation: 0.25,
+        steps: 3,
+        log_evidence_increment: -1.5,
+        weight_cov: 0.75,
+        ess: 12.5,
+        scale: 1.0,
+        evaluations: 20,
+        equilibrated: true,
+        population: Vec::new(),
+    }
 }

@@ -3,6 +3,7 @@
 use shared::file::FileSet;
 
 use super::blob;
+use super::checksum::EVALUATIONS;
 use super::json::json;
 use super::observables;
 use super::sql::{Conflict, Connection, insert, query_scalar};
@@ -11,17 +12,6 @@ use record::fact::{EvaluationRow, Kept};
 
 /// The largest number of rows in one statement; SQLite takes 32,766 parameters, PostgreSQL 65,535.
 const ROWS: usize = 1000;
-const EVALUATION: [&str; 9] = [
-    "calibration",
-    "evaluation",
-    "theta",
-    "log_likelihood",
-    "rejection",
-    "fitted",
-    "observables",
-    "fingerprint",
-    "worker",
-];
 
 /// A study to store, with its first calibrations. Either all of them are stored or none.
 #[derive(Debug, Clone)]
@@ -143,7 +133,7 @@ pub(super) async fn insert_evaluations(
                 Kept::Fitted(values) => (None, Some(blob::encode(&values)), None),
                 Kept::Whole(observables) => (None, None, Some(observables::encode(&observables))),
             };
-            vec![
+            EVALUATIONS.sealed(vec![
                 calibration.into(),
                 (row.evaluation as i64).into(),
                 blob::encode(&row.theta).into(),
@@ -153,11 +143,16 @@ pub(super) async fn insert_evaluations(
                 observables.into(),
                 row.fingerprint.0.into(),
                 row.worker.into(),
-            ]
+            ])
         });
-        insert("evaluations", &EVALUATION, rows.collect(), &Conflict::Keep)
-            .execute(&mut *connection)
-            .await?;
+        insert(
+            "evaluations",
+            &EVALUATIONS.names(),
+            rows.collect(),
+            &Conflict::Keep,
+        )
+        .execute(&mut *connection)
+        .await?;
     }
     Ok(())
 }

@@ -6,6 +6,7 @@
 mod backup;
 mod blob;
 mod change;
+mod checksum;
 mod copy;
 mod damage;
 mod details;
@@ -43,6 +44,7 @@ use std::path::PathBuf;
 
 pub use backup::BackupError;
 pub use change::StateChange;
+pub use checksum::TableCheck;
 pub use copy::copy_store;
 pub use effects::{AddedEffect, EffectVersion, NewEffect, StoredEffect};
 pub use error::StoreError;

@@ -57,6 +57,12 @@ async fn open(path: &str, is_alone: bool) -> Result<Opened, StoreError> {
             if Instant::now() > end {
                 return Err(StoreError::InUse(name_of(path)));
             }
+            if server::end_silent_holder(&mut connection, path).await? {
+                tracing::warn!(
+                    store = name_of(path),
+                    "the coordinator that held the store was silent; its connection is ended"
+                );
+            }
             tokio::time::sleep(ASK_AGAIN).await;
             is_free = server::lock(&mut connection, path).await?;
         }

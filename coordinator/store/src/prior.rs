@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::blob;
+use super::checksum::EVALUATIONS;
 use super::error::StoreError;
 use super::reader::Reader;
 use super::sql::{Row, query, query_scalar};
@@ -16,7 +17,7 @@ impl Reader {
     /// - `count`: the number of draws.
     pub async fn prior_draws(&self, calibration: i64, count: usize) -> Result<Vec<PriorDraw>, StoreError> {
         let rows = query(
-            "SELECT e.theta, e.rejection, e.fitted,
+            "SELECT e.*,
                (SELECT count(*) FROM faults f
                 WHERE f.calibration = e.calibration AND f.evaluation = e.evaluation AND f.attempt > 0) AS faults
              FROM evaluations e WHERE e.calibration = ? AND e.evaluation < ? ORDER BY e.evaluation",
@@ -27,6 +28,7 @@ impl Reader {
         .await?;
         rows.iter()
             .map(|row| {
+                EVALUATIONS.verify(row)?;
                 Ok(PriorDraw {
                     theta: theta(row)?,
                     result: match row.get::<Option<String>>("rejection") {

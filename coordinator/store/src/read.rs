@@ -10,6 +10,7 @@ use shared::outcome::Observables;
 use statistics::LogLikelihood;
 
 use super::blob;
+use super::checksum::{EVALUATIONS, SAMPLES, STAGES};
 use super::error::StoreError;
 use super::json::{file_map, json, numbers};
 use super::members::{Filled, JOB};
@@ -200,6 +201,7 @@ impl Reader {
             .fetch_all(&self.pool)
             .await?;
         let stage = |row: &Row| {
+            STAGES.verify(row)?;
             Ok(StageRow {
                 stage: small(row, "stage")?,
                 tempering_exponent: row.get("tempering_exponent"),
@@ -221,7 +223,7 @@ impl Reader {
     /// Reads the population at the end of a stage, or of the last one.
     pub async fn samples(&self, calibration: i64, stage: Option<u32>) -> Result<Vec<Particle>, StoreError> {
         let rows = query(
-            "SELECT theta, log_likelihood, log_prior FROM samples WHERE calibration = ?1
+            "SELECT * FROM samples WHERE calibration = ?1
              AND stage = coalesce(?2, (SELECT max(stage) FROM samples WHERE calibration = ?1)) ORDER BY particle",
         )
         .bind(calibration)
@@ -250,7 +252,7 @@ impl Reader {
             .fetch_one(&self.pool)
             .await?;
         let taken = format!(
-            "SELECT theta, log_likelihood, log_prior {population}
+            "SELECT * {population}
              AND (particle + 1) * ?3 / ?4 > particle * ?3 / ?4 ORDER BY particle"
         );
         let rows = query(sqlx::AssertSqlSafe(taken))
@@ -356,7 +358,7 @@ impl Reader {
     /// Reads the final draws of a calibration. The first is the most probable particle; a fit without draws has only this one.
     pub async fn predictions(&self, calibration: i64) -> Result<Vec<Prediction>, StoreError> {
         let rows = query(
-            "SELECT evaluation, theta, rejection, observables FROM evaluations
+            "SELECT * FROM evaluations
              WHERE calibration = ? AND evaluation >= ? AND evaluation <> ? ORDER BY evaluation",
         )
         .bind(calibration)
@@ -366,6 +368,7 @@ impl Reader {
         .await?;
         let mut predictions: Vec<Prediction> = Vec::new();
         for row in &rows {
+            EVALUATIONS.verify(row)?;
             let result = match row.get::<Option<String>>("rejection") {
                 Some(rejection) => Err(RejectionReason(rejection)),
                 None => Ok(observables::decode(row.get("observables"))?),
@@ -401,14 +404,17 @@ impl Reader {
     /// simulated once more, or were rejected.
     pub async fn likeliest(&self, calibration: i64) -> Result<Option<Observables>, StoreError> {
         let row = query(
-            "SELECT observables FROM evaluations WHERE calibration = ? AND evaluation = ? AND observables IS NOT NULL",
+            "SELECT * FROM evaluations WHERE calibration = ? AND evaluation = ? AND observables IS NOT NULL",
         )
         .bind(calibration)
         .bind(LIKELIEST as i64)
         .fetch_optional(&self.pool)
         .await?;
-        row.map(|row| observables::decode(row.get("observables")))
-            .transpose()
+        row.map(|row| {
+            EVALUATIONS.verify(&row)?;
+            observables::decode(row.get("observables"))
+        })
+        .transpose()
     }
 
     /// Reads how many parameter vectors of the sampler or the fit the model rejected, by the kind of rejection.
@@ -454,6 +460,7 @@ fn small(row: &Row, column: &str) -> Result<u32, StoreError> {
 }
 
 fn particle(row: &Row) -> Result<Particle, StoreError> {
+    SAMPLES.verify(row)?;
     let log_likelihood: Option<f64> = row.try_get("log_likelihood")?;
     let log_likelihood = log_likelihood.map_or(Ok(LogLikelihood::Impossible), LogLikelihood::new);
     Ok(Particle {

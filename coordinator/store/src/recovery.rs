@@ -1,10 +1,11 @@
 //! Queries for the rows that a restart needs to resume a calibration.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 use shared::api::CalibrationState;
 
 use super::blob;
+use super::checksum::EVALUATIONS;
 use super::error::StoreError;
 use super::observables;
 use super::reader::Reader;
@@ -51,29 +52,24 @@ impl Reader {
         let mut view = self.pool.view().await?;
         let row = query(
             "SELECT state, message, model_version, busy_ms,
-             EXISTS (SELECT 1 FROM rewinds WHERE calibration = ?1 AND results > 0) AS is_rewound
+             EXISTS (SELECT 1 FROM rewinds WHERE calibration = ?1 AND results > 0) AS is_rewound,
+             EXISTS (SELECT 1 FROM rewinds WHERE calibration = ?1) AS is_doubted
              FROM calibrations WHERE id = ?1",
         )
         .bind(calibration)
         .fetch_one(&mut view)
         .await?;
-        let (mut evaluations, mut confirmed) = (BTreeMap::new(), BTreeSet::new());
+        let (mut evaluations, mut confirmed) = (BTreeMap::new(), BTreeMap::new());
         loop {
             let after = evaluations
                 .last_key_value()
                 .map_or(-1, |(&number, _)| number as i64);
             let rows = query(
-                "SELECT evaluation, theta, log_likelihood, rejection, worker, fingerprint,
-                 confirmed_by IS NOT NULL AS is_confirmed,
-                 CASE WHEN ?2 THEN fitted END AS fitted,
-                 CASE WHEN ?2 AND evaluation < ?5 THEN observables END AS observables
-                 FROM evaluations WHERE calibration = ?1 AND evaluation > ?3 ORDER BY evaluation LIMIT ?4",
+                "SELECT * FROM evaluations WHERE calibration = ?1 AND evaluation > ?2 ORDER BY evaluation LIMIT ?3",
             )
             .bind(calibration)
-            .bind(fitted)
             .bind(after)
             .bind(PAGE as i64)
-            .bind(PREDICTIONS_FROM as i64)
             .fetch_all(&mut view)
             .await?;
             for row in &rows {
@@ -81,9 +77,11 @@ impl Reader {
                 let named = |error: StoreError| {
                     error.within(&format!("calibration {calibration}, evaluation {number}"))
                 };
-                evaluations.insert(number, evaluation_row(number, row).map_err(named)?);
-                if row.try_get("is_confirmed")? {
-                    confirmed.insert(number);
+                evaluations.insert(number, evaluation_row(number, row, fitted).map_err(named)?);
+                // Before migration 18, a mark without a name stood for what cannot be compared.
+                let confirmed_by: Option<String> = row.try_get("confirmed_by")?;
+                if let Some(worker) = confirmed_by.filter(|worker| !worker.is_empty()) {
+                    confirmed.insert(number, worker);
                 }
             }
             if rows.len() < PAGE {
@@ -116,16 +114,25 @@ impl Reader {
             evaluations,
             confirmed,
             is_rewound: row.try_get("is_rewound")?,
+            is_doubted: row.try_get("is_doubted")?,
             failed,
         })
     }
 }
 
-fn evaluation_row(evaluation: u64, row: &Row) -> Result<EvaluationRow, StoreError> {
+fn evaluation_row(evaluation: u64, row: &Row, with_fitted: bool) -> Result<EvaluationRow, StoreError> {
+    EVALUATIONS.verify(row)?;
     let fitted: Option<&[u8]> = row.try_get("fitted")?;
-    let fitted = fitted.map(blob::decode_values).transpose()?;
+    let fitted = fitted
+        .filter(|_| with_fitted)
+        .map(blob::decode_values)
+        .transpose()?;
+    let is_sampled = evaluation < PREDICTIONS_FROM;
     let whole: Option<&[u8]> = row.try_get("observables")?;
-    let whole = whole.map(observables::decode).transpose()?;
+    let whole = whole
+        .filter(|_| with_fitted && is_sampled)
+        .map(observables::decode)
+        .transpose()?;
     let rejection: Option<String> = row.try_get("rejection")?;
     Ok(EvaluationRow {
         evaluation,

@@ -13,7 +13,7 @@ use sqlx::{AssertSqlSafe, Connection as _, PgConnection, PgPool, Postgres, SqlSa
 use sqlx::{Decode, Row as _, SqliteConnection, SqlitePool, Type};
 
 /// The replacement of NUL in a text, because PostgreSQL's texts cannot contain NUL.
-const NUL: &str = "\u{2400}";
+pub(super) const NUL: &str = "\u{2400}";
 
 /// A connection that may write.
 #[derive(Debug)]
@@ -108,6 +108,16 @@ pub(super) enum Value {
     Bytes(Option<Vec<u8>>),
 }
 
+/// The kind of value that a column holds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Kind {
+    Integer,
+    Real,
+    Truth,
+    Text,
+    Bytes,
+}
+
 /// Implements `From` for the Rust types of each kind of value.
 macro_rules! values {
     ($($kind:ident: $($renumbered:ty),+;)+) => {$($(
@@ -159,6 +169,17 @@ impl Row {
             Row::Sqlite(row) => row.try_get(column),
             Row::Postgres(row) => row.try_get(column),
         }
+    }
+
+    /// Reads a column as a value of a kind.
+    pub(super) fn value(&self, column: &str, kind: Kind) -> Result<Value, sqlx::Error> {
+        Ok(match kind {
+            Kind::Integer => Value::Integer(self.try_get(column)?),
+            Kind::Real => Value::Real(self.try_get(column)?),
+            Kind::Truth => Value::Truth(self.try_get(column)?),
+            Kind::Text => Value::Text(self.try_get(column)?),
+            Kind::Bytes => Value::Bytes(self.try_get(column)?),
+        })
     }
 
     /// Reads a column of which the table guarantees the type.

@@ -5,6 +5,20 @@ use super::reader::Reader;
 use super::sql::{Connection, query, query_as};
 use record::{EvaluationKey, Quarantine, Verified};
 
+/// Returns a condition: the name in one column is that of a worker in another column, or of all workers of its token, which ends with a
+/// slash.
+fn includes(name: &str, worker: &str) -> String {
+    format!(
+        "({worker} = {name} OR substr({name}, length({name})) = '/' AND substr({worker}, 1, length({name})) = {name})"
+    )
+}
+
+/// Returns a condition: a worker computes wrongly.
+fn is_quarantined(worker: &str) -> String {
+    let includes = includes("wrong.worker", worker);
+    format!("EXISTS (SELECT 1 FROM quarantine wrong WHERE {includes})")
+}
+
 /// Records that a second worker has reproduced a result.
 pub(super) async fn confirm(
     connection: &mut Connection,
@@ -45,31 +59,47 @@ pub(super) async fn quarantine(
     .execute(&mut *connection)
     .await?;
     // In unfinished calibrations, a dispute with a wrong answer is settled.
-    query(
-        "DELETE FROM disputes WHERE ? IN (first, second) AND calibration IN
-         (SELECT id FROM calibrations WHERE state NOT IN ('finished', 'failed', 'cancelled'))",
-    )
-    .bind(worker)
-    .execute(connection)
-    .await
-    .map(drop)
+    let is_settled = format!("({} OR {})", includes("?1", "first"), includes("?1", "second"));
+    let delete = format!(
+        "DELETE FROM disputes WHERE {is_settled} AND calibration IN
+         (SELECT id FROM calibrations WHERE state NOT IN ('finished', 'failed', 'cancelled'))"
+    );
+    query(sqlx::AssertSqlSafe(delete))
+        .bind(worker)
+        .execute(connection)
+        .await
+        .map(drop)
 }
 
-/// Deletes the unconfirmed results of a worker and all results of later rounds, because the later parameter vectors depend on them.
+/// Withdraws the confirmations of a worker that computes wrongly. Deletes the results that rest on this worker and earlier such workers
+/// alone, and all results of later rounds, because the later parameter vectors depend on them.
 pub(super) async fn rewind(
     connection: &mut Connection,
     calibration: i64,
     worker: &str,
     width: usize,
 ) -> Result<(), sqlx::Error> {
-    let (first, results): (Option<i64>, i64) = query_as(
-        "SELECT min(evaluation), count(*) FROM evaluations
-         WHERE calibration = ? AND worker = ? AND confirmed_by IS NULL",
-    )
-    .bind(calibration)
-    .bind(worker)
-    .fetch_one(&mut *connection)
-    .await?;
+    let withdraw = format!(
+        "UPDATE evaluations SET confirmed_by = NULL WHERE calibration = ?1 AND {}",
+        includes("?2", "confirmed_by")
+    );
+    query(sqlx::AssertSqlSafe(withdraw))
+        .bind(calibration)
+        .bind(worker)
+        .execute(&mut *connection)
+        .await?;
+    let rests = format!(
+        "confirmed_by IS NULL AND ({} OR {})",
+        includes("?2", "evaluations.worker"),
+        is_quarantined("evaluations.worker")
+    );
+    let find =
+        format!("SELECT min(evaluation), count(*) FROM evaluations WHERE calibration = ?1 AND {rests}");
+    let (first, results): (Option<i64>, i64) = query_as(sqlx::AssertSqlSafe(find))
+        .bind(calibration)
+        .bind(worker)
+        .fetch_one(&mut *connection)
+        .await?;
     tracing::warn!(target: "journal", calibration, worker, results, "results are computed again");
     query(
         "INSERT INTO rewinds (calibration, worker, results, at_ms) VALUES (?, ?, ?, unixepoch('subsec') * 1000)
@@ -81,22 +111,25 @@ pub(super) async fn rewind(
     .execute(&mut *connection)
     .await?;
     // A dispute with a wrong answer is settled.
-    query("DELETE FROM disputes WHERE calibration = ?1 AND ?2 IN (first, second)")
+    let settle = format!(
+        "DELETE FROM disputes WHERE calibration = ?1 AND ({} OR {})",
+        includes("?2", "first"),
+        includes("?2", "second")
+    );
+    query(sqlx::AssertSqlSafe(settle))
         .bind(calibration)
         .bind(worker)
         .execute(&mut *connection)
         .await?;
     let Some(first) = first else { return Ok(()) };
     let round_end = EvaluationKey::round_end(first.unsigned_abs(), width) as i64;
-    query(
-        "DELETE FROM evaluations WHERE calibration = ?1
-         AND (evaluation >= ?2 OR worker = ?3 AND confirmed_by IS NULL)",
-    )
-    .bind(calibration)
-    .bind(round_end)
-    .bind(worker)
-    .execute(&mut *connection)
-    .await?;
+    let delete = format!("DELETE FROM evaluations WHERE calibration = ?1 AND (evaluation >= ?3 OR {rests})");
+    query(sqlx::AssertSqlSafe(delete))
+        .bind(calibration)
+        .bind(worker)
+        .bind(round_end)
+        .execute(&mut *connection)
+        .await?;
     // After the rewind, these numbers stand for other parameter vectors, which get new attempts.
     query(
         "INSERT INTO faults (calibration, evaluation, attempt, worker, message, at_ms)
@@ -158,17 +191,23 @@ impl Reader {
                 ..Verified::default()
             });
         }
-        let (results, confirmed, workers): (i64, i64, i64) = query_as(
-            "SELECT count(*), count(nullif(confirmed_by, '')), count(DISTINCT worker) FROM evaluations
-             WHERE calibration = ? AND worker <> ''",
-        )
-        .bind(calibration)
-        .fetch_one(&self.pool)
-        .await?;
-        let resting = query_as(
-            "SELECT q.worker, count(*) FROM quarantine q JOIN evaluations e ON e.worker = q.worker
-             WHERE e.calibration = ? AND e.confirmed_by IS NULL GROUP BY q.worker ORDER BY q.worker",
+        let (by_wrong, from_wrong) = (is_quarantined("e.confirmed_by"), is_quarantined("e.worker"));
+        let count = format!(
+            "SELECT count(*),
+             count(CASE WHEN e.confirmed_by <> '' AND NOT {by_wrong} AND NOT {from_wrong} THEN 1 END),
+             count(DISTINCT e.worker) FROM evaluations e WHERE e.calibration = ? AND e.worker <> ''"
         );
+        let (results, confirmed, workers): (i64, i64, i64) = query_as(sqlx::AssertSqlSafe(count))
+            .bind(calibration)
+            .fetch_one(&self.pool)
+            .await?;
+        let resting = format!(
+            "SELECT q.worker, count(*) FROM quarantine q JOIN evaluations e ON {}
+             WHERE e.calibration = ? AND (e.confirmed_by IS NULL OR {by_wrong})
+             GROUP BY q.worker ORDER BY q.worker",
+            includes("q.worker", "e.worker")
+        );
+        let resting = query_as(sqlx::AssertSqlSafe(resting));
         let rewound = query_as("SELECT worker, results FROM rewinds WHERE calibration = ? ORDER BY worker");
         let resting: Vec<(String, i64)> = resting.bind(calibration).fetch_all(&self.pool).await?;
         let rewound: Vec<(String, i64)> = rewound.bind(calibration).fetch_all(&self.pool).await?;
@@ -189,6 +228,78 @@ mod tests {
     use record::{Fact, Fingerprint};
 
     use crate::fixture;
+
+    #[tokio::test]
+    async fn what_a_worker_has_confirmed_rests_on_others_or_goes_once_it_computes_wrongly() {
+        let (_folder, store, calibration) = fixture::store().await;
+        let sink = std::cell::RefCell::new(store.writer().sink());
+        let store_fact = async |fact: Fact| {
+            let number = (sink.borrow_mut())(vec![fact]).unwrap();
+            store.writer().durable(number).await.unwrap();
+        };
+        let confirmed = |evaluation: u64, worker: &str| Fact::Confirmed {
+            calibration,
+            evaluation,
+            worker: worker.into(),
+        };
+        let convicted = async |worker: &str| {
+            store_fact(Fact::Rewound {
+                calibration,
+                worker: worker.into(),
+                width: 100,
+            })
+            .await;
+            store_fact(Fact::Quarantined {
+                worker: worker.into(),
+                calibration,
+                evaluation: 0,
+            })
+            .await;
+            let stored = store.reader().stored(calibration, false).await.unwrap();
+            let rows: Vec<(u64, Option<String>)> = stored
+                .evaluations
+                .keys()
+                .map(|&row| (row, stored.confirmed.get(&row).cloned()))
+                .collect();
+            let verified = store.reader().verified(calibration).await.unwrap();
+            assert!(
+                stored.is_doubted && verified.resting_on.is_empty(),
+                "{verified:?}"
+            );
+            (rows, verified.confirmed)
+        };
+        // Computed by one liar and confirmed by another, by an honest worker, or by nobody; and the other way round.
+        for (evaluation, worker, confirmed_by) in [
+            (0, "lab/1", Some("liar")),
+            (1, "lab/2", Some("honest")),
+            (2, "honest", Some("lab/1")),
+            (3, "honest", None),
+            (4, "liar", Some("lab/2")),
+            (5, "lab-2/1", None),
+        ] {
+            let row = fixture::row(evaluation, worker, 7);
+            store_fact(Fact::Evaluated { calibration, row }).await;
+            if let Some(worker) = confirmed_by {
+                store_fact(confirmed(evaluation, worker)).await;
+            }
+        }
+        let by = |worker: &str| Some(worker.to_owned());
+        let (rows, confirmed) = convicted("liar").await;
+        let expected = [
+            (0, None),
+            (1, by("honest")),
+            (2, by("lab/1")),
+            (3, None),
+            (4, by("lab/2")),
+            (5, None),
+        ];
+        assert_eq!((rows.as_slice(), confirmed), (expected.as_slice(), 2));
+        // All workers of a token.
+        let (rows, confirmed) = convicted("lab/").await;
+        let expected = [(1, by("honest")), (2, None), (3, None), (5, None)];
+        assert_eq!((rows.as_slice(), confirmed), (expected.as_slice(), 0));
+        store.close().await;
+    }
 
     #[tokio::test]
     async fn only_an_answer_that_differs_from_the_stored_one_changes_a_study() {

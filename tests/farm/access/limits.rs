@@ -5,9 +5,9 @@ use std::net::TcpStream;
 use std::time::Duration;
 
 use farm_tests::assert_contains;
-use farm_tests::fake_worker::FakeWorker;
+use farm_tests::fake_worker::{FakeWorker, evaluated};
 use farm_tests::http::Response;
-use farm_tests::job::Job;
+use farm_tests::job::{FIT_RUNS, Job};
 use farm_tests::programs;
 use farm_tests::service::Service;
 use farm_tests::workspace::{root, text};
@@ -65,6 +65,9 @@ fn what_a_worker_says_has_a_length_and_what_it_wants_a_number() {
 
     service.submit(&Job::small().sampler(12_000, [2, 4], 1));
     let greedy = FakeWorker::new(&service.client, "greedy");
+    let first = greedy.take(u32::MAX);
+    assert_eq!(first.len(), 64, "it has answered nothing yet");
+    greedy.answer(&first[..1], |lease| evaluated(lease, FIT_RUNS));
     let leases = greedy.take(u32::MAX);
     assert_eq!(leases.len(), 10_000);
     let long = |_: &Value| json!({"fault": {"message": "x".repeat(10_001)}});

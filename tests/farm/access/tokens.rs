@@ -4,13 +4,14 @@ use std::io::{BufRead, BufReader, Read, Write};
 use std::net::TcpStream;
 
 use farm_tests::assert_contains;
-use farm_tests::fake_worker::FakeWorker;
+use farm_tests::fake_worker::{FakeWorker, evaluated, result};
 use farm_tests::http::Client;
-use farm_tests::job::Job;
+use farm_tests::job::{FIT_RUNS, Job};
 use farm_tests::process::Process;
 use farm_tests::programs;
 use farm_tests::service::{Service, free_address};
 use farm_tests::wait::{until, until_true};
+use serde_json::{Value, json};
 
 /// Makes a token by the command line.
 fn add(service: &Service, name: &str, role: &str) -> String {
@@ -182,6 +183,53 @@ fn a_revoked_token_ends_the_streams_and_polls_that_it_began() {
     assert_eq!(answer.status, 401, "{}", answer.body);
     assert_contains!(answer.body, "unknown or revoked");
     until_true("the end of the stream", || events.is_finished());
+}
+
+#[test]
+fn a_worker_of_another_token_touches_no_lease_of_one_with_the_same_name() {
+    let service = Service::start(&[]);
+    let client = &service.client;
+    service.submit(&Job::small());
+    let [lab, other, read] =
+        [("lab", "work"), ("other", "work"), ("read", "read")].map(|(name, role)| add(&service, name, role));
+    until_true("a token asked for", || {
+        status(client, "GET", "/v1/calibrations", None) == 401
+    });
+    let worker = FakeWorker::new(client, "host-7");
+    let exchange = |token: &str, change: &dyn Fn(&mut Value)| -> Value {
+        let mut request = worker.request();
+        change(&mut request);
+        let bearer = format!("Bearer {token}");
+        let head = [
+            ("Content-Type", "application/json"),
+            ("Authorization", bearer.as_str()),
+        ];
+        let body = request.to_string();
+        let answer = client.exchange("POST", "/v1/work/exchange", &head, Some(body.as_bytes()));
+        answer.expect("an answer").json()
+    };
+    let leases = exchange(&lab, &|request| request["want"] = 3.into())["leases"].clone();
+    let leases = leases.as_array().expect("leases");
+    assert_eq!(leases.len(), 3);
+    // It has received nothing, returns them and answers one.
+    let refused = exchange(&other, &|request| {
+        request["received"] = 0.into();
+        request["returned"] = leases.iter().map(|lease| lease["lease"].clone()).collect();
+        request["results"] = json!([result(&leases[0], evaluated(&leases[0], FIT_RUNS))]);
+    });
+    assert_eq!(refused["duplicates"], 1, "{refused}");
+    let bearer = format!("Bearer {read}");
+    let head = [("Authorization", bearer.as_str())];
+    let workers = client
+        .exchange("GET", "/v1/workers", &head, None)
+        .expect("an answer")
+        .json();
+    assert_eq!(workers["lab/host-7"]["holds"], 3, "{workers}");
+    assert_eq!(workers["other/host-7"]["completed"], 0, "{workers}");
+    let taken = exchange(&lab, &|request| {
+        request["results"] = json!([result(&leases[0], evaluated(&leases[0], FIT_RUNS))]);
+    });
+    assert_eq!(taken["duplicates"], 0, "{taken}");
 }
 
 #[test]

@@ -4,6 +4,7 @@ mod circle;
 mod citation;
 mod import;
 mod script;
+mod supply;
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};

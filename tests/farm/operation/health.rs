@@ -16,7 +16,9 @@ fn health_is_answered_in_the_middle_of_a_long_step_of_the_farm() {
         health["farm_step_s"].as_f64().unwrap_or_default()
     };
     let outcome = |lease: &_| evaluated(lease, FIT_RUNS);
-    worker.answer(&worker.take(10_000), outcome);
+    // A worker that has answered nothing gets few leases.
+    worker.answer(&worker.take(1), outcome);
+    worker.answer(&worker.take(9_999), outcome);
     let last = worker.take(10_000);
     assert_eq!(last.len(), 10_000);
     // The exchange is answered after the sampler has proposed the next round.
@@ -34,4 +36,15 @@ fn health_is_answered_in_the_middle_of_a_long_step_of_the_farm() {
         });
     });
     until_true("rest", || step_s() < 0.1);
+}
+
+#[test]
+fn polls_that_a_stop_ends_are_no_errors() {
+    let mut service = Service::start(&[]);
+    let worker = service.worker("idle", 1);
+    until_true("a parked poll", || service.only_worker().is_some());
+    assert!(service.terminate());
+    let log = service.log();
+    assert!(!log.contains("internal error"), "{log}");
+    drop(worker);
 }

@@ -43,9 +43,9 @@ use search::{DiscoveryError, SearchModels};
 
 pub use engine::{BeginError, CalibrationEngine, CalibrationResult};
 pub use question::Question;
-pub use second_answer::{Answer, SecondAnswers, Verdict};
+pub use second_answer::{Answer, SecondAnswers, Undecided, Verdict};
 pub use simulation_result::{ResultError, SimulationResult};
-pub use verification::Verification;
+pub use verification::{Verification, VerificationRule};
 pub use witness::Witness;
 
 /// The largest number of effects that a search looks for together.
@@ -158,21 +158,21 @@ impl Calibration {
         Ok(calibration)
     }
 
-    /// Makes the calibration compare a share of its answers with those of a second worker.
+    /// Makes the calibration compare some of its answers with those of a second worker.
     ///
     /// An external model may give two answers on honest machines. Its workers evaluate it twice themselves, so its answers are not compared
     /// here.
     ///
     /// # Arguments
-    /// - `share`: the share of the evaluations that a second worker computes as well, in [0, 1].
+    /// - `rule`: which of the evaluations a second worker computes as well, and who counts as another worker.
     /// - `key`: the key of the calibration, which determines the verified evaluations.
     #[must_use]
-    pub fn verified(mut self, share: f64, key: SealKey) -> Self {
-        let share = match &self.spec.model.external {
-            None => share,
-            Some(_) => 0.0,
-        };
-        self.witness.verification = Verification { share, key };
+    pub fn verified(mut self, rule: &VerificationRule, key: SealKey) -> Self {
+        let mut rule = rule.clone();
+        if self.spec.model.external.is_some() {
+            rule.share = 0.0;
+        }
+        self.witness.verification = Verification { rule, key };
         self
     }
 

@@ -51,6 +51,7 @@ impl Calibration {
         self.model_version = stored.model_version;
         self.cost.busy_ms = stored.busy_ms;
         self.witness.is_rewound = stored.is_rewound;
+        self.witness.is_doubted = stored.is_doubted;
         self.failed = stored.failed;
         self.ask();
         let mut facts = Vec::new();
@@ -58,7 +59,7 @@ impl Calibration {
             let (round, phase) = (self.engine.round(), discriminant(&self.phase));
             for evaluation in self.queue.asked() {
                 if let Some(row) = stored.evaluations.get(&evaluation) {
-                    self.tell_again(row, stored.confirmed.contains(&evaluation), &mut facts)?;
+                    self.tell_again(row, stored.confirmed.get(&evaluation), &mut facts)?;
                 }
             }
             let has_moved = self.engine.round() != round || discriminant(&self.phase) != phase;
@@ -80,7 +81,7 @@ impl Calibration {
     fn tell_again(
         &mut self,
         row: &EvaluationRow,
-        is_confirmed: bool,
+        confirmed_by: Option<&String>,
         facts: &mut Vec<Fact>,
     ) -> Result<(), ReplayError> {
         let evaluation = row.evaluation;
@@ -98,7 +99,7 @@ impl Calibration {
             fingerprint: row.fingerprint,
         };
         self.queue.complete(evaluation);
-        self.answered_before(answer, evaluation, is_confirmed);
+        self.answered_before(answer, evaluation, confirmed_by);
         self.advance(row, facts);
         Ok(())
     }

@@ -1,8 +1,8 @@
 //! Evaluations that a second worker computes as well: to compare the answers, or because the first worker is slow.
 //!
 //! A question is kept with all data of its lease, because its round may be over before the second answer arrives. Two equal answers of
-//! different workers settle an evaluation, and workers with other answers compute wrongly. While all answers differ, another worker is
-//! asked.
+//! different workers settle an evaluation. Where answers differ, further workers are asked until no other answer can get as many votes
+//! any more; workers with other answers compute wrongly.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -11,10 +11,13 @@ use shared::model::ModelVariant;
 
 use super::question::Question;
 use crate::lease::{LeaseQueue, SlowLease};
+use crate::voting::Voting;
 
 /// The largest number of evaluations that wait for a second answer. Beyond it none is verified: with a single worker, they would accumulate
 /// without end.
-const MAX_WAITING: usize = 1_000;
+const MAX_WAITING: usize = 20_000;
+/// The largest number of answers to a disputed evaluation.
+const MAX_ANSWERS: usize = 15;
 
 /// A worker's answer.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -30,19 +33,34 @@ pub struct Answer {
 pub enum Verdict {
     /// The evaluation is not compared.
     NotAsked,
-    /// All answers so far are equal, but fewer than two workers have answered.
+    /// All answers so far are equal.
     Open,
-    /// Answers differ, and no two are equal.
+    /// Answers differ.
     Differ,
-    /// Two workers agree.
-    Agreed {
-        /// The worker that answered first; its answer is stored.
-        first: String,
-        /// The workers with other answers.
-        wrong: Vec<String>,
-    },
     /// A worker has given two different answers.
     Contradiction,
+}
+
+/// A settled comparison.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Settled {
+    /// Number of the evaluation.
+    pub evaluation: u64,
+    /// The worker of the stored answer, which came first, if that is right.
+    pub first: Option<String>,
+    /// Another worker with the right answer, if there is one.
+    pub confirmed_by: Option<String>,
+    /// The workers with other answers than the right one.
+    pub wrong: Vec<String>,
+}
+
+/// The workers that may still answer a compared evaluation.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Undecided {
+    /// The number of voters.
+    pub voters: usize,
+    /// Whether one of them is trusted.
+    pub has_trusted: bool,
 }
 
 #[derive(Debug)]
@@ -51,7 +69,36 @@ struct Repeated {
     theta: Vec<f64>,
     /// Whether answers are compared; otherwise the first one is enough.
     is_compared: bool,
+    /// The answer that is stored.
+    first: Option<Answer>,
     answers: Vec<Answer>,
+}
+
+impl Repeated {
+    /// Returns the right answer, once no other one can get as many votes.
+    fn right(&self, voting: &Voting, undecided: Undecided) -> Option<Fingerprint> {
+        let trusted = self.answers.iter().find(|answer| voting.trusts(&answer.worker));
+        if let Some(trusted) = trusted.filter(|_| self.answers.len() > 1) {
+            return Some(trusted.fingerprint);
+        }
+        let mut votes: BTreeMap<i64, usize> = BTreeMap::new();
+        for answer in &self.answers {
+            *votes.entry(answer.fingerprint.0).or_default() += 1;
+        }
+        let (&right, &most) = votes.iter().max_by_key(|(_, count)| **count)?;
+        let others = votes.iter().filter(|(fingerprint, _)| **fingerprint != right);
+        let stands = match others.map(|(_, count)| *count).max() {
+            None => most >= 2,
+            Some(_) if undecided.has_trusted => false,
+            Some(next) => {
+                let to_come = undecided
+                    .voters
+                    .min(MAX_ANSWERS.saturating_sub(self.answers.len()));
+                most >= 2 && most > next + to_come
+            }
+        };
+        stands.then_some(Fingerprint(right))
+    }
 }
 
 /// The evaluations of a calibration that a second worker is asked for.
@@ -62,6 +109,8 @@ pub struct SecondAnswers {
     repeated: BTreeMap<u64, Repeated>,
     /// The evaluations for which one answer is enough, each with the slow lease beside which it is leased.
     uncompared: BTreeMap<u64, u64>,
+    /// The evaluations with several answers.
+    comparable: BTreeSet<u64>,
     /// The variants of these evaluations, which the calibration may drop.
     variants: BTreeMap<String, ModelVariant>,
 }
@@ -104,6 +153,7 @@ impl SecondAnswers {
             variant: question.variant.to_owned(),
             theta: question.theta.to_vec(),
             is_compared,
+            first: None,
             answers: Vec::new(),
         };
         self.repeated.insert(evaluation, repeated);
@@ -132,7 +182,7 @@ impl SecondAnswers {
     }
 
     /// Takes an answer and compares it with the earlier ones.
-    pub fn answered(&mut self, evaluation: u64, answer: Answer) -> Verdict {
+    pub fn answered(&mut self, evaluation: u64, answer: Answer, voting: &Voting) -> Verdict {
         let Some(repeated) = self.repeated.get_mut(&evaluation) else {
             return Verdict::NotAsked;
         };
@@ -140,35 +190,70 @@ impl SecondAnswers {
             self.drop(evaluation);
             return Verdict::NotAsked;
         }
-        if let Some(before) = repeated.answers.iter().find(|a| a.worker == answer.worker) {
+        let voter = voting.voter(&answer.worker).to_owned();
+        let is_same_voter = |before: &&Answer| voting.voter(&before.worker) == voter;
+        if let Some(before) = repeated.answers.iter().find(is_same_voter) {
             return match before.fingerprint == answer.fingerprint {
                 true => Verdict::Open,
                 false => Verdict::Contradiction,
             };
         }
-        self.queue.bar(evaluation, &answer.worker);
-        let fingerprint = answer.fingerprint;
-        repeated.answers.push(answer);
-        let (same, other): (Vec<&Answer>, Vec<&Answer>) = repeated
+        self.queue
+            .bar(evaluation, &voter, |worker| voting.voter(worker) == voter);
+        repeated.first.get_or_insert_with(|| answer.clone());
+        let is_equal = repeated
             .answers
             .iter()
-            .partition(|a| a.fingerprint == fingerprint);
-        if same.len() >= 2 {
-            let wrong = other.iter().map(|a| a.worker.clone()).collect();
-            let first = repeated.answers[0].worker.clone();
-            self.drop(evaluation);
-            return Verdict::Agreed { first, wrong };
+            .all(|before| before.fingerprint == answer.fingerprint);
+        repeated.answers.push(answer);
+        if repeated.answers.len() > 1 {
+            self.comparable.insert(evaluation);
         }
-        match other.is_empty() {
+        match is_equal {
             true => Verdict::Open,
             false => Verdict::Differ,
         }
+    }
+
+    /// Returns whether an evaluation has several answers, and is not settled.
+    pub fn has_comparable(&self) -> bool {
+        !self.comparable.is_empty()
+    }
+
+    /// Settles the evaluations with answers that nobody can outvote any more.
+    ///
+    /// `undecided` returns the workers that may still answer an evaluation with some answers.
+    pub fn settle(
+        &mut self,
+        voting: &Voting,
+        undecided: impl Fn(u64, &[Answer]) -> Undecided,
+    ) -> Vec<Settled> {
+        let settled = |&evaluation: &u64| {
+            let repeated = self.repeated.get(&evaluation)?;
+            let right = repeated.right(voting, undecided(evaluation, &repeated.answers))?;
+            let first = repeated.first.clone()?;
+            let is_right = |answer: &&Answer| answer.fingerprint == right;
+            let (same, other): (Vec<&Answer>, Vec<&Answer>) = repeated.answers.iter().partition(is_right);
+            let confirmed_by = same.into_iter().find(|answer| answer.worker != first.worker);
+            Some(Settled {
+                evaluation,
+                confirmed_by: confirmed_by.map(|answer| answer.worker.clone()),
+                wrong: other.into_iter().map(|answer| answer.worker.clone()).collect(),
+                first: (first.fingerprint == right).then_some(first.worker),
+            })
+        };
+        let settled: Vec<Settled> = self.comparable.iter().filter_map(settled).collect();
+        for settled in &settled {
+            self.drop(settled.evaluation);
+        }
+        settled
     }
 
     /// Stops asking for an evaluation.
     pub fn drop(&mut self, evaluation: u64) {
         self.repeated.remove(&evaluation);
         self.uncompared.remove(&evaluation);
+        self.comparable.remove(&evaluation);
         self.queue.remove(evaluation);
         if self.repeated.is_empty() {
             self.variants.clear();
@@ -190,12 +275,15 @@ impl SecondAnswers {
         }
     }
 
-    /// Drops all answers of a worker that computes wrongly, and its leases.
-    pub fn forget(&mut self, worker: &str) {
-        for repeated in self.repeated.values_mut() {
-            repeated.answers.retain(|answer| answer.worker != worker);
+    /// Drops all answers of workers that compute wrongly, and their leases.
+    pub fn forget(&mut self, is_wrong: impl Fn(&str) -> bool) {
+        for (evaluation, repeated) in &mut self.repeated {
+            repeated.answers.retain(|answer| !is_wrong(&answer.worker));
+            if repeated.answers.len() < 2 {
+                self.comparable.remove(evaluation);
+            }
         }
-        self.queue.take_back_of(|name| name == worker);
+        self.queue.take_back_of(is_wrong);
     }
 
     /// Ends expired leases. Returns their number. An evaluation that failed repeatedly is dropped, because the second answer is not
@@ -213,16 +301,15 @@ impl SecondAnswers {
         expired.unstarted + expired.failures.len() as u64
     }
 
-    /// Drops evaluations that no worker can answer, and those whose lease has been out for `hung_ms`.
+    /// Returns the evaluations whose lease has been out for `hung_ms`.
+    pub fn hung(&self, hung_ms: u64, now_ms: u64) -> BTreeSet<u64> {
+        self.queue.older_than(hung_ms, now_ms).map(|(e, _)| e).collect()
+    }
+
+    /// Drops evaluations that no worker can answer, and hung ones.
     ///
     /// `can_answer` states whether there is a worker besides those that have answered. Returns their number.
-    pub fn drop_hopeless(
-        &mut self,
-        can_answer: impl Fn(&[Answer]) -> bool,
-        hung_ms: u64,
-        now_ms: u64,
-    ) -> u64 {
-        let hung: BTreeSet<u64> = self.queue.older_than(hung_ms, now_ms).map(|(e, _)| e).collect();
+    pub fn drop_hopeless(&mut self, can_answer: impl Fn(&[Answer]) -> bool, hung: &BTreeSet<u64>) -> u64 {
         let is_hopeless = |(&evaluation, repeated): (&u64, &Repeated)| {
             let is_out = self.queue.is_leased(evaluation) && !hung.contains(&evaluation);
             (!is_out && (hung.contains(&evaluation) || !can_answer(&repeated.answers))).then_some(evaluation)
@@ -258,29 +345,103 @@ mod tests {
 
     fn answer(second: &mut SecondAnswers, worker: &str, fingerprint: i64) -> Verdict {
         let (worker, fingerprint) = (worker.to_owned(), Fingerprint(fingerprint));
-        second.answered(3, Answer { worker, fingerprint })
+        second.answered(3, Answer { worker, fingerprint }, &Voting::default())
     }
 
-    fn agreed(first: &str, wrong: &[&str]) -> Verdict {
-        Verdict::Agreed {
-            first: first.to_owned(),
-            wrong: wrong.iter().map(|w| (*w).to_owned()).collect(),
-        }
+    /// Settles what can be settled where some voters have not answered. Returns the right first worker, who confirmed it, and who is wrong.
+    fn settle(
+        second: &mut SecondAnswers,
+        voting: &Voting,
+        voters: usize,
+    ) -> Option<(Option<String>, Option<String>, Vec<String>)> {
+        let undecided = Undecided {
+            voters,
+            has_trusted: false,
+        };
+        let settled = second.settle(voting, |_, _| undecided).pop()?;
+        Some((settled.first, settled.confirmed_by, settled.wrong))
+    }
+
+    fn names(names: &[&str]) -> Vec<String> {
+        names.iter().map(|&name| name.to_owned()).collect()
     }
 
     #[test]
-    fn two_equal_answers_settle_and_a_third_finds_who_is_wrong() {
+    fn two_equal_answers_settle_and_of_different_ones_that_which_cannot_be_outvoted() {
+        let voting = Voting::default();
         let mut second = repeated_evaluation(true);
         assert_eq!(answer(&mut second, "a", 1), Verdict::Open);
         assert_eq!(answer(&mut second, "a", 1), Verdict::Open, "said twice");
-        assert_eq!(answer(&mut second, "b", 1), agreed("a", &[]));
+        assert_eq!(settle(&mut second, &voting, 5), None);
+        assert_eq!(answer(&mut second, "b", 1), Verdict::Open);
+        let confirmed = (Some("a".into()), Some("b".into()), Vec::new());
+        assert_eq!(settle(&mut second, &voting, 5), Some(confirmed));
         assert_eq!(answer(&mut second, "c", 1), Verdict::NotAsked);
 
         let mut second = repeated_evaluation(true);
         answer(&mut second, "liar", 9);
         assert_eq!(answer(&mut second, "a", 1), Verdict::Differ);
         assert_eq!(answer(&mut second, "fool", 8), Verdict::Differ);
-        assert_eq!(answer(&mut second, "b", 1), agreed("liar", &["liar", "fool"]));
+        assert_eq!(answer(&mut second, "b", 1), Verdict::Differ);
+        assert_eq!(
+            settle(&mut second, &voting, 1),
+            None,
+            "the last may agree with the liar"
+        );
+        let found = (None, Some("a".into()), names(&["liar", "fool"]));
+        assert_eq!(settle(&mut second, &voting, 0), Some(found));
+    }
+
+    #[test]
+    fn liars_that_answer_alike_do_not_convict_an_honest_worker_where_they_are_a_minority() {
+        let mut second = repeated_evaluation(true);
+        let answers = [
+            ("a", 1),
+            ("liar-1", 9),
+            ("liar-2", 9),
+            ("liar-3", 9),
+            ("b", 1),
+            ("c", 1),
+        ];
+        for (k, (worker, fingerprint)) in answers.into_iter().enumerate() {
+            answer(&mut second, worker, fingerprint);
+            assert_eq!(settle(&mut second, &Voting::default(), 6 - k), None, "{worker}");
+        }
+        answer(&mut second, "d", 1);
+        let liars = names(&["liar-1", "liar-2", "liar-3"]);
+        let found = (Some("a".into()), Some("b".into()), liars);
+        assert_eq!(settle(&mut second, &Voting::default(), 0), Some(found));
+    }
+
+    #[test]
+    fn no_more_than_fifteen_are_asked() {
+        let mut second = repeated_evaluation(true);
+        answer(&mut second, "liar", 9);
+        for k in 0..7 {
+            answer(&mut second, &format!("w{k}"), 1);
+            assert_eq!(settle(&mut second, &Voting::default(), 1_000), None);
+        }
+        answer(&mut second, "w7", 1);
+        assert!(settle(&mut second, &Voting::default(), 1_000).is_some());
+    }
+
+    #[test]
+    fn a_trusted_answer_settles_and_a_token_has_one_vote() {
+        let voting = Voting {
+            is_by_token: true,
+            trusted: ["mine".to_owned()].into(),
+        };
+        let mut second = repeated_evaluation(true);
+        let mut answer = |worker: &str, fingerprint: i64| {
+            let (worker, fingerprint) = (worker.to_owned(), Fingerprint(fingerprint));
+            second.answered(3, Answer { worker, fingerprint }, &voting)
+        };
+        assert_eq!(answer("lab/1", 9), Verdict::Open);
+        assert_eq!(answer("lab/2", 9), Verdict::Open, "no second vote");
+        assert_eq!(answer("lab/3", 8), Verdict::Contradiction);
+        assert_eq!(answer("mine/1", 1), Verdict::Differ);
+        let found = (None, Some("mine/1".into()), names(&["lab/1"]));
+        assert_eq!(settle(&mut second, &voting, 1_000), Some(found));
     }
 
     #[test]
@@ -288,7 +449,7 @@ mod tests {
         let mut second = repeated_evaluation(true);
         answer(&mut second, "a", 1);
         assert_eq!(answer(&mut second, "a", 2), Verdict::Contradiction);
-        second.forget("a");
+        second.forget(|worker| worker == "a");
         assert_eq!(
             answer(&mut second, "b", 1),
             Verdict::Open,
@@ -320,8 +481,9 @@ mod tests {
         let has_other = |names: &'static [&'static str]| {
             move |answers: &[Answer]| names.iter().any(|n| !answers.iter().any(|a| a.worker == *n))
         };
-        assert_eq!(second.drop_hopeless(has_other(&["a", "b"]), 50, 0), 0);
-        assert_eq!(second.drop_hopeless(has_other(&["a"]), 50, 0), 1);
+        let none = BTreeSet::new();
+        assert_eq!(second.drop_hopeless(has_other(&["a", "b"]), &none), 0);
+        assert_eq!(second.drop_hopeless(has_other(&["a"]), &none), 1);
         assert_eq!(second.waiting(), 0);
     }
 
@@ -336,6 +498,7 @@ mod tests {
         answer(&mut second, "quick", 1);
         let claimant = |worker| crate::lease::Claimant {
             worker,
+            voter: worker,
             holds: 0,
             now_ms: 0,
             expires_ms: 9,
@@ -348,12 +511,14 @@ mod tests {
         );
         assert_eq!(second.queue.claim(claimant("slow"), 1, |_| true, || 2).len(), 1);
         // It hangs: at the end nobody waits for it.
-        assert_eq!(second.drop_hopeless(|_| true, 50, 49), 0);
-        assert_eq!(second.drop_hopeless(|_| true, 50, 50), 1);
+        let hung = second.hung(50, 49);
+        assert_eq!(second.drop_hopeless(|_| true, &hung), 0);
+        let hung = second.hung(50, 50);
+        assert_eq!(second.drop_hopeless(|_| true, &hung), 1);
     }
 
     #[test]
-    fn no_more_than_a_thousand_wait() {
+    fn no_more_than_a_bound_wait() {
         let mut second = SecondAnswers::default();
         for evaluation in 0..2 * MAX_WAITING as u64 {
             let question = Question {

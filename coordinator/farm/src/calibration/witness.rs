@@ -4,14 +4,14 @@ use std::collections::BTreeMap;
 
 use record::Fact;
 
-use super::second_answer::{Answer, SecondAnswers, Verdict};
+use super::second_answer::{Answer, SecondAnswers, Undecided, Verdict};
 use super::verification::Verification;
 
 /// The worker of an evaluation that was given up.
 pub(super) const NOBODY: &str = "";
 
 /// The record of answers by worker.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct Witness {
     /// The choice of evaluations that a second worker computes as well.
     pub verification: Verification,
@@ -19,10 +19,12 @@ pub struct Witness {
     pub second: SecondAnswers,
     /// Whether results were dropped, so that numbers of evaluations stood for other questions before.
     pub is_rewound: bool,
+    /// Whether a worker that computed or confirmed results of this calibration computes wrongly. Then everything is verified.
+    pub is_doubted: bool,
     /// The stored answers of the present round.
     round: BTreeMap<u64, StoredAnswer>,
-    /// The number of unconfirmed stored answers, by worker.
-    unconfirmed: BTreeMap<String, u64>,
+    /// The number of stored answers, by worker and by the worker that has confirmed them, [`NOBODY`] where none has.
+    stored: BTreeMap<String, BTreeMap<String, u64>>,
     /// Workers found to compute wrongly since the last call of [`Witness::take_convicted`], each with the evaluation that shows it.
     convicted: Vec<(String, u64)>,
 }
@@ -31,21 +33,8 @@ pub struct Witness {
 #[derive(Debug, Clone, PartialEq, Eq)]
 struct StoredAnswer {
     answer: Answer,
-    /// Whether another worker has given the same answer.
-    is_confirmed: bool,
-}
-
-impl Default for Witness {
-    fn default() -> Self {
-        Witness {
-            verification: Verification::OFF,
-            second: SecondAnswers::default(),
-            is_rewound: false,
-            round: BTreeMap::new(),
-            unconfirmed: BTreeMap::new(),
-            convicted: Vec::new(),
-        }
-    }
+    /// The worker that has given the same answer.
+    confirmed_by: Option<String>,
 }
 
 impl Witness {
@@ -75,48 +64,78 @@ impl Witness {
         self.round.keys().copied().collect()
     }
 
-    /// Records the stored answer of an evaluation.
-    pub(super) fn store(&mut self, evaluation: u64, answer: Answer, is_confirmed: bool) {
-        let stored = StoredAnswer { answer, is_confirmed };
+    /// Returns whether another worker is asked for an evaluation that a worker has answered. An answer of a trusted worker settles it.
+    pub(super) fn verifies(&self, evaluation: u64, worker: &str) -> bool {
+        let is_chosen = self.verification.is_on() && self.is_doubted || self.verification.selects(evaluation);
+        is_chosen && !self.verification.rule.voting.trusts(worker)
+    }
+
+    /// Records the stored answer of an evaluation, and who has confirmed it.
+    pub(super) fn store(&mut self, evaluation: u64, answer: Answer, confirmed_by: Option<String>) {
+        if answer.worker != NOBODY {
+            let by = confirmed_by.as_deref().unwrap_or(NOBODY);
+            *self.count(&answer.worker, by) += 1;
+        }
+        let stored = StoredAnswer { answer, confirmed_by };
         self.round.insert(evaluation, stored);
     }
 
-    /// Returns the stored answer that an unrequested answer should be compared with. The comparison confirms the stored answer, or starts a
-    /// dispute that other workers settle.
-    pub(super) fn disputed(&self, evaluation: u64, answer: &Answer) -> Option<Answer> {
-        let stored = self.round.get(&evaluation).map(|stored| &stored.answer);
-        let stored = stored.filter(|stored| stored.worker != NOBODY && *stored != answer)?;
-        let is_open = !self.second.contains(evaluation) && !self.round[&evaluation].is_confirmed;
-        (self.verification.is_on() && is_open).then(|| stored.clone())
+    /// Returns the number of stored answers of a worker that another one has confirmed.
+    fn count(&mut self, worker: &str, confirmed_by: &str) -> &mut u64 {
+        if !self.stored.contains_key(worker) {
+            self.stored.insert(worker.to_owned(), BTreeMap::new());
+        }
+        let of_worker = self.stored.get_mut(worker).expect("it has just been inserted");
+        if !of_worker.contains_key(confirmed_by) {
+            of_worker.insert(confirmed_by.to_owned(), 0);
+        }
+        of_worker
+            .get_mut(confirmed_by)
+            .expect("it has just been inserted")
+    }
+
+    /// Takes an answer that was not asked for. Returns the stored answers of the present round that it is to be compared with: if it
+    /// confirms the stored answer, or if other workers have to settle which is right.
+    pub(super) fn disputed(&self, evaluation: u64, answer: &Answer) -> Vec<Answer> {
+        let stored = self.round.get(&evaluation);
+        let Some(stored) = stored.filter(|stored| stored.answer.worker != NOBODY && stored.answer != *answer)
+        else {
+            return Vec::new();
+        };
+        let is_same = stored.answer.fingerprint == answer.fingerprint;
+        let is_settled = is_same && stored.confirmed_by.is_some();
+        if !self.verification.is_on() || is_settled || self.second.contains(evaluation) {
+            return Vec::new();
+        }
+        let confirmed = stored.confirmed_by.iter().map(|worker| Answer {
+            worker: worker.clone(),
+            fingerprint: stored.answer.fingerprint,
+        });
+        std::iter::once(stored.answer.clone()).chain(confirmed).collect()
     }
 
     /// Takes a further answer to an evaluation. Returns the facts to store.
     pub(super) fn compare(&mut self, calibration: i64, evaluation: u64, answer: Answer) -> Vec<Fact> {
-        let (worker, fingerprint) = (answer.worker.clone(), answer.fingerprint);
+        let worker = answer.worker.clone();
         let duplicate = Fact::Duplicate {
             calibration,
             evaluation,
-            fingerprint,
+            fingerprint: answer.fingerprint,
             worker: worker.clone(),
         };
         if !self.verification.is_on() {
             return vec![duplicate];
         }
         let is_repeated = self.second.contains(evaluation);
-        if let Some(stored) = self.round.get(&evaluation).filter(|_| !is_repeated)
-            && stored.answer.worker != NOBODY
+        let stored = self.round.get(&evaluation).map(|stored| &stored.answer);
+        if let Some(stored) = stored.filter(|stored| !is_repeated && stored.worker != NOBODY)
+            && stored.fingerprint == answer.fingerprint
         {
-            let is_same = stored.answer.fingerprint == fingerprint;
-            if is_same && (stored.is_confirmed || stored.answer.worker == worker) {
-                return Vec::new();
-            }
-            if stored.is_confirmed {
-                self.convicted.push((worker, evaluation));
-                return vec![duplicate];
-            }
+            return Vec::new();
         }
         let is_known = is_repeated || self.is_answered(evaluation);
-        match self.second.answered(evaluation, answer) {
+        let voting = &self.verification.rule.voting;
+        match self.second.answered(evaluation, answer, voting) {
             // After a rewind, the number may have stood for another question before.
             Verdict::NotAsked if self.is_rewound && !is_known => Vec::new(),
             Verdict::NotAsked | Verdict::Differ => vec![duplicate],
@@ -125,35 +144,49 @@ impl Witness {
                 self.convicted.push((worker, evaluation));
                 vec![duplicate]
             }
-            Verdict::Agreed { wrong, first } => {
-                let convicted = wrong.iter().map(|name| (name.clone(), evaluation));
-                self.convicted.extend(convicted);
-                if wrong.contains(&first) {
-                    return vec![duplicate];
-                }
-                self.confirm(evaluation, &first);
-                vec![Fact::Confirmed {
+        }
+    }
+
+    /// Settles comparisons. Returns the facts to store.
+    ///
+    /// `undecided` returns the workers that may still answer an evaluation with some answers.
+    pub(super) fn settle(
+        &mut self,
+        calibration: i64,
+        undecided: impl Fn(u64, &[Answer]) -> Undecided,
+    ) -> Vec<Fact> {
+        let mut facts = Vec::new();
+        let voting = self.verification.rule.voting.clone();
+        for settled in self.second.settle(&voting, undecided) {
+            let evaluation = settled.evaluation;
+            let wrong = settled.wrong.into_iter();
+            self.convicted.extend(wrong.map(|worker| (worker, evaluation)));
+            if let (Some(first), Some(worker)) = (settled.first, settled.confirmed_by)
+                && self.confirm(evaluation, &first, &worker)
+            {
+                facts.push(Fact::Confirmed {
                     calibration,
                     evaluation,
                     worker,
-                }]
+                });
             }
         }
+        facts
     }
 
-    /// Counts an unconfirmed answer of a worker.
-    pub(super) fn count_unconfirmed(&mut self, worker: &str) {
-        *self.unconfirmed.entry(worker.to_owned()).or_default() += 1;
-    }
-
-    /// Records that another worker has given the same answer as the first one.
-    fn confirm(&mut self, evaluation: u64, first: &str) {
+    /// Records that another worker has given the same answer as the first one. Returns whether it is the first to do so.
+    fn confirm(&mut self, evaluation: u64, first: &str, by: &str) -> bool {
         if let Some(stored) = self.round.get_mut(&evaluation) {
-            stored.is_confirmed = true;
+            if stored.confirmed_by.is_some() {
+                return false;
+            }
+            stored.confirmed_by = Some(by.to_owned());
         }
-        if let Some(count) = self.unconfirmed.get_mut(first) {
-            *count -= 1;
-        }
+        let unconfirmed = self.count(first, NOBODY);
+        let is_first = *unconfirmed > 0;
+        *unconfirmed -= u64::from(is_first);
+        *self.count(first, by) += u64::from(is_first);
+        is_first
     }
 
     /// Returns the workers found to compute wrongly since the last call, each with the evaluation that shows it.
@@ -161,8 +194,11 @@ impl Witness {
         std::mem::take(&mut self.convicted)
     }
 
-    /// Returns whether a worker has unconfirmed stored answers.
-    pub fn rests_on(&self, worker: &str) -> bool {
-        self.unconfirmed.get(worker).is_some_and(|&count| count > 0)
+    /// Returns whether workers that satisfy a condition have computed or confirmed stored answers.
+    pub fn involves(&self, is_one: impl Fn(&str) -> bool) -> bool {
+        self.stored.iter().any(|(worker, by)| {
+            let mut by = by.iter().filter(|(_, count)| **count > 0);
+            by.any(|(confirmed_by, _)| is_one(worker) || is_one(confirmed_by))
+        })
     }
 }

@@ -35,6 +35,8 @@ pub struct LeaseFailure {
 pub struct Claimant<'a> {
     /// Name of the worker.
     pub worker: &'a str,
+    /// The identity that the worker counts as in comparisons of answers.
+    pub voter: &'a str,
     /// The number of leases that the worker holds, of any calibration.
     pub holds: usize,
     /// The present time `[ms]`.

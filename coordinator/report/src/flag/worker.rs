@@ -37,7 +37,7 @@ pub(super) fn quarantined(calibration: &FinishedCalibration) -> Vec<Flag> {
     let results = |n: u64| number::count(usize::try_from(n).unwrap_or(usize::MAX), "result");
     let resting = calibration.verified.resting_on.iter().map(|(worker, &n)| {
         format!(
-            "{} of worker {worker}, which was found to compute wrongly since, count: no number of this calibration can be trusted; repeat it without that machine",
+            "{} of worker {worker}, which was found to compute wrongly since, with what only such workers have confirmed, count: no number of this calibration can be trusted; repeat it without that machine",
             results(n)
         )
     });
@@ -49,12 +49,23 @@ pub(super) fn quarantined(calibration: &FinishedCalibration) -> Vec<Flag> {
                 results(n)
             ),
         };
-        format!("worker {worker} computes wrongly and was quarantined; {what}")
+        format!(
+            "{} wrongly and was quarantined; {what}; from then on every result was compared",
+            who(worker)
+        )
     });
     resting
         .chain(repeated)
         .map(|text| Flag::plain(FlagKind::Worker, text))
         .collect()
+}
+
+/// Names a quarantined worker; a name that ends with a slash is that of all workers of a token.
+fn who(worker: &str) -> String {
+    match worker.strip_suffix('/') {
+        Some(token) => format!("whoever has the token {token} computes"),
+        None => format!("worker {worker} computes"),
+    }
 }
 
 /// Returns a flag if an external model gave different results for the same evaluation.
@@ -137,10 +148,9 @@ mod tests {
             "{texts:?}"
         );
         assert!(
-            texts[1]
-                .ends_with("40 results of it, and what followed from them, were computed again by others")
+            texts[1].contains("40 results of it, and what followed from them, were computed again by others")
         );
-        assert!(texts[2].ends_with("no result rests on it alone"));
+        assert!(texts[2].ends_with("no result rests on it alone; from then on every result was compared"));
     }
 
     #[test]

@@ -22,7 +22,9 @@ const TOO_LITTLE_BYTES: u64 = 100_000_000;
 pub(super) async fn findings(store: &str, listen: SocketAddr) -> Vec<Finding> {
     if is_server(store) {
         let (stored, has_token) = read(store).await;
-        return vec![stored, address(listen, has_token).await];
+        let rows = rows(store, &stored).await;
+        let address = address(listen, has_token).await;
+        return std::iter::once(stored).chain(rows).chain([address]).collect();
     }
     let file = Path::new(file_of(store));
     let folder = match file.parent() {
@@ -30,12 +32,10 @@ pub(super) async fn findings(store: &str, listen: SocketAddr) -> Vec<Finding> {
         _ => Path::new("."),
     };
     let (stored, has_token) = stored(store, file).await;
-    vec![
-        stored,
-        writable(folder),
-        space(folder),
-        address(listen, has_token).await,
-    ]
+    let rows = rows(store, &stored).await;
+    let address = address(listen, has_token).await;
+    let others = [writable(folder), space(folder), address];
+    std::iter::once(stored).chain(rows).chain(others).collect()
 }
 
 /// Reports the content of the store, and whether it has had a token.
@@ -99,6 +99,53 @@ async fn read(store: &str) -> (Finding, bool) {
             (Finding::fail("store", error.to_string(), remedy), false)
         }
     }
+}
+
+/// Reads the whole store, and verifies the checksums of its rows; `None` where there is no store, or where it cannot be read at all.
+async fn rows(store: &str, stored: &Finding) -> Option<Finding> {
+    if stored.is_failure() || (!is_server(store) && !Path::new(file_of(store)).exists()) {
+        return None;
+    }
+    let name = name_of(store);
+    let name = file_of(&name);
+    let read = async {
+        let reader = Reader::open(store).await?;
+        if reader.is_blank().await? {
+            return Ok(Vec::new());
+        }
+        reader.check_pages(store).await?;
+        reader.check_rows().await
+    };
+    let remedy =
+        "put a backup back (coordinator backup makes them), or delete the studies and compute them again";
+    let checks = match read.await {
+        Ok(checks) => checks,
+        Err(error) => return Some(Finding::fail("rows", error.to_string(), remedy)),
+    };
+    let damaged: Vec<String> = checks
+        .iter()
+        .filter(|check| check.damaged > 0)
+        .map(|check| {
+            format!(
+                "{} of table {} ({})",
+                check.damaged,
+                check.table,
+                check.named.join("; ")
+            )
+        })
+        .collect();
+    let checked: u64 = checks.iter().map(|check| check.checked).sum();
+    let unchecked: u64 = checks.iter().map(|check| check.unchecked).sum();
+    if !damaged.is_empty() {
+        let found = format!("{name}: damaged rows: {}", damaged.join(", "));
+        return Some(Finding::fail("rows", found, remedy));
+    }
+    let older = match unchecked {
+        0 => String::new(),
+        n => format!("; {n} of earlier versions have no checksum"),
+    };
+    let seen = format!("{name}: {checked} rows have their checksum{older}");
+    Some(Finding::ok("rows", seen))
 }
 
 /// Writes to the disk as a store does, and measures the time.

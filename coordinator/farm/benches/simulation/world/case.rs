@@ -38,6 +38,8 @@ pub(crate) enum Kind {
     Crowded,
     /// A fit by steps, which uses predicted values.
     Fit,
+    /// Two hundred particles, for tests with several workers that compute wrongly. It is part of no schedule.
+    Large,
 }
 
 /// An evaluation of a job, with its answer.
@@ -85,6 +87,7 @@ impl Kind {
         let sampler = match self {
             Kind::Sample | Kind::Poisoned => "particles = 5\nstages = \"moves\"\nmoves = [1, 2]",
             Kind::Refusing => "particles = 8\nstages = \"moves\"\nmoves = [1, 2]",
+            Kind::Large => "particles = 200\nstages = \"moves\"\nmoves = [2, 4]",
             Kind::Crowded => "particles = 50\nstages = \"moves\"\nmoves = [1, 2]",
             Kind::Fit => "algorithm = \"lm\"\nparticles = 0\nstarts = 2\nmax_evaluations = 30",
         };
@@ -97,12 +100,12 @@ impl Kind {
         match self {
             Kind::Poisoned => Some(POISON[0]),
             Kind::Crowded => Some(POISON[1]),
-            Kind::Sample | Kind::Refusing | Kind::Fit => None,
+            Kind::Sample | Kind::Refusing | Kind::Fit | Kind::Large => None,
         }
     }
 
     /// Evaluates a linear model; the refusing model rejects some parameters.
-    fn evaluate(self, variant: &ModelVariant, theta: &[f64]) -> Outcome {
+    pub(crate) fn evaluate(self, variant: &ModelVariant, theta: &[f64]) -> Outcome {
         let is_steep = variant.conditions.iter().any(|condition| condition.slip > 0.8);
         if self == Kind::Refusing && theta[0] > if is_steep { 1.0 } else { 1.25 } {
             return Outcome::Rejected(ParameterRejection {
@@ -150,9 +153,13 @@ impl Case {
         Kind::SHARES.into_iter().map(of_kind).collect()
     }
 
-    fn new(kind: Kind, seed: u64) -> Result<Case, String> {
+    /// Makes a job of a kind.
+    ///
+    /// # Errors
+    /// The error in the job.
+    pub(crate) fn new(kind: Kind, seed: u64) -> Result<Case, String> {
         let held_out = match kind {
-            Kind::Sample => HELD_OUT.to_owned(),
+            Kind::Sample | Kind::Large => HELD_OUT.to_owned(),
             Kind::Refusing => format!("{HELD_OUT}{STEEP}"),
             Kind::Poisoned | Kind::Crowded | Kind::Fit => String::new(),
         };

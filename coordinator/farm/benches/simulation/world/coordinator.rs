@@ -5,6 +5,7 @@
 
 use std::collections::VecDeque;
 
+use farm::calibration::VerificationRule;
 use farm::{Control, Farm};
 use record::{Fact, SealKey};
 use shared::api::CalibrationState;
@@ -61,8 +62,8 @@ pub(crate) struct Coordinator<'a> {
     pub(crate) ledger: Ledger<'a>,
     pub(crate) witness: Witness<'a>,
     plant: Option<Plant>,
-    /// Share of the evaluations that a second worker computes.
-    verified_share: f64,
+    /// Which evaluations a second worker computes.
+    rule: VerificationRule,
     /// Calibrations to replay, each with the number of facts that must be on disk before.
     rewinds: Vec<(usize, i64)>,
 }
@@ -70,14 +71,14 @@ pub(crate) struct Coordinator<'a> {
 impl<'a> Coordinator<'a> {
     pub(crate) fn new(plant: Option<Plant>, verified_share: f64) -> Self {
         Coordinator {
-            farm: Some(Farm::new(1, LEASE_MS)),
+            farm: Some(Farm::new(1, LEASE_MS).with_rule(VerificationRule::with_share(verified_share))),
             epoch: 1,
             held: Vec::new(),
             parked: VecDeque::new(),
             ledger: Ledger::default(),
             witness: Witness::new(LEASE_MS, verified_share > 0.0),
             plant,
-            verified_share,
+            rule: VerificationRule::with_share(verified_share),
             rewinds: Vec::new(),
         }
     }
@@ -108,7 +109,7 @@ impl<'a> Coordinator<'a> {
         self.ledger.push(Entry::Submitted { id, case, key });
         self.ledger.commit(usize::MAX);
         let calibration = case.begin(id).map_err(|e| Broken::new(Promise::Replay, e))?;
-        let calibration = calibration.verified(self.verified_share, key);
+        let calibration = calibration.verified(&self.rule, key);
         farm.add(calibration, key, Vec::new(), now_ms);
         self.witness.began(id);
         self.take_facts(Source::Restart)
@@ -303,7 +304,8 @@ impl<'a> Coordinator<'a> {
             true => Vec::new(),
             false => self.ledger.quarantine().values().cloned().collect(),
         };
-        self.farm = Some(Farm::new(self.epoch, LEASE_MS).with_quarantine(quarantine));
+        let farm = Farm::new(self.epoch, LEASE_MS).with_rule(self.rule.clone());
+        self.farm = Some(farm.with_quarantine(quarantine));
         let open = self
             .ledger
             .tables()
@@ -323,9 +325,9 @@ impl<'a> Coordinator<'a> {
             None => table.stored(),
         };
         let key = table.key;
-        let share = self.verified_share;
+        let rule = self.rule.clone();
         let replayed = table.case.begin(id).and_then(|calibration| {
-            let mut calibration = calibration.verified(share, key);
+            let mut calibration = calibration.verified(&rule, key);
             let facts = calibration.replay(stored).map_err(|e| e.to_string())?;
             Ok((calibration, facts))
         });

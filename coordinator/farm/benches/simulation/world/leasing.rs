@@ -105,7 +105,8 @@ impl<'a> Witness<'a> {
         )?;
         let row = table.rows.get(&evaluation).map(|(_, row)| row);
         let is_open = |row: &EvaluationRow| {
-            self.verifies && row.worker != request.worker && !table.confirmed.contains(&evaluation)
+            let is_open = !table.confirmed.contains_key(&evaluation) || table.disputes.contains(&evaluation);
+            self.verifies && row.worker != request.worker && is_open
         };
         demand(row.is_none_or(is_open), Promise::NotAgain, || {
             format!("lease {number} is of evaluation {evaluation}, which has its row")

@@ -34,10 +34,13 @@ pub(crate) struct Table<'a> {
     /// The workers of failed attempts since a user granted new ones, by evaluation.
     pub(crate) failed: BTreeMap<u64, Vec<String>>,
     pub(crate) disputes: BTreeSet<u64>,
-    /// Evaluations that a second worker has confirmed.
-    pub(crate) confirmed: BTreeSet<u64>,
+    /// Evaluations that a second worker has confirmed, with that worker.
+    pub(crate) confirmed: BTreeMap<u64, String>,
     /// Whether rows were dropped because their worker computes wrongly. Their results are acknowledged, and are computed again.
     pub(crate) is_rewound: bool,
+    /// Workers that computed or confirmed rows and compute wrongly. Results that arrive during the replay are acknowledged, and are
+    /// computed again.
+    pub(crate) wrong: BTreeSet<String>,
     /// The number of stored stages.
     pub(crate) stages: usize,
     pub(crate) result: Option<CaseResult>,
@@ -66,8 +69,9 @@ impl<'a> Table<'a> {
             rows: BTreeMap::new(),
             failed: BTreeMap::new(),
             disputes: BTreeSet::new(),
-            confirmed: BTreeSet::new(),
+            confirmed: BTreeMap::new(),
             is_rewound: false,
+            wrong: BTreeSet::new(),
             stages: 0,
             result: None,
         }
@@ -103,8 +107,10 @@ impl<'a> Table<'a> {
             Fact::Estimate { estimate, .. } => {
                 self.result = Some(CaseResult::Estimate(format!("{estimate:?}")));
             }
-            Fact::Confirmed { evaluation, .. } => {
-                self.confirmed.insert(*evaluation);
+            Fact::Confirmed {
+                evaluation, worker, ..
+            } => {
+                self.confirmed.insert(*evaluation, worker.clone());
             }
             Fact::Rewound { worker, width, .. } => self.rewind(worker, *width as u64),
             Fact::Discovery { .. } | Fact::Quarantined { .. } => {}
@@ -134,34 +140,33 @@ impl<'a> Table<'a> {
         }
     }
 
-    /// Returns whether a row is a worker's and unconfirmed.
-    fn rests_on(&self, worker: &str, row: &EvaluationRow) -> bool {
-        row.worker == worker && !self.confirmed.contains(&row.evaluation)
-    }
-
-    /// Returns whether there are unconfirmed rows of a worker.
-    pub(super) fn has_unconfirmed_of(&self, worker: &str) -> bool {
-        self.rows.values().any(|(_, row)| self.rests_on(worker, row))
-    }
-
-    /// Drops the unconfirmed rows of a worker, and all later rounds.
+    /// Withdraws the confirmations of a worker that computes wrongly, and drops the rows that rest on such workers alone, with all later
+    /// rounds.
     fn rewind(&mut self, worker: &str, width: u64) {
-        let mut rests = self.rows.values().filter(|(_, row)| self.rests_on(worker, row));
-        let Some((_, first)) = rests.next() else { return };
-        let end = EvaluationKey::round_end(first.evaluation, width as usize);
-        let (rows, confirmed) = (
-            std::mem::take(&mut self.rows),
-            std::mem::take(&mut self.confirmed),
-        );
-        let stays = |evaluation: u64, row: &EvaluationRow| {
-            evaluation < end && (row.worker != worker || confirmed.contains(&evaluation))
+        self.wrong.insert(worker.to_owned());
+        // The workers of a token are convicted together, under a name that ends with a slash.
+        let includes = |name: &String, worker: &str| {
+            name == worker || (name.ends_with('/') && worker.starts_with(name.as_str()))
         };
-        self.rows = rows.into_iter().filter(|(e, (_, row))| stays(*e, row)).collect();
-        self.confirmed = confirmed
-            .into_iter()
-            .filter(|e| self.rows.contains_key(e))
-            .collect();
+        let is_wrong = |worker: &str| self.wrong.iter().any(|name| includes(name, worker));
+        self.confirmed.retain(|_, by| !is_wrong(by));
+        let rests =
+            |row: &EvaluationRow| is_wrong(&row.worker) && !self.confirmed.contains_key(&row.evaluation);
         (self.stages, self.result) = (0, None);
+        let Some((_, first)) = self.rows.values().find(|(_, row)| rests(row)) else {
+            return;
+        };
+        let end = EvaluationKey::round_end(first.evaluation, width as usize);
+        let dropped: Vec<u64> = self
+            .rows
+            .iter()
+            .filter(|(evaluation, (_, row))| **evaluation >= end || rests(row))
+            .map(|(&evaluation, _)| evaluation)
+            .collect();
+        for evaluation in dropped {
+            self.rows.remove(&evaluation);
+            self.confirmed.remove(&evaluation);
+        }
         self.is_rewound = true;
     }
 
@@ -199,6 +204,7 @@ impl<'a> Table<'a> {
             model_version: self.model_version.clone(),
             busy_ms: self.busy_ms,
             is_rewound: self.is_rewound,
+            is_doubted: !self.wrong.is_empty(),
             evaluations: evaluations
                 .map(|(&number, (_, row))| (number, evaluation(row)))
                 .collect(),

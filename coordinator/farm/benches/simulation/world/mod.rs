@@ -6,7 +6,7 @@
 //! - `weather`: the probabilities of faults.
 //! - [`request`]: a request that asks for nothing. `worker`: a worker that keeps to the protocol and breaks down.
 //! - `coordinator`: the real farm, called as the farm's thread and the store's writer call it.
-//! - `ledger`: the simulated store; `issued`: the leases that were given.
+//! - [`ledger`]: the simulated store; `issued`: the leases that were given.
 //! - `witness`, `leasing`, [`promise`]: the promises, and their checks.
 //! - [`plant`]: the planted bugs.
 //! - [`search`], `tally`: many schedules, and the counts of their events.
@@ -15,7 +15,7 @@ pub(crate) mod case;
 mod coordinator;
 mod issued;
 mod leasing;
-mod ledger;
+pub(crate) mod ledger;
 pub(crate) mod plant;
 pub(crate) mod promise;
 pub(crate) mod request;

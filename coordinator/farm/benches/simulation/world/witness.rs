@@ -152,11 +152,9 @@ impl<'a> Witness<'a> {
                     format!("{worker}, which is honest, is quarantined")
                 })
             }
-            Fact::Rewound { worker, .. } => {
-                if table.has_unconfirmed_of(worker) {
-                    self.live.retain(|(calibration, ..), _| *calibration != id);
-                    self.unstarted.retain(|(calibration, _), _| *calibration != id);
-                }
+            Fact::Rewound { .. } => {
+                self.live.retain(|(calibration, ..), _| *calibration != id);
+                self.unstarted.retain(|(calibration, _), _| *calibration != id);
                 Ok(())
             }
             Fact::Stage { record, .. } => {
@@ -387,7 +385,7 @@ impl<'a> Witness<'a> {
             let is_cancelled = table.state == CalibrationState::Cancelled;
             let is_refused = ledger.quarantine().contains_key(worker);
             demand(
-                on_disk || is_cancelled || is_refused || table.is_rewound,
+                on_disk || is_cancelled || is_refused || !table.wrong.is_empty(),
                 Promise::Acknowledged,
                 || {
                     format!(

@@ -30,7 +30,7 @@ struct Entry {
     unstarted: u32,
     /// Whether a lease of the evaluation was lost or failed.
     suspect: bool,
-    /// The workers that may not claim the evaluation.
+    /// The workers, or voters of comparisons, that may not claim the evaluation.
     barred: Vec<String>,
     state: State,
 }
@@ -76,17 +76,17 @@ impl LeaseQueue {
         self.ready.push_back(evaluation);
     }
 
-    /// Bars a worker from an evaluation, and takes back its lease.
-    pub fn bar(&mut self, evaluation: u64, worker: &str) {
+    /// Bars a voter from an evaluation, and takes back the lease of a worker of it: `is_of_voter` returns whether a worker is one.
+    pub fn bar(&mut self, evaluation: u64, voter: &str, is_of_voter: impl Fn(&str) -> bool) {
         let Some(entry) = self.entries.get_mut(&evaluation) else {
             return;
         };
-        entry.barred.push(worker.to_owned());
+        entry.barred.push(voter.to_owned());
         if let State::Leased(claim) = &entry.state
-            && claim.worker == worker
+            && is_of_voter(&claim.worker)
         {
-            let lease = claim.lease;
-            self.give_back(lease, worker);
+            let (lease, worker) = (claim.lease, claim.worker.clone());
+            self.give_back(lease, &worker);
         }
     }
 
@@ -196,7 +196,10 @@ impl LeaseQueue {
         mut next_lease: impl FnMut() -> u64,
     ) -> Vec<NewClaim> {
         let worker = claimant.worker;
-        let is_one = |names: &[String]| names.iter().any(|name| name == worker);
+        let is_one = |names: &[String]| {
+            let mut names = names.iter();
+            names.any(|name| name == worker || name == claimant.voter)
+        };
         let may = |evaluation: &u64| !is_one(&self.entries[evaluation].barred);
         let suits = |evaluation: &u64| {
             let failed = &self.entries[evaluation].failed;

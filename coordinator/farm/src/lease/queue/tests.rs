@@ -28,6 +28,7 @@ fn claim_beside(
     };
     let claimant = Claimant {
         worker,
+        voter: worker,
         holds,
         now_ms: 0,
         expires_ms: 100,
@@ -166,7 +167,7 @@ proptest! {
         for (action, target) in steps {
             match action {
                 0 => {
-                    let claimant = Claimant { worker: "w", holds: 0, now_ms: now, expires_ms: now + 5 };
+                    let claimant = Claimant { worker: "w", voter: "w", holds: 0, now_ms: now, expires_ms: now + 5 };
                     let new = queue.claim(claimant, (target % 4) as usize + 1, |_| false, || { next += 1; next });
                     for claim in &new {
                         prop_assert!(!completed.contains(&claim.evaluation));
@@ -195,7 +196,7 @@ fn a_barred_worker_gets_nothing_and_loses_what_it_holds() {
     queue.add(8, Vec::new());
     assert_eq!(claim(&mut queue, "a", 5, 0, 0), vec![(1, 8)]);
     assert_eq!(claim(&mut queue, "b", 5, 0, 10), vec![(11, 7)]);
-    queue.bar(7, "b");
+    queue.bar(7, "b", |worker| worker == "b");
     assert_eq!((queue.unleased(), queue.held_by("b")), (1, 0));
     assert_eq!(claim(&mut queue, "b", 5, 0, 20), vec![]);
     let lease = claim(&mut queue, "c", 5, 0, 25)[0].0;

@@ -1,0 +1,4 @@
+-- CRC-32 of the other columns but confirmed_by, which reading verifies; NULL in rows of before.
+ALTER TABLE evaluations ADD COLUMN checksum BIGINT;
+ALTER TABLE samples ADD COLUMN checksum BIGINT;
+ALTER TABLE stages ADD COLUMN checksum BIGINT;
