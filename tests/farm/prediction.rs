@@ -124,11 +124,13 @@ fn a_sweep_gives_a_curve_its_probabilities_and_the_slip_on_a_slope() {
     );
 
     let printed = verb(&words, &out).success();
+    // Sentences are broken into lines.
+    let printed = printed.split_whitespace().collect::<Vec<_>>().join(" ");
     assert_contains!(
         printed,
         "pulls its weight along 18.0 deg with P > 0.999 at slip 0.",
         "P(drawbar_pull_n > 31) in p1-1 = ",
-        "beyond:  slip outside the fitted 0.0500 to 0.600 (p1-13, p1-14)"
+        "beyond: slip outside the fitted 0.0500 to 0.600 (p1-13, p1-14)"
     );
     words.extend(["--format", "csv"]);
     let table = verb(&words, &out).success();
