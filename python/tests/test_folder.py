@@ -60,8 +60,9 @@ def test_conditions_of_ones_own_are_predicted_with_their_probabilities(study: gr
     chance = predicted.where(quantity="drawbar_pull_n > 12")["models_mean"]
     assert chance[0] < 0.05 and chance[1] > 0.95
     file = tmp_path / "decision.toml"
-    options = '[[decision.options]]\nname = "climb"\ncondition = { slope_deg = 6 }\n[[decision.options]]\nname = "stay"\nloss = "900"\n'
-    file.write_text(f'[decision]\nloss = "energy_j_m"\n{options}', encoding="utf-8")
+    climb = '[[decision.options]]\nname = "climb"\ncondition = { slope_deg = 6 }\n'
+    stay = '[[decision.options]]\nname = "stay"\nloss = "900"\n'
+    file.write_text(f'[decision]\nloss = "energy_j_m"\n{climb}{stay}', encoding="utf-8")
     assert study.decide(file)["best"] == "climb"
 
 

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use farm_tests::assert_contains;
 use farm_tests::job::Job;
-use farm_tests::json::{float, items, word};
+use farm_tests::json::{float, word};
 use farm_tests::programs::{Ended, coordinator, run};
 use farm_tests::service::Service;
 use farm_tests::workspace::{root, text};
@@ -32,8 +32,12 @@ fn json_of(words: &[&str], out: &str) -> Value {
     serde_json::from_str(&printed).expect("JSON")
 }
 
+fn list(value: &Value) -> &Vec<Value> {
+    value.as_array().unwrap_or_else(|| panic!("a list in {value}"))
+}
+
 fn quantity<'a>(run: &'a Value, name: &str) -> &'a Value {
-    let mut quantities = items(&run["quantities"]).iter();
+    let mut quantities = list(&run["quantities"]).iter();
     let found = quantities.find(|quantity| quantity["name"] == name);
     found.unwrap_or_else(|| panic!("{name} in {run}"))
 }
@@ -59,7 +63,7 @@ fn the_condition_of_a_held_out_run_is_predicted_as_that_run() {
     let file = folder.path().join("plan.csv").display().to_string();
     std::fs::write(&file, plan).expect("the plan");
     let predicted = json_of(&["predict", "1", "--plan", &file], &out);
-    let runs = items(&predicted["runs"]);
+    let runs = list(&predicted["runs"]);
     assert!(runs.len() > 10 && runs.len() == held_out.len(), "{predicted}");
     for (run, cells) in runs.iter().zip(&held_out) {
         let stored = |name: &str| cells[column(name)].parse::<f64>().expect("a number");
@@ -93,11 +97,11 @@ fn a_sweep_gives_a_curve_its_probabilities_and_the_slip_on_a_slope() {
     let folder = tempfile::tempdir().expect("a folder");
     let out = calibrated(folder.path());
     let sweep =
-        "predict --at wheel_load_n=100 --at sled_speed_m_s=0.02 --at slope_deg=8 --sweep slip=0.05:0.7:14";
+        "predict --at wheel_load_n=100 --at sled_speed_m_s=0.02 --at slope_deg=18 --sweep slip=0.05:0.7:14";
     let mut words: Vec<&str> = sweep.split(' ').collect();
-    words.extend(["--probability", "drawbar_pull_n > 12"]);
+    words.extend(["--probability", "drawbar_pull_n > 31"]);
     let predicted = json_of(&words, &out);
-    let runs = items(&predicted["runs"]);
+    let runs = list(&predicted["runs"]);
     let chance = |run: &Value| float(&run["statements"][0]["measurement"]);
     assert!(chance(&runs[0]) < 0.05 && chance(&runs[13]) > 0.95, "{predicted}");
     let climb = &predicted["climbs"][0];
@@ -110,21 +114,23 @@ fn a_sweep_gives_a_curve_its_probabilities_and_the_slip_on_a_slope() {
         .position(|run| float(&run["slip"]) > slip)
         .expect("a slip beyond");
     assert!(
-        slope(&runs[after - 1]) < 8.2 && slope(&runs[after]) > 7.8,
+        slope(&runs[after - 1]) < 18.2 && slope(&runs[after]) > 17.8,
         "{slip}"
     );
-    assert_eq!(items(&runs[0]["beyond"]).len(), 0);
+    assert_eq!(list(&runs[0]["beyond"]).len(), 0);
     assert_contains!(
         word(&runs[13]["beyond"][0]),
         "slip outside the fitted 0.0500 to 0.600"
     );
 
     let printed = verb(&words, &out).success();
+    // Sentences are broken into lines.
+    let printed = printed.split_whitespace().collect::<Vec<_>>().join(" ");
     assert_contains!(
         printed,
-        "pulls its weight along 8.00 deg with P > 0.999 at slip 0.",
-        "P(drawbar_pull_n > 12) in p1-1 = ",
-        "beyond:  slip outside the fitted 0.0500 to 0.600 (p1-13, p1-14)"
+        "pulls its weight along 18.0 deg with P > 0.999 at slip 0.",
+        "P(drawbar_pull_n > 31) in p1-1 = ",
+        "beyond: slip outside the fitted 0.0500 to 0.600 (p1-13, p1-14)"
     );
     words.extend(["--format", "csv"]);
     let table = verb(&words, &out).success();
@@ -184,7 +190,7 @@ fn options_are_ranked_by_their_expected_losses() {
     std::fs::write(&file, DECISION).expect("the decision");
     let answer = json_of(&["decide", &file], &out);
     assert_eq!(word(&answer["best"]), "climb", "{answer}");
-    let [climb, cliff, stay] = &items(&answer["options"])[..] else {
+    let [climb, cliff, stay] = &list(&answer["options"])[..] else {
         panic!("three options");
     };
     assert!(float(&climb["expected_loss"]) < 3000.0 && float(&climb["stuck"]) < 0.01);

@@ -122,14 +122,15 @@ class Study:
     ) -> Table:
         """Conditions of one's own: a row for each run and quantity, with 90 % intervals.
 
-        ``parameters`` are those of the model, ``models`` those of all models of the study by their evidence, ``measurement`` those of
-        a new measurement by all models, ``corrected`` those of a new measurement by the model and what it misses in the fitted
-        conditions. The ``models_mean`` of a statement is the probability that a new measurement makes it true, its ``mean`` that
-        of the model's parameters alone. ``beyond`` says what lies outside the fitted range.
+        ``parameters`` are those of the model, ``models`` those of all models of the study by their evidence,
+        ``measurement`` those of a new measurement by all models, ``corrected`` those of a new measurement by the model and
+        what it misses in the fitted conditions. The ``models_mean`` of a statement is the probability that a new
+        measurement makes it true, its ``mean`` that of the model's parameters alone. ``beyond`` says what lies outside the
+        fitted range.
 
         Args:
-            plan: a CSV file, or a row for each condition: ``[{"slip": 0.2, "wheel_load_n": 100}]``. What is left out follows from the
-                fitted runs.
+            plan: a CSV file, or a row for each condition: ``[{"slip": 0.2, "wheel_load_n": 100}]``. What is left out
+                follows from the fitted runs.
             sweep: one quantity in evenly spaced values for every row: ``"slip=0:0.8:41"``.
             wheels: a TOML file with tables ``[wheel.NAME]`` of wheels that the experiment does not have.
             statements: comparisons such as ``"drawbar_pull_n > 12"``.

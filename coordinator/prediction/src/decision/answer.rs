@@ -83,7 +83,7 @@ pub struct DecidedBy {
     pub model: f64,
     /// Share of the parameters within models.
     pub parameters: f64,
-    /// Share of errors: noise, scatter of the soil, discrepancy. No run reduces it.
+    /// Share of errors, which are the same for both options: noise, scatter of the soil, discrepancy. No run reduces it.
     pub noise: f64,
     /// Parameters of the most probable model by what each explains alone, the greatest first.
     pub each: Vec<ParameterShare>,

@@ -1,7 +1,7 @@
 //! The value of one more run before a decision: by how much it is expected to lower the least expected loss.
 
 use super::answer::RunValue;
-use super::loss_table::LossTable;
+use super::loss_table::{LossTable, OPTION_ERRORS};
 use super::scenario::Scenarios;
 use crate::draw::{DrawnRun, Draws, ERRORS, WeightedDraw};
 use crate::ensemble::Simulated;
@@ -24,7 +24,7 @@ pub(super) fn run_values(
         (0..4).filter(is_fitted).collect()
     };
     let values = scenarios.runs.iter().enumerate().map(|(number, &position)| {
-        let errors = scenarios.options.len() + number;
+        let errors = OPTION_ERRORS + 1 + number;
         let drawn = draws.of_run(position, errors);
         let of_draw = |draw: &WeightedDraw| {
             let at = draws.all.iter().position(|other| other == draw)?;

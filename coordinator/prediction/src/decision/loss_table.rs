@@ -11,6 +11,8 @@ use crate::prediction::rig_radius_m;
 use crate::quantity_value::quantity_values;
 use crate::spread::{mean, probability, variance};
 
+/// Number of the errors of all options. They are the same for each, so that what options have in common cancels in their differences.
+pub(super) const OPTION_ERRORS: usize = 0;
 /// Largest share of the draws at which a loss may have no value.
 const MAX_LEFT_OUT: f64 = 0.5;
 
@@ -80,14 +82,14 @@ impl LossTable {
         decision: &Decision,
         scenarios: &Scenarios,
     ) -> Result<LossTable, PredictionError> {
-        let options = scenarios.options.iter().enumerate();
+        let options = scenarios.options.iter();
         let options: Vec<OptionRuns<'_>> = options
-            .map(|(number, runs)| OptionRuns {
+            .map(|runs| OptionRuns {
                 planned: runs.iter().map(|&run| &simulated.runs[run]).collect(),
                 radius_m: runs
                     .first()
                     .map_or(1.0, |&run| rig_radius_m(simulated, &simulated.runs[run])),
-                drawn: runs.iter().map(|&run| draws.of_run(run, number)).collect(),
+                drawn: runs.iter().map(|&run| draws.of_run(run, OPTION_ERRORS)).collect(),
             })
             .collect();
         let nothing = [f64::NAN; QUANTITIES.len()];

@@ -27,7 +27,7 @@ pub use scenario::{Scenarios, decision_runs};
 /// Compares the options of a decision by their expected losses.
 ///
 /// The loss of an option is that of one new run: at each draw of each model, with errors as a new measurement has them (noise, scatter of
-/// the soil, discrepancy). The best option has the least expected loss of those whose constraints hold with their probabilities.
+/// the soil, discrepancy). All options have the same errors, as if they ran on the same soil on the same day. The best option has the least expected loss of those whose constraints hold with their probabilities.
 ///
 /// # Source
 /// DeGroot 1970, *Optimal Statistical Decisions*. Checked by the tests of `loss_table`, `attribution` and `information`.
