@@ -7,9 +7,9 @@ import { Login } from "./part/login.js";
 import { Settings } from "./part/settings.js";
 import { token } from "./rest/token.js";
 import { useRoute } from "./route.js";
-import { Home } from "./view/home.js";
 import { StudyPage } from "./view/study.js";
 
+const home = () => import("./view/home.js").then((module) => module.Home);
 const beside = () => import("./view/beside.js").then((module) => module.Beside);
 const newCalibration = () => import("./view/new_calibration.js").then((module) => module.NewCalibration);
 
@@ -42,7 +42,7 @@ function Page() {
     </header>
     <main id="content" tabindex="-1">
       ${isAsked && html`<${Login} />`}
-      ${first === undefined && html`<${Home} />`}
+      ${first === undefined && html`<${Later} title="The list of studies" load=${home} />`}
       ${first === "new" && html`<${Later} title="New calibration" load=${newCalibration} query=${route.query} />`}
       ${isStudy && html`<${StudyPage} key=${id} id=${Number(id)} view=${view ?? "story"} query=${route.query} />`}
       ${isBeside && html`<${Later} key=${route.place.join("/")} title="The comparison" load=${beside} ids=${route.place.slice(1).map(Number)} />`}

@@ -4,7 +4,7 @@ import { test } from "node:test";
 import { table } from "../modules/chart/download.js";
 import { groups } from "../modules/words/group.js";
 import { levels, levelWords } from "../modules/words/level.js";
-import { digits, duration, meanAndSd, numberOf, parameterName, probability, shown, size, tickWords, titled } from "../modules/words/quantity.js";
+import { digits, duration, meanAndSd, numberOf, parameterName, probability, shown, size, tickWords, titled, withSd } from "../modules/words/quantity.js";
 import { meanErrorSd, residualSds } from "../modules/words/residual.js";
 import { progressWords } from "../modules/words/state.js";
 
@@ -149,4 +149,10 @@ test("progress says where each kind of algorithm is", () => {
   assert.equal(told({ kind: "fit", steps: 4 }), "step 4, 2300 evaluations");
   assert.equal(told({ kind: "evolution", generations: 7 }), "generation 7, 2300 evaluations");
   assert.equal(told({ kind: "search", rounds: 2 }), "round 2, 2300 evaluations");
+});
+
+test("the ends of an interval have the digits of their sd", () => {
+  assert.deepEqual(withSd([0.9673, 1.2312, 1.111], 0.08), ["0.967", "1.231", "1.111"]);
+  assert.deepEqual(withSd([8.419, 10.41, null], 0.61), ["8.42", "10.41", "–"]);
+  assert.deepEqual(withSd([-0.95, 0.2], 0), ["−0.9500", "0.2000"]);
 });

@@ -2,8 +2,17 @@
 
 import { html } from "../html.js";
 import { t } from "../language/language.js";
-import { digits, meanAndSd, shown, parameterName } from "../words/quantity.js";
+import { digits, meanAndSd, parameterName, shown, withSd } from "../words/quantity.js";
 import { Table } from "./table.js";
+
+/** What a logarithm is in the unit itself: `45.7 kPa (41.7 to 49.8)`; blank of what is none. */
+function ofLogarithm(/** @type {any} */ { unit: stated, mean, q05, q95 }) {
+  const [, base] = /^log10 (.+)$/.exec(stated) ?? [];
+  if (base === undefined) return "";
+  const { unit, scale } = shown(base);
+  const [value, low, high] = [mean, q05, q95].map((exponent) => digits(10 ** exponent * scale));
+  return t`${value} ${unit} (${low} to ${high})`;
+}
 
 /** @param {{ marginals: any[], line: any }} properties line: of the ledger, or of the point estimates */
 export function ParameterTable({ marginals, line }) {
@@ -16,11 +25,11 @@ export function ParameterTable({ marginals, line }) {
     const known = line?.parameters?.[m.name];
     const { mean, sd } = meanAndSd(m.mean * scale, m.sd * scale);
     const prior = known && meanAndSd(known.prior_mean * scale, known.prior_sd * scale);
+    const [low, high, mode] = withSd([m.q05 * scale, m.q95 * scale, m.mode === null ? null : m.mode * scale], m.sd * scale);
     return [
-      parameterName(m.name, m.unit), unit === "1" ? "" : unit, `${mean} ± ${sd}`, `${digits(m.q05 * scale, 4)} to ${digits(m.q95 * scale, 4)}`,
-      digits(m.mode === null ? null : m.mode * scale, 4), prior ? `${prior.mean} ± ${prior.sd}` : "–",
+      parameterName(m.name, m.unit), unit === "1" ? "" : unit, `${mean} ± ${sd}`, t`${low} to ${high}`, mode, prior ? `${prior.mean} ± ${prior.sd}` : "–",
       m.reference === null ? "–" : digits(m.reference * scale, 4),
-      known?.at_bound ? html`<span class="state failed">at a bound of its prior</span>` : "",
+      html`${ofLogarithm(m)} ${known?.at_bound && html`<span class="state failed">at a bound of its prior</span>`}`,
     ];
   });
   return html`<${Table} label="Parameters" numbers=${[2, 3, 4, 5, 6]} rows=${rows}

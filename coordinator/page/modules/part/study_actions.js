@@ -7,9 +7,10 @@ import { t } from "../language/language.js";
 import { archive, deleteStudy, path, reportOf } from "../rest/routes.js";
 import { useAnswer } from "../rest/use_answer.js";
 import { address } from "../route.js";
+import { Later } from "./later.js";
 import { Failure } from "./message.js";
-import { DetailsForm } from "./study_details.js";
 
+const detailsForm = () => import("./details_form.js").then((module) => module.DetailsForm);
 const AT_WORK = ["queued", "running", "paused"];
 
 /** @param {{ study: any, reload: () => void }} properties */
@@ -29,7 +30,7 @@ export function StudyActions({ study, reload }) {
   };
   const isAtWork = AT_WORK.includes(study.state);
   return html`
-    ${isDescribed && html`<${DetailsForm} study=${study} reload=${reload} close=${() => setDescribed(false)} />`}
+    ${isDescribed && html`<${Later} title="Name, author, tags, note" load=${detailsForm} study=${study} reload=${reload} close=${() => setDescribed(false)} />`}
     <div class="actions study-actions" role="group" aria-label="What to do with the study">
       <button type="button" aria-expanded=${isDescribed} onClick=${() => setDescribed(!isDescribed)}>Name, author, tags, note</button>
       ${study.current !== null && html`<button type="button" onClick=${() => act(async () => save(`${fileName(study.name)}.html`, await reportOf(study.current)), () => undefined)}>Save the report</button>`}

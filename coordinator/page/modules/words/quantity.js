@@ -83,11 +83,22 @@ export function size(/** @type {number | null | undefined} */ value, /** @type {
   return `${digits(value * quantity.scale, count)}${quantity.unit === "1" ? "" : ` ${quantity.unit}`}`;
 }
 
+/** The decimals of the second digit of an sd; null where they say little. */
+function decimalsOf(/** @type {number} */ mean, /** @type {number} */ sd) {
+  const decimals = sd > 0 ? Math.max(0, 1 - Math.floor(Math.log10(sd))) : Infinity;
+  return decimals > 8 || Math.abs(mean) >= 1e6 ? null : decimals;
+}
+
+/** Values of a quantity to the second digit of its sd. */
+export function withSd(/** @type {(number | null)[]} */ values, /** @type {number} */ sd) {
+  const decimals = decimalsOf(Math.max(...values.map((value) => Math.abs(value ?? 0))), sd);
+  return values.map((value) => (value === null || decimals === null ? digits(value, 4) : minus(value.toFixed(decimals))));
+}
+
 /** Mean and sd: both to the second digit of the sd. */
 export function meanAndSd(/** @type {number} */ mean, /** @type {number} */ sd) {
-  if (!(sd > 0)) return { mean: digits(mean, 4), sd: digits(sd, 2) };
-  const decimals = Math.max(0, 1 - Math.floor(Math.log10(sd)));
-  if (decimals > 8 || Math.abs(mean) >= 1e6) return { mean: digits(mean, 4), sd: digits(sd, 2) };
+  const decimals = decimalsOf(mean, sd);
+  if (decimals === null) return { mean: digits(mean, 4), sd: digits(sd, 2) };
   return { mean: minus(mean.toFixed(decimals)), sd: sd.toFixed(decimals) };
 }
 
