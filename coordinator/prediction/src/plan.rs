@@ -55,7 +55,7 @@ impl Sweep {
         let (name, range) = text.split_once('=').ok_or_else(form)?;
         let name = name.trim();
         if !SWEPT.contains(&name) {
-            let message = unknown_word("quantity of a sweep", name, SWEPT.into_iter());
+            let message = unknown_word("quantity of a sweep", name, SWEPT);
             return Err(PredictionError::Request(message));
         }
         let parts: Vec<&str> = range.split(':').map(str::trim).collect();
@@ -149,7 +149,7 @@ fn read(text: &str) -> Result<Vec<(usize, PlannedCondition)>, FileError> {
     let fail = |e: csv::Error| FileError::whole(FILE, e.to_string());
     let header = reader.headers().map_err(fail)?.clone();
     if let Some(unknown) = header.iter().find(|name| !COLUMNS.contains(name)) {
-        let message = unknown_word("column", unknown, COLUMNS.into_iter());
+        let message = unknown_word("column", unknown, COLUMNS);
         return Err(FileError::at(FILE, 1, message));
     }
     let mut rows = Vec::new();

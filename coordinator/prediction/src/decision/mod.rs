@@ -30,7 +30,7 @@ pub use scenario::{Scenarios, decision_runs};
 /// the soil, discrepancy). All options have the same errors, as if they ran on the same soil on the same day. The best option has the least expected loss of those whose constraints hold with their probabilities.
 ///
 /// # Source
-/// DeGroot 1970, *Optimal Statistical Decisions*. Checked by the tests of `loss_table`, `attribution` and `information`.
+/// De Groot 1970, *Optimal Statistical Decisions*. Checked by the tests of `loss_table`, `attribution` and `information`.
 ///
 /// # Errors
 /// [`PredictionError::Request`] if a loss has no value.
