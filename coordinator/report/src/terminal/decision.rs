@@ -30,7 +30,7 @@ pub fn decision(answer: &DecisionAnswer) -> String {
         .right(12, "at the mode", move |option| cell(option.loss_at_mode, short))
         .right(6, "slip", |option| cell(option.slip, |slip| format!("{slip:.2}")))
         .right(6, "stuck", |option| cell(option.stuck, |p| format!("{p:.2}")))
-        .apart(0, "", |option| broken(option));
+        .apart(0, "", broken);
     let mut text = format!(
         "calibration {}, {} draws of each model\n\n{}\n",
         answer.calibration,
