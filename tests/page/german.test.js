@@ -113,9 +113,9 @@ test("the result is read in German, and printed on two pages", async () => {
 });
 
 test("a switch changes the language, the units and the slips, and keeps them", async () => {
-  await page.getByLabel("Sprache").selectOption("en");
+  await page.getByLabel("Sprache", { exact: true }).selectOption("en");
   await page.locator("h2", { hasText: "What to do next" }).waitFor();
-  await page.getByLabel("Units").selectOption("lbf, in, psi");
+  await page.getByLabel("Units", { exact: true }).selectOption("lbf, in, psi");
   await page.getByLabel("Slip as").selectOption("30 %");
   await page.getByRole("link", { name: "Compare", exact: true }).click();
   await page.locator('[data-figure*="drawbar"] .plot svg').first().waitFor();
@@ -124,7 +124,7 @@ test("a switch changes the language, the units and the slips, and keeps them", a
   assert.match(words, /slip \[%\]/);
   await page.reload();
   await page.locator('[data-figure*="drawbar"] .plot svg').first().waitFor();
-  assert.equal(await page.getByLabel("Units").inputValue(), "lbf, in, psi");
+  assert.equal(await page.getByLabel("Units", { exact: true }).inputValue(), "lbf, in, psi");
 });
 
 test("nothing went wrong on the way", () => assert.deepEqual(tab.faults, []));
