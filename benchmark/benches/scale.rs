@@ -82,7 +82,7 @@ async fn farm(workers: usize, evaluation_s: f64) -> Result<(), StudyError> {
         lease_ms: LEASE_MS,
         rule: VerificationRule::default(),
     };
-    let service = Service::open(&store.display().to_string(), settings).await?;
+    let service = Service::open(&store.display().to_string(), settings.clone()).await?;
     let files = [("runs.csv".to_owned(), RUNS.to_owned())].into();
     let toml = EXPERIMENT.to_owned();
     let experiment = service.add_experiment(NewExperiment { toml, files }).await?;
