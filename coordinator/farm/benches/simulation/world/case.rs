@@ -39,6 +39,7 @@ pub(crate) enum Kind {
     /// A fit by steps, which uses predicted values.
     Fit,
     /// Two hundred particles, for tests with several workers that compute wrongly. It is part of no schedule.
+    #[allow(dead_code, reason = "the tests use it, and the bench includes this module")]
     Large,
 }
 
