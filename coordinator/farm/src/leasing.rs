@@ -9,7 +9,7 @@ use shared::model::equations_of;
 use super::farm::{Entry, Farm};
 use super::seal::{LeaseTerms, seal};
 use super::share::deal;
-use super::voting::token_of;
+use super::voting;
 use super::work_result::model_version;
 use crate::calibration::Calibration;
 use crate::lease::{Claimant, NewClaim};
@@ -196,8 +196,7 @@ impl Farm {
                 let stated = other.equations_of_model(external.as_deref());
                 let is_able = stated.map(equations_of) == Some(equations_of(version));
                 let has_failed = failed.iter().any(|one| one == name || one == voting.voter(name));
-                let of_token = || token_of(name).is_some_and(|token| quarantine.contains_key(token));
-                is_able && !has_failed && !quarantine.contains_key(name) && !of_token()
+                is_able && !has_failed && voting::quarantined(quarantine, name).is_none()
             })
         };
         let queue = match turn.is_second {

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use shared::model::equations_of;
 
 use super::farm::{Entry, Farm};
-use super::voting::{Voting, includes, token_of};
+use super::voting::{self, Voting, includes};
 use super::worker_record::WorkerRecord;
 use crate::calibration::{Answer, Calibration, Undecided};
 use crate::lease::SlowLease;
@@ -52,8 +52,7 @@ impl Farm {
 
     /// Returns the reason of a worker's quarantine, or of that of all workers of its token.
     pub(super) fn quarantined(&self, worker: &str) -> Option<&String> {
-        let of_token = || self.quarantine.get(token_of(worker)?);
-        self.quarantine.get(worker).or_else(of_token)
+        voting::quarantined(&self.quarantine, worker)
     }
 
     /// Quarantines a worker that computes wrongly; with it all workers of its token, where a token counts as one. Its leases are taken
@@ -201,8 +200,7 @@ impl<'a> Electorate<'a> {
         let is_able = |(name, worker): &(&'a String, &WorkerRecord)| {
             let is_there = worker.last_seen_ms >= since_ms;
             let is_same = version == worker.equations_of_model(external.as_deref()).map(equations_of);
-            let of_token = || token_of(name).is_some_and(|token| quarantine.contains_key(token));
-            is_there && is_same && !quarantine.contains_key(*name) && !of_token()
+            is_there && is_same && voting::quarantined(quarantine, name).is_none()
         };
         let able = workers.iter().filter(is_able).map(|(name, _)| name.as_str());
         Electorate {

@@ -1,6 +1,6 @@
 //! Identities in comparisons of answers: who counts as one, and whose answer settles a comparison.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// The rule by which workers are counted in comparisons of answers.
 ///
@@ -36,6 +36,14 @@ pub(crate) fn token_of(worker: &str) -> Option<&str> {
     worker.find('/').map(|end| &worker[..=end])
 }
 
+/// Returns the reason of a worker's quarantine: its own, or that of all workers of its token. A name without a token in the list of a
+/// worker with one was stored by a version that knew workers by their names alone, and holds for that name under every token.
+pub(crate) fn quarantined<'a>(quarantine: &'a BTreeMap<String, String>, worker: &str) -> Option<&'a String> {
+    let of_token = || quarantine.get(token_of(worker)?);
+    let of_name = || quarantine.get(worker.split_once('/')?.1);
+    quarantine.get(worker).or_else(of_token).or_else(of_name)
+}
+
 /// Returns whether a name is that of a worker, or of all workers of its token.
 pub(crate) fn includes(name: &str, worker: &str) -> bool {
     name == worker || token_of(worker) == Some(name)
@@ -44,6 +52,15 @@ pub(crate) fn includes(name: &str, worker: &str) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_quarantine_holds_for_a_worker_all_of_its_token_and_a_name_of_before_tokens() {
+        let names = ["lab/a", "other/", "old"];
+        let quarantine = names.map(|name| (name.to_owned(), "wrong".to_owned())).into();
+        let is_out = |worker: &str| quarantined(&quarantine, worker).is_some();
+        assert!(["lab/a", "other/x", "old", "lab/old"].into_iter().all(is_out));
+        assert!(!["lab/b", "a", "other", "old/b"].into_iter().any(is_out));
+    }
 
     #[test]
     fn workers_of_a_token_count_as_one_where_the_operator_says_so() {

@@ -30,6 +30,8 @@ pub(super) async fn in_time<T>(
 
 /// The time without a statement after which the coordinator that holds the lock counts as gone.
 const SILENCE: Duration = Duration::from_secs(7);
+/// Silence within a transaction after which a coordinator counts as halted.
+const SILENCE_IN_TRANSACTION: Duration = Duration::from_secs(60);
 
 /// The number of the lock that the one writer of a database holds: the letters of "grouser".
 const LOCK: i64 = 0x67_72_6f_75_73_65_72;
@@ -87,19 +89,22 @@ pub(super) async fn lock(connection: &mut Connection, path: &str) -> Result<bool
 /// network leads to it. Returns whether one was ended.
 ///
 /// A coordinator that lives sends a statement every [`PROBE`], and the server knows when the last one ended. A connection that is at work
-/// is left alone. A coordinator that wakes up later finds its connection and its lock gone, and ends.
+/// is left alone, and within a transaction for [`SILENCE_IN_TRANSACTION`], because an upgrade of the store computes between its statements.
+/// A coordinator that wakes up later finds its connection and its lock gone, and ends.
 pub(super) async fn end_silent_holder(connection: &mut Connection, path: &str) -> Result<bool, StoreError> {
     let ended = query_scalar(
         "SELECT pg_terminate_backend(a.pid) FROM pg_locks l JOIN pg_stat_activity a ON a.pid = l.pid
          WHERE l.locktype = 'advisory' AND l.granted AND l.objsubid = 1
          AND l.database = (SELECT oid FROM pg_database WHERE datname = current_database())
          AND l.classid::bigint = ? AND l.objid::bigint = ?
-         AND a.state LIKE 'idle%' AND a.state_change < now() - make_interval(secs => ?)",
+         AND (a.state = 'idle' AND a.state_change < now() - make_interval(secs => ?)
+              OR a.state LIKE 'idle in transaction%' AND a.state_change < now() - make_interval(secs => ?))",
     );
     let ended: Vec<bool> = ended
         .bind(LOCK >> 32)
         .bind(LOCK & 0xffff_ffff)
         .bind(SILENCE.as_secs_f64())
+        .bind(SILENCE_IN_TRANSACTION.as_secs_f64())
         .fetch_all(connection)
         .await
         .map_err(|source| StoreError::new(path, source))?;
