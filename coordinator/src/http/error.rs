@@ -115,7 +115,10 @@ impl From<ServiceError> for HttpError {
             ServiceError::Details(_) => ErrorKind::InvalidBody,
             // A worker sends its message again, to the next start or to a standby.
             ServiceError::Busy(_) | ServiceError::Stopped(_) => ErrorKind::Busy,
-            ServiceError::Store(_) | ServiceError::Replay(_) | ServiceError::Thread(_) => ErrorKind::Internal,
+            ServiceError::Store(_)
+            | ServiceError::Replay(_)
+            | ServiceError::Thread(_)
+            | ServiceError::Panicked(_) => ErrorKind::Internal,
         };
         match &error {
             // The owner of the store needs to know which row is corrupt.
