@@ -37,6 +37,9 @@ mod tests {
         let error = read_statements(&texts).unwrap_err().to_string();
         assert_eq!(error, "51 statements must be at most 50");
         let error = read_statements(&["pull>1".into()]).unwrap_err().to_string();
-        assert!(error.starts_with("statement \"pull>1\": character 1: "), "{error}");
+        assert!(
+            error.starts_with("statement \"pull>1\": character 1: "),
+            "{error}"
+        );
     }
 }

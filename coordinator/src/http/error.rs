@@ -106,7 +106,9 @@ impl From<ServiceError> for HttpError {
             ServiceError::Control(_)
             | ServiceError::Effects(_)
             | ServiceError::OfLibrary(_)
-            | ServiceError::Prediction(PredictionError::NoDraws(_) | PredictionError::Model(_))
+            | ServiceError::Prediction(
+                PredictionError::NoDraws(_) | PredictionError::NoStoredDraws(_) | PredictionError::Model(_),
+            )
             | ServiceError::Search(_)
             | ServiceError::LeftAlone { .. }
             | ServiceError::InProgress { .. }

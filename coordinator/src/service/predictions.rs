@@ -15,7 +15,9 @@ use farm::dispatch::Stopped;
 use job::{ConditionDefaults, read_decision};
 use prediction::decision::{decide, decision_runs};
 use prediction::prediction::predict;
-use prediction::{DecisionAnswer, Ensemble, Prediction, PredictionError, Sweep, planned_runs, read_statements};
+use prediction::{
+    DecisionAnswer, Ensemble, Prediction, PredictionError, Sweep, planned_runs, read_statements,
+};
 use result::Study;
 
 /// One prediction is computed at a time, because it takes all cores.
