@@ -84,10 +84,13 @@ struct Posterior {
 impl Posterior {
     /// Chooses the best option again by weights of the draws, whose sum need not be 1.
     fn new(table: &LossTable, feasible: &[usize], weights: &[f64]) -> Posterior {
+        // Divided by the greatest, because the squares of small weights are 0.
+        let greatest = weights.iter().copied().fold(0.0, f64::max);
+        let weights: Vec<f64> = weights.iter().map(|weight| weight / greatest).collect();
         let total: f64 = weights.iter().sum();
         let squares: f64 = weights.iter().map(|weight| weight * weight).sum();
         let expected = feasible.iter().map(|&option| {
-            let losses = table.means.iter().zip(weights);
+            let losses = table.means.iter().zip(&weights);
             losses.map(|(row, weight)| row[option] * weight).sum::<f64>() / total
         });
         Posterior {
@@ -125,6 +128,10 @@ fn expected_gain(
             refused[i] = weight;
             continue;
         };
+        // The model that was asked for is simulated even if it has no weight.
+        if weight <= 0.0 {
+            continue;
+        }
         for error in 0..ERRORS {
             let measurement = truth.measured(error);
             let logs: Vec<f64> = drawn
