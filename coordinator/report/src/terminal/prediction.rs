@@ -181,8 +181,9 @@ const TITLES: &str = "run,wheel,slip,wheel_load_n,sled_speed_m_s,slip_angle_deg,
     parameters_q05,parameters_q95,models_mean,models_q05,models_q95,measurement_mean,measurement_q05,measurement_q95,corrected,corrected_q05,\
     corrected_q95\n";
 
-/// Returns a row for each run and quantity as CSV; a statement is a quantity whose means are its probabilities. `measurement_mean` is the
-/// probability that a new measurement makes a statement true, and empty of other quantities.
+/// Returns a row for each run and quantity as CSV; a statement is a quantity whose means are its probabilities.
+///
+/// `measurement_mean` is the probability that a new measurement makes a statement true, and empty of other quantities.
 pub fn prediction_csv(prediction: &Prediction) -> String {
     let mut text = TITLES.to_owned();
     let quoted = |words: &str| format!("\"{}\"", words.replace('"', "\"\""));
