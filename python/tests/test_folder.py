@@ -57,8 +57,11 @@ def test_conditions_of_ones_own_are_predicted_with_their_probabilities(study: gr
     pull = predicted.where(quantity="drawbar_pull_n")
     assert pull.rows == 2 and pull["mean"][0] < 12 < pull["mean"][1]
     assert np.all(pull["measurement_q05"] < pull["parameters_q05"])
-    chance = predicted.where(quantity="drawbar_pull_n > 12")["models_mean"]
+    chance = predicted.where(quantity="drawbar_pull_n > 12")["measurement_mean"]
     assert chance[0] < 0.05 and chance[1] > 0.95
+    # The probability by the models has its own column, and quantities have none of a measurement.
+    row = predicted.where(quantity="drawbar_pull_n > 12")
+    assert np.all((row["models_mean"] >= 0) & (row["models_mean"] <= 1)) and np.all(np.isnan(pull["measurement_mean"]))
     file = tmp_path / "decision.toml"
     climb = '[[decision.options]]\nname = "climb"\ncondition = { slope_deg = 6 }\n'
     stay = '[[decision.options]]\nname = "stay"\nloss = "900"\n'

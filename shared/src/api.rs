@@ -123,7 +123,7 @@ pub struct NewPrediction {
     pub sweep: Option<String>,
     /// Wheels that the experiment does not have: TOML text with tables `[wheel.NAME]`.
     pub wheels: Option<String>,
-    /// Statements whose probabilities are asked for, as in `drawbar_pull_n > 12`.
+    /// Statements whose probabilities are asked for, as in `drawbar_pull_n > 12`; at most 50.
     pub statements: Vec<String>,
     /// Number of draws of each model, at most those that predict held-out runs.
     pub draws: Option<usize>,

@@ -135,6 +135,24 @@ fn a_sweep_gives_a_curve_its_probabilities_and_the_slip_on_a_slope() {
     words.extend(["--format", "csv"]);
     let table = verb(&words, &out).success();
     let columns = table.lines().next().map(|line| line.split(',').count());
+    // The probability of a measurement has a column of its own.
+    let titles: Vec<&str> = table.lines().next().unwrap_or_default().split(',').collect();
+    let at = titles
+        .iter()
+        .position(|title| *title == "measurement_mean")
+        .expect("a column");
+    let statements = table.lines().filter(|line| line.contains("drawbar_pull_n > 31"));
+    let chances: Vec<f64> = statements
+        .map(|line| line.split(',').rev().nth(titles.len() - 1 - at).expect("a cell"))
+        .map(|cell| cell.parse().expect("a probability"))
+        .collect();
+    let expected: Vec<f64> = runs.iter().map(chance).collect();
+    assert_eq!(chances.len(), expected.len());
+    let mut pairs = chances.iter().zip(&expected);
+    assert!(
+        pairs.all(|(a, b)| (a - b).abs() < 1e-12),
+        "{chances:?} {expected:?}"
+    );
     assert!(
         table
             .lines()
@@ -175,6 +193,11 @@ fn what_cannot_be_predicted_says_why() {
         assert_contains!(verb(&words, &out).refusal(), reason);
     }
     std::fs::write(&file, "wheel_load_n\n60\n120\n").expect("the plan");
+    let none = ["predict", "1", "--at", "slip=0.1", "--draws", "0"];
+    assert_contains!(
+        verb(&none, &out).refusal(),
+        "draws 0 of each model must be at least 1"
+    );
     let many = ["predict", "1", "--plan", &file, "--sweep", "slip=0:0.8:6000"];
     assert_contains!(
         verb(&many, &out).refusal(),
@@ -203,7 +226,25 @@ fn options_are_ranked_by_their_expected_losses() {
     let by = &answer["decided_by"];
     let shares = ["model", "parameters", "noise"].map(|key| float(&by[key]));
     assert!((shares.iter().sum::<f64>() - 1.0).abs() < 1e-9, "{by}");
-    assert_contains!(verb(&["decide", &file], &out).success(), "best:    climb, by ");
+    // The steep slope keeps the wheel at slips that no run was made at.
+    assert_contains!(word(&cliff["beyond"][0]), "slip outside the fitted ");
+    assert_eq!(list(&stay["beyond"]).len(), 0);
+    let printed = verb(&["decide", &file], &out).success();
+    assert_contains!(
+        printed,
+        "best:    climb, by ",
+        "beyond:  slip outside the fitted "
+    );
+
+    let twin = "[[decision.options]]\nname = \"twin\"\ncondition = { slope_deg = 6, wheel_load_n = 100 }\n";
+    std::fs::write(&file, format!("{DECISION}{twin}")).expect("the decision");
+    let answer = json_of(&["decide", &file], &out);
+    // Two equal options have equal errors, so that nothing is gained by telling them apart.
+    assert!(
+        float(&answer["margin"]).abs() < 1e-9 && float(&answer["margin_se"]).abs() < 1e-9,
+        "{answer}"
+    );
+    assert!(float(&answer["perfect_information"]).abs() < 1e-9, "{answer}");
 
     std::fs::write(&file, DECISION.replace("energy_j_m", "energy")).expect("the decision");
     assert_contains!(

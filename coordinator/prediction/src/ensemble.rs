@@ -78,6 +78,8 @@ pub struct Simulated {
     pub first: usize,
     /// Number of draws of each model.
     pub draws: usize,
+    /// Whether more draws were asked for and would have been too many simulations.
+    pub is_thinned: bool,
 }
 
 impl Ensemble {
@@ -160,18 +162,25 @@ impl Ensemble {
     /// - `draws`: of each model, at most. `simulate`: answers a question.
     ///
     /// # Errors
-    /// [`PredictionError::Request`] if there are too many runs; [`PredictionError::Model`] if a model cannot be evaluated.
+    /// [`PredictionError::Request`] if there are too many runs or no draws are asked for; [`PredictionError::NoStoredDraws`];
+    /// [`PredictionError::Model`] if a model cannot be evaluated. Checked by `tests::at_least_one_draw_is_asked_for`.
     pub fn simulate(
         self,
         runs: Vec<PlannedRun>,
         draws: Option<usize>,
         simulate: impl Fn(Question) -> Result<Answers, String>,
     ) -> Result<Simulated, PredictionError> {
-        let available = self
-            .models
-            .iter()
-            .map(|model| model.calibration.predictive_draws().len());
-        let available = available.min().unwrap_or(0);
+        if draws == Some(0) {
+            let message = "draws 0 of each model must be at least 1";
+            return Err(PredictionError::Request(message.into()));
+        }
+        let mut available = usize::MAX;
+        for calibration in self.models.iter().map(|model| &model.calibration) {
+            match calibration.predictive_draws().len() {
+                0 => return Err(PredictionError::NoStoredDraws(calibration.row.id)),
+                stored => available = available.min(stored),
+            }
+        }
         let asked = draws.unwrap_or(available).min(available);
         let count = asked.min(self.affordable(runs.len()));
         if count < asked.min(MIN_DRAWS) || count == 0 {
@@ -208,6 +217,7 @@ impl Ensemble {
             runs,
             first,
             draws: count,
+            is_thinned: count < asked,
         })
     }
 
@@ -317,5 +327,22 @@ fn take(
                 holdout.alone.insert(run, result);
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn at_least_one_draw_is_asked_for() {
+        let ensemble = Ensemble {
+            models: Vec::new(),
+            weights: Vec::new(),
+            wheels: BTreeMap::new(),
+        };
+        let refused = ensemble.simulate(Vec::new(), Some(0), |_| Ok(Vec::new()));
+        let error = refused.unwrap_err().to_string();
+        assert_eq!(error, "draws 0 of each model must be at least 1");
     }
 }

@@ -14,6 +14,9 @@ pub enum PredictionError {
     /// The calibration is a fit without draws, from which no interval follows.
     #[error("calibration {0} has no draws of a posterior: a fit alone has no distribution to predict with")]
     NoDraws(i64),
+    /// The posterior of a calibration has no draws with predictions.
+    #[error("calibration {0} has no stored draws with predictions of its runs, which predictions start from")]
+    NoStoredDraws(i64),
     /// The model cannot be evaluated.
     #[error("{0}")]
     Model(String),

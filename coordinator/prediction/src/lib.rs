@@ -2,7 +2,7 @@
 //! the caller makes.
 //!
 //! # Layout
-//! - [`plan`]: which runs are predicted.
+//! - [`plan`]: which runs are predicted. [`statement`]: which probabilities are asked for.
 //! - [`ensemble`]: the models of a study with their weights, and what each is asked. [`error`]: why there is no prediction.
 //! - [`quantity_value`]: what follows from the channels of a run. [`draw`]: values and errors at each draw.
 //! - [`spread`]: means and intervals over weighted draws. [`beyond`]: what lies outside the fitted range.
@@ -19,9 +19,11 @@ pub mod plan;
 pub mod prediction;
 pub mod quantity_value;
 pub mod spread;
+pub mod statement;
 
 pub use decision::DecisionAnswer;
 pub use ensemble::{Answers, Ensemble, ModelWeight, Question, RunAnswers, Simulated};
 pub use error::PredictionError;
 pub use plan::{Sweep, planned_runs};
 pub use prediction::Prediction;
+pub use statement::read_statements;

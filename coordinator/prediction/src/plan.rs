@@ -96,8 +96,8 @@ impl Sweep {
 /// Returns the runs of a plan. Without a file it is one row that states nothing; each row is repeated for every value of a sweep.
 ///
 /// # Errors
-/// [`FileError`] names the line, the quantity, its value, its unit and its bound.
-/// Checked by `tests::rows_and_sweep_multiply`.
+/// [`FileError`] names the line, the quantity, its value, its unit and its bound; [`PredictionError::Request`] has the number of the runs
+/// and its bound. Checked by `tests::rows_and_sweep_multiply` and `tests::runs_are_counted_before_they_are_made`.
 pub fn planned_runs(
     csv: Option<&str>,
     sweep: Option<&Sweep>,
@@ -111,7 +111,14 @@ pub fn planned_runs(
             return Err(PredictionError::Request(message.into()));
         }
     };
-    let mut runs = Vec::new();
+    // A short request can ask for more runs than memory holds, so they are counted before they are made.
+    let values = sweep.map_or(1, |sweep| sweep.values.len());
+    let count = rows.len().saturating_mul(values);
+    if count > MAX_RUNS {
+        let message = format!("{count} planned runs must be at most {MAX_RUNS}");
+        return Err(PredictionError::Request(message));
+    }
+    let mut runs = Vec::with_capacity(count);
     for (number, (line, row)) in rows.iter().enumerate() {
         let name = format!("p{}", number + 1);
         let fail = |message: String| match line {
@@ -132,10 +139,6 @@ pub fn planned_runs(
             planned.run.name = format!("{}-{}", planned.run.name, i + 1);
             runs.push(planned);
         }
-    }
-    if runs.len() > MAX_RUNS {
-        let message = format!("{} planned runs must be at most {MAX_RUNS}", runs.len());
-        return Err(PredictionError::Request(message));
     }
     Ok(runs)
 }
@@ -246,6 +249,16 @@ mod tests {
             let error = planned(None, Some(text)).unwrap_err();
             assert!(error.contains(reason), "{error}");
         }
+    }
+
+    #[test]
+    fn runs_are_counted_before_they_are_made() {
+        // As many runs as this fill the memory of a computer.
+        let rows = format!("soil\n{}", "s\n".repeat(300_000));
+        let error = planned(Some(&rows), Some("slip=0:0.8:10000")).unwrap_err();
+        assert_eq!(error, "3000000000 planned runs must be at most 10000");
+        let error = planned(Some(&rows), None).unwrap_err();
+        assert!(error.contains("300000 planned runs"), "{error}");
     }
 
     #[test]

@@ -202,8 +202,7 @@ pub(crate) fn rig_radius_m(simulated: &Simulated, planned: &PlannedRun) -> f64 {
 /// Returns what limits predictions by simulated models, in sentences.
 pub(crate) fn notes(simulated: &Simulated) -> Vec<String> {
     let mut notes = Vec::new();
-    let available = simulated.models[0].calibration.posterior().len();
-    if simulated.draws < available.min(job::PREDICTION_DRAWS - 1) {
+    if simulated.is_thinned {
         notes.push(format!(
             "{} evenly spaced draws of each model stand for its posterior, because more would be too many simulations",
             simulated.draws

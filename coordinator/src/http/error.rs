@@ -106,7 +106,9 @@ impl From<ServiceError> for HttpError {
             ServiceError::Control(_)
             | ServiceError::Effects(_)
             | ServiceError::OfLibrary(_)
-            | ServiceError::Prediction(PredictionError::NoDraws(_) | PredictionError::Model(_))
+            | ServiceError::Prediction(
+                PredictionError::NoDraws(_) | PredictionError::NoStoredDraws(_) | PredictionError::Model(_),
+            )
             | ServiceError::Search(_)
             | ServiceError::LeftAlone { .. }
             | ServiceError::InProgress { .. }
@@ -115,7 +117,10 @@ impl From<ServiceError> for HttpError {
             ServiceError::Details(_) => ErrorKind::InvalidBody,
             // A worker sends its message again, to the next start or to a standby.
             ServiceError::Busy(_) | ServiceError::Stopped(_) => ErrorKind::Busy,
-            ServiceError::Store(_) | ServiceError::Replay(_) | ServiceError::Thread(_) => ErrorKind::Internal,
+            ServiceError::Store(_)
+            | ServiceError::Replay(_)
+            | ServiceError::Thread(_)
+            | ServiceError::Panicked(_) => ErrorKind::Internal,
         };
         match &error {
             // The owner of the store needs to know which row is corrupt.

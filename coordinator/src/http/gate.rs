@@ -49,5 +49,34 @@ pub(super) async fn pass(
 
 /// Returns whether a request changes nothing in the store: it reads, or it asks for a prediction or a decision.
 fn changes_nothing(method: &Method, path: &str) -> bool {
-    [Method::GET, Method::HEAD].contains(method) || path.ends_with("/predict") || path.ends_with("/decide")
+    [Method::GET, Method::HEAD].contains(method) || method == Method::POST && asks_of_a_calibration(path)
+}
+
+/// Returns whether a path is `/v1/calibrations/ID/predict` or `/v1/calibrations/ID/decide`.
+fn asks_of_a_calibration(path: &str) -> bool {
+    let rest = path.strip_prefix("/v1/calibrations/");
+    let parts = rest.and_then(|rest| rest.split_once('/'));
+    parts.is_some_and(|(id, verb)| !id.is_empty() && ["predict", "decide"].contains(&verb))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_service_that_only_reads_answers_predictions_and_decisions_alone() {
+        for (method, path, expected) in [
+            (Method::GET, "/v1/studies", true),
+            (Method::POST, "/v1/calibrations/3/predict", true),
+            (Method::POST, "/v1/calibrations/3/decide", true),
+            (Method::DELETE, "/v1/calibrations/3/predict", false),
+            (Method::POST, "/v1/calibrations/3/cancel", false),
+            (Method::PUT, "/v1/effects/predict", false),
+            (Method::POST, "/v1/effects/decide", false),
+            (Method::POST, "/v1/calibrations//predict", false),
+            (Method::POST, "/v1/calibrations/3/more/predict", false),
+        ] {
+            assert_eq!(changes_nothing(&method, path), expected, "{method} {path}");
+        }
+    }
 }

@@ -75,6 +75,9 @@ pub enum ServiceError {
     /// The operating system refuses a thread.
     #[error("failed to start the thread of the farm: {0}")]
     Thread(std::io::Error),
+    /// A computation ended by a defect of the program.
+    #[error("a computation of the service panicked: {0}")]
+    Panicked(tokio::task::JoinError),
     #[error(transparent)]
     Stopped(#[from] Stopped),
     /// Too many facts wait for the store.

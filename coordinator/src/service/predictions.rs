@@ -5,16 +5,19 @@ use std::collections::BTreeMap;
 use shared::api::{NewDecision, NewPrediction};
 use shared::experiment::read_wheels;
 use tokio::sync::Semaphore;
+use tokio::task::JoinError;
 
 use super::error::ServiceError;
 use super::finished_study::{check_finished, finished_study};
 use super::handle::Service;
 use super::simulation::simulate;
 use farm::dispatch::Stopped;
-use job::{ConditionDefaults, Statement, read_decision};
+use job::{ConditionDefaults, read_decision};
 use prediction::decision::{decide, decision_runs};
 use prediction::prediction::predict;
-use prediction::{DecisionAnswer, Ensemble, Prediction, PredictionError, Sweep, planned_runs};
+use prediction::{
+    DecisionAnswer, Ensemble, Prediction, PredictionError, Sweep, planned_runs, read_statements,
+};
 use result::Study;
 
 /// One prediction is computed at a time, because it takes all cores.
@@ -63,7 +66,15 @@ impl Service {
             let _turn = turn;
             compute(study)
         });
-        Ok(computed.await.map_err(|_| Stopped)??)
+        Ok(computed.await.map_err(failed)??)
+    }
+}
+
+/// Returns the error of a computation that did not end: only one that was cancelled is worth another try.
+fn failed(error: JoinError) -> ServiceError {
+    match error.is_panic() {
+        true => ServiceError::Panicked(error),
+        false => Stopped.into(),
     }
 }
 
@@ -72,11 +83,7 @@ fn predicted(study: Study, id: i64, asked: &NewPrediction) -> Result<Prediction,
         Some(text) => read_wheels(WHEELS, text)?,
         None => BTreeMap::new(),
     };
-    let statements = asked.statements.iter().map(|text| {
-        let fail = |e: String| PredictionError::Request(format!("statement \"{text}\": {e}"));
-        Statement::read(text).map_err(fail)
-    });
-    let statements: Vec<Statement> = statements.collect::<Result<_, _>>()?;
+    let statements = read_statements(&asked.statements)?;
     let sweep = asked.sweep.as_deref().map(Sweep::read).transpose()?;
     let ensemble = Ensemble::new(study, id, wheels)?;
     let defaults = ConditionDefaults::new(&ensemble.asked().spec.experiment, ensemble.wheels());
@@ -97,4 +104,20 @@ fn decided(
     let (runs, scenarios) = decision_runs(&decision, &defaults)?;
     let simulated = ensemble.simulate(runs, draws, |question| simulate(&question))?;
     decide(&simulated, &decision, &scenarios)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[tokio::test]
+    async fn a_computation_that_panics_is_not_answered_as_busy() {
+        let compute: fn() = || panic!("of a prediction");
+        let error = tokio::task::spawn_blocking(compute).await.unwrap_err();
+        assert!(matches!(failed(error), ServiceError::Panicked(_)));
+        let endless = tokio::spawn(std::future::pending::<()>());
+        endless.abort();
+        let error = endless.await.unwrap_err();
+        assert!(matches!(failed(error), ServiceError::Stopped(_)));
+    }
 }

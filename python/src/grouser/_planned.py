@@ -56,6 +56,7 @@ def _rows(run: Mapping[str, Any]) -> list[dict[str, Any]]:
     for quantity in run["quantities"]:
         row = {**condition, "quantity": quantity["name"], "unit": quantity["unit"], "mean": quantity["mean"]}
         row["models_mean"], row["corrected"] = quantity["models_mean"], quantity["corrected"]
+        row["measurement_mean"] = None
         for name, key in (
             ("parameters", "parameters"),
             ("models", "models"),
@@ -67,7 +68,8 @@ def _rows(run: Mapping[str, Any]) -> list[dict[str, Any]]:
     for statement in run["statements"]:
         row = dict.fromkeys(rows[0]) if rows else {}
         row.update({**condition, "quantity": statement["statement"], "unit": "1"})
+        row["mean"], row["models_mean"] = statement["parameters"], statement["models"]
         # A measurement makes the statement true with this probability, over all models.
-        row["mean"], row["models_mean"] = statement["parameters"], statement["measurement"]
+        row["measurement_mean"] = statement["measurement"]
         rows.append(row)
     return rows

@@ -124,8 +124,9 @@ class Study:
 
         ``parameters`` are those of the model, ``models`` those of all models of the study by their evidence,
         ``measurement`` those of a new measurement by all models, ``corrected`` those of a new measurement by the model and
-        what it misses in the fitted conditions. The ``models_mean`` of a statement is the probability that a new
-        measurement makes it true, its ``mean`` that of the model's parameters alone. ``beyond`` says what lies outside the
+        what it misses in the fitted conditions. The ``measurement_mean`` of a statement is the probability that a
+        new measurement makes it true, its ``mean`` that of the model's parameters alone, its ``models_mean`` that of all
+        models; other quantities have no ``measurement_mean``. ``beyond`` says what lies outside the
         fitted range.
 
         Args:

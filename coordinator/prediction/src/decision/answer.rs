@@ -57,6 +57,8 @@ pub struct OptionLoss {
     pub stuck: Option<f64>,
     /// Mean slip of the run where the wheel is not stuck; null of an option that does not run.
     pub slip: Option<f64>,
+    /// What lies outside the range of the fitted runs, in phrases, at the mean slip of an option that finds its slip; empty within it.
+    pub beyond: Vec<String>,
     /// Whether all constraints hold with their probabilities; an option that does not run has none.
     pub is_feasible: bool,
     /// The constraints.
@@ -115,6 +117,8 @@ pub struct RunValue {
     pub value: f64,
     /// Standard error of the value by the number of draws.
     pub value_se: f64,
+    /// Mean effective number of draws after a measurement of the run; below 10 the value is too large.
+    pub effective_draws: f64,
     /// Whether the value exceeds the cost of a run; null without a cost.
     pub is_worth_its_cost: Option<bool>,
 }

@@ -1,6 +1,6 @@
 //! The loss of each option at each draw, with errors.
 
-use job::{Decision, PlannedRun, QUANTITIES, QuantityValues};
+use job::{Decision, PlannedRun, QUANTITIES, QuantityValues, position_of};
 
 use super::scenario::Scenarios;
 use crate::balance::climb;
@@ -13,7 +13,7 @@ use crate::spread::{mean, probability, variance};
 
 /// Number of the errors of all options. They are the same for each, so that what options have in common cancels in their differences.
 pub(super) const OPTION_ERRORS: usize = 0;
-/// Largest share of the draws at which a loss may have no value.
+/// Largest share of the weight of the draws at which a loss may have no value.
 const MAX_LEFT_OUT: f64 = 0.5;
 
 /// Losses of the options at the draws at which all options have one.
@@ -37,6 +37,8 @@ pub(super) struct LossTable {
     pub(super) slip: Vec<Option<f64>>,
     /// Number of draws at which an option has no loss.
     pub(super) left_out: usize,
+    /// Their share of the weight of all draws.
+    pub(super) left_out_share: f64,
 }
 
 /// A mean with its standard error.
@@ -125,11 +127,7 @@ impl LossTable {
             }
         }
         let total: f64 = table.draws.iter().map(|draw| draw.weight).sum();
-        if table.left_out as f64 > MAX_LEFT_OUT * draws.all.len() as f64 || total <= 0.0 {
-            let message = "a loss has no value at most draws: the model refuses a run there, or the formula uses what an option without a \
-                condition does not have";
-            return Err(PredictionError::Request(message.into()));
-        }
+        table.left_out_share = left_out_share(&draws.all, &table.draws)?;
         table.weights = table.draws.iter().map(|draw| draw.weight / total).collect();
         let at_mode = options.iter().zip(&scenarios.options).enumerate();
         table.at_mode = at_mode
@@ -150,8 +148,8 @@ impl LossTable {
 
     /// Computes the probabilities of constraints and of being stuck.
     fn judge(&mut self, decision: &Decision, scenarios: &Scenarios, kept: &[Vec<Vec<QuantityValues>>]) {
-        const SLIP: usize = 10;
-        const STUCK: usize = 16;
+        let [at_slip, at_stuck] =
+            ["slip", "stuck"].map(|name| position_of(name).expect("a quantity of the list"));
         for (option, runs) in scenarios.options.iter().enumerate() {
             let values = || {
                 let weighted = kept.iter().zip(&self.weights);
@@ -162,10 +160,10 @@ impl LossTable {
                 probability(holds).unwrap_or(0.0)
             });
             let holds: Vec<f64> = holds.collect();
-            let stuck = probability(values().map(|(v, weight)| (v[STUCK] > 0.5, weight)));
+            let stuck = probability(values().map(|(v, weight)| (v[at_stuck] > 0.5, weight)));
             let slips: Vec<(f64, f64)> = values()
-                .filter(|(v, _)| v[STUCK] < 0.5)
-                .map(|(v, weight)| (v[SLIP], weight))
+                .filter(|(v, _)| v[at_stuck] < 0.5)
+                .map(|(v, weight)| (v[at_slip], weight))
                 .collect();
             self.holds.push(holds);
             self.stuck.push(stuck.filter(|_| runs.len() > 1));
@@ -219,6 +217,27 @@ impl LossTable {
     }
 }
 
+/// Returns the share of the weight of the draws that are not kept.
+///
+/// # Errors
+/// [`PredictionError::Request`] if it exceeds [`MAX_LEFT_OUT`]. Checked by `tests::draws_that_are_left_out_count_by_their_weight`.
+fn left_out_share(all: &[WeightedDraw], kept: &[WeightedDraw]) -> Result<f64, PredictionError> {
+    let weight = |draws: &[WeightedDraw]| draws.iter().map(|draw| draw.weight).sum::<f64>();
+    let share = match kept.len() == all.len() {
+        true => 0.0,
+        false => 1.0 - weight(kept) / weight(all),
+    };
+    if share <= MAX_LEFT_OUT && !kept.is_empty() {
+        return Ok(share);
+    }
+    Err(PredictionError::Request(format!(
+        "a loss has no value at draws with {:.1} % of the weight, which must be at most {:.0} %: the model refuses a run there, or the \
+         formula uses what an option without a condition does not have",
+        100.0 * share,
+        100.0 * MAX_LEFT_OUT
+    )))
+}
+
 #[cfg(test)]
 pub(super) mod tests {
     use super::*;
@@ -242,6 +261,26 @@ pub(super) mod tests {
             means: means.iter().map(|row| row.to_vec()).collect(),
             ..LossTable::default()
         }
+    }
+
+    #[test]
+    fn draws_that_are_left_out_count_by_their_weight() {
+        let draw = |model: usize, draw: usize, weight: f64| WeightedDraw { model, draw, weight };
+        // The second model has half of the draws and a hundredth of the weight.
+        let all = [
+            draw(0, 0, 0.495),
+            draw(0, 1, 0.495),
+            draw(1, 0, 0.005),
+            draw(1, 1, 0.005),
+        ];
+        assert!(left_out_share(&all, &all).unwrap().abs() < 1e-15);
+        assert!((left_out_share(&all, &all[..2]).unwrap() - 0.01).abs() < 1e-12);
+        let error = left_out_share(&all, &all[2..]).unwrap_err().to_string();
+        assert!(
+            error.contains("with 99.0 % of the weight, which must be at most 50 %"),
+            "{error}"
+        );
+        assert!(left_out_share(&all, &[]).is_err());
     }
 
     #[test]

@@ -13,6 +13,7 @@ mod scenario;
 
 use job::Decision;
 
+use crate::beyond::beyond;
 use crate::draw::Draws;
 use crate::ensemble::Simulated;
 use crate::error::PredictionError;
@@ -42,7 +43,10 @@ pub fn decide(
     let draws = Draws::new(simulated);
     let table = LossTable::new(simulated, &draws, decision, scenarios)?;
     let options: Vec<OptionLoss> = (0..decision.options.len())
-        .map(|option| option_loss(decision, &table, option))
+        .map(|option| {
+            let beyond = beyond_at(simulated, &scenarios.options[option], table.slip[option]);
+            option_loss(decision, &table, option, beyond)
+        })
         .collect();
     let feasible: Vec<usize> = (0..options.len())
         .filter(|&option| options[option].is_feasible)
@@ -61,13 +65,15 @@ pub fn decide(
     let mut notes = notes(simulated);
     if table.left_out > 0 {
         notes.push(format!(
-            "{} of {} draws count in no loss, because the model refuses a run there or a loss has no value",
+            "{} of {} draws, with {:.1} % of the weight, count in no loss, because the model refuses a run there or a loss has no value",
             table.left_out,
-            draws.all.len()
+            draws.all.len(),
+            100.0 * table.left_out_share
         ));
     }
     let perfect = table.perfect_information(&feasible);
     let runs = run_values(simulated, &draws, &table, &feasible, scenarios, decision.run_cost);
+    notes.extend(information::note(&runs));
     Ok(DecisionAnswer {
         calibration: simulated.models[0].calibration.row.id,
         draws: simulated.draws,
@@ -96,7 +102,16 @@ pub fn decide(
     })
 }
 
-fn option_loss(decision: &Decision, table: &LossTable, option: usize) -> OptionLoss {
+/// Returns what lies outside the fitted range of an option's run: at its mean slip, or at the last of its slips where it is always stuck.
+fn beyond_at(simulated: &Simulated, runs: &[usize], slip: Option<f64>) -> Vec<String> {
+    let Some(last) = runs.last().map(|&run| &simulated.runs[run]) else {
+        return Vec::new();
+    };
+    let planned = last.at_slip(slip.unwrap_or(last.run.slip));
+    beyond(&simulated.models[0].calibration.spec.experiment, &planned)
+}
+
+fn option_loss(decision: &Decision, table: &LossTable, option: usize, beyond: Vec<String>) -> OptionLoss {
     let stated = &decision.options[option];
     let constraints: Vec<ConstraintProbability> = decision
         .constraints
@@ -119,6 +134,7 @@ fn option_loss(decision: &Decision, table: &LossTable, option: usize) -> OptionL
         loss_at_mode: Some(table.at_mode[option]).filter(|loss| loss.is_finite()),
         stuck: table.stuck[option],
         slip: table.slip[option],
+        beyond,
         is_feasible: constraints.iter().all(|c| c.probability >= c.needed),
         constraints,
     }

@@ -7,6 +7,7 @@ use prediction::decision::{OptionLoss, RunValue};
 use result::number;
 
 use super::column::{cell, labelled};
+use super::prediction::{beyond_lines, beyond_mark};
 use super::table::Table;
 
 /// Number of further runs that are listed.
@@ -30,6 +31,7 @@ pub fn decision(answer: &DecisionAnswer) -> String {
         .right(12, "at the mode", move |option| cell(option.loss_at_mode, short))
         .right(6, "slip", |option| cell(option.slip, |slip| format!("{slip:.2}")))
         .right(6, "stuck", |option| cell(option.stuck, |p| format!("{p:.2}")))
+        .remark(|option| beyond_mark(&option.beyond))
         .apart(0, "", broken);
     let mut text = format!(
         "calibration {}, {} draws of each model\n\n{}\n",
@@ -43,18 +45,25 @@ pub fn decision(answer: &DecisionAnswer) -> String {
         let each: Vec<String> = by
             .each
             .iter()
-            .map(|each| format!("{} {}", each.parameter, share(each.share)))
+            .enumerate()
+            .map(|(i, each)| match i {
+                0 => format!(
+                    ". Alone, {} explains {} of the mean difference",
+                    each.parameter,
+                    share(each.share)
+                ),
+                _ => format!(", {} {}", each.parameter, share(each.share)),
+            })
             .collect();
         text += &labelled(
             "decided:",
             &format!(
-                "the difference of one run has an sd of {}: {} of its variance is the model, {} the parameters, {} errors; alone explain of the \
-                 mean difference: {}",
+                "the difference of one run has an sd of {}: {} of its variance is the model, {} the parameters, {} errors{}",
                 short(by.sd),
                 share(by.model),
                 share(by.parameters),
                 share(by.noise),
-                each.join(", ")
+                each.concat()
             ),
         );
     }
@@ -72,6 +81,7 @@ pub fn decision(answer: &DecisionAnswer) -> String {
     for run in answer.runs.iter().take(LISTED) {
         text += &labelled("run:", &run_words(run));
     }
+    text += &beyond_lines(answer.options.iter().map(|option| (&option.name, &option.beyond)));
     for note in &answer.notes {
         text += &labelled("note:", note);
     }

@@ -54,7 +54,7 @@ pub fn prediction(prediction: &Prediction) -> String {
             .right(18, "corrected", move |row| {
                 pair(row.quantity.corrected_measurement)
             })
-            .remark(|row| if row.run.beyond.is_empty() { "" } else { " *" });
+            .remark(|row| beyond_mark(&row.run.beyond));
         let _ = write!(text, "\n{}", table.text(&rows));
     }
     text += &statements(prediction);
@@ -137,24 +137,34 @@ pub(super) fn climb_words(climb: &PredictedClimb) -> String {
     )
 }
 
-fn limits(prediction: &Prediction) -> String {
-    let mut text = String::new();
+/// Returns the remark on a row that lies beyond the range of the fitted runs.
+pub(super) fn beyond_mark(beyond: &[String]) -> &'static str {
+    if beyond.is_empty() { "" } else { " *" }
+}
+
+/// Returns a line for each phrase of what lies beyond the range of the fitted runs, with the names that it is said of.
+pub(super) fn beyond_lines<'a>(named: impl Iterator<Item = (&'a String, &'a Vec<String>)>) -> String {
     let mut beyond: Vec<(&str, Vec<&str>)> = Vec::new();
-    for run in &prediction.runs {
-        for phrase in &run.beyond {
+    for (name, phrases) in named {
+        for phrase in phrases {
             match beyond.iter_mut().find(|(known, _)| known == phrase) {
-                Some((_, runs)) => runs.push(&run.run),
-                None => beyond.push((phrase, vec![&run.run])),
+                Some((_, names)) => names.push(name),
+                None => beyond.push((phrase.as_str(), vec![name.as_str()])),
             }
         }
     }
-    for (phrase, runs) in beyond {
-        let runs = match runs.as_slice() {
-            [first, .., last] if runs.len() > 3 => format!("{first} to {last}"),
-            runs => runs.join(", "),
+    let line = |(phrase, names): (&str, Vec<&str>)| {
+        let names = match names.as_slice() {
+            [first, .., last] if names.len() > 3 => format!("{first} to {last}"),
+            names => names.join(", "),
         };
-        text += &labelled("beyond:", &format!("{phrase} ({runs})"));
-    }
+        labelled("beyond:", &format!("{phrase} ({names})"))
+    };
+    beyond.into_iter().map(line).collect()
+}
+
+fn limits(prediction: &Prediction) -> String {
+    let mut text = beyond_lines(prediction.runs.iter().map(|run| (&run.run, &run.beyond)));
     for run in &prediction.runs {
         if let Some(refused) = &run.refused {
             text += &labelled("refused:", &format!("{} at {}", run.run, refused.words()));
@@ -168,9 +178,12 @@ fn limits(prediction: &Prediction) -> String {
 
 /// The titles of the CSV.
 const TITLES: &str = "run,wheel,slip,wheel_load_n,sled_speed_m_s,slip_angle_deg,pass,gravity_m_s2,slope_deg,beyond,quantity,unit,mean,\
-    parameters_q05,parameters_q95,models_mean,models_q05,models_q95,measurement_q05,measurement_q95,corrected,corrected_q05,corrected_q95\n";
+    parameters_q05,parameters_q95,models_mean,models_q05,models_q95,measurement_mean,measurement_q05,measurement_q95,corrected,corrected_q05,\
+    corrected_q95\n";
 
 /// Returns a row for each run and quantity as CSV; a statement is a quantity whose means are its probabilities.
+///
+/// `measurement_mean` is the probability that a new measurement makes a statement true, and empty of other quantities.
 pub fn prediction_csv(prediction: &Prediction) -> String {
     let mut text = TITLES.to_owned();
     let quoted = |words: &str| format!("\"{}\"", words.replace('"', "\"\""));
@@ -194,7 +207,7 @@ pub fn prediction_csv(prediction: &Prediction) -> String {
         for quantity in &run.quantities {
             let _ = writeln!(
                 text,
-                "{start},{},{},{},{},{},{},{},{},{}",
+                "{start},{},{},{},{},{},{},,{},{},{}",
                 quantity.name,
                 quantity.unit,
                 quantity.mean,
@@ -209,7 +222,7 @@ pub fn prediction_csv(prediction: &Prediction) -> String {
         for statement in &run.statements {
             let _ = writeln!(
                 text,
-                "{start},{},1,{},,,{},,,{},,,,",
+                "{start},{},1,{},,,{},,,{},,,,,",
                 quoted(&statement.statement),
                 number(statement.parameters),
                 number(statement.models),
