@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use record::StudyDetails;
+use record::{CalibrationRow, StudyDetails};
 
 use super::error::StoreError;
 use super::json::json;
@@ -52,6 +52,16 @@ impl Reader {
             Ok((study, serde_json::from_str(&text).map_err(corrupt)?))
         };
         rows.into_iter().map(read).collect()
+    }
+
+    /// Reads the calibrations of a study, oldest first: those that are part of it, and those that were taken out of it.
+    pub async fn members_and_withdrawn(
+        &self,
+        study: i64,
+    ) -> Result<(Vec<CalibrationRow>, Vec<CalibrationRow>), StoreError> {
+        let withdrawn = self.withdrawn().await?;
+        let rows = self.study(study).await?.into_iter();
+        Ok(rows.partition(|row| !withdrawn.contains(&row.id)))
     }
 
     /// Reads the calibrations that were taken out of their studies. A store of before migration 24 has none.
