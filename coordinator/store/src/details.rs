@@ -99,7 +99,8 @@ mod tests {
         let (stamp, rows) = stamped().await;
         assert!(rows.is_empty() && stamp != whole.0);
         assert!(reader.member_states().await.unwrap().is_empty());
-        assert_eq!(reader.study(study).await.unwrap().len(), 1);
+        let (members, withdrawn) = reader.members_and_withdrawn(study).await.unwrap();
+        assert_eq!((members.len(), withdrawn.len()), (0, 1));
         writer.withdraw(vec![calibration], None).await.unwrap();
         assert_eq!(stamped().await.0, whole.0);
         store.close().await;
